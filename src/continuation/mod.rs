@@ -1,0 +1,45 @@
+//! Sweeps: follows a source of densities along a parameter and locates changes of signature.
+//!
+//! This module knows a source of densities and a detector, and nothing of matrices: Monte Carlo, cell maps
+//! and closed-form densities all sweep alike.
+
+mod label;
+mod source;
+
+pub use label::{BifurcationStatus, LabelledPoint, PointType};
+pub use source::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
+
+use crate::density::{EstimatedDensity, Moments, Observable};
+use crate::topology::Detection;
+
+/// One parameter value of a sweep with all that was found there.
+#[derive(Debug, Clone)]
+pub struct Point {
+    /// The parameter's value.
+    pub value: f64,
+    /// How the solve went.
+    pub report: SolveReport,
+    /// Mean and standard deviation of every axis; empty when there is no density.
+    pub moments: Vec<Moments>,
+    /// The watched densities, in the order of [`SweepResult::observables`]; empty when there is no density.
+    pub densities: Vec<EstimatedDensity>,
+    /// What the detector says of each; same order.
+    pub detections: Vec<Detection>,
+    /// Seconds of wall-clock time spent on the point.
+    pub seconds: f64,
+}
+
+/// A finished (or interrupted) sweep.
+#[derive(Debug, Clone)]
+pub struct SweepResult {
+    /// Name of the swept parameter.
+    pub parameter: String,
+    /// The observables watched, marginals first.
+    pub observables: Vec<Observable>,
+    /// All points in ascending parameter.
+    pub points: Vec<Point>,
+    /// Labelled points in ascending parameter: end points `EP`, changes `PB`, failures `MX`.
+    pub labels: Vec<LabelledPoint>,
+    /// Whether the sweep was interrupted before it was complete.
+    pub interrupted: bool,
+}

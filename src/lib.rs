@@ -1,0 +1,33 @@
+//! Steady-state probability densities of noisy, possibly non-smooth oscillators, and the parameter
+//! values where their topology changes (stochastic P-bifurcations).
+//!
+//! | task | module |
+//! | --- | --- |
+//! | state a model, look up the built-in ones | [`system`] |
+//! | lay a grid of cells over the domain | [`space`] |
+//! | sample a transition matrix by trajectories (SGCM) | [`sampling`] |
+//! | find the steady state of a transition matrix | [`stationary`] |
+//! | turn masses into densities, marginals, moments, distances | [`density`] |
+//! | count significant peaks and craters | [`topology`] |
+//! | sweep a parameter and locate changes of topology | [`continuation`] |
+//! | join the above into a source of densities | [`method`] |
+//! | write tables and arrays | [`run`] |
+//! | draw | [`figure`] |
+//! | the program `pbif` | [`cli`] |
+//!
+//! Modules depend on those above them in this table, never the other way.
+
+pub mod cli;
+pub mod continuation;
+pub mod density;
+pub mod figure;
+pub mod method;
+pub mod run;
+pub mod sampling;
+pub mod space;
+pub mod stationary;
+pub mod system;
+pub mod topology;
+
+/// Largest dimension of a state and of a cell space.
+pub const MAX_DIMENSION: usize = 4;

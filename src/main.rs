@@ -1,0 +1,2 @@
+//! pbif
+fn main() {}

@@ -1,0 +1,66 @@
+//! Cell space: a rectilinear grid of boxes over the domain Ω. Everything outside is the sink.
+
+mod axis;
+mod cells;
+
+pub use axis::{Axis, Grading};
+pub use cells::CellSpace;
+
+/// Why an axis or a cell space could not be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SpaceError {
+    /// The range is empty, reversed or not finite.
+    #[error("range from {from} to {to} is not a range of finite numbers with from < to")]
+    Range {
+        /// Lower end that was given.
+        from: f64,
+        /// Upper end that was given.
+        to: f64,
+    },
+    /// Fewer than two cells.
+    #[error("{count} cells on an axis; at least 2 are needed")]
+    Count {
+        /// Number of cells that was given.
+        count: usize,
+    },
+    /// A point of grading outside the open range, or repeated.
+    #[error(
+        "cells cannot be graded toward {at}: it must lie inside ({from}, {to}), each point once"
+    )]
+    GradingPoint {
+        /// The point that was given.
+        at: f64,
+        /// Lower end of the axis.
+        from: f64,
+        /// Upper end of the axis.
+        to: f64,
+    },
+    /// A smallest width that the number of cells cannot give.
+    #[error("smallest cell {smallest} must be positive and below the uniform width {uniform}")]
+    GradingWidth {
+        /// The width that was asked for.
+        smallest: f64,
+        /// Width of the cells without grading.
+        uniform: f64,
+    },
+    /// Too few cells to give every piece between graded points at least one.
+    #[error("{count} cells are too few for {points} graded points")]
+    GradingCount {
+        /// Number of cells that was given.
+        count: usize,
+        /// Number of points.
+        points: usize,
+    },
+    /// No axis, or more than four.
+    #[error("{axes} axes; a cell space has 1 to 4")]
+    Dimension {
+        /// Number of axes that was given.
+        axes: usize,
+    },
+    /// More cells than can be numbered.
+    #[error("the cell space has more than {limit} cells")]
+    TooManyCells {
+        /// The largest number of cells.
+        limit: usize,
+    },
+}

@@ -1,0 +1,139 @@
+//! Stochastic differential equations: the trait every model implements, and the built-in models.
+//!
+//! A [`System`] is an Itô equation dX = a(X, t; θ) dt + B(X, t; θ) dW in d = 1…4 dimensions with its
+//! parameters θ already bound. A [`Model`] is the family it comes from: names, equations, parameters
+//! with their meaning, and a function that binds values. [`registry`] lists the models.
+
+mod bistable;
+mod coulomb;
+mod dahl;
+mod dahl_eq8;
+mod model;
+mod rayleigh;
+pub mod registry;
+
+pub use model::{
+    AxisDescription, Model, ParameterDescription, ParameterRange, ParameterValues, SystemError,
+};
+
+/// Number of states that are advanced together. Kernels work on whole batches, so that a model's
+/// arithmetic fills vector registers and the cost of a virtual call is shared by this many states.
+pub const LANES: usize = 64;
+
+/// One coordinate of a batch of [`LANES`] states.
+pub type Lanes = [f64; LANES];
+
+/// A plane `state[axis] = at` on which the drift jumps or has a kink.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SwitchingSurface {
+    /// Axis whose coordinate is constant on the surface.
+    pub axis: usize,
+    /// Value of that coordinate.
+    pub at: f64,
+}
+
+/// A reflection that maps the law of the process onto itself: coordinates marked in `reflected`
+/// change sign about `centre`, the others stay.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Symmetry {
+    /// Centre of the reflection, one value an axis.
+    pub centre: Vec<f64>,
+    /// Which axes are reflected.
+    pub reflected: Vec<bool>,
+}
+
+/// An Itô equation dX = a(X, t) dt + Σ_k b_k(X, t) e_{axis(k)} dW_k with bound parameters.
+///
+/// Each Wiener process `k` drives exactly one axis, [`System::noise_axes`]`[k]`; an axis may have none.
+/// Stratonovich equations are given with their Itô drift.
+///
+/// # A minimal implementation
+///
+/// ```
+/// use pbif::system::{Lanes, System};
+///
+/// /// dx = -x dt + 0.5 dW.
+/// struct OrnsteinUhlenbeck;
+///
+/// impl System for OrnsteinUhlenbeck {
+///     fn dimension(&self) -> usize {
+///         1
+///     }
+///     fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
+///         for (slope, x) in drift[0].iter_mut().zip(&states[0]) {
+///             *slope = -x;
+///         }
+///     }
+///     fn noise_axes(&self) -> &[usize] {
+///         &[0]
+///     }
+///     fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
+///         Some(0.5)
+///     }
+/// }
+/// assert_eq!(OrnsteinUhlenbeck.drift_at(0.0, &[2.0]), vec![-2.0]);
+/// ```
+pub trait System: Send + Sync {
+    /// Number of axes d, 1 to [`crate::MAX_DIMENSION`].
+    fn dimension(&self) -> usize;
+
+    /// Drift a(X, t) of a batch: `states[axis][lane]` in, `drift[axis][lane]` out. Both slices have
+    /// length d. Must write every entry; non-finite values are allowed and mean overflow.
+    fn drift(&self, time: f64, states: &[Lanes], drift: &mut [Lanes]);
+
+    /// Axis that each Wiener process drives; its length is the number of processes.
+    fn noise_axes(&self) -> &[usize];
+
+    /// Amplitude b_k when it depends on neither state nor time, else `None`.
+    fn additive_amplitude(&self, channel: usize) -> Option<f64>;
+
+    /// Amplitude b_k(X, t) of a batch. Models with state-dependent noise override it; the default
+    /// copies [`System::additive_amplitude`], or zero where that is `None`.
+    fn amplitude(&self, channel: usize, time: f64, states: &[Lanes], amplitude: &mut Lanes) {
+        let _ = (time, states);
+        amplitude.fill(self.additive_amplitude(channel).unwrap_or(0.0));
+    }
+
+    /// Period of the drift in time; `None` for an autonomous system.
+    fn period(&self) -> Option<f64> {
+        None
+    }
+
+    /// Values that a coordinate can never leave (for Dahl's law |z| ≤ f_c/λ), where the model knows them.
+    fn bounds(&self, axis: usize) -> Option<(f64, f64)> {
+        let _ = axis;
+        None
+    }
+
+    /// Planes where the drift is not smooth.
+    fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
+        Vec::new()
+    }
+
+    /// A reflection under which the steady state is invariant.
+    fn symmetry(&self) -> Option<Symmetry> {
+        None
+    }
+
+    /// Logarithm of the steady-state density at a state, up to a constant, where it is known exactly.
+    fn exact_log_density(&self, state: &[f64]) -> Option<f64> {
+        let _ = state;
+        None
+    }
+
+    /// Drift at a single state: d values.
+    fn drift_at(&self, time: f64, state: &[f64]) -> Vec<f64> {
+        let states: Vec<Lanes> = state.iter().map(|&value| [value; LANES]).collect();
+        let mut drift = vec![[0.0; LANES]; state.len()];
+        self.drift(time, &states, &mut drift);
+        drift.iter().map(|lanes| lanes[0]).collect()
+    }
+
+    /// Amplitude of one Wiener process at a single state.
+    fn amplitude_at(&self, channel: usize, time: f64, state: &[f64]) -> f64 {
+        let states: Vec<Lanes> = state.iter().map(|&value| [value; LANES]).collect();
+        let mut amplitude = [0.0; LANES];
+        self.amplitude(channel, time, &states, &mut amplitude);
+        amplitude[0]
+    }
+}

@@ -1,0 +1,103 @@
+//! What a density looks like: its significant peaks and craters, and the signature they make.
+
+use crate::density::EstimatedDensity;
+
+/// Kinds of features.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum FeatureKind {
+    /// A local maximum.
+    Peak,
+    /// The lowest point between two peaks (in two dimensions the saddle that joins them).
+    Valley,
+    /// A local minimum enclosed by a ridge (two dimensions only).
+    Crater,
+}
+
+/// Whether a feature is there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Verdict {
+    /// Its persistence exceeds what noise can make at the chosen confidence.
+    Present,
+    /// It stands out of the typical noise but not beyond doubt.
+    Unresolved,
+    /// Indistinguishable from noise.
+    Absent,
+}
+
+/// A peak, valley or crater of one density.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Feature {
+    /// What it is.
+    pub kind: FeatureKind,
+    /// Place, one coordinate an axis of the density, refined below a cell.
+    pub position: Vec<f64>,
+    /// Value of the density there, refined below a cell.
+    pub density: f64,
+    /// Height (of a crater: depth) over the saddle where it merges; for the highest peak, over zero. A
+    /// valley has the persistence of the lower of the peaks it separates.
+    pub persistence: f64,
+    /// Standard error of the persistence; zero without sampling.
+    pub standard_error: f64,
+    /// Persistence over the largest persistence that noise makes at the chosen confidence: 1 is the limit.
+    pub significance: f64,
+    /// Whether it is there.
+    pub verdict: Verdict,
+}
+
+/// What is compared along a sweep: numbers of significant peaks and craters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Signature {
+    /// Number of significant peaks.
+    pub peaks: usize,
+    /// Number of significant craters (always 0 for a marginal).
+    pub craters: usize,
+}
+
+impl std::fmt::Display for Signature {
+    /// `1 peak`, `2 peaks`, `crater` (its rim has no significant second peak), `crater with 2 peaks`.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let peaks = match self.peaks {
+            1 => "1 peak".to_owned(),
+            peaks => format!("{peaks} peaks"),
+        };
+        let craters = match self.craters {
+            1 => "crater".to_owned(),
+            craters => format!("{craters} craters"),
+        };
+        match (self.craters, self.peaks) {
+            (0, _) => f.write_str(&peaks),
+            (_, 0 | 1) => f.write_str(&craters),
+            _ => write!(f, "{craters} with {peaks}"),
+        }
+    }
+}
+
+/// The detector's findings on one density.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Detection {
+    /// Counts of the features whose verdict is `Present`.
+    pub signature: Signature,
+    /// All features that are `Present` or `Unresolved`, and of each kind the strongest `Absent` ones (so that
+    /// the birth of a feature can be followed), by kind and falling persistence.
+    pub features: Vec<Feature>,
+}
+
+impl Detection {
+    /// The feature of that kind with the given rank in persistence (0 is the strongest).
+    pub fn ranked(&self, kind: FeatureKind, rank: usize) -> Option<&Feature> {
+        self.features
+            .iter()
+            .filter(|feature| feature.kind == kind)
+            .nth(rank)
+    }
+}
+
+/// Finds the features of a density.
+pub trait Detector: Send + Sync {
+    /// Name for the manifest.
+    fn name(&self) -> &'static str;
+
+    /// Features of one density. Scaling the values (and errors), mirroring an axis, or shifting an axis
+    /// changes nothing but the numbers scaled, mirrored or shifted.
+    fn detect(&self, density: &EstimatedDensity) -> Detection;
+}
