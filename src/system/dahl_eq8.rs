@@ -12,7 +12,7 @@ use super::{
 };
 
 /// x' = y, y' = -κy - αx - μx³ - f_c sgn(y) + ξ.
-pub static MODEL: Model = Model {
+pub(super) static MODEL: Model = Model {
     name: "dahl_eq8",
     title: "Duffing oscillator with Coulomb friction",
     equations: &[
