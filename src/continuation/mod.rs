@@ -12,6 +12,19 @@ pub use source::{DensitySource, PointStatus, Solution, SolveReport, SourceError}
 use crate::density::{EstimatedDensity, Moments, Observable};
 use crate::topology::Detection;
 
+/// Settings of location.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LocateOptions {
+    /// Wanted width of a P-bifurcation's bracket, in units of the parameter.
+    pub tolerance: f64,
+}
+
+impl Default for LocateOptions {
+    fn default() -> Self {
+        Self { tolerance: 1e-4 }
+    }
+}
+
 /// One parameter value of a sweep with all that was found there.
 #[derive(Debug, Clone)]
 pub struct Point {

@@ -2,6 +2,24 @@
 
 use crate::density::EstimatedDensity;
 
+/// Settings of detection.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DetectOptions {
+    /// Probability that no feature of the whole sweep is noise.
+    pub confidence: f64,
+    /// Smallest persistence that counts, as a share of the density's maximum.
+    pub floor: f64,
+}
+
+impl Default for DetectOptions {
+    fn default() -> Self {
+        Self {
+            confidence: 0.95,
+            floor: 1e-3,
+        }
+    }
+}
+
 /// Kinds of features.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum FeatureKind {
