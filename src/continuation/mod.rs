@@ -15,6 +15,9 @@ pub use observer::Observer;
 pub use source::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
 pub use sweep::{Plan, SweepError, sweep};
 
+#[cfg(test)]
+mod tests;
+
 use crate::density::{EstimatedDensity, Moments, Observable};
 use crate::topology::Detection;
 

@@ -102,7 +102,12 @@ pub fn sweep<S: DensitySource>(
         if let Some(previous) = &previous {
             run.narrow(previous, &solved)?;
         }
-        previous = Some(solved);
+        // A failed point leaves no state; its successor starts from the last good one.
+        let last_good = previous.and_then(|before| before.state);
+        previous = Some(Solved {
+            point: solved.point,
+            state: solved.state.or(last_good),
+        });
     }
     let (mut points, interrupted) = (run.points, run.interrupted);
     points.sort_by(|a, b| a.value.total_cmp(&b.value));
