@@ -8,6 +8,8 @@ mod naming;
 mod number;
 mod store;
 mod tables;
+#[cfg(test)]
+mod tests;
 
 pub use bifurcations::{
     bifurcations_csv, bifurcations_json, bifurcations_markdown, bifurcations_tex,
