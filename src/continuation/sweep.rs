@@ -225,7 +225,7 @@ fn fill_distances(points: &mut [Point]) {
             let pairs = points[before].densities.iter();
             points[index].distance = pairs
                 .zip(&points[index].densities)
-                .filter_map(|(a, b)| hellinger(&a.density, &b.density))
+                .filter_map(|(a, b)| hellinger(&a.density, &b.density).ok())
                 .reduce(f64::max);
         }
         previous = Some(index);
