@@ -1,2 +1,7 @@
-//! pbif
-fn main() {}
+//! The program `pbif`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    pbif::cli::run()
+}

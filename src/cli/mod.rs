@@ -1,1 +1,124 @@
-//! cli
+//! The program `pbif`: commands, the sweep file, messages, exit codes. The only module that prints.
+
+mod args;
+mod check;
+mod cost;
+mod diagnostic;
+mod document;
+mod keys;
+mod output;
+mod reader;
+mod spec;
+mod sweep;
+mod systems;
+
+use std::io::{self, IsTerminal as _, Write as _};
+use std::process::ExitCode;
+
+use clap::Parser as _;
+
+use args::{Arguments, Command};
+use diagnostic::{Diagnostic, Report};
+use output::OutputError;
+use spec::SweepSpec;
+
+/// How a command ended that did what it was asked to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Outcome {
+    /// Done.
+    Complete,
+    /// Finished, but some row is unresolved, did not converge or has no steady state.
+    Partial,
+    /// Interrupted by the user.
+    #[allow(dead_code)] // only the sweep command can end so
+    Interrupted,
+}
+
+impl Outcome {
+    fn exit_code(self) -> u8 {
+        match self {
+            Self::Complete => 0,
+            Self::Partial => 1,
+            Self::Interrupted => 130,
+        }
+    }
+}
+
+/// Why a command was not carried out.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum CommandError {
+    /// Bad input.
+    #[error("bad input")]
+    Input(Report),
+    /// The results cannot be written where they should go.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// Standard output cannot be written to.
+    #[error("cannot write to standard output: {0}")]
+    Print(#[from] io::Error),
+}
+
+impl From<Report> for CommandError {
+    fn from(report: Report) -> Self {
+        Self::Input(report)
+    }
+}
+
+/// Reads the command line, does what it says, and gives the exit code: 0 done, 1 finished with something
+/// unresolved, 2 bad usage or input, 130 interrupted.
+pub fn run() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and the version come this way too, with code 0. A closed pipe is no failure.
+            let _ = error.print();
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+        }
+    };
+    match dispatch(&arguments.command) {
+        Ok(outcome) => ExitCode::from(outcome.exit_code()),
+        // The reader of a pipe may stop early, as `head` does.
+        Err(CommandError::Print(error)) if error.kind() == io::ErrorKind::BrokenPipe => {
+            ExitCode::SUCCESS
+        }
+        Err(error) => {
+            let styled = io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
+            let text = render(error, styled);
+            let _ = io::stderr().lock().write_all(text.as_bytes());
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn dispatch(command: &Command) -> Result<Outcome, CommandError> {
+    match command {
+        Command::Sweep { input, run } => {
+            let spec = SweepSpec::load(&input.file, &input.overrides)?;
+            sweep::run(&spec, run)
+        }
+        Command::Check { input } => {
+            let spec = SweepSpec::load(&input.file, &input.overrides)?;
+            print(&check::text(&spec)?)
+        }
+        Command::Systems { name: None } => print(&systems::list()),
+        Command::Systems { name: Some(name) } => print(&systems::describe(name)?),
+    }
+}
+
+fn print(text: &str) -> Result<Outcome, CommandError> {
+    let mut stdout = io::stdout().lock();
+    stdout.write_all(text.as_bytes())?;
+    stdout.flush()?;
+    Ok(Outcome::Complete)
+}
+
+fn render(error: CommandError, styled: bool) -> String {
+    let report = match error {
+        CommandError::Input(report) => report,
+        CommandError::Output(error) => Diagnostic::new(error.to_string())
+            .remedy("give another folder with `--out DIR`")
+            .into(),
+        CommandError::Print(error) => Diagnostic::new(error.to_string()).into(),
+    };
+    report.render(styled)
+}

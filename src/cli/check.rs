@@ -1,0 +1,139 @@
+//! `pbif check`: the resolved sweep and what it will cost. Runs nothing.
+
+use std::fmt::Write as _;
+use std::io;
+
+use crate::method::StepChoice;
+
+use super::cost;
+use super::spec::SweepSpec;
+
+/// Points beyond which a sweep is said to be long.
+const MANY_POINTS: usize = 1000;
+
+/// What `pbif check` prints: the resolved file, then the cost as comments, so that the whole is a sweep file.
+///
+/// # Errors
+/// None in practice: writing to memory does not fail.
+pub(super) fn text(spec: &SweepSpec) -> io::Result<String> {
+    let mut text = format!(
+        "# {}: no errors. Complete, it reads\n\n",
+        spec.file.display()
+    );
+    text += &spec.to_toml();
+    text += "\n# Cost\n";
+    for line in costs(spec) {
+        text += &format!("# {line}\n");
+    }
+    let notes = notes(spec);
+    if !notes.is_empty() {
+        text += "\n# Notes\n";
+    }
+    for note in notes {
+        text += &format!("# - {note}\n");
+    }
+    Ok(text)
+}
+
+fn costs(spec: &SweepSpec) -> Vec<String> {
+    let shape: Vec<String> = spec.space.shape().iter().map(usize::to_string).collect();
+    let cells = spec.space.n_cells();
+    let trajectories = cells as f64 * spec.method.samples as f64;
+    let most = cost::estimated_bytes(cells as f64, &spec.method);
+    let least = cost::least_bytes(cells as f64, spec.space.dimension(), &spec.method);
+    let mut lines = vec![
+        format!("cells: {} = {cells}", shape.join(" x ")),
+        points(spec),
+        format!(
+            "memory: {} to {} (every cell reaches 2^d others; every sample ends in a cell of its own)",
+            cost::bytes_in_words(least),
+            cost::bytes_in_words(most)
+        ),
+        format!(
+            "trajectories: at most {trajectories:.3e} a point ({} a cell)",
+            spec.method.samples
+        ),
+    ];
+    lines.push(match (spec.method.map_step, spec.method.time_step) {
+        (StepChoice::Fixed(map_step), StepChoice::Fixed(time_step)) => {
+            let steps = (map_step / time_step).ceil();
+            format!(
+                "time steps: {steps} a trajectory, at most {:.3e} a point",
+                steps * trajectories
+            )
+        }
+        _ => "time steps: chosen when the sweep runs (a step is \"auto\")".to_owned(),
+    });
+    lines
+}
+
+/// How many points, and where the first lie.
+fn points(spec: &SweepSpec) -> String {
+    let values = spec.values();
+    let first: Vec<String> = values.iter().take(3).map(f64::to_string).collect();
+    format!(
+        "points: {} ({} = {}, ...), and a few more for each change that is located",
+        spec.points,
+        spec.parameter,
+        first.join(", ")
+    )
+}
+
+/// What a user should know before the run.
+fn notes(spec: &SweepSpec) -> Vec<String> {
+    let mut notes = misplaced_faces(spec);
+    if spec.points > MANY_POINTS {
+        notes.push(format!(
+            "{} points is a long sweep; changes are located between points, so fewer will do",
+            spec.points
+        ));
+    }
+    let most = cost::estimated_bytes(spec.space.n_cells() as f64, &spec.method);
+    if let Some(memory) = cost::machine_memory().filter(|&memory| most > memory) {
+        let memory = cost::bytes_in_words(memory);
+        notes.push(format!(
+            "this machine has {memory} of memory, which may not be enough; a shorter map step spreads less"
+        ));
+    }
+    notes
+}
+
+/// Surfaces and centres of symmetry that lie inside a cell.
+fn misplaced_faces(spec: &SweepSpec) -> Vec<String> {
+    let system = spec.model.system(&spec.parameters);
+    let mut wanted: Vec<(usize, f64, &str)> = Vec::new();
+    for surface in system.switching_surfaces() {
+        wanted.push((surface.axis, surface.at, "the switching surface"));
+    }
+    if let Some(symmetry) = system.symmetry() {
+        let axes = symmetry.reflected.iter().zip(&symmetry.centre).enumerate();
+        for (axis, (&reflected, &centre)) in axes {
+            let known = wanted
+                .iter()
+                .any(|&(other, at, _)| other == axis && at == centre);
+            if reflected && !known {
+                wanted.push((axis, centre, "the centre of symmetry"));
+            }
+        }
+    }
+    let mut notes = Vec::new();
+    for (index, at, what) in wanted {
+        let (Some(axis), Some(named)) = (spec.space.axes().get(index), spec.model.axes.get(index))
+        else {
+            continue;
+        };
+        if axis.find(at).is_some() && !axis.has_face_at(at) {
+            let mut note = String::new();
+            let _ = write!(
+                note,
+                "{what} {} = {at} lies inside a cell: give a range with {at} in its middle and an even \
+                 `cells.{}.count` (now {}), or grade the axis toward it",
+                named.name,
+                named.name,
+                axis.count()
+            );
+            notes.push(note);
+        }
+    }
+    notes
+}

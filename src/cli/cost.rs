@@ -1,0 +1,88 @@
+//! What a sweep will cost: memory bounds from the number of cells and samples, and the machine's memory.
+//!
+//! Memory of one point. A transition takes 8 bytes for its probability, 8 for its row, and a 2-byte count for
+//! each replicate; a cell takes 8 vectors of 8 bytes in the solver and one more for each replicate. The
+//! trajectories of a cell end in at most `samples` cells, and in at most all of them; the image of a box
+//! generally overlaps at least 2^d boxes. The solver's coarser levels at most double the transitions.
+
+use crate::method::SgcmOptions;
+
+/// Bytes a transition takes.
+fn transition_bytes(options: &SgcmOptions) -> f64 {
+    2.0 * 16.0 + 2.0 * options.replicates as f64
+}
+
+/// Bytes a cell takes beside its transitions.
+fn cell_bytes(options: &SgcmOptions) -> f64 {
+    8.0 * (8.0 + options.replicates as f64)
+}
+
+/// Upper bound of the bytes at work at one point: every sample of a cell ends in a cell of its own.
+pub(super) fn estimated_bytes(n_cells: f64, options: &SgcmOptions) -> f64 {
+    let reached = n_cells.min(options.samples as f64);
+    n_cells * (reached * transition_bytes(options) + cell_bytes(options))
+}
+
+/// Lower bound of the same: every cell reaches 2^d cells, `dimension` = d.
+pub(super) fn least_bytes(n_cells: f64, dimension: usize, options: &SgcmOptions) -> f64 {
+    let image = 2_f64.powi(dimension as i32);
+    let reached = n_cells.min(options.samples as f64).min(image);
+    n_cells * (reached * transition_bytes(options) + cell_bytes(options))
+}
+
+/// Memory of the machine, or of the group of processes where that is limited; `None` if unknown.
+pub(super) fn machine_memory() -> Option<f64> {
+    let mut system = sysinfo::System::new().ok()?;
+    system.refresh_memory();
+    let limit = system.cgroup_limits().map(|limits| limits.total_memory);
+    let total = system.total_memory();
+    let memory = limit
+        .filter(|&limit| limit > 0)
+        .map_or(total, |limit| limit.min(total));
+    (memory > 0).then_some(memory as f64)
+}
+
+/// A number of bytes as people write it.
+pub(super) fn bytes_in_words(bytes: f64) -> String {
+    let units = ["kB", "MB", "GB", "TB", "PB"];
+    let mut value = bytes / 1e3;
+    let mut unit = 0;
+    while value >= 1e3 && unit + 1 < units.len() {
+        value /= 1e3;
+        unit += 1;
+    }
+    format!("{value:.1} {}", units[unit])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bounds_enclose_and_grow_with_cells_and_samples() {
+        let options = SgcmOptions::default();
+        let more = SgcmOptions {
+            samples: 2 * options.samples,
+            ..options.clone()
+        };
+        for n_cells in [4.0, 2500.0, 1e6] {
+            let (least, most) = (
+                least_bytes(n_cells, 2, &options),
+                estimated_bytes(n_cells, &options),
+            );
+            assert!(least <= most);
+            assert!(estimated_bytes(2.0 * n_cells, &options) >= 2.0 * most);
+            assert!(estimated_bytes(n_cells, &more) >= most);
+        }
+        // 10 cells, 10 transitions each at most: 10·(10·48 + 128) bytes with 8 replicates.
+        assert_eq!(estimated_bytes(10.0, &options), 6080.0);
+        assert_eq!(least_bytes(10.0, 2, &options), 10.0 * (4.0 * 48.0 + 128.0));
+    }
+
+    #[test]
+    fn bytes_are_written_with_a_unit() {
+        assert_eq!(bytes_in_words(1.5e9), "1.5 GB");
+        assert_eq!(bytes_in_words(2.0e21), "2000000.0 PB");
+        assert_eq!(bytes_in_words(12.0), "0.0 kB");
+    }
+}

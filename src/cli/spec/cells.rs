@@ -1,0 +1,221 @@
+//! The cell space: ranges, counts and grading of each axis, and whether it fits in memory.
+
+use crate::cli::cost;
+use crate::cli::diagnostic::{Diagnostic, list};
+use crate::cli::document::Value;
+use crate::cli::reader::{Reader, Sited};
+use crate::method::SgcmOptions;
+use crate::space::{Axis, CellSpace, Grading, SpaceError};
+use crate::system::Model;
+
+use super::swept::Swept;
+
+/// How one axis is cut into cells.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct AxisCells {
+    /// Lower end.
+    pub(crate) from: f64,
+    /// Upper end.
+    pub(crate) to: f64,
+    /// Number of cells.
+    pub(crate) count: usize,
+    /// Where the cells get narrower; `None` for cells of equal width.
+    pub(crate) grading: Option<Grading>,
+}
+
+impl AxisCells {
+    fn axis(&self) -> Result<Axis, SpaceError> {
+        match &self.grading {
+            Some(grading) => Axis::graded(self.from, self.to, self.count, grading),
+            None => Axis::uniform(self.from, self.to, self.count),
+        }
+    }
+}
+
+/// Reads `[cells]`; `None` if anything is wrong with it.
+pub(super) fn read(
+    reader: &mut Reader,
+    model: &Model,
+    swept: Option<&Swept>,
+    method: &SgcmOptions,
+) -> Option<(Vec<AxisCells>, CellSpace)> {
+    let names: Vec<&str> = model.axes.iter().map(|axis| axis.name).collect();
+    for name in reader.names(&["cells"]) {
+        if !names.contains(&name.value.as_str()) {
+            let title = format!("model `{}` has no axis `{}`", model.name, name.value);
+            let diagnostic = Diagnostic::new(title)
+                .at(&name.place, "unknown axis")
+                .nearest(&name.value, names.iter().copied());
+            reader.report(diagnostic);
+        }
+    }
+    let axes = names.iter().enumerate();
+    // Every axis is read, so that all that is wrong is reported at once.
+    let read: Vec<Option<AxisCells>> = axes
+        .map(|(index, name)| read_axis(reader, index, name, swept))
+        .collect();
+    let cells: Vec<AxisCells> = read.into_iter().collect::<Option<_>>()?;
+    check_memory(reader, &cells, method)?;
+    let axes: Vec<Option<Axis>> = names
+        .iter()
+        .zip(&cells)
+        .map(|(name, cells)| build_axis(reader, name, cells))
+        .collect();
+    match CellSpace::new(axes.into_iter().collect::<Option<_>>()?) {
+        Ok(space) => Some((cells, space)),
+        Err(error) => {
+            reader.report(at_cells(reader, Diagnostic::new(error.to_string())));
+            None
+        }
+    }
+}
+
+/// A finding about the table `[cells]`.
+fn at_cells(reader: &Reader, diagnostic: Diagnostic) -> Diagnostic {
+    match reader.entry(&["cells"]) {
+        Some(entry) => diagnostic.at(&entry.key_place, "these cells"),
+        None => diagnostic,
+    }
+}
+
+fn read_axis(
+    reader: &mut Reader,
+    index: usize,
+    name: &str,
+    swept: Option<&Swept>,
+) -> Option<AxisCells> {
+    let Some(entry) = reader.entry(&["cells", name]) else {
+        let diagnostic = Diagnostic::new(format!("no cells for axis `{name}`")).remedy(format!(
+            "add `{name} = {{ from = …, to = …, count = 50 }}` to [cells]"
+        ));
+        reader.report(at_cells(reader, diagnostic));
+        return None;
+    };
+    if !matches!(entry.node.value, Value::Table(_)) {
+        return None;
+    }
+    reader.require(&["cells", name, "count"]);
+    let bounds = swept.and_then(|swept| bounds(swept, index));
+    let from = read_end(reader, name, "from", bounds.map(|bounds| bounds.0), swept);
+    let to = read_end(reader, name, "to", bounds.map(|bounds| bounds.1), swept);
+    let grading = read_grading(reader, name);
+    let count = reader.integer::<usize>(&["cells", name, "count"])?.value;
+    let (from, to) = (from?, to?);
+    if from >= to || !(to - from).is_finite() {
+        let title =
+            format!("the range of axis `{name}`, from {from} to {to}, is empty or reversed");
+        let diagnostic = Diagnostic::new(title).allowed("finite numbers with `from` below `to`");
+        let paths = [["cells", name, "to"], ["cells", name, "from"]];
+        let place = paths.iter().find_map(|path| reader.entry(path));
+        let place = place.map(|entry| entry.node.place.clone());
+        reader.report(match place {
+            Some(place) => diagnostic.at(&place, format!("the range is {from} to {to}")),
+            None => at_cells(reader, diagnostic),
+        });
+        return None;
+    }
+    Some(AxisCells {
+        from,
+        to,
+        count,
+        grading: grading?,
+    })
+}
+
+/// The widest range that the model's bounds of an axis take at the ends of the sweep.
+fn bounds(swept: &Swept, axis: usize) -> Option<(f64, f64)> {
+    let ends: Option<Vec<(f64, f64)>> = swept.ends.iter().map(|end| end.bounds(axis)).collect();
+    ends?
+        .into_iter()
+        .reduce(|one, other| (one.0.min(other.0), one.1.max(other.1)))
+}
+
+fn read_end(
+    reader: &mut Reader,
+    axis: &str,
+    key: &str,
+    bound: Option<f64>,
+    swept: Option<&Swept>,
+) -> Option<f64> {
+    let path = ["cells", axis, key];
+    if reader.entry(&path).is_some() {
+        return Some(reader.number(&path)?.value);
+    }
+    // Without a system there is no telling whether it knows a bound.
+    if bound.is_none() && swept.is_some() {
+        reader.require(&path);
+    }
+    bound
+}
+
+/// `Some(None)` without grading, `None` if something is wrong with it.
+fn read_grading(reader: &mut Reader, axis: &str) -> Option<Option<Grading>> {
+    if reader.entry(&["cells", axis, "grade"]).is_none() {
+        return Some(None);
+    }
+    let (at_path, smallest_path) = (
+        ["cells", axis, "grade", "at"],
+        ["cells", axis, "grade", "smallest"],
+    );
+    reader.require(&at_path);
+    reader.require(&smallest_path);
+    let at: Vec<f64> = reader
+        .numbers(&at_path)?
+        .iter()
+        .map(|at| at.value)
+        .collect();
+    let smallest = reader.number(&smallest_path)?.value;
+    Some((!at.is_empty()).then_some(Grading { at, smallest }))
+}
+
+/// Builds an axis; what the space refuses is shown at the key that it concerns.
+fn build_axis(reader: &mut Reader, name: &str, cells: &AxisCells) -> Option<Axis> {
+    let error = match cells.axis() {
+        Ok(axis) => return Some(axis),
+        Err(error) => error,
+    };
+    let place = match &error {
+        SpaceError::GradingPoint { at, .. } => {
+            let points = reader.numbers(&["cells", name, "grade", "at"]);
+            let points: Vec<Sited<f64>> = points.unwrap_or_default();
+            // A repeated point is shown where it comes for the second time.
+            points.into_iter().rfind(|point| point.value == *at)
+        }
+        SpaceError::GradingWidth { .. } => reader.number(&["cells", name, "grade", "smallest"]),
+        _ => None,
+    };
+    let place = place.map(|sited| sited.place).or_else(|| {
+        let entry = reader.entry(&["cells", name, "count"])?;
+        Some(entry.node.place.clone())
+    });
+    let diagnostic = Diagnostic::new(format!("axis `{name}`: {error}"));
+    reader.report(match place {
+        Some(place) => diagnostic.at(&place, "refused"),
+        None => diagnostic,
+    });
+    None
+}
+
+/// Refuses cells whose least need exceeds the machine's memory; runs before anything is laid out.
+fn check_memory(reader: &mut Reader, cells: &[AxisCells], method: &SgcmOptions) -> Option<()> {
+    let n_cells: f64 = cells.iter().map(|axis| axis.count as f64).product();
+    let least = cost::least_bytes(n_cells, cells.len(), method);
+    let Some(memory) = cost::machine_memory().filter(|&memory| least > memory) else {
+        return Some(());
+    };
+    let counts: Vec<String> = cells.iter().map(|axis| axis.count.to_string()).collect();
+    let title = format!(
+        "{} cells need at least {} of memory; this machine has {}",
+        counts.join(" × "),
+        cost::bytes_in_words(least),
+        cost::bytes_in_words(memory)
+    );
+    let names: Vec<String> = reader
+        .names(&["cells"])
+        .into_iter()
+        .map(|name| format!("cells.{}.count", name.value))
+        .collect();
+    let diagnostic = Diagnostic::new(title).remedy(format!("lower one of {}", list(&names)));
+    reader.report(at_cells(reader, diagnostic));
+    None
+}

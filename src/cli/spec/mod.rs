@@ -1,0 +1,142 @@
+//! A validated sweep: what a sweep file says, with every default filled in and every number checked.
+
+mod cells;
+mod choices;
+mod resolved;
+mod swept;
+
+use std::path::{Path, PathBuf};
+
+use crate::continuation::LocateOptions;
+use crate::density::Observable;
+use crate::method::SgcmOptions;
+use crate::space::CellSpace;
+use crate::system::{Model, ParameterValues};
+use crate::topology::DetectOptions;
+
+pub(crate) use cells::AxisCells;
+
+use super::diagnostic::Report;
+use super::document::Document;
+use super::reader::Reader;
+
+/// File formats of figures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum FigureFormat {
+    /// Scalable Vector Graphics.
+    Svg,
+    /// Portable Network Graphics.
+    Png,
+}
+
+impl FigureFormat {
+    /// All formats.
+    pub(crate) const ALL: [Self; 2] = [Self::Svg, Self::Png];
+
+    /// Name used in files, and ending of the file.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Svg => "svg",
+            Self::Png => "png",
+        }
+    }
+}
+
+/// Everything a sweep needs.
+#[derive(Debug, Clone)]
+pub(crate) struct SweepSpec {
+    /// Title of the run.
+    pub(crate) title: String,
+    /// The sweep file.
+    pub(crate) file: PathBuf,
+    /// The file's name without folder and ending; the output folder is named after it.
+    pub(crate) name: String,
+    /// The model.
+    pub(crate) model: &'static Model,
+    /// Its parameters, the swept one at [`SweepSpec::from`].
+    pub(crate) parameters: ParameterValues,
+    /// Name of the swept parameter.
+    pub(crate) parameter: String,
+    /// First value of the swept parameter.
+    pub(crate) from: f64,
+    /// Last value; above or below the first, never equal.
+    pub(crate) to: f64,
+    /// Number of values, at least 2.
+    pub(crate) points: usize,
+    /// How each axis is cut into cells, in the model's order of axes.
+    pub(crate) cells: Vec<AxisCells>,
+    /// The cell space that `cells` makes.
+    pub(crate) space: CellSpace,
+    /// Settings of the method.
+    pub(crate) method: SgcmOptions,
+    /// Settings of detection.
+    pub(crate) detect: DetectOptions,
+    /// What is watched, marginals first.
+    pub(crate) observables: Vec<Observable>,
+    /// Settings of location.
+    pub(crate) locate: LocateOptions,
+    /// Parameter values at which densities are drawn.
+    pub(crate) figures_at: Vec<f64>,
+    /// Formats of the figures.
+    pub(crate) figure_formats: Vec<FigureFormat>,
+}
+
+impl SweepSpec {
+    /// Reads and checks a sweep file with its `KEY=VALUE` overrides.
+    ///
+    /// # Errors
+    /// A report of everything that is wrong with them.
+    pub(crate) fn load(file: &Path, overrides: &[String]) -> Result<Self, Report> {
+        Self::build(file, Document::read(file, overrides)?)
+    }
+
+    /// The values of the swept parameter, in the order of the sweep.
+    pub(crate) fn values(&self) -> Vec<f64> {
+        swept::values(self.from, self.to, self.points)
+    }
+
+    fn build(file: &Path, document: Document) -> Result<Self, Report> {
+        let mut reader = Reader::new(document);
+        let method = choices::read_method(&mut reader);
+        let model = swept::read_model(&mut reader);
+        let swept = model.and_then(|model| swept::read(&mut reader, model));
+        let cells =
+            model.and_then(|model| cells::read(&mut reader, model, swept.as_ref(), &method));
+        let observables = model.map(|model| choices::read_observables(&mut reader, model));
+        let figures_at = choices::read_figures_at(&mut reader, swept.as_ref());
+        let (detect, locate) = (choices::read_detect(&reader), choices::read_locate(&reader));
+        let formats = choices::read_formats(&reader);
+        let (Some(model), Some(swept), Some((cells, space)), Some(observables), true) =
+            (model, swept, cells, observables, reader.is_clean())
+        else {
+            return Err(reader.into_report());
+        };
+        let title = reader.text(&["title"]).map(|title| title.value);
+        let stem = file
+            .file_stem()
+            .map(|stem| stem.to_string_lossy().into_owned());
+        Ok(Self {
+            title: title
+                .unwrap_or_else(|| format!("{}, sweep of {}", model.title, swept.parameter)),
+            file: file.to_owned(),
+            name: stem.unwrap_or_else(|| "sweep".to_owned()),
+            model,
+            parameters: swept.parameters,
+            parameter: swept.parameter,
+            from: swept.from,
+            to: swept.to,
+            points: swept.points,
+            cells,
+            space,
+            method,
+            detect,
+            observables,
+            locate,
+            figures_at,
+            figure_formats: formats,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,113 @@
+//! The resolved sweep file: every key with its value, defaults filled in. Read again it gives the same sweep.
+
+use std::fmt::Write as _;
+
+use crate::cli::keys::{number, quoted, step};
+use crate::density::Observable;
+
+use super::{AxisCells, SweepSpec};
+
+impl SweepSpec {
+    /// The sweep as a complete sweep file.
+    pub(crate) fn to_toml(&self) -> String {
+        let mut text = String::new();
+        // Writing to a string cannot fail.
+        let _ = self.write_toml(&mut text);
+        text
+    }
+
+    fn write_toml(&self, text: &mut String) -> std::fmt::Result {
+        writeln!(text, "title = {}\n", quoted(&self.title))?;
+        writeln!(text, "[system]\nmodel = {}\n", quoted(self.model.name))?;
+        writeln!(text, "[system.parameters]")?;
+        for (parameter, &value) in self.model.parameters.iter().zip(self.parameters.as_slice()) {
+            if parameter.name != self.parameter {
+                writeln!(text, "{} = {}", parameter.name, number(value))?;
+            }
+        }
+        writeln!(text, "\n[sweep]\nparameter = {}", quoted(&self.parameter))?;
+        writeln!(
+            text,
+            "from = {}\nto = {}",
+            number(self.from),
+            number(self.to)
+        )?;
+        writeln!(text, "points = {}\n\n[cells]", self.points)?;
+        for (axis, cells) in self.model.axes.iter().zip(&self.cells) {
+            writeln!(text, "{} = {}", axis.name, axis_toml(cells))?;
+        }
+        self.write_choices(text)
+    }
+
+    /// The tables whose keys all have defaults.
+    fn write_choices(&self, text: &mut String) -> std::fmt::Result {
+        let method = &self.method;
+        writeln!(text, "\n[method]\nkind = {}", quoted("sgcm"))?;
+        writeln!(text, "map_step = {}", step(method.map_step))?;
+        writeln!(text, "time_step = {}", step(method.time_step))?;
+        writeln!(text, "samples = {}\nseed = {}", method.samples, method.seed)?;
+        writeln!(text, "integrator = {}", quoted(method.integrator.name()))?;
+        writeln!(text, "replicates = {}", method.replicates)?;
+        writeln!(text, "solver = {}", quoted(method.solver.name()))?;
+        writeln!(
+            text,
+            "solver_tolerance = {}",
+            number(method.solver_tolerance)
+        )?;
+        writeln!(text, "escape_limit = {}", number(method.escape_limit))?;
+        let (marginals, joint) = self.observables_toml();
+        writeln!(
+            text,
+            "\n[detect]\nmarginals = [{marginals}]\njoint = [{joint}]"
+        )?;
+        writeln!(text, "confidence = {}", number(self.detect.confidence))?;
+        writeln!(text, "floor = {}", number(self.detect.floor))?;
+        writeln!(
+            text,
+            "\n[locate]\ntolerance = {}",
+            number(self.locate.tolerance)
+        )?;
+        let formats = self
+            .figure_formats
+            .iter()
+            .map(|format| quoted(format.name()));
+        writeln!(text, "\n[figures]\nat = [{}]", numbers(&self.figures_at))?;
+        writeln!(text, "formats = [{}]", joined(formats))
+    }
+
+    fn observables_toml(&self) -> (String, String) {
+        let name = |axis: usize| quoted(self.model.axes.get(axis).map_or("", |axis| axis.name));
+        let marginals = self
+            .observables
+            .iter()
+            .filter_map(|observable| match *observable {
+                Observable::Marginal(axis) => Some(name(axis)),
+                Observable::Joint(..) => None,
+            });
+        let joint = self
+            .observables
+            .iter()
+            .filter_map(|observable| match *observable {
+                Observable::Marginal(_) => None,
+                Observable::Joint(one, other) => Some(format!("[{}, {}]", name(one), name(other))),
+            });
+        (joined(marginals), joined(joint))
+    }
+}
+
+fn axis_toml(cells: &AxisCells) -> String {
+    let (from, to, count) = (number(cells.from), number(cells.to), cells.count);
+    let grade = cells.grading.as_ref().map_or(String::new(), |grading| {
+        let (at, smallest) = (numbers(&grading.at), number(grading.smallest));
+        format!(", grade = {{ at = [{at}], smallest = {smallest} }}")
+    });
+    format!("{{ from = {from}, to = {to}, count = {count}{grade} }}")
+}
+
+fn joined(parts: impl Iterator<Item = String>) -> String {
+    parts.collect::<Vec<_>>().join(", ")
+}
+
+fn numbers(values: &[f64]) -> String {
+    joined(values.iter().map(|&value| number(value)))
+}

@@ -1,0 +1,156 @@
+//! A specification from a text: defaults, the resolved file, conditions between keys.
+
+use super::*;
+
+const FILE: &str = r#"
+[system]
+model = "coulomb"
+parameters = { kappa = 0.01, sigma2 = 0.01 }
+[sweep]
+parameter = "f_c"
+from = -0.02
+to = 0.01
+points = 31
+[cells]
+x = { from = -5, to = 5, count = 20 }
+y = { from = -5, to = 5, count = 20, grade = { at = [0], smallest = 0.1 } }
+"#;
+
+fn parse(text: &str, overrides: &[&str]) -> Result<SweepSpec, Report> {
+    let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
+    let document = Document::parse("runs/a.toml", text, &overrides)?;
+    SweepSpec::build(Path::new("runs/a.toml"), document)
+}
+
+fn refusal(overrides: &[&str]) -> String {
+    parse(FILE, overrides).unwrap_err().render(false)
+}
+
+#[test]
+fn defaults_are_those_of_the_options() {
+    let spec = parse(FILE, &[]).unwrap();
+    assert_eq!(spec.name, "a");
+    assert_eq!(
+        spec.title,
+        "Duffing oscillator with Coulomb friction, sweep of f_c"
+    );
+    assert_eq!(spec.method, SgcmOptions::default());
+    assert_eq!(spec.detect, DetectOptions::default());
+    assert_eq!(spec.locate, LocateOptions::default());
+    let (x, y, xy) = (
+        Observable::Marginal(0),
+        Observable::Marginal(1),
+        Observable::Joint(0, 1),
+    );
+    assert_eq!(spec.observables, [x, y, xy]);
+    // alpha and mu by the model's default, the swept f_c at `from`.
+    assert_eq!(spec.parameters.as_slice(), [1.0, 0.01, 0.0, -0.02, 0.01]);
+    assert!(spec.space.axes()[1].has_face_at(0.0) && !spec.space.axes()[1].is_uniform());
+    assert_eq!(spec.figures_at, [-0.02, -0.01, 0.0, 0.01]);
+}
+
+#[test]
+fn the_resolved_file_gives_the_same_sweep() {
+    let sets: [&[&str]; 3] = [
+        &[],
+        &[
+            "title=a \"quoted\" \\ title",
+            "sweep.from=0.01",
+            "sweep.to=-1e-300",
+            "sweep.points=2",
+            "system.parameters.kappa=0.1234567890123456789",
+            "method.map_step=1",
+            "method.time_step=1e-3",
+            "method.seed=9223372036854775807",
+            "method.integrator=euler-maruyama",
+            "method.solver=power",
+        ],
+        &[
+            "detect.marginals=[]",
+            "detect.joint=[[\"y\", \"x\"]]",
+            "figures.at=[]",
+            "figures.formats=[\"png\"]",
+            "cells.y={from=0, to=1, count=7}",
+        ],
+    ];
+    for overrides in sets {
+        let mut overrides = overrides.to_vec();
+        // A title with quotes has to be TOML.
+        if let Some(first) = overrides
+            .first_mut()
+            .filter(|first| first.starts_with("title"))
+        {
+            *first = r#"title="a \"quoted\" \\ title""#;
+        }
+        let spec = parse(FILE, &overrides).unwrap();
+        let again = parse(&spec.to_toml(), &[]).unwrap();
+        // Debug output of numbers has every digit.
+        assert_eq!(format!("{spec:?}"), format!("{again:?}"));
+        assert_eq!(spec.to_toml(), again.to_toml());
+    }
+}
+
+#[test]
+fn the_resolved_file_holds_every_key() {
+    let text = parse(FILE, &[]).unwrap().to_toml();
+    let table: toml::Table = text.parse().unwrap();
+    for key in super::super::keys::KEYS {
+        let named = key
+            .path
+            .replace("<parameter>", "kappa")
+            .replace("<axis>", "y");
+        let (first, rest) = named.split_once('.').unwrap_or((&named, ""));
+        let mut value = table.get(first);
+        for part in rest.split('.').filter(|part| !part.is_empty()) {
+            value = value.and_then(|value| value.get(part));
+        }
+        assert!(value.is_some(), "{named} not in\n{text}");
+    }
+}
+
+#[test]
+fn values_are_even_and_hit_zero() {
+    let spec = parse(FILE, &[]).unwrap();
+    let values = spec.values();
+    assert_eq!(
+        (values.len(), values[0], values[20], values[30]),
+        (31, -0.02, 0.0, 0.01)
+    );
+    assert!(
+        values
+            .windows(2)
+            .all(|pair| (pair[1] - pair[0] - 1e-3).abs() < 1e-17)
+    );
+}
+
+#[test]
+fn conditions_between_keys_hold() {
+    for (set, words) in [
+        ("sweep.to=-0.02", "the sweep goes from -0.02 to -0.02"),
+        ("sweep.to=-0.02000000000000001", "no 31 different numbers"),
+        ("sweep.to=1e308", "no 31 different numbers"),
+        ("method.replicates=3000", "3000 replicates"),
+        ("figures.at=[0.0, 0.02]", "numbers from -0.02 to 0.01"),
+        ("detect.joint=[[\"x\", \"x\"]]", "one axis with itself"),
+        (
+            "detect.joint=[[\"x\", \"y\"], [\"y\", \"x\"]]",
+            "listed twice",
+        ),
+        ("detect.marginals=[\"x\", \"v\"]", "no axis `v`"),
+        ("cells.y.grade.smallest=2", "smallest cell 2"),
+        ("cells.y.grade.at=[0, 7]", "graded toward 7"),
+        (
+            "cells.y.grade={at=[0]}",
+            "missing key `cells.y.grade.smallest`",
+        ),
+        ("cells.x.from=1e400", "this is a number"),
+    ] {
+        let text = refusal(&[set]);
+        assert!(text.contains(words), "{set}: {words} not in\n{text}");
+        assert!(text.contains("1 error;"), "{set}:\n{text}");
+    }
+    let text = refusal(&["method.time_step=2", "method.map_step=1"]);
+    assert!(text.contains("time step 2 is longer"), "{text}");
+    let text = refusal(&["detect.marginals=[]", "detect.joint=[]"]);
+    assert!(text.contains("nothing is watched"), "{text}");
+}

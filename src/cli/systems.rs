@@ -1,0 +1,192 @@
+//! `pbif systems`: the list of models, and everything that is known of one.
+
+use std::fmt::Write as _;
+
+use comfy_table::{Table, presets};
+
+use crate::system::{Model, System, registry};
+
+use super::diagnostic::{Diagnostic, Report};
+
+/// The table of models.
+pub(super) fn list() -> String {
+    let mut table = table(&["model", "axes", "parameters", "description"]);
+    for model in registry::MODELS {
+        let axes: Vec<&str> = model.axes.iter().map(|axis| axis.name).collect();
+        let parameters = model.parameters.iter().map(|parameter| parameter.name);
+        let parameters: Vec<&str> = parameters.collect();
+        table.add_row([
+            model.name.to_owned(),
+            axes.join(" "),
+            parameters.join(" "),
+            model.title.to_owned(),
+        ]);
+    }
+    format!("{table}\n\nOne model in full: pbif systems NAME\n")
+}
+
+/// A plain table, as wide as its content.
+fn table(header: &[&str]) -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::ASCII_MARKDOWN);
+    table.set_header(header.iter().copied());
+    table
+}
+
+/// Everything about one model.
+///
+/// # Errors
+/// A report when there is no such model.
+pub(super) fn describe(name: &str) -> Result<String, Report> {
+    let model = registry::find(name).map_err(|error| {
+        let names = registry::MODELS.iter().map(|model| model.name);
+        Diagnostic::new(error.to_string()).nearest(name, names)
+    })?;
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let _ = write_model(&mut text, model);
+    Ok(text)
+}
+
+fn write_model(text: &mut String, model: &Model) -> std::fmt::Result {
+    writeln!(text, "{}: {}\n\nEquations", model.name, model.title)?;
+    for equation in model.equations {
+        writeln!(text, "  {equation}")?;
+    }
+    writeln!(text, "\nAxes")?;
+    for axis in model.axes {
+        let (name, symbol, meaning) = (axis.name, plain(axis.symbol), axis.meaning);
+        writeln!(text, "  {name}  {meaning} ({symbol} in figures)")?;
+    }
+    let mut parameters = table(&["parameter", "symbol", "meaning", "allowed", "default"]);
+    for parameter in model.parameters {
+        let default = parameter.default;
+        parameters.add_row([
+            parameter.name.to_owned(),
+            plain(parameter.symbol),
+            parameter.meaning.to_owned(),
+            parameter.range.words().to_owned(),
+            default.map_or("must be given".to_owned(), |value| value.to_string()),
+        ]);
+    }
+    writeln!(text, "\n{parameters}\n")?;
+    write_facts(text, model)?;
+    writeln!(text, "\nSource\n  {}", model.source)?;
+    if !model.notes.is_empty() {
+        writeln!(text, "\nNotes")?;
+    }
+    for note in model.notes {
+        writeln!(text, "  - {note}")?;
+    }
+    Ok(())
+}
+
+/// Domain, switching surfaces and symmetry, which belong to a system with bound parameters: defaults, and 1
+/// for parameters without one (every range allows it).
+fn write_facts(text: &mut String, model: &Model) -> std::fmt::Result {
+    let values = |default: f64| {
+        let parameters = model.parameters.iter();
+        parameters.map(move |parameter| (parameter.name, parameter.default.unwrap_or(default)))
+    };
+    let given: Vec<(&str, f64)> = values(1.0).collect();
+    let Ok(system) = model.system_with(&given) else {
+        return Ok(());
+    };
+    let shown: Vec<String> = given
+        .iter()
+        .map(|(name, value)| format!("{name} = {value}"))
+        .collect();
+    writeln!(text, "Domain")?;
+    for (index, axis) in model.axes.iter().enumerate() {
+        match system.bounds(index) {
+            Some((low, high)) => writeln!(
+                text,
+                "  {}  from {low} to {high} at {}; a sweep takes it from its parameters",
+                axis.name,
+                shown.join(", ")
+            )?,
+            None => writeln!(
+                text,
+                "  {}  unbounded: a sweep must give a range",
+                axis.name
+            )?,
+        }
+    }
+    writeln!(
+        text,
+        "\nSwitching surfaces\n  {}",
+        surfaces(model, system.as_ref())
+    )?;
+    writeln!(text, "\nSymmetry\n  {}", symmetry(model, system.as_ref()))
+}
+
+fn surfaces(model: &Model, system: &dyn System) -> String {
+    let surfaces = system.switching_surfaces();
+    let planes: Vec<String> = surfaces
+        .iter()
+        .filter_map(|surface| {
+            Some(format!(
+                "{} = {}",
+                model.axes.get(surface.axis)?.name,
+                surface.at
+            ))
+        })
+        .collect();
+    if planes.is_empty() {
+        return "none: the drift is smooth".to_owned();
+    }
+    planes.join(", ")
+}
+
+fn symmetry(model: &Model, system: &dyn System) -> String {
+    let Some(symmetry) = system.symmetry() else {
+        return "none declared".to_owned();
+    };
+    let names: Vec<&str> = model.axes.iter().map(|axis| axis.name).collect();
+    let image = names.iter().enumerate().map(|(index, name)| {
+        let reflected = symmetry.reflected.get(index).copied().unwrap_or(false);
+        match symmetry.centre.get(index) {
+            Some(&centre) if reflected && centre != 0.0 => format!("{} - {name}", 2.0 * centre),
+            _ if reflected => format!("-{name}"),
+            _ => (*name).to_owned(),
+        }
+    });
+    let image: Vec<String> = image.collect();
+    format!("({}) -> ({})", names.join(", "), image.join(", "))
+}
+
+/// A symbol without its markup: `f_{c}` becomes `f_c`.
+fn plain(symbol: &str) -> String {
+    symbol.replace(['{', '}'], "")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_model_is_listed_and_described() {
+        let list = list();
+        for model in registry::MODELS {
+            assert!(list.contains(model.name));
+            let text = describe(model.name).unwrap();
+            let equations = model.equations.iter().copied();
+            for words in equations
+                .chain([model.source, model.title])
+                .chain(model.notes.iter().copied())
+            {
+                assert!(text.contains(words), "{words} not in\n{text}");
+            }
+            for parameter in model.parameters {
+                assert!(text.contains(parameter.meaning));
+            }
+        }
+    }
+
+    #[test]
+    fn coulomb_switches_at_rest_and_is_symmetric() {
+        let text = describe("coulomb").unwrap();
+        assert!(text.contains("Switching surfaces\n  y = 0\n"), "{text}");
+        assert!(text.contains("(x, y) -> (-x, -y)"), "{text}");
+    }
+}

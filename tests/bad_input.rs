@@ -1,0 +1,418 @@
+//! Bad input, driven as a user would: exit code 2, a message that names place, cause and remedy, nothing written.
+
+#![allow(clippy::unwrap_used)]
+
+use std::path::Path;
+
+use assert_cmd::Command;
+
+const GOOD: &str = r#"title = "trial"
+[system]
+model = "coulomb"
+[system.parameters]
+kappa = 0.01
+sigma2 = 0.01
+[sweep]
+parameter = "f_c"
+from = -0.02
+to = 0.01
+points = 3
+[cells]
+x = { from = -5, to = 5, count = 10 }
+y = { from = -5, to = 5, count = 10 }
+"#;
+
+/// Runs `pbif sweep` in an empty folder that holds `a.toml`, and returns stderr. Checks that it ends with code 2,
+/// prints nothing on stdout, and leaves the folder as it was.
+fn refused(text: &str, arguments: &[&str]) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("a.toml"), text).unwrap();
+    refused_in(folder.path(), arguments)
+}
+
+fn refused_in(folder: &Path, arguments: &[&str]) -> String {
+    let before = names(folder);
+    let mut command = Command::cargo_bin("pbif").unwrap();
+    let output = command.current_dir(folder).arg("sweep").args(arguments);
+    let output = output.output().unwrap();
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(output.stdout.is_empty());
+    assert!(!message.contains('\u{1b}'), "escape codes off a terminal");
+    assert_eq!(names(folder), before, "something was written");
+    message
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).unwrap();
+    let name = |entry: std::io::Result<std::fs::DirEntry>| {
+        entry.unwrap().file_name().into_string().unwrap()
+    };
+    let mut names: Vec<String> = entries.map(name).collect();
+    names.sort();
+    names
+}
+
+fn assert_says(message: &str, words: &[&str]) {
+    for words in words {
+        assert!(message.contains(words), "`{words}` not in\n{message}");
+    }
+}
+
+/// The good file with one piece of text replaced must be refused in these words, and for one reason.
+fn assert_refused(old: &str, new: &str, words: &[&str]) {
+    assert_eq!(GOOD.matches(old).count(), 1, "{old} is not unique");
+    let message = refused(&GOOD.replace(old, new), &["a.toml"]);
+    assert_says(&message, words);
+    assert_says(&message, &["1 error;"]);
+}
+
+#[test]
+fn missing_files_and_files_that_are_no_text() {
+    assert_says(
+        &refused(GOOD, &["b.toml"]),
+        &["cannot read the sweep file `b.toml`"],
+    );
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("a.toml"), [0xff, 0xfe]).unwrap();
+    assert_says(&refused_in(folder.path(), &["a.toml"]), &["not UTF-8"]);
+}
+
+#[test]
+fn syntax() {
+    assert_refused("points = 3", "points = ", &["not valid TOML", "a.toml:11:"]);
+    assert_refused(
+        "points = 3",
+        "points = 3\npoints = 4",
+        &["not valid TOML", "a.toml:12:1"],
+    );
+}
+
+#[test]
+fn unknown_names_come_with_the_nearest() {
+    assert_refused(
+        "sigma2 = 0.01",
+        "sigma2 = 0.01\n[sweeep]",
+        &[
+            "unknown key `sweeep`",
+            "a.toml:7:2",
+            "did you mean `sweep`?",
+        ],
+    );
+    assert_refused(
+        "points = 3",
+        "points = 3\nstep = 0.1",
+        &[
+            "unknown key `sweep.step`",
+            "a.toml:12:1",
+            "`parameter`, `from`, `to`, `points`",
+        ],
+    );
+    assert_refused(
+        "points = 3",
+        "points = 3\nsamples = 10",
+        &[
+            "unknown key `sweep.samples`",
+            "did you mean `method.samples`?",
+        ],
+    );
+    assert_refused(
+        "model = \"coulomb\"",
+        "model = \"coulom\"",
+        &[
+            "`system.model` cannot be `coulom`",
+            "a.toml:3:9",
+            "`dahl`",
+            "did you mean `coulomb`?",
+        ],
+    );
+    assert_refused(
+        "kappa = 0.01",
+        "kappa = 0.01\nalhpa = 1.0",
+        &[
+            "has no parameter `alhpa`",
+            "a.toml:6:1",
+            "did you mean `alpha`?",
+        ],
+    );
+    assert_refused(
+        "parameter = \"f_c\"",
+        "parameter = \"fc\"",
+        &[
+            "has no parameter `fc`",
+            "a.toml:8:13",
+            "did you mean `f_c`?",
+        ],
+    );
+    assert_refused(
+        "y = { from = -5, to = 5, count = 10 }",
+        "y = { from = -5, to = 5, count = 10 }\nz = { count = 4 }",
+        &["has no axis `z`", "a.toml:15:1", "allowed: `x`, `y`"],
+    );
+}
+
+#[test]
+fn missing_keys() {
+    assert_refused(
+        "kappa = 0.01\n",
+        "",
+        &["needs parameter `kappa`", "a.toml:4:9", "viscous damping"],
+    );
+    assert_refused(
+        "points = 3\n",
+        "",
+        &["missing key `sweep.points`", "a.toml:7:2"],
+    );
+    assert_refused(
+        "y = { from = -5, to = 5, count = 10 }",
+        "y = { to = 5, count = 10 }",
+        &["missing key `cells.y.from`", "a.toml:14:1"],
+    );
+    assert_refused(
+        "y = { from = -5, to = 5, count = 10 }\n",
+        "",
+        &["no cells for axis `y`", "a.toml:12:2"],
+    );
+    assert_says(
+        &refused("title = \"empty\"", &["a.toml"]),
+        &[
+            "`system.model`",
+            "`sweep.parameter`",
+            "`sweep.from`",
+            "`sweep.to`",
+            "`sweep.points`",
+        ],
+    );
+}
+
+#[test]
+fn wrong_kinds_and_ranges() {
+    let cases = [
+        ("points = 3", "points = 3.5", "an integer from 2 to"),
+        ("points = 3", "points = \"3\"", "this is a string"),
+        ("points = 3", "points = 1", "`sweep.points` cannot be `1`"),
+        ("kappa = 0.01", "kappa = nan", "a finite number"),
+        ("kappa = 0.01", "kappa = inf", "a finite number"),
+        ("kappa = 0.01", "kappa = true", "this is a boolean"),
+        ("from = -0.02", "from = -inf", "a finite number"),
+        (
+            "sigma2 = 0.01",
+            "sigma2 = 0",
+            "a finite number greater than zero",
+        ),
+        (
+            "sigma2 = 0.01",
+            "sigma2 = -1.0",
+            "`sigma2` of model `coulomb` cannot be -1",
+        ),
+        ("to = 0.01", "to = -0.02", "the same as `sweep.from`"),
+        (
+            "x = { from = -5, to = 5, count = 10 }",
+            "x = { from = -5, to = 5, count = 1 }",
+            "`cells.x.count` cannot be `1`",
+        ),
+        (
+            "x = { from = -5, to = 5, count = 10 }",
+            "x = { from = 5, to = -5, count = 10 }",
+            "empty or reversed",
+        ),
+        (
+            "x = { from = -5, to = 5, count = 10 }",
+            "x = { from = 5, to = 5, count = 10 }",
+            "empty or reversed",
+        ),
+        (
+            "x = { from = -5, to = 5, count = 10 }",
+            "x = 10",
+            "`cells.x` must be a table",
+        ),
+        (
+            "[cells]",
+            "[method]\nkind = \"generator\"\n[cells]",
+            "not available in this version",
+        ),
+        (
+            "[cells]",
+            "[method]\nmap_step = \"atuo\"\n[cells]",
+            "did you mean `\"auto\"`?",
+        ),
+        (
+            "[cells]",
+            "[method]\nmap_step = -1\n[cells]",
+            "greater than zero",
+        ),
+        (
+            "[cells]",
+            "[method]\nseed = -1\n[cells]",
+            "an integer, 0 or more",
+        ),
+        (
+            "[cells]",
+            "[detect]\nconfidence = 1.0\n[cells]",
+            "between 0 and 1",
+        ),
+        (
+            "[cells]",
+            "[figures]\nformats = [\"svgg\"]\n[cells]",
+            "did you mean `svg`?",
+        ),
+    ];
+    for (old, new, words) in cases {
+        assert_refused(old, new, &[words, "a.toml:"]);
+    }
+}
+
+#[test]
+fn the_swept_parameter_is_not_given_and_stays_in_its_range() {
+    assert_refused(
+        "kappa = 0.01",
+        "kappa = 0.01\nf_c = 0.0",
+        &[
+            "`f_c` is swept and also given",
+            "a.toml:6:1",
+            "remove it here",
+        ],
+    );
+    let text = GOOD
+        .replace("\"f_c\"", "\"sigma2\"")
+        .replace("sigma2 = 0.01", "f_c = 0.01");
+    let message = refused(&text, &["a.toml"]);
+    assert_says(
+        &message,
+        &[
+            "`sigma2` of model `coulomb` cannot be -0.02",
+            "a.toml:9:8",
+            "1 error;",
+        ],
+    );
+}
+
+#[test]
+fn dahl_needs_positive_friction_at_both_ends() {
+    let text = r#"
+[system]
+model = "dahl"
+parameters = { kappa = 0.02, mu = 1.0, lambda = 0.06, sigma2 = 0.02 }
+[sweep]
+parameter = "f_c"
+from = 0.05
+to = 0.0
+points = 3
+[cells]
+x = { from = -2.5, to = 2.5, count = 10 }
+y = { from = -2.5, to = 2.5, count = 10 }
+z = { count = 4 }
+"#;
+    let words = [
+        "`f_c` of model `dahl` cannot be 0",
+        "a.toml:8:6",
+        "greater than zero",
+        "1 error;",
+    ];
+    assert_says(&refused(text, &["a.toml"]), &words);
+    let given = text
+        .replace("parameter = \"f_c\"", "parameter = \"alpha\"")
+        .replace("lambda = 0.06", "lambda = 0.06, f_c = -0.05");
+    assert_says(
+        &refused(&given, &["a.toml"]),
+        &["`f_c` of model `dahl` cannot be -0.05"],
+    );
+}
+
+#[test]
+fn everything_wrong_is_reported_at_once() {
+    let text = GOOD
+        .replace("kappa = 0.01", "kapa = 0.01")
+        .replace("points = 3", "points = 1")
+        .replace("to = 0.01", "too = 0.01")
+        .replace("x = { from = -5", "x = { from = 50");
+    let message = refused(&text, &["a.toml", "--set", "method.sample=3"]);
+    assert_says(
+        &message,
+        &[
+            "has no parameter `kapa`",
+            "needs parameter `kappa`",
+            "`sweep.points` cannot be `1`",
+            "unknown key `sweep.too`",
+            "missing key `sweep.to`",
+            "from 50 to 5, is empty",
+            "unknown key `method.sample`",
+            "7 errors",
+        ],
+    );
+}
+
+#[test]
+fn grids_that_do_not_fit_the_memory() {
+    let huge = "{ from = -5, to = 5, count = 1000000 }";
+    let text = GOOD.replace("{ from = -5, to = 5, count = 10 }", huge);
+    let message = refused(&text, &["a.toml"]);
+    assert_says(
+        &message,
+        &[
+            "1000000 × 1000000 cells need at least",
+            "TB of memory; this machine has",
+            "`cells.x.count`",
+        ],
+    );
+}
+
+#[test]
+fn overrides_that_do_not_parse_or_do_not_fit() {
+    let cases = [
+        ("sweep.points", "no `=` here"),
+        ("=3", "an empty key"),
+        ("sweep.points=", "no value behind `=`"),
+        ("sweep.points=[3", "not valid TOML"),
+        ("sweep.point=3", "did you mean `points`?"),
+        ("sweep.points=many", "`sweep.points` cannot be `many`"),
+        ("system.model=dhal", "did you mean `dahl`?"),
+    ];
+    for (set, words) in cases {
+        let message = refused(GOOD, &["a.toml", "--set", set]);
+        assert_says(&message, &[words, "--set:1:", set, "1 error;"]);
+    }
+}
+
+#[test]
+fn output_that_is_no_folder_or_not_writable() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("a.toml"), GOOD).unwrap();
+    for out in ["a.toml", "a.toml/below"] {
+        let message = refused_in(folder.path(), &["a.toml", "--out", out]);
+        assert_says(
+            &message,
+            &["is not a folder", "`a.toml` is a file", "--out DIR"],
+        );
+    }
+    // The default folder can be in the way of a file as well.
+    std::fs::write(folder.path().join("output"), "").unwrap();
+    let message = refused_in(folder.path(), &["a.toml"]);
+    assert_says(
+        &message,
+        &["`output/a` is not a folder", "`output` is a file"],
+    );
+}
+
+/// The kernel refuses folders there whoever asks, the administrator included.
+#[cfg(target_os = "linux")]
+#[test]
+fn output_that_cannot_be_made() {
+    let message = refused(GOOD, &["a.toml", "--out", "/proc/pbif/run"]);
+    assert_says(&message, &["`/proc/pbif/run` cannot be made"]);
+    let message = refused(GOOD, &["a.toml", "--out", "/proc"]);
+    assert_says(&message, &["`/proc` cannot be written to"]);
+}
+
+#[test]
+fn usage() {
+    assert_says(&refused(GOOD, &[]), &["<FILE>"]);
+    assert_says(
+        &refused(GOOD, &["a.toml", "--threads", "0"]),
+        &["--threads", "from 1 to"],
+    );
+    assert_says(
+        &refused(GOOD, &["a.toml", "--outt", "b"]),
+        &["--outt", "similar argument exists: '--out'"],
+    );
+}
