@@ -48,9 +48,8 @@ const UNREACHED: u32 = u32::MAX;
 
 /// Peaks and craters of a grid, each in the order of death, the highest peak last. All values finite.
 pub(super) fn components(grid: Grid<'_>) -> (Vec<Component>, Vec<Component>) {
-    let mut order: Vec<u32> = (0..grid.values.len() as u32).collect();
+    let order = descending(grid.values);
     let value = |cell: u32| grid.values[cell as usize];
-    order.sort_unstable_by(|&a, &b| value(b).total_cmp(&value(a)).then(a.cmp(&b)));
     let mut peaks = Forest::new(grid, &STEPS, false).grow(order.iter().copied());
     if let Some(&highest) = order.first() {
         peaks.push(Component {
@@ -66,6 +65,25 @@ pub(super) fn components(grid: Grid<'_>) -> (Vec<Component>, Vec<Component>) {
         Forest::new(grid, &STEPS[..4], true).grow(order.iter().rev().copied())
     };
     (peaks, craters)
+}
+
+/// Cells by falling value, ties by number.
+fn descending(values: &[f64]) -> Vec<u32> {
+    // The bits of a float, with the sign bit turned (all bits, of a negative one), sort as the numbers do;
+    // sorting keys beside their cells is several times faster than looking values up.
+    let key = |value: f64| {
+        let bits = value.to_bits();
+        let ascending = if bits >> 63 == 1 {
+            !bits
+        } else {
+            bits | 1 << 63
+        };
+        !ascending
+    };
+    let cells = values.iter().zip(0u32..);
+    let mut keyed: Vec<(u64, u32)> = cells.map(|(&value, cell)| (key(value), cell)).collect();
+    keyed.sort_unstable();
+    keyed.into_iter().map(|(_, cell)| cell).collect()
 }
 
 /// Union-find over the cells that the level has reached. The root of a tree is the cell of its birth; the
@@ -237,6 +255,12 @@ mod tests {
         let mut persistences: Vec<f64> = components.iter().map(|c| c.persistence).collect();
         persistences.sort_by(f64::total_cmp);
         persistences
+    }
+
+    #[test]
+    fn cells_are_sorted_by_falling_value_whatever_the_sign() {
+        let values = [0.5, -2.0, 3.0, 0.5, -0.1, 1e-300, -1e300];
+        assert_eq!(descending(&values), [2, 0, 3, 5, 4, 1, 6]);
     }
 
     proptest! {

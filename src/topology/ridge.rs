@@ -8,7 +8,7 @@
 
 use super::FeatureKind;
 use super::persistence::Component;
-use super::refine::{local_quadratic, principal_directions};
+use super::quadratic::{local_quadratic, principal_directions};
 use crate::density::EstimatedDensity;
 
 /// One cell in the units of the fit, half of three cells; the largest step from a cell's centre.
