@@ -126,23 +126,17 @@ impl<'a> Forest<'a> {
                 cell as usize / self.grid.columns,
                 cell as usize % self.grid.columns,
             );
+            let at_border = row == 0
+                || column == 0
+                || row + 1 == self.grid.rows
+                || column + 1 == self.grid.columns;
             let mut root = UNREACHED;
-            let mut at_border = false;
-            for step in 0..self.steps.len() {
-                let (down, right) = self.steps[step];
-                let inside = row
-                    .checked_add_signed(down)
-                    .filter(|&row| row < self.grid.rows)
-                    .zip(
-                        column
-                            .checked_add_signed(right)
-                            .filter(|&c| c < self.grid.columns),
-                    );
-                let Some((row, column)) = inside else {
-                    at_border = true;
+            for &(down, right) in self.steps {
+                if at_border && !self.is_inside(row, column, down, right) {
                     continue;
-                };
-                let neighbour = (row * self.grid.columns + column) as u32;
+                }
+                let offset = down * self.grid.columns as isize + right;
+                let neighbour = cell.wrapping_add_signed(offset as i32);
                 if self.parent[neighbour as usize] != UNREACHED {
                     let other = self.root(neighbour);
                     root = self.join(cell, root, other, &mut deaths);
@@ -154,6 +148,14 @@ impl<'a> Forest<'a> {
             self.parent[cell as usize] = if root == UNREACHED { cell } else { root };
         }
         deaths
+    }
+
+    /// Whether a step from a cell stays on the grid.
+    fn is_inside(&self, row: usize, column: usize, down: isize, right: isize) -> bool {
+        let on = |at: usize, step: isize, count: usize| {
+            at.checked_add_signed(step).is_some_and(|at| at < count)
+        };
+        on(row, down, self.grid.rows) && on(column, right, self.grid.columns)
     }
 
     /// Joins two trees at a cell and returns the root of both; the younger one dies.
