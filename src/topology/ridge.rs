@@ -15,7 +15,7 @@ use crate::density::EstimatedDensity;
 const ONE_CELL: f64 = 2.0 / 3.0;
 
 /// What terms of order h⁴ may leave, in units of (κh²)²/p: their size for a ridge of Gaussian section, whose
-/// fourth derivative is 3κ²/p. Enough for rings as thin as σ = 1.5 h and as small as r = 3 h (`analytic_tests`).
+/// fourth derivative is 3κ²/p. Enough for rings as thin as σ = 1.5 h and as small as r = 4 h (`analytic_tests`).
 const REMAINDER: f64 = 0.6;
 
 /// Persistence of a component of a density over two axes without what the grid adds; at most that of the
