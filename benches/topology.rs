@@ -1,5 +1,7 @@
 //! Detection of one joint density with its marginals: the work of the detector at one point of a sweep.
 
+#![allow(clippy::expect_used)] // A bench may stop at a wrong constant of its own.
+
 use criterion::{Criterion, criterion_group, criterion_main};
 use pbif::density::{Density, EstimatedDensity, Observable};
 use pbif::space::Axis;

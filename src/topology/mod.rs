@@ -2,6 +2,7 @@
 
 mod detector;
 mod persistence;
+mod quadratic;
 mod refine;
 mod ridge;
 mod significance;

@@ -11,9 +11,8 @@
 
 use std::ops::Range;
 
-use nalgebra::{DMatrix, DVector};
-
 use super::FeatureKind;
+use super::quadratic::{Scale, basis, fit, principal_directions};
 use crate::density::EstimatedDensity;
 use crate::space::Axis;
 
@@ -89,35 +88,6 @@ fn window(estimated: &EstimatedDensity, at: &[usize], axis: usize) -> Range<usiz
     low..high
 }
 
-/// Centre and width of a cell in units of the window around the feature's cell.
-struct Scale {
-    origin: f64,
-    unit: f64,
-}
-
-impl Scale {
-    fn new(axis: &Axis, at: usize, window: &Range<usize>) -> Self {
-        let length = axis.edges()[window.end] - axis.edges()[window.start];
-        Self {
-            origin: axis.centre(at),
-            unit: 0.5 * length,
-        }
-    }
-
-    /// Averages of u and u² over a cell.
-    fn averages(&self, axis: &Axis, cell: usize) -> (f64, f64) {
-        let centre = (axis.centre(cell) - self.origin) / self.unit;
-        let width = axis.width(cell) / self.unit;
-        (centre, centre * centre + width * width / 12.0)
-    }
-
-    /// Nearest coordinate that lies in the window.
-    fn clamp(&self, axis: &Axis, window: &Range<usize>, coordinate: f64) -> f64 {
-        let end = |edge: usize| (axis.edges()[edge] - self.origin) / self.unit;
-        coordinate.clamp(end(window.start), end(window.end))
-    }
-}
-
 /// Stationary point of the fitted quadratic, if it is of the kind that is looked for.
 fn stationary_point(
     estimated: &EstimatedDensity,
@@ -139,11 +109,8 @@ fn stationary_point(
         *coordinate = scales[k].clamp(&axes[k], &windows[k], *coordinate);
     }
     let terms: Vec<(f64, f64)> = place.iter().map(|&u| (u, u * u)).collect();
-    let density = basis(&terms)
-        .iter()
-        .zip(coefficients.iter())
-        .map(|(b, c)| b * c)
-        .sum();
+    let products = basis(&terms).into_iter().zip(&coefficients);
+    let density = products.map(|(term, coefficient)| term * coefficient).sum();
     let position = place
         .iter()
         .zip(&scales)
@@ -154,76 +121,6 @@ fn stationary_point(
     })
 }
 
-/// 1, u, u² or 1, u, v, u², uv, v², from each axis' (u, u²) or their averages.
-fn basis(terms: &[(f64, f64)]) -> Vec<f64> {
-    match *terms {
-        [(u, uu)] => vec![1.0, u, uu],
-        [(u, uu), (v, vv)] => vec![1.0, u, v, uu, u * v, vv],
-        _ => Vec::new(),
-    }
-}
-
-/// Coefficients of the quadratic whose cell averages are nearest to the values of the window.
-fn fit(
-    estimated: &EstimatedDensity,
-    windows: &[Range<usize>],
-    scales: &[Scale],
-) -> Option<DVector<f64>> {
-    if windows.iter().any(|window| window.len() < 3) {
-        return None;
-    }
-    let axes = &estimated.density.axes;
-    let averages: Vec<Vec<(f64, f64)>> = (0..axes.len())
-        .map(|k| {
-            windows[k]
-                .clone()
-                .map(|cell| scales[k].averages(&axes[k], cell))
-                .collect()
-        })
-        .collect();
-    let size = if axes.len() == 1 { 3 } else { 6 };
-    let (mut normal, mut right) = (DMatrix::zeros(size, size), DVector::zeros(size));
-    let mut add = |terms: &[(f64, f64)], value: f64| {
-        let row = DVector::from_vec(basis(terms));
-        normal.ger(1.0, &row, &row, 1.0);
-        right.axpy(value, &row, 1.0);
-    };
-    let values = &estimated.density.values;
-    if let [window] = windows {
-        for (i, cell) in window.clone().enumerate() {
-            add(&[averages[0][i]], values[cell]);
-        }
-    } else {
-        for (i, row) in windows[0].clone().enumerate() {
-            for (j, column) in windows[1].clone().enumerate() {
-                let value = values[row * axes[1].count() + column];
-                add(&[averages[0][i], averages[1][j]], value);
-            }
-        }
-    }
-    Some(normal.cholesky()?.solve(&right))
-}
-
-/// Quadratic through the 3×3 cells around a cell of a density over two axes: the coefficients of u, v, u²,
-/// uv, v², where u and v are in units of half the length of the three cells, from the cell's centre.
-pub(super) fn local_quadratic(estimated: &EstimatedDensity, cell: usize) -> Option<[f64; 5]> {
-    let [first, second] = estimated.density.axes.as_slice() else {
-        return None;
-    };
-    let three = |axis: &Axis, at: usize| {
-        let low = at.saturating_sub(1).min(axis.count().saturating_sub(3));
-        low..(low + 3).min(axis.count())
-    };
-    let at = [cell / second.count(), cell % second.count()];
-    let windows = [three(first, at[0]), three(second, at[1])];
-    let scales = [
-        Scale::new(first, at[0], &windows[0]),
-        Scale::new(second, at[1], &windows[1]),
-    ];
-    let found = fit(estimated, &windows, &scales)?;
-    Some([found[1], found[2], found[3], found[4], found[5]])
-}
-
 /// Vertex of a parabola that opens the right way.
 fn vertex(slope: f64, curvature: f64, kind: FeatureKind) -> Option<f64> {
     let opens = match kind {
@@ -231,36 +128,6 @@ fn vertex(slope: f64, curvature: f64, kind: FeatureKind) -> Option<f64> {
         FeatureKind::Valley | FeatureKind::Crater => curvature > 0.0,
     };
     opens.then(|| -0.5 * slope / curvature)
-}
-
-/// One of the two principal directions of a quadratic in two variables.
-pub(super) struct Principal {
-    pub(super) direction: [f64; 2],
-    pub(super) slope: f64,
-    pub(super) curvature: f64,
-}
-
-impl Principal {
-    /// Whether a critical point of the kind is sought along this direction: for a valley along both, its
-    /// saddle being a maximum along one and a minimum along the other.
-    pub(super) fn suits(&self, kind: FeatureKind) -> bool {
-        match kind {
-            FeatureKind::Peak => self.curvature < 0.0,
-            FeatureKind::Crater => self.curvature > 0.0,
-            FeatureKind::Valley => self.curvature != 0.0,
-        }
-    }
-}
-
-/// Principal directions of c₀u + c₁v + c₂u² + c₃uv + c₄v².
-pub(super) fn principal_directions([sx, sy, xx, xy, yy]: [f64; 5]) -> [Principal; 2] {
-    let (xx, yy) = (2.0 * xx, 2.0 * yy);
-    let (sine, cosine) = (0.5 * (2.0 * xy).atan2(xx - yy)).sin_cos();
-    [[cosine, sine], [-sine, cosine]].map(|[x, y]| Principal {
-        direction: [x, y],
-        slope: sx * x + sy * y,
-        curvature: xx * x * x + 2.0 * xy * x * y + yy * y * y,
-    })
 }
 
 /// Where the slope of a quadratic in two variables vanishes along those principal directions whose curvature

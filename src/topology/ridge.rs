@@ -8,15 +8,15 @@
 
 use super::FeatureKind;
 use super::persistence::Component;
-use super::refine::{local_quadratic, principal_directions};
+use super::quadratic::{local_quadratic, principal_directions};
 use crate::density::EstimatedDensity;
 
 /// One cell in the units of the fit, half of three cells; the largest step from a cell's centre.
 const ONE_CELL: f64 = 2.0 / 3.0;
 
 /// What terms of order h⁴ may leave, in units of (κh²)²/p: their size for a ridge of Gaussian section, whose
-/// fourth derivative is 3κ²/p. Enough for rings as thin as σ = 1.5 h and as small as r = 3 h (`analytic_tests`).
-const REMAINDER: f64 = 0.4;
+/// fourth derivative is 3κ²/p. Enough for rings as thin as σ = 1.5 h and as small as r = 4 h (`analytic_tests`).
+const REMAINDER: f64 = 0.6;
 
 /// Persistence of a component of a density over two axes without what the grid adds; at most that of the
 /// cell values. Negative or zero when the grid explains all of it.
