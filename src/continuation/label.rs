@@ -1,5 +1,6 @@
 //! Labelled points of a sweep: AUTO's habit of a type and an ordinal for everything worth a row.
 
+use super::Point;
 use crate::density::Observable;
 use crate::topology::Signature;
 
@@ -12,6 +13,17 @@ pub enum PointType {
     EndPoint,
     /// `MX`: no converged steady state.
     NoConvergence,
+}
+
+impl PointType {
+    /// The letters of its labels.
+    pub fn prefix(self) -> &'static str {
+        match self {
+            Self::Bifurcation => "PB",
+            Self::EndPoint => "EP",
+            Self::NoConvergence => "MX",
+        }
+    }
 }
 
 /// How well a P-bifurcation is known.
@@ -59,4 +71,55 @@ pub struct LabelledPoint {
     pub after: Option<Signature>,
     /// How well it is known; `None` for end points and failures.
     pub status: Option<BifurcationStatus>,
+}
+
+/// The end points of a sweep, unnumbered.
+pub(super) fn end_points(points: &[Point]) -> Vec<LabelledPoint> {
+    let ends = [points.first(), points.last()];
+    ends.into_iter()
+        .flatten()
+        .map(|point| unplaced(PointType::EndPoint, point.value, point.value))
+        .collect()
+}
+
+/// One row for every run of neighbouring points without a density or without convergence, unnumbered.
+pub(super) fn failures(points: &[Point]) -> Vec<LabelledPoint> {
+    points
+        .chunk_by(|a, b| a.report.status.is_resolved() == b.report.status.is_resolved())
+        .filter(|run| !run[0].report.status.is_resolved())
+        .map(|run| {
+            unplaced(
+                PointType::NoConvergence,
+                run[0].value,
+                run[run.len() - 1].value,
+            )
+        })
+        .collect()
+}
+
+fn unplaced(kind: PointType, lower: f64, upper: f64) -> LabelledPoint {
+    LabelledPoint {
+        label: String::new(),
+        kind,
+        value: 0.5 * (lower + upper),
+        error: 0.5 * (upper - lower),
+        lower,
+        upper,
+        observable: None,
+        before: None,
+        after: None,
+        status: None,
+    }
+}
+
+/// Sorts rows by parameter and numbers each type from 1.
+pub(super) fn number(mut labels: Vec<LabelledPoint>) -> Vec<LabelledPoint> {
+    labels.sort_by(|a, b| a.value.total_cmp(&b.value));
+    let mut counts = std::collections::BTreeMap::new();
+    for row in &mut labels {
+        let count = counts.entry(row.kind.prefix()).or_insert(0);
+        *count += 1;
+        row.label = format!("{}{count}", row.kind.prefix());
+    }
+    labels
 }

@@ -3,11 +3,20 @@
 //! This module knows a source of densities and a detector, and nothing of matrices: Monte Carlo, cell maps
 //! and closed-form densities all sweep alike.
 
+mod bracket;
 mod label;
+mod locate;
+mod observer;
 mod source;
+mod sweep;
 
 pub use label::{BifurcationStatus, LabelledPoint, PointType};
+pub use observer::Observer;
 pub use source::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
+pub use sweep::{Plan, SweepError, sweep};
+
+#[cfg(test)]
+mod tests;
 
 use crate::density::{EstimatedDensity, Moments, Observable};
 use crate::topology::Detection;
@@ -38,6 +47,8 @@ pub struct Point {
     pub densities: Vec<EstimatedDensity>,
     /// What the detector says of each; same order.
     pub detections: Vec<Detection>,
+    /// Largest Hellinger distance over the watched densities to the point below; `None` for the first.
+    pub distance: Option<f64>,
     /// Seconds of wall-clock time spent on the point.
     pub seconds: f64,
 }

@@ -79,6 +79,9 @@ pub enum SourceError {
     /// The parameter value is not allowed.
     #[error(transparent)]
     System(#[from] crate::system::SystemError),
+    /// The source was asked to stop.
+    #[error("interrupted")]
+    Interrupted,
     /// The cells cannot be laid out.
     #[error(transparent)]
     Space(#[from] crate::space::SpaceError),

@@ -2,6 +2,16 @@
 //!
 //! *Mass* is a cell's probability, Σ = 1; *density* is mass over volume, ∫ = 1. They never share a variable.
 
+mod distance;
+mod moments;
+mod projection;
+mod uncertainty;
+
+pub use distance::{hellinger, hellinger_of_masses, total_variation, total_variation_of_masses};
+pub use moments::moments;
+pub use projection::{Projection, project};
+pub use uncertainty::estimate;
+
 use crate::space::Axis;
 
 /// A density that is watched.
@@ -13,6 +23,16 @@ pub enum Observable {
     Joint(usize, usize),
 }
 
+impl Observable {
+    /// The axes of the state it keeps, in its order.
+    pub fn axes(self) -> Vec<usize> {
+        match self {
+            Self::Marginal(axis) => vec![axis],
+            Self::Joint(first, second) => vec![first, second],
+        }
+    }
+}
+
 /// A probability density that is constant on the cells of one or two axes, ∫ = 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Density {
@@ -20,6 +40,34 @@ pub struct Density {
     pub axes: Vec<Axis>,
     /// One value a cell, the last axis fastest.
     pub values: Vec<f64>,
+}
+
+impl Density {
+    /// Volume of every cell (length in one dimension, area in two), the last axis fastest.
+    pub fn volumes(&self) -> Vec<f64> {
+        cell_volumes(&self.axes)
+    }
+
+    /// Probability of every cell, the last axis fastest.
+    pub fn masses(&self) -> Vec<f64> {
+        let cells = self.values.iter().zip(self.volumes());
+        cells.map(|(value, volume)| value * volume).collect()
+    }
+
+    /// Largest value; zero if there is no positive one.
+    pub fn maximum(&self) -> f64 {
+        self.values.iter().copied().fold(0.0, f64::max)
+    }
+}
+
+/// Volumes of the cells of a product of axes, the last axis fastest.
+fn cell_volumes(axes: &[Axis]) -> Vec<f64> {
+    let mut volumes = vec![1.0];
+    for axis in axes {
+        let widths = |volume: f64| (0..axis.count()).map(move |cell| volume * axis.width(cell));
+        volumes = volumes.into_iter().flat_map(widths).collect();
+    }
+    volumes
 }
 
 /// A density with the uncertainty of its values.
@@ -40,4 +88,40 @@ pub struct Moments {
     pub mean: f64,
     /// Standard deviation.
     pub standard_deviation: f64,
+}
+
+/// Why a density, or a distance between two, could not be computed.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum DensityError {
+    /// A vector does not have one value a cell.
+    #[error("{given} values were given for {wanted} cells")]
+    Length {
+        /// Number of values that was given.
+        given: usize,
+        /// Number of cells.
+        wanted: usize,
+    },
+    /// The observable names an axis that the cell space does not have.
+    #[error("axis {axis} does not exist in a cell space of {dimension} axes")]
+    Axis {
+        /// The axis that was given, counted from 0.
+        axis: usize,
+        /// Number of axes.
+        dimension: usize,
+    },
+    /// A joint density of an axis with itself.
+    #[error("a joint density needs two different axes; both are axis {axis}")]
+    RepeatedAxis {
+        /// The axis that was given twice.
+        axis: usize,
+    },
+    /// A single replicate, from which no spread can be taken.
+    #[error("standard errors need at least 2 replicates; {given} was given")]
+    Replicates {
+        /// Number of replicates that was given.
+        given: usize,
+    },
+    /// Two densities that do not live on the same cells.
+    #[error("the two densities are on different cells")]
+    DifferentAxes,
 }

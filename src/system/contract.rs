@@ -57,12 +57,12 @@ pub(super) fn assert_stationary(system: &dyn System, must_be_known: bool) {
         let sides = |axis| (moved(&state, axis, step), moved(&state, axis, -step));
         let drift = system.drift_at(0.0, &state);
         let (mut residual, mut scale) = (0.0, 1.0);
-        for axis in 0..state.len() {
+        for (axis, drift) in drift.iter().enumerate() {
             let (up, down) = sides(axis);
             let slope = (log_density(&up) - log_density(&down)) / (2.0 * step);
             let change = system.drift_at(0.0, &up)[axis] - system.drift_at(0.0, &down)[axis];
-            residual += change / (2.0 * step) + drift[axis] * slope;
-            scale += (drift[axis] * slope).abs();
+            residual += change / (2.0 * step) + drift * slope;
+            scale += (drift * slope).abs();
         }
         for (channel, &axis) in system.noise_axes().iter().enumerate() {
             let (up, down) = sides(axis);

@@ -1,5 +1,20 @@
 //! What a density looks like: its significant peaks and craters, and the signature they make.
 
+mod detector;
+mod persistence;
+mod refine;
+mod ridge;
+mod significance;
+
+#[cfg(test)]
+mod analytic_tests;
+#[cfg(test)]
+mod calibration_tests;
+#[cfg(test)]
+mod invariance_tests;
+
+pub use detector::PersistenceDetector;
+
 use crate::density::EstimatedDensity;
 
 /// Settings of detection.

@@ -1,0 +1,65 @@
+//! Pairs of neighbouring points whose signatures differ: which feature makes the difference, and whether
+//! narrowing the pair would still teach anything.
+
+use super::{LocateOptions, Point};
+use crate::topology::{Detection, Feature, FeatureKind, Verdict};
+
+/// The two counts that make a signature.
+pub(super) const COUNTED: [FeatureKind; 2] = [FeatureKind::Peak, FeatureKind::Crater];
+
+/// Number of features of a kind that a detection counts.
+pub(super) fn count(detection: &Detection, kind: FeatureKind) -> usize {
+    match kind {
+        FeatureKind::Peak => detection.signature.peaks,
+        FeatureKind::Crater => detection.signature.craters,
+        FeatureKind::Valley => 0,
+    }
+}
+
+/// Whether both points have densities and the signature of some observable differs.
+pub(super) fn signatures_differ(a: &Point, b: &Point) -> bool {
+    let pairs = a.detections.iter().zip(&b.detections);
+    pairs.into_iter().any(|(a, b)| a.signature != b.signature)
+}
+
+/// Whether a pair need not be narrowed further: it is as narrow as wanted, or, in every observable that
+/// differs, the feature that makes the difference is unresolved on the side where it is not counted. There
+/// bisection would only chase the confidence level; a quarter of the sweep's step is close enough to show
+/// where the data stop telling.
+pub(super) fn is_settled(a: &Point, b: &Point, step: f64, options: &LocateOptions) -> bool {
+    let width = (a.value - b.value).abs();
+    if width <= options.tolerance {
+        return true;
+    }
+    // Rounding must not ask for one more halving.
+    width <= step / 4.0 * (1.0 + 1e-9) && undecided(a, b)
+}
+
+fn undecided(a: &Point, b: &Point) -> bool {
+    let mut differing = a
+        .detections
+        .iter()
+        .zip(&b.detections)
+        .filter(|(a, b)| a.signature != b.signature);
+    differing.all(|(a, b)| {
+        COUNTED.iter().any(|&kind| {
+            let (low, high) = if count(a, kind) < count(b, kind) {
+                (a, b)
+            } else {
+                (b, a)
+            };
+            count(low, kind) != count(high, kind)
+                && deciding_feature(low, kind, count(low, kind))
+                    .is_some_and(|feature| feature.verdict == Verdict::Unresolved)
+        })
+    })
+}
+
+/// The feature whose presence makes the count exceed `counted`.
+pub(super) fn deciding_feature(
+    detection: &Detection,
+    kind: FeatureKind,
+    counted: usize,
+) -> Option<&Feature> {
+    detection.ranked(kind, counted)
+}

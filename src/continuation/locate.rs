@@ -1,0 +1,209 @@
+//! Where between two points a signature changes, and the band in which it must lie.
+//!
+//! A feature is counted when its persistence q exceeds the noise, which is later than its birth. Near a
+//! smooth P-bifurcation, and at the kink of a switching surface, q grows like (θ - θ*)²; at the birth of a
+//! peak away from symmetry like (θ - θ*)^{3/2}; where the rim of a crater breaks like θ - θ*. The straight
+//! line through √q therefore meets zero at θ* in the first case and beyond it, seen from the side where the feature
+//! is present, in the others: θ* lies between that zero and the last point where the feature is present.
+//! The zero's own uncertainty comes from shifting all q by ± two standard errors (common random numbers make
+//! neighbouring errors alike, so they do not average out) and from dropping the point farthest away.
+
+use super::bracket::{COUNTED, count, deciding_feature};
+use super::label::{self, BifurcationStatus, LabelledPoint, PointType};
+use super::{LocateOptions, Point};
+use crate::density::Observable;
+use crate::topology::{FeatureKind, Signature, Verdict};
+
+/// Points used to extrapolate the birth of a feature.
+const FITTED_POINTS: usize = 5;
+
+/// A change of one observable's signature between two neighbouring points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Change {
+    value: f64,
+    lower: f64,
+    upper: f64,
+}
+
+/// All labelled points of a sweep, in ascending parameter. `points` must be ascending.
+pub(super) fn label_points(
+    points: &[Point],
+    observables: &[Observable],
+    options: &LocateOptions,
+) -> Vec<LabelledPoint> {
+    let mut labels = label::end_points(points);
+    labels.extend(label::failures(points));
+    let solved: Vec<&Point> = points.iter().filter(|p| !p.detections.is_empty()).collect();
+    for (index, &observable) in observables.iter().enumerate() {
+        for left in 1..solved.len() {
+            let before = solved[left - 1].detections[index].signature;
+            let after = solved[left].detections[index].signature;
+            if before == after {
+                continue;
+            }
+            let change = locate(&solved, index, left - 1);
+            labels.push(row(observable, (before, after), change, options));
+        }
+    }
+    label::number(labels)
+}
+
+fn row(
+    observable: Observable,
+    (before, after): (Signature, Signature),
+    change: Change,
+    options: &LocateOptions,
+) -> LabelledPoint {
+    let located = change.upper - change.lower <= options.tolerance * (1.0 + 1e-9);
+    LabelledPoint {
+        label: String::new(),
+        kind: PointType::Bifurcation,
+        value: change.value,
+        error: (change.value - change.lower).max(change.upper - change.value),
+        lower: change.lower,
+        upper: change.upper,
+        observable: Some(observable),
+        before: Some(before),
+        after: Some(after),
+        status: Some(if located {
+            BifurcationStatus::Located
+        } else {
+            BifurcationStatus::Unresolved
+        }),
+    }
+}
+
+/// The band of a change between `points[left]` and its successor: the hull over the counts that differ.
+fn locate(points: &[&Point], observable: usize, left: usize) -> Change {
+    let (a, b) = (points[left], points[left + 1]);
+    let mut change = Change {
+        value: 0.5 * (a.value + b.value),
+        lower: a.value,
+        upper: b.value,
+    };
+    let mut births = Vec::new();
+    for kind in COUNTED {
+        let counts = [a, b].map(|point| count(&point.detections[observable], kind));
+        if counts[0] != counts[1] {
+            let rank = counts[0].min(counts[1]);
+            let present = present_side(points, observable, left, kind, rank, counts[0] > counts[1]);
+            births.extend(birth(&present));
+        }
+    }
+    for &(value, lower, upper) in &births {
+        change.lower = change.lower.min(lower);
+        change.upper = change.upper.max(upper);
+        change.value = value;
+    }
+    if births.len() > 1 {
+        change.value = births.iter().map(|birth| birth.0).sum::<f64>() / births.len() as f64;
+    }
+    let range = (points[0].value, points[points.len() - 1].value);
+    change.lower = change.lower.max(range.0);
+    change.upper = change.upper.min(range.1);
+    change.value = change.value.clamp(change.lower, change.upper);
+    change
+}
+
+/// Parameter, persistence and its standard error of the deciding feature at the points where it is present,
+/// nearest to the change first.
+fn present_side(
+    points: &[&Point],
+    observable: usize,
+    left: usize,
+    kind: FeatureKind,
+    rank: usize,
+    present_below: bool,
+) -> Vec<(f64, f64, f64)> {
+    let indices: Vec<usize> = if present_below {
+        (0..=left).rev().collect()
+    } else {
+        (left + 1..points.len()).collect()
+    };
+    indices
+        .into_iter()
+        .map_while(|index| {
+            let detection = &points[index].detections[observable];
+            deciding_feature(detection, kind, rank)
+                .filter(|feature| feature.verdict == Verdict::Present)
+                .map(|f| (points[index].value, f.persistence, f.standard_error))
+        })
+        .take(FITTED_POINTS)
+        .collect()
+}
+
+/// Birth of a feature with the ends of its uncertainty: `(value, lower, upper)`, from the zero of the line through
+/// √q. `None` with fewer than two points, or when q does not grow away from the change.
+fn birth(present: &[(f64, f64, f64)]) -> Option<(f64, f64, f64)> {
+    let value = zero_of_root(present, 0.0)?;
+    let mut ends = vec![value];
+    for shift in [-2.0, 2.0] {
+        ends.extend(zero_of_root(present, shift));
+    }
+    if present.len() > 2 {
+        ends.extend(zero_of_root(&present[..present.len() - 1], 0.0));
+    }
+    let lower = ends.iter().copied().fold(f64::INFINITY, f64::min);
+    let upper = ends.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    Some((value, lower, upper))
+}
+
+/// Zero of the least-squares line through √(q + shift · standard error) against the parameter.
+fn zero_of_root(present: &[(f64, f64, f64)], shift: f64) -> Option<f64> {
+    if present.len() < 2 {
+        return None;
+    }
+    let samples: Vec<(f64, f64)> = present
+        .iter()
+        .map(|&(value, q, error)| (value, (q + shift * error).max(0.0).sqrt()))
+        .collect();
+    let n = samples.len() as f64;
+    let mean_value = samples.iter().map(|s| s.0).sum::<f64>() / n;
+    let mean_root = samples.iter().map(|s| s.1).sum::<f64>() / n;
+    let covariance: f64 = samples
+        .iter()
+        .map(|s| (s.0 - mean_value) * (s.1 - mean_root))
+        .sum();
+    let spread: f64 = samples.iter().map(|s| (s.0 - mean_value).powi(2)).sum();
+    let slope = covariance / spread;
+    // The line must fall toward the change, else it says nothing of a birth.
+    let outward = present[present.len() - 1].0 - present[0].0;
+    (slope * outward > 0.0).then(|| mean_value - mean_root / slope)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_square_law_is_extrapolated_to_its_zero() {
+        let present: Vec<(f64, f64, f64)> = [0.1, 0.2, 0.3, 0.4]
+            .map(|theta: f64| (theta + 0.05, 7.0 * theta * theta, 0.0))
+            .to_vec();
+        let (value, lower, upper) = birth(&present).unwrap();
+        assert!((value - 0.05).abs() < 1e-12 && (upper - lower) < 1e-12);
+    }
+
+    #[test]
+    fn slower_laws_are_extrapolated_before_the_first_present_point_and_after_the_birth() {
+        for exponent in [1.5, 1.0] {
+            let present: Vec<(f64, f64, f64)> = [0.1, 0.2, 0.3]
+                .map(|theta: f64| (theta, theta.powf(exponent), 0.0))
+                .to_vec();
+            let (value, _, _) = birth(&present).unwrap();
+            assert!(
+                value < 0.0,
+                "the band from {value} to 0.1 holds the birth at 0"
+            );
+        }
+    }
+
+    #[test]
+    fn errors_widen_the_band_and_a_falling_law_gives_none() {
+        let present = [(0.1, 0.01, 0.002), (0.2, 0.04, 0.002), (0.3, 0.09, 0.002)];
+        let (value, lower, upper) = birth(&present).unwrap();
+        assert!(value.abs() < 1e-12 && lower < -0.005 && upper > 0.005);
+        assert!(birth(&[(0.1, 0.04, 0.0), (0.2, 0.01, 0.0)]).is_none());
+        assert!(birth(&[(0.1, 0.04, 0.0)]).is_none());
+    }
+}

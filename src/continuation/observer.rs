@@ -1,0 +1,34 @@
+//! What a sweep tells its caller while it runs.
+
+use super::Point;
+
+/// Receives every point as soon as it is done, and may stop the sweep. All methods have defaults.
+pub trait Observer {
+    /// The sweep starts; `planned` is the number of given parameter values.
+    fn begin(&mut self, planned: usize) {
+        let _ = planned;
+    }
+
+    /// A point is done. `done` counts all points so far and `remaining` the given values still to come;
+    /// points that refine a bracket come on top of those.
+    ///
+    /// # Errors
+    /// An error (a full disk, say) ends the sweep and is handed to its caller.
+    fn point(
+        &mut self,
+        point: &Point,
+        done: usize,
+        remaining: usize,
+    ) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        let _ = (point, done, remaining);
+        Ok(())
+    }
+
+    /// Asked before every point: whether to stop with what there is.
+    fn interrupted(&self) -> bool {
+        false
+    }
+}
+
+/// An observer that does nothing.
+impl Observer for () {}

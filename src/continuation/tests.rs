@@ -1,0 +1,251 @@
+//! The sweep driver on sources whose answers are known in closed form.
+
+use super::*;
+use crate::density::{Density, EstimatedDensity, Moments};
+use crate::space::Axis;
+use crate::topology::{Detection, Detector, Feature, FeatureKind, Signature, Verdict};
+
+/// A source that hands the parameter to the detector, fails where asked, and counts cold starts.
+struct Ramp {
+    failing: Option<(f64, f64)>,
+    cold: std::cell::Cell<usize>,
+}
+
+impl Ramp {
+    fn new() -> Self {
+        Self {
+            failing: None,
+            cold: std::cell::Cell::new(0),
+        }
+    }
+}
+
+impl DensitySource for Ramp {
+    type State = f64;
+
+    fn solve(&self, value: f64, start: Option<&f64>) -> Result<Solution<f64>, SourceError> {
+        if start.is_none() {
+            self.cold.set(self.cold.get() + 1);
+        }
+        let failed = self.failing.is_some_and(|(a, b)| (a..=b).contains(&value));
+        let report = SolveReport {
+            status: if failed {
+                PointStatus::NoSteadyState
+            } else {
+                PointStatus::Solved
+            },
+            method: "exact",
+            iterations: 0,
+            residual: 0.0,
+            escape_rate: 0.0,
+            negative_mass: 0.0,
+            edge_mass: vec![0.0],
+            numerical_diffusion: vec![0.0],
+            map_step: None,
+            warnings: Vec::new(),
+        };
+        let density = EstimatedDensity {
+            observable: Observable::Marginal(0),
+            density: Density {
+                axes: vec![Axis::uniform(-1.0, 1.0, 2).unwrap()],
+                values: vec![0.5 + 0.1 * value, 0.5 - 0.1 * value],
+            },
+            standard_error: vec![0.0; 2],
+        };
+        let moments = Moments {
+            mean: 0.0,
+            standard_deviation: 1.0,
+        };
+        Ok(Solution {
+            report,
+            moments: if failed { Vec::new() } else { vec![moments] },
+            densities: if failed { Vec::new() } else { vec![density] },
+            state: (!failed).then_some(value),
+        })
+    }
+}
+
+/// A second peak of persistence (θ - birth)² beyond the birth, seen against noise of the given size.
+struct SquareLaw {
+    birth: f64,
+    noise: f64,
+}
+
+impl Detector for SquareLaw {
+    fn name(&self) -> &'static str {
+        "square-law"
+    }
+
+    fn detect(&self, density: &EstimatedDensity) -> Detection {
+        let theta = (density.density.values[0] - 0.5) / 0.1;
+        let persistence = (theta - self.birth).max(0.0).powi(2);
+        let significance = persistence / (5.0 * self.noise);
+        let verdict = match significance {
+            s if s > 1.0 => Verdict::Present,
+            s if s > 0.6 => Verdict::Unresolved,
+            _ => Verdict::Absent,
+        };
+        let feature = |persistence, significance, verdict| Feature {
+            kind: FeatureKind::Peak,
+            position: vec![0.0],
+            density: 1.0,
+            persistence,
+            standard_error: self.noise,
+            significance,
+            verdict,
+        };
+        let present = verdict == Verdict::Present;
+        Detection {
+            signature: Signature {
+                peaks: 1 + usize::from(present),
+                craters: 0,
+            },
+            features: vec![
+                feature(1.0, f64::MAX, Verdict::Present),
+                feature(persistence, significance, verdict),
+            ],
+        }
+    }
+}
+
+fn plan(from: f64, to: f64, points: usize) -> Plan {
+    Plan {
+        parameter: "a".to_owned(),
+        from,
+        to,
+        points,
+        observables: vec![Observable::Marginal(0)],
+    }
+}
+
+fn run(source: &Ramp, detector: &SquareLaw, plan: &Plan, tolerance: f64) -> SweepResult {
+    sweep(
+        source,
+        detector,
+        plan,
+        &LocateOptions { tolerance },
+        &mut (),
+    )
+    .unwrap()
+}
+
+fn bifurcations(result: &SweepResult) -> Vec<&LabelledPoint> {
+    let labels = result.labels.iter();
+    labels
+        .filter(|row| row.kind == PointType::Bifurcation)
+        .collect()
+}
+
+#[test]
+fn a_birth_hidden_by_noise_lies_in_the_stated_band() {
+    let detector = SquareLaw {
+        birth: 0.1,
+        noise: 1e-3,
+    };
+    let result = run(&Ramp::new(), &detector, &plan(-1.0, 1.0, 41), 1e-4);
+    let rows = bifurcations(&result);
+    assert_eq!(rows.len(), 1);
+    let row = rows[0];
+    assert_eq!(row.label, "PB1");
+    assert!(row.lower <= 0.1 && 0.1 <= row.upper);
+    // The persistence is counted only from 0.1 + √(5e-3) = 0.171 on.
+    assert!(row.upper > 0.165 && row.upper - row.lower < 0.1);
+    assert!((row.value - 0.1).abs() < 0.01);
+    assert_eq!(row.status, Some(BifurcationStatus::Unresolved));
+    assert_eq!(row.before.unwrap().peaks, 1);
+    assert_eq!(row.after.unwrap().peaks, 2);
+}
+
+#[test]
+fn without_noise_the_bracket_reaches_the_tolerance() {
+    let detector = SquareLaw {
+        birth: 0.1,
+        noise: 1e-12,
+    };
+    let result = run(&Ramp::new(), &detector, &plan(-1.0, 1.0, 41), 1e-4);
+    let rows = bifurcations(&result);
+    assert_eq!(rows[0].status, Some(BifurcationStatus::Located));
+    assert!(rows[0].upper - rows[0].lower <= 1e-4);
+    assert!(rows[0].lower <= 0.1 && 0.1 <= rows[0].upper);
+    // 0.05 / 2^9 < 1e-4: nine halvings and no more.
+    assert_eq!(result.points.len(), 41 + 9);
+}
+
+#[test]
+fn the_direction_of_the_sweep_changes_no_row() {
+    let detector = SquareLaw {
+        birth: 0.1,
+        noise: 1e-3,
+    };
+    let up = run(&Ramp::new(), &detector, &plan(-1.0, 1.0, 41), 1e-3);
+    let down = run(&Ramp::new(), &detector, &plan(1.0, -1.0, 41), 1e-3);
+    let (a, b) = (bifurcations(&up), bifurcations(&down));
+    assert_eq!(a.len(), b.len());
+    for (a, b) in a.iter().zip(&b) {
+        assert_eq!((a.before, a.after, a.status), (b.before, b.after, b.status));
+        for (x, y) in [(a.value, b.value), (a.lower, b.lower), (a.upper, b.upper)] {
+            assert!((x - y).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn failures_are_rows_and_do_not_stop_the_sweep() {
+    let source = Ramp {
+        failing: Some((-0.35, 0.05)),
+        ..Ramp::new()
+    };
+    let detector = SquareLaw {
+        birth: 0.5,
+        noise: 1e-6,
+    };
+    let result = run(&source, &detector, &plan(-1.0, 1.0, 21), 1e-3);
+    let failures: Vec<_> = result
+        .labels
+        .iter()
+        .filter(|row| row.kind == PointType::NoConvergence)
+        .collect();
+    assert_eq!(failures.len(), 1);
+    assert!((failures[0].lower + 0.3).abs() < 1e-12 && failures[0].upper == 0.0);
+    assert_eq!(failures[0].label, "MX1");
+    assert_eq!(bifurcations(&result).len(), 1);
+    assert_eq!(result.labels[0].label, "EP1");
+    // A failure's successor starts from the last good point.
+    assert_eq!(source.cold.get(), 1);
+}
+
+#[test]
+fn an_interruption_keeps_the_points_so_far() {
+    struct StopAfter(usize, usize);
+    impl Observer for StopAfter {
+        fn point(
+            &mut self,
+            _: &Point,
+            done: usize,
+            _: usize,
+        ) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+            self.1 = done;
+            Ok(())
+        }
+        fn interrupted(&self) -> bool {
+            self.1 >= self.0
+        }
+    }
+    let detector = SquareLaw {
+        birth: 0.1,
+        noise: 1e-6,
+    };
+    let plan = plan(-1.0, 1.0, 41);
+    let options = LocateOptions::default();
+    let source = Ramp::new();
+    let result = sweep(&source, &detector, &plan, &options, &mut StopAfter(7, 0)).unwrap();
+    assert!(result.interrupted);
+    assert_eq!(result.points.len(), 7);
+}
+
+#[test]
+fn given_values_hit_both_ends_and_zero_exactly() {
+    let values = plan(-0.02, 0.01, 31).values();
+    assert_eq!((values[0], values[30]), (-0.02, 0.01));
+    assert_eq!(values[20], 0.0);
+}

@@ -1,0 +1,206 @@
+//! Sums cell masses over the axes that an observable does not keep, and divides by volume.
+
+use super::{Density, DensityError, Observable, cell_volumes};
+use crate::space::{Axis, CellSpace};
+
+/// The map from the cells of a cell space to the cells of an observable, worked out once and applied to
+/// as many mass vectors as wanted.
+#[derive(Debug, Clone)]
+pub struct Projection {
+    axes: Vec<Axis>,
+    /// Cell of the observable that each cell of the space belongs to; length `n_cells`.
+    targets: Vec<u32>,
+    volumes: Vec<f64>,
+}
+
+impl Projection {
+    /// Works out the map, for a cell space of 1 to 4 axes.
+    ///
+    /// # Errors
+    /// [`DensityError::Axis`] or [`DensityError::RepeatedAxis`].
+    pub fn new(space: &CellSpace, observable: Observable) -> Result<Self, DensityError> {
+        let dimension = space.dimension();
+        let kept = observable.axes();
+        if let Some(&axis) = kept.iter().find(|&&axis| axis >= dimension) {
+            return Err(DensityError::Axis { axis, dimension });
+        }
+        if kept.len() == 2 && kept[0] == kept[1] {
+            return Err(DensityError::RepeatedAxis { axis: kept[0] });
+        }
+        let axes: Vec<Axis> = kept.iter().map(|&a| space.axes()[a].clone()).collect();
+        // What one step along each axis of the space adds to the number of the observable's cell.
+        let mut strides = vec![0; dimension];
+        let mut stride: u32 = 1;
+        for &axis in kept.iter().rev() {
+            strides[axis] = stride;
+            // No overflow: a cell space has at most `CellSpace::LIMIT` cells.
+            stride *= space.axes()[axis].count() as u32;
+        }
+        let mut targets = vec![0];
+        for (axis, &stride) in space.axes().iter().zip(&strides) {
+            let steps = |target: u32| (0..axis.count() as u32).map(move |i| target + i * stride);
+            targets = targets.into_iter().flat_map(steps).collect();
+        }
+        let volumes = cell_volumes(&axes);
+        Ok(Self {
+            axes,
+            targets,
+            volumes,
+        })
+    }
+
+    /// Number of cells of the observable.
+    pub fn n_cells(&self) -> usize {
+        self.volumes.len()
+    }
+
+    /// Volumes of the observable's cells.
+    pub(super) fn volumes(&self) -> &[f64] {
+        &self.volumes
+    }
+
+    /// Masses of the observable's cells, from the masses of all cells of the space.
+    ///
+    /// # Errors
+    /// [`DensityError::Length`].
+    pub fn masses(&self, mass: &[f64]) -> Result<Vec<f64>, DensityError> {
+        check_length(mass, self.targets.len())?;
+        let mut sums = vec![0.0; self.n_cells()];
+        for (&target, value) in self.targets.iter().zip(mass) {
+            sums[target as usize] += value;
+        }
+        Ok(sums)
+    }
+
+    /// Density of the observable; ∫ equals the sum of `mass`, which is 1 by contract and not rescaled.
+    ///
+    /// # Errors
+    /// [`DensityError::Length`].
+    pub fn density(&self, mass: &[f64]) -> Result<Density, DensityError> {
+        let mut values = self.masses(mass)?;
+        for (value, volume) in values.iter_mut().zip(&self.volumes) {
+            *value /= volume;
+        }
+        Ok(Density {
+            axes: self.axes.clone(),
+            values,
+        })
+    }
+}
+
+/// Density of an observable from the masses of all cells of a space (`n_cells` values, Σ = 1; some may be
+/// slightly negative).
+///
+/// # Errors
+/// [`DensityError::Axis`], [`DensityError::RepeatedAxis`] or [`DensityError::Length`].
+pub fn project(
+    space: &CellSpace,
+    observable: Observable,
+    mass: &[f64],
+) -> Result<Density, DensityError> {
+    Projection::new(space, observable)?.density(mass)
+}
+
+/// One value a cell, or an error.
+pub(super) fn check_length(values: &[f64], wanted: usize) -> Result<(), DensityError> {
+    let given = values.len();
+    if given == wanted {
+        Ok(())
+    } else {
+        Err(DensityError::Length { given, wanted })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::Grading;
+
+    fn axes() -> Vec<Axis> {
+        let grading = Grading {
+            at: vec![0.2],
+            smallest: 0.1,
+        };
+        vec![
+            Axis::graded(-1.0, 2.0, 6, &grading).unwrap(),
+            Axis::uniform(0.0, 3.0, 3).unwrap(),
+            Axis::uniform(-2.0, 5.0, 4).unwrap(),
+            Axis::uniform(-1.0, 1.0, 2).unwrap(),
+        ]
+    }
+
+    /// A mass that is a product over the axes, so that every projection is a product too.
+    fn product_mass(space: &CellSpace) -> (Vec<f64>, Vec<Vec<f64>>) {
+        let factors: Vec<Vec<f64>> = space
+            .axes()
+            .iter()
+            .enumerate()
+            .map(|(k, axis)| {
+                let raw: Vec<f64> = (0..axis.count())
+                    .map(|i| 1.0 + ((i * i + k) % 5) as f64)
+                    .collect();
+                let sum: f64 = raw.iter().sum();
+                raw.iter().map(|value| value / sum).collect()
+            })
+            .collect();
+        let mass = (0..space.n_cells())
+            .map(|cell| {
+                (0..space.dimension())
+                    .map(|k| factors[k][space.position(cell, k)])
+                    .product()
+            })
+            .collect();
+        (mass, factors)
+    }
+
+    #[test]
+    fn product_masses_project_onto_their_factors_in_every_dimension_and_order() {
+        for dimension in 1..=4 {
+            let space = CellSpace::new(axes()[..dimension].to_vec()).unwrap();
+            let (mass, factors) = product_mass(&space);
+            for a in 0..dimension {
+                let density = project(&space, Observable::Marginal(a), &mass).unwrap();
+                for (i, value) in density.values.iter().enumerate() {
+                    assert!((value * space.axes()[a].width(i) - factors[a][i]).abs() < 1e-14);
+                }
+                for b in (0..dimension).filter(|&b| b != a) {
+                    let density = project(&space, Observable::Joint(a, b), &mass).unwrap();
+                    assert_eq!(density.axes[0], space.axes()[a]);
+                    let columns = density.axes[1].count();
+                    for (cell, mass) in density.masses().iter().enumerate() {
+                        let expected = factors[a][cell / columns] * factors[b][cell % columns];
+                        assert!((mass - expected).abs() < 1e-14);
+                    }
+                    let total: f64 = density.masses().iter().sum();
+                    assert!((total - 1.0).abs() < 1e-13);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn wrong_axes_and_lengths_are_refused() {
+        let space = CellSpace::new(axes()[..2].to_vec()).unwrap();
+        let mass = vec![1.0 / 18.0; 18];
+        let error = |observable| project(&space, observable, &mass).unwrap_err();
+        assert_eq!(
+            error(Observable::Marginal(2)),
+            DensityError::Axis {
+                axis: 2,
+                dimension: 2
+            }
+        );
+        assert_eq!(
+            error(Observable::Joint(1, 1)),
+            DensityError::RepeatedAxis { axis: 1 }
+        );
+        let short = project(&space, Observable::Marginal(0), &mass[1..]);
+        assert_eq!(
+            short.unwrap_err(),
+            DensityError::Length {
+                given: 17,
+                wanted: 18
+            }
+        );
+    }
+}

@@ -1,0 +1,152 @@
+//! The folder of a run: which files it holds, and that an earlier run in the same place is kept.
+
+use std::path::{Path, PathBuf};
+
+use super::{
+    DensityStore, Manifest, Naming, RunError, atomic::write_atomically, bifurcations, tables,
+};
+use crate::continuation::{Point, SweepResult};
+use crate::density::{EstimatedDensity, Observable};
+
+/// Everything a run may leave in its folder.
+const ENTRIES: [&str; 9] = [
+    "run.json",
+    "points.csv",
+    "features.csv",
+    "bifurcations.csv",
+    "bifurcations.md",
+    "bifurcations.tex",
+    "bifurcations.json",
+    "densities.zarr",
+    "figures",
+];
+
+/// Where an earlier run in the same folder is moved.
+const PREVIOUS: &str = "previous";
+
+/// The folder of a run while it is written.
+#[derive(Debug)]
+pub struct RunFolder {
+    path: PathBuf,
+    store: DensityStore,
+}
+
+impl RunFolder {
+    /// Prepares a folder: makes it if need be, and moves the files of an earlier run into `previous/`, in place of
+    /// what was there. Files that are not a run's are left alone.
+    ///
+    /// # Errors
+    /// [`RunError::Write`].
+    pub fn create(path: &Path) -> Result<Self, RunError> {
+        let failed = |source| RunError::Write {
+            path: path.to_owned(),
+            source,
+        };
+        std::fs::create_dir_all(path).map_err(failed)?;
+        let earlier: Vec<&str> = ENTRIES
+            .into_iter()
+            .filter(|entry| path.join(entry).exists())
+            .collect();
+        if !earlier.is_empty() {
+            let previous = path.join(PREVIOUS);
+            if previous.exists() {
+                std::fs::remove_dir_all(&previous).map_err(failed)?;
+            }
+            std::fs::create_dir(&previous).map_err(failed)?;
+            for entry in earlier {
+                std::fs::rename(path.join(entry), previous.join(entry)).map_err(failed)?;
+            }
+        }
+        Ok(Self {
+            path: path.to_owned(),
+            store: DensityStore::new(&path.join("densities.zarr")),
+        })
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Folder of the figures; made by whoever draws the first one.
+    pub fn figures(&self) -> PathBuf {
+        self.path.join("figures")
+    }
+
+    /// Writes `run.json`.
+    ///
+    /// # Errors
+    /// [`RunError::Json`] or [`RunError::Write`].
+    pub fn write_manifest(&self, manifest: &Manifest) -> Result<(), RunError> {
+        let text = serde_json::to_string_pretty(manifest)? + "\n";
+        self.write("run.json", &text)
+    }
+
+    /// Stores a point's densities and writes the tables of all points so far.
+    ///
+    /// # Errors
+    /// [`RunError`] when a file cannot be composed or written.
+    pub fn add_point(
+        &mut self,
+        naming: &Naming<'_>,
+        observables: &[Observable],
+        points: &[Point],
+    ) -> Result<(), RunError> {
+        if let Some(point) = points.last()
+            && !point.densities.is_empty()
+        {
+            self.store.append(naming, point.value, &point.densities)?;
+        }
+        self.write(
+            "points.csv",
+            &tables::points_csv(naming, observables, points)?,
+        )?;
+        self.write(
+            "features.csv",
+            &tables::features_csv(naming, observables, points)?,
+        )
+    }
+
+    /// Writes all tables of a finished sweep and puts the stored densities in ascending order.
+    ///
+    /// # Errors
+    /// [`RunError`] when a file cannot be composed or written.
+    pub fn finish(&mut self, naming: &Naming<'_>, result: &SweepResult) -> Result<(), RunError> {
+        let (observables, points) = (&result.observables, &result.points);
+        self.write(
+            "points.csv",
+            &tables::points_csv(naming, observables, points)?,
+        )?;
+        self.write(
+            "features.csv",
+            &tables::features_csv(naming, observables, points)?,
+        )?;
+        let labels = &result.labels;
+        self.write(
+            "bifurcations.csv",
+            &bifurcations::bifurcations_csv(naming, labels)?,
+        )?;
+        self.write(
+            "bifurcations.json",
+            &bifurcations::bifurcations_json(naming, labels)?,
+        )?;
+        self.write(
+            "bifurcations.md",
+            &bifurcations::bifurcations_markdown(naming, labels),
+        )?;
+        self.write(
+            "bifurcations.tex",
+            &bifurcations::bifurcations_tex(naming, labels),
+        )?;
+        let densities: Vec<(f64, &[EstimatedDensity])> = points
+            .iter()
+            .filter(|point| !point.densities.is_empty())
+            .map(|point| (point.value, point.densities.as_slice()))
+            .collect();
+        self.store.replace(naming, &densities)
+    }
+
+    fn write(&self, name: &str, text: &str) -> Result<(), RunError> {
+        write_atomically(&self.path.join(name), text.as_bytes())
+    }
+}

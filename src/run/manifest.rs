@@ -1,0 +1,71 @@
+//! `run.json`: what was run, by which version, and how it ended.
+
+use serde::Serialize;
+use sha2::{Digest, Sha256};
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Ending {
+    /// Still running, or killed.
+    Running,
+    /// All points done.
+    Complete,
+    /// Stopped by the user.
+    Interrupted,
+}
+
+/// Seconds of wall-clock time a phase.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct PhaseSeconds {
+    /// Solving and detecting.
+    pub sweep: f64,
+    /// Writing tables and arrays.
+    pub tables: f64,
+    /// Drawing.
+    pub figures: f64,
+}
+
+/// The manifest of a run.
+#[derive(Debug, Clone, Serialize)]
+pub struct Manifest {
+    /// Always `pbif`.
+    pub program: &'static str,
+    /// Version of the program.
+    pub version: &'static str,
+    /// The resolved sweep: every key, defaults filled in.
+    pub sweep: serde_json::Value,
+    /// SHA-256 of the resolved sweep as TOML text, hexadecimal.
+    pub hash: String,
+    /// Seed of the random streams.
+    pub seed: u64,
+    /// Threads used; results do not depend on it.
+    pub threads: usize,
+    /// How it ended.
+    pub ending: Ending,
+    /// Points solved, those that refine brackets included.
+    pub points: usize,
+    /// Seconds a phase.
+    pub seconds: PhaseSeconds,
+    /// Warnings, one sentence each, with the parameter values they concern.
+    pub warnings: Vec<String>,
+}
+
+impl Manifest {
+    /// The manifest of a run that starts now. `resolved` is the resolved sweep file as TOML.
+    pub fn start(resolved: &str, sweep: serde_json::Value, seed: u64, threads: usize) -> Self {
+        let digest = Sha256::digest(resolved.as_bytes());
+        Self {
+            program: env!("CARGO_PKG_NAME"),
+            version: env!("CARGO_PKG_VERSION"),
+            sweep,
+            hash: digest.iter().map(|byte| format!("{byte:02x}")).collect(),
+            seed,
+            threads,
+            ending: Ending::Running,
+            points: 0,
+            seconds: PhaseSeconds::default(),
+            warnings: Vec::new(),
+        }
+    }
+}

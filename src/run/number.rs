@@ -1,0 +1,59 @@
+//! Numbers as text: exact for tables, rounded to their error for people.
+
+/// The shortest text that reads back as the same number; powers of ten outside 1e-4 … 1e15. Empty for values that
+/// are not finite, which tables never show as numbers.
+pub fn format_number(value: f64) -> String {
+    if !value.is_finite() {
+        return String::new();
+    }
+    let magnitude = value.abs();
+    if value == 0.0 {
+        "0".to_owned()
+    } else if (1e-4..1e15).contains(&magnitude) {
+        format!("{value}")
+    } else {
+        format!("{value:e}")
+    }
+}
+
+/// A value and its error, both to the error's second significant digit, for example `("-0.0123", "0.0045")`.
+/// Without an error the value is given in full.
+pub fn format_with_error(value: f64, error: f64) -> (String, String) {
+    if !(error > 0.0 && error.is_finite() && value.is_finite()) {
+        return (format_number(value), format_number(error));
+    }
+    let decimals = (1.0 - error.log10().floor()).clamp(0.0, 15.0) as usize;
+    let text = |number: f64| {
+        let text = format!("{number:.decimals$}");
+        // A value that rounds to zero has no sign.
+        match text.strip_prefix('-') {
+            Some(rest) if rest.chars().all(|c| matches!(c, '0' | '.')) => rest.to_owned(),
+            _ => text,
+        }
+    };
+    (text(value), text(error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn values_are_rounded_to_their_error() {
+        let pair = |value, error| format_with_error(value, error);
+        assert_eq!(pair(-0.012345, 0.0045), ("-0.0123".into(), "0.0045".into()));
+        assert_eq!(pair(12.0, 3.0), ("12.0".into(), "3.0".into()));
+        assert_eq!(pair(-1e-9, 0.01), ("0.000".into(), "0.010".into()));
+        assert_eq!(pair(0.5, 0.0), ("0.5".into(), "0".into()));
+        assert_eq!(format_number(f64::NAN), "");
+        assert_eq!(format_number(-0.0), "0");
+    }
+
+    proptest! {
+        #[test]
+        fn numbers_read_back_exactly(value in proptest::num::f64::NORMAL) {
+            prop_assert_eq!(format_number(value).parse::<f64>().unwrap(), value);
+        }
+    }
+}

@@ -1,0 +1,228 @@
+//! The files of a run, written and read back.
+
+use std::sync::Arc;
+
+use zarrs::array::Array;
+
+use super::*;
+use crate::continuation::{Point, PointStatus, SolveReport, SweepResult};
+use crate::density::{Density, EstimatedDensity, Moments, Observable};
+use crate::space::Axis;
+use crate::system::registry;
+use crate::topology::{Detection, Feature, FeatureKind, Signature, Verdict};
+
+fn naming() -> Naming<'static> {
+    Naming {
+        model: registry::find("coulomb").unwrap(),
+        parameter: "f_c",
+    }
+}
+
+fn observables() -> Vec<Observable> {
+    vec![Observable::Marginal(0), Observable::Joint(0, 1)]
+}
+
+fn point(value: f64, solved: bool) -> Point {
+    let x = Axis::uniform(-1.0, 1.0, 2).unwrap();
+    let y = Axis::uniform(0.0, 3.0, 3).unwrap();
+    let estimate = |observable, axes: Vec<Axis>, cells: usize| EstimatedDensity {
+        observable,
+        density: Density {
+            axes,
+            values: (0..cells).map(|cell| value + cell as f64).collect(),
+        },
+        standard_error: vec![0.5; cells],
+    };
+    let detection = Detection {
+        signature: Signature {
+            peaks: 2,
+            craters: 1,
+        },
+        features: vec![Feature {
+            kind: FeatureKind::Peak,
+            position: vec![0.25, 1.5],
+            density: 2.0,
+            persistence: 1.0,
+            standard_error: 0.1,
+            significance: 3.0,
+            verdict: Verdict::Present,
+        }],
+    };
+    let kept = |count: usize| if solved { count } else { 0 };
+    Point {
+        value,
+        report: SolveReport {
+            status: if solved {
+                PointStatus::Solved
+            } else {
+                PointStatus::NoSteadyState
+            },
+            method: "sgcm",
+            iterations: 7,
+            residual: 1e-12,
+            escape_rate: if solved { 0.0 } else { f64::NAN },
+            negative_mass: 0.0,
+            edge_mass: vec![0.0, 1e-5],
+            numerical_diffusion: vec![1e-4, 2e-4],
+            map_step: Some(6.25),
+            warnings: vec!["first, with a comma".into(), "second".into()],
+        },
+        moments: vec![
+            Moments {
+                mean: 0.0,
+                standard_deviation: 1.0
+            };
+            kept(2)
+        ],
+        densities: [
+            estimate(Observable::Marginal(0), vec![x.clone()], 2),
+            estimate(Observable::Joint(0, 1), vec![x, y], 6),
+        ][..kept(2)]
+            .to_vec(),
+        detections: vec![detection; kept(2)],
+        distance: None,
+        seconds: 0.25,
+    }
+}
+
+fn result(points: Vec<Point>) -> SweepResult {
+    SweepResult {
+        parameter: "f_c".into(),
+        observables: observables(),
+        points,
+        labels: Vec::new(),
+        interrupted: false,
+    }
+}
+
+fn read_array(store: &std::path::Path, name: &str) -> (Vec<u64>, Vec<f64>) {
+    let store = Arc::new(zarrs::filesystem::FilesystemStore::new(store).unwrap());
+    let array = Array::open(store, &format!("/{name}")).unwrap();
+    let values = array.retrieve_array_subset(&array.subset_all()).unwrap();
+    (array.shape().to_vec(), values)
+}
+
+#[test]
+fn points_have_the_columns_of_the_contract_and_no_nan() {
+    let points = [point(0.01, true), point(-0.02, false)];
+    let text = points_csv(&naming(), &observables(), &points).unwrap();
+    let mut lines = text.lines();
+    assert_eq!(
+        lines.next().unwrap(),
+        "f_c,status,method,iterations,residual,escape_rate,negative_mass,edge_mass,mean_x,sd_x,mean_y,sd_y,\
+         peaks_x,peaks_xy,craters_xy,distance,seconds,map_step,numerical_diffusion_x,numerical_diffusion_y,warnings"
+    );
+    let first = lines.next().unwrap();
+    assert!(first.starts_with("-0.02,no-steady-state,sgcm,7,1e-12,,0,1e-5,,,,,,,,"));
+    assert!(first.ends_with("\"first, with a comma; second\""));
+    assert!(
+        lines
+            .next()
+            .unwrap()
+            .starts_with("0.01,solved,sgcm,7,1e-12,0,0,1e-5,0,1,0,1,2,2,1,")
+    );
+    assert!(!text.contains("NaN"));
+}
+
+#[test]
+fn features_carry_both_coordinates() {
+    let text = features_csv(&naming(), &observables(), &[point(0.01, true)]).unwrap();
+    assert!(text.contains("0.01,xy,peak,0.25,2,1,3,1.5,0.1,present\n"));
+}
+
+#[test]
+fn the_store_reads_back_in_ascending_order_with_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut run = RunFolder::create(folder.path()).unwrap();
+    let mut points = Vec::new();
+    for (value, solved) in [(0.01, true), (0.0, false), (-0.02, true)] {
+        points.push(point(value, solved));
+        run.add_point(&naming(), &observables(), &points).unwrap();
+    }
+    let store = folder.path().join("densities.zarr");
+    assert_eq!(read_array(&store, "f_c"), (vec![2], vec![0.01, -0.02]));
+    points.sort_by(|a, b| a.value.total_cmp(&b.value));
+    run.finish(&naming(), &result(points)).unwrap();
+    assert_eq!(read_array(&store, "f_c"), (vec![2], vec![-0.02, 0.01]));
+    let (shape, values) = read_array(&store, "p_xy");
+    assert_eq!(shape, [2, 2, 3]);
+    assert_eq!(values[..2], [-0.02, 0.98]);
+    assert_eq!(values[6..8], [0.01, 1.01]);
+    assert_eq!(read_array(&store, "y").1, [0.5, 1.5, 2.5]);
+    assert_eq!(read_array(&store, "y_edges").1, [0.0, 1.0, 2.0, 3.0]);
+    assert_eq!(read_array(&store, "p_x_error").1, [0.5; 4]);
+    let root: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(store.join("zarr.json")).unwrap()).unwrap();
+    let names = &root["consolidated_metadata"]["metadata"]["p_xy"]["dimension_names"];
+    assert_eq!(names, &serde_json::json!(["f_c", "x", "y"]));
+}
+
+#[test]
+fn an_earlier_run_is_kept_and_other_files_are_left_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("notes.txt"), "mine").unwrap();
+    for text in ["first", "second", "third"] {
+        let run = RunFolder::create(folder.path()).unwrap();
+        drop(run);
+        std::fs::write(folder.path().join("points.csv"), text).unwrap();
+    }
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
+    assert_eq!(read("points.csv"), "third");
+    assert_eq!(read("previous/points.csv"), "second");
+    assert_eq!(read("notes.txt"), "mine");
+}
+
+#[test]
+fn tables_for_people_round_to_the_error() {
+    use crate::continuation::{BifurcationStatus, LabelledPoint, PointType};
+    let signature = |peaks| Some(Signature { peaks, craters: 0 });
+    let row = LabelledPoint {
+        label: "PB1".into(),
+        kind: PointType::Bifurcation,
+        value: -0.012345678,
+        error: 0.00045,
+        lower: -0.0127,
+        upper: -0.0119,
+        observable: Some(Observable::Marginal(1)),
+        before: signature(2),
+        after: signature(1),
+        status: Some(BifurcationStatus::Unresolved),
+    };
+    let end = LabelledPoint {
+        label: "EP1".into(),
+        kind: PointType::EndPoint,
+        observable: None,
+        before: None,
+        after: None,
+        status: None,
+        ..row.clone()
+    };
+    let rows = [end, row];
+    insta::assert_snapshot!(bifurcations_markdown(&naming(), &rows), @r"
+    | label | f_c | bracket | observable | before | after | status |
+    | --- | --- | --- | --- | --- | --- | --- |
+    | PB1 | -0.01235 ± 0.00045 | [-0.01270, -0.01190] | y | 2 peaks | 1 peak | unresolved |
+    ");
+    insta::assert_snapshot!(bifurcations_tex(&naming(), &rows), @r"
+    % needs \usepackage{booktabs}
+    \begin{tabular}{llllll}
+    \toprule
+    label & $f_{c}$ & density & below & above & status \\
+    \midrule
+    PB1 & $-0.01235 \pm 0.00045$ & $p(\dot{x})$ & 2 peaks & 1 peak & unresolved \\
+    \bottomrule
+    \end{tabular}
+    ");
+    let csv = bifurcations_csv(&naming(), &rows).unwrap();
+    assert_eq!(
+        csv.lines().next().unwrap(),
+        "label,parameter,value,error,lower,upper,observable,before,after,status"
+    );
+    assert!(
+        csv.contains("PB1,f_c,-0.012345678,0.00045,-0.0127,-0.0119,y,2 peaks,1 peak,unresolved")
+    );
+    let json: serde_json::Value =
+        serde_json::from_str(&bifurcations_json(&naming(), &rows).unwrap()).unwrap();
+    assert_eq!(json[1]["value"], -0.012345678);
+    assert!(json[0]["observable"].is_null());
+}

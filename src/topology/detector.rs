@@ -1,0 +1,253 @@
+//! The detector by persistence: components of the superlevel and sublevel sets, judged and refined.
+
+use super::persistence::{Component, Grid, components};
+use super::refine::refine;
+use super::ridge;
+use super::significance::{Judgement, Limits};
+use super::{DetectOptions, Detection, Detector, Feature, FeatureKind, Signature, Verdict};
+use crate::density::EstimatedDensity;
+
+/// How many absent features of each kind are listed, so that a birth can be followed.
+const ABSENT_LISTED: usize = 4;
+
+/// Peaks, valleys and craters of densities over one or two axes by persistence.
+///
+/// - A peak is present when it stands above its saddle by more than noise makes at the chosen confidence
+///   (over all looks of the sweep) and more than the floor. The highest peak of a positive density always is. A
+///   peak at an end of the range is a peak.
+/// - A valley belongs to every other peak: the saddle where it merges, with the same verdict.
+/// - A crater (two axes) is a basin that higher ground encloses. The highest point of its rim is the peak of
+///   largest persistence; the rim has further peaks only where they are significant.
+///
+/// Persistence is the difference of the cell values, to which the standard errors belong; over two axes less
+/// what the grid itself makes along oblique ridges and trenches. Position and density are refined below a
+/// cell. A density without sampling errors is judged by the floor alone. A density over
+/// other numbers of axes, with vectors of the wrong length, with values that are not finite or none
+/// positive, has no features.
+#[derive(Debug, Clone)]
+pub struct PersistenceDetector {
+    options: DetectOptions,
+    looks: usize,
+}
+
+/// A component with its verdict, before it is refined.
+struct Candidate {
+    component: Component,
+    persistence: f64,
+    standard_error: f64,
+    judgement: Judgement,
+}
+
+impl PersistenceDetector {
+    /// A detector for a sweep that looks at `looks` densities in all (parameter values × observables); the
+    /// confidence of the options holds for all of them together.
+    pub fn new(options: DetectOptions, looks: usize) -> Self {
+        Self { options, looks }
+    }
+
+    /// Judges components and keeps those worth listing, by falling persistence.
+    fn judged(
+        &self,
+        mut found: Vec<Component>,
+        is_crater: bool,
+        estimated: &EstimatedDensity,
+        limits: &Limits,
+    ) -> Vec<Candidate> {
+        let errors = &estimated.standard_error;
+        found.sort_by(|a, b| {
+            b.persistence
+                .total_cmp(&a.persistence)
+                .then(a.birth.cmp(&b.birth))
+        });
+        let mut absent = 0;
+        let mut candidates: Vec<Candidate> = found
+            .into_iter()
+            .filter_map(|component| {
+                let death_error = component.death.map_or(0.0, |cell| errors[cell]);
+                let standard_error = errors[component.birth].hypot(death_error);
+                // Few stand out of the noise by their cell values: only those are worth a closer look.
+                let by_cells = limits.judge(component.persistence, standard_error).verdict;
+                if by_cells == Verdict::Absent && absent >= ABSENT_LISTED {
+                    return None;
+                }
+                let persistence = ridge::persistence(estimated, &component, is_crater).max(0.0);
+                let mut judgement = limits.judge(persistence, standard_error);
+                if component.death.is_none() {
+                    judgement.verdict = Verdict::Present;
+                }
+                absent += usize::from(judgement.verdict == Verdict::Absent);
+                Some(Candidate {
+                    component,
+                    persistence,
+                    standard_error,
+                    judgement,
+                })
+            })
+            .collect();
+        candidates.sort_by(|a, b| b.persistence.total_cmp(&a.persistence));
+        candidates
+    }
+}
+
+impl Candidate {
+    fn is_present(&self) -> bool {
+        self.judgement.verdict == Verdict::Present
+    }
+
+    /// The feature of the given kind at the given cell, which is that of birth or death.
+    fn feature(&self, estimated: &EstimatedDensity, kind: FeatureKind, cell: usize) -> Feature {
+        let place = refine(estimated, cell, kind);
+        Feature {
+            kind,
+            position: place.position,
+            density: place.density,
+            persistence: self.persistence,
+            standard_error: self.standard_error,
+            significance: self.judgement.significance,
+            verdict: self.judgement.verdict,
+        }
+    }
+}
+
+/// The grid of a density, unless it cannot have features.
+fn grid(estimated: &EstimatedDensity) -> Option<Grid<'_>> {
+    let values = &estimated.density.values;
+    let (rows, columns) = match estimated.density.axes.as_slice() {
+        [axis] => (1, axis.count()),
+        [first, second] => (first.count(), second.count()),
+        _ => return None,
+    };
+    let is_whole = values.len() == rows * columns && estimated.standard_error.len() == values.len();
+    let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
+    let usable = is_whole && finite(values) && finite(&estimated.standard_error);
+    (usable && estimated.density.maximum() > 0.0).then_some(Grid {
+        rows,
+        columns,
+        values,
+    })
+}
+
+impl Detector for PersistenceDetector {
+    fn name(&self) -> &'static str {
+        "persistence"
+    }
+
+    fn detect(&self, density: &EstimatedDensity) -> Detection {
+        let Some(grid) = grid(density) else {
+            return Detection {
+                signature: Signature {
+                    peaks: 0,
+                    craters: 0,
+                },
+                features: Vec::new(),
+            };
+        };
+        let limits = Limits::new(
+            &self.options,
+            self.looks,
+            density.density.axes.len(),
+            grid.values.len(),
+            density.density.maximum(),
+        );
+        let (peaks, craters) = components(grid);
+        let peaks = self.judged(peaks, false, density, &limits);
+        let craters = self.judged(craters, true, density, &limits);
+        let count = |found: &[Candidate]| found.iter().filter(|one| one.is_present()).count();
+        let signature = Signature {
+            peaks: count(&peaks),
+            craters: count(&craters),
+        };
+        let at_birth =
+            |kind| move |one: &Candidate| one.feature(density, kind, one.component.birth);
+        let mut features: Vec<Feature> = peaks.iter().map(at_birth(FeatureKind::Peak)).collect();
+        features.extend(peaks.iter().filter_map(|peak| {
+            let saddle = peak.component.death?;
+            Some(peak.feature(density, FeatureKind::Valley, saddle))
+        }));
+        features.extend(craters.iter().map(at_birth(FeatureKind::Crater)));
+        Detection {
+            signature,
+            features,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::density::{Density, Observable};
+    use crate::space::Axis;
+
+    fn estimated(values: Vec<f64>, errors: Vec<f64>) -> EstimatedDensity {
+        let axis = Axis::uniform(0.0, 1.0, 8).unwrap();
+        EstimatedDensity {
+            observable: Observable::Marginal(0),
+            density: Density {
+                axes: vec![axis],
+                values,
+            },
+            standard_error: errors,
+        }
+    }
+
+    fn detector() -> PersistenceDetector {
+        PersistenceDetector::new(DetectOptions::default(), 1)
+    }
+
+    #[test]
+    fn densities_without_sense_have_no_features() {
+        let zeros = vec![0.0; 8];
+        let mut broken = vec![1.0; 8];
+        broken[3] = f64::NAN;
+        for (values, errors) in [
+            (zeros.clone(), zeros.clone()),
+            (vec![-1.0; 8], zeros.clone()),
+            (broken, zeros.clone()),
+            (vec![1.0; 7], zeros.clone()),
+            (vec![1.0; 8], vec![0.0; 3]),
+        ] {
+            let detection = detector().detect(&estimated(values, errors));
+            assert_eq!(detection.signature.peaks, 0);
+            assert!(detection.features.is_empty());
+        }
+    }
+
+    #[test]
+    fn the_highest_peak_is_present_however_noisy_and_persists_over_zero() {
+        let values = vec![0.0, 1.0, 2.0, 1.5, 1.8, 0.2, 0.1, 0.3];
+        let detection = detector().detect(&estimated(values, vec![5.0; 8]));
+        assert_eq!(detection.signature.peaks, 1);
+        let highest = detection.ranked(FeatureKind::Peak, 0).unwrap();
+        assert_eq!(
+            (highest.persistence, highest.verdict),
+            (2.0, Verdict::Present)
+        );
+        // The others are listed as absent with their valleys, in falling persistence.
+        let second = detection.ranked(FeatureKind::Peak, 1).unwrap();
+        assert!((second.persistence - 0.3).abs() < 1e-12 && second.verdict == Verdict::Absent);
+        let valley = detection.ranked(FeatureKind::Valley, 0).unwrap();
+        assert_eq!(valley.persistence, second.persistence);
+        assert_eq!(detection.ranked(FeatureKind::Valley, 2), None);
+    }
+
+    #[test]
+    fn only_the_strongest_absent_features_are_listed() {
+        let axis = Axis::uniform(0.0, 1.0, 40).unwrap();
+        let values = (0..40).map(|i| 10.0 + f64::from(i % 2) * f64::from(i) * 0.01);
+        let density = EstimatedDensity {
+            observable: Observable::Marginal(0),
+            density: Density {
+                axes: vec![axis],
+                values: values.collect(),
+            },
+            standard_error: vec![1.0; 40],
+        };
+        let detection = detector().detect(&density);
+        let peaks = |verdict| {
+            let features = detection.features.iter();
+            let of_kind = features.filter(|feature| feature.kind == FeatureKind::Peak);
+            of_kind.filter(|feature| feature.verdict == verdict).count()
+        };
+        assert_eq!((peaks(Verdict::Present), peaks(Verdict::Absent)), (1, 4));
+    }
+}

@@ -1,0 +1,423 @@
+//! Position and height of a feature below the size of a cell.
+//!
+//! A quadratic is fitted by least squares to the values of a window of cells, each value being the *average* of
+//! the density over its cell: ⟨x²⟩ = c² + h²/12 for centre c and width h, on any widths. The window is three
+//! cells along an axis (in one dimension the quadratic then has the three averages exactly), and wider where the
+//! density does not change by more than its standard errors. The result stays inside the window; along directions in
+//! which the quadratic is not curved the right way it stays at the cell's centre.
+//!
+//! On a smooth density the position is off by O(h²), the height by O(h³) (in practice h⁴); at a kink
+//! by O(h).
+
+use std::ops::Range;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::FeatureKind;
+use crate::density::EstimatedDensity;
+use crate::space::Axis;
+
+/// Changes below this many standard errors are noise, and the window grows across them.
+const NOISE_LIMIT: f64 = 4.0;
+
+/// The window reaches at most this share of an axis to either side.
+const LARGEST_REACH: usize = 8;
+
+/// Longest step along a principal direction, in half lengths of the window.
+const FARTHEST: f64 = 1.5;
+
+/// A refined place.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Place {
+    /// One coordinate an axis.
+    pub(super) position: Vec<f64>,
+    /// Density there.
+    pub(super) density: f64,
+}
+
+/// Refines the feature whose cell is given. One or two axes; one value and one error a cell.
+pub(super) fn refine(estimated: &EstimatedDensity, cell: usize, kind: FeatureKind) -> Place {
+    let axes = &estimated.density.axes;
+    let columns = axes.last().map_or(1, Axis::count);
+    let at: Vec<usize> = match axes.len() {
+        1 => vec![cell],
+        _ => vec![cell / columns, cell % columns],
+    };
+    let windows: Vec<Range<usize>> = (0..axes.len())
+        .map(|axis| window(estimated, &at, axis))
+        .collect();
+    stationary_point(estimated, &at, &windows, kind).unwrap_or_else(|| Place {
+        position: axes
+            .iter()
+            .zip(&at)
+            .map(|(axis, &i)| axis.centre(i))
+            .collect(),
+        density: estimated.density.values[cell],
+    })
+}
+
+/// Cells of one axis that the fit around the cell `at` takes in.
+fn window(estimated: &EstimatedDensity, at: &[usize], axis: usize) -> Range<usize> {
+    let count = estimated.density.axes[axis].count();
+    let stride = if axis + 1 == at.len() {
+        1
+    } else {
+        estimated.density.axes[1].count()
+    };
+    let cell: usize = if at.len() == 1 {
+        at[0]
+    } else {
+        at[0] * estimated.density.axes[1].count() + at[1]
+    };
+    let (values, errors) = (&estimated.density.values, &estimated.standard_error);
+    let is_noise = |other: usize| {
+        let change = (values[other] - values[cell]).abs();
+        change < NOISE_LIMIT * errors[cell].hypot(errors[other])
+    };
+    let mut reach = 1;
+    while reach < count / LARGEST_REACH
+        && at[axis] >= reach
+        && at[axis] + reach < count
+        && is_noise(cell - reach * stride)
+        && is_noise(cell + reach * stride)
+    {
+        reach += 1;
+    }
+    // At an end of the range the three cells nearest to it.
+    let low = at[axis].saturating_sub(reach).min(count.saturating_sub(3));
+    let high = (at[axis] + reach + 1).max(3).min(count);
+    low..high
+}
+
+/// Centre and width of a cell in units of the window around the feature's cell.
+struct Scale {
+    origin: f64,
+    unit: f64,
+}
+
+impl Scale {
+    fn new(axis: &Axis, at: usize, window: &Range<usize>) -> Self {
+        let length = axis.edges()[window.end] - axis.edges()[window.start];
+        Self {
+            origin: axis.centre(at),
+            unit: 0.5 * length,
+        }
+    }
+
+    /// Averages of u and u² over a cell.
+    fn averages(&self, axis: &Axis, cell: usize) -> (f64, f64) {
+        let centre = (axis.centre(cell) - self.origin) / self.unit;
+        let width = axis.width(cell) / self.unit;
+        (centre, centre * centre + width * width / 12.0)
+    }
+
+    /// Nearest coordinate that lies in the window.
+    fn clamp(&self, axis: &Axis, window: &Range<usize>, coordinate: f64) -> f64 {
+        let end = |edge: usize| (axis.edges()[edge] - self.origin) / self.unit;
+        coordinate.clamp(end(window.start), end(window.end))
+    }
+}
+
+/// Stationary point of the fitted quadratic, if it is of the kind that is looked for.
+fn stationary_point(
+    estimated: &EstimatedDensity,
+    at: &[usize],
+    windows: &[Range<usize>],
+    kind: FeatureKind,
+) -> Option<Place> {
+    let axes = &estimated.density.axes;
+    let scales: Vec<Scale> = (0..axes.len())
+        .map(|k| Scale::new(&axes[k], at[k], &windows[k]))
+        .collect();
+    let coefficients = fit(estimated, windows, &scales)?;
+    let mut place = match coefficients.as_slice() {
+        [_, slope, curvature] => vec![vertex(*slope, *curvature, kind)?],
+        [_, sx, sy, xx, xy, yy] => critical_point([*sx, *sy, *xx, *xy, *yy], kind),
+        _ => return None,
+    };
+    for (k, coordinate) in place.iter_mut().enumerate() {
+        *coordinate = scales[k].clamp(&axes[k], &windows[k], *coordinate);
+    }
+    let terms: Vec<(f64, f64)> = place.iter().map(|&u| (u, u * u)).collect();
+    let density = basis(&terms)
+        .iter()
+        .zip(coefficients.iter())
+        .map(|(b, c)| b * c)
+        .sum();
+    let position = place
+        .iter()
+        .zip(&scales)
+        .map(|(u, scale)| scale.origin + u * scale.unit);
+    Some(Place {
+        position: position.collect(),
+        density,
+    })
+}
+
+/// 1, u, u² or 1, u, v, u², uv, v², from each axis' (u, u²) or their averages.
+fn basis(terms: &[(f64, f64)]) -> Vec<f64> {
+    match *terms {
+        [(u, uu)] => vec![1.0, u, uu],
+        [(u, uu), (v, vv)] => vec![1.0, u, v, uu, u * v, vv],
+        _ => Vec::new(),
+    }
+}
+
+/// Coefficients of the quadratic whose cell averages are nearest to the values of the window.
+fn fit(
+    estimated: &EstimatedDensity,
+    windows: &[Range<usize>],
+    scales: &[Scale],
+) -> Option<DVector<f64>> {
+    if windows.iter().any(|window| window.len() < 3) {
+        return None;
+    }
+    let axes = &estimated.density.axes;
+    let averages: Vec<Vec<(f64, f64)>> = (0..axes.len())
+        .map(|k| {
+            windows[k]
+                .clone()
+                .map(|cell| scales[k].averages(&axes[k], cell))
+                .collect()
+        })
+        .collect();
+    let size = if axes.len() == 1 { 3 } else { 6 };
+    let (mut normal, mut right) = (DMatrix::zeros(size, size), DVector::zeros(size));
+    let mut add = |terms: &[(f64, f64)], value: f64| {
+        let row = DVector::from_vec(basis(terms));
+        normal.ger(1.0, &row, &row, 1.0);
+        right.axpy(value, &row, 1.0);
+    };
+    let values = &estimated.density.values;
+    if let [window] = windows {
+        for (i, cell) in window.clone().enumerate() {
+            add(&[averages[0][i]], values[cell]);
+        }
+    } else {
+        for (i, row) in windows[0].clone().enumerate() {
+            for (j, column) in windows[1].clone().enumerate() {
+                let value = values[row * axes[1].count() + column];
+                add(&[averages[0][i], averages[1][j]], value);
+            }
+        }
+    }
+    Some(normal.cholesky()?.solve(&right))
+}
+
+/// Quadratic through the 3×3 cells around a cell of a density over two axes: the coefficients of u, v, u²,
+/// uv, v², where u and v are in units of half the length of the three cells, from the cell's centre.
+pub(super) fn local_quadratic(estimated: &EstimatedDensity, cell: usize) -> Option<[f64; 5]> {
+    let [first, second] = estimated.density.axes.as_slice() else {
+        return None;
+    };
+    let three = |axis: &Axis, at: usize| {
+        let low = at.saturating_sub(1).min(axis.count().saturating_sub(3));
+        low..(low + 3).min(axis.count())
+    };
+    let at = [cell / second.count(), cell % second.count()];
+    let windows = [three(first, at[0]), three(second, at[1])];
+    let scales = [
+        Scale::new(first, at[0], &windows[0]),
+        Scale::new(second, at[1], &windows[1]),
+    ];
+    let found = fit(estimated, &windows, &scales)?;
+    Some([found[1], found[2], found[3], found[4], found[5]])
+}
+
+/// Vertex of a parabola that opens the right way.
+fn vertex(slope: f64, curvature: f64, kind: FeatureKind) -> Option<f64> {
+    let opens = match kind {
+        FeatureKind::Peak => curvature < 0.0,
+        FeatureKind::Valley | FeatureKind::Crater => curvature > 0.0,
+    };
+    opens.then(|| -0.5 * slope / curvature)
+}
+
+/// One of the two principal directions of a quadratic in two variables.
+pub(super) struct Principal {
+    pub(super) direction: [f64; 2],
+    pub(super) slope: f64,
+    pub(super) curvature: f64,
+}
+
+impl Principal {
+    /// Whether a critical point of the kind is sought along this direction: for a valley along both, its
+    /// saddle being a maximum along one and a minimum along the other.
+    pub(super) fn suits(&self, kind: FeatureKind) -> bool {
+        match kind {
+            FeatureKind::Peak => self.curvature < 0.0,
+            FeatureKind::Crater => self.curvature > 0.0,
+            FeatureKind::Valley => self.curvature != 0.0,
+        }
+    }
+}
+
+/// Principal directions of c₀u + c₁v + c₂u² + c₃uv + c₄v².
+pub(super) fn principal_directions([sx, sy, xx, xy, yy]: [f64; 5]) -> [Principal; 2] {
+    let (xx, yy) = (2.0 * xx, 2.0 * yy);
+    let (sine, cosine) = (0.5 * (2.0 * xy).atan2(xx - yy)).sin_cos();
+    [[cosine, sine], [-sine, cosine]].map(|[x, y]| Principal {
+        direction: [x, y],
+        slope: sx * x + sy * y,
+        curvature: xx * x * x + 2.0 * xy * x * y + yy * y * y,
+    })
+}
+
+/// Where the slope of a quadratic in two variables vanishes along those principal directions whose curvature
+/// suits the kind. On a ridge of constant height that is the ridge.
+fn critical_point(coefficients: [f64; 5], kind: FeatureKind) -> Vec<f64> {
+    let mut point = vec![0.0, 0.0];
+    for principal in principal_directions(coefficients) {
+        if principal.suits(kind) {
+            let step = -principal.slope / principal.curvature;
+            // Far outside the window the fit says nothing of this direction.
+            if step.abs() <= FARTHEST {
+                point[0] += step * principal.direction[0];
+                point[1] += step * principal.direction[1];
+            }
+        }
+    }
+    point
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::density::{Density, Observable};
+    use crate::space::Grading;
+
+    /// A density given by its primitive in one dimension, so that values are exact averages.
+    fn averages(axis: &Axis, primitive: impl Fn(f64) -> f64) -> EstimatedDensity {
+        let edges = axis.edges().windows(2);
+        let values: Vec<f64> = edges
+            .map(|edge| (primitive(edge[1]) - primitive(edge[0])) / (edge[1] - edge[0]))
+            .collect();
+        exact(vec![axis.clone()], values)
+    }
+
+    fn exact(axes: Vec<Axis>, values: Vec<f64>) -> EstimatedDensity {
+        EstimatedDensity {
+            observable: Observable::Marginal(0),
+            standard_error: vec![0.0; values.len()],
+            density: Density { axes, values },
+        }
+    }
+
+    fn graded(count: usize) -> Axis {
+        let grading = Grading {
+            at: vec![0.13],
+            smallest: 0.3 / count as f64,
+        };
+        Axis::graded(-1.0, 1.0, count, &grading).unwrap()
+    }
+
+    #[test]
+    fn a_parabola_is_found_exactly_on_graded_cells() {
+        let axis = graded(12);
+        let parabola = |x: f64| 3.0 * x - 2.0 * (x - 0.2).powi(3) / 3.0;
+        let estimated = averages(&axis, parabola);
+        let place = refine(&estimated, axis.find(0.2).unwrap(), FeatureKind::Peak);
+        assert!((place.position[0] - 0.2).abs() < 1e-10, "{place:?}");
+        assert!((place.density - 3.0).abs() < 1e-10, "{place:?}");
+    }
+
+    #[test]
+    fn position_converges_with_order_two_and_height_with_order_three() {
+        // p = cos(2(x - 0.21)) + 0.3 (x - 0.21)³ has its peak at 0.21, height 1, and no symmetry there.
+        let primitive = |x: f64| {
+            let u = x - 0.21;
+            0.5 * (2.0 * u).sin() + 0.075 * u.powi(4)
+        };
+        for count in [20, 40, 80, 160] {
+            let axis = Axis::uniform(-1.0, 1.0, count).unwrap();
+            let h = 2.0 / count as f64;
+            let estimated = averages(&axis, primitive);
+            let place = refine(&estimated, axis.find(0.21).unwrap(), FeatureKind::Peak);
+            // Taylor: the position is off by |p'''| h²/(8|p''|) or so (0.06 h²) plus |p''''| h² × offset.
+            assert!(
+                (place.position[0] - 0.21).abs() < 0.3 * h * h,
+                "{count}: {place:?}"
+            );
+            assert!(
+                (place.density - 1.0).abs() < 0.5 * h.powi(3),
+                "{count}: {place:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_quadratic_saddle_peak_and_crater_are_found_exactly_in_two_dimensions() {
+        let axes = vec![graded(14), Axis::uniform(-2.0, 2.0, 11).unwrap()];
+        // Averages of c + s₁ (x - 0.2)² + s₂ (y - 0.3)² + m (x - 0.2)(y - 0.3).
+        let values = |signs: (f64, f64), mixed: f64| -> Vec<f64> {
+            let square = |axis: &Axis, i: usize, at: f64| {
+                (axis.centre(i) - at).powi(2) + axis.width(i).powi(2) / 12.0
+            };
+            let value = |cell: usize| {
+                let (i, j) = (cell / 11, cell % 11);
+                let product = (axes[0].centre(i) - 0.2) * (axes[1].centre(j) - 0.3);
+                5.0 + signs.0 * square(&axes[0], i, 0.2)
+                    + signs.1 * square(&axes[1], j, 0.3)
+                    + mixed * product
+            };
+            (0..14 * 11).map(value).collect()
+        };
+        let cell = axes[0].find(0.2).unwrap() * 11 + axes[1].find(0.3).unwrap();
+        for (signs, kind) in [
+            ((-1.0, -0.5), FeatureKind::Peak),
+            ((1.0, 0.5), FeatureKind::Crater),
+            ((-1.0, 0.5), FeatureKind::Valley),
+        ] {
+            let place = refine(&exact(axes.clone(), values(signs, 0.4)), cell, kind);
+            assert!((place.position[0] - 0.2).abs() < 1e-9, "{kind:?} {place:?}");
+            assert!((place.position[1] - 0.3).abs() < 1e-9, "{kind:?} {place:?}");
+            assert!((place.density - 5.0).abs() < 1e-9, "{kind:?} {place:?}");
+        }
+    }
+
+    #[test]
+    fn ends_plateaus_and_wrong_curvature_stay_in_the_neighbourhood() {
+        let axis = Axis::uniform(0.0, 1.0, 10).unwrap();
+        // Falls from the end: the parabola's vertex lies outside, the end itself is the place.
+        let falling = averages(&axis, |x| x - (x + 0.5).powi(3) / 6.0);
+        let place = refine(&falling, 0, FeatureKind::Peak);
+        assert_eq!(place.position, vec![0.0]);
+        assert!((place.density - (1.0 - 0.125)).abs() < 1e-12);
+        // Convex from the end: no vertex.
+        let convex = averages(&axis, |x| -(-3.0 * x).exp());
+        let place = refine(&convex, 0, FeatureKind::Peak);
+        assert_eq!(
+            (place.position[0], place.density),
+            (axis.centre(0), convex.density.values[0])
+        );
+        // Two equal highest cells: the face between them.
+        let mut values = vec![0.0; 10];
+        values[4..6].fill(1.0);
+        let pair = exact(vec![axis], values);
+        for cell in [4, 5] {
+            let place = refine(&pair, cell, FeatureKind::Peak);
+            assert!((place.position[0] - 0.5).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn noise_widens_the_window_and_steadies_the_position() {
+        let axis = Axis::uniform(-2.0, 2.0, 100).unwrap();
+        let noise = |cell: usize| 0.01 * ((cell * 7919 % 101) as f64 / 50.0 - 1.0);
+        let mut estimated = averages(&axis, |x| x - x.powi(3) / 6.0);
+        for cell in 0..100 {
+            estimated.density.values[cell] += noise(cell);
+        }
+        let values = &estimated.density.values;
+        let highest = (0..100)
+            .max_by(|&a, &b| values[a].total_cmp(&values[b]))
+            .unwrap();
+        estimated.standard_error = vec![0.006; 100];
+        let place = refine(&estimated, highest, FeatureKind::Peak);
+        let cell_wise = axis.centre(highest).abs();
+        assert!(
+            place.position[0].abs() < 0.03 && place.position[0].abs() < cell_wise,
+            "{place:?}"
+        );
+    }
+}

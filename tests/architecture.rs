@@ -1,0 +1,168 @@
+//! Holds the direction of dependencies between modules: reads the `use crate::` lines and paths of every source
+//! file and checks that each module uses only those that stand before it.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// The modules that each module may use. The order is the one of the table in `src/lib.rs`.
+const ALLOWED: &[(&str, &[&str])] = &[
+    ("system", &[]),
+    ("space", &[]),
+    ("sampling", &["system", "space"]),
+    ("stationary", &["space", "sampling"]),
+    ("density", &["space"]),
+    ("topology", &["space", "density"]),
+    ("continuation", &["system", "space", "density", "topology"]),
+    (
+        "method",
+        &[
+            "system",
+            "space",
+            "sampling",
+            "stationary",
+            "density",
+            "continuation",
+        ],
+    ),
+    (
+        "run",
+        &["system", "space", "density", "topology", "continuation"],
+    ),
+    (
+        "figure",
+        &["system", "space", "density", "topology", "continuation"],
+    ),
+    (
+        "cli",
+        &[
+            "system",
+            "space",
+            "sampling",
+            "stationary",
+            "density",
+            "topology",
+            "continuation",
+            "method",
+            "run",
+            "figure",
+        ],
+    ),
+];
+
+fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            sources(&path, found);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+/// The part of a file before its unit tests, without comments: tests may use anything.
+fn code(text: &str) -> String {
+    let body = text.split("#[cfg(test)]\nmod tests {").next().unwrap();
+    body.lines()
+        .filter(|line| !line.trim_start().starts_with("//"))
+        .collect::<Vec<_>>()
+        .join("\n")
+}
+
+/// Names that follow `crate::`, those in braces (`use crate::{a, b}`) included.
+fn used(code: &str) -> Vec<String> {
+    let name = |text: &str| -> String {
+        text.chars()
+            .take_while(|c| c.is_alphanumeric() || *c == '_')
+            .collect()
+    };
+    let mut names = Vec::new();
+    for rest in code.split("crate::").skip(1) {
+        if let Some(list) = rest.strip_prefix('{') {
+            let list = list.split(';').next().unwrap_or_default();
+            let mut depth = 0;
+            let mut start = true;
+            for (index, c) in list.char_indices() {
+                if depth == 0 && start && c.is_alphabetic() {
+                    names.push(name(&list[index..]));
+                    start = false;
+                }
+                match c {
+                    '{' => depth += 1,
+                    '}' => depth -= 1,
+                    ',' if depth == 0 => start = true,
+                    _ => {}
+                }
+            }
+        } else {
+            names.push(name(rest));
+        }
+    }
+    names
+}
+
+/// Modules used by each module, each with a file that uses it.
+fn dependencies() -> BTreeMap<String, BTreeMap<String, PathBuf>> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = Vec::new();
+    sources(&root, &mut files);
+    let mut map: BTreeMap<String, BTreeMap<String, PathBuf>> = BTreeMap::new();
+    for file in files {
+        let relative = file.strip_prefix(&root).unwrap().to_owned();
+        let mut parts = relative.components();
+        let module = parts
+            .next()
+            .unwrap()
+            .as_os_str()
+            .to_string_lossy()
+            .into_owned();
+        let is_test = relative.file_stem().is_some_and(|stem| {
+            let stem = stem.to_string_lossy();
+            stem == "tests" || stem == "contract"
+        });
+        if parts.next().is_none() || is_test {
+            continue;
+        }
+        let uses = map.entry(module).or_default();
+        for name in used(&code(&std::fs::read_to_string(&file).unwrap())) {
+            uses.entry(name).or_insert_with(|| relative.clone());
+        }
+    }
+    map
+}
+
+#[test]
+fn modules_use_only_those_before_them() {
+    let found = dependencies();
+    let mut wrong = Vec::new();
+    for (module, uses) in &found {
+        let allowed = ALLOWED.iter().find(|(name, _)| name == module);
+        let (_, allowed) = allowed.unwrap_or_else(|| panic!("no rule for module `{module}`"));
+        for (name, file) in uses {
+            let is_module = found.contains_key(name);
+            if is_module && name != module && !allowed.contains(&name.as_str()) {
+                wrong.push(format!("{module} uses {name} (in {})", file.display()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn the_rule_has_no_cycle_and_the_reader_sees_dependencies() {
+    for (index, (module, allowed)) in ALLOWED.iter().enumerate() {
+        for name in *allowed {
+            let place = ALLOWED.iter().position(|(other, _)| other == name).unwrap();
+            assert!(
+                place < index,
+                "{module} may use {name}, which stands after it"
+            );
+        }
+    }
+    // The reader must see the forms in which dependencies are written.
+    let text = "use crate::{space::{Axis, CellSpace}, density};\nlet a = crate::run::x;\nuse crate::system::System;";
+    assert_eq!(used(text), ["space", "density", "run", "system"]);
+    assert!(dependencies()["continuation"].contains_key("density"));
+}
