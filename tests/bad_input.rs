@@ -89,66 +89,22 @@ fn syntax() {
 }
 
 #[test]
+#[rustfmt::skip]
 fn unknown_names_come_with_the_nearest() {
-    assert_refused(
-        "sigma2 = 0.01",
-        "sigma2 = 0.01\n[sweeep]",
-        &[
-            "unknown key `sweeep`",
-            "a.toml:7:2",
-            "did you mean `sweep`?",
-        ],
-    );
-    assert_refused(
-        "points = 3",
-        "points = 3\nstep = 0.1",
-        &[
-            "unknown key `sweep.step`",
-            "a.toml:12:1",
-            "`parameter`, `from`, `to`, `points`",
-        ],
-    );
-    assert_refused(
-        "points = 3",
-        "points = 3\nsamples = 10",
-        &[
-            "unknown key `sweep.samples`",
-            "did you mean `method.samples`?",
-        ],
-    );
-    assert_refused(
-        "model = \"coulomb\"",
-        "model = \"coulom\"",
-        &[
-            "`system.model` cannot be `coulom`",
-            "a.toml:3:9",
-            "`dahl`",
-            "did you mean `coulomb`?",
-        ],
-    );
-    assert_refused(
-        "kappa = 0.01",
-        "kappa = 0.01\nalhpa = 1.0",
-        &[
-            "has no parameter `alhpa`",
-            "a.toml:6:1",
-            "did you mean `alpha`?",
-        ],
-    );
-    assert_refused(
-        "parameter = \"f_c\"",
-        "parameter = \"fc\"",
-        &[
-            "has no parameter `fc`",
-            "a.toml:8:13",
-            "did you mean `f_c`?",
-        ],
-    );
-    assert_refused(
-        "y = { from = -5, to = 5, count = 10 }",
-        "y = { from = -5, to = 5, count = 10 }\nz = { count = 4 }",
-        &["has no axis `z`", "a.toml:15:1", "allowed: `x`, `y`"],
-    );
+    assert_refused("sigma2 = 0.01", "sigma2 = 0.01\n[sweeep]",
+        &["unknown key `sweeep`", "a.toml:7:2", "did you mean `sweep`?"]);
+    assert_refused("points = 3", "points = 3\nstep = 0.1",
+        &["unknown key `sweep.step`", "a.toml:12:1", "`parameter`, `from`, `to`, `points`"]);
+    assert_refused("points = 3", "points = 3\nsamples = 10",
+        &["unknown key `sweep.samples`", "did you mean `method.samples`?"]);
+    assert_refused("model = \"coulomb\"", "model = \"coulom\"",
+        &["`system.model` cannot be `coulom`", "a.toml:3:9", "`dahl`", "did you mean `coulomb`?"]);
+    assert_refused("kappa = 0.01", "kappa = 0.01\nalhpa = 1.0",
+        &["has no parameter `alhpa`", "a.toml:6:1", "did you mean `alpha`?"]);
+    assert_refused("parameter = \"f_c\"", "parameter = \"fc\"",
+        &["has no parameter `fc`", "a.toml:8:13", "did you mean `f_c`?"]);
+    assert_refused("y = { from = -5, to = 5, count = 10 }", "y = { from = -5, to = 5, count = 10 }\nz = { count = 4 }",
+        &["has no axis `z`", "a.toml:15:1", "allowed: `x`, `y`"]);
 }
 
 #[test]
@@ -187,6 +143,7 @@ fn missing_keys() {
 
 #[test]
 fn wrong_kinds_and_ranges() {
+    #[rustfmt::skip]
     let cases = [
         ("points = 3", "points = 3.5", "an integer from 2 to"),
         ("points = 3", "points = \"3\"", "this is a string"),
@@ -195,67 +152,19 @@ fn wrong_kinds_and_ranges() {
         ("kappa = 0.01", "kappa = inf", "a finite number"),
         ("kappa = 0.01", "kappa = true", "this is a boolean"),
         ("from = -0.02", "from = -inf", "a finite number"),
-        (
-            "sigma2 = 0.01",
-            "sigma2 = 0",
-            "a finite number greater than zero",
-        ),
-        (
-            "sigma2 = 0.01",
-            "sigma2 = -1.0",
-            "`sigma2` of model `coulomb` cannot be -1",
-        ),
+        ("sigma2 = 0.01", "sigma2 = 0", "a finite number greater than zero"),
+        ("sigma2 = 0.01", "sigma2 = -1.0", "`sigma2` of model `coulomb` cannot be -1"),
         ("to = 0.01", "to = -0.02", "the same as `sweep.from`"),
-        (
-            "x = { from = -5, to = 5, count = 10 }",
-            "x = { from = -5, to = 5, count = 1 }",
-            "`cells.x.count` cannot be `1`",
-        ),
-        (
-            "x = { from = -5, to = 5, count = 10 }",
-            "x = { from = 5, to = -5, count = 10 }",
-            "empty or reversed",
-        ),
-        (
-            "x = { from = -5, to = 5, count = 10 }",
-            "x = { from = 5, to = 5, count = 10 }",
-            "empty or reversed",
-        ),
-        (
-            "x = { from = -5, to = 5, count = 10 }",
-            "x = 10",
-            "`cells.x` must be a table",
-        ),
-        (
-            "[cells]",
-            "[method]\nkind = \"generator\"\n[cells]",
-            "not available in this version",
-        ),
-        (
-            "[cells]",
-            "[method]\nmap_step = \"atuo\"\n[cells]",
-            "did you mean `\"auto\"`?",
-        ),
-        (
-            "[cells]",
-            "[method]\nmap_step = -1\n[cells]",
-            "greater than zero",
-        ),
-        (
-            "[cells]",
-            "[method]\nseed = -1\n[cells]",
-            "an integer, 0 or more",
-        ),
-        (
-            "[cells]",
-            "[detect]\nconfidence = 1.0\n[cells]",
-            "between 0 and 1",
-        ),
-        (
-            "[cells]",
-            "[figures]\nformats = [\"svgg\"]\n[cells]",
-            "did you mean `svg`?",
-        ),
+        ("x = { from = -5, to = 5, count = 10 }", "x = { from = -5, to = 5, count = 1 }", "`cells.x.count` cannot be `1`"),
+        ("x = { from = -5, to = 5, count = 10 }", "x = { from = 5, to = -5, count = 10 }", "empty or reversed"),
+        ("x = { from = -5, to = 5, count = 10 }", "x = { from = 5, to = 5, count = 10 }", "empty or reversed"),
+        ("x = { from = -5, to = 5, count = 10 }", "x = 10", "`cells.x` must be a table"),
+        ("[cells]", "[method]\nkind = \"generator\"\n[cells]", "not available in this version"),
+        ("[cells]", "[method]\nmap_step = \"atuo\"\n[cells]", "did you mean `\"auto\"`?"),
+        ("[cells]", "[method]\nmap_step = -1\n[cells]", "greater than zero"),
+        ("[cells]", "[method]\nseed = -1\n[cells]", "an integer, 0 or more"),
+        ("[cells]", "[detect]\nconfidence = 1.0\n[cells]", "between 0 and 1"),
+        ("[cells]", "[figures]\nformats = [\"svgg\"]\n[cells]", "did you mean `svg`?"),
     ];
     for (old, new, words) in cases {
         assert_refused(old, new, &[words, "a.toml:"]);
