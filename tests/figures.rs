@@ -308,7 +308,10 @@ fn a_bistable_sweep_gives_its_diagram_and_marginals() {
             "peak",
         ],
     );
-    assert_shows(&svg, &["valley", "no steady state", "unresolved"]);
+    assert_shows(
+        &svg,
+        &["valley", "no steady state", "P-bifurcation, unresolved"],
+    );
     assert_eq!(svg.matches("<image").count(), 2);
     let svg = std::fs::read_to_string(&files[2]).unwrap();
     assert_shows(&svg, &["a = −0.5", "a = 1", "p(x)"]);

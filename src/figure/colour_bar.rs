@@ -38,7 +38,7 @@ impl ColourBar {
 
     /// Room it takes above the map.
     pub(super) fn above() -> f64 {
-        1.6 * TEXT
+        2.0 * TEXT
     }
 
     /// Draws it right of `map`, with marks at some shares (0 to 1) of the largest value.
@@ -66,7 +66,7 @@ impl ColourBar {
         }
         frame::border(page, bar)?;
         self.scale.draw_right(page, bar)?;
-        let above = (bar.left, bar.top - 0.85 * TEXT);
+        let above = (bar.left, bar.top - 1.15 * TEXT);
         page.text(above, lettering(self.scale.title(), HPos::Left))
     }
 }

@@ -1,33 +1,24 @@
 //! The P-bifurcation diagram of a marginal: its density over the parameter as a heat map, the branches of
 //! its peaks and valleys, and the labelled bifurcations.
 
-use plotters_backend::BackendColor;
-use plotters_backend::text_anchor::HPos;
-
-use crate::continuation::{BifurcationStatus, LabelledPoint, Point, PointType, SweepResult};
+use crate::continuation::{Point, SweepResult};
 use crate::density::{Density, Observable};
 use crate::space::Axis;
 use crate::topology::FeatureKind;
 
+use super::bifurcations::Labels;
 use super::branches::{Branch, branches};
 use super::colour_bar::ColourBar;
 use super::frame::{self, Scale};
 use super::heat::{self, Picture};
 use super::legend::{self, Legend, Sample};
-use super::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
+use super::page::{Heading, Page, Panel, Rectangle, Shape};
 use super::select::{self, Names};
-use super::style::{BIFURCATION, GREY, MARGIN, PNG_SCALE, Stroke, TICK_TEXT, WHITE};
-use super::{Figure, FigureError, hatch, render};
+use super::style::{MARGIN, PNG_SCALE};
+use super::{Figure, FigureError, hatch};
 
 /// Size of the map, in pixels.
 const MAP: (f64, f64) = (380.0, 250.0);
-/// Height of a row of labels above the map.
-const LABEL_ROW: f64 = 16.0;
-/// Shade of the band in which an unresolved bifurcation lies.
-const BAND: BackendColor = BackendColor {
-    alpha: 0.45,
-    rgb: (255, 255, 255),
-};
 
 /// The diagram of the marginal with the given number among the observables; `None` without any density.
 ///
@@ -57,7 +48,7 @@ pub(super) fn diagram(
     let width = MARGIN + up.left() + MAP.0 + bar.width() + MARGIN;
     let heading = Heading::new(title, width)?;
     let left = MARGIN + up.left();
-    let labels = Labels::new(result, watched, range, left)?;
+    let labels = Labels::new(result, watched, range, (left, MAP.0))?;
     let map = Rectangle {
         left,
         top: heading.height() + labels.height().max(ColourBar::above()),
@@ -184,170 +175,17 @@ fn entries(
     followed: &[Vec<Branch>; 2],
     labels: &Labels<'_>,
 ) -> Vec<(Sample, String)> {
-    let missing = result
-        .points
-        .iter()
-        .any(|point| select::density(point, observable).is_none());
-    let located = Stroke::solid(BIFURCATION, 1.6);
-    let own = |status| {
-        labels
-            .placed
-            .iter()
-            .any(|label| label.own && label.point.status == Some(status))
+    let mut entries = Vec::new();
+    let mut add = |shown: bool, sample: Sample, text: &str| {
+        if shown {
+            entries.push((sample, text.to_owned()));
+        }
     };
-    let all = [
-        (!followed[0].is_empty(), Sample::Peaks, "peak"),
-        (!followed[1].is_empty(), Sample::Valleys, "valley"),
-        (
-            own(BifurcationStatus::Located),
-            Sample::Curve(located),
-            "P-bifurcation",
-        ),
-        (
-            own(BifurcationStatus::Unresolved),
-            Sample::Curve(unresolved()),
-            "unresolved",
-        ),
-        (
-            own(BifurcationStatus::Unconfirmed),
-            Sample::Curve(unconfirmed()),
-            "unconfirmed",
-        ),
-        (missing, Sample::Hatched, "no steady state"),
-    ];
-    let shown = all.into_iter().filter(|(shown, _, _)| *shown);
-    shown
-        .map(|(_, sample, text)| (sample, text.to_owned()))
-        .collect()
-}
-
-fn unresolved() -> Stroke {
-    Stroke {
-        dash: &[6.0, 3.0],
-        ..Stroke::solid(BIFURCATION, 1.6)
-    }
-}
-
-fn unconfirmed() -> Stroke {
-    Stroke {
-        dash: &[2.0, 3.0],
-        ..Stroke::solid(BIFURCATION, 1.6)
-    }
-}
-
-/// A bifurcation's label with its place above the map.
-struct Placed<'a> {
-    point: &'a LabelledPoint,
-    own: bool,
-    /// Pixels from the left of the page to the middle of the text.
-    middle: f64,
-    /// Row, the lowest being 0.
-    row: usize,
-}
-
-/// The bifurcations of a sweep, those of the diagram's own observable and the others.
-struct Labels<'a> {
-    placed: Vec<Placed<'a>>,
-    rows: usize,
-}
-
-impl<'a> Labels<'a> {
-    /// Places labels in as few rows as keep them apart, the diagram's own ones lowest.
-    fn new(
-        result: &'a SweepResult,
-        watched: Observable,
-        range: (f64, f64),
-        left: f64,
-    ) -> Result<Self, FigureError> {
-        let inside = |point: &&LabelledPoint| {
-            point.kind == PointType::Bifurcation && point.value >= range.0 && point.value <= range.1
-        };
-        let mut points: Vec<&LabelledPoint> = result.labels.iter().filter(inside).collect();
-        points.sort_by_key(|point| point.observable != Some(watched));
-        let mut placed = Vec::new();
-        let mut rows: Vec<Vec<(f64, f64)>> = Vec::new();
-        for point in points {
-            let own = point.observable == Some(watched);
-            let half = 0.5 * render::text_width(&point.label, TICK_TEXT, own)?;
-            let share = (point.value - range.0) / (range.1 - range.0);
-            let middle = (left + share * MAP.0).clamp(left + half, left + MAP.0 - half);
-            let (from, to) = (middle - half - 3.0, middle + half + 3.0);
-            let free =
-                |row: &Vec<(f64, f64)>| row.iter().all(|taken| to <= taken.0 || from >= taken.1);
-            let row = rows.iter().position(free).unwrap_or(rows.len());
-            if row == rows.len() {
-                rows.push(Vec::new());
-            }
-            rows[row].push((from, to));
-            placed.push(Placed {
-                point,
-                own,
-                middle,
-                row,
-            });
-        }
-        Ok(Self {
-            placed,
-            rows: rows.len(),
-        })
-    }
-
-    /// Room above the map.
-    fn height(&self) -> f64 {
-        self.rows as f64 * LABEL_ROW + 4.0
-    }
-
-    /// Draws bands and lines over the map: strongly for the own observable, faintly for others.
-    fn draw_lines(&self, panel: &Panel, (from, to): (f64, f64)) -> Result<(), FigureError> {
-        for label in self.placed.iter().rev() {
-            let point = label.point;
-            let line = [(point.value, from), (point.value, to)];
-            if !label.own {
-                let faint = Stroke {
-                    colour: BackendColor {
-                        alpha: 0.7,
-                        ..WHITE
-                    },
-                    width: 0.9,
-                    dash: &[1.5, 3.0],
-                };
-                panel.draw(&line, Shape::Line(faint))?;
-                continue;
-            }
-            let stroke = match point.status {
-                Some(BifurcationStatus::Unresolved) => {
-                    let (a, b) = (point.lower, point.upper);
-                    panel.draw(&[(a, from), (b, from), (b, to), (a, to)], Shape::Area(BAND))?;
-                    unresolved()
-                }
-                Some(BifurcationStatus::Unconfirmed) => unconfirmed(),
-                _ => Stroke::solid(BIFURCATION, 1.6),
-            };
-            panel.draw(&line, Shape::Line(Stroke::solid(WHITE, 3.2)))?;
-            panel.draw(&line, Shape::Line(stroke))?;
-        }
-        Ok(())
-    }
-
-    /// Writes the labels above the map, with leaders to the higher rows.
-    fn draw_texts(&self, page: &Page, map: Rectangle) -> Result<(), FigureError> {
-        for label in &self.placed {
-            let colour = if label.own { BIFURCATION } else { GREY };
-            let y = map.top - 4.0 - (label.row as f64 + 0.5) * LABEL_ROW;
-            if label.row > 0 {
-                let leader = Stroke::solid(GREY, 0.6);
-                let x = label.middle;
-                page.draw(
-                    &[(x, map.top), (x, y + 0.5 * LABEL_ROW)],
-                    Shape::Line(leader),
-                )?;
-            }
-            let mut text = lettering(super::symbols::plain(&label.point.label), HPos::Center);
-            text.size = TICK_TEXT;
-            text.colour = colour;
-            text.bold = label.own;
-            page.text((label.middle, y), text)?;
-        }
-        Ok(())
-    }
+    add(!followed[0].is_empty(), Sample::Peaks, "peak");
+    add(!followed[1].is_empty(), Sample::Valleys, "valley");
+    let missing = |point: &Point| select::density(point, observable).is_none();
+    let blank = result.points.iter().any(missing);
+    add(blank, Sample::Hatched, "no steady state");
+    entries.extend(labels.entries());
+    entries
 }

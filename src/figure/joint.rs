@@ -188,16 +188,16 @@ pub(super) fn sheet(
             width: SMALL,
             height: SMALL,
         };
-        let scale = if common { largest } else { *own };
-        draw_map(&page, map, found, (x, y), scale)?;
-        let letter = char::from(b'a' + (number % 26) as u8);
-        let text = format!("({letter})  {}", names.at(found.value));
-        page.text(
-            (map.left, map.top - 0.75 * TEXT),
-            lettering(text, HPos::Left),
+        draw_map(
+            &page,
+            map,
+            found,
+            (x, y),
+            if common { largest } else { *own },
         )?;
+        draw_letter(&page, map, number, &names.at(found.value))?;
         // A map with none below it carries the labels of its column.
-        across.draw_below(&page, map, number + columns >= chosen.len())?;
+        across.draw_below(&page, map, number + columns >= each.len())?;
         up.draw_left(&page, map, column == 0)?;
     }
     let marks: &[f64] = if common { &[] } else { &LEVELS };
@@ -207,6 +207,13 @@ pub(super) fn sheet(
         name: format!("joint_{}", names.file(watched)),
         svg: page.svg(),
     }))
+}
+
+/// Writes `(a)` and the parameter's value above a map of a sheet.
+fn draw_letter(page: &Page, map: Rectangle, number: usize, at: &str) -> Result<(), FigureError> {
+    let letter = char::from(b'a' + (number % 26) as u8);
+    let place = (map.left, map.top - 0.75 * TEXT);
+    page.text(place, lettering(format!("({letter})  {at}"), HPos::Left))
 }
 
 /// Legend of the marks that are drawn.

@@ -6,6 +6,7 @@
 //! and one call in [`draw_all`].
 
 mod backend;
+mod bifurcations;
 mod branches;
 mod colour_bar;
 mod contour;

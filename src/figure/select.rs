@@ -34,6 +34,7 @@ impl<'a> Names<'a> {
         let mut parameters = self.model.parameters.iter();
         match parameters.find(|parameter| parameter.name == self.parameter) {
             Some(parameter) => symbols::variable(parameter.symbol),
+            None if self.parameter.chars().count() == 1 => symbols::variable(self.parameter),
             None => symbols::plain(self.parameter),
         }
     }
