@@ -97,6 +97,8 @@ pub(super) fn branches(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::continuation::{PointStatus, SolveReport};
+    use crate::topology::{Detection, Signature};
 
     #[test]
     fn links_are_short_and_beyond_doubt() {
@@ -108,5 +110,70 @@ mod tests {
             "a symmetric split has no favourite"
         );
         assert_eq!(link(0.0, &[], 0.2), None);
+    }
+
+    /// A point with peaks at the given places; without a density for `None`.
+    fn point(value: f64, peaks: Option<&[f64]>) -> Point {
+        let feature = |&at: &f64| Feature {
+            kind: FeatureKind::Peak,
+            position: vec![at],
+            density: 1.0,
+            persistence: 1.0,
+            standard_error: 0.0,
+            significance: 9.0,
+            verdict: Verdict::Present,
+        };
+        let detection = |places: &[f64]| Detection {
+            signature: Signature {
+                peaks: places.len(),
+                craters: 0,
+            },
+            features: places.iter().map(feature).collect(),
+        };
+        Point {
+            value,
+            report: SolveReport {
+                status: PointStatus::Solved,
+                method: "exact",
+                iterations: 0,
+                residual: 0.0,
+                escape_rate: 0.0,
+                negative_mass: 0.0,
+                edge_mass: Vec::new(),
+                numerical_diffusion: Vec::new(),
+                map_step: None,
+                warnings: Vec::new(),
+            },
+            moments: Vec::new(),
+            densities: Vec::new(),
+            detections: peaks.into_iter().map(detection).collect(),
+            seconds: 0.0,
+        }
+    }
+
+    #[test]
+    fn branches_end_at_splits_jumps_and_gaps() {
+        let points = [
+            point(0.0, Some(&[0.0])),
+            point(1.0, None),
+            point(2.0, Some(&[0.01])),
+            point(3.0, Some(&[0.02])),
+            point(4.0, Some(&[-0.08, 0.12])),
+            point(5.0, Some(&[-0.10, 0.14, 0.9])),
+            point(6.0, Some(&[-0.12, 0.5])),
+        ];
+        let found = branches(&points, 0, FeatureKind::Peak, (-1.0, 1.0));
+        let mut lengths: Vec<Vec<(f64, f64)>> =
+            found.into_iter().map(|branch| branch.places).collect();
+        lengths.sort_by(|a, b| a[0].partial_cmp(&b[0]).unwrap());
+        let expected = [
+            vec![(0.0, 0.0)],
+            vec![(2.0, 0.01), (3.0, 0.02)],
+            vec![(4.0, -0.08), (5.0, -0.10), (6.0, -0.12)],
+            vec![(4.0, 0.12), (5.0, 0.14)],
+            vec![(5.0, 0.9)],
+            vec![(6.0, 0.5)],
+        ];
+        assert_eq!(lengths, expected);
     }
 }

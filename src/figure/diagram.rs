@@ -1,7 +1,7 @@
 //! The P-bifurcation diagram of a marginal: its density over the parameter as a heat map, the branches of
 //! its peaks and valleys, and the labelled bifurcations.
 
-use crate::continuation::{Point, SweepResult};
+use crate::continuation::{Point, PointStatus, SweepResult};
 use crate::density::{Density, Observable};
 use crate::space::Axis;
 use crate::topology::FeatureKind;
@@ -183,9 +183,15 @@ fn entries(
     };
     add(!followed[0].is_empty(), Sample::Peaks, "peak");
     add(!followed[1].is_empty(), Sample::Valleys, "valley");
-    let missing = |point: &Point| select::density(point, observable).is_none();
-    let blank = result.points.iter().any(missing);
-    add(blank, Sample::Hatched, "no steady state");
+    let missing = |point: &&Point| select::density(point, observable).is_none();
+    let blank = || result.points.iter().filter(missing);
+    let several = blank().any(|point| point.report.status == PointStatus::SeveralClasses);
+    let words = if several {
+        "no unique steady state"
+    } else {
+        "no steady state"
+    };
+    add(blank().next().is_some(), Sample::Hatched, words);
     entries.extend(labels.entries());
     entries
 }

@@ -69,6 +69,29 @@ fn windows(found: &[Found<'_>]) -> Option<((f64, f64), (f64, f64))> {
     ))
 }
 
+/// Opens a page with heading and legend, and room for maps of the given size that begins `left`
+/// pixels from the left; returns the rectangle of the maps.
+fn open_page(
+    found: &[Found<'_>],
+    title: &str,
+    (left, page_width): (f64, f64),
+    (width, height): (f64, f64),
+) -> Result<(Page, Rectangle), FigureError> {
+    let heading = Heading::new(title, page_width)?;
+    let legend = Legend::new(entries(found), page_width - 2.0 * MARGIN)?;
+    let maps = Rectangle {
+        left,
+        top: heading.height() + ColourBar::above(),
+        width,
+        height,
+    };
+    let below = maps.bottom() + Scale::below();
+    let page = Page::new(page_width, below + legend.height() + MARGIN);
+    heading.draw(&page)?;
+    legend.draw(&page, left + 0.5 * width, below)?;
+    Ok((page, maps))
+}
+
 /// One map at one point; `None` without a density.
 ///
 /// # Errors
@@ -93,34 +116,82 @@ pub(super) fn single(
     let across = Scale::horizontal(x, SINGLE, &names.axis(first))?;
     let up = Scale::vertical(y, SINGLE, &names.axis(second))?;
     let bar = ColourBar::new(largest, SINGLE, &names.density(watched))?;
-    let width = MARGIN + up.left() + SINGLE + bar.width() + MARGIN;
-    let heading = Heading::new(title, width)?;
-    let map = Rectangle {
-        left: MARGIN + up.left(),
-        top: heading.height() + ColourBar::above(),
-        width: SINGLE,
-        height: SINGLE,
-    };
-    let legend = Legend::new(entries(&found), width - 2.0 * MARGIN)?;
-    let below = map.bottom() + Scale::below();
-    let page = Page::new(width, below + legend.height() + MARGIN);
-    heading.draw(&page)?;
-    let at = (map.left, map.top - 0.85 * TEXT);
-    page.text(at, lettering(names.at(point.value), HPos::Left))?;
+    let left = MARGIN + up.left();
+    let width = left + SINGLE + bar.width() + MARGIN;
+    let (page, map) = open_page(&found, title, (left, width), (SINGLE, SINGLE))?;
+    write_above(&page, map, names.at(point.value))?;
     draw_map(&page, map, &found[0], (x, y), largest)?;
     across.draw_below(&page, map, true)?;
     up.draw_left(&page, map, true)?;
     bar.draw(&page, map, &LEVELS)?;
-    legend.draw(&page, map.left + 0.5 * map.width, below)?;
-    let value = symbols::rounded(point.value);
+    let value = select::safe(&symbols::rounded(point.value).to_string());
     Ok(Some(Figure {
-        name: format!(
-            "joint_{}_{}",
-            names.file(watched),
-            select::safe(&value.to_string())
-        ),
+        name: format!("joint_{}_{value}", names.file(watched)),
         svg: page.svg(),
     }))
+}
+
+/// How the maps of a sheet are arranged and coloured.
+struct Sheet {
+    columns: usize,
+    /// Distance between neighbouring maps, in pixels.
+    step: (f64, f64),
+    /// Size of all maps together, in pixels.
+    whole: (f64, f64),
+    /// The density at the upper end of the colours, one a map.
+    tops: Vec<f64>,
+    /// That density where all maps share it.
+    common: Option<f64>,
+}
+
+impl Sheet {
+    fn new(found: &[Found<'_>]) -> Self {
+        let columns = match found.len() {
+            2 | 4 => 2,
+            _ => 3,
+        };
+        let rows = found.len().div_ceil(columns);
+        let step = (SMALL + BETWEEN, SMALL + BETWEEN + 1.4 * TEXT);
+        let own: Vec<f64> = found
+            .iter()
+            .map(|found| select::largest([found.density()]))
+            .collect();
+        let largest = own.iter().copied().fold(0.0, f64::max);
+        let comparable = own.iter().all(|&own| own * COMPARABLE >= largest);
+        Self {
+            columns,
+            step,
+            whole: (
+                (columns - 1) as f64 * step.0 + SMALL,
+                (rows - 1) as f64 * step.1 + SMALL,
+            ),
+            tops: if comparable {
+                vec![largest; own.len()]
+            } else {
+                own
+            },
+            common: comparable.then_some(largest),
+        }
+    }
+
+    /// The rectangle of a map.
+    fn map(&self, all: Rectangle, number: usize) -> Rectangle {
+        let (row, column) = (number / self.columns, number % self.columns);
+        Rectangle {
+            left: all.left + column as f64 * self.step.0,
+            top: all.top + row as f64 * self.step.1,
+            width: SMALL,
+            height: SMALL,
+        }
+    }
+
+    /// The colour bar of all maps.
+    fn bar(&self, density: &str) -> Result<ColourBar, FigureError> {
+        match self.common {
+            Some(largest) => ColourBar::new(largest, self.whole.1, density),
+            None => ColourBar::new(1.0, self.whole.1, &format!("{density} / max")),
+        }
+    }
 }
 
 /// All maps of a pair on one sheet, with the same windows; `None` for fewer than two densities.
@@ -145,75 +216,34 @@ pub(super) fn sheet(
     if found.len() < 2 {
         return Ok(None);
     }
-    let columns = match found.len() {
-        2 | 4 => 2,
-        _ => 3,
-    };
-    let rows = found.len().div_ceil(columns);
-    let each: Vec<f64> = found
-        .iter()
-        .map(|found| select::largest([found.density()]))
-        .collect();
-    let largest = each.iter().copied().fold(0.0, f64::max);
-    let common = each.iter().all(|&own| own * COMPARABLE >= largest);
+    let sheet = Sheet::new(&found);
     let across = Scale::horizontal(x, SMALL, &names.axis(first))?;
     let up = Scale::vertical(y, SMALL, &names.axis(second))?;
-    let step = (SMALL + BETWEEN, SMALL + BETWEEN + 1.4 * TEXT);
-    let whole = (
-        columns as f64 * step.0 - BETWEEN,
-        rows as f64 * step.1 - step.1 + SMALL,
-    );
-    let density = names.density(watched);
-    let bar = match common {
-        true => ColourBar::new(largest, whole.1, &density)?,
-        false => ColourBar::new(1.0, whole.1, &format!("{density} / max"))?,
-    };
-    let width = MARGIN + up.left() + whole.0 + bar.width() + MARGIN;
-    let heading = Heading::new(title, width)?;
-    let all = Rectangle {
-        left: MARGIN + up.left(),
-        top: heading.height() + ColourBar::above(),
-        width: whole.0,
-        height: whole.1,
-    };
-    let legend = Legend::new(entries(&found), width - 2.0 * MARGIN)?;
-    let below = all.bottom() + Scale::below();
-    let page = Page::new(width, below + legend.height() + MARGIN);
-    heading.draw(&page)?;
-    for (number, (found, own)) in found.iter().zip(&each).enumerate() {
-        let (row, column) = (number / columns, number % columns);
-        let map = Rectangle {
-            left: all.left + column as f64 * step.0,
-            top: all.top + row as f64 * step.1,
-            width: SMALL,
-            height: SMALL,
-        };
-        draw_map(
-            &page,
-            map,
-            found,
-            (x, y),
-            if common { largest } else { *own },
-        )?;
-        draw_letter(&page, map, number, &names.at(found.value))?;
+    let bar = sheet.bar(&names.density(watched))?;
+    let left = MARGIN + up.left();
+    let width = left + sheet.whole.0 + bar.width() + MARGIN;
+    let (page, all) = open_page(&found, title, (left, width), sheet.whole)?;
+    for (number, (found, &top)) in found.iter().zip(&sheet.tops).enumerate() {
+        let map = sheet.map(all, number);
+        let letter = char::from(b'a' + (number % 26) as u8);
+        write_above(&page, map, format!("({letter})  {}", names.at(found.value)))?;
+        draw_map(&page, map, found, (x, y), top)?;
         // A map with none below it carries the labels of its column.
-        across.draw_below(&page, map, number + columns >= each.len())?;
-        up.draw_left(&page, map, column == 0)?;
+        across.draw_below(&page, map, number + sheet.columns >= sheet.tops.len())?;
+        up.draw_left(&page, map, number % sheet.columns == 0)?;
     }
-    let marks: &[f64] = if common { &[] } else { &LEVELS };
+    let marks: &[f64] = if sheet.common.is_some() { &[] } else { &LEVELS };
     bar.draw(&page, all, marks)?;
-    legend.draw(&page, all.left + 0.5 * all.width, below)?;
     Ok(Some(Figure {
         name: format!("joint_{}", names.file(watched)),
         svg: page.svg(),
     }))
 }
 
-/// Writes `(a)` and the parameter's value above a map of a sheet.
-fn draw_letter(page: &Page, map: Rectangle, number: usize, at: &str) -> Result<(), FigureError> {
-    let letter = char::from(b'a' + (number % 26) as u8);
+/// Writes a line above a map.
+fn write_above(page: &Page, map: Rectangle, markup: String) -> Result<(), FigureError> {
     let place = (map.left, map.top - 0.75 * TEXT);
-    page.text(place, lettering(format!("({letter})  {at}"), HPos::Left))
+    page.text(place, lettering(markup, HPos::Left))
 }
 
 /// Legend of the marks that are drawn.

@@ -198,7 +198,7 @@ mod tests {
         let (from, to) = window(&[&narrow], 0).unwrap();
         // exp(-8 x²) = 1e-3 at x = 0.929.
         assert!(
-            from <= -0.95 && from > -1.2 && to >= 0.95 && to < 1.2,
+            (0.95..1.2).contains(&-from) && (0.95..1.2).contains(&to),
             "{from} {to}"
         );
         assert!(narrow.axes[0].has_face_at(from) && narrow.axes[0].has_face_at(to));

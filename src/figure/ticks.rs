@@ -82,7 +82,7 @@ fn step(from: f64, to: f64, most: usize) -> (f64, i64) {
 /// Zero, unless plain decimals would be long.
 fn common_exponent(from: f64, to: f64, step: f64) -> i32 {
     let largest = from.abs().max(to.abs());
-    if largest >= 1e5 || largest < 1e-2 || (step < 1e-4 && largest < 0.1) {
+    if !(1e-2..1e5).contains(&largest) || (step < 1e-4 && largest < 0.1) {
         (largest * (1.0 + 1e-9)).log10().floor() as i32
     } else {
         0
