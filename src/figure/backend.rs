@@ -1,0 +1,348 @@
+//! The canvas: a drawing backend of plotters that writes SVG.
+//!
+//! plotters places everything on whole pixels, which makes curves stair-stepped. Here its pixel is 1/20 of
+//! a figure pixel, and the SVG's `viewBox` scales back.
+
+use std::cell::RefCell;
+use std::convert::Infallible;
+use std::rc::Rc;
+
+use base64::Engine;
+use plotters_backend::text_anchor::{HPos, VPos};
+use plotters_backend::{
+    BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingBackend, DrawingErrorKind,
+    FontTransform,
+};
+
+use super::style::{Stroke, UNITS};
+use super::symbols::{self, Script};
+
+/// Result of a drawing operation on a [`Canvas`].
+pub(super) type Drawn = Result<(), DrawingErrorKind<Infallible>>;
+
+/// Lettering: markup with size and place.
+#[derive(Clone)]
+pub(super) struct Lettering {
+    /// The text, as markup of [`symbols`].
+    pub(super) markup: String,
+    /// Height of the letters' body, in pixels.
+    pub(super) size: f64,
+    /// Colour.
+    pub(super) colour: BackendColor,
+    /// Which end stands at the given point.
+    pub(super) anchor: HPos,
+    /// Whether the text runs upward.
+    pub(super) upward: bool,
+    /// Whether it is bold.
+    pub(super) bold: bool,
+}
+
+/// A page that collects SVG elements. Clones share the page.
+#[derive(Debug, Clone)]
+pub(super) struct Canvas {
+    size: (u32, u32),
+    elements: Rc<RefCell<String>>,
+}
+
+/// `rgb` as a colour of SVG, with opacity where it is not one.
+fn paint(property: &str, colour: BackendColor) -> String {
+    let (r, g, b) = colour.rgb;
+    if colour.alpha < 1.0 {
+        return format!(
+            " {property}=\"#{r:02x}{g:02x}{b:02x}\" {property}-opacity=\"{}\"",
+            colour.alpha
+        );
+    }
+    format!(" {property}=\"#{r:02x}{g:02x}{b:02x}\"")
+}
+
+/// A length in canvas units, as written.
+fn units(pixels: f64) -> i64 {
+    (pixels * UNITS).round() as i64
+}
+
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+}
+
+fn points_attribute(points: &[BackendCoord]) -> String {
+    let pairs: Vec<String> = points.iter().map(|(x, y)| format!("{x},{y}")).collect();
+    format!(" points=\"{}\"", pairs.join(" "))
+}
+
+impl Canvas {
+    /// An empty page; size in figure pixels.
+    pub(super) fn new(width: f64, height: f64) -> Self {
+        Self {
+            size: (units(width).max(1) as u32, units(height).max(1) as u32),
+            elements: Rc::default(),
+        }
+    }
+
+    /// The page as an SVG document.
+    pub(super) fn document(&self) -> String {
+        let (width, height) = self.size;
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" \
+             viewBox=\"0 0 {width} {height}\" font-family=\"'DejaVu Sans', Verdana, sans-serif\" \
+             xml:space=\"preserve\">\n<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{}</svg>\n",
+            f64::from(width) / UNITS,
+            f64::from(height) / UNITS,
+            self.elements.borrow()
+        )
+    }
+
+    fn push(&self, element: &str) {
+        let mut elements = self.elements.borrow_mut();
+        elements.push_str(element);
+        elements.push('\n');
+    }
+
+    /// A polyline.
+    pub(super) fn line(&self, points: &[BackendCoord], stroke: &Stroke) {
+        let dash: Vec<String> = stroke
+            .dash
+            .iter()
+            .map(|&part| units(part).to_string())
+            .collect();
+        let dash = match dash.is_empty() {
+            true => String::new(),
+            false => format!(" stroke-dasharray=\"{}\"", dash.join(" ")),
+        };
+        self.push(&format!(
+            "<polyline{} fill=\"none\"{} stroke-width=\"{}\" stroke-linejoin=\"round\"{dash}/>",
+            points_attribute(points),
+            paint("stroke", stroke.colour),
+            units(stroke.width)
+        ));
+    }
+
+    /// A filled polygon.
+    pub(super) fn area(&self, points: &[BackendCoord], fill: BackendColor) {
+        let points = points_attribute(points);
+        self.push(&format!("<polygon{points}{}/>", paint("fill", fill)));
+    }
+
+    /// A disc with a rim; radius and rim in pixels.
+    pub(super) fn dot(&self, (x, y): BackendCoord, radius: f64, fill: BackendColor, rim: &Stroke) {
+        self.push(&format!(
+            "<circle cx=\"{x}\" cy=\"{y}\" r=\"{}\"{}{} stroke-width=\"{}\"/>",
+            units(radius),
+            paint("fill", fill),
+            paint("stroke", rim.colour),
+            units(rim.width)
+        ));
+    }
+
+    /// A PNG stretched over the rectangle between two corners, its pixels kept as crisp cells.
+    pub(super) fn image(&self, one: BackendCoord, other: BackendCoord, png: &[u8]) {
+        let data = base64::engine::general_purpose::STANDARD.encode(png);
+        self.push(&format!(
+            "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" \
+             style=\"image-rendering:pixelated\" href=\"data:image/png;base64,{data}\"/>",
+            one.0.min(other.0),
+            one.1.min(other.1),
+            one.0.abs_diff(other.0),
+            one.1.abs_diff(other.1),
+        ));
+    }
+
+    /// Lettering that is centred on the point across its direction.
+    pub(super) fn text(&self, (x, y): BackendCoord, text: &Lettering) {
+        let size = text.size * UNITS;
+        // Half the height of DejaVu's capitals and digits (0.729 em) below the middle lies the base line.
+        let below = (0.365 * size).round() as i32;
+        let anchor = match text.anchor {
+            HPos::Left => "start",
+            HPos::Center => "middle",
+            HPos::Right => "end",
+        };
+        let turn = match text.upward {
+            true => format!(" transform=\"rotate(-90 {x} {y})\""),
+            false => String::new(),
+        };
+        let weight = if text.bold {
+            " font-weight=\"bold\""
+        } else {
+            ""
+        };
+        self.push(&format!(
+            "<text x=\"{x}\" y=\"{}\" font-size=\"{}\" text-anchor=\"{anchor}\"{weight}{}{turn}>{}</text>",
+            y + below,
+            units(text.size),
+            paint("fill", text.colour),
+            spans(&text.markup, size)
+        ));
+    }
+}
+
+/// Markup as `<tspan>`s. Raising is written as `dy`, which every program understands, unlike `baseline-shift`.
+fn spans(markup: &str, size: f64) -> String {
+    let mut written = String::new();
+    let mut shift = 0;
+    for run in symbols::runs(markup) {
+        let (wanted, small) = match run.script {
+            Script::Base => (0, false),
+            Script::Lower => ((0.22 * size) as i64, true),
+            Script::Upper => ((-0.36 * size) as i64, true),
+        };
+        let mut attributes = String::new();
+        if wanted != shift {
+            attributes.push_str(&format!(" dy=\"{}\"", wanted - shift));
+        }
+        if small {
+            attributes.push_str(&format!(" font-size=\"{}\"", (0.72 * size).round()));
+        }
+        if run.slanted {
+            attributes.push_str(" font-style=\"oblique\"");
+        }
+        shift = wanted;
+        let text = escape(&run.text);
+        if attributes.is_empty() {
+            written.push_str(&text);
+        } else {
+            written.push_str(&format!("<tspan{attributes}>{text}</tspan>"));
+        }
+    }
+    written
+}
+
+fn stroke_of<S: BackendStyle>(style: &S) -> Stroke {
+    Stroke::solid(style.color(), f64::from(style.stroke_width()) / UNITS)
+}
+
+impl DrawingBackend for Canvas {
+    type ErrorType = Infallible;
+
+    fn get_size(&self) -> (u32, u32) {
+        self.size
+    }
+
+    fn ensure_prepared(&mut self) -> Drawn {
+        Ok(())
+    }
+
+    fn present(&mut self) -> Drawn {
+        Ok(())
+    }
+
+    fn draw_pixel(&mut self, (x, y): BackendCoord, colour: BackendColor) -> Drawn {
+        self.area(&[(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)], colour);
+        Ok(())
+    }
+
+    fn draw_line<S: BackendStyle>(
+        &mut self,
+        from: BackendCoord,
+        to: BackendCoord,
+        style: &S,
+    ) -> Drawn {
+        self.line(&[from, to], &stroke_of(style));
+        Ok(())
+    }
+
+    fn draw_rect<S: BackendStyle>(
+        &mut self,
+        (left, top): BackendCoord,
+        (right, bottom): BackendCoord,
+        style: &S,
+        fill: bool,
+    ) -> Drawn {
+        let corners = [
+            (left, top),
+            (right, top),
+            (right, bottom),
+            (left, bottom),
+            (left, top),
+        ];
+        match fill {
+            true => self.area(&corners[..4], style.color()),
+            false => self.line(&corners, &stroke_of(style)),
+        }
+        Ok(())
+    }
+
+    fn draw_path<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(
+        &mut self,
+        path: I,
+        style: &S,
+    ) -> Drawn {
+        let points: Vec<BackendCoord> = path.into_iter().collect();
+        self.line(&points, &stroke_of(style));
+        Ok(())
+    }
+
+    fn draw_circle<S: BackendStyle>(
+        &mut self,
+        center: BackendCoord,
+        radius: u32,
+        style: &S,
+        fill: bool,
+    ) -> Drawn {
+        let inside = if fill {
+            style.color()
+        } else {
+            style.color().mix(0.0)
+        };
+        self.dot(center, f64::from(radius) / UNITS, inside, &stroke_of(style));
+        Ok(())
+    }
+
+    fn fill_polygon<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(
+        &mut self,
+        vert: I,
+        style: &S,
+    ) -> Drawn {
+        let points: Vec<BackendCoord> = vert.into_iter().collect();
+        self.area(&points, style.color());
+        Ok(())
+    }
+
+    fn draw_text<T: BackendTextStyle>(&mut self, text: &str, style: &T, at: BackendCoord) -> Drawn {
+        let size = style.size() / UNITS;
+        let half = (0.5 * style.size()) as i32;
+        let down = match style.anchor().v_pos {
+            VPos::Top => half,
+            VPos::Center => 0,
+            VPos::Bottom => -half,
+        };
+        let lettering = Lettering {
+            markup: text.to_owned(),
+            size,
+            colour: style.color(),
+            anchor: style.anchor().h_pos,
+            upward: matches!(style.transform(), FontTransform::Rotate270),
+            bold: false,
+        };
+        self.text((at.0, at.1 + down), &lettering);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lowered_text_returns_to_the_line() {
+        let spans = spans("$f_{c}$ < 1", 280.0);
+        let expected = "<tspan font-style=\"oblique\">f</tspan><tspan dy=\"61\" font-size=\"202\">c</tspan>\
+                        <tspan dy=\"-61\"> &lt; 1</tspan>";
+        assert_eq!(spans, expected);
+    }
+
+    #[test]
+    fn stock_elements_of_plotters_draw_on_the_canvas() {
+        use plotters::prelude::*;
+        let canvas = Canvas::new(10.0, 5.0);
+        let root = canvas.clone().into_drawing_area();
+        root.draw(&PathElement::new(vec![(0, 0), (7, 3)], BLACK))
+            .unwrap();
+        root.draw(&Circle::new((5, 5), 3, RED.filled())).unwrap();
+        let document = canvas.document();
+        assert!(document.contains("viewBox=\"0 0 200 100\""));
+        assert!(document.contains("points=\"0,0 7,3\"") && document.contains("<circle cx=\"5\""));
+    }
+}

@@ -1,0 +1,189 @@
+//! Located and unresolved bifurcations over a diagram: lines, bands, and labels that do not overlap.
+
+use plotters_backend::BackendColor;
+use plotters_backend::text_anchor::HPos;
+
+use crate::continuation::{BifurcationStatus, LabelledPoint, PointType, SweepResult};
+use crate::density::Observable;
+
+use super::legend::Sample;
+use super::page::{Page, Panel, Rectangle, Shape, lettering};
+use super::style::{BIFURCATION, GREY, Stroke, TICK_TEXT, WHITE};
+use super::{FigureError, render, symbols};
+
+/// Height of a row of labels.
+const ROW: f64 = 16.0;
+/// Gap between the map and the lowest row.
+const GAP: f64 = 4.0;
+/// Shade of the band in which an unresolved bifurcation lies.
+const BAND: BackendColor = BackendColor {
+    alpha: 0.45,
+    rgb: (255, 255, 255),
+};
+
+/// The line of a bifurcation of the given status.
+fn stroke(status: BifurcationStatus) -> Stroke {
+    let dash: &'static [f64] = match status {
+        BifurcationStatus::Located => &[],
+        BifurcationStatus::Unresolved => &[6.0, 3.0],
+        BifurcationStatus::Unconfirmed => &[2.0, 3.0],
+    };
+    Stroke {
+        dash,
+        ..Stroke::solid(BIFURCATION, 1.6)
+    }
+}
+
+/// A bifurcation's label with its place above the map.
+struct Placed<'a> {
+    point: &'a LabelledPoint,
+    own: bool,
+    /// Pixels from the left of the page to the middle of the text.
+    middle: f64,
+    /// Half the width of the text, in pixels.
+    half: f64,
+    /// Row, the lowest being 0.
+    row: usize,
+}
+
+/// The bifurcations of a sweep, those of the diagram's own observable and the others.
+pub(super) struct Labels<'a> {
+    placed: Vec<Placed<'a>>,
+    rows: usize,
+    range: (f64, f64),
+}
+
+impl<'a> Labels<'a> {
+    /// Places labels in as few rows as keep them apart, the diagram's own ones lowest.
+    ///
+    /// `range` is that of the parameter; the map begins `map.0` pixels from the left and is `map.1` wide.
+    ///
+    /// # Errors
+    /// [`FigureError::Svg`].
+    pub(super) fn new(
+        result: &'a SweepResult,
+        watched: Observable,
+        range: (f64, f64),
+        (left, width): (f64, f64),
+    ) -> Result<Self, FigureError> {
+        let inside = |point: &&LabelledPoint| {
+            point.kind == PointType::Bifurcation && point.value >= range.0 && point.value <= range.1
+        };
+        let mut points: Vec<&LabelledPoint> = result.labels.iter().filter(inside).collect();
+        points.sort_by_key(|point| point.observable != Some(watched));
+        let mut placed = Vec::new();
+        let mut rows: Vec<Vec<(f64, f64)>> = Vec::new();
+        for point in points {
+            let own = point.observable == Some(watched);
+            let half = 0.5 * render::text_width(&point.label, TICK_TEXT, own)?;
+            let share = (point.value - range.0) / (range.1 - range.0);
+            let middle = (left + share * width).clamp(left + half, left + width - half);
+            let (from, to) = (middle - half - 3.0, middle + half + 3.0);
+            let free =
+                |row: &Vec<(f64, f64)>| row.iter().all(|taken| to <= taken.0 || from >= taken.1);
+            let row = rows.iter().position(free).unwrap_or(rows.len());
+            if row == rows.len() {
+                rows.push(Vec::new());
+            }
+            rows[row].push((from, to));
+            placed.push(Placed {
+                point,
+                own,
+                middle,
+                half,
+                row,
+            });
+        }
+        Ok(Self {
+            placed,
+            rows: rows.len(),
+            range,
+        })
+    }
+
+    /// Room above the map.
+    pub(super) fn height(&self) -> f64 {
+        self.rows as f64 * ROW + GAP
+    }
+
+    /// Draws bands and lines over the map: strongly for the own observable, faintly for others.
+    ///
+    /// # Errors
+    /// [`FigureError::Drawing`].
+    pub(super) fn draw_lines(
+        &self,
+        panel: &Panel,
+        (from, to): (f64, f64),
+    ) -> Result<(), FigureError> {
+        for label in self.placed.iter().rev() {
+            let point = label.point;
+            let line = [(point.value, from), (point.value, to)];
+            if !label.own {
+                let faint = Stroke {
+                    colour: BackendColor {
+                        alpha: 0.7,
+                        ..WHITE
+                    },
+                    width: 0.9,
+                    dash: &[1.5, 3.0],
+                };
+                panel.draw(&line, Shape::Line(faint))?;
+                continue;
+            }
+            let status = point.status.unwrap_or(BifurcationStatus::Located);
+            if status == BifurcationStatus::Unresolved {
+                let a = point.lower.max(self.range.0);
+                let b = point.upper.min(self.range.1);
+                panel.draw(&[(a, from), (b, from), (b, to), (a, to)], Shape::Area(BAND))?;
+            }
+            panel.draw(&line, Shape::Line(Stroke::solid(WHITE, 3.2)))?;
+            panel.draw(&line, Shape::Line(stroke(status)))?;
+        }
+        Ok(())
+    }
+
+    /// Writes the labels above the map, with leaders to the higher rows.
+    ///
+    /// # Errors
+    /// [`FigureError::Drawing`].
+    pub(super) fn draw_texts(&self, page: &Page, map: Rectangle) -> Result<(), FigureError> {
+        let middle_of = |row: usize| map.top - GAP - (row as f64 + 0.5) * ROW;
+        for label in self.placed.iter().filter(|label| label.row > 0) {
+            let line = [
+                (label.middle, map.top),
+                (label.middle, middle_of(label.row) + 0.5 * ROW),
+            ];
+            page.draw(&line, Shape::Line(Stroke::solid(GREY, 0.6)))?;
+        }
+        for label in &self.placed {
+            let (x, y) = (label.middle, middle_of(label.row));
+            // A white ground keeps leaders from striking the lower labels through.
+            let (left, right) = (x - label.half - 1.0, x + label.half + 1.0);
+            let (top, bottom) = (y - 0.45 * ROW, y + 0.45 * ROW);
+            let corners = [(left, top), (right, top), (right, bottom), (left, bottom)];
+            page.draw(&corners, Shape::Area(WHITE))?;
+            let mut text = lettering(symbols::plain(&label.point.label), HPos::Center);
+            text.size = TICK_TEXT;
+            text.colour = if label.own { BIFURCATION } else { GREY };
+            text.bold = label.own;
+            page.text((x, y), text)?;
+        }
+        Ok(())
+    }
+
+    /// Entries of a legend, for what is drawn of the diagram's own bifurcations.
+    pub(super) fn entries(&self) -> Vec<(Sample, String)> {
+        let words = [
+            (BifurcationStatus::Located, "P-bifurcation"),
+            (BifurcationStatus::Unresolved, "P-bifurcation, unresolved"),
+            (BifurcationStatus::Unconfirmed, "P-bifurcation, unconfirmed"),
+        ];
+        let own = || self.placed.iter().filter(|label| label.own);
+        let shown = words
+            .into_iter()
+            .filter(|(status, _)| own().any(|label| label.point.status == Some(*status)));
+        shown
+            .map(|(status, text)| (Sample::Curve(stroke(status)), text.to_owned()))
+            .collect()
+    }
+}

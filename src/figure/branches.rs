@@ -1,0 +1,179 @@
+//! Branches of peaks and valleys along a parameter: features of neighbouring points that belong together.
+
+use crate::continuation::Point;
+use crate::topology::{Feature, FeatureKind, Verdict};
+
+/// Largest step of a branch from one point to the next, as a share of the window; longer ones are jumps.
+const JUMP: f64 = 0.06;
+/// The next candidate must be this many times as far away for a link to be beyond doubt.
+const CLEAR: f64 = 2.0;
+
+/// A branch: one or more places, in ascending parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Branch {
+    /// Whether it is one of peaks or of valleys.
+    pub(super) kind: FeatureKind,
+    /// Parameter and coordinate.
+    pub(super) places: Vec<(f64, f64)>,
+}
+
+/// Positions of the present features of a kind at a point, ascending; `None` without a density.
+fn positions(point: &Point, observable: usize, kind: FeatureKind) -> Option<Vec<f64>> {
+    let detection = point.detections.get(observable)?;
+    let wanted = |feature: &&Feature| feature.kind == kind && feature.verdict == Verdict::Present;
+    let features = detection.features.iter().filter(wanted);
+    let mut positions: Vec<f64> = features
+        .filter_map(|feature| feature.position.first().copied())
+        .collect();
+    positions.sort_by(f64::total_cmp);
+    Some(positions)
+}
+
+/// The one of `candidates` that is nearest to `at`, if it is near and the next one is clearly farther.
+fn link(at: f64, candidates: &[f64], farthest: f64) -> Option<usize> {
+    let mut by_distance: Vec<(f64, usize)> = candidates
+        .iter()
+        .enumerate()
+        .map(|(index, &candidate)| ((candidate - at).abs(), index))
+        .collect();
+    by_distance.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let &(distance, index) = by_distance.first()?;
+    let clear = by_distance
+        .get(1)
+        .is_none_or(|next| next.0 > CLEAR * distance);
+    (distance <= farthest && clear).then_some(index)
+}
+
+/// Follows the features of one kind of a marginal. A link is mutual, short and beyond doubt; branches end
+/// where features jump, split or merge, and at points without a density.
+pub(super) fn branches(
+    points: &[Point],
+    observable: usize,
+    kind: FeatureKind,
+    window: (f64, f64),
+) -> Vec<Branch> {
+    let farthest = JUMP * (window.1 - window.0);
+    let mut finished: Vec<Branch> = Vec::new();
+    let mut open: Vec<Branch> = Vec::new();
+    for point in points {
+        let Some(found) = positions(point, observable, kind) else {
+            finished.append(&mut open);
+            continue;
+        };
+        let last: Vec<f64> = open
+            .iter()
+            .filter_map(|branch| branch.places.last())
+            .map(|place| place.1)
+            .collect();
+        let mut next: Vec<Branch> = Vec::new();
+        let mut continued = vec![false; open.len()];
+        for (index, &position) in found.iter().enumerate() {
+            let back = link(position, &last, farthest);
+            let mutual = back.filter(|&branch| link(last[branch], &found, farthest) == Some(index));
+            let mut branch = match mutual {
+                Some(branch) => {
+                    continued[branch] = true;
+                    open[branch].clone()
+                }
+                None => Branch {
+                    kind,
+                    places: Vec::new(),
+                },
+            };
+            branch.places.push((point.value, position));
+            next.push(branch);
+        }
+        let ended = open
+            .into_iter()
+            .zip(continued)
+            .filter(|(_, continued)| !continued);
+        finished.extend(ended.map(|(branch, _)| branch));
+        open = next;
+    }
+    finished.append(&mut open);
+    finished
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::continuation::{PointStatus, SolveReport};
+    use crate::topology::{Detection, Signature};
+
+    #[test]
+    fn links_are_short_and_beyond_doubt() {
+        assert_eq!(link(0.0, &[0.1, 1.0], 0.2), Some(0));
+        assert_eq!(link(0.0, &[0.5], 0.2), None);
+        assert_eq!(
+            link(0.0, &[-0.1, 0.1], 0.2),
+            None,
+            "a symmetric split has no favourite"
+        );
+        assert_eq!(link(0.0, &[], 0.2), None);
+    }
+
+    /// A point with peaks at the given places; without a density for `None`.
+    fn point(value: f64, peaks: Option<&[f64]>) -> Point {
+        let feature = |&at: &f64| Feature {
+            kind: FeatureKind::Peak,
+            position: vec![at],
+            density: 1.0,
+            persistence: 1.0,
+            standard_error: 0.0,
+            significance: 9.0,
+            verdict: Verdict::Present,
+        };
+        let detection = |places: &[f64]| Detection {
+            signature: Signature {
+                peaks: places.len(),
+                craters: 0,
+            },
+            features: places.iter().map(feature).collect(),
+        };
+        Point {
+            value,
+            report: SolveReport {
+                status: PointStatus::Solved,
+                method: "exact",
+                iterations: 0,
+                residual: 0.0,
+                escape_rate: 0.0,
+                negative_mass: 0.0,
+                edge_mass: Vec::new(),
+                numerical_diffusion: Vec::new(),
+                map_step: None,
+                warnings: Vec::new(),
+            },
+            moments: Vec::new(),
+            densities: Vec::new(),
+            detections: peaks.into_iter().map(detection).collect(),
+            seconds: 0.0,
+        }
+    }
+
+    #[test]
+    fn branches_end_at_splits_jumps_and_gaps() {
+        let points = [
+            point(0.0, Some(&[0.0])),
+            point(1.0, None),
+            point(2.0, Some(&[0.01])),
+            point(3.0, Some(&[0.02])),
+            point(4.0, Some(&[-0.08, 0.12])),
+            point(5.0, Some(&[-0.10, 0.14, 0.9])),
+            point(6.0, Some(&[-0.12, 0.5])),
+        ];
+        let found = branches(&points, 0, FeatureKind::Peak, (-1.0, 1.0));
+        let mut lengths: Vec<Vec<(f64, f64)>> =
+            found.into_iter().map(|branch| branch.places).collect();
+        lengths.sort_by(|a, b| a[0].partial_cmp(&b[0]).unwrap());
+        let expected = [
+            vec![(0.0, 0.0)],
+            vec![(2.0, 0.01), (3.0, 0.02)],
+            vec![(4.0, -0.08), (5.0, -0.10), (6.0, -0.12)],
+            vec![(4.0, 0.12), (5.0, 0.14)],
+            vec![(5.0, 0.9)],
+            vec![(6.0, 0.5)],
+        ];
+        assert_eq!(lengths, expected);
+    }
+}

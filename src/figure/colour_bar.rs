@@ -1,0 +1,72 @@
+//! The colour bar beside a heat map.
+
+use plotters_backend::text_anchor::HPos;
+
+use super::FigureError;
+use super::frame::{self, Scale};
+use super::heat::Picture;
+use super::page::{Page, Rectangle, Shape, lettering};
+use super::render;
+use super::style::{self, Stroke, TEXT};
+
+/// Width of the bar, in pixels.
+const WIDTH: f64 = 13.0;
+/// Gap between map and bar.
+const GAP: f64 = 14.0;
+
+/// A colour bar from zero to a largest value, laid out.
+pub(super) struct ColourBar {
+    scale: Scale,
+    title_width: f64,
+}
+
+impl ColourBar {
+    /// Lays out a bar of the given height; the title (markup) stands above it.
+    ///
+    /// # Errors
+    /// [`FigureError::Svg`].
+    pub(super) fn new(largest: f64, height: f64, title: &str) -> Result<Self, FigureError> {
+        let scale = Scale::vertical((0.0, largest), height, title)?;
+        let title_width = render::text_width(scale.title(), TEXT, false)?;
+        Ok(Self { scale, title_width })
+    }
+
+    /// Room it takes to the right of a map.
+    pub(super) fn width(&self) -> f64 {
+        GAP + (WIDTH + self.scale.label_width()).max(self.title_width)
+    }
+
+    /// Room it takes above the map.
+    pub(super) fn above() -> f64 {
+        2.0 * TEXT
+    }
+
+    /// Draws it right of `map`, with marks at some shares (0 to 1) of the largest value.
+    ///
+    /// # Errors
+    /// [`FigureError::Drawing`] or [`FigureError::Png`].
+    pub(super) fn draw(
+        &self,
+        page: &Page,
+        map: Rectangle,
+        marks: &[f64],
+    ) -> Result<(), FigureError> {
+        let bar = Rectangle {
+            left: map.right() + GAP,
+            width: WIDTH,
+            ..map
+        };
+        let ramp = Picture::new((1, 255), |_, row| Some(row as f64 / 254.0)).png()?;
+        let corners = [(bar.left, bar.top), (bar.right(), bar.bottom())];
+        page.draw(&corners, Shape::Image(ramp))?;
+        for &share in marks {
+            let y = bar.bottom() - share * bar.height;
+            let stroke = Stroke::solid(style::on_heat(share), 1.0);
+            page.draw(&[(bar.left, y), (bar.right(), y)], Shape::Line(stroke))?;
+        }
+        frame::border(page, bar)?;
+        self.scale.draw_right(page, bar)?;
+        let above = (bar.left, bar.top - 1.15 * TEXT);
+        page.text(above, lettering(self.scale.title(), HPos::Left))
+    }
+}

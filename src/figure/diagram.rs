@@ -1,0 +1,197 @@
+//! The P-bifurcation diagram of a marginal: its density over the parameter as a heat map, the branches of
+//! its peaks and valleys, and the labelled bifurcations.
+
+use crate::continuation::{Point, PointStatus, SweepResult};
+use crate::density::{Density, Observable};
+use crate::space::Axis;
+use crate::topology::FeatureKind;
+
+use super::bifurcations::Labels;
+use super::branches::{Branch, branches};
+use super::colour_bar::ColourBar;
+use super::frame::{self, Scale};
+use super::heat::{self, Picture};
+use super::legend::{self, Legend, Sample};
+use super::page::{Heading, Page, Panel, Rectangle, Shape};
+use super::select::{self, Names};
+use super::style::{MARGIN, PNG_SCALE};
+use super::{Figure, FigureError, hatch};
+
+/// Size of the map, in pixels.
+const MAP: (f64, f64) = (380.0, 250.0);
+
+/// The diagram of the marginal with the given number among the observables; `None` without any density.
+///
+/// # Errors
+/// Any [`FigureError`] but that of writing.
+pub(super) fn diagram(
+    result: &SweepResult,
+    observable: usize,
+    names: Names<'_>,
+    title: &str,
+) -> Result<Option<Figure>, FigureError> {
+    let Some(&watched @ Observable::Marginal(axis)) = result.observables.get(observable) else {
+        return Ok(None);
+    };
+    let densities: Vec<&Density> = densities(result, observable)
+        .into_iter()
+        .flatten()
+        .collect();
+    let Some(window) = select::window(&densities, 0) else {
+        return Ok(None);
+    };
+    let largest = select::largest(densities.iter().copied());
+    let range = parameter_range(&result.points);
+    let across = Scale::horizontal(range, MAP.0, &names.parameter())?;
+    let up = Scale::vertical(window, MAP.1, &names.axis(axis))?;
+    let bar = ColourBar::new(largest, MAP.1, &names.density(watched))?;
+    let width = MARGIN + up.left() + MAP.0 + bar.width() + MARGIN;
+    let heading = Heading::new(title, width)?;
+    let left = MARGIN + up.left();
+    let labels = Labels::new(result, watched, range, (left, MAP.0))?;
+    let map = Rectangle {
+        left,
+        top: heading.height() + labels.height().max(ColourBar::above()),
+        width: MAP.0,
+        height: MAP.1,
+    };
+    let followed = [FeatureKind::Peak, FeatureKind::Valley]
+        .map(|kind| branches(&result.points, observable, kind, window));
+    let legend = Legend::new(
+        entries(result, observable, &followed, &labels),
+        width - 2.0 * MARGIN,
+    )?;
+    let below = map.bottom() + Scale::below();
+    let page = Page::new(width, below + legend.height() + MARGIN);
+    heading.draw(&page)?;
+    let panel = page.panel(map, range, window);
+    draw_map(&page, &panel, result, observable, (range, window, largest))?;
+    labels.draw_lines(&panel, window)?;
+    draw_branches(&panel, &followed, window)?;
+    frame::border(&page, map)?;
+    labels.draw_texts(&page, map)?;
+    across.draw_below(&page, map, true)?;
+    up.draw_left(&page, map, true)?;
+    bar.draw(&page, map, &[])?;
+    legend.draw(&page, map.left + 0.5 * map.width, below)?;
+    Ok(Some(Figure {
+        name: format!("diagram_{}", names.file(watched)),
+        svg: page.svg(),
+    }))
+}
+
+/// The density of each point, where it has one.
+fn densities(result: &SweepResult, observable: usize) -> Vec<Option<&Density>> {
+    let points = result.points.iter();
+    points
+        .map(|point| select::density(point, observable).map(|estimated| &estimated.density))
+        .collect()
+}
+
+/// First and last parameter value; widened if they are the same.
+fn parameter_range(points: &[Point]) -> (f64, f64) {
+    let values = points.iter().map(|point| point.value);
+    let (from, to) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(from, to), value| {
+        (from.min(value), to.max(value))
+    });
+    if from < to {
+        return (from, to);
+    }
+    let half = if from == 0.0 { 0.5 } else { 0.1 * from.abs() };
+    (from - half, from + half)
+}
+
+/// Ends of the columns: half-way between neighbouring values, and the ends of the range.
+fn column_edges(points: &[Point], range: (f64, f64)) -> Vec<f64> {
+    let mut edges = vec![range.0];
+    edges.extend(
+        points
+            .windows(2)
+            .map(|pair| 0.5 * (pair[0].value + pair[1].value)),
+    );
+    edges.push(range.1);
+    edges
+}
+
+/// Hatches the ground of columns without density and draws the others' heat map.
+fn draw_map(
+    page: &Page,
+    panel: &Panel,
+    result: &SweepResult,
+    observable: usize,
+    (range, window, largest): ((f64, f64), (f64, f64), f64),
+) -> Result<(), FigureError> {
+    let densities = densities(result, observable);
+    let edges = column_edges(&result.points, range);
+    for (column, _) in densities
+        .iter()
+        .enumerate()
+        .filter(|(_, density)| density.is_none())
+    {
+        let (left, top) = panel.place((edges[column], window.1));
+        let (right, bottom) = panel.place((edges[column + 1], window.0));
+        hatch::draw(page, (left, right), (top, bottom))?;
+    }
+    let axes: Vec<&Axis> = densities
+        .iter()
+        .flatten()
+        .map(|density| &density.axes[0])
+        .collect();
+    let columns = (MAP.0 * PNG_SCALE).round() as usize;
+    let rows = select::resolution(&axes, window, MAP.1);
+    let point_of = heat::nearest(&edges, range, columns);
+    let picture = Picture::new((columns, rows), |column, row| {
+        let density = densities[point_of[column]]?;
+        let place = window.0 + (window.1 - window.0) * (row as f64 + 0.5) / rows as f64;
+        let cell = density.axes[0].find(place)?;
+        Some(density.values[cell] / largest)
+    });
+    let corners = [(range.0, window.0), (range.1, window.1)];
+    panel.draw(&corners, Shape::Image(picture.png()?))
+}
+
+/// Draws valleys, then peaks, as far as they lie in the window.
+fn draw_branches(
+    panel: &Panel,
+    followed: &[Vec<Branch>; 2],
+    window: (f64, f64),
+) -> Result<(), FigureError> {
+    let inside = |place: &&(f64, f64)| place.1 >= window.0 && place.1 <= window.1;
+    for branch in followed.iter().rev().flatten() {
+        let places: Vec<(f64, f64)> = branch.places.iter().filter(inside).copied().collect();
+        let draw = |points: &[(f64, f64)], shape: Shape| panel.draw(points, shape);
+        match branch.kind {
+            FeatureKind::Peak => legend::draw_peaks(draw, &places)?,
+            _ => legend::draw_valleys(draw, &places)?,
+        }
+    }
+    Ok(())
+}
+
+/// Entries of the legend, only for what the figure shows.
+fn entries(
+    result: &SweepResult,
+    observable: usize,
+    followed: &[Vec<Branch>; 2],
+    labels: &Labels<'_>,
+) -> Vec<(Sample, String)> {
+    let mut entries = Vec::new();
+    let mut add = |shown: bool, sample: Sample, text: &str| {
+        if shown {
+            entries.push((sample, text.to_owned()));
+        }
+    };
+    add(!followed[0].is_empty(), Sample::Peaks, "peak");
+    add(!followed[1].is_empty(), Sample::Valleys, "valley");
+    let missing = |point: &&Point| select::density(point, observable).is_none();
+    let blank = || result.points.iter().filter(missing);
+    let several = blank().any(|point| point.report.status == PointStatus::SeveralClasses);
+    let words = if several {
+        "no unique steady state"
+    } else {
+        "no steady state"
+    };
+    add(blank().next().is_some(), Sample::Hatched, words);
+    entries.extend(labels.entries());
+    entries
+}

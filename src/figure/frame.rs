@@ -1,0 +1,277 @@
+//! The frame of a panel: its border, ticks, tick labels and titles, and the room these take.
+
+use plotters_backend::text_anchor::HPos;
+
+use super::FigureError;
+use super::backend::Lettering;
+use super::page::{Page, Rectangle, Shape, lettering};
+use super::render;
+use super::style::{BLACK, FRAME_LINE, MINOR_TICK, Stroke, TEXT, TICK, TICK_TEXT};
+use super::ticks::{Ticks, ticks};
+
+/// Gap between ticks, labels and titles, in pixels.
+const GAP: f64 = 4.0;
+
+/// An axis laid out on a given length.
+#[derive(Debug, Clone)]
+pub(super) struct Scale {
+    /// The range.
+    pub(super) range: (f64, f64),
+    ticks: Ticks,
+    title: String,
+    widest: f64,
+}
+
+impl Scale {
+    /// Lays out a horizontal axis: as many labels as stand apart.
+    ///
+    /// # Errors
+    /// [`FigureError::Svg`].
+    pub(super) fn horizontal(
+        range: (f64, f64),
+        length: f64,
+        title: &str,
+    ) -> Result<Self, FigureError> {
+        let mut most = 7;
+        loop {
+            let scale = Self::with(range, most, title)?;
+            let apart = match &scale.ticks.major[..] {
+                [first, .., last] => {
+                    let span = (last.value - first.value) / (range.1 - range.0) * length;
+                    span / (scale.ticks.major.len() - 1) as f64
+                }
+                _ => length,
+            };
+            if apart >= scale.widest + 14.0 || most <= 2 {
+                return Ok(scale);
+            }
+            most -= 1;
+        }
+    }
+
+    /// Lays out a vertical axis.
+    ///
+    /// # Errors
+    /// [`FigureError::Svg`].
+    pub(super) fn vertical(
+        range: (f64, f64),
+        length: f64,
+        title: &str,
+    ) -> Result<Self, FigureError> {
+        let most = (length / (2.6 * TICK_TEXT)) as usize;
+        Self::with(range, most.clamp(2, 7), title)
+    }
+
+    fn with(range: (f64, f64), most: usize, title: &str) -> Result<Self, FigureError> {
+        let ticks = ticks(range.0, range.1, most);
+        let mut widest: f64 = 0.0;
+        for tick in &ticks.major {
+            widest = widest.max(render::text_width(&tick.label, TICK_TEXT, false)?);
+        }
+        let power = format!(
+            "10^{{{}}}",
+            super::symbols::fixed(f64::from(ticks.exponent), 0)
+        );
+        let title = match (ticks.exponent, title.is_empty()) {
+            (0, _) => title.to_owned(),
+            (_, true) => power,
+            (_, false) => format!("{title} ({power})"),
+        };
+        Ok(Self {
+            range,
+            ticks,
+            title,
+            widest,
+        })
+    }
+
+    /// The title, with the power of ten that the labels leave out.
+    pub(super) fn title(&self) -> &str {
+        &self.title
+    }
+
+    /// Width of ticks and labels beside a vertical axis.
+    pub(super) fn label_width(&self) -> f64 {
+        TICK + GAP + self.widest
+    }
+
+    /// Room to the left of a vertical axis with title.
+    pub(super) fn left(&self) -> f64 {
+        self.label_width() + GAP + 1.45 * TEXT
+    }
+
+    /// Room below a horizontal axis with title.
+    pub(super) fn below() -> f64 {
+        TICK + GAP + TICK_TEXT + GAP + 1.5 * TEXT
+    }
+
+    /// Share of the way along the axis.
+    fn share(&self, value: f64) -> f64 {
+        ((value - self.range.0) / (self.range.1 - self.range.0)).clamp(0.0, 1.0)
+    }
+
+    /// Labelled (true) and small ticks with their shares of the way.
+    fn all(&self) -> impl Iterator<Item = (f64, bool)> + '_ {
+        let major = self
+            .ticks
+            .major
+            .iter()
+            .map(|tick| (self.share(tick.value), true));
+        let minor = self
+            .ticks
+            .minor
+            .iter()
+            .map(|&value| (self.share(value), false));
+        major.chain(minor)
+    }
+
+    /// Draws ticks below a rectangle and, if wanted, labels and title.
+    ///
+    /// # Errors
+    /// [`FigureError::Drawing`].
+    pub(super) fn draw_below(
+        &self,
+        page: &Page,
+        rect: Rectangle,
+        labels: bool,
+    ) -> Result<(), FigureError> {
+        let bottom = rect.bottom();
+        for (share, labelled) in self.all() {
+            let x = rect.left + share * rect.width;
+            let end = bottom + if labelled { TICK } else { MINOR_TICK };
+            page.draw(
+                &[(x, bottom), (x, end)],
+                Shape::Line(Stroke::solid(BLACK, FRAME_LINE)),
+            )?;
+        }
+        if !labels {
+            return Ok(());
+        }
+        for tick in &self.ticks.major {
+            let x = rect.left + self.share(tick.value) * rect.width;
+            let y = bottom + TICK + GAP + 0.5 * TICK_TEXT;
+            page.text((x, y), tick_label(&tick.label, HPos::Center))?;
+        }
+        let y = bottom + TICK + GAP + TICK_TEXT + GAP + 0.7 * TEXT;
+        let middle = rect.left + 0.5 * rect.width;
+        page.text((middle, y), lettering(self.title.as_str(), HPos::Center))
+    }
+
+    /// Draws ticks left of a rectangle and, if wanted, labels and title.
+    ///
+    /// # Errors
+    /// [`FigureError::Drawing`].
+    pub(super) fn draw_left(
+        &self,
+        page: &Page,
+        rect: Rectangle,
+        labels: bool,
+    ) -> Result<(), FigureError> {
+        for (share, labelled) in self.all() {
+            let y = rect.bottom() - share * rect.height;
+            let end = rect.left - if labelled { TICK } else { MINOR_TICK };
+            let points = [(rect.left, y), (end, y)];
+            page.draw(&points, Shape::Line(Stroke::solid(BLACK, FRAME_LINE)))?;
+        }
+        if !labels {
+            return Ok(());
+        }
+        for tick in &self.ticks.major {
+            let y = rect.bottom() - self.share(tick.value) * rect.height;
+            page.text(
+                (rect.left - TICK - GAP, y),
+                tick_label(&tick.label, HPos::Right),
+            )?;
+        }
+        let title = Lettering {
+            upward: true,
+            ..lettering(self.title.as_str(), HPos::Center)
+        };
+        let middle = rect.top + 0.5 * rect.height;
+        // Centring across the direction is done in the rotated frame, so the point is the middle of the line.
+        page.text(
+            (rect.left - self.label_width() - GAP - 0.6 * TEXT, middle),
+            title,
+        )
+    }
+
+    /// Draws ticks and labels right of a rectangle (a colour bar).
+    ///
+    /// # Errors
+    /// [`FigureError::Drawing`].
+    pub(super) fn draw_right(&self, page: &Page, rect: Rectangle) -> Result<(), FigureError> {
+        let right = rect.right();
+        for tick in &self.ticks.major {
+            let y = rect.bottom() - self.share(tick.value) * rect.height;
+            let stroke = Stroke::solid(BLACK, FRAME_LINE);
+            page.draw(&[(right, y), (right + TICK - 1.0, y)], Shape::Line(stroke))?;
+            page.text(
+                (right + TICK + GAP - 1.0, y),
+                tick_label(&tick.label, HPos::Left),
+            )?;
+        }
+        Ok(())
+    }
+}
+
+fn tick_label(label: &str, anchor: HPos) -> Lettering {
+    Lettering {
+        size: TICK_TEXT,
+        ..lettering(label, anchor)
+    }
+}
+
+/// Draws the border of a rectangle.
+///
+/// # Errors
+/// [`FigureError::Drawing`].
+pub(super) fn border(page: &Page, rect: Rectangle) -> Result<(), FigureError> {
+    let (left, right, top, bottom) = (rect.left, rect.right(), rect.top, rect.bottom());
+    let corners = [
+        (left, top),
+        (right, top),
+        (right, bottom),
+        (left, bottom),
+        (left, top),
+    ];
+    page.draw(&corners, Shape::Line(Stroke::solid(BLACK, FRAME_LINE)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_of_a_short_axis_stand_apart() {
+        for length in [60.0, 100.0, 200.0, 400.0] {
+            let scale = Scale::horizontal((-0.02, 0.01), length, "x").unwrap();
+            let places: Vec<f64> = scale
+                .ticks
+                .major
+                .iter()
+                .map(|tick| scale.share(tick.value) * length)
+                .collect();
+            assert!(!places.is_empty());
+            if length >= 200.0 {
+                assert!(places.len() >= 3, "{places:?}");
+            }
+            if places.len() > 2 {
+                assert!(
+                    places
+                        .windows(2)
+                        .all(|pair| pair[1] - pair[0] >= scale.widest + 13.9)
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_power_of_ten_goes_into_the_title() {
+        let scale = Scale::vertical((0.0, 4e-7), 200.0, "$D$").unwrap();
+        assert_eq!(scale.title(), "$D$ (10^{−7})");
+        assert_eq!(
+            Scale::vertical((0.0, 4.0), 200.0, "$D$").unwrap().title(),
+            "$D$"
+        );
+    }
+}

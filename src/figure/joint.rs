@@ -1,0 +1,339 @@
+//! Joint densities of two axes as heat maps with contours: one figure a parameter value, and a sheet of all.
+
+use plotters_backend::text_anchor::HPos;
+
+use crate::continuation::{Point, SweepResult};
+use crate::density::{Density, EstimatedDensity, Observable};
+use crate::topology::{Feature, FeatureKind, Verdict};
+
+use super::colour_bar::ColourBar;
+use super::contour::Grid;
+use super::frame::{self, Scale};
+use super::heat::Picture;
+use super::legend::{self, Legend, Sample};
+use super::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
+use super::select::{self, Names};
+use super::style::{self, MARGIN, Stroke, TEXT};
+use super::{Figure, FigureError, symbols};
+
+/// Contours are drawn at these shares of the largest density.
+const LEVELS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
+/// Side of the map of a single figure, in pixels.
+const SINGLE: f64 = 290.0;
+/// Side of a map on a sheet.
+const SMALL: f64 = 190.0;
+/// Gap between maps on a sheet.
+const BETWEEN: f64 = 14.0;
+/// The densities of a sheet share their scale unless the largest values differ by more than this factor.
+const COMPARABLE: f64 = 3.0;
+
+/// A joint density with what was found in it.
+struct Found<'a> {
+    value: f64,
+    estimated: &'a EstimatedDensity,
+    features: &'a [Feature],
+}
+
+impl<'a> Found<'a> {
+    fn new(point: &'a Point, observable: usize) -> Option<Self> {
+        let estimated = select::density(point, observable)?;
+        let detection = point.detections.get(observable);
+        Some(Self {
+            value: point.value,
+            estimated,
+            features: detection.map_or(&[], |detection| &detection.features),
+        })
+    }
+
+    fn density(&self) -> &'a Density {
+        &self.estimated.density
+    }
+
+    fn present(&self, kind: FeatureKind) -> impl Iterator<Item = (f64, f64)> {
+        let wanted =
+            move |feature: &&Feature| feature.kind == kind && feature.verdict == Verdict::Present;
+        let place = |feature: &Feature| match feature.position[..] {
+            [x, y] => Some((x, y)),
+            _ => None,
+        };
+        self.features.iter().filter(wanted).filter_map(place)
+    }
+}
+
+/// The windows of both axes.
+fn windows(found: &[Found<'_>]) -> Option<((f64, f64), (f64, f64))> {
+    let densities: Vec<&Density> = found.iter().map(Found::density).collect();
+    Some((
+        select::window(&densities, 0)?,
+        select::window(&densities, 1)?,
+    ))
+}
+
+/// Opens a page with heading and legend, and room for maps of the given size that begins `left`
+/// pixels from the left; returns the rectangle of the maps.
+fn open_page(
+    found: &[Found<'_>],
+    title: &str,
+    (left, page_width): (f64, f64),
+    (width, height): (f64, f64),
+) -> Result<(Page, Rectangle), FigureError> {
+    let heading = Heading::new(title, page_width)?;
+    let legend = Legend::new(entries(found), page_width - 2.0 * MARGIN)?;
+    let maps = Rectangle {
+        left,
+        top: heading.height() + ColourBar::above(),
+        width,
+        height,
+    };
+    let below = maps.bottom() + Scale::below();
+    let page = Page::new(page_width, below + legend.height() + MARGIN);
+    heading.draw(&page)?;
+    legend.draw(&page, left + 0.5 * width, below)?;
+    Ok((page, maps))
+}
+
+/// One map at one point; `None` without a density.
+///
+/// # Errors
+/// Any [`FigureError`] but that of writing.
+pub(super) fn single(
+    result: &SweepResult,
+    observable: usize,
+    point: &Point,
+    names: Names<'_>,
+    title: &str,
+) -> Result<Option<Figure>, FigureError> {
+    let watched = result.observables[observable];
+    let (Observable::Joint(first, second), Some(found)) = (watched, Found::new(point, observable))
+    else {
+        return Ok(None);
+    };
+    let found = [found];
+    let Some((x, y)) = windows(&found) else {
+        return Ok(None);
+    };
+    let largest = select::largest([found[0].density()]);
+    let across = Scale::horizontal(x, SINGLE, &names.axis(first))?;
+    let up = Scale::vertical(y, SINGLE, &names.axis(second))?;
+    let bar = ColourBar::new(largest, SINGLE, &names.density(watched))?;
+    let left = MARGIN + up.left();
+    let width = left + SINGLE + bar.width() + MARGIN;
+    let (page, map) = open_page(&found, title, (left, width), (SINGLE, SINGLE))?;
+    write_above(&page, map, names.at(point.value))?;
+    draw_map(&page, map, &found[0], (x, y), largest)?;
+    across.draw_below(&page, map, true)?;
+    up.draw_left(&page, map, true)?;
+    bar.draw(&page, map, &LEVELS)?;
+    let value = select::safe(&symbols::rounded(point.value).to_string());
+    Ok(Some(Figure {
+        name: format!("joint_{}_{value}", names.file(watched)),
+        svg: page.svg(),
+    }))
+}
+
+/// How the maps of a sheet are arranged and coloured.
+struct Sheet {
+    columns: usize,
+    /// Distance between neighbouring maps, in pixels.
+    step: (f64, f64),
+    /// Size of all maps together, in pixels.
+    whole: (f64, f64),
+    /// The density at the upper end of the colours, one a map.
+    tops: Vec<f64>,
+    /// That density where all maps share it.
+    common: Option<f64>,
+}
+
+impl Sheet {
+    fn new(found: &[Found<'_>]) -> Self {
+        let columns = match found.len() {
+            2 | 4 => 2,
+            _ => 3,
+        };
+        let rows = found.len().div_ceil(columns);
+        let step = (SMALL + BETWEEN, SMALL + BETWEEN + 1.4 * TEXT);
+        let own: Vec<f64> = found
+            .iter()
+            .map(|found| select::largest([found.density()]))
+            .collect();
+        let largest = own.iter().copied().fold(0.0, f64::max);
+        let comparable = own.iter().all(|&own| own * COMPARABLE >= largest);
+        Self {
+            columns,
+            step,
+            whole: (
+                (columns - 1) as f64 * step.0 + SMALL,
+                (rows - 1) as f64 * step.1 + SMALL,
+            ),
+            tops: if comparable {
+                vec![largest; own.len()]
+            } else {
+                own
+            },
+            common: comparable.then_some(largest),
+        }
+    }
+
+    /// The rectangle of a map.
+    fn map(&self, all: Rectangle, number: usize) -> Rectangle {
+        let (row, column) = (number / self.columns, number % self.columns);
+        Rectangle {
+            left: all.left + column as f64 * self.step.0,
+            top: all.top + row as f64 * self.step.1,
+            width: SMALL,
+            height: SMALL,
+        }
+    }
+
+    /// The colour bar of all maps.
+    fn bar(&self, density: &str) -> Result<ColourBar, FigureError> {
+        match self.common {
+            Some(largest) => ColourBar::new(largest, self.whole.1, density),
+            None => ColourBar::new(1.0, self.whole.1, &format!("{density} / max")),
+        }
+    }
+}
+
+/// All maps of a pair on one sheet, with the same windows; `None` for fewer than two densities.
+///
+/// # Errors
+/// Any [`FigureError`] but that of writing.
+pub(super) fn sheet(
+    result: &SweepResult,
+    observable: usize,
+    chosen: &[&Point],
+    names: Names<'_>,
+    title: &str,
+) -> Result<Option<Figure>, FigureError> {
+    let watched = result.observables[observable];
+    let found: Vec<Found<'_>> = chosen
+        .iter()
+        .filter_map(|point| Found::new(point, observable))
+        .collect();
+    let (Observable::Joint(first, second), Some((x, y))) = (watched, windows(&found)) else {
+        return Ok(None);
+    };
+    if found.len() < 2 {
+        return Ok(None);
+    }
+    let sheet = Sheet::new(&found);
+    let across = Scale::horizontal(x, SMALL, &names.axis(first))?;
+    let up = Scale::vertical(y, SMALL, &names.axis(second))?;
+    let bar = sheet.bar(&names.density(watched))?;
+    let left = MARGIN + up.left();
+    let width = left + sheet.whole.0 + bar.width() + MARGIN;
+    let (page, all) = open_page(&found, title, (left, width), sheet.whole)?;
+    for (number, (found, &top)) in found.iter().zip(&sheet.tops).enumerate() {
+        let map = sheet.map(all, number);
+        let letter = char::from(b'a' + (number % 26) as u8);
+        write_above(&page, map, format!("({letter})  {}", names.at(found.value)))?;
+        draw_map(&page, map, found, (x, y), top)?;
+        // A map with none below it carries the labels of its column.
+        across.draw_below(&page, map, number + sheet.columns >= sheet.tops.len())?;
+        up.draw_left(&page, map, number % sheet.columns == 0)?;
+    }
+    let marks: &[f64] = if sheet.common.is_some() { &[] } else { &LEVELS };
+    bar.draw(&page, all, marks)?;
+    Ok(Some(Figure {
+        name: format!("joint_{}", names.file(watched)),
+        svg: page.svg(),
+    }))
+}
+
+/// Writes a line above a map.
+fn write_above(page: &Page, map: Rectangle, markup: String) -> Result<(), FigureError> {
+    let place = (map.left, map.top - 0.75 * TEXT);
+    page.text(place, lettering(markup, HPos::Left))
+}
+
+/// Legend of the marks that are drawn.
+fn entries(found: &[Found<'_>]) -> Vec<(Sample, String)> {
+    let any = |kind| {
+        found
+            .iter()
+            .any(|found| found.present(kind).next().is_some())
+    };
+    let all = [
+        (any(FeatureKind::Peak), Sample::Plus, "peak"),
+        (any(FeatureKind::Crater), Sample::Ring, "crater"),
+    ];
+    let shown = all.into_iter().filter(|(shown, _, _)| *shown);
+    shown
+        .map(|(_, sample, text)| (sample, text.to_owned()))
+        .collect()
+}
+
+/// Draws heat map, contours and marks into a rectangle; colours run from zero to `largest`.
+fn draw_map(
+    page: &Page,
+    map: Rectangle,
+    found: &Found<'_>,
+    (x, y): ((f64, f64), (f64, f64)),
+    largest: f64,
+) -> Result<(), FigureError> {
+    let panel = page.panel(map, x, y);
+    let density = found.density();
+    let [across, up] = &density.axes[..] else {
+        return Ok(());
+    };
+    let size = (
+        select::resolution(&[across], x, map.width),
+        select::resolution(&[up], y, map.height),
+    );
+    let middle = |window: (f64, f64), pixel: usize, count: usize| {
+        window.0 + (window.1 - window.0) * (pixel as f64 + 0.5) / count as f64
+    };
+    let picture = Picture::new(size, |column, row| {
+        let i = across.find(middle(x, column, size.0))?;
+        let j = up.find(middle(y, row, size.1))?;
+        Some(density.values[i * up.count() + j] / largest)
+    });
+    panel.draw(&[(x.0, y.0), (x.1, y.1)], Shape::Image(picture.png()?))?;
+    draw_contours(&panel, density, (x, y), largest)?;
+    let inside = |&(px, py): &(f64, f64)| px >= x.0 && px <= x.1 && py >= y.0 && py <= y.1;
+    for place in found.present(FeatureKind::Peak).filter(inside) {
+        legend::plus(|points, shape| panel.draw(points, shape), place)?;
+    }
+    for place in found.present(FeatureKind::Crater).filter(inside) {
+        legend::ring(|points, shape| panel.draw(points, shape), place)?;
+    }
+    frame::border(page, map)
+}
+
+/// Draws the contours at [`LEVELS`] of the density's own maximum, through the centres of cells in the window.
+fn draw_contours(
+    panel: &Panel,
+    density: &Density,
+    (x, y): ((f64, f64), (f64, f64)),
+    largest: f64,
+) -> Result<(), FigureError> {
+    let inside = |axis: usize, window: (f64, f64)| -> Vec<(usize, f64)> {
+        let centres = density.axes[axis].centres().into_iter().enumerate();
+        centres
+            .filter(|(_, centre)| *centre > window.0 && *centre < window.1)
+            .collect()
+    };
+    let (across, up) = (inside(0, x), inside(1, y));
+    let count = density.axes[1].count();
+    let values: Vec<f64> = across
+        .iter()
+        .flat_map(|(i, _)| up.iter().map(move |(j, _)| i * count + j))
+        .map(|cell| density.values[cell])
+        .collect();
+    let centres =
+        |cells: &[(usize, f64)]| -> Vec<f64> { cells.iter().map(|cell| cell.1).collect() };
+    let (across, up) = (centres(&across), centres(&up));
+    let grid = Grid {
+        x: &across,
+        y: &up,
+        values: &values,
+    };
+    let own = select::largest([density]);
+    for share in LEVELS {
+        let colour = style::on_heat(share * own / largest);
+        for line in grid.contour(share * own) {
+            panel.draw(&line, Shape::Line(Stroke::solid(colour, 0.8)))?;
+        }
+    }
+    Ok(())
+}

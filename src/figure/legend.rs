@@ -1,0 +1,184 @@
+//! Legends: samples with their meaning, in rows outside of the panels, so that no data are covered.
+
+use plotters_backend::BackendColor;
+use plotters_backend::text_anchor::HPos;
+
+use super::FigureError;
+use super::page::{Page, Shape, lettering};
+use super::render;
+use super::style::{BLACK, CURVE_LINE, Stroke, TEXT, TICK_TEXT, WHITE, heat};
+
+/// Length of a sample, in pixels.
+const SAMPLE: f64 = 30.0;
+/// Gap between a sample and its text.
+const GAP: f64 = 6.0;
+/// Gap between two entries.
+const BETWEEN: f64 = 20.0;
+/// Height of a row.
+pub(super) const ROW: f64 = 1.5 * TEXT;
+
+/// What stands for an entry.
+#[derive(Clone, Copy)]
+pub(super) enum Sample {
+    /// A curve.
+    Curve(Stroke),
+    /// The line of a branch of peaks.
+    Peaks,
+    /// The line of a branch of valleys.
+    Valleys,
+    /// A `+` on a piece of heat map.
+    Plus,
+    /// A ring on a piece of heat map.
+    Ring,
+    /// A hatched box.
+    Hatched,
+}
+
+/// A legend laid out in rows.
+pub(super) struct Legend {
+    /// Sample, text, and place of the sample's left end: pixels from the left, number of the row.
+    entries: Vec<(Sample, String, f64, usize)>,
+    rows: Vec<f64>,
+}
+
+impl Legend {
+    /// Lays out entries (texts are markup) in rows no wider than `width`.
+    ///
+    /// # Errors
+    /// [`FigureError::Svg`].
+    pub(super) fn new(entries: Vec<(Sample, String)>, width: f64) -> Result<Self, FigureError> {
+        let mut rows: Vec<f64> = Vec::new();
+        let mut placed = Vec::new();
+        for (sample, text) in entries {
+            let entry = SAMPLE + GAP + render::text_width(&text, TICK_TEXT, false)?;
+            let left = match rows.last_mut() {
+                Some(row) if *row + BETWEEN + entry <= width => {
+                    let left = *row + BETWEEN;
+                    *row = left + entry;
+                    left
+                }
+                _ => {
+                    rows.push(entry);
+                    0.0
+                }
+            };
+            placed.push((sample, text, left, rows.len() - 1));
+        }
+        Ok(Self {
+            entries: placed,
+            rows,
+        })
+    }
+
+    /// Height of all rows.
+    pub(super) fn height(&self) -> f64 {
+        ROW * self.rows.len() as f64
+    }
+
+    /// Draws it with its rows centred on `middle`, from `top` down.
+    ///
+    /// # Errors
+    /// [`FigureError::Drawing`].
+    pub(super) fn draw(&self, page: &Page, middle: f64, top: f64) -> Result<(), FigureError> {
+        for (sample, text, left, row) in &self.entries {
+            let x = middle - 0.5 * self.rows[*row] + left;
+            let y = top + (*row as f64 + 0.5) * ROW;
+            draw_sample(page, *sample, (x, y))?;
+            let mut text = lettering(text.as_str(), HPos::Left);
+            text.size = TICK_TEXT;
+            page.text((x + SAMPLE + GAP, y), text)?;
+        }
+        Ok(())
+    }
+}
+
+fn draw_sample(page: &Page, sample: Sample, (x, y): (f64, f64)) -> Result<(), FigureError> {
+    let line = [(x, y), (x + SAMPLE, y)];
+    let half = 0.5 * TICK_TEXT;
+    let corners = [
+        (x, y - half),
+        (x + SAMPLE, y - half),
+        (x + SAMPLE, y + half),
+        (x, y + half),
+    ];
+    let ground = |share: f64| {
+        Shape::Area(BackendColor {
+            alpha: 1.0,
+            rgb: heat(share),
+        })
+    };
+    let middle = (x + 0.5 * SAMPLE, y);
+    match sample {
+        Sample::Curve(stroke) => page.draw(&line, Shape::Line(stroke)),
+        Sample::Peaks => {
+            page.draw(&corners, ground(0.5))?;
+            draw_peaks(|points, shape| page.draw(points, shape), &line)
+        }
+        Sample::Valleys => {
+            page.draw(&corners, ground(0.5))?;
+            draw_valleys(|points, shape| page.draw(points, shape), &line)
+        }
+        Sample::Plus => {
+            page.draw(&corners, ground(0.8))?;
+            plus(|points, shape| page.draw(points, shape), middle)
+        }
+        Sample::Ring => {
+            page.draw(&corners, ground(0.2))?;
+            ring(|points, shape| page.draw(points, shape), middle)
+        }
+        Sample::Hatched => super::hatch::draw(page, (x, x + SAMPLE), (y - half, y + half)),
+    }
+}
+
+/// A branch of peaks: black on white, seen on every colour of the map.
+pub(super) fn draw_peaks(
+    draw: impl Fn(&[(f64, f64)], Shape) -> Result<(), FigureError>,
+    places: &[(f64, f64)],
+) -> Result<(), FigureError> {
+    if let [place] = places {
+        let rim = Stroke::solid(WHITE, 0.8);
+        return draw(&[*place], Shape::Dot(2.2, BLACK, rim));
+    }
+    draw(places, Shape::Line(Stroke::solid(WHITE, CURVE_LINE + 1.8)))?;
+    draw(places, Shape::Line(Stroke::solid(BLACK, CURVE_LINE)))
+}
+
+/// A branch of valleys: white dashes on black.
+pub(super) fn draw_valleys(
+    draw: impl Fn(&[(f64, f64)], Shape) -> Result<(), FigureError>,
+    places: &[(f64, f64)],
+) -> Result<(), FigureError> {
+    if let [place] = places {
+        let rim = Stroke::solid(BLACK, 1.0);
+        return draw(&[*place], Shape::Dot(2.0, WHITE, rim));
+    }
+    draw(places, Shape::Line(Stroke::solid(BLACK, CURVE_LINE + 1.4)))?;
+    let dashes = Stroke {
+        colour: WHITE,
+        width: CURVE_LINE,
+        dash: &[4.0, 3.0],
+    };
+    draw(places, Shape::Line(dashes))
+}
+
+/// The mark of a peak in a map.
+pub(super) fn plus(
+    draw: impl Fn(&[(f64, f64)], Shape) -> Result<(), FigureError>,
+    place: (f64, f64),
+) -> Result<(), FigureError> {
+    draw(&[place], Shape::Plus(5.0, Stroke::solid(WHITE, 3.0)))?;
+    draw(&[place], Shape::Plus(4.5, Stroke::solid(BLACK, 1.4)))
+}
+
+/// The mark of a crater in a map.
+pub(super) fn ring(
+    draw: impl Fn(&[(f64, f64)], Shape) -> Result<(), FigureError>,
+    place: (f64, f64),
+) -> Result<(), FigureError> {
+    let clear = BackendColor {
+        alpha: 0.0,
+        rgb: (255, 255, 255),
+    };
+    draw(&[place], Shape::Dot(4.0, clear, Stroke::solid(BLACK, 3.2)))?;
+    draw(&[place], Shape::Dot(4.0, clear, Stroke::solid(WHITE, 1.5)))
+}

@@ -1,0 +1,145 @@
+//! Ticks at round numbers (1, 2 or 5 times a power of ten), with labels that share their decimals.
+
+use super::symbols;
+
+/// A labelled tick.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Tick {
+    /// Where it stands.
+    pub(super) value: f64,
+    /// Its label, as markup.
+    pub(super) label: String,
+}
+
+/// The ticks of an axis.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Ticks {
+    /// Labelled ticks, ascending.
+    pub(super) major: Vec<Tick>,
+    /// Places of ticks without label.
+    pub(super) minor: Vec<f64>,
+    /// Power of ten that the labels are to be multiplied with; it belongs into the axis' title.
+    pub(super) exponent: i32,
+}
+
+/// At most `most` (at least 2) labelled ticks in `from..=to`, `from < to`.
+pub(super) fn ticks(from: f64, to: f64, most: usize) -> Ticks {
+    let (step, parts) = step(from, to, most.max(2));
+    let exponent = common_exponent(from, to, step);
+    let scale = 10f64.powi(exponent);
+    // The step is 1, 2 or 5 times a power of ten, which fixes the decimals.
+    let decimals = (-(step / scale).log10().floor() + 1e-9).max(0.0) as usize;
+    let slack = 1e-9 * (to - from);
+    let multiples = |step: f64| {
+        let first = ((from - slack) / step).ceil() as i64;
+        let last = ((to + slack) / step).floor() as i64;
+        first..=last
+    };
+    let major = multiples(step)
+        .map(|multiple| {
+            let value = multiple as f64 * step;
+            Tick {
+                value,
+                label: symbols::fixed(value / scale, decimals),
+            }
+        })
+        .collect();
+    let part = step / parts as f64;
+    let minor = multiples(part)
+        .filter(|multiple| multiple.rem_euclid(parts) != 0)
+        .map(|multiple| multiple as f64 * part)
+        .collect();
+    Ticks {
+        major,
+        minor,
+        exponent,
+    }
+}
+
+/// The smallest round step that gives at most `most` ticks, and into how many parts small ticks cut it.
+fn step(from: f64, to: f64, most: usize) -> (f64, i64) {
+    let slack = 1e-9 * (to - from);
+    let count =
+        |step: f64| (((to + slack) / step).floor() - ((from - slack) / step).ceil()) as i64 + 1;
+    let smallest = (to - from) / most as f64;
+    let mut power = smallest.log10().floor() as i32;
+    loop {
+        for (factor, parts) in [(1.0, 5), (2.0, 4), (5.0, 5)] {
+            // A quotient of whole numbers is the nearest double to the round number.
+            let step = if power < 0 {
+                factor / 10f64.powi(-power)
+            } else {
+                factor * 10f64.powi(power)
+            };
+            if count(step) <= most as i64 {
+                return (step, parts);
+            }
+        }
+        power += 1;
+    }
+}
+
+/// Zero, unless plain decimals would be long.
+fn common_exponent(from: f64, to: f64, step: f64) -> i32 {
+    let largest = from.abs().max(to.abs());
+    if !(1e-2..1e5).contains(&largest) || (step < 1e-4 && largest < 0.1) {
+        (largest * (1.0 + 1e-9)).log10().floor() as i32
+    } else {
+        0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn labels(from: f64, to: f64, most: usize) -> Vec<String> {
+        let major = ticks(from, to, most).major.into_iter();
+        major.map(|tick| tick.label).collect()
+    }
+
+    #[test]
+    fn usual_axes_get_the_usual_labels() {
+        assert_eq!(labels(-1.0, 0.5, 5), ["−1.0", "−0.5", "0", "0.5"]);
+        assert_eq!(
+            labels(-0.02, 0.01, 7),
+            [
+                "−0.020", "−0.015", "−0.010", "−0.005", "0", "0.005", "0.010"
+            ]
+        );
+        assert_eq!(labels(0.0, 30.0, 4), ["0", "10", "20", "30"]);
+        assert_eq!(labels(-2.5, 2.5, 6), ["−2", "−1", "0", "1", "2"]);
+    }
+
+    #[test]
+    fn small_and_large_values_share_a_power_of_ten() {
+        let small = ticks(0.0, 3e-6, 5);
+        assert_eq!(small.exponent, -6);
+        assert_eq!(small.major.last().unwrap().label, "3");
+        let large = ticks(0.0, 2e7, 3);
+        assert_eq!((large.exponent, large.major[2].label.as_str()), (7, "2"));
+    }
+
+    proptest! {
+        #[test]
+        fn ticks_are_few_ascending_inside_and_labelled_apart(
+            from in -1e3..1e3f64, exponent in -4.0..4.0f64, most in 2usize..9,
+        ) {
+            let to = from + 10f64.powf(exponent);
+            let ticks = ticks(from, to, most);
+            let slack = 1e-6 * (to - from);
+            prop_assert!(ticks.major.len() <= most);
+            for pair in ticks.major.windows(2) {
+                prop_assert!(pair[0].value < pair[1].value);
+                prop_assert_ne!(&pair[0].label, &pair[1].label);
+            }
+            for tick in &ticks.major {
+                prop_assert!(tick.value >= from - slack && tick.value <= to + slack);
+                let read: f64 = tick.label.replace('−', "-").parse().unwrap();
+                let error = read * 10f64.powi(ticks.exponent) - tick.value;
+                prop_assert!(error.abs() <= slack, "{tick:?}");
+            }
+        }
+    }
+}
