@@ -1,6 +1,9 @@
 //! Steady state of sampled chains, to an L1 error of 1e-12: multilevel aggregation against power iteration, and
 //! the second eigenvalue.
 
+// A bench may stop where it cannot go on, and speaks to who runs it.
+#![allow(clippy::unwrap_used, clippy::print_stderr)]
+
 use criterion::{Criterion, criterion_group, criterion_main};
 use pbif::sampling::TransitionMatrix;
 use pbif::space::{Axis, CellSpace};

@@ -4,7 +4,8 @@
 /// Changes below this are rounding to a noticeable part, and say nothing of the contraction.
 const ROUNDING: f64 = 1e-11;
 
-/// Contraction assumed while none could be observed.
+/// Contraction assumed while none could be observed, and the fastest that is believed: the first cycles remove
+/// fast modes and say little of the slow ones.
 const ASSUMED: f64 = 0.5;
 
 /// L1 distance between two probability vectors at most.
@@ -16,8 +17,8 @@ pub(super) struct Contraction {
     window: usize,
     /// Changes of the latest iterations, oldest first, at most `window + 1`.
     changes: std::collections::VecDeque<f64>,
-    /// The latest factors an iteration; the larger one counts.
-    factors: [Option<f64>; 2],
+    /// The latest factors an iteration; the largest counts.
+    factors: [f64; 3],
     /// A factor known otherwise, such as |λ₂|/λ₁.
     known: f64,
 }
@@ -28,7 +29,7 @@ impl Contraction {
         Self {
             window,
             changes: std::collections::VecDeque::with_capacity(window + 2),
-            factors: [None; 2],
+            factors: [0.0; 3],
             known: 0.0,
         }
     }
@@ -46,15 +47,14 @@ impl Contraction {
         }
         if self.changes.len() > self.window && change > ROUNDING {
             let factor = (change / self.changes[0]).powf(1.0 / self.window as f64);
-            self.factors = [self.factors[1], Some(factor)];
+            self.factors = [self.factors[1], self.factors[2], factor];
         }
         self.estimate(change)
     }
 
     /// The remaining changes as a geometric series.
     pub(super) fn estimate(&self, change: f64) -> f64 {
-        let observed = self.factors.iter().flatten().copied().fold(0.0, f64::max);
-        let observed = if observed > 0.0 { observed } else { ASSUMED };
+        let observed = self.factors.iter().copied().fold(ASSUMED, f64::max);
         let factor = observed.max(self.known);
         if change == 0.0 {
             0.0

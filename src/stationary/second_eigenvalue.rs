@@ -10,13 +10,17 @@ use super::chain::{Chain, Checked};
 use super::{StationaryError, SteadyState};
 use crate::sampling::TransitionMatrix;
 
-/// Applications of P per Krylov vector.
-const POWER: usize = 4;
+/// Applications of P per Krylov vector in the first sweep; each restart doubles them.
+const FIRST_POWER: usize = 8;
 
-/// Krylov vectors, restarts, and the relative residual at which they end.
+/// Krylov vectors and sweeps.
 const KRYLOV: usize = 24;
-const RESTARTS: usize = 6;
-const TOLERANCE: f64 = 1e-6;
+const SWEEPS: usize = 4;
+
+/// Sweeps end when the residual is this part of the distance of the eigenvalue to λ₁, which gives the
+/// relaxation time to about this accuracy, or when it is rounding.
+const TOLERANCE: f64 = 1e-2;
+const ROUNDING: f64 = 1e-12;
 
 /// Length below which what is left of a unit vector is rounding.
 const NOTHING: f64 = 1e-15;
@@ -68,6 +72,7 @@ pub(super) fn of_chain(chain: &Chain, mass: &[f64]) -> SecondEigenvalue {
         chain,
         mass,
         kept: 1.0 - chain.escaping(mass),
+        power: FIRST_POWER,
         products: 0,
     };
     let mut start = krylov.first_vector();
@@ -77,15 +82,18 @@ pub(super) fn of_chain(chain: &Chain, mass: &[f64]) -> SecondEigenvalue {
         products: 0,
         relaxation_time: None,
     };
-    for _ in 0..RESTARTS {
+    for _ in 0..SWEEPS {
         let Some((modulus, residual, next)) = krylov.sweep(start) else {
             break;
         };
-        best.modulus = modulus.powf(1.0 / POWER as f64);
-        best.residual = residual / POWER as f64 * best.modulus;
-        if residual <= TOLERANCE {
+        let power = krylov.power as f64;
+        best.modulus = modulus.powf(1.0 / power);
+        best.residual = residual / power * best.modulus;
+        let distance = (krylov.kept - best.modulus).max(0.0);
+        if best.residual <= (TOLERANCE * distance).max(ROUNDING) {
             break;
         }
+        krylov.power *= 2;
         start = next;
     }
     best.products = krylov.products;
@@ -97,15 +105,17 @@ struct Krylov<'a> {
     mass: &'a [f64],
     /// λ₁.
     kept: f64,
+    /// Applications of P per Krylov vector.
+    power: usize,
     products: usize,
 }
 
 impl Krylov<'_> {
-    /// (P - λ₁ p 1ᵀ)^POWER v.
+    /// (P - λ₁ p 1ᵀ)^power v.
     fn apply(&mut self, vector: &DVector<f64>) -> DVector<f64> {
         let mut current = vector.clone();
         let mut next = DVector::zeros(vector.len());
-        for _ in 0..POWER {
+        for _ in 0..self.power {
             let total = self.kept * current.sum();
             self.chain.apply(current.as_slice(), next.as_mut_slice());
             for (value, mass) in next.iter_mut().zip(self.mass) {
@@ -113,7 +123,7 @@ impl Krylov<'_> {
             }
             std::mem::swap(&mut current, &mut next);
         }
-        self.products += POWER;
+        self.products += self.power;
         current
     }
 

@@ -32,7 +32,7 @@ fn birth_death(
 /// A product of walks, one an axis: one axis moves a step. The product of the walks' steady states is steady.
 fn product_walk(shape: &[usize]) -> (TransitionMatrix, CellSpace, Vec<f64>) {
     let space = grid(shape);
-    let (rise, fall) = (0.3, 0.4);
+    let (rise, fall): (f64, f64) = (0.3, 0.4);
     let share = 1.0 / shape.len() as f64;
     let (mut entries, mut mass) = (Vec::new(), Vec::new());
     for cell in 0..space.n_cells() {
@@ -40,7 +40,7 @@ fn product_walk(shape: &[usize]) -> (TransitionMatrix, CellSpace, Vec<f64>) {
         mass.push(
             positions
                 .iter()
-                .map(|&at| (rise / fall as f64).powi(at as i32))
+                .map(|&at| (rise / fall).powi(at as i32))
                 .product(),
         );
         let mut stay = 1.0;
@@ -101,6 +101,18 @@ fn birth_death_chains_reach_detailed_balance() {
         assert_eq!(found.info.escape_per_step, 0.0);
         assert_eq!(found.info.class_cells, n);
     }
+}
+
+#[test]
+fn the_estimate_of_power_iteration_is_the_error_where_a_residual_would_deceive() {
+    let (matrix, exact) = birth_death(60, |_| 0.25, |_| 0.26);
+    let found = steady(&matrix, &grid(&[60]), None, Solver::PowerIteration, 1e-6);
+    let error = distance(&found.mass, &exact);
+    assert!(
+        (0.9..1.1).contains(&(error / found.info.error_estimate)),
+        "{error}"
+    );
+    assert!(found.info.residual < 0.01 * error, "{:?}", found.info);
 }
 
 #[test]

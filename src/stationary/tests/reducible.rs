@@ -1,6 +1,9 @@
 //! Chains with transient cells, several classes, or none that keeps its mass.
 
+use proptest::prelude::*;
+
 use super::*;
+use crate::stationary::sampled_chain::Random;
 
 /// Two-cell classes {0, 1} and {4, 5}; cells 2 and 3 send mass to either.
 fn two_wells(left_leak: f64, right_leak: f64) -> TransitionMatrix {
@@ -155,4 +158,80 @@ fn a_subset_of_the_cells_of_a_space_is_enough() {
     );
     assert_eq!(found.mass.len(), 10);
     assert!((found.mass[3] - 0.25).abs() < 1e-12 && (found.mass[7] - 0.75).abs() < 1e-12);
+}
+
+/// Which cells each cell reaches, itself included, by closure of the graph (Warshall).
+fn reachable(n: usize, entries: &[(usize, usize, f64)]) -> Vec<Vec<bool>> {
+    let mut reach: Vec<Vec<bool>> = (0..n).map(|i| (0..n).map(|j| i == j).collect()).collect();
+    entries
+        .iter()
+        .for_each(|entry| reach[entry.1][entry.0] = true);
+    for middle in 0..n {
+        let onward = reach[middle].clone();
+        for row in reach.iter_mut().filter(|row| row[middle]) {
+            row.iter_mut()
+                .zip(&onward)
+                .for_each(|(to, more)| *to |= more);
+        }
+    }
+    reach
+}
+
+/// Share of a uniform start that ends in each class: (1 - P_TT)ᵀ h = 1ᵀ P_CT for the transient cells T.
+fn absorption(n: usize, entries: &[(usize, usize, f64)], class: &[usize]) -> f64 {
+    let mut equations = nalgebra::DMatrix::<f64>::identity(n, n);
+    let mut right = nalgebra::DVector::zeros(n);
+    class.iter().for_each(|&cell| right[cell] = 1.0);
+    let reach = reachable(n, entries);
+    for &(target, source, probability) in entries {
+        let transient = (0..n).any(|cell| reach[source][cell] && !reach[cell][source]);
+        if transient {
+            equations[(source, target)] -= probability;
+        }
+    }
+    equations.lu().solve(&right).unwrap().sum() / n as f64
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+    #[test]
+    fn closed_classes_and_their_shares_agree_with_brute_force(
+        seed in 0u64..1_000_000, n in 2usize..30, targets in 1usize..3,
+    ) {
+        let mut random = Random(seed);
+        let share = 1.0 / targets as f64;
+        let mut entries = Vec::new();
+        for source in 0..n {
+            for _ in 0..targets {
+                entries.push(((random.uniform() * n as f64) as usize, source, share));
+            }
+        }
+        let reach = reachable(n, &entries);
+        let mut closed: Vec<Vec<usize>> = (0..n)
+            .filter(|&cell| (0..n).all(|to| !reach[cell][to] || reach[to][cell]))
+            .map(|cell| (0..n).filter(|&to| reach[cell][to]).collect())
+            .collect();
+        closed.sort();
+        closed.dedup();
+        let options = Options::new(Solver::MultilevelAggregation, 1e-10);
+        match solve(&transitions(n, &entries), &grid(&[n]), None, &options).unwrap() {
+            Outcome::Steady(state) => {
+                prop_assert_eq!(closed.len(), 1);
+                for cell in 0..n {
+                    prop_assert_eq!(state.mass[cell] > 0.0, closed[0].contains(&cell));
+                }
+            }
+            Outcome::SeveralClasses { classes, escaped } => {
+                prop_assert_eq!(classes.len(), closed.len());
+                prop_assert!(escaped == 0.0);
+                for class in classes {
+                    let cells = closed.iter().find(|cells| cells.contains(&class.representative));
+                    let cells = cells.unwrap();
+                    prop_assert_eq!(class.cells, cells.len());
+                    prop_assert!((class.share - absorption(n, &entries, cells)).abs() < 1e-5);
+                }
+            }
+            other => prop_assert!(false, "{:?}", other),
+        }
+    }
 }

