@@ -61,17 +61,22 @@ pub(super) fn shares(
         transient = next;
         left = transient.iter().sum();
     }
-    let flowing: f64 = flow.iter().sum();
-    if flowing > 0.0 {
-        for (total, inflow) in absorbed.iter_mut().zip(&flow) {
-            *total += left * inflow / flowing;
-        }
-    }
+    share_out(left, &flow, &mut absorbed);
     let describe = |(class, (leak, rows)): (usize, &(f64, Vec<usize>))| {
         describe(matrix, space, rows, absorbed[class], *leak)
     };
     let found = classes.iter().enumerate().map(describe).collect();
     (found, absorbed[sink])
+}
+
+/// Shares out what is left in the proportions of the latest flows.
+fn share_out(left: f64, flow: &[f64], absorbed: &mut [f64]) {
+    let flowing: f64 = flow.iter().sum();
+    if flowing > 0.0 {
+        for (total, inflow) in absorbed.iter_mut().zip(flow) {
+            *total += left * inflow / flowing;
+        }
+    }
 }
 
 /// Size and place of a class.
