@@ -1,0 +1,114 @@
+//! Where mass ends when several classes hold some: shares of the initial mass.
+
+use super::chain::Checked;
+use super::classes::ClassShare;
+use crate::space::CellSpace;
+
+/// Transient mass that is left to be shared out in proportion to the latest flows.
+const REMAINDER: f64 = 1e-6;
+
+/// Steps after which the remainder is shared out anyway: its slowest mode then sets the proportions.
+const MOST_STEPS: usize = 5_000;
+
+/// Pushes `initial` (mass of each row, Σ = 1) until it is absorbed by the classes or the sink. Returns the
+/// classes with their shares, and the share of the sink.
+pub(super) fn shares(
+    matrix: &Checked<'_>,
+    space: &CellSpace,
+    classes: &[(f64, Vec<usize>)],
+    initial: &[f64],
+) -> (Vec<ClassShare>, f64) {
+    let mut class_of = vec![usize::MAX; matrix.len()];
+    for (class, (_, rows)) in classes.iter().enumerate() {
+        rows.iter().for_each(|&row| class_of[row] = class);
+    }
+    let sink = classes.len();
+    let mut absorbed = vec![0.0; sink + 1];
+    let mut flow = vec![0.0; sink + 1];
+    let mut transient = initial.to_vec();
+    for (mass, &class) in transient.iter_mut().zip(&class_of) {
+        if class != usize::MAX {
+            absorbed[class] += std::mem::take(mass);
+        }
+    }
+    let mut left: f64 = transient.iter().sum();
+    for _ in 0..MOST_STEPS {
+        if left < REMAINDER {
+            break;
+        }
+        flow.fill(0.0);
+        flow[sink] = matrix
+            .escape
+            .iter()
+            .zip(&transient)
+            .map(|(e, p)| e * p)
+            .sum();
+        let mut next = vec![0.0; matrix.len()];
+        for (row, (value, &class)) in next.iter_mut().zip(&class_of).enumerate() {
+            let inflow: f64 = matrix
+                .row(row)
+                .map(|(from, share)| share * transient[from])
+                .sum();
+            if class == usize::MAX {
+                *value = inflow;
+            } else {
+                flow[class] += inflow;
+            }
+        }
+        for (total, inflow) in absorbed.iter_mut().zip(&flow) {
+            *total += inflow;
+        }
+        transient = next;
+        left = transient.iter().sum();
+    }
+    share_out(left, &flow, &mut absorbed);
+    let describe = |(class, (leak, rows)): (usize, &(f64, Vec<usize>))| {
+        describe(matrix, space, rows, absorbed[class], *leak)
+    };
+    let found = classes.iter().enumerate().map(describe).collect();
+    (found, absorbed[sink])
+}
+
+/// Shares out what is left in the proportions of the latest flows.
+fn share_out(left: f64, flow: &[f64], absorbed: &mut [f64]) {
+    let flowing: f64 = flow.iter().sum();
+    if flowing > 0.0 {
+        for (total, inflow) in absorbed.iter_mut().zip(flow) {
+            *total += left * inflow / flowing;
+        }
+    }
+}
+
+/// Size and place of a class.
+fn describe(
+    matrix: &Checked<'_>,
+    space: &CellSpace,
+    rows: &[usize],
+    share: f64,
+    leak: f64,
+) -> ClassShare {
+    let mut centre = vec![0.0; space.dimension()];
+    for &row in rows {
+        for (sum, coordinate) in centre.iter_mut().zip(space.centre(matrix.cells[row])) {
+            *sum += coordinate / rows.len() as f64;
+        }
+    }
+    // In widths of the cell, so that axes of different units weigh alike.
+    let off_centre = |cell: usize| -> f64 {
+        let axes = space.axes().iter().zip(&centre).enumerate();
+        let offset = |(index, (axis, at)): (usize, (&crate::space::Axis, &f64))| {
+            let position = space.position(cell, index);
+            ((axis.centre(position) - at) / axis.width(position)).powi(2)
+        };
+        axes.map(offset).sum()
+    };
+    let cells = rows.iter().map(|&row| matrix.cells[row]);
+    let nearest = cells.min_by(|&a, &b| off_centre(a).total_cmp(&off_centre(b)));
+    ClassShare {
+        cells: rows.len(),
+        centre,
+        representative: nearest.unwrap_or_default(),
+        share,
+        escape_per_step: leak,
+    }
+}

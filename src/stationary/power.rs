@@ -1,0 +1,59 @@
+//! Power iteration p ← P p / Σ P p, the cell map run until it stands.
+
+use super::chain::{Chain, distance, normalise};
+use super::convergence::Contraction;
+use super::multilevel::Iterate;
+use super::second_eigenvalue;
+
+/// Steps over which the contraction is observed.
+const WINDOW: usize = 20;
+
+/// Steps after which an iteration that has not come closer is given up: it oscillates, or has reached rounding.
+const PATIENCE: usize = 2000;
+
+/// Solves for the (quasi-)steady state from `mass`, Σ = 1.
+///
+/// Fast modes may hide a slow one of small amplitude, so the first claim of convergence is checked against
+/// |λ₂|/λ₁ before it is believed.
+pub(super) fn solve(
+    chain: &Chain,
+    mass: Vec<f64>,
+    tolerance: f64,
+    max_iterations: usize,
+) -> Iterate {
+    let mut contraction = Contraction::new(WINDOW);
+    let mut result = Iterate {
+        mass,
+        iterations: 0,
+        matrix_passes: 0,
+        error_estimate: 2.0,
+        converged: false,
+    };
+    let mut next = vec![0.0; chain.len()];
+    let mut verified = false;
+    let mut milestone = f64::INFINITY;
+    while result.iterations < max_iterations && !result.converged {
+        chain.apply(&result.mass, &mut next);
+        normalise(&mut next, 0.0);
+        result.iterations += 1;
+        result.matrix_passes += 1;
+        let change = distance(&next, &result.mass);
+        std::mem::swap(&mut next, &mut result.mass);
+        result.error_estimate = contraction.observe(change);
+        if result.error_estimate <= tolerance && !verified {
+            let second = second_eigenvalue::of_chain(chain, &result.mass);
+            result.matrix_passes += second.products;
+            contraction.set_known(second.modulus / (1.0 - chain.escaping(&result.mass)));
+            result.error_estimate = contraction.estimate(change);
+            verified = true;
+        }
+        result.converged = result.error_estimate <= tolerance;
+        if result.iterations.is_multiple_of(PATIENCE) {
+            if change > 0.999 * milestone {
+                break;
+            }
+            milestone = change;
+        }
+    }
+    result
+}
