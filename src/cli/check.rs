@@ -69,7 +69,7 @@ fn costs(spec: &SweepSpec) -> Vec<String> {
 
 /// How many points, and where the first lie.
 fn points(spec: &SweepSpec) -> String {
-    let values = spec.values();
+    let values = spec.plan().values();
     let first: Vec<String> = values.iter().take(3).map(f64::to_string).collect();
     format!(
         "points: {} ({} = {}, ...), and a few more for each change that is located",

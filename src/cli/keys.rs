@@ -4,6 +4,7 @@
 //! Defaults that a program option has are taken from that option's `Default`, so they stand in one place.
 
 use crate::continuation::LocateOptions;
+use crate::figure::Format;
 use crate::method::{SgcmOptions, StepChoice};
 use crate::sampling::Integrator;
 use crate::stationary::Solver;
@@ -11,7 +12,6 @@ use crate::system::registry;
 use crate::topology::DetectOptions;
 
 use super::diagnostic::list;
-use super::spec::FigureFormat;
 
 /// Condition on a number, in words and as a test. Numbers are always finite.
 #[derive(Debug, Clone, Copy)]
@@ -207,7 +207,7 @@ fn solver_names() -> Vec<&'static str> {
 }
 
 fn format_names() -> Vec<&'static str> {
-    FigureFormat::ALL.map(FigureFormat::name).to_vec()
+    Format::ALL.map(Format::name).to_vec()
 }
 
 fn default_formats() -> String {

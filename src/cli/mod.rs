@@ -53,6 +53,24 @@ pub(crate) enum CommandError {
     /// The results cannot be written where they should go.
     #[error(transparent)]
     Output(#[from] OutputError),
+    /// The method refuses.
+    #[error(transparent)]
+    Method(#[from] crate::method::MethodError),
+    /// The sweep ended without a result.
+    #[error(transparent)]
+    Sweep(#[from] crate::continuation::SweepError),
+    /// A file of the run cannot be written.
+    #[error(transparent)]
+    Run(#[from] crate::run::RunError),
+    /// A figure cannot be drawn.
+    #[error(transparent)]
+    Figure(#[from] crate::figure::FigureError),
+    /// The threads cannot be made.
+    #[error("cannot start the threads: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+    /// Ctrl-C cannot be handled.
+    #[error("cannot handle interrupts: {0}")]
+    Interrupts(#[from] ctrlc::Error),
     /// Standard output cannot be written to.
     #[error("cannot write to standard output: {0}")]
     Print(#[from] io::Error),
@@ -118,7 +136,7 @@ fn render(error: CommandError, styled: bool) -> String {
         CommandError::Output(error) => Diagnostic::new(error.to_string())
             .remedy("give another folder with `--out DIR`")
             .into(),
-        CommandError::Print(error) => Diagnostic::new(error.to_string()).into(),
+        error => Diagnostic::new(error.to_string()).into(),
     };
     report.render(styled)
 }

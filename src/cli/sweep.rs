@@ -1,24 +1,225 @@
-//! `pbif sweep`: prepares the output folder of a sweep.
+//! `pbif sweep`: solves along the parameter, writes every row as it comes, then the tables and the figures.
+
+mod progress;
+mod summary;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 use super::args::SweepArguments;
 use super::output::OutputFolder;
 use super::spec::SweepSpec;
 use super::{CommandError, Outcome};
+use crate::continuation::{
+    BifurcationStatus, Observer, Plan, Point, SweepError, SweepResult, sweep,
+};
+use crate::figure::draw_all;
+use crate::method::{Setting, SgcmSource};
+use crate::run::{Ending, Manifest, Naming, RunError, RunFolder};
+use crate::topology::PersistenceDetector;
+use progress::Progress;
 
-/// Checks that the results can be written.
+/// Runs a sweep and prints what it found.
 ///
 /// # Errors
-/// [`CommandError::Output`] when they cannot.
+/// [`CommandError`] when the results cannot be written or the threads not be made; failed points are data.
 pub(super) fn run(spec: &SweepSpec, arguments: &SweepArguments) -> Result<Outcome, CommandError> {
-    let folder = OutputFolder::prepare(&output_path(spec, arguments.out.as_deref()))?;
-    // Nothing is computed, so nothing is complete.
-    let _ = (folder.path(), arguments.threads, arguments.quiet);
-    Ok(Outcome::Partial)
+    let output = OutputFolder::prepare(&output_path(spec, arguments.out.as_deref()))?;
+    let threads = rayon::ThreadPoolBuilder::new()
+        .num_threads(arguments.threads.unwrap_or(0))
+        .build()?;
+    let cancelled = Arc::new(AtomicBool::new(false));
+    let flag = cancelled.clone();
+    // A second interrupt ends the program at once.
+    ctrlc::set_handler(move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            // Nothing is half-written: files are put in place by renaming.
+            #[allow(clippy::exit)]
+            std::process::exit(130);
+        }
+    })?;
+    let path = output.path().to_owned();
+    threads.install(|| Run::new(spec, &path, arguments.quiet, cancelled)?.carry_out())
 }
 
 /// The folder the results go to: as asked for, or `output/` and the name of the sweep file.
 fn output_path(spec: &SweepSpec, out: Option<&Path>) -> PathBuf {
     out.map_or_else(|| Path::new("output").join(&spec.name), Path::to_owned)
+}
+
+struct Run<'a> {
+    spec: &'a SweepSpec,
+    naming: Naming<'a>,
+    source: SgcmSource,
+    folder: RunFolder,
+    manifest: Manifest,
+    progress: Progress,
+    quiet: bool,
+    cancelled: Arc<AtomicBool>,
+}
+
+impl<'a> Run<'a> {
+    fn new(
+        spec: &'a SweepSpec,
+        path: &Path,
+        quiet: bool,
+        cancelled: Arc<AtomicBool>,
+    ) -> Result<Self, CommandError> {
+        let progress = Progress::new(spec.points, quiet);
+        progress.say("looking at the system with a few free trajectories");
+        let setting = Setting {
+            model: spec.model,
+            values: &spec.parameters,
+            parameter: &spec.parameter,
+            range: (spec.from, spec.to),
+            space: &spec.space,
+            observables: &spec.observables,
+        };
+        let source = SgcmSource::new(&setting, &spec.method, cancelled.clone())?;
+        progress.say(&format!(
+            "map step {:.4}, time step {:.4}, {} cells",
+            source.map_step(),
+            source.time_step(),
+            spec.space.n_cells()
+        ));
+        let resolved = spec.to_toml();
+        let threads = rayon::current_num_threads();
+        let manifest = Manifest::start(&resolved, spec.method.seed, threads)?;
+        let folder = RunFolder::create(path)?;
+        folder.write_manifest(&manifest)?;
+        let naming = Naming {
+            model: spec.model,
+            parameter: &spec.parameter,
+        };
+        Ok(Self {
+            spec,
+            naming,
+            source,
+            folder,
+            manifest,
+            progress,
+            quiet,
+            cancelled,
+        })
+    }
+
+    fn carry_out(mut self) -> Result<Outcome, CommandError> {
+        let clock = Instant::now();
+        let result = self.sweep()?;
+        self.manifest.seconds.sweep = clock.elapsed().as_secs_f64();
+        let clock = Instant::now();
+        self.folder.finish(&self.naming, &result)?;
+        self.manifest.seconds.tables = clock.elapsed().as_secs_f64();
+        let clock = Instant::now();
+        self.progress.say("drawing");
+        self.draw(&result)?;
+        self.manifest.seconds.figures = clock.elapsed().as_secs_f64();
+        self.manifest.points = result.points.len();
+        self.manifest.warnings = summary::warnings(self.naming.parameter, &result.points);
+        self.manifest.ending = if result.interrupted {
+            Ending::Interrupted
+        } else {
+            Ending::Complete
+        };
+        self.folder.write_manifest(&self.manifest)?;
+        self.progress.finish();
+        if !self.quiet {
+            self.progress.warn(&self.manifest.warnings);
+        }
+        super::print(&summary::text(&self.naming, &result, self.folder.path()))?;
+        Ok(outcome(&result))
+    }
+
+    fn sweep(&mut self) -> Result<SweepResult, CommandError> {
+        let plan = self.spec.plan();
+        let looks = plan.points * plan.observables.len();
+        let detector = PersistenceDetector::new(self.spec.detect.clone(), looks);
+        let mut recorder = Recorder {
+            naming: self.naming,
+            plan: &plan,
+            folder: &mut self.folder,
+            progress: &self.progress,
+            points: Vec::new(),
+            cancelled: &self.cancelled,
+        };
+        sweep(
+            &self.source,
+            &detector,
+            &plan,
+            &self.spec.locate,
+            &mut recorder,
+        )
+        .map_err(|error| match error {
+            SweepError::Observer(error) => match error.downcast::<RunError>() {
+                Ok(error) => CommandError::Run(*error),
+                Err(error) => CommandError::Sweep(SweepError::Observer(error)),
+            },
+            error => CommandError::Sweep(error),
+        })
+    }
+
+    fn draw(&self, result: &SweepResult) -> Result<(), CommandError> {
+        let formats = &self.spec.figure_formats;
+        let at = &self.spec.figures_at;
+        let folder = self.folder.figures();
+        draw_all(
+            result,
+            self.spec.model,
+            &self.spec.title,
+            at,
+            formats,
+            &folder,
+        )?;
+        Ok(())
+    }
+}
+
+/// Writes every point as soon as it is done, and shows how far the sweep is.
+struct Recorder<'a> {
+    naming: Naming<'a>,
+    plan: &'a Plan,
+    folder: &'a mut RunFolder,
+    progress: &'a Progress,
+    points: Vec<Point>,
+    cancelled: &'a AtomicBool,
+}
+
+impl Observer for Recorder<'_> {
+    fn point(
+        &mut self,
+        point: &Point,
+        done: usize,
+        remaining: usize,
+    ) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        self.points.push(point.clone());
+        self.folder
+            .add_point(&self.naming, &self.plan.observables, &self.points)?;
+        self.progress
+            .point(&self.naming, self.plan, point, done, remaining);
+        Ok(())
+    }
+
+    fn interrupted(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+}
+
+fn outcome(result: &SweepResult) -> Outcome {
+    let unresolved = |status: Option<BifurcationStatus>| {
+        status.is_some_and(|status| status != BifurcationStatus::Located)
+    };
+    if result.interrupted {
+        Outcome::Interrupted
+    } else if result
+        .points
+        .iter()
+        .any(|point| !point.report.status.is_resolved())
+        || result.labels.iter().any(|row| unresolved(row.status))
+    {
+        Outcome::Partial
+    } else {
+        Outcome::Complete
+    }
 }

@@ -13,7 +13,7 @@ mod sweep;
 pub use label::{BifurcationStatus, LabelledPoint, PointType};
 pub use observer::Observer;
 pub use source::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
-pub use sweep::{Plan, SweepError, sweep};
+pub use sweep::{Plan, SweepError, evenly_spaced, sweep};
 
 #[cfg(test)]
 mod tests;

@@ -76,15 +76,12 @@ pub struct Solution<State> {
 /// Why a source cannot give a solution at all. A failed solve is data, not an error: see [`PointStatus`].
 #[derive(Debug, thiserror::Error)]
 pub enum SourceError {
-    /// The parameter value is not allowed.
-    #[error(transparent)]
-    System(#[from] crate::system::SystemError),
     /// The source was asked to stop.
     #[error("interrupted")]
     Interrupted,
-    /// The cells cannot be laid out.
+    /// The method refuses, for example because the parameter value is not allowed.
     #[error(transparent)]
-    Space(#[from] crate::space::SpaceError),
+    Method(#[from] Box<dyn std::error::Error + Send + Sync>),
 }
 
 /// A source of densities along one parameter.

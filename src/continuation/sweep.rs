@@ -26,26 +26,30 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// The given values, in the order in which they are solved. Both ends are exact.
+    /// The given values, in the order in which they are solved.
     pub fn values(&self) -> Vec<f64> {
-        let last = self.points.max(2) - 1;
-        let value = |index: usize| {
-            let share = index as f64 / last as f64;
-            let value = self.from * (1.0 - share) + self.to * share;
-            // A value meant to be zero should read as zero, not as 1e-18.
-            if value.abs() < 1e-12 * (self.to - self.from).abs() {
-                0.0
-            } else {
-                value
-            }
-        };
-        (0..=last).map(value).collect()
+        evenly_spaced(self.from, self.to, self.points)
     }
 
     /// Distance between neighbouring given values.
     pub fn step(&self) -> f64 {
         (self.to - self.from).abs() / (self.points.max(2) - 1) as f64
     }
+}
+
+/// Evenly spaced values (at least 2), both ends exact. Weights are whole numbers and values are rounded to 15 digits,
+/// so that round values between (0, or -0.01, between -0.02 and 0.01) come out as people write them.
+pub fn evenly_spaced(from: f64, to: f64, points: usize) -> Vec<f64> {
+    let steps = points.max(2) - 1;
+    let value = |index: usize| match index {
+        0 => from,
+        index if index == steps => to,
+        index => {
+            let value = (from * (steps - index) as f64 + to * index as f64) / steps as f64;
+            format!("{value:.14e}").parse().unwrap_or(value)
+        }
+    };
+    (0..=steps).map(value).collect()
 }
 
 /// Why a sweep ended without a result.

@@ -147,6 +147,7 @@ mod tests {
             moments: Vec::new(),
             densities: Vec::new(),
             detections: peaks.into_iter().map(detection).collect(),
+            distance: None,
             seconds: 0.0,
         }
     }

@@ -3,6 +3,8 @@
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
+use super::RunError;
+
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -53,9 +55,13 @@ pub struct Manifest {
 
 impl Manifest {
     /// The manifest of a run that starts now. `resolved` is the resolved sweep file as TOML.
-    pub fn start(resolved: &str, sweep: serde_json::Value, seed: u64, threads: usize) -> Self {
+    ///
+    /// # Errors
+    /// [`RunError::Resolved`] when `resolved` is not TOML.
+    pub fn start(resolved: &str, seed: u64, threads: usize) -> Result<Self, RunError> {
         let digest = Sha256::digest(resolved.as_bytes());
-        Self {
+        let sweep: serde_json::Value = toml::from_str(resolved)?;
+        Ok(Self {
             program: env!("CARGO_PKG_NAME"),
             version: env!("CARGO_PKG_VERSION"),
             sweep,
@@ -66,6 +72,6 @@ impl Manifest {
             points: 0,
             seconds: PhaseSeconds::default(),
             warnings: Vec::new(),
-        }
+        })
     }
 }

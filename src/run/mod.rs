@@ -45,6 +45,9 @@ pub enum RunError {
         /// What the Zarr library says.
         message: String,
     },
+    /// A resolved sweep that is not TOML.
+    #[error("the resolved sweep does not parse: {0}")]
+    Resolved(#[from] toml::de::Error),
     /// A value cannot be written as JSON.
     #[error("cannot compose JSON: {0}")]
     Json(#[from] serde_json::Error),

@@ -57,6 +57,7 @@ fn point(value: f64, densities: Vec<EstimatedDensity>, detections: Vec<Detection
         moments: Vec::new(),
         densities,
         detections,
+        distance: None,
         seconds: 0.0,
     }
 }

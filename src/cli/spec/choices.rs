@@ -2,16 +2,16 @@
 
 use crate::cli::diagnostic::Diagnostic;
 use crate::cli::reader::{Reader, Sited};
-use crate::continuation::LocateOptions;
+use crate::continuation::{LocateOptions, evenly_spaced};
 use crate::density::Observable;
+use crate::figure::Format;
 use crate::method::{SgcmOptions, StepChoice};
 use crate::sampling::Integrator;
 use crate::stationary::Solver;
 use crate::system::Model;
 use crate::topology::DetectOptions;
 
-use super::FigureFormat;
-use super::swept::{self, Swept};
+use super::swept::Swept;
 
 /// Reads `[method]`; wrong values are reported and replaced by defaults.
 pub(super) fn read_method(reader: &mut Reader) -> SgcmOptions {
@@ -182,7 +182,7 @@ pub(super) fn read_figures_at(reader: &mut Reader, swept: Option<&Swept>) -> Vec
         return Vec::new();
     };
     let Some(values) = reader.numbers(&["figures", "at"]) else {
-        let values = swept::values(swept.from, swept.to, swept.points);
+        let values = evenly_spaced(swept.from, swept.to, swept.points);
         let steps = values.len() - 1;
         let mut chosen = vec![0, (steps + 1) / 3, (2 * steps + 1) / 3, steps];
         chosen.dedup();
@@ -205,10 +205,10 @@ pub(super) fn read_figures_at(reader: &mut Reader, swept: Option<&Swept>) -> Vec
 }
 
 /// Reads `figures.formats`, each format once.
-pub(super) fn read_formats(reader: &Reader) -> Vec<FigureFormat> {
+pub(super) fn read_formats(reader: &Reader) -> Vec<Format> {
     let Some(names) = reader.texts(&["figures", "formats"]) else {
-        return FigureFormat::ALL.to_vec();
+        return Format::ALL.to_vec();
     };
-    let listed = |format: &FigureFormat| names.iter().any(|name| name.value == format.name());
-    FigureFormat::ALL.into_iter().filter(listed).collect()
+    let listed = |format: &Format| names.iter().any(|name| name.value == format.name());
+    Format::ALL.into_iter().filter(listed).collect()
 }

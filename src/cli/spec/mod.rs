@@ -7,8 +7,9 @@ mod swept;
 
 use std::path::{Path, PathBuf};
 
-use crate::continuation::LocateOptions;
+use crate::continuation::{LocateOptions, Plan};
 use crate::density::Observable;
+use crate::figure::Format;
 use crate::method::SgcmOptions;
 use crate::space::CellSpace;
 use crate::system::{Model, ParameterValues};
@@ -19,28 +20,6 @@ pub(crate) use cells::AxisCells;
 use super::diagnostic::Report;
 use super::document::Document;
 use super::reader::Reader;
-
-/// File formats of figures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum FigureFormat {
-    /// Scalable Vector Graphics.
-    Svg,
-    /// Portable Network Graphics.
-    Png,
-}
-
-impl FigureFormat {
-    /// All formats.
-    pub(crate) const ALL: [Self; 2] = [Self::Svg, Self::Png];
-
-    /// Name used in files, and ending of the file.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Svg => "svg",
-            Self::Png => "png",
-        }
-    }
-}
 
 /// Everything a sweep needs.
 #[derive(Debug, Clone)]
@@ -78,7 +57,7 @@ pub(crate) struct SweepSpec {
     /// Parameter values at which densities are drawn.
     pub(crate) figures_at: Vec<f64>,
     /// Formats of the figures.
-    pub(crate) figure_formats: Vec<FigureFormat>,
+    pub(crate) figure_formats: Vec<Format>,
 }
 
 impl SweepSpec {
@@ -90,9 +69,15 @@ impl SweepSpec {
         Self::build(file, Document::read(file, overrides)?)
     }
 
-    /// The values of the swept parameter, in the order of the sweep.
-    pub(crate) fn values(&self) -> Vec<f64> {
-        swept::values(self.from, self.to, self.points)
+    /// What to sweep.
+    pub(crate) fn plan(&self) -> Plan {
+        Plan {
+            parameter: self.parameter.clone(),
+            from: self.from,
+            to: self.to,
+            points: self.points,
+            observables: self.observables.clone(),
+        }
     }
 
     fn build(file: &Path, document: Document) -> Result<Self, Report> {

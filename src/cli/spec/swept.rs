@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::cli::diagnostic::{Diagnostic, Place, nearest_name};
 use crate::cli::reader::{Reader, Sited};
+use crate::continuation::evenly_spaced;
 use crate::system::{Model, ParameterDescription, ParameterValues, System, registry};
 
 /// The part of a specification that says what is swept.
@@ -15,26 +16,6 @@ pub(super) struct Swept {
     pub(super) points: usize,
     /// The system at both ends of the sweep.
     pub(super) ends: Vec<Arc<dyn System>>,
-}
-
-/// `points` values from `from` to `to`, both ends exact. Weights are whole numbers and values are rounded to 15
-/// digits, so that round values between (0, or -0.01, between -0.02 and 0.01) come out as people write them.
-pub(super) fn values(from: f64, to: f64, points: usize) -> Vec<f64> {
-    let steps = points - 1;
-    let value = |index: usize| match index {
-        0 => from,
-        index if index == steps => to,
-        index => {
-            let sum = from * (steps - index) as f64 + to * index as f64;
-            rounded(sum / steps as f64)
-        }
-    };
-    (0..points).map(value).collect()
-}
-
-/// A number with 15 significant digits, which is all that every decimal number keeps.
-fn rounded(value: f64) -> f64 {
-    format!("{value:.14e}").parse().unwrap_or(value)
 }
 
 /// The model, if it is a known one; an unknown one is reported with the kind of its key.
@@ -211,7 +192,7 @@ fn check_values(reader: &mut Reader, from: &Sited<f64>, to: &Sited<f64>, points:
         let title = format!("the sweep goes from {} to {}", from.value, to.value);
         return refuse(title, &to.place, "the same as `sweep.from`");
     }
-    let values = values(from.value, to.value, points);
+    let values = evenly_spaced(from.value, to.value, points);
     let rising = to.value > from.value;
     let apart = values
         .windows(2)

@@ -111,7 +111,7 @@ fn the_resolved_file_holds_every_key() {
 #[test]
 fn values_are_even_and_hit_zero() {
     let spec = parse(FILE, &[]).unwrap();
-    let values = spec.values();
+    let values = spec.plan().values();
     assert_eq!(
         (values.len(), values[0], values[20], values[30]),
         (31, -0.02, 0.0, 0.01)

@@ -1,0 +1,154 @@
+//! A friction model of one's own in one file: Stribeck friction on a moving belt, swept over the belt's speed.
+//!
+//! x' = y, y' = -κ y - x - F(y - v) + ξ with F(u) = sgn(u) (f_c + (f_s - f_c) exp(-|u|/v_s)).
+//!
+//! Run with `cargo run --release --example new_friction_model`.
+
+use std::sync::Arc;
+
+use pbif::continuation::{LocateOptions, Plan, sweep};
+use pbif::density::Observable;
+use pbif::method::{Setting, SgcmOptions, SgcmSource};
+use pbif::space::{Axis, CellSpace};
+use pbif::system::{
+    AxisDescription, Lanes, Model, ParameterDescription, ParameterRange, SwitchingSurface, System,
+};
+use pbif::topology::{DetectOptions, PersistenceDetector};
+
+const fn parameter(
+    name: &'static str,
+    meaning: &'static str,
+    default: f64,
+) -> ParameterDescription {
+    ParameterDescription {
+        name,
+        symbol: name,
+        meaning,
+        default: Some(default),
+        range: ParameterRange::Positive,
+    }
+}
+
+static BELT: Model = Model {
+    name: "belt",
+    title: "Oscillator on a moving belt with Stribeck friction",
+    equations: &["x' = y", "y' = -κ y - x - F(y - v) + ξ(t)"],
+    axes: &[
+        AxisDescription {
+            name: "x",
+            symbol: "x",
+            meaning: "displacement",
+        },
+        AxisDescription {
+            name: "y",
+            symbol: "ẋ",
+            meaning: "velocity",
+        },
+    ],
+    parameters: &[
+        parameter("kappa", "viscous damping", 0.05),
+        parameter("f_s", "static friction level", 0.4),
+        parameter("f_c", "sliding friction level", 0.2),
+        parameter("v_s", "Stribeck velocity", 0.5),
+        parameter("v", "speed of the belt", 1.0),
+        parameter("sigma2", "noise intensity", 0.02),
+    ],
+    source: "this example",
+    notes: &[],
+    bind: |values| {
+        Arc::new(Belt {
+            kappa: values[0],
+            f_s: values[1],
+            f_c: values[2],
+            v_s: values[3],
+            speed: values[4],
+            sigma: values[5].sqrt(),
+        })
+    },
+};
+
+struct Belt {
+    kappa: f64,
+    f_s: f64,
+    f_c: f64,
+    v_s: f64,
+    speed: f64,
+    sigma: f64,
+}
+
+impl System for Belt {
+    fn dimension(&self) -> usize {
+        2
+    }
+
+    fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
+        for lane in 0..states[0].len() {
+            let (x, y) = (states[0][lane], states[1][lane]);
+            let slip = y - self.speed;
+            let level = self.f_c + (self.f_s - self.f_c) * (-slip.abs() / self.v_s).exp();
+            let friction = if slip == 0.0 {
+                0.0
+            } else {
+                slip.signum() * level
+            };
+            drift[0][lane] = y;
+            drift[1][lane] = -self.kappa * y - x - friction;
+        }
+    }
+
+    fn noise_axes(&self) -> &[usize] {
+        &[1]
+    }
+
+    fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
+        Some(self.sigma)
+    }
+
+    fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
+        vec![SwitchingSurface {
+            axis: 1,
+            at: self.speed,
+        }]
+    }
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let space = CellSpace::new(vec![
+        Axis::uniform(-2.5, 2.5, 40)?,
+        Axis::uniform(-2.5, 2.5, 40)?,
+    ])?;
+    let observables = [Observable::Marginal(0), Observable::Joint(0, 1)];
+    let values = BELT.values(&[])?;
+    let setting = Setting {
+        model: &BELT,
+        values: &values,
+        parameter: "v",
+        range: (0.2, 1.6),
+        space: &space,
+        observables: &observables,
+    };
+    let options = SgcmOptions {
+        samples: 400,
+        ..SgcmOptions::default()
+    };
+    let source = SgcmSource::new(&setting, &options, Arc::default())?;
+    let plan = Plan {
+        parameter: "v".to_owned(),
+        from: 0.2,
+        to: 1.6,
+        points: 8,
+        observables: observables.to_vec(),
+    };
+    let detector = PersistenceDetector::new(DetectOptions::default(), plan.points);
+    let locate = LocateOptions { tolerance: 0.1 };
+    let result = sweep(&source, &detector, &plan, &locate, &mut ())?;
+    for point in &result.points {
+        let signatures: Vec<String> = point
+            .detections
+            .iter()
+            .map(|detection| detection.signature.to_string())
+            .collect();
+        println!("v = {:.3}: {}", point.value, signatures.join(", "));
+    }
+    Ok(())
+}

@@ -1,0 +1,73 @@
+//! A sweep with an observer of one's own that prints every point as it is done and stops the sweep early.
+//!
+//! Run with `cargo run --release --example own_observer`.
+
+use std::sync::Arc;
+
+use pbif::continuation::{LocateOptions, Observer, Plan, Point, sweep};
+use pbif::density::Observable;
+use pbif::method::{Setting, SgcmOptions, SgcmSource};
+use pbif::space::{Axis, CellSpace};
+use pbif::system::registry;
+use pbif::topology::{DetectOptions, PersistenceDetector};
+
+/// Stops once the density has had two peaks at three points.
+#[derive(Default)]
+struct UntilTwoPeaks {
+    seen: usize,
+}
+
+impl Observer for UntilTwoPeaks {
+    fn point(
+        &mut self,
+        point: &Point,
+        done: usize,
+        _remaining: usize,
+    ) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        if let Some(detection) = point.detections.first() {
+            let signature = detection.signature;
+            println!("{done:3}  a = {:+.3}  {signature}", point.value);
+            self.seen += usize::from(signature.peaks == 2);
+        }
+        Ok(())
+    }
+
+    fn interrupted(&self) -> bool {
+        self.seen >= 3
+    }
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    // dx = (a x - x³) dt + σ dW: one peak for a ≤ 0, two for a > 0.
+    let model = registry::find("bistable")?;
+    let values = model.values(&[("a", -1.0), ("sigma2", 0.5)])?;
+    let space = CellSpace::new(vec![Axis::uniform(-2.5, 2.5, 100)?])?;
+    let observables = [Observable::Marginal(0)];
+    let setting = Setting {
+        model,
+        values: &values,
+        parameter: "a",
+        range: (-1.0, 1.0),
+        space: &space,
+        observables: &observables,
+    };
+    let options = SgcmOptions {
+        samples: 5000,
+        ..SgcmOptions::default()
+    };
+    let source = SgcmSource::new(&setting, &options, Arc::default())?;
+    let plan = Plan {
+        parameter: "a".to_owned(),
+        from: -1.0,
+        to: 1.0,
+        points: 21,
+        observables: observables.to_vec(),
+    };
+    let detector = PersistenceDetector::new(DetectOptions::default(), plan.points);
+    let locate = LocateOptions { tolerance: 0.1 };
+    let mut observer = UntilTwoPeaks::default();
+    let result = sweep(&source, &detector, &plan, &locate, &mut observer)?;
+    let points = result.points.len();
+    println!("{points} points, interrupted: {}", result.interrupted);
+    Ok(())
+}

@@ -1,0 +1,86 @@
+//! Progress on stderr: a bar with the time left on a terminal, a line a point elsewhere, nothing when quiet.
+
+use std::io::{IsTerminal as _, Write as _};
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::continuation::{Plan, Point};
+use crate::run::Naming;
+
+/// Shows how far a sweep is.
+pub(super) struct Progress {
+    bar: Option<ProgressBar>,
+    quiet: bool,
+}
+
+impl Progress {
+    pub(super) fn new(points: usize, quiet: bool) -> Self {
+        let bar = (!quiet && std::io::stderr().is_terminal()).then(|| {
+            let bar = ProgressBar::new(points as u64);
+            let template = "{bar:30} {pos}/{len} points, {elapsed} gone, {eta} left  {msg}";
+            if let Ok(style) = ProgressStyle::with_template(template) {
+                bar.set_style(style);
+            }
+            bar.enable_steady_tick(Duration::from_millis(250));
+            bar
+        });
+        Self { bar, quiet }
+    }
+
+    /// What the program is doing.
+    pub(super) fn say(&self, text: &str) {
+        match &self.bar {
+            Some(bar) => bar.set_message(text.to_owned()),
+            None => self.line(text),
+        }
+    }
+
+    /// A point is done.
+    pub(super) fn point(
+        &self,
+        naming: &Naming<'_>,
+        plan: &Plan,
+        point: &Point,
+        done: usize,
+        remaining: usize,
+    ) {
+        let mut text = format!("{} = {:.6}", naming.parameter, point.value);
+        if point.detections.is_empty() {
+            text += &format!(": {}", point.report.status.word());
+        }
+        for (&observable, detection) in plan.observables.iter().zip(&point.detections) {
+            let name = naming.observable(observable);
+            text += &format!("  {name}: {}", detection.signature);
+        }
+        match &self.bar {
+            Some(bar) => {
+                bar.set_length((done + remaining) as u64);
+                bar.set_position(done as u64);
+                bar.set_message(text);
+            }
+            None => self.line(&format!("{done:4} of {:4}  {text}", done + remaining)),
+        }
+    }
+
+    /// Takes the bar away.
+    pub(super) fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+
+    /// Warnings of a finished run.
+    pub(super) fn warn(&self, warnings: &[String]) {
+        for warning in warnings {
+            self.line(&format!("warning: {warning}"));
+        }
+    }
+
+    fn line(&self, text: &str) {
+        if !self.quiet {
+            // Without a reader of stderr there is nobody to tell.
+            let _ = writeln!(std::io::stderr().lock(), "{text}");
+        }
+    }
+}

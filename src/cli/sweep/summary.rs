@@ -1,0 +1,168 @@
+//! What a finished sweep says: the labelled points on stdout, warnings gathered over the points, the files.
+
+use std::path::Path;
+
+use comfy_table::{Table, presets};
+
+use crate::continuation::{LabelledPoint, Point, PointType, SweepResult};
+use crate::run::{Naming, format_number, format_with_error};
+
+/// The labelled points as a table, the signatures at both ends, and where the files are.
+pub(super) fn text(naming: &Naming<'_>, result: &SweepResult, folder: &Path) -> String {
+    let rows: Vec<&LabelledPoint> = result
+        .labels
+        .iter()
+        .filter(|row| row.kind != PointType::EndPoint)
+        .collect();
+    let mut text = String::new();
+    if rows.is_empty() {
+        text += &format!("no change of topology along {}\n", naming.parameter);
+    } else {
+        text += &table(naming, &rows);
+    }
+    if result.points.iter().all(|point| point.densities.is_empty()) {
+        text += "no steady state in Ω at any value: nothing to draw\n";
+    }
+    text += &ends(naming, result);
+    if result.interrupted {
+        text += "interrupted: the tables hold the points that were done\n";
+    }
+    text += "\nfiles\n";
+    for name in files(folder) {
+        text += &format!("  {}\n", folder.join(name).display());
+    }
+    text
+}
+
+fn table(naming: &Naming<'_>, rows: &[&LabelledPoint]) -> String {
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING).set_header([
+        "label",
+        naming.parameter,
+        "bracket",
+        "observable",
+        "before → after",
+        "status",
+    ]);
+    for row in rows {
+        let (value, error) = format_with_error(row.value, row.error);
+        let (lower, _) = format_with_error(row.lower, row.error);
+        let (upper, _) = format_with_error(row.upper, row.error);
+        let change = match (row.before, row.after) {
+            (Some(before), Some(after)) => format!("{before} → {after}"),
+            _ => String::new(),
+        };
+        let observable = row
+            .observable
+            .map(|observable| naming.observable(observable));
+        table.add_row([
+            row.label.clone(),
+            format!("{value} ± {error}"),
+            format!("[{lower}, {upper}]"),
+            observable.unwrap_or_default(),
+            change,
+            row.status
+                .map_or("no steady state, or not converged", |s| s.word())
+                .to_owned(),
+        ]);
+    }
+    let lines = table.to_string();
+    let trimmed: Vec<&str> = lines.lines().map(str::trim_end).collect();
+    trimmed.join("\n") + "\n"
+}
+
+/// The signatures at both ends of the sweep.
+fn ends(naming: &Naming<'_>, result: &SweepResult) -> String {
+    let mut text = String::new();
+    let solved = || {
+        result
+            .points
+            .iter()
+            .filter(|point| !point.detections.is_empty())
+    };
+    for point in [solved().next(), solved().next_back()]
+        .into_iter()
+        .flatten()
+    {
+        let words: Vec<String> = result
+            .observables
+            .iter()
+            .zip(&point.detections)
+            .map(|(&observable, detection)| {
+                format!("{} {}", naming.observable(observable), detection.signature)
+            })
+            .collect();
+        let value = format_number(point.value);
+        text += &format!("at {} = {value}: {}\n", naming.parameter, words.join(", "));
+    }
+    text
+}
+
+/// The files of a run that are there, in a fixed order.
+fn files(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = [
+        "bifurcations.csv",
+        "bifurcations.md",
+        "bifurcations.tex",
+        "bifurcations.json",
+        "points.csv",
+        "features.csv",
+        "densities.zarr",
+        "run.json",
+    ]
+    .map(str::to_owned)
+    .to_vec();
+    if let Ok(entries) = std::fs::read_dir(folder.join("figures")) {
+        let mut figures: Vec<String> = entries
+            .flatten()
+            .map(|entry| format!("figures/{}", entry.file_name().to_string_lossy()))
+            .collect();
+        figures.sort();
+        names.extend(figures);
+    }
+    names.retain(|name| folder.join(name).exists());
+    names
+}
+
+/// The warnings of all points: each kind once, with the range of parameter values it concerns. Sentences that
+/// differ only in their numbers are one kind; the first is quoted.
+pub(super) fn warnings(parameter: &str, points: &[Point]) -> Vec<String> {
+    struct Kind {
+        shape: String,
+        sentence: String,
+        values: (f64, f64),
+        count: usize,
+    }
+    let mut kinds: Vec<Kind> = Vec::new();
+    for point in points {
+        for sentence in &point.report.warnings {
+            let shape: String = sentence.chars().filter(|c| !c.is_ascii_digit()).collect();
+            match kinds.iter_mut().find(|kind| kind.shape == shape) {
+                Some(kind) => {
+                    kind.values.1 = point.value;
+                    kind.count += 1;
+                }
+                None => kinds.push(Kind {
+                    shape,
+                    sentence: sentence.clone(),
+                    values: (point.value, point.value),
+                    count: 1,
+                }),
+            }
+        }
+    }
+    kinds
+        .into_iter()
+        .map(|kind| {
+            let (first, last) = (format_number(kind.values.0), format_number(kind.values.1));
+            match kind.count {
+                1 => format!("{parameter} = {first}: {}", kind.sentence),
+                count => format!(
+                    "{parameter} = {first}: {} (and the like at {} more values up to {last})",
+                    kind.sentence,
+                    count - 1
+                ),
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,155 @@
+//! What a user must know of a point, in sentences: mass at the edge of Ω, escape, numerical diffusion,
+//! non-convergence. Each limit stands here once.
+
+use crate::density::Moments;
+use crate::space::CellSpace;
+use crate::stationary::ClassShare;
+use crate::system::Model;
+
+/// Mass in the cells at an end of a range above which the range is said to be too narrow.
+const EDGE_MASS_LIMIT: f64 = 1e-3;
+
+/// Relative increase of the noise by numerical diffusion above which it is worth a word.
+const NUMERICAL_DIFFUSION_LIMIT: f64 = 0.1;
+
+/// Sentences in the making.
+#[derive(Debug)]
+pub(super) struct Findings<'a> {
+    model: &'a Model,
+    space: &'a CellSpace,
+    sentences: Vec<String>,
+}
+
+impl<'a> Findings<'a> {
+    pub(super) fn new(model: &'a Model, space: &'a CellSpace) -> Self {
+        Self {
+            model,
+            space,
+            sentences: Vec::new(),
+        }
+    }
+
+    pub(super) fn into_sentences(self) -> Vec<String> {
+        self.sentences
+    }
+
+    fn axis(&self, axis: usize) -> &'static str {
+        self.model.axes.get(axis).map_or("?", |axis| axis.name)
+    }
+
+    /// Mass in the cells at the ends of each axis that are not walls of the system, with a sentence where it is
+    /// too much.
+    pub(super) fn edge_mass(&mut self, mass: &[f64], closed: &[[bool; 2]]) -> Vec<f64> {
+        let mut edges = vec![[0.0; 2]; self.space.dimension()];
+        for (cell, &mass) in mass.iter().enumerate() {
+            for (axis, ends) in edges.iter_mut().enumerate() {
+                let position = self.space.position(cell, axis);
+                let last = self.space.axes()[axis].count() - 1;
+                if position == 0 && !closed[axis][0] {
+                    ends[0] += mass;
+                }
+                if position == last && !closed[axis][1] {
+                    ends[1] += mass;
+                }
+            }
+        }
+        for (axis, ends) in edges.iter().enumerate() {
+            let total = ends[0] + ends[1];
+            if total > EDGE_MASS_LIMIT {
+                let cells = &self.space.axes()[axis];
+                self.sentences.push(format!(
+                    "{:.2} % of the mass lies in the outermost cells of {}: widen its range beyond [{}, {}]",
+                    100.0 * total,
+                    self.axis(axis),
+                    cells.from(),
+                    cells.to(),
+                ));
+            }
+        }
+        edges.iter().map(|ends| ends[0] + ends[1]).collect()
+    }
+
+    /// Compares the diffusion that the cells add with the noise, each axis in units of its variance.
+    pub(super) fn numerical_diffusion(
+        &mut self,
+        diffusion: &[f64],
+        noise: &[f64],
+        moments: &[Moments],
+    ) {
+        let in_units_of_spread = |values: &[f64]| -> f64 {
+            let pairs = values.iter().zip(moments);
+            pairs
+                .map(|(value, moment)| value / moment.standard_deviation.powi(2))
+                .sum()
+        };
+        let ratio = in_units_of_spread(diffusion) / in_units_of_spread(noise);
+        if ratio > NUMERICAL_DIFFUSION_LIMIT {
+            self.sentences.push(format!(
+                "the cells add {:.0} % to the noise (numerical diffusion): use more cells or a longer map step",
+                100.0 * ratio
+            ));
+        }
+    }
+
+    pub(super) fn escaping(&mut self, rate: f64, share: f64) {
+        self.sentences.push(format!(
+            "mass leaves Ω at a rate of {rate:.3e} per unit time ({:.1} % within one relaxation time): the densities \
+             are quasi-stationary, conditioned on staying; widen the ranges",
+            100.0 * share
+        ));
+    }
+
+    pub(super) fn no_steady_state(&mut self, rate: f64, relaxation_time: Option<f64>, limit: f64) {
+        let why = match relaxation_time {
+            Some(time) => format!(
+                "{:.0} % of the mass leaves within one relaxation time ({time:.3}), the limit is {:.0} %",
+                100.0 * rate * time,
+                100.0 * limit
+            ),
+            None => "most of the mass leaves within one map step".to_owned(),
+        };
+        self.sentences.push(format!(
+            "no steady state in Ω: mass leaves at a rate of {rate:.3e} per unit time; {why}"
+        ));
+    }
+
+    pub(super) fn not_converged(&mut self, error: f64) {
+        self.sentences.push(format!(
+            "the solver stopped before its tolerance, with an estimated error of {error:.1e}"
+        ));
+    }
+
+    pub(super) fn several_classes(&mut self, classes: &[ClassShare]) {
+        let words: Vec<String> = classes
+            .iter()
+            .map(|class| {
+                let centre = self.space.centre(class.representative);
+                let place: Vec<String> = centre.iter().map(|x| format!("{x:.3}")).collect();
+                format!(
+                    "{} cells around ({}) holding {:.1} %",
+                    class.cells,
+                    place.join(", "),
+                    100.0 * class.share
+                )
+            })
+            .collect();
+        self.sentences.push(format!(
+            "{} separate steady states, so which one is reached depends on the start: {}",
+            classes.len(),
+            words.join("; ")
+        ));
+    }
+
+    pub(super) fn replicates(&mut self, usable: usize, wanted: usize) {
+        if usable == 0 {
+            self.sentences.push(
+                "the sampling error could not be estimated: leaving out a group of samples leaves no steady state"
+                    .to_owned(),
+            );
+        } else if usable < wanted {
+            self.sentences.push(format!(
+                "the sampling error rests on {usable} of {wanted} groups of samples"
+            ));
+        }
+    }
+}

@@ -1,0 +1,283 @@
+//! Stochastic generalized cell mapping as a source of densities: sample the transition matrix, solve for its
+//! steady state from the neighbour's, estimate the sampling error by leaving out groups of samples.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use rayon::prelude::*;
+
+use super::findings::Findings;
+use super::steps::{Steps, choose_steps};
+use super::{MethodError, SgcmOptions};
+use crate::continuation::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
+use crate::density::{EstimatedDensity, Observable, estimate, moments};
+use crate::sampling::{
+    SampledTransitions, SamplingError, SamplingOptions, TransitionMatrix, sample_transitions,
+};
+use crate::space::CellSpace;
+use crate::stationary::{Options, Outcome, SteadyState, second_eigenvalue, solve};
+use crate::system::{Model, ParameterValues, System};
+
+/// Name of the method in tables.
+const METHOD: &str = "sgcm";
+
+/// L1 error to which replicates are solved: far below any sampling error, which is all they are for.
+const REPLICATE_TOLERANCE: f64 = 1e-7;
+
+/// Escape per map step below which mass is said to stay in Ω, and relaxation is not looked at.
+const NO_ESCAPE: f64 = 1e-12;
+
+/// Share of the mass that may leave within one relaxation time without a word.
+const QUIET_ESCAPE: f64 = 1e-3;
+
+/// Densities along one parameter by SGCM.
+#[derive(Debug)]
+pub struct SgcmSource {
+    model: &'static Model,
+    values: ParameterValues,
+    parameter: String,
+    space: CellSpace,
+    observables: Vec<Observable>,
+    options: SgcmOptions,
+    steps: Steps,
+    cancelled: Arc<AtomicBool>,
+}
+
+/// What is swept, on which cells, and what is watched.
+#[derive(Debug, Clone)]
+pub struct Setting<'a> {
+    /// The model.
+    pub model: &'static Model,
+    /// Its parameters; the swept one is replaced by every value in turn.
+    pub values: &'a ParameterValues,
+    /// Name of the swept parameter.
+    pub parameter: &'a str,
+    /// First and last value of the sweep.
+    pub range: (f64, f64),
+    /// The cells.
+    pub space: &'a CellSpace,
+    /// What is watched, in this order.
+    pub observables: &'a [Observable],
+}
+
+impl SgcmSource {
+    /// Prepares a source; steps left to the program are chosen here, once, so that the transition matrix varies
+    /// smoothly along the sweep. Setting `cancelled` makes a running solve return [`SourceError::Interrupted`].
+    ///
+    /// # Errors
+    /// [`MethodError`] when the ends of the range are not allowed or an observable names an axis that does not exist.
+    pub fn new(
+        setting: &Setting<'_>,
+        options: &SgcmOptions,
+        cancelled: Arc<AtomicBool>,
+    ) -> Result<Self, MethodError> {
+        for &observable in setting.observables {
+            crate::density::Projection::new(setting.space, observable)?;
+        }
+        let steps = choose_steps(setting, options)?;
+        Ok(Self {
+            model: setting.model,
+            values: setting.values.clone(),
+            parameter: setting.parameter.to_owned(),
+            space: setting.space.clone(),
+            observables: setting.observables.to_vec(),
+            options: options.clone(),
+            steps,
+            cancelled,
+        })
+    }
+
+    /// Time one transition spans.
+    pub fn map_step(&self) -> f64 {
+        self.steps.map_step
+    }
+
+    /// Step of the trajectory integrator.
+    pub fn time_step(&self) -> f64 {
+        self.steps.time_step
+    }
+
+    fn sample(
+        &self,
+        system: &dyn System,
+        start: Option<&[f64]>,
+    ) -> Result<SampledTransitions, SamplingError> {
+        let options = SamplingOptions {
+            map_step: self.steps.map_step,
+            time_step: self.steps.time_step,
+            samples: self.options.samples,
+            groups: self.options.replicates,
+            seed: self.options.seed,
+            integrator: self.options.integrator,
+        };
+        // The pilot's cells are always among the seeds: a state that the neighbour did not have is then found too.
+        let mut seeds = self.steps.cells.clone();
+        if let Some(mass) = start {
+            seeds.extend((0..mass.len()).filter(|&cell| mass[cell] > 0.0));
+        }
+        let cancelled = || self.cancelled.load(Ordering::Relaxed);
+        sample_transitions(system, &self.space, &seeds, &options, &cancelled)
+    }
+
+    /// Steady states without one group of samples each; fewer than asked for when one of them has none.
+    fn replicates(&self, transitions: &SampledTransitions, full: &SteadyState) -> Vec<Vec<f64>> {
+        let options = Options::new(self.options.solver, REPLICATE_TOLERANCE);
+        let replicate = |group: usize| {
+            let matrix = transitions.matrix_without_group(group);
+            match solve(&matrix, &self.space, Some(&full.mass), &options) {
+                Ok(Outcome::Steady(steady)) => Some(steady.mass),
+                _ => None,
+            }
+        };
+        (0..transitions.groups())
+            .into_par_iter()
+            .filter_map(replicate)
+            .collect()
+    }
+
+    fn densities(
+        &self,
+        transitions: &SampledTransitions,
+        steady: &SteadyState,
+    ) -> Result<(Vec<EstimatedDensity>, usize), MethodError> {
+        let replicates = self.replicates(transitions, steady);
+        let usable: &[Vec<f64>] = if replicates.len() < 2 {
+            &[]
+        } else {
+            &replicates
+        };
+        let densities: Result<Vec<_>, _> = self
+            .observables
+            .iter()
+            .map(|&observable| estimate(&self.space, observable, &steady.mass, usable))
+            .collect();
+        Ok((densities?, usable.len()))
+    }
+
+    fn solved(
+        &self,
+        transitions: &SampledTransitions,
+        matrix: &TransitionMatrix,
+        steady: SteadyState,
+    ) -> Result<Solution<Vec<f64>>, MethodError> {
+        let info = &steady.info;
+        let escape_rate = escape_rate(info.escape_per_step, self.steps.map_step);
+        let relaxation_time = if info.escape_per_step > NO_ESCAPE {
+            second_eigenvalue(matrix, &steady)?.relaxation_time
+        } else {
+            None
+        };
+        let escaping_share = relaxation_time.map_or(0.0, |time| escape_rate * time);
+        let mut report = self.report(PointStatus::Solved, info.iterations, info.residual);
+        report.escape_rate = escape_rate;
+        let mut findings = Findings::new(self.model, &self.space);
+        if escaping_share > self.options.escape_limit {
+            findings.no_steady_state(escape_rate, relaxation_time, self.options.escape_limit);
+            report.status = PointStatus::NoSteadyState;
+            report.warnings = findings.into_sentences();
+            return Ok(without_density(report));
+        }
+        let moments = moments(&self.space, &steady.mass)?;
+        report.edge_mass = findings.edge_mass(&steady.mass, &self.steps.closed_ends);
+        let local_mass: Vec<f64> = transitions
+            .cells()
+            .iter()
+            .map(|&c| steady.mass[c])
+            .collect();
+        report.numerical_diffusion = transitions.numerical_diffusion(&local_mass);
+        findings.numerical_diffusion(&report.numerical_diffusion, &self.steps.noise, &moments);
+        if escaping_share > QUIET_ESCAPE {
+            report.status = PointStatus::Escaping;
+            findings.escaping(escape_rate, escaping_share);
+        }
+        if !info.converged {
+            report.status = PointStatus::NotConverged;
+            findings.not_converged(info.error_estimate);
+        }
+        let (densities, replicates) = self.densities(transitions, &steady)?;
+        findings.replicates(replicates, transitions.groups());
+        report.warnings = findings.into_sentences();
+        Ok(Solution {
+            report,
+            moments,
+            densities,
+            state: Some(steady.mass),
+        })
+    }
+
+    fn report(&self, status: PointStatus, iterations: usize, residual: f64) -> SolveReport {
+        SolveReport {
+            status,
+            method: METHOD,
+            iterations,
+            residual,
+            escape_rate: 0.0,
+            negative_mass: 0.0,
+            edge_mass: Vec::new(),
+            numerical_diffusion: Vec::new(),
+            map_step: Some(self.steps.map_step),
+            warnings: Vec::new(),
+        }
+    }
+
+    fn try_solve(
+        &self,
+        value: f64,
+        start: Option<&[f64]>,
+    ) -> Result<Solution<Vec<f64>>, MethodError> {
+        let values = self.model.with(&self.values, &self.parameter, value)?;
+        let system = self.model.system(&values);
+        let transitions = self.sample(system.as_ref(), start)?;
+        let matrix = transitions.matrix();
+        let options = Options::new(self.options.solver, self.options.solver_tolerance);
+        match solve(&matrix, &self.space, start, &options)? {
+            Outcome::Steady(steady) => self.solved(&transitions, &matrix, steady),
+            Outcome::SeveralClasses { classes, .. } => {
+                let mut report = self.report(PointStatus::SeveralClasses, 0, 0.0);
+                let mut findings = Findings::new(self.model, &self.space);
+                findings.several_classes(&classes);
+                report.warnings = findings.into_sentences();
+                Ok(without_density(report))
+            }
+            Outcome::NoneInside { escape_per_step } => {
+                let mut report = self.report(PointStatus::NoSteadyState, 0, 0.0);
+                report.escape_rate = escape_rate(escape_per_step, self.steps.map_step);
+                let mut findings = Findings::new(self.model, &self.space);
+                findings.no_steady_state(report.escape_rate, None, self.options.escape_limit);
+                report.warnings = findings.into_sentences();
+                Ok(without_density(report))
+            }
+        }
+    }
+}
+
+impl DensitySource for SgcmSource {
+    /// Mass of every cell.
+    type State = Vec<f64>;
+
+    fn solve(
+        &self,
+        value: f64,
+        start: Option<&Vec<f64>>,
+    ) -> Result<Solution<Vec<f64>>, SourceError> {
+        match self.try_solve(value, start.map(Vec::as_slice)) {
+            Err(MethodError::Sampling(SamplingError::Cancelled)) => Err(SourceError::Interrupted),
+            other => other.map_err(|error| SourceError::Method(error.into())),
+        }
+    }
+}
+
+/// Rate r with 1 - exp(-r Δt) = escape per step; where everything leaves in one step, the rate of losing all but a
+/// rounding unit of it.
+fn escape_rate(escape_per_step: f64, map_step: f64) -> f64 {
+    -(1.0 - escape_per_step).max(f64::EPSILON).ln() / map_step
+}
+
+fn without_density(report: SolveReport) -> Solution<Vec<f64>> {
+    Solution {
+        report,
+        moments: Vec::new(),
+        densities: Vec::new(),
+        state: None,
+    }
+}

@@ -1,0 +1,75 @@
+//! Steps of a sweep by SGCM: given, or chosen from a pilot at both ends and in the middle of the sweep. One choice
+//! serves the whole sweep, so that the transition matrix varies smoothly with the parameter.
+
+use super::sgcm::Setting;
+use super::{MethodError, SgcmOptions, StepChoice};
+use crate::sampling::{Pilot, pilot};
+
+/// Steps, and what else the pilots showed.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Steps {
+    /// Time one transition spans.
+    pub(super) map_step: f64,
+    /// Step of the integrator.
+    pub(super) time_step: f64,
+    /// Cells to grow from: visited by a pilot somewhere along the sweep.
+    pub(super) cells: Vec<usize>,
+    /// Largest mean noise intensity b²/2 along the sweep, one value an axis.
+    pub(super) noise: Vec<f64>,
+    /// Whether the lower and upper end of each axis is a wall that the system cannot pass.
+    pub(super) closed_ends: Vec<[bool; 2]>,
+}
+
+pub(super) fn choose_steps(
+    setting: &Setting<'_>,
+    options: &SgcmOptions,
+) -> Result<Steps, MethodError> {
+    let (from, to) = setting.range;
+    let mut pilots: Vec<Pilot> = Vec::new();
+    let mut closed_ends = vec![[true; 2]; setting.space.dimension()];
+    for value in [from, 0.5 * (from + to), to] {
+        let values = setting
+            .model
+            .with(setting.values, setting.parameter, value)?;
+        let system = setting.model.system(&values);
+        for (axis, ends) in closed_ends.iter_mut().enumerate() {
+            let cells = &setting.space.axes()[axis];
+            let (lower, upper) = system
+                .bounds(axis)
+                .unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+            ends[0] &= cells.from() <= lower;
+            ends[1] &= cells.to() >= upper;
+        }
+        pilots.push(pilot(system.as_ref(), setting.space, options.seed));
+    }
+    let time_step = match options.time_step {
+        StepChoice::Fixed(step) => step,
+        StepChoice::Auto => smallest(&pilots, |pilot| {
+            pilot.automatic_time_step(options.integrator)
+        }),
+    };
+    let map_step = match options.map_step {
+        StepChoice::Fixed(step) => step,
+        StepChoice::Auto => -smallest(&pilots, |pilot| -pilot.automatic_map_step(time_step)),
+    };
+    let mut cells: Vec<usize> = pilots
+        .iter()
+        .flat_map(|pilot| pilot.cells.clone())
+        .collect();
+    cells.sort_unstable();
+    cells.dedup();
+    let noise = (0..setting.space.dimension())
+        .map(|axis| -smallest(&pilots, |pilot| -pilot.noise_intensity[axis]))
+        .collect();
+    Ok(Steps {
+        map_step,
+        time_step,
+        cells,
+        noise,
+        closed_ends,
+    })
+}
+
+fn smallest(pilots: &[Pilot], value: impl Fn(&Pilot) -> f64) -> f64 {
+    pilots.iter().map(value).fold(f64::INFINITY, f64::min)
+}
