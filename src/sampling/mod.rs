@@ -1,8 +1,62 @@
 //! Stochastic generalized cell mapping (SGCM): transition probabilities between cells, estimated by
 //! sampled trajectories.
+//!
+//! [`pilot`] looks at a system with a few free trajectories: where its mass is, and which steps suit it.
+//! [`sample_transitions`] then samples every reachable cell.
 
+mod column;
+mod growth;
 mod integrator;
+mod jacobian;
+mod normal;
+mod pilot;
+mod random;
+mod starts;
 mod transition;
 
+pub use growth::{SamplingOptions, estimated_bytes, sample_transitions};
 pub use integrator::Integrator;
-pub use transition::TransitionMatrix;
+pub use pilot::{Pilot, pilot};
+pub use transition::{SampledTransitions, TransitionMatrix};
+
+/// Why transitions could not be sampled.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SamplingError {
+    /// A step that is not a positive number.
+    #[error("the {name} is {value}; it must be a finite number greater than zero")]
+    Step {
+        /// Which step.
+        name: &'static str,
+        /// The value that was given.
+        value: f64,
+    },
+    /// Numbers of samples and groups that do not go together.
+    #[error(
+        "{samples} samples cannot be split into {groups} groups: there must be 1 to 256 groups, and a sample in each"
+    )]
+    Groups {
+        /// Samples a cell.
+        samples: usize,
+        /// Number of groups.
+        groups: usize,
+    },
+    /// The system and the cell space differ in dimension.
+    #[error("the system has {system} axes, the cell space {space}")]
+    Dimension {
+        /// Axes of the system.
+        system: usize,
+        /// Axes of the cell space.
+        space: usize,
+    },
+    /// A cell to start from that does not exist.
+    #[error("there is no cell {cell} to start from; the cell space has {n_cells}")]
+    Seed {
+        /// The number that was given.
+        cell: usize,
+        /// Number of cells.
+        n_cells: usize,
+    },
+    /// The caller asked to stop.
+    #[error("sampling was cancelled")]
+    Cancelled,
+}

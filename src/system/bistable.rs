@@ -1,152 +1,97 @@
-//! Duffing oscillator with Coulomb friction (the paper's first example).
-//!
-//! Convention of the paper's Eq. (7): κ is the viscous damping, α the linear stiffness.
+//! Overdamped motion in a quartic potential: the smallest model with a P-bifurcation, exactly solvable.
 
 use std::sync::Arc;
 
 use multiversion::multiversion;
 
-use super::{
-    AxisDescription, Lanes, Model, ParameterDescription, ParameterRange, SwitchingSurface,
-    Symmetry, System,
-};
+use super::parameters::{GROWTH, SIGMA2, X};
+use super::{Lanes, Model, Symmetry, System};
 
-/// x' = y, y' = -κy - αx - μx³ - f_c sgn(y) + ξ.
+/// dx = (ax - x³) dt + σ dW.
 pub(super) static MODEL: Model = Model {
     name: "bistable",
-    title: "Duffing oscillator with Coulomb friction",
-    equations: &[
-        "x' = y",
-        "y' = -κ y - α x - μ x³ - f_c sgn(y) + ξ(t),   sgn(0) = 0",
-        "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
-    ],
-    axes: &[
-        AxisDescription {
-            name: "x",
-            symbol: "x",
-            meaning: "displacement",
-        },
-        AxisDescription {
-            name: "y",
-            symbol: "ẋ",
-            meaning: "velocity",
-        },
-    ],
-    parameters: &[
-        ParameterDescription {
-            name: "alpha",
-            symbol: "α",
-            meaning: "linear stiffness",
-            default: Some(1.0),
-            range: ParameterRange::Any,
-        },
-        ParameterDescription {
-            name: "kappa",
-            symbol: "κ",
-            meaning: "viscous damping",
-            default: None,
-            range: ParameterRange::Any,
-        },
-        ParameterDescription {
-            name: "mu",
-            symbol: "μ",
-            meaning: "cubic stiffness",
-            default: Some(0.0),
-            range: ParameterRange::Any,
-        },
-        ParameterDescription {
-            name: "f_c",
-            symbol: "f_{c}",
-            meaning: "friction level (negative: friction that feeds energy in)",
-            default: None,
-            range: ParameterRange::Any,
-        },
-        ParameterDescription {
-            name: "sigma2",
-            symbol: "σ^{2}",
-            meaning: "noise intensity",
-            default: None,
-            range: ParameterRange::Positive,
-        },
-    ],
-    source: "the paper, Eqs. (5)-(6), with the letters of Eq. (7)",
+    title: "Overdamped particle in a quartic potential, exactly solvable",
+    equations: &["dx = (a x - x³) dt + σ dW"],
+    axes: &[X],
+    parameters: &[GROWTH, SIGMA2],
+    source: "textbook pitchfork normal form with additive noise",
     notes: &[
-        "The paper's Eq. (5) prints α = 1 as damping and κ = 0.01 as stiffness. With that reading the marginal of x has one peak at every f_c, against the paper's Fig. 2(a); with the letters of its Eq. (7), used here, its figures come out.",
-        "The marginal of y has a kink at 0, p'(0+)/p(0) = -2 f_c/σ², so it changes from two peaks to one exactly at f_c = 0.",
+        "The steady state is p ∝ exp((2/σ²)(a x²/2 - x⁴/4)): one peak for a ≤ 0, two for a > 0.",
     ],
     bind: |values| {
-        Arc::new(Coulomb {
-            alpha: values[0],
-            kappa: values[1],
-            mu: values[2],
-            f_c: values[3],
-            sigma: values[4].sqrt(),
-            sigma2: values[4],
+        Arc::new(Bistable {
+            a: values[0],
+            sigma: values[1].sqrt(),
+            sigma2: values[1],
         })
     },
 };
 
-struct Coulomb {
-    alpha: f64,
-    kappa: f64,
-    mu: f64,
-    f_c: f64,
+struct Bistable {
+    a: f64,
     sigma: f64,
     sigma2: f64,
 }
 
-/// Sign with sgn(0) = 0, written so that it compiles to selects on vector registers.
-#[inline(always)]
-fn sign(value: f64) -> f64 {
-    f64::from(i8::from(value > 0.0) - i8::from(value < 0.0))
-}
-
 #[multiversion(targets = "simd")]
-fn drift(parameters: &Coulomb, states: &[Lanes], drift: &mut [Lanes]) {
-    let ([x, y], [x_slope, y_slope]) = (states, drift) else {
+fn drift(a: f64, states: &[Lanes], drift: &mut [Lanes]) {
+    let ([x], [x_slope]) = (states, drift) else {
         return;
     };
     for lane in 0..x.len() {
-        let (x, y) = (x[lane], y[lane]);
-        x_slope[lane] = y;
-        y_slope[lane] = -parameters.kappa * y
-            - x * (parameters.alpha + parameters.mu * x * x)
-            - parameters.f_c * sign(y);
+        let x = x[lane];
+        x_slope[lane] = x * (a - x * x);
     }
 }
 
-impl System for Coulomb {
+impl System for Bistable {
     fn dimension(&self) -> usize {
-        2
+        1
     }
 
     fn drift(&self, _time: f64, states: &[Lanes], slopes: &mut [Lanes]) {
-        drift(self, states, slopes);
+        drift(self.a, states, slopes);
     }
 
     fn noise_axes(&self) -> &[usize] {
-        &[1]
+        &[0]
     }
 
     fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
         Some(self.sigma)
     }
 
-    fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
-        vec![SwitchingSurface { axis: 1, at: 0.0 }]
-    }
-
     fn symmetry(&self) -> Option<Symmetry> {
         Some(Symmetry {
-            centre: vec![0.0, 0.0],
-            reflected: vec![true, true],
+            centre: vec![0.0],
+            reflected: vec![true],
         })
     }
 
-    /// Known without friction: p ∝ exp(-(2κ/σ²)(y²/2 + αx²/2 + μx⁴/4)).
+    /// p ∝ exp((2/σ²)(ax²/2 - x⁴/4)).
     fn exact_log_density(&self, state: &[f64]) -> Option<f64> {
-        let &[x, y] = state else { return None };
-        let energy = 0.5 * y * y + 0.5 * self.alpha * x * x + 0.25 * self.mu * x.powi(4);
-        (self.f_c == 0.0).then_some(-2.0 * self.kappa / self.sigma2 * energy)
+        let &[x] = state else { return None };
+        let square = x * x;
+        Some(2.0 / self.sigma2 * square * (0.5 * self.a - 0.25 * square))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::contract::{assert_stationary, bound};
+
+    #[test]
+    fn the_drift_is_the_equation() {
+        let system = bound("bistable", &[("a", 0.5), ("sigma2", 0.25)]);
+        assert_eq!(system.drift_at(0.0, &[2.0]), vec![-7.0]);
+        assert_eq!(system.additive_amplitude(0), Some(0.5));
+    }
+
+    #[test]
+    fn the_density_solves_fokker_planck_on_both_sides_of_the_bifurcation() {
+        for a in [-0.7, 0.9] {
+            let system = bound("bistable", &[("a", a), ("sigma2", 0.5)]);
+            assert_stationary(&*system, true);
+        }
     }
 }

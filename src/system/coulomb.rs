@@ -6,10 +6,8 @@ use std::sync::Arc;
 
 use multiversion::multiversion;
 
-use super::{
-    AxisDescription, Lanes, Model, ParameterDescription, ParameterRange, SwitchingSurface,
-    Symmetry, System,
-};
+use super::parameters::{ALPHA, COULOMB_LEVEL, KAPPA, MU, SIGMA2, X, Y};
+use super::{Lanes, Model, SwitchingSurface, Symmetry, System};
 
 /// x' = y, y' = -κy - αx - μx³ - f_c sgn(y) + ξ.
 pub(super) static MODEL: Model = Model {
@@ -20,55 +18,8 @@ pub(super) static MODEL: Model = Model {
         "y' = -κ y - α x - μ x³ - f_c sgn(y) + ξ(t),   sgn(0) = 0",
         "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
     ],
-    axes: &[
-        AxisDescription {
-            name: "x",
-            symbol: "x",
-            meaning: "displacement",
-        },
-        AxisDescription {
-            name: "y",
-            symbol: "ẋ",
-            meaning: "velocity",
-        },
-    ],
-    parameters: &[
-        ParameterDescription {
-            name: "alpha",
-            symbol: "α",
-            meaning: "linear stiffness",
-            default: Some(1.0),
-            range: ParameterRange::Any,
-        },
-        ParameterDescription {
-            name: "kappa",
-            symbol: "κ",
-            meaning: "viscous damping",
-            default: None,
-            range: ParameterRange::Any,
-        },
-        ParameterDescription {
-            name: "mu",
-            symbol: "μ",
-            meaning: "cubic stiffness",
-            default: Some(0.0),
-            range: ParameterRange::Any,
-        },
-        ParameterDescription {
-            name: "f_c",
-            symbol: "f_{c}",
-            meaning: "friction level (negative: friction that feeds energy in)",
-            default: None,
-            range: ParameterRange::Any,
-        },
-        ParameterDescription {
-            name: "sigma2",
-            symbol: "σ^{2}",
-            meaning: "noise intensity",
-            default: None,
-            range: ParameterRange::Positive,
-        },
-    ],
+    axes: &[X, Y],
+    parameters: &[ALPHA, KAPPA, MU, COULOMB_LEVEL, SIGMA2],
     source: "the paper, Eqs. (5)-(6), with the letters of Eq. (7)",
     notes: &[
         "The paper's Eq. (5) prints α = 1 as damping and κ = 0.01 as stiffness. With that reading the marginal of x has one peak at every f_c, against the paper's Fig. 2(a); with the letters of its Eq. (7), used here, its figures come out.",
@@ -98,7 +49,9 @@ struct Coulomb {
 /// Sign with sgn(0) = 0, written so that it compiles to selects on vector registers.
 #[inline(always)]
 fn sign(value: f64) -> f64 {
-    f64::from(i8::from(value > 0.0) - i8::from(value < 0.0))
+    let positive = if value > 0.0 { 1.0 } else { 0.0 };
+    let negative = if value < 0.0 { 1.0 } else { 0.0 };
+    positive - negative
 }
 
 #[multiversion(targets = "simd")]
@@ -106,12 +59,17 @@ fn drift(parameters: &Coulomb, states: &[Lanes], drift: &mut [Lanes]) {
     let ([x, y], [x_slope, y_slope]) = (states, drift) else {
         return;
     };
+    let &Coulomb {
+        alpha,
+        kappa,
+        mu,
+        f_c,
+        ..
+    } = parameters;
     for lane in 0..x.len() {
         let (x, y) = (x[lane], y[lane]);
         x_slope[lane] = y;
-        y_slope[lane] = -parameters.kappa * y
-            - x * (parameters.alpha + parameters.mu * x * x)
-            - parameters.f_c * sign(y);
+        y_slope[lane] = -kappa * y - x * (alpha + mu * x * x) - f_c * sign(y);
     }
 }
 
@@ -148,5 +106,43 @@ impl System for Coulomb {
         let &[x, y] = state else { return None };
         let energy = 0.5 * y * y + 0.5 * self.alpha * x * x + 0.25 * self.mu * x.powi(4);
         (self.f_c == 0.0).then_some(-2.0 * self.kappa / self.sigma2 * energy)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::contract::{assert_stationary, bound};
+
+    #[test]
+    fn the_drift_is_the_equation() {
+        let values = [
+            ("alpha", 1.5),
+            ("kappa", 0.2),
+            ("mu", 0.25),
+            ("f_c", 0.5),
+            ("sigma2", 0.04),
+        ];
+        let system = bound("coulomb", &values);
+        // -0.2·3 - 1.5·2 - 0.25·8 - 0.5 = -6.1, and +0.6 - 3 - 2 + 0.5 = -3.9.
+        for (state, expected) in [
+            ([2.0, 3.0], -6.1),
+            ([2.0, -3.0], -3.9),
+            // sgn(0) = 0, also for the negative zero.
+            ([2.0, 0.0], -5.0),
+            ([2.0, -0.0], -5.0),
+        ] {
+            let drift = system.drift_at(0.0, &state);
+            assert_eq!(drift[0], state[1]);
+            assert!((drift[1] - expected).abs() < 1e-14, "{drift:?}");
+        }
+        assert_eq!(system.additive_amplitude(0), Some(0.2));
+    }
+
+    #[test]
+    fn the_density_is_known_only_without_friction() {
+        let values = |f_c| [("kappa", 0.3), ("mu", 0.2), ("f_c", f_c), ("sigma2", 0.5)];
+        assert_stationary(&*bound("coulomb", &values(0.0)), true);
+        let rubbing = bound("coulomb", &values(0.1));
+        assert_eq!(rubbing.exact_log_density(&[0.5, 0.5]), None);
     }
 }

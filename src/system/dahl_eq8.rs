@@ -1,123 +1,74 @@
-//! Duffing oscillator with Coulomb friction (the paper's first example).
-//!
-//! Convention of the paper's Eq. (7): κ is the viscous damping, α the linear stiffness.
+//! The paper's second example as its Eqs. (8) and (9) are printed, kept to show what the print leads to.
 
 use std::sync::Arc;
 
 use multiversion::multiversion;
 
-use super::{
-    AxisDescription, Lanes, Model, ParameterDescription, ParameterRange, SwitchingSurface,
-    Symmetry, System,
-};
+use super::parameters::{ALPHA, DAHL_LEVEL, KAPPA, LAMBDA, MU, SIGMA2, X, Y, Z};
+use super::{Lanes, Model, SwitchingSurface, Symmetry, System};
 
-/// x' = y, y' = -κy - αx - μx³ - f_c sgn(y) + ξ.
+/// x' = y, y' = -κy - αx - μx³ - λz + ξ, z' = y - (λ|y|/f_c) x.
 pub(super) static MODEL: Model = Model {
     name: "dahl_eq8",
-    title: "Duffing oscillator with Coulomb friction",
+    title: "Duffing oscillator with Dahl friction as printed (no steady state)",
     equations: &[
         "x' = y",
-        "y' = -κ y - α x - μ x³ - f_c sgn(y) + ξ(t),   sgn(0) = 0",
+        "y' = -κ y - α x - μ x³ - λ z + ξ(t)",
+        "z' = y - (λ |y| / f_c) x",
         "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
     ],
-    axes: &[
-        AxisDescription {
-            name: "x",
-            symbol: "x",
-            meaning: "displacement",
-        },
-        AxisDescription {
-            name: "y",
-            symbol: "ẋ",
-            meaning: "velocity",
-        },
-    ],
-    parameters: &[
-        ParameterDescription {
-            name: "alpha",
-            symbol: "α",
-            meaning: "linear stiffness",
-            default: Some(1.0),
-            range: ParameterRange::Any,
-        },
-        ParameterDescription {
-            name: "kappa",
-            symbol: "κ",
-            meaning: "viscous damping",
-            default: None,
-            range: ParameterRange::Any,
-        },
-        ParameterDescription {
-            name: "mu",
-            symbol: "μ",
-            meaning: "cubic stiffness",
-            default: Some(0.0),
-            range: ParameterRange::Any,
-        },
-        ParameterDescription {
-            name: "f_c",
-            symbol: "f_{c}",
-            meaning: "friction level (negative: friction that feeds energy in)",
-            default: None,
-            range: ParameterRange::Any,
-        },
-        ParameterDescription {
-            name: "sigma2",
-            symbol: "σ^{2}",
-            meaning: "noise intensity",
-            default: None,
-            range: ParameterRange::Positive,
-        },
-    ],
-    source: "the paper, Eqs. (5)-(6), with the letters of Eq. (7)",
+    axes: &[X, Y, Z],
+    parameters: &[ALPHA, KAPPA, MU, LAMBDA, DAHL_LEVEL, SIGMA2],
+    source: "the paper, Eqs. (8)-(9), as printed",
     notes: &[
-        "The paper's Eq. (5) prints α = 1 as damping and κ = 0.01 as stiffness. With that reading the marginal of x has one peak at every f_c, against the paper's Fig. 2(a); with the letters of its Eq. (7), used here, its figures come out.",
-        "The marginal of y has a kink at 0, p'(0+)/p(0) = -2 f_c/σ², so it changes from two peaks to one exactly at f_c = 0.",
+        "The print has x as the last factor of z', where Dahl's law has z (model `dahl`). Nothing then holds z back: it is not bounded, it runs away, and the system has no steady state.",
     ],
     bind: |values| {
-        Arc::new(Coulomb {
+        Arc::new(DahlAsPrinted {
             alpha: values[0],
             kappa: values[1],
             mu: values[2],
-            f_c: values[3],
-            sigma: values[4].sqrt(),
-            sigma2: values[4],
+            lambda: values[3],
+            f_c: values[4],
+            sigma: values[5].sqrt(),
         })
     },
 };
 
-struct Coulomb {
+struct DahlAsPrinted {
     alpha: f64,
     kappa: f64,
     mu: f64,
+    lambda: f64,
     f_c: f64,
     sigma: f64,
-    sigma2: f64,
-}
-
-/// Sign with sgn(0) = 0, written so that it compiles to selects on vector registers.
-#[inline(always)]
-fn sign(value: f64) -> f64 {
-    f64::from(i8::from(value > 0.0) - i8::from(value < 0.0))
 }
 
 #[multiversion(targets = "simd")]
-fn drift(parameters: &Coulomb, states: &[Lanes], drift: &mut [Lanes]) {
-    let ([x, y], [x_slope, y_slope]) = (states, drift) else {
+fn drift(parameters: &DahlAsPrinted, states: &[Lanes], drift: &mut [Lanes]) {
+    let ([x, y, z], [x_slope, y_slope, z_slope]) = (states, drift) else {
         return;
     };
+    let &DahlAsPrinted {
+        alpha,
+        kappa,
+        mu,
+        lambda,
+        f_c,
+        ..
+    } = parameters;
+    let ratio = lambda / f_c;
     for lane in 0..x.len() {
-        let (x, y) = (x[lane], y[lane]);
+        let (x, y, z) = (x[lane], y[lane], z[lane]);
         x_slope[lane] = y;
-        y_slope[lane] = -parameters.kappa * y
-            - x * (parameters.alpha + parameters.mu * x * x)
-            - parameters.f_c * sign(y);
+        y_slope[lane] = -kappa * y - x * (alpha + mu * x * x) - lambda * z;
+        z_slope[lane] = y - ratio * y.abs() * x;
     }
 }
 
-impl System for Coulomb {
+impl System for DahlAsPrinted {
     fn dimension(&self) -> usize {
-        2
+        3
     }
 
     fn drift(&self, _time: f64, states: &[Lanes], slopes: &mut [Lanes]) {
@@ -138,15 +89,32 @@ impl System for Coulomb {
 
     fn symmetry(&self) -> Option<Symmetry> {
         Some(Symmetry {
-            centre: vec![0.0, 0.0],
-            reflected: vec![true, true],
+            centre: vec![0.0; 3],
+            reflected: vec![true; 3],
         })
     }
+}
 
-    /// Known without friction: p ∝ exp(-(2κ/σ²)(y²/2 + αx²/2 + μx⁴/4)).
-    fn exact_log_density(&self, state: &[f64]) -> Option<f64> {
-        let &[x, y] = state else { return None };
-        let energy = 0.5 * y * y + 0.5 * self.alpha * x * x + 0.25 * self.mu * x.powi(4);
-        (self.f_c == 0.0).then_some(-2.0 * self.kappa / self.sigma2 * energy)
+#[cfg(test)]
+mod tests {
+    use super::super::contract::bound;
+
+    #[test]
+    fn the_drift_is_the_printed_equation() {
+        let values = [
+            ("alpha", -1.0),
+            ("kappa", 0.1),
+            ("mu", 1.0),
+            ("lambda", 0.5),
+            ("f_c", 0.25),
+            ("sigma2", 0.04),
+        ];
+        let system = bound("dahl_eq8", &values);
+        // y' = 0.1·2 + 3 - 27 - 0.5·0.4 = -24; z' = -2 - (0.5·2/0.25)·3 = -14.
+        let drift = system.drift_at(0.0, &[3.0, -2.0, 0.4]);
+        assert_eq!(drift[0], -2.0);
+        assert!((drift[1] + 24.0).abs() < 1e-13, "{drift:?}");
+        assert!((drift[2] + 14.0).abs() < 1e-14, "{drift:?}");
+        assert_eq!(system.bounds(2), None);
     }
 }

@@ -5,10 +5,13 @@
 //! with their meaning, and a function that binds values. [`registry`] lists the models.
 
 mod bistable;
+#[cfg(test)]
+mod contract;
 mod coulomb;
 mod dahl;
 mod dahl_eq8;
 mod model;
+mod parameters;
 mod rayleigh;
 pub mod registry;
 

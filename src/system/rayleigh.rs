@@ -1,121 +1,72 @@
-//! Duffing oscillator with Coulomb friction (the paper's first example).
-//!
-//! Convention of the paper's Eq. (7): κ is the viscous damping, α the linear stiffness.
+//! Oscillator whose damping depends on its energy: its steady state is known exactly (Caughey and Ma).
 
 use std::sync::Arc;
 
 use multiversion::multiversion;
 
-use super::{
-    AxisDescription, Lanes, Model, ParameterDescription, ParameterRange, SwitchingSurface,
-    Symmetry, System,
-};
+use super::parameters::{ALPHA, GROWTH, MU, SATURATION, SIGMA2, X, Y};
+use super::{Lanes, Model, Symmetry, System};
 
-/// x' = y, y' = -κy - αx - μx³ - f_c sgn(y) + ξ.
+/// x' = y, y' = -(-a + bH)y - αx - μx³ + ξ, H the energy.
 pub(super) static MODEL: Model = Model {
     name: "rayleigh",
-    title: "Duffing oscillator with Coulomb friction",
+    title: "Oscillator with energy-dependent damping, exactly solvable",
     equations: &[
         "x' = y",
-        "y' = -κ y - α x - μ x³ - f_c sgn(y) + ξ(t),   sgn(0) = 0",
+        "y' = -(-a + b H) y - α x - μ x³ + ξ(t)",
+        "H = y²/2 + α x²/2 + μ x⁴/4",
         "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
     ],
-    axes: &[
-        AxisDescription {
-            name: "x",
-            symbol: "x",
-            meaning: "displacement",
-        },
-        AxisDescription {
-            name: "y",
-            symbol: "ẋ",
-            meaning: "velocity",
-        },
-    ],
-    parameters: &[
-        ParameterDescription {
-            name: "alpha",
-            symbol: "α",
-            meaning: "linear stiffness",
-            default: Some(1.0),
-            range: ParameterRange::Any,
-        },
-        ParameterDescription {
-            name: "kappa",
-            symbol: "κ",
-            meaning: "viscous damping",
-            default: None,
-            range: ParameterRange::Any,
-        },
-        ParameterDescription {
-            name: "mu",
-            symbol: "μ",
-            meaning: "cubic stiffness",
-            default: Some(0.0),
-            range: ParameterRange::Any,
-        },
-        ParameterDescription {
-            name: "f_c",
-            symbol: "f_{c}",
-            meaning: "friction level (negative: friction that feeds energy in)",
-            default: None,
-            range: ParameterRange::Any,
-        },
-        ParameterDescription {
-            name: "sigma2",
-            symbol: "σ^{2}",
-            meaning: "noise intensity",
-            default: None,
-            range: ParameterRange::Positive,
-        },
-    ],
-    source: "the paper, Eqs. (5)-(6), with the letters of Eq. (7)",
+    axes: &[X, Y],
+    parameters: &[GROWTH, SATURATION, ALPHA, MU, SIGMA2],
+    source: "T. K. Caughey and F. Ma, The exact steady-state solution of a class of non-linear stochastic systems (1982)",
     notes: &[
-        "The paper's Eq. (5) prints α = 1 as damping and κ = 0.01 as stiffness. With that reading the marginal of x has one peak at every f_c, against the paper's Fig. 2(a); with the letters of its Eq. (7), used here, its figures come out.",
-        "The marginal of y has a kink at 0, p'(0+)/p(0) = -2 f_c/σ², so it changes from two peaks to one exactly at f_c = 0.",
+        "The steady state is p ∝ exp(-(2/σ²)(-a H + b H²/2)): with α > 0 and μ ≥ 0 the joint density has one peak for a ≤ 0 and a crater for a > 0.",
     ],
     bind: |values| {
-        Arc::new(Coulomb {
-            alpha: values[0],
-            kappa: values[1],
-            mu: values[2],
-            f_c: values[3],
+        Arc::new(Rayleigh {
+            a: values[0],
+            b: values[1],
+            alpha: values[2],
+            mu: values[3],
             sigma: values[4].sqrt(),
             sigma2: values[4],
         })
     },
 };
 
-struct Coulomb {
+struct Rayleigh {
+    a: f64,
+    b: f64,
     alpha: f64,
-    kappa: f64,
     mu: f64,
-    f_c: f64,
     sigma: f64,
     sigma2: f64,
 }
 
-/// Sign with sgn(0) = 0, written so that it compiles to selects on vector registers.
+/// H = y²/2 + αx²/2 + μx⁴/4.
 #[inline(always)]
-fn sign(value: f64) -> f64 {
-    f64::from(i8::from(value > 0.0) - i8::from(value < 0.0))
+fn energy(parameters: &Rayleigh, x: f64, y: f64) -> f64 {
+    let square = x * x;
+    0.5 * (y * y + square * (parameters.alpha + 0.5 * parameters.mu * square))
 }
 
 #[multiversion(targets = "simd")]
-fn drift(parameters: &Coulomb, states: &[Lanes], drift: &mut [Lanes]) {
+fn drift(parameters: &Rayleigh, states: &[Lanes], drift: &mut [Lanes]) {
     let ([x, y], [x_slope, y_slope]) = (states, drift) else {
         return;
     };
+    let &Rayleigh {
+        a, b, alpha, mu, ..
+    } = parameters;
     for lane in 0..x.len() {
         let (x, y) = (x[lane], y[lane]);
         x_slope[lane] = y;
-        y_slope[lane] = -parameters.kappa * y
-            - x * (parameters.alpha + parameters.mu * x * x)
-            - parameters.f_c * sign(y);
+        y_slope[lane] = (a - b * energy(parameters, x, y)) * y - x * (alpha + mu * x * x);
     }
 }
 
-impl System for Coulomb {
+impl System for Rayleigh {
     fn dimension(&self) -> usize {
         2
     }
@@ -132,10 +83,6 @@ impl System for Coulomb {
         Some(self.sigma)
     }
 
-    fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
-        vec![SwitchingSurface { axis: 1, at: 0.0 }]
-    }
-
     fn symmetry(&self) -> Option<Symmetry> {
         Some(Symmetry {
             centre: vec![0.0, 0.0],
@@ -143,10 +90,32 @@ impl System for Coulomb {
         })
     }
 
-    /// Known without friction: p ∝ exp(-(2κ/σ²)(y²/2 + αx²/2 + μx⁴/4)).
+    /// p ∝ exp(-(2/σ²)(-aH + bH²/2)).
     fn exact_log_density(&self, state: &[f64]) -> Option<f64> {
         let &[x, y] = state else { return None };
-        let energy = 0.5 * y * y + 0.5 * self.alpha * x * x + 0.25 * self.mu * x.powi(4);
-        (self.f_c == 0.0).then_some(-2.0 * self.kappa / self.sigma2 * energy)
+        let energy = energy(self, x, y);
+        Some(2.0 / self.sigma2 * energy * (self.a - 0.5 * self.b * energy))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::contract::{assert_stationary, bound};
+
+    #[test]
+    fn the_drift_is_the_equation() {
+        let values = [("a", 0.5), ("b", 0.25), ("mu", 2.0), ("sigma2", 0.09)];
+        let system = bound("rayleigh", &values);
+        // H = 9/2 + 4/2 + 2·16/4 = 14.5; y' = -(-0.5 + 3.625)·3 - 2 - 16 = -27.375.
+        let drift = system.drift_at(0.0, &[2.0, 3.0]);
+        assert_eq!(drift, vec![3.0, -27.375]);
+    }
+
+    #[test]
+    fn the_density_solves_fokker_planck_on_both_sides_of_the_bifurcation() {
+        for a in [-0.4, 0.6] {
+            let values = [("a", a), ("b", 0.3), ("mu", 0.2), ("sigma2", 0.5)];
+            assert_stationary(&*bound("rayleigh", &values), true);
+        }
     }
 }

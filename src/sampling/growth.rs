@@ -1,0 +1,132 @@
+//! Samples the transitions of all cells that can be reached from given ones.
+
+use rayon::prelude::*;
+
+use super::column::{Column, ColumnSampler, SINK};
+use super::{Integrator, SampledTransitions, SamplingError};
+use crate::space::CellSpace;
+use crate::system::System;
+
+/// Settings of one sampled transition matrix.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SamplingOptions {
+    /// Time one transition spans, Δt.
+    pub map_step: f64,
+    /// Upper bound of the integrator's step; the step taken divides the map step.
+    pub time_step: f64,
+    /// Trajectories started in each cell.
+    pub samples: usize,
+    /// Groups the samples are split into, 1 to 256.
+    pub groups: usize,
+    /// Seed of the random streams.
+    pub seed: u64,
+    /// Integrator of the trajectories.
+    pub integrator: Integrator,
+}
+
+impl SamplingOptions {
+    /// Largest number of groups.
+    pub const MOST_GROUPS: usize = 256;
+
+    /// Integrator steps in one map step.
+    pub fn steps(&self) -> usize {
+        // A quotient that is whole but for rounding does not cost a further step.
+        let steps = self.map_step / self.time_step * (1.0 - 1e-12);
+        (steps.ceil() as usize).max(1)
+    }
+
+    fn check(&self) -> Result<(), SamplingError> {
+        for (name, value) in [("map step", self.map_step), ("time step", self.time_step)] {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(SamplingError::Step { name, value });
+            }
+        }
+        let (samples, groups) = (self.samples, self.groups);
+        // One group may be left out, and the counts must fit 32 bits.
+        if !(1..=Self::MOST_GROUPS).contains(&groups)
+            || samples < groups
+            || samples >= SINK as usize
+        {
+            return Err(SamplingError::Groups { samples, groups });
+        }
+        Ok(())
+    }
+}
+
+/// Samples trajectories from every cell that can be reached from `seeds` (numbers in the cell space): the
+/// seeds first, then the cells their trajectories end in, until no new cell appears.
+///
+/// Results depend on neither the number of threads nor, but for which cells are sampled, on the seeds: a cell's
+/// trajectories are keyed by the options' seed and the cell's number. `cancelled` is asked before every cell.
+///
+/// # Errors
+/// [`SamplingError`].
+pub fn sample_transitions(
+    system: &dyn System,
+    space: &CellSpace,
+    seeds: &[usize],
+    options: &SamplingOptions,
+    cancelled: &(dyn Fn() -> bool + Sync),
+) -> Result<SampledTransitions, SamplingError> {
+    options.check()?;
+    if system.dimension() != space.dimension() {
+        return Err(SamplingError::Dimension {
+            system: system.dimension(),
+            space: space.dimension(),
+        });
+    }
+    let n_cells = space.n_cells();
+    if let Some(&cell) = seeds.iter().find(|&&cell| cell >= n_cells) {
+        return Err(SamplingError::Seed { cell, n_cells });
+    }
+    let sampler = ColumnSampler::new(system, space, options);
+    let sample = |&cell: &usize| match cancelled() {
+        true => Err(SamplingError::Cancelled),
+        false => Ok((cell, sampler.column(cell))),
+    };
+    let mut known = vec![false; n_cells];
+    let mut columns: Vec<(usize, Column)> = Vec::new();
+    let mut frontier = unknown_of(seeds.iter().copied(), &mut known);
+    while !frontier.is_empty() {
+        let sampled: Result<Vec<_>, _> = frontier.par_iter().with_max_len(1).map(sample).collect();
+        let sampled = sampled?;
+        let ends = sampled.iter().flat_map(|(_, column)| &column.destinations);
+        let ends = ends.map(|&(cell, _)| cell).filter(|&cell| cell != SINK);
+        frontier = unknown_of(ends.map(|cell| cell as usize), &mut known);
+        columns.extend(sampled);
+    }
+    columns.sort_unstable_by_key(|entry| entry.0);
+    Ok(SampledTransitions::new(
+        columns,
+        n_cells,
+        options,
+        space.dimension(),
+    ))
+}
+
+/// The cells not marked yet, ascending; marks them.
+fn unknown_of(cells: impl Iterator<Item = usize>, known: &mut [bool]) -> Vec<usize> {
+    let mut unknown: Vec<usize> = cells
+        .filter(|&cell| !std::mem::replace(&mut known[cell], true))
+        .collect();
+    unknown.sort_unstable();
+    unknown
+}
+
+/// Upper bound in bytes of what sampled transitions and one matrix made of them hold, if every cell of `n_cells`
+/// is reached and every sample ends in a different one. Usually ten times less is used.
+pub fn estimated_bytes(n_cells: usize, samples: usize, groups: usize, dimension: usize) -> u64 {
+    let entries = samples.min(n_cells.saturating_add(1)) as u64;
+    let samples = samples as u64;
+    // Groups are stored a byte a sample, whatever their number; the mean squares have a fixed length.
+    let _ = (groups, dimension);
+    let column = size_of::<(usize, Column)>() as u64 + 8 * entries + samples;
+    // A row entry is an index and a value; row ends are kept twice while rows are filled.
+    let matrix = 16 * entries + 8 * 4;
+    // The list of cells, their positions, the marks.
+    let cell = 8 * 2 + 4 + 1;
+    (n_cells as u64).saturating_mul(column + matrix + cell)
+}
+
+#[cfg(test)]
+mod tests;

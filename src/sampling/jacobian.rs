@@ -1,0 +1,104 @@
+//! Local time scales of the drift from its Jacobian.
+
+use nalgebra::{DMatrix, Schur};
+
+use crate::space::CellSpace;
+use crate::system::System;
+
+/// Share of a cell's width that a coordinate is moved by for a difference quotient.
+const SHARE: f64 = 1e-3;
+
+/// What the eigenvalues λ of the drift's Jacobian at a state say.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct LocalRates {
+    /// Largest |λ|.
+    pub(super) fastest: f64,
+    /// Damping -2 Re λ of the energy of the fastest oscillating pair; `None` where nothing oscillates.
+    pub(super) damping: Option<f64>,
+}
+
+/// Rates at a state in Ω; `None` next to a switching surface, outside Ω, and where the drift is not finite.
+pub(super) fn local_rates(
+    system: &dyn System,
+    space: &CellSpace,
+    state: &[f64],
+) -> Option<LocalRates> {
+    let cell = space.find(state)?;
+    let dimension = state.len();
+    let width = |axis: usize| space.axes()[axis].width(space.position(cell, axis));
+    for surface in system.switching_surfaces() {
+        if (state[surface.axis] - surface.at).abs() <= 2.0 * SHARE * width(surface.axis) {
+            return None;
+        }
+    }
+    let mut jacobian = DMatrix::zeros(dimension, dimension);
+    for axis in 0..dimension {
+        let step = SHARE * width(axis);
+        let at = |by: f64| {
+            let mut state = state.to_vec();
+            state[axis] += by;
+            system.drift_at(0.0, &state)
+        };
+        let (up, down) = (at(step), at(-step));
+        for row in 0..dimension {
+            jacobian[(row, axis)] = (up[row] - down[row]) / (2.0 * step);
+        }
+    }
+    if !jacobian.iter().all(|entry| entry.is_finite()) {
+        return None;
+    }
+    let eigenvalues = Schur::try_new(jacobian, 1e-12, 1000)?.complex_eigenvalues();
+    let fastest = eigenvalues
+        .iter()
+        .map(|value| value.norm())
+        .fold(0.0, f64::max);
+    let oscillating = eigenvalues.iter().filter(|value| value.im > 0.0);
+    let pair = oscillating.max_by(|a, b| a.im.total_cmp(&b.im));
+    Some(LocalRates {
+        fastest,
+        damping: pair.map(|value| -2.0 * value.re),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::Axis;
+    use crate::system::registry;
+
+    #[test]
+    fn rates_of_a_duffing_oscillator_are_those_of_its_linearisation() {
+        let values = [
+            ("alpha", 2.0),
+            ("mu", 0.5),
+            ("kappa", 0.1),
+            ("f_c", 0.3),
+            ("sigma2", 0.1),
+        ];
+        let system = registry::find("coulomb")
+            .unwrap()
+            .system_with(&values)
+            .unwrap();
+        let axis = Axis::uniform(-2.0, 2.0, 40).unwrap();
+        let space = CellSpace::new(vec![axis.clone(), axis]).unwrap();
+        // ω² = α + 3μx² = 3.5 at x = 1; the damping of the energy is κ.
+        let rates = local_rates(&*system, &space, &[1.0, 0.5]).unwrap();
+        assert!((rates.fastest - f64::sqrt(3.5)).abs() < 1e-6, "{rates:?}");
+        assert!((rates.damping.unwrap() - 0.1).abs() < 1e-8, "{rates:?}");
+        assert_eq!(local_rates(&*system, &space, &[1.0, 1e-5]), None);
+        assert_eq!(local_rates(&*system, &space, &[3.0, 1.0]), None);
+    }
+
+    #[test]
+    fn nothing_oscillates_in_one_dimension() {
+        let values = [("a", 1.0), ("sigma2", 0.1)];
+        let system = registry::find("bistable")
+            .unwrap()
+            .system_with(&values)
+            .unwrap();
+        let space = CellSpace::new(vec![Axis::uniform(-2.0, 2.0, 40).unwrap()]).unwrap();
+        let rates = local_rates(&*system, &space, &[1.0]).unwrap();
+        assert!((rates.fastest - 2.0).abs() < 1e-6, "{rates:?}");
+        assert_eq!(rates.damping, None);
+    }
+}

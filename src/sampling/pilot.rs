@@ -1,0 +1,223 @@
+//! A first look at a system with a few free trajectories: where its mass is, how wide it spreads, how fast it
+//! moves. From it come the cells to start from and steps that suit the system.
+
+use rayon::prelude::*;
+
+use super::Integrator;
+use super::integrator::Stepper;
+use super::jacobian::{LocalRates, local_rates};
+use super::random::{NormalStream, StreamKey, mix, unit};
+use crate::space::CellSpace;
+use crate::system::{LANES, Lanes, System};
+
+mod record;
+use record::Record;
+
+/// Batches of trajectories; the first two start at the centre of Ω, the others all over it.
+const BATCHES: u64 = 4;
+/// States recorded of each trajectory.
+const RECORDS: usize = 256;
+/// Most steps of a trajectory before, and again while, states are recorded.
+const MOST_STEPS: usize = 100_000;
+/// Number among the cells that keys the pilot's streams apart from those of the cells.
+const PILOT_CELL: u64 = u64::MAX;
+/// Points at which local rates are looked at before any trajectory runs.
+const SCOUTS: u64 = 256;
+
+/// Share of the damping that the integrator's own anti-damping may take.
+const DAMPING_SHARE: f64 = 0.01;
+/// Largest step in units of the fastest time scale 1/ω.
+const ANGLE: f64 = 0.1;
+/// Largest increase of the noise power by the cells, relative and in units of the spread of each axis.
+const NOISE_SHARE: f64 = 0.05;
+/// Most steps in one automatic map step.
+const MOST_MAP_STEPS: f64 = 1e5;
+
+/// What a few hundred free trajectories show, after they have settled. Means are over visits to Ω.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pilot {
+    /// Cells that were visited, ascending; where no trajectory stays in Ω, the cell of Ω's centre.
+    pub cells: Vec<usize>,
+    /// Share of the recorded states that lie in Ω; without any, what follows is of Ω as a whole.
+    pub share_inside: f64,
+    /// Standard deviation, one value an axis.
+    pub standard_deviation: Vec<f64>,
+    /// Mean square width of the cells visited, one value an axis.
+    pub mean_square_width: Vec<f64>,
+    /// Mean noise intensity Σ b²/2, one value an axis.
+    pub noise_intensity: Vec<f64>,
+    /// Fastest rate ω: 99 % of the visited states have no eigenvalue of the drift's Jacobian of larger magnitude.
+    pub frequency: f64,
+    /// Mean damping γ of the oscillation's energy (-2 Re λ of oscillating pairs λ; for x'' + κx' + ω²x = 0 it is
+    /// κ); zero where nothing oscillates. Negative values mean that energy is fed in. Damping of other
+    /// directions, such as Dahl's z, does not count: it would hide how little holds the oscillation back.
+    pub damping: f64,
+}
+
+impl Pilot {
+    /// A time step for an integrator: dt ≤ 0.1/ω, and where the oscillation is damped by γ > 0, the damping that
+    /// the integrator takes away, ω⁴dt³/4 for Heun and ω²dt for Euler-Maruyama, at most 1 % of γ.
+    pub fn automatic_time_step(&self, integrator: Integrator) -> f64 {
+        time_step(self.frequency, self.frequency, self.damping, integrator)
+    }
+
+    /// The smallest map step Δt for which the numerical diffusion h²/(12Δt) stays below 5 % of the noise, each
+    /// axis in units of its variance:
+    /// Σ_a h_a²/(12Δt)/var_a ≤ 0.05 Σ_a D_a/var_a with D_a the mean b²/2.
+    ///
+    /// In these units it is the relative increase of the noise power. For a damped oscillator a relative increase
+    /// ε of the variance of both axes moves the density by a total variation of 0.37 ε. At least one time step, at
+    /// most 1e5.
+    pub fn automatic_map_step(&self, time_step: f64) -> f64 {
+        let (mut cells, mut noise) = (0.0, 0.0);
+        for (axis, &deviation) in self.standard_deviation.iter().enumerate() {
+            let square = self.mean_square_width[axis];
+            // A spread below a cell is not resolved: the cell's own variance stands in.
+            let variance = (deviation * deviation).max(square / 12.0);
+            cells += square / 12.0 / variance;
+            noise += self.noise_intensity[axis] / variance;
+        }
+        let longest = MOST_MAP_STEPS * time_step;
+        let wanted = cells / (NOISE_SHARE * noise);
+        if wanted.is_finite() {
+            wanted.clamp(time_step, longest)
+        } else {
+            longest
+        }
+    }
+}
+
+/// The largest step with dt ≤ 0.1/`fastest` and an anti-damping at `typical` below 1 % of `damping`.
+fn time_step(fastest: f64, typical: f64, damping: f64, integrator: Integrator) -> f64 {
+    let mut step = ANGLE / fastest.max(f64::MIN_POSITIVE);
+    if damping > 0.0 && typical > 0.0 {
+        let spare = DAMPING_SHARE * damping;
+        step = step.min(match integrator {
+            Integrator::StochasticHeun => (4.0 * spare / typical.powi(4)).cbrt(),
+            Integrator::EulerMaruyama => spare / typical.powi(2),
+        });
+    }
+    if step.is_finite() { step } else { 1.0 }
+}
+
+/// Value below which the given share of the numbers lies; 0 for none.
+fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
+    values.sort_unstable_by(f64::total_cmp);
+    let index = (share * values.len().saturating_sub(1) as f64).round() as usize;
+    values.get(index).copied().unwrap_or(0.0)
+}
+
+/// Fastest rate (at a quantile) and mean damping of some local rates.
+fn summary(rates: &[LocalRates], share: f64) -> (f64, f64) {
+    let fastest = quantile(rates.iter().map(|rate| rate.fastest).collect(), share);
+    let dampings = rates.iter().filter_map(|rate| rate.damping);
+    let (sum, count) = dampings.fold((0.0, 0_usize), |(sum, n), value| (sum + value, n + 1));
+    (fastest, sum / count.max(1) as f64)
+}
+
+/// Runs a few hundred trajectories, lets them settle, and records where they go. Keyed by `seed`; the result
+/// does not depend on the number of threads.
+pub fn pilot(system: &dyn System, space: &CellSpace, seed: u64) -> Pilot {
+    let scouts = (0..SCOUTS).map(|scout| place(space, seed, scout, true));
+    let scouted: Vec<LocalRates> = scouts
+        .filter_map(|state| local_rates(system, space, &state))
+        .collect();
+    let (fastest, damping) = summary(&scouted, 1.0);
+    let (typical, _) = summary(&scouted, 0.5);
+    let step = time_step(fastest, typical, damping, Integrator::StochasticHeun);
+    // Energy settles in a few times 1/γ; without damping to go by, in some tens of periods.
+    let periods = 300.0 / typical.max(f64::MIN_POSITIVE);
+    let settling = if damping > 0.0 {
+        periods.max(10.0 / damping)
+    } else {
+        3.0 * periods
+    };
+    let steps = ((settling / step) as usize).clamp(RECORDS, MOST_STEPS);
+    let stepper = Stepper::new(system, Integrator::StochasticHeun, step);
+    let run = |batch: u64| trajectories(&stepper, system, space, seed, batch, steps);
+    let records: Vec<Record> = (0..BATCHES).into_par_iter().map(run).collect();
+    let mut record = Record::new(space);
+    for of_batch in &records {
+        record.join(of_batch);
+    }
+    if record.inside == 0 {
+        return nothing_stays(system, space, seed, scouted);
+    }
+    record.finish()
+}
+
+/// What is left to say where no trajectory stays in Ω: means over Ω itself.
+fn nothing_stays(
+    system: &dyn System,
+    space: &CellSpace,
+    seed: u64,
+    rates: Vec<LocalRates>,
+) -> Pilot {
+    let mut record = Record::new(space);
+    for scout in 0..SCOUTS {
+        record.visit(system, space, &place(space, seed, scout, true));
+    }
+    record.rates = rates;
+    let centre = place(space, seed, 0, false);
+    Pilot {
+        cells: space.find(&centre).into_iter().collect(),
+        share_inside: 0.0,
+        ..record.finish()
+    }
+}
+
+/// Centre of Ω, or a point of it that is uniform over points.
+fn place(space: &CellSpace, seed: u64, point: u64, spread: bool) -> Vec<f64> {
+    let key = StreamKey {
+        seed,
+        cell: PILOT_CELL,
+        block: u64::MAX - point,
+    };
+    let word = key.word();
+    let coordinate = |(axis, edges): (usize, &crate::space::Axis)| {
+        let share = if spread {
+            unit(mix(word.wrapping_add(axis as u64)))
+        } else {
+            0.5
+        };
+        edges.from() + share * (edges.to() - edges.from())
+    };
+    space.axes().iter().enumerate().map(coordinate).collect()
+}
+
+/// One batch: settles for `steps` steps and is recorded during as many again.
+fn trajectories(
+    stepper: &Stepper<'_>,
+    system: &dyn System,
+    space: &CellSpace,
+    seed: u64,
+    batch: u64,
+    steps: usize,
+) -> Record {
+    let mut states: Vec<Lanes> = vec![[0.0; LANES]; space.dimension()];
+    for lane in 0..LANES {
+        let point = SCOUTS + batch * LANES as u64 + lane as u64;
+        let start = place(space, seed, point, 2 * batch >= BATCHES);
+        for (lanes, value) in states.iter_mut().zip(start) {
+            lanes[lane] = value;
+        }
+    }
+    let mut stream = NormalStream::new(StreamKey {
+        seed,
+        cell: PILOT_CELL,
+        block: batch,
+    });
+    stepper.advance(&mut states, 0, steps, &mut stream);
+    let mut record = Record::new(space);
+    let mut done = steps;
+    for visit in 1..=RECORDS {
+        let until = steps + visit * steps / RECORDS;
+        stepper.advance(&mut states, done, until - done, &mut stream);
+        done = until;
+        record.batch(system, space, &states, visit % 16 == 0);
+    }
+    record
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,115 @@
+//! Sums over the states that a pilot's trajectories visit.
+
+use super::{LocalRates, Pilot, local_rates, summary};
+use crate::space::CellSpace;
+use crate::system::{LANES, Lanes, System};
+
+/// Sums over visits to Ω.
+pub(super) struct Record {
+    /// Visited cells; sorted and unique at the end only.
+    pub(super) cells: Vec<usize>,
+    /// Visits to Ω.
+    pub(super) inside: usize,
+    /// Local rates at some of the visits.
+    pub(super) rates: Vec<LocalRates>,
+    visits: usize,
+    axes: Vec<AxisSums>,
+}
+
+#[derive(Clone, Copy, Default)]
+struct AxisSums {
+    /// Σ (x - c) and Σ (x - c)² about the middle c of the range.
+    first: f64,
+    second: f64,
+    square_width: f64,
+    noise: f64,
+    middle: f64,
+}
+
+impl Record {
+    pub(super) fn new(space: &CellSpace) -> Self {
+        let middle = |axis: &crate::space::Axis| AxisSums {
+            middle: 0.5 * (axis.from() + axis.to()),
+            ..AxisSums::default()
+        };
+        Self {
+            cells: Vec::new(),
+            inside: 0,
+            rates: Vec::new(),
+            visits: 0,
+            axes: space.axes().iter().map(middle).collect(),
+        }
+    }
+
+    /// Records every lane, and local rates at one lane in four if asked.
+    pub(super) fn batch(
+        &mut self,
+        system: &dyn System,
+        space: &CellSpace,
+        states: &[Lanes],
+        rates: bool,
+    ) {
+        for lane in 0..LANES {
+            let state: Vec<f64> = states.iter().map(|lanes| lanes[lane]).collect();
+            self.visit(system, space, &state);
+            if rates && lane % 4 == 0 {
+                self.rates.extend(local_rates(system, space, &state));
+            }
+        }
+        self.visits += LANES;
+    }
+
+    /// Records a state if it is in Ω.
+    pub(super) fn visit(&mut self, system: &dyn System, space: &CellSpace, state: &[f64]) {
+        let Some(cell) = space.find(state) else {
+            return;
+        };
+        self.cells.push(cell);
+        self.inside += 1;
+        for (axis, sums) in self.axes.iter_mut().enumerate() {
+            let off = state[axis] - sums.middle;
+            sums.first += off;
+            sums.second += off * off;
+            sums.square_width += space.axes()[axis].width(space.position(cell, axis)).powi(2);
+        }
+        for (channel, &axis) in system.noise_axes().iter().enumerate() {
+            let constant = system.additive_amplitude(channel);
+            let amplitude = constant.unwrap_or_else(|| system.amplitude_at(channel, 0.0, state));
+            self.axes[axis].noise += 0.5 * amplitude * amplitude;
+        }
+    }
+
+    pub(super) fn join(&mut self, other: &Self) {
+        self.cells.extend(&other.cells);
+        self.rates.extend(&other.rates);
+        self.inside += other.inside;
+        self.visits += other.visits;
+        for (sums, more) in self.axes.iter_mut().zip(&other.axes) {
+            sums.first += more.first;
+            sums.second += more.second;
+            sums.square_width += more.square_width;
+            sums.noise += more.noise;
+        }
+    }
+
+    /// Means of the sums.
+    pub(super) fn finish(mut self) -> Pilot {
+        self.cells.sort_unstable();
+        self.cells.dedup();
+        let count = self.inside.max(1) as f64;
+        let axis = |value: &dyn Fn(&AxisSums) -> f64| self.axes.iter().map(value).collect();
+        let (frequency, damping) = summary(&self.rates, 0.99);
+        Pilot {
+            share_inside: self.inside as f64 / self.visits.max(1) as f64,
+            standard_deviation: axis(&|sums| {
+                let mean = sums.first / count;
+                (sums.second / count - mean * mean).max(0.0).sqrt()
+            }),
+            mean_square_width: axis(&|sums| sums.square_width / count),
+            noise_intensity: axis(&|sums| sums.noise / count),
+            frequency,
+            damping,
+            cells: self.cells,
+        }
+    }
+}
