@@ -6,6 +6,7 @@
 //! | state a model, look up the built-in ones | [`system`] |
 //! | lay a grid of cells over the domain | [`space`] |
 //! | sample a transition matrix by trajectories (SGCM) | [`sampling`] |
+//! | discretise the generator, the cell map in the limit of a short step | [`generator`] |
 //! | find the steady state of a transition matrix | [`stationary`] |
 //! | turn masses into densities, marginals, moments, distances | [`density`] |
 //! | count significant peaks and craters | [`topology`] |
@@ -21,6 +22,7 @@ pub mod cli;
 pub mod continuation;
 pub mod density;
 pub mod figure;
+pub mod generator;
 pub mod method;
 pub mod run;
 pub mod sampling;

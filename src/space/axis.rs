@@ -23,6 +23,8 @@ pub struct Grading {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
     edges: Vec<f64>,
+    /// Where the cell coordinate is half-way between a cell's edges, one a cell.
+    nodes: Vec<f64>,
     pieces: Vec<Piece>,
 }
 
@@ -67,6 +69,16 @@ impl Piece {
     /// Cell coordinate inside the piece: 0 at `from`, `cells` at `to`.
     fn coordinate(&self, x: f64) -> f64 {
         (Self::raw(self.bulk, &self.terms, x) - self.raw_from) * self.scale
+    }
+
+    /// dx/du, the width of a cell that would lie evenly about `x`.
+    fn stretch(&self, x: f64) -> f64 {
+        let graded: f64 = self
+            .terms
+            .iter()
+            .map(|&(amplitude, centre, width)| amplitude / (x - centre).hypot(width))
+            .sum();
+        1.0 / (self.scale * (self.bulk + graded))
     }
 
     /// The x with the given cell coordinate, by bisection (used once an edge).
@@ -174,14 +186,20 @@ impl Axis {
 
     fn from_pieces(pieces: Vec<Piece>) -> Self {
         let mut edges = Vec::new();
+        let mut nodes = Vec::new();
         for piece in &pieces {
             edges.push(piece.from);
             edges.extend((1..piece.cells).map(|cell| piece.inverse(cell as f64)));
+            nodes.extend((0..piece.cells).map(|cell| piece.inverse(cell as f64 + 0.5)));
         }
         if let Some(last) = pieces.last() {
             edges.push(last.to);
         }
-        Self { edges, pieces }
+        Self {
+            edges,
+            nodes,
+            pieces,
+        }
     }
 
     /// Number of cells.
@@ -217,6 +235,30 @@ impl Axis {
     /// The middles of all cells, ascending.
     pub fn centres(&self) -> Vec<f64> {
         (0..self.count()).map(|cell| self.centre(cell)).collect()
+    }
+
+    /// Nodes of the cells, ascending: where the cell coordinate is half-way between a cell's edges. On a
+    /// uniform axis these are the middles, on a graded one they differ from them in second order.
+    pub fn nodes(&self) -> &[f64] {
+        &self.nodes
+    }
+
+    /// Derivative dx/du of x by the cell coordinate (the local cell width) at the node of a cell.
+    pub(crate) fn node_stretch(&self, cell: usize) -> f64 {
+        self.piece_of(cell)
+            .map_or(self.width(cell), |piece| piece.stretch(self.nodes[cell]))
+    }
+
+    /// Derivative dx/du of x by the cell coordinate at an edge, seen from the cell above (below at the last).
+    pub(crate) fn edge_stretch(&self, edge: usize) -> f64 {
+        let cell = edge.min(self.count() - 1);
+        self.piece_of(cell)
+            .map_or(self.width(cell), |piece| piece.stretch(self.edges[edge]))
+    }
+
+    fn piece_of(&self, cell: usize) -> Option<&Piece> {
+        let holds = |piece: &&Piece| cell < piece.first_cell + piece.cells;
+        self.pieces.iter().find(holds)
     }
 
     /// Whether all cells have the same width.
@@ -312,6 +354,26 @@ mod tests {
         assert!((narrowest / 0.002 - 1.0).abs() < 0.15, "{narrowest}");
         let widest = (0..100).map(|i| axis.width(i)).fold(0.0, f64::max);
         assert!(widest <= 0.08 / BULK_SHARE, "{widest}");
+    }
+
+    #[test]
+    fn nodes_lie_inside_and_stretches_integrate_to_the_width() {
+        let grading = Grading {
+            at: vec![0.0],
+            smallest: 0.01,
+        };
+        let axis = Axis::graded(-4.0, 4.0, 200, &grading).unwrap();
+        for cell in 0..axis.count() {
+            let (from, to) = (axis.edges()[cell], axis.edges()[cell + 1]);
+            assert!(from < axis.nodes()[cell] && axis.nodes()[cell] < to);
+            // Simpson's rule for the integral of dx/du over a cell.
+            let ends = axis.edge_stretch(cell) + axis.edge_stretch(cell + 1);
+            let width = (ends + 4.0 * axis.node_stretch(cell)) / 6.0;
+            assert!(
+                (width / axis.width(cell) - 1.0).abs() < 1e-5,
+                "{cell}: {width}"
+            );
+        }
     }
 
     #[test]

@@ -1,0 +1,207 @@
+//! Assembly of the generator: the fluxes of all grid lines, then the columns of the matrix.
+//!
+//! Lines are independent of one another and so are columns: both run in parallel, and the result does not
+//! depend on how many threads there are.
+
+use rayon::prelude::*;
+
+use super::columns::columns;
+use super::geometry::AxisGeometry;
+use super::sampler::{LineSampler, quadrature_points};
+use super::scheme::{REACH, Window};
+use super::{Generator, GeneratorError, GeneratorOptions};
+use crate::space::CellSpace;
+use crate::system::System;
+
+/// Assembles the generator of an autonomous system on a cell space of the same dimension.
+///
+/// An end of the range that the system declares never to leave ([`System::bounds`]) is a wall without flux;
+/// what flows or diffuses out through any other end is lost and counted in [`Generator::escape`].
+///
+/// # Errors
+/// Any [`GeneratorError`] but [`GeneratorError::System`].
+pub fn assemble(
+    system: &dyn System,
+    space: &CellSpace,
+    options: &GeneratorOptions,
+) -> Result<Generator, GeneratorError> {
+    assemble_within(system, system, space, options)
+}
+
+/// As [`assemble`], with the walls of another system: so a derivative by a parameter that moves a wall is
+/// taken with Ω and its ends held.
+pub(super) fn assemble_within(
+    walls: &dyn System,
+    system: &dyn System,
+    space: &CellSpace,
+    options: &GeneratorOptions,
+) -> Result<Generator, GeneratorError> {
+    check(system, space)?;
+    let axes: Vec<AxisGeometry> = (0..space.dimension())
+        .map(|index| AxisGeometry::new(walls, index, &space.axes()[index], options.scheme))
+        .collect();
+    let strides = strides(&axes);
+    let fluxes: Result<Vec<Vec<Window>>, GeneratorError> = (0..axes.len())
+        .map(|axis| axis_fluxes(system, &axes, &strides, axis))
+        .collect();
+    columns(&axes, &strides, &fluxes?, space.n_cells())
+}
+
+fn check(system: &dyn System, space: &CellSpace) -> Result<(), GeneratorError> {
+    let (axes, dimension) = (space.dimension(), system.dimension());
+    if axes != dimension {
+        return Err(GeneratorError::Dimension { axes, dimension });
+    }
+    if let Some(period) = system.period() {
+        return Err(GeneratorError::Periodic { period });
+    }
+    let channels = system.noise_axes().iter().enumerate();
+    for (channel, &axis) in channels {
+        if axis >= dimension {
+            return Err(GeneratorError::NoiseAxis {
+                channel,
+                axis,
+                dimension,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Distance in cell numbers between neighbours along each axis.
+fn strides(axes: &[AxisGeometry]) -> Vec<usize> {
+    let mut strides = vec![1; axes.len()];
+    for axis in (1..axes.len()).rev() {
+        strides[axis - 1] = strides[axis] * axes[axis].count();
+    }
+    strides
+}
+
+/// Flux weights of all lines along an axis: `lines × (count + 1)` windows. Line `outer · stride + inner` starts at
+/// cell `outer · stride · count + inner`.
+fn axis_fluxes(
+    system: &dyn System,
+    axes: &[AxisGeometry],
+    strides: &[usize],
+    axis: usize,
+) -> Result<Vec<Window>, GeneratorError> {
+    let count = axes[axis].count();
+    let cells: usize = axes.iter().map(AxisGeometry::count).product();
+    let mut fluxes = vec![[0.0; 2 * REACH]; cells / count * (count + 1)];
+    let quadrature = quadrature_points(&axes[axis]);
+    fluxes
+        .par_chunks_mut(count + 1)
+        .enumerate()
+        .try_for_each_init(
+            || LineSampler::new(system, axis),
+            |sampler, (number, fluxes)| {
+                let (outer, inner) = (number / strides[axis], number % strides[axis]);
+                let first = outer * strides[axis] * count + inner;
+                for (index, geometry) in axes.iter().enumerate() {
+                    let position = first / strides[index] % geometry.count();
+                    sampler.state[index] = geometry.nodes[position];
+                }
+                sampler.sample(&axes[axis].nodes, &quadrature)?;
+                sampler.line.fluxes(&axes[axis], fluxes);
+                Ok::<(), GeneratorError>(())
+            },
+        )?;
+    Ok(fluxes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::{Axis, Grading};
+    use crate::system::registry;
+    use crate::system::{Lanes, System};
+
+    fn dahl() -> std::sync::Arc<dyn System> {
+        let values = [
+            ("kappa", 0.1),
+            ("lambda", 0.2),
+            ("f_c", 0.1),
+            ("sigma2", 0.2),
+        ];
+        registry::find("dahl")
+            .unwrap()
+            .system_with(&values)
+            .unwrap()
+    }
+
+    fn space() -> CellSpace {
+        let grading = Grading {
+            at: vec![0.0],
+            smallest: 0.02,
+        };
+        let x = Axis::uniform(-2.0, 2.0, 9).unwrap();
+        let y = Axis::graded(-2.0, 2.0, 12, &grading).unwrap();
+        // Fewer cells than a stencil is wide.
+        let z = Axis::uniform(-0.5, 0.5, 3).unwrap();
+        CellSpace::new(vec![x, y, z]).unwrap()
+    }
+
+    #[test]
+    fn columns_sum_to_minus_the_escape_rate() {
+        for scheme in super::super::AdvectiveScheme::ALL {
+            let generator = assemble(&*dahl(), &space(), &GeneratorOptions { scheme }).unwrap();
+            for (cell, column) in generator.matrix.outer_iterator().enumerate() {
+                let sum: f64 = column.data().iter().sum();
+                let size: f64 = column.data().iter().map(|value| value.abs()).sum();
+                assert!((sum + generator.escape[cell]).abs() < 1e-14 * size);
+                assert!(generator.escape[cell] >= 0.0);
+            }
+            assert!(generator.escape.iter().sum::<f64>() > 0.0);
+        }
+    }
+
+    #[test]
+    fn the_number_of_threads_does_not_matter() {
+        let assembled = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap();
+            pool.install(|| assemble(&*dahl(), &space(), &GeneratorOptions::default()).unwrap())
+        };
+        let (one, three) = (assembled(1), assembled(3));
+        assert_eq!(one.matrix, three.matrix);
+        assert_eq!(one.escape, three.escape);
+    }
+
+    struct Broken;
+
+    impl System for Broken {
+        fn dimension(&self) -> usize {
+            1
+        }
+        fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
+            for (slope, x) in drift[0].iter_mut().zip(&states[0]) {
+                *slope = x.ln();
+            }
+        }
+        fn noise_axes(&self) -> &[usize] {
+            &[0]
+        }
+        fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
+            Some(1.0)
+        }
+    }
+
+    #[test]
+    fn what_has_no_generator_is_an_error() {
+        let line = CellSpace::new(vec![Axis::uniform(-1.0, 1.0, 8).unwrap()]).unwrap();
+        let options = GeneratorOptions::default();
+        let broken = assemble(&Broken, &line, &options);
+        assert!(matches!(
+            broken,
+            Err(GeneratorError::NotFinite { axis: 0, .. })
+        ));
+        let wrong = assemble(&*dahl(), &line, &options);
+        let dimension = GeneratorError::Dimension {
+            axes: 1,
+            dimension: 3,
+        };
+        assert_eq!(wrong.err(), Some(dimension));
+    }
+}

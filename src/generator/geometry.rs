@@ -1,0 +1,110 @@
+//! One axis as the discretisation sees it: nodes, local widths, ends, and the stencil of every face.
+
+use super::scheme::{AdvectiveScheme, REACH, Window};
+use crate::space::Axis;
+use crate::system::System;
+
+/// What lies beyond an end of the axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum End {
+    /// A value the coordinate never leaves: no flux.
+    Wall,
+    /// The sink: what flows out is lost, nothing comes in.
+    Open,
+}
+
+/// How the flux through a face is formed. No stencil reaches past an end: the order falls there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct FaceStencil {
+    /// Weights of the flux function at the nodes.
+    pub(super) central: Window,
+    /// Weights of the density that, times the speed, damp what the grid cannot resolve.
+    pub(super) dissipation: Window,
+    /// Weights of the derivative at the face by the cell coordinate.
+    pub(super) derivative: Window,
+    /// Whether both neighbouring faces carry a derivative, so that the fourth-order correction applies.
+    pub(super) corrected: bool,
+}
+
+/// An axis with its stencils.
+#[derive(Debug, Clone)]
+pub(super) struct AxisGeometry {
+    /// Nodes, one a cell.
+    pub(super) nodes: Vec<f64>,
+    /// dx/du at the nodes.
+    pub(super) widths: Vec<f64>,
+    /// Edges, one more than cells.
+    pub(super) edges: Vec<f64>,
+    /// dx/du at the edges.
+    pub(super) face_widths: Vec<f64>,
+    /// Lower and upper end.
+    pub(super) ends: [End; 2],
+    /// One a face, ends included (theirs are empty).
+    pub(super) stencils: Vec<FaceStencil>,
+    /// Cells on either side that an entry of the matrix may reach.
+    pub(super) reach: usize,
+}
+
+impl AxisGeometry {
+    /// The axis number `index` of a grid for a system.
+    pub(super) fn new(
+        system: &dyn System,
+        index: usize,
+        axis: &Axis,
+        scheme: AdvectiveScheme,
+    ) -> Self {
+        let count = axis.count();
+        let noisy = system.noise_axes().contains(&index);
+        let tolerance = 1e-9 * (axis.to() - axis.from());
+        let bounds = system.bounds(index);
+        let end = |closed: bool| if closed { End::Wall } else { End::Open };
+        let lower = bounds.is_some_and(|(low, _)| axis.from() <= low + tolerance);
+        let upper = bounds.is_some_and(|(_, high)| axis.to() >= high - tolerance);
+        Self {
+            nodes: axis.nodes().to_vec(),
+            widths: (0..count).map(|cell| axis.node_stretch(cell)).collect(),
+            edges: axis.edges().to_vec(),
+            face_widths: (0..=count).map(|face| axis.edge_stretch(face)).collect(),
+            ends: [end(lower), end(upper)],
+            stencils: (0..=count)
+                .map(|face| stencil(scheme, face, count - face))
+                .collect(),
+            reach: if noisy { REACH } else { scheme.reach() },
+        }
+    }
+
+    /// Number of cells.
+    pub(super) fn count(&self) -> usize {
+        self.nodes.len()
+    }
+}
+
+/// Inner faces of an axis on which a switching surface of the system lies.
+pub(super) fn surface_faces(system: &dyn System, index: usize, axis: &Axis) -> Vec<usize> {
+    let surfaces = system.switching_surfaces();
+    let here = surfaces.iter().filter(|surface| surface.axis == index);
+    let face_at = |at: f64| {
+        let cell = axis.find(at)?;
+        let below = at - axis.edges()[cell] < axis.edges()[cell + 1] - at;
+        let face = if below { cell } else { cell + 1 };
+        (axis.has_face_at(at) && face > 0 && face < axis.count()).then_some(face)
+    };
+    here.filter_map(|surface| face_at(surface.at)).collect()
+}
+
+/// The stencil of a face with that many cells below and above it.
+fn stencil(scheme: AdvectiveScheme, below: usize, above: usize) -> FaceStencil {
+    let cells = below.min(above);
+    let (central, dissipation) = scheme.symmetric(cells);
+    let derivative = match cells {
+        0 => [0.0; 2 * REACH],
+        1 => [0.0, 0.0, -1.0, 1.0, 0.0, 0.0],
+        _ => [0.0, 1.0, -27.0, 27.0, -1.0, 0.0].map(|weight| weight / 24.0),
+    };
+    FaceStencil {
+        central,
+        dissipation,
+        derivative,
+        corrected: cells >= 2,
+    }
+}

@@ -1,0 +1,98 @@
+//! From the generator's unknowns, point values times local cell volume, to the masses of the cells.
+
+use rayon::prelude::*;
+
+use super::geometry::surface_faces;
+use crate::space::{Axis, CellSpace};
+use crate::system::System;
+
+/// Points of the polynomial that is integrated over a cell.
+const POINTS: usize = 5;
+
+/// Masses of the cells, Σ = 1, from a null vector of the generator (or any of its states).
+///
+/// The unknown of a cell is p(node) times the local volume Π dx/du. A cell's mass is the integral of p over
+/// the cell, which differs in second order of its width: along every axis the polynomial of fourth degree
+/// through the densities at the nearest nodes is integrated, all of them on the cell's side of any switching
+/// surface, where p has a kink. `unknowns` has length `n_cells`; if the masses sum to nothing they are not
+/// normalised.
+pub fn cell_masses(system: &dyn System, space: &CellSpace, unknowns: &[f64]) -> Vec<f64> {
+    let mut masses = unknowns.to_vec();
+    let shape = space.shape();
+    for (index, axis) in space.axes().iter().enumerate() {
+        let mut cuts = vec![0, axis.count()];
+        cuts.extend(surface_faces(system, index, axis));
+        cuts.sort_unstable();
+        cuts.dedup();
+        let weights = integration_weights(axis, &cuts);
+        let stride: usize = shape[index + 1..].iter().product();
+        masses
+            .par_chunks_mut(stride * shape[index])
+            .for_each(|block| integrate(block, stride, &weights));
+    }
+    let total: f64 = masses.iter().sum();
+    if total.is_finite() && total != 0.0 {
+        masses.iter_mut().for_each(|mass| *mass /= total);
+    }
+    masses
+}
+
+/// Replaces unknowns by masses along all lines of a block, whose cells are `stride` apart.
+fn integrate(block: &mut [f64], stride: usize, weights: &[(usize, Vec<f64>)]) {
+    let mut line = vec![0.0; weights.len()];
+    for inner in 0..stride {
+        let cells = block.iter().skip(inner).step_by(stride);
+        for (value, cell) in line.iter_mut().zip(cells) {
+            *value = *cell;
+        }
+        let cells = block.iter_mut().skip(inner).step_by(stride);
+        for (cell, (first, weights)) in cells.zip(weights) {
+            let terms = weights.iter().zip(&line[*first..]);
+            *cell = terms.map(|(weight, value)| weight * value).sum();
+        }
+    }
+}
+
+/// For each cell the first cell of its stencil, and the weights of the unknowns from there on.
+fn integration_weights(axis: &Axis, cuts: &[usize]) -> Vec<(usize, Vec<f64>)> {
+    let mut weights = Vec::with_capacity(axis.count());
+    for piece in cuts.windows(2) {
+        let points = POINTS.min(piece[1] - piece[0]);
+        for cell in piece[0]..piece[1] {
+            let first = cell
+                .saturating_sub(points / 2)
+                .clamp(piece[0], piece[1] - points);
+            let nodes = &axis.nodes()[first..first + points];
+            let stretched = lagrange_integrals(nodes, axis.edges()[cell], axis.edges()[cell + 1])
+                .into_iter()
+                .enumerate()
+                .map(|(offset, weight)| weight / axis.node_stretch(first + offset))
+                .collect();
+            weights.push((first, stretched));
+        }
+    }
+    weights
+}
+
+/// Integrals from `from` to `to` of the Lagrange polynomials of the nodes: three Gauss points, exact up to degree 5.
+fn lagrange_integrals(nodes: &[f64], from: f64, to: f64) -> Vec<f64> {
+    let offset = 0.6_f64.sqrt();
+    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+    let gauss = [(-offset, 5.0 / 9.0), (0.0, 8.0 / 9.0), (offset, 5.0 / 9.0)];
+    let polynomial = |index: usize, x: f64| -> f64 {
+        let others = nodes
+            .iter()
+            .enumerate()
+            .filter(|(other, _)| *other != index);
+        others
+            .map(|(_, node)| (x - node) / (nodes[index] - node))
+            .product()
+    };
+    (0..nodes.len())
+        .map(|index| {
+            let values =
+                gauss.map(|(place, weight)| weight * polynomial(index, middle + half * place));
+            half * values.iter().sum::<f64>()
+        })
+        .collect()
+}

@@ -1,0 +1,115 @@
+//! The generator Q of a system on a cell space: du/dt = Q u, the cell map in the limit of a short step.
+//!
+//! The unknown u of a cell is the *point value* of the density at the cell's node times the local volume
+//! Π dx/du of the cell (the node is where the cell coordinate of each axis is half-way between two edges; on
+//! uniform axes the middle). Σ u is conserved but for what leaves, and u is a cell's mass to second order;
+//! [`cell_masses`] turns it into the integrals over the cells to fifth order. Working with point values on a
+//! grid that is uniform in the cell coordinate keeps the full order of one-dimensional fluxes in several
+//! dimensions and on graded axes (Shu and Osher 1988).
+//!
+//! | part | file |
+//! | --- | --- |
+//! | schemes and stencils | `scheme.rs`, `geometry.rs` |
+//! | drift and diffusion along a grid line | `sampler.rs` |
+//! | fluxes along a grid line: fitted and advected drift | `line.rs` |
+//! | the matrix | `assemble.rs`, `columns.rs` |
+//! | masses of cells from the unknowns | `masses.rs` |
+//! | dQ/dθ | `derivative.rs` |
+//! | axes graded toward switching surfaces | `grading.rs` |
+//! | is the grid fine enough for the noise | `resolution.rs` |
+
+#[cfg(test)]
+mod accuracy;
+mod assemble;
+#[cfg(test)]
+mod banded;
+mod columns;
+mod derivative;
+mod geometry;
+mod grading;
+mod line;
+mod masses;
+mod resolution;
+mod sampler;
+mod scheme;
+
+pub use assemble::assemble;
+pub use derivative::assemble_derivative;
+pub use grading::automatic_grading;
+pub use masses::cell_masses;
+pub use resolution::{Resolution, resolution};
+pub use scheme::AdvectiveScheme;
+
+use sprs::CsMat;
+
+use crate::system::SystemError;
+
+/// Settings of the discretisation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct GeneratorOptions {
+    /// How advective fluxes are reconstructed.
+    pub scheme: AdvectiveScheme,
+}
+
+/// The generator on the `n` cells of a cell space, du/dt = Q u.
+///
+/// The pattern depends on the grid, the scheme and the noisy axes only, never on a parameter: generators of
+/// neighbouring parameter values have the same pattern, zeros stored where need be.
+#[derive(Debug, Clone)]
+pub struct Generator {
+    /// Q, `n × n`, per unit time, compressed by columns (CSC): column `j` lists the cells that cell `j` feeds.
+    /// Columns sum to minus the escape rate.
+    pub matrix: CsMat<f64>,
+    /// Rate of loss to the sink from each cell, per unit time; length `n`.
+    pub escape: Vec<f64>,
+}
+
+/// Why a generator could not be assembled.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum GeneratorError {
+    /// The cell space and the system differ in dimension.
+    #[error("the cell space has {axes} axes, the system {dimension}")]
+    Dimension {
+        /// Axes of the cell space.
+        axes: usize,
+        /// Dimension of the system.
+        dimension: usize,
+    },
+    /// The drift depends on time.
+    #[error(
+        "the drift depends on time with period {period}; a generator needs an autonomous system"
+    )]
+    Periodic {
+        /// The period.
+        period: f64,
+    },
+    /// A Wiener process drives an axis that the system does not have.
+    #[error("Wiener process {channel} drives axis {axis} of a system with {dimension} axes")]
+    NoiseAxis {
+        /// The process.
+        channel: usize,
+        /// The axis it names.
+        axis: usize,
+        /// Dimension of the system.
+        dimension: usize,
+    },
+    /// A drift or noise amplitude that is not a finite number.
+    #[error("drift or noise along axis {axis} is not finite on the grid line through {state:?}")]
+    NotFinite {
+        /// The component.
+        axis: usize,
+        /// A state on the grid line.
+        state: Vec<f64>,
+    },
+    /// The parameter of a derivative is unknown, or cannot be varied about its value.
+    #[error(transparent)]
+    System(#[from] SystemError),
+    /// The matrix could not be laid out.
+    #[error("the matrix of {n_cells} cells could not be laid out: {reason}")]
+    Structure {
+        /// Number of cells.
+        n_cells: usize,
+        /// What the matrix library says.
+        reason: String,
+    },
+}

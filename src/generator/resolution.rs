@@ -1,0 +1,191 @@
+//! Whether the grid is fine enough for the noise, judged where the mass is.
+
+use std::fmt;
+
+use super::geometry::surface_faces;
+use crate::space::CellSpace;
+use crate::system::System;
+
+/// Share of the heaviest mass density below which a cell does not count.
+const WEIGHT: f64 = 1e-4;
+
+/// How well the cells along one noisy axis resolve drift against diffusion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Resolution {
+    /// The axis.
+    pub axis: usize,
+    /// Largest cell Péclet number |a| h/(2D) of the whole drift. Above 1 the drift is carried by the advective
+    /// scheme, which is accurate as long as the density itself is smooth on the grid.
+    pub peclet: f64,
+    /// The same of the drift less its mean along the grid line: damping and friction, which shape the density
+    /// along this axis. Above 1 the density changes by more than e² from cell to cell.
+    pub fitted_peclet: f64,
+    /// Mass-weighted root mean square of |a| h/D in the cells beside switching surfaces: cell width over the
+    /// thickness of the layer that holds the kink. `None` without a surface on a face of the axis.
+    pub layer: Option<f64>,
+    /// Switching surfaces inside the range that no face falls on.
+    pub surfaces_off_faces: Vec<f64>,
+}
+
+impl Resolution {
+    /// Whether nothing needs to be said.
+    pub fn is_fine(&self) -> bool {
+        self.fitted_peclet <= 1.0
+            && self.layer.is_none_or(|layer| layer <= 1.0)
+            && self.surfaces_off_faces.is_empty()
+    }
+}
+
+impl fmt::Display for Resolution {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let axis = self.axis + 1;
+        if self.is_fine() {
+            return write!(
+                formatter,
+                "axis {axis}: the cells resolve drift against noise"
+            );
+        }
+        write!(formatter, "axis {axis}:")?;
+        if self.fitted_peclet > 1.0 {
+            let value = self.fitted_peclet;
+            write!(
+                formatter,
+                " cells too wide for the noise (damping or friction has cell Péclet number {value:.2}; it should stay below 1);"
+            )?;
+        }
+        if let Some(layer) = self.layer.filter(|layer| *layer > 1.0) {
+            write!(
+                formatter,
+                " cells beside a switching surface are {layer:.1} times as wide as the layer that holds the kink, which is smeared (grade the axis toward the surface);"
+            )?;
+        }
+        for at in &self.surfaces_off_faces {
+            write!(
+                formatter,
+                " no face falls on the switching surface at {at} (use an even count or grade the axis toward it);"
+            )?;
+        }
+        Ok(())
+    }
+}
+
+/// Judges every noisy axis of a cell space, given the masses of its cells (length `n_cells`).
+pub fn resolution(system: &dyn System, space: &CellSpace, masses: &[f64]) -> Vec<Resolution> {
+    if system.dimension() != space.dimension() || masses.len() != space.n_cells() {
+        return Vec::new();
+    }
+    let mut axes = system.noise_axes().to_vec();
+    axes.sort_unstable();
+    axes.dedup();
+    axes.retain(|&axis| axis < space.dimension());
+    axes.iter()
+        .map(|&axis| judge(system, space, masses, axis))
+        .collect()
+}
+
+fn judge(system: &dyn System, space: &CellSpace, masses: &[f64], index: usize) -> Resolution {
+    let axis = &space.axes()[index];
+    let heaviest = (0..masses.len())
+        .map(|cell| masses[cell] / space.volume(cell))
+        .fold(0.0, f64::max);
+    let faces = surface_faces(system, index, axis);
+    let drift_at = |cell: usize| system.drift_at(0.0, &space.centre(cell))[index];
+    let stride: usize = space.shape()[index + 1..].iter().product();
+    let (mut peclet, mut fitted_peclet, mut layer, mut weight) = (0.0_f64, 0.0_f64, 0.0, 0.0);
+    for first in (0..masses.len()).filter(|&cell| space.position(cell, index) == 0) {
+        let line = (0..axis.count()).map(|position| first + position * stride);
+        let length = axis.to() - axis.from();
+        let mean: f64 = line
+            .clone()
+            .map(|cell| drift_at(cell) * axis.width(space.position(cell, index)))
+            .sum::<f64>()
+            / length;
+        for cell in line.filter(|&cell| masses[cell] / space.volume(cell) > WEIGHT * heaviest) {
+            let position = space.position(cell, index);
+            let scale = axis.width(position) / diffusion_at(system, space, index, cell);
+            let drift = drift_at(cell);
+            peclet = peclet.max(0.5 * drift.abs() * scale);
+            fitted_peclet = fitted_peclet.max(0.5 * (drift - mean).abs() * scale);
+            if faces
+                .iter()
+                .any(|&face| position == face || position + 1 == face)
+            {
+                layer += masses[cell] * (drift * scale).powi(2);
+                weight += masses[cell];
+            }
+        }
+    }
+    let inside = |at: &f64| *at > axis.from() && *at < axis.to() && !axis.has_face_at(*at);
+    let surfaces = system.switching_surfaces();
+    let here = surfaces.iter().filter(|surface| surface.axis == index);
+    Resolution {
+        axis: index,
+        peclet,
+        fitted_peclet,
+        layer: (weight > 0.0).then(|| (layer / weight).sqrt()),
+        surfaces_off_faces: here.map(|surface| surface.at).filter(inside).collect(),
+    }
+}
+
+/// D = Σ b²/2 over the processes that drive the axis.
+fn diffusion_at(system: &dyn System, space: &CellSpace, axis: usize, cell: usize) -> f64 {
+    let channels = system.noise_axes().iter().enumerate();
+    let here = channels.filter(|(_, driven)| **driven == axis);
+    here.map(|(channel, _)| {
+        0.5 * system
+            .amplitude_at(channel, 0.0, &space.centre(cell))
+            .powi(2)
+    })
+    .sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::{Axis, Grading};
+    use crate::system::registry;
+
+    fn judged(y: Axis) -> Resolution {
+        let values = [("kappa", 0.05), ("f_c", 0.01), ("sigma2", 0.1)];
+        let coulomb = registry::find("coulomb")
+            .unwrap()
+            .system_with(&values)
+            .unwrap();
+        let x = Axis::uniform(-2.0, 2.0, 20).unwrap();
+        let space = CellSpace::new(vec![x, y]).unwrap();
+        let masses: Vec<f64> = (0..space.n_cells())
+            .map(|cell| space.volume(cell))
+            .collect();
+        resolution(&*coulomb, &space, &masses).remove(0)
+    }
+
+    #[test]
+    fn numbers_follow_from_drift_width_and_diffusion() {
+        let uniform = judged(Axis::uniform(-2.0, 2.0, 20).unwrap());
+        // At x = y = 1.9 with h = 0.2, D = 0.05: drift -(0.095 + 0.01 + 1.9), of which 0.105 is fitted.
+        assert!((uniform.peclet - 2.005 * 2.0).abs() < 1e-12, "{uniform:?}");
+        assert!(
+            (uniform.fitted_peclet - 0.105 * 2.0).abs() < 1e-12,
+            "{uniform:?}"
+        );
+        // Mean square of x is 1.33 at the nodes, of the friction and damping beside it 0.015².
+        let expected = (1.33_f64 + 0.015 * 0.015).sqrt() * 4.0;
+        assert!(
+            (uniform.layer.unwrap() - expected).abs() < 1e-12,
+            "{uniform:?}"
+        );
+        assert!(!uniform.is_fine() && uniform.to_string().contains("kink"));
+    }
+
+    #[test]
+    fn grading_resolves_the_layer_and_odd_counts_miss_the_surface() {
+        let grading = Grading {
+            at: vec![0.0],
+            smallest: 0.02,
+        };
+        assert!(judged(Axis::graded(-2.0, 2.0, 40, &grading).unwrap()).is_fine());
+        let odd = judged(Axis::uniform(-2.0, 2.0, 21).unwrap());
+        assert_eq!(odd.surfaces_off_faces, vec![0.0]);
+        assert_eq!(odd.layer, None);
+    }
+}

@@ -1,0 +1,106 @@
+//! Drift and diffusion along grid lines, evaluated in batches.
+
+use super::GeneratorError;
+use super::geometry::AxisGeometry;
+use super::line::{GAUSS, Line};
+use crate::MAX_DIMENSION;
+use crate::system::{LANES, Lanes, System};
+
+/// The quadrature points of every cell, ascending: `4 count` coordinates.
+pub(super) fn quadrature_points(axis: &AxisGeometry) -> Vec<f64> {
+    let mut points = Vec::with_capacity(4 * axis.count());
+    for (cell, &node) in axis.nodes.iter().enumerate() {
+        for (from, to) in [(axis.edges[cell], node), (node, axis.edges[cell + 1])] {
+            points.extend(GAUSS.map(|share| from + share * (to - from)));
+        }
+    }
+    points
+}
+
+/// Evaluates drift and diffusion along grid lines, with buffers that are kept from line to line.
+pub(super) struct LineSampler<'a> {
+    system: &'a dyn System,
+    axis: usize,
+    channels: Vec<usize>,
+    /// State through which the line goes; the entry of its own axis is ignored.
+    pub(super) state: [f64; MAX_DIMENSION],
+    states: [Lanes; MAX_DIMENSION],
+    drift: [Lanes; MAX_DIMENSION],
+    /// What was sampled.
+    pub(super) line: Line,
+}
+
+impl<'a> LineSampler<'a> {
+    pub(super) fn new(system: &'a dyn System, axis: usize) -> Self {
+        let channels = system.noise_axes().iter().enumerate();
+        Self {
+            system,
+            axis,
+            channels: channels
+                .filter(|(_, driven)| **driven == axis)
+                .map(|(channel, _)| channel)
+                .collect(),
+            state: [0.0; MAX_DIMENSION],
+            states: [[0.0; LANES]; MAX_DIMENSION],
+            drift: [[0.0; LANES]; MAX_DIMENSION],
+            line: Line::default(),
+        }
+    }
+
+    /// Fills the line with values at the nodes and, on a noisy axis, at the quadrature points.
+    pub(super) fn sample(
+        &mut self,
+        nodes: &[f64],
+        quadrature: &[f64],
+    ) -> Result<(), GeneratorError> {
+        let mut line = std::mem::take(&mut self.line);
+        self.evaluate(nodes, &mut line.drift, &mut line.diffusion)?;
+        if !self.channels.is_empty() {
+            self.evaluate(quadrature, &mut line.inner_drift, &mut line.inner_diffusion)?;
+        }
+        self.line = line;
+        Ok(())
+    }
+
+    fn evaluate(
+        &mut self,
+        coordinates: &[f64],
+        drift: &mut Vec<f64>,
+        diffusion: &mut Vec<f64>,
+    ) -> Result<(), GeneratorError> {
+        let dimension = self.system.dimension();
+        drift.clear();
+        diffusion.clear();
+        for (lanes, &value) in self.states.iter_mut().zip(&self.state) {
+            lanes.fill(value);
+        }
+        for batch in coordinates.chunks(LANES) {
+            self.states[self.axis][..batch.len()].copy_from_slice(batch);
+            let states = &self.states[..dimension];
+            self.system.drift(0.0, states, &mut self.drift[..dimension]);
+            drift.extend_from_slice(&self.drift[self.axis][..batch.len()]);
+            if !self.channels.is_empty() {
+                let mut sum = [0.0; LANES];
+                for &channel in &self.channels {
+                    let mut amplitude = [0.0; LANES];
+                    self.system.amplitude(channel, 0.0, states, &mut amplitude);
+                    for (sum, amplitude) in sum.iter_mut().zip(amplitude) {
+                        *sum += 0.5 * amplitude * amplitude;
+                    }
+                }
+                diffusion.extend_from_slice(&sum[..batch.len()]);
+            }
+        }
+        if drift
+            .iter()
+            .chain(diffusion.iter())
+            .all(|value| value.is_finite())
+        {
+            return Ok(());
+        }
+        Err(GeneratorError::NotFinite {
+            axis: self.axis,
+            state: self.state[..dimension].to_vec(),
+        })
+    }
+}

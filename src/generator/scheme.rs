@@ -1,0 +1,70 @@
+//! Advective schemes by name, and their face stencils.
+//!
+//! The unknowns are point values at the nodes of a grid that is uniform in the cell coordinate, so the flux
+//! function taken at the nodes is reconstructed as if it were a row of cell averages (Shu and Osher 1988):
+//! the difference of two reconstructions is the derivative at a node to full order.
+
+/// Cells a face stencil may touch on either side of the face.
+pub(super) const REACH: usize = 3;
+
+/// Weights on the `2 REACH` cells around a face, from the lowest up.
+pub(super) type Window = [f64; 2 * REACH];
+
+/// How the advective flux through a face is reconstructed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum AdvectiveScheme {
+    /// Fifth order, biased upwind: damps what the grid cannot resolve.
+    #[default]
+    Upwind5,
+    /// Fourth order, central: no dissipation of its own.
+    Central4,
+    /// Sixth order, central: no dissipation of its own.
+    Central6,
+}
+
+impl AdvectiveScheme {
+    /// All schemes.
+    pub const ALL: [Self; 3] = [Self::Upwind5, Self::Central4, Self::Central6];
+
+    /// Name used in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Upwind5 => "upwind5",
+            Self::Central4 => "central4",
+            Self::Central6 => "central6",
+        }
+    }
+
+    /// Cells on either side of a face that its full stencil uses.
+    pub(super) fn reach(self) -> usize {
+        match self {
+            Self::Upwind5 | Self::Central6 => 3,
+            Self::Central4 => 2,
+        }
+    }
+
+    /// Central weights and dissipation weights of a face with `cells` cells available on either side. The flux
+    /// is Σ central·f - |speed| Σ dissipation·p; central minus or plus dissipation is the upwind-biased
+    /// stencil of order 2·cells - 1.
+    pub(super) fn symmetric(self, cells: usize) -> (Window, Window) {
+        let (central, dissipation): (Window, Window) = match cells.min(self.reach()) {
+            0 => ([0.0; 6], [0.0; 6]),
+            1 => (
+                [0.0, 0.0, 0.5, 0.5, 0.0, 0.0],
+                [0.0, 0.0, -0.5, 0.5, 0.0, 0.0],
+            ),
+            2 => (
+                [0.0, -1.0, 7.0, 7.0, -1.0, 0.0].map(|weight| weight / 12.0),
+                [0.0, 1.0, -3.0, 3.0, -1.0, 0.0].map(|weight| weight / 12.0),
+            ),
+            _ => (
+                [1.0, -8.0, 37.0, 37.0, -8.0, 1.0].map(|weight| weight / 60.0),
+                [-1.0, 5.0, -10.0, 10.0, -5.0, 1.0].map(|weight| weight / 60.0),
+            ),
+        };
+        match self {
+            Self::Upwind5 => (central, dissipation),
+            Self::Central4 | Self::Central6 => (central, [0.0; 6]),
+        }
+    }
+}
