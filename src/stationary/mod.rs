@@ -1,5 +1,7 @@
 //! Steady states of transition matrices.
 
+pub mod rates;
+
 /// Solvers by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Solver {
