@@ -34,6 +34,11 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 impl Balance<'_> {
+    /// Whether any mass escapes.
+    pub(super) fn leaks(&self) -> bool {
+        self.escape.iter().any(|&rate| rate > 0.0)
+    }
+
     /// r(p).
     pub(super) fn escape_rate(&self, mass: &[f64]) -> f64 {
         let total: f64 = mass.iter().sum();

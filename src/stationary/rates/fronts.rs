@@ -22,12 +22,16 @@ pub(super) trait Number: faer::traits::RealField + Copy + Send + Sync + 'static 
     fn from_rate(rate: f64) -> Self;
     /// Relative distance of neighbouring numbers.
     const SPACING: f64;
+    /// Entries below are dropped from factors (of a matrix scaled to one): products of two would be subnormal,
+    /// which hardware handles a hundred times more slowly.
+    const FLOOR: Self;
     /// Exact.
     fn wide(self) -> f64;
 }
 
 impl Number for f64 {
     const SPACING: f64 = Self::EPSILON;
+    const FLOOR: Self = 1e-150;
 
     fn from_rate(rate: f64) -> Self {
         rate
@@ -39,6 +43,7 @@ impl Number for f64 {
 
 impl Number for f32 {
     const SPACING: f64 = Self::EPSILON as f64;
+    const FLOOR: Self = 1e-18;
 
     fn from_rate(rate: f64) -> Self {
         rate as Self
@@ -47,6 +52,9 @@ impl Number for f32 {
         f64::from(self)
     }
 }
+
+/// A part of a front, by columns or (transposed) by rows.
+type Block<'a, T> = MatMut<'a, T, usize, usize, isize, isize>;
 
 /// Columns (or rows) that one task updates.
 const CHUNK: usize = 192;
@@ -77,7 +85,7 @@ pub(super) fn allocate<T: Number>(symbolic: &Symbolic) -> Vec<Factor<T>> {
     symbolic.fronts.iter().map(factor).collect()
 }
 
-/// Factorises: `values` are the rates in the order of the matrix's data, zero in the row and column of the
+/// Factorises: `values` are the rates in the order of the matrix's data, scaled to about one, zero in the row and column of the
 /// unknown that is held (its place in the elimination order), which gets a one on the diagonal.
 pub(super) fn factorise<T: Number>(
     symbolic: &Symbolic,
@@ -199,16 +207,9 @@ fn eliminate<T: Number>(front: &Front, factor: &mut Factor<T>, update: &mut [T])
     // L21 U11 = A21, row by row: U11ᵀ L21ᵀ = A21ᵀ.
     let lower = MatMut::from_column_major_slice_mut(&mut factor.lower, m, k);
     let above = own.transpose();
-    by_columns(lower.transpose_mut(), 0, &|_,
-                                           rows: MatMut<
-        '_,
-        T,
-        usize,
-        usize,
-        isize,
-        isize,
-    >| {
-        solve_lower_triangular_in_place(above, rows, Par::Seq);
+    by_columns(lower.transpose_mut(), 0, &|_, mut rows: Block<'_, T>| {
+        solve_lower_triangular_in_place(above, rows.as_mut(), Par::Seq);
+        drop_small(rows);
     });
     let lower = MatRef::from_column_major_slice(&factor.lower, m, k);
     let update = MatMut::from_column_major_slice_mut(update, m, m);
@@ -245,6 +246,7 @@ fn factorise_rows<T: Number>(mut upper: MatMut<'_, T>, rows: &mut [u32]) {
             stack,
             faer::Spec::default(),
         );
+        drop_small(panel.as_mut().as_dyn_stride_mut());
         let forward = &forward[..left];
         let old = rows[from..].to_vec();
         for (slot, &source) in rows[from..].iter_mut().zip(forward) {
@@ -257,8 +259,29 @@ fn factorise_rows<T: Number>(mut upper: MatMut<'_, T>, rows: &mut [u32]) {
             exchange(columns.as_mut(), forward);
             let (mut first, other) = columns.split_at_row_mut(width);
             solve_unit_lower_triangular_in_place(top, first.as_mut(), Par::Seq);
+            drop_small(first.as_mut());
             matmul(other, Accum::Add, below, first.as_ref(), minus, Par::Seq);
         });
+    }
+}
+
+/// Drops entries below the floor. Columns or rows must be contiguous.
+fn drop_small<T: Number>(block: Block<'_, T>) {
+    let block = if block.row_stride() == 1 {
+        block
+    } else {
+        block.transpose_mut()
+    };
+    let Some(block) = block.try_as_col_major_mut() else {
+        return;
+    };
+    let zero = T::from_rate(0.0);
+    for column in block.col_iter_mut() {
+        for entry in column.iter_mut() {
+            // Selects rather than branches.
+            let small = *entry < T::FLOOR && *entry > -T::FLOOR;
+            *entry = if small { zero } else { *entry };
+        }
     }
 }
 
@@ -278,12 +301,9 @@ fn exchange<T: Number>(
 }
 
 /// Runs `task(first column, columns)` on pieces of [`CHUNK`] columns, in parallel.
-fn by_columns<T: Number, Task>(
-    block: MatMut<'_, T, usize, usize, isize, isize>,
-    start: usize,
-    task: &Task,
-) where
-    Task: Fn(usize, MatMut<'_, T, usize, usize, isize, isize>) + Sync,
+fn by_columns<T: Number, Task>(block: Block<'_, T>, start: usize, task: &Task)
+where
+    Task: Fn(usize, Block<'_, T>) + Sync,
 {
     let columns = block.ncols();
     if columns <= CHUNK {

@@ -13,7 +13,7 @@
 //! | `narrowing` | a matrix of reach one that stands in where the factors would not fit |
 //! | `preconditioner` | one of these factorisations, with one cell held |
 //! | `balance` | residual and Jacobian of the (quasi-)steady state |
-//! | `krylov` | GMRES |
+//! | `krylov`, `newton` | GMRES, and Newton's method by it |
 //! | `solver` | when to iterate, when to factorise |
 
 mod balance;
@@ -21,6 +21,7 @@ mod dissection;
 mod fronts;
 mod krylov;
 mod narrowing;
+mod newton;
 mod preconditioner;
 mod prediction;
 mod solver;
@@ -127,6 +128,9 @@ pub enum RateError {
         /// The limit in the options.
         limit: u64,
     },
+    /// The factorisation at hand did not solve for the sensitivity within the iterations allowed.
+    #[error("the sensitivity did not converge")]
+    Sensitivity,
     /// A sensitivity was asked for before any steady state was found.
     #[error("no steady state has been solved yet")]
     NoSteadyState,

@@ -12,7 +12,7 @@ use super::triangular;
 use crate::space::CellSpace;
 
 /// Largest leaf of the dissection, in cells; measured (`benches/rates.rs`): 60 to 200 make no difference.
-const LEAF: usize = 100;
+const LEAF: usize = 70;
 
 /// Bytes of factors beyond which memory bounds the iterations, so that single precision is faster; it has
 /// needed as many iterations as double in every trial, because GMRES refines in double.
@@ -134,6 +134,8 @@ pub(super) struct Preconditioner {
     numbers: Numbers,
     /// Column starts and rows of the matrix that `symbolic` was made for.
     pattern: (Vec<usize>, Vec<usize>),
+    /// Power of two near the largest rate; the factors are those of the matrix over this.
+    scale: f64,
     /// The cell held in the current factors.
     pub(super) held: usize,
 }
@@ -168,6 +170,7 @@ impl Preconditioner {
                 symbolic,
                 numbers,
                 pattern: (starts.to_vec(), matrix.indices().to_vec()),
+                scale: 1.0,
                 held,
             }
         });
@@ -179,7 +182,16 @@ impl Preconditioner {
     fn factorise(&mut self, matrix: &CsMat<f64>) {
         let starts = matrix.indptr();
         let starts = starts.raw_storage();
-        let mut values = matrix.data().to_vec();
+        let largest = matrix
+            .data()
+            .iter()
+            .fold(0.0f64, |max, rate| max.max(rate.abs()));
+        self.scale = if largest > 0.0 && largest.is_finite() {
+            largest.log2().round().exp2()
+        } else {
+            1.0
+        };
+        let mut values: Vec<f64> = matrix.data().iter().map(|rate| rate / self.scale).collect();
         values[starts[self.held]..starts[self.held + 1]].fill(0.0);
         for (value, &row) in values.iter_mut().zip(matrix.indices()) {
             if row == self.held {
@@ -205,7 +217,7 @@ impl Preconditioner {
         }
         let mut out = vec![0.0; x.len()];
         for (&cell, value) in order.iter().zip(x) {
-            out[cell as usize] = value;
+            out[cell as usize] = value / self.scale;
         }
         out[self.held] = 0.0;
         out

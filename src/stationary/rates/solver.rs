@@ -3,8 +3,8 @@
 use sprs::CsMat;
 
 use super::balance::{Balance, add_product};
-use super::krylov::{Limits, gmres};
 use super::narrowing;
+use super::newton::{Newton, Progress, linear};
 use super::preconditioner::{Estimate, LARGE, Preconditioner, estimate};
 use super::{RateError, RateInfo, RateMethod, RateOptions, RateSteadyState};
 use crate::space::CellSpace;
@@ -14,12 +14,6 @@ use crate::space::CellSpace;
 const ITERATION_OPERATION_COST: [f64; 2] = [4.0, 12.0];
 /// The held cell must carry at least this share of the largest mass, or another one is held.
 const LEAST_HELD_SHARE: f64 = 1e-4;
-/// Least reduction asked of one run of GMRES: beyond, rounding of its basis shows.
-const LEAST_REDUCTION: f64 = 1e-9;
-/// Vectors that GMRES keeps before it restarts.
-const BASIS: usize = 120;
-/// Contraction per iteration below which plain refinement needs no GMRES.
-const FAST: f64 = 0.1;
 
 /// Solves generators on one cell space, keeping the factorisation from one to the next.
 pub struct RateSolver {
@@ -32,15 +26,6 @@ pub struct RateSolver {
     /// Iterations that the solve took for which the factorisation was made.
     baseline: usize,
     last: Option<(CsMat<f64>, Vec<f64>)>,
-}
-
-/// Work and state of one solve.
-#[derive(Default)]
-struct Progress {
-    factorisations: usize,
-    iterations: usize,
-    error: f64,
-    converged: bool,
 }
 
 impl RateSolver {
@@ -131,7 +116,8 @@ impl RateSolver {
     /// dQ/dθ (CSC, any pattern), `mass` the steady state. Escape is taken into account.
     ///
     /// # Errors
-    /// [`RateError::NoSteadyState`] before the first solve, [`RateError::Shape`] for wrong sizes.
+    /// [`RateError::NoSteadyState`] before the first solve, [`RateError::Shape`] for wrong sizes,
+    /// [`RateError::Sensitivity`] when the iterations do not suffice.
     pub fn sensitivity(
         &mut self,
         derivative: &CsMat<f64>,
@@ -161,29 +147,9 @@ impl RateSolver {
             *slot = -(*slot + lost * value);
         }
         source[kept.held] = 0.0;
-        let jacobian = balance.jacobian(mass);
-        let mut change = vec![0.0; cells];
-        // Restarted until the correction is small against the result.
-        for _ in 0..self.options.max_iterations.div_ceil(BASIS).max(2) {
-            let product = jacobian.apply(&change);
-            let rest: Vec<f64> = source.iter().zip(product).map(|(a, b)| a - b).collect();
-            let start = kept.apply(&rest);
-            let wanted = self.options.tolerance * norm(&change);
-            let size = norm(&start);
-            if size <= wanted {
-                break;
-            }
-            let limits = Limits {
-                reduction: 0.1 * self.options.tolerance.max(wanted / size),
-                iterations: self.options.max_iterations.min(BASIS),
-                give_up_early: false,
-            };
-            let outcome = gmres(start, limits, |vector| kept.apply(&jacobian.apply(vector)));
-            change
-                .iter_mut()
-                .zip(outcome.solution)
-                .for_each(|(c, z)| *c += z);
-        }
+        let effort = (self.options.tolerance, self.options.max_iterations);
+        let change = linear(&balance, kept, mass, &source, effort);
+        let mut change = change.ok_or(RateError::Sensitivity)?;
         let excess: f64 = change.iter().sum::<f64>() / total;
         for (slot, value) in change.iter_mut().zip(mass) {
             *slot -= excess * value;
@@ -261,7 +227,6 @@ impl RateSolver {
         self.excess = 0;
     }
 
-    /// Newton's method on the balance, each step solved by refinement or GMRES with the factorisation.
     fn iterate(
         &mut self,
         balance: &Balance<'_>,
@@ -273,63 +238,20 @@ impl RateSolver {
         let Some(kept) = &self.preconditioner else {
             return;
         };
-        let limit = if fresh {
-            self.options.max_iterations
+        let worth = if fresh {
+            usize::MAX
         } else {
-            (self.baseline + renewal(plan)).min(self.options.max_iterations)
+            self.baseline + renewal(plan)
         };
-        let exact = fresh && !plan.method.is_narrow();
-        let leaks = balance.escape.iter().any(|&rate| rate > 0.0);
-        let (before, mut smallest, mut previous) = (progress.iterations, 1.0f64, f64::INFINITY);
-        let (mut rounds, mut stalls) = (0, 0);
-        progress.converged = false;
-        while progress.iterations - before < limit {
-            let mut step = kept.apply(&balance.residual(mass));
-            progress.iterations += 1;
-            step.iter_mut().for_each(|value| *value = -*value);
-            let size = norm(&step) / norm(mass);
-            progress.error = size / smallest;
-            if !progress.error.is_finite() {
-                break;
-            }
-            progress.converged = progress.error <= self.options.tolerance;
-            stalls += usize::from(rounds > 0 && size > 0.5 * previous);
-            let plain = exact && (rounds == 0 || size <= FAST * previous);
-            if progress.converged || plain {
-                mass.iter_mut().zip(&step).for_each(|(p, z)| *p += z);
-            }
-            if progress.converged || stalls > 2 {
-                break;
-            }
-            previous = size;
-            rounds += 1;
-            if plain {
-                continue;
-            }
-            let reduction = 0.1 * self.options.tolerance / progress.error;
-            // The first step of Newton's method is not worth more when the escape rate is not known yet.
-            let rough = if fresh && leaks && rounds == 1 {
-                1e-4
-            } else {
-                0.0
-            };
-            let limits = Limits {
-                reduction: reduction.max(rough),
-                iterations: (limit - (progress.iterations - before)).min(BASIS),
-                give_up_early: !fresh && !plan.method.is_narrow(),
-            };
-            let jacobian = balance.jacobian(mass);
-            let outcome = gmres(step, limits, |vector| kept.apply(&jacobian.apply(vector)));
-            progress.iterations += outcome.iterations;
-            smallest = smallest.min(outcome.smallest);
-            mass.iter_mut()
-                .zip(&outcome.solution)
-                .for_each(|(p, z)| *p += z);
-            if !outcome.reached && !fresh {
-                break;
-            }
-        }
-        let used = progress.iterations - before;
+        let newton = Newton {
+            balance,
+            kept,
+            tolerance: self.options.tolerance,
+            limit: worth.min(self.options.max_iterations),
+            fresh,
+            narrow: plan.method.is_narrow(),
+        };
+        let used = newton.run(mass, progress);
         if fresh {
             self.baseline = used;
         }
@@ -384,10 +306,6 @@ fn renewal(plan: &Estimate) -> usize {
     let cost = ITERATION_OPERATION_COST[usize::from(plan.factor_bytes > LARGE / 2)];
     let iterations = plan.operations / (cost * plan.iteration_operations);
     (iterations as usize).max(8)
-}
-
-fn norm(values: &[f64]) -> f64 {
-    values.iter().map(|value| value.abs()).sum()
 }
 
 /// The cell with the largest mass, and that mass.

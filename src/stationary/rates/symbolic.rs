@@ -73,8 +73,6 @@ impl Symbolic {
     pub(super) fn new(matrix: &CsMat<f64>, tree: Dissection) -> Self {
         let n = matrix.rows();
         let rows = Rows::new(matrix);
-        let columns = matrix.indptr();
-        let columns = columns.raw_storage();
         let mut position = vec![0u32; n];
         for (place, &cell) in tree.order.iter().enumerate() {
             position[cell as usize] = place as u32;
@@ -84,25 +82,14 @@ impl Symbolic {
         let mut fronts: Vec<Front> = Vec::with_capacity(tree.nodes.len());
         for node in &tree.nodes {
             let own = node.own.clone();
+            let below = node.children.into_iter().flatten();
+            let below = below.flat_map(|child| &boundaries[child]).copied();
+            let touched = touched(matrix, &rows, (&tree.order, &position), &own);
             let mut boundary: Vec<u32> = Vec::new();
-            let reached = |place: u32, boundary: &mut Vec<u32>, local: &mut [u32]| {
+            for place in touched.into_iter().chain(below) {
                 if place as usize >= own.end && local[place as usize] == u32::MAX {
                     local[place as usize] = 0;
                     boundary.push(place);
-                }
-            };
-            for &cell in &tree.order[own.clone()] {
-                let cell = cell as usize;
-                for &row in &matrix.indices()[columns[cell]..columns[cell + 1]] {
-                    reached(position[row], &mut boundary, &mut local);
-                }
-                for &(column, _) in &rows.entries[rows.start[cell]..rows.start[cell + 1]] {
-                    reached(position[column as usize], &mut boundary, &mut local);
-                }
-            }
-            for child in node.children.into_iter().flatten() {
-                for &place in &boundaries[child] {
-                    reached(place, &mut boundary, &mut local);
                 }
             }
             boundary.sort_unstable();
@@ -152,6 +139,26 @@ fn number(own: &std::ops::Range<usize>, boundary: &[u32], local: &mut [u32]) {
     for (index, &place) in boundary.iter().enumerate() {
         local[place as usize] = (own.len() + index) as u32;
     }
+}
+
+/// Places in the elimination order of all cells that rates join to the own cells, with repetitions.
+fn touched(
+    matrix: &CsMat<f64>,
+    rows: &Rows,
+    (order, position): (&[u32], &[u32]),
+    own: &std::ops::Range<usize>,
+) -> Vec<u32> {
+    let columns = matrix.indptr();
+    let columns = columns.raw_storage();
+    let mut touched = Vec::new();
+    for &cell in &order[own.clone()] {
+        let cell = cell as usize;
+        let out = &matrix.indices()[columns[cell]..columns[cell + 1]];
+        touched.extend(out.iter().map(|&row| position[row]));
+        let into = &rows.entries[rows.start[cell]..rows.start[cell + 1]];
+        touched.extend(into.iter().map(|&(column, _)| position[column as usize]));
+    }
+    touched
 }
 
 /// The rates whose earlier cell is one of the front's own.

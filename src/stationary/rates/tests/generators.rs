@@ -1,6 +1,12 @@
 //! Generators to try solvers on: finite volumes on uniform boxes, 5th-order upwind-biased advection, central
 //! diffusion. Knows nothing of the crate, so that the benches use it too.
 
+#![allow(
+    unreachable_pub,
+    dead_code,
+    reason = "shared by tests and benches, which use different parts"
+)]
+
 use std::collections::BTreeMap;
 
 use sprs::CsMat;

@@ -1,7 +1,6 @@
 //! Tests of the solver against exact null vectors and dense algebra.
 
 mod exact;
-#[expect(unreachable_pub, dead_code, reason = "the benches use this file too")]
 mod generators;
 mod warm;
 

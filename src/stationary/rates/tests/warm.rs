@@ -57,7 +57,12 @@ fn work_counters_are_as_they_were() {
         let counts: Vec<String> = states.iter().map(count).collect();
         format!("{}: {}", method.name(), counts.join(" "))
     });
-    insta::assert_snapshot!(lines.join("\n"), @"");
+    insta::assert_snapshot!(lines.join("\n"), @r"
+    lu: 1+4 0+8 0+8 0+9 0+9 1+3
+    lu-single: 1+3 0+8 0+8 0+9 1+3 0+8
+    narrow-lu: 1+126 0+78 0+77 0+77 0+76 0+75
+    narrow-lu-single: 1+126 0+78 0+77 0+77 0+76 0+75
+    ");
 }
 
 #[test]
