@@ -9,7 +9,6 @@
     clippy::print_stdout,
     reason = "a bench reports and stops at the first fault"
 )]
-#![expect(missing_docs, reason = "not a library")]
 
 #[path = "../src/stationary/rates/tests/generators.rs"]
 mod generators;

@@ -177,7 +177,7 @@ fn extend<T: Number>(
     let add = |into: &mut [T], from: &[T], map: &[u32], shift: usize| {
         for (&value, &place) in from.iter().zip(map) {
             let slot = &mut into[place as usize - shift];
-            *slot = *slot + value;
+            *slot += value;
         }
     };
     for (column, &place) in of_child.chunks_exact(map.len()).zip(map) {

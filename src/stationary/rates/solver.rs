@@ -168,8 +168,8 @@ impl RateSolver {
         for (cell, (column, &escape)) in matrix.outer_iterator().zip(escape).enumerate() {
             let sum: f64 = column.data().iter().sum();
             let size: f64 = column.data().iter().map(|rate| rate.abs()).sum();
-            // Written so that values that are not numbers fail.
-            if !((sum + escape).abs() <= 1e-10 * (size + escape.abs())) {
+            let gap = (sum + escape).abs();
+            if !gap.is_finite() || gap > 1e-10 * (size + escape.abs()) {
                 return Err(RateError::Column { cell, sum, escape });
             }
         }
