@@ -12,8 +12,10 @@ use crate::space::CellSpace;
 /// Operations of a factorisation that take the time of one operation of an iteration, for factors within and
 /// beyond the caches: iterations are bound by memory, not arithmetic. Measured (`benches/rates.rs`).
 const ITERATION_OPERATION_COST: [f64; 2] = [4.0, 12.0];
+/// If a solve fails and the held cell carries less than this share of the largest mass, another one is held.
+const WEAK_HELD_SHARE: f64 = 1e-2;
 /// The held cell must carry at least this share of the largest mass, or another one is held.
-const LEAST_HELD_SHARE: f64 = 1e-4;
+const LEAST_HELD_SHARE: f64 = 1e-8;
 
 /// Solves generators on one cell space, keeping the factorisation from one to the next.
 pub struct RateSolver {
@@ -83,12 +85,16 @@ impl RateSolver {
                 held,
             };
             self.iterate(&balance, &mut mass, &mut progress, fresh, &plan);
-            let (best, largest) = largest(&mass);
-            let weak = mass[held] < LEAST_HELD_SHARE * largest;
-            if weak && best != held && mass.iter().sum::<f64>() > 0.0 {
-                held = best;
-            } else if progress.converged {
+            // The sign is arbitrary: on a grid too coarse, wiggles may make the held cell's mass negative.
+            if mass.iter().sum::<f64>() < 0.0 {
+                mass.iter_mut().for_each(|value| *value = -*value);
+            }
+            if progress.converged {
                 break;
+            }
+            let (best, largest) = largest(&mass);
+            if best != held && mass[held] < WEAK_HELD_SHARE * largest {
+                held = best;
             } else if fresh {
                 let Some(double) = self.in_double_precision(&plan) else {
                     break;

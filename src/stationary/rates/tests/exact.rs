@@ -153,7 +153,7 @@ fn the_error_estimate_bounds_the_error_of_a_stopped_solve() {
 }
 
 #[test]
-fn an_improbable_cell_is_not_held() {
+fn an_improbable_cell_held_first_does_no_harm() {
     // The first cell is left most slowly by far, yet carries almost nothing: it is entered more slowly still.
     let n = 40;
     let mut matrix = DMatrix::<f64>::zeros(n, n);
@@ -172,7 +172,7 @@ fn an_improbable_cell_is_not_held() {
     let state = solver.solve(&sparse(&matrix), &vec![0.0; n], None).unwrap();
     let error = distance(&state.mass, &exact);
     assert!(error < 1e-10, "{error:e} {:?}", state.info);
-    assert_eq!(state.info.factorisations, 2, "{error:e} {:?}", state.info);
+    assert!(state.info.converged, "{:?}", state.info);
 }
 
 #[test]
