@@ -25,6 +25,8 @@ pub use classes::ClassShare;
 pub use second_eigenvalue::{SecondEigenvalue, second_eigenvalue};
 pub use solve::solve;
 
+pub mod rates;
+
 /// Solvers by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Solver {

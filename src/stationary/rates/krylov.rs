@@ -1,0 +1,165 @@
+//! GMRES (Saad and Schultz 1986) on an operator that is close to the identity, no restart.
+//!
+//! The operator is M⁻¹ A, so residuals are in the units of the unknowns and, divided by the smallest singular
+//! value that the Krylov space has seen, estimate the error. All sums run in a fixed order.
+
+use nalgebra::{DMatrix, DVector};
+
+/// What a run of GMRES gave.
+pub(super) struct Outcome {
+    /// x with M⁻¹ A x ≈ start.
+    pub(super) solution: Vec<f64>,
+    /// Applications of the operator.
+    pub(super) iterations: usize,
+    /// Smallest singular value of the projected operator.
+    pub(super) smallest: f64,
+    /// Whether the target was reached.
+    pub(super) reached: bool,
+}
+
+/// When GMRES stops.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Limits {
+    /// Wanted reduction of the 2-norm.
+    pub(super) reduction: f64,
+    /// Largest number of applications.
+    pub(super) iterations: usize,
+    /// Whether to stop as soon as the trend says that the limit will not do.
+    pub(super) give_up_early: bool,
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    // Eight partial sums in a fixed order: fast, and the same everywhere.
+    let mut sums = [0.0; 8];
+    let (left, right) = (a.chunks_exact(8), b.chunks_exact(8));
+    let tail: f64 = left
+        .remainder()
+        .iter()
+        .zip(right.remainder())
+        .map(|(x, y)| x * y)
+        .sum();
+    for (x, y) in left.zip(right) {
+        for lane in 0..8 {
+            sums[lane] += x[lane] * y[lane];
+        }
+    }
+    sums.iter().sum::<f64>() + tail
+}
+
+fn add_scaled(y: &mut [f64], factor: f64, x: &[f64]) {
+    for (slot, value) in y.iter_mut().zip(x) {
+        *slot += factor * value;
+    }
+}
+
+/// Solves `operator`(x) = start.
+pub(super) fn gmres(
+    start: Vec<f64>,
+    limits: Limits,
+    mut operator: impl FnMut(&[f64]) -> Vec<f64>,
+) -> Outcome {
+    let size = dot(&start, &start).sqrt();
+    let mut outcome = Outcome {
+        solution: vec![0.0; start.len()],
+        iterations: 0,
+        smallest: 1.0,
+        reached: size == 0.0,
+    };
+    if !(size > 0.0 && size.is_finite()) {
+        return outcome;
+    }
+    let mut basis = vec![start];
+    basis[0].iter_mut().for_each(|value| *value /= size);
+    let mut triangle = Triangle::new(size);
+    while !outcome.reached && outcome.iterations < limits.iterations {
+        let mut next = operator(&basis[outcome.iterations]);
+        outcome.iterations += 1;
+        let mut column = vec![0.0; basis.len()];
+        // Twice is enough (Kahan): classical trouble with nearly dependent vectors.
+        for _ in 0..2 {
+            for (entry, vector) in column.iter_mut().zip(&basis) {
+                let overlap = dot(&next, vector);
+                *entry += overlap;
+                add_scaled(&mut next, -overlap, vector);
+            }
+        }
+        let length = dot(&next, &next).sqrt();
+        if !length.is_finite() {
+            outcome.iterations = limits.iterations;
+            return outcome;
+        }
+        let remaining = triangle.push(column, length) / size;
+        outcome.reached = remaining <= limits.reduction;
+        let hopeless = limits.give_up_early && outcome.iterations >= 5 && {
+            let decades = remaining.ln() / outcome.iterations as f64;
+            decades * limits.iterations as f64 > limits.reduction.ln()
+        };
+        if length <= 1e-14 || hopeless {
+            break;
+        }
+        next.iter_mut().for_each(|value| *value /= length);
+        basis.push(next);
+    }
+    let (weights, smallest) = triangle.solve();
+    outcome.smallest = smallest;
+    for (weight, vector) in weights.iter().zip(&basis) {
+        add_scaled(&mut outcome.solution, *weight, vector);
+    }
+    outcome
+}
+
+/// The Hessenberg matrix, made triangular by rotations as it grows.
+struct Triangle {
+    columns: Vec<Vec<f64>>,
+    rotations: Vec<(f64, f64)>,
+    right: Vec<f64>,
+}
+
+impl Triangle {
+    fn new(size: f64) -> Self {
+        Self {
+            columns: Vec::new(),
+            rotations: Vec::new(),
+            right: vec![size],
+        }
+    }
+
+    /// Takes a column with its entry below the diagonal; gives the norm of the residual.
+    fn push(&mut self, mut column: Vec<f64>, below: f64) -> f64 {
+        for (index, &(cosine, sine)) in self.rotations.iter().enumerate() {
+            let (a, b) = (column[index], column[index + 1]);
+            column[index] = cosine * a + sine * b;
+            column[index + 1] = cosine * b - sine * a;
+        }
+        let last = column.len() - 1;
+        let length = column[last].hypot(below);
+        let (cosine, sine) = if length > 0.0 {
+            (column[last] / length, below / length)
+        } else {
+            (1.0, 0.0)
+        };
+        column[last] = length;
+        let end = self.right[last];
+        self.right[last] = cosine * end;
+        self.right.push(-sine * end);
+        self.rotations.push((cosine, sine));
+        self.columns.push(column);
+        (sine * end).abs()
+    }
+
+    /// Weights of the basis vectors, and the smallest singular value.
+    fn solve(&self) -> (Vec<f64>, f64) {
+        let n = self.columns.len();
+        if n == 0 {
+            return (Vec::new(), 1.0);
+        }
+        let entry =
+            |row: usize, column: usize| self.columns[column].get(row).copied().unwrap_or(0.0);
+        let matrix = DMatrix::from_fn(n, n, entry);
+        let right = DVector::from_column_slice(&self.right[..n]);
+        let weights = matrix.solve_upper_triangular(&right);
+        let smallest = matrix.singular_values().min();
+        let weights = weights.map_or_else(|| vec![0.0; n], |weights| weights.as_slice().to_vec());
+        (weights, smallest)
+    }
+}

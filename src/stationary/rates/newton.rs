@@ -1,0 +1,139 @@
+//! Newton's method on the balance, its linear systems by refinement or GMRES with a factorisation at hand.
+//!
+//! A correction M⁻¹ F, divided by the smallest singular value seen of M⁻¹ F', estimates the error of the masses;
+//! a residual would not, because slow modes hide in it.
+
+use super::balance::Balance;
+use super::krylov::{Limits, gmres};
+use super::preconditioner::Preconditioner;
+
+/// Contraction per iteration below which plain refinement needs no GMRES.
+const FAST: f64 = 0.1;
+/// Least reduction asked of one run of GMRES: beyond, rounding of its basis shows.
+const LEAST_REDUCTION: f64 = 1e-9;
+/// Vectors that GMRES keeps before it restarts.
+const BASIS: usize = 120;
+
+/// Work and state of one solve.
+#[derive(Default)]
+pub(super) struct Progress {
+    pub(super) factorisations: usize,
+    pub(super) iterations: usize,
+    pub(super) error: f64,
+    pub(super) converged: bool,
+}
+
+/// One attempt with one factorisation.
+pub(super) struct Newton<'a> {
+    pub(super) balance: &'a Balance<'a>,
+    pub(super) kept: &'a Preconditioner,
+    pub(super) tolerance: f64,
+    /// Largest number of iterations.
+    pub(super) limit: usize,
+    /// Whether the factors are those of this matrix.
+    pub(super) fresh: bool,
+    /// Whether the factors are those of a stand-in of reach one.
+    pub(super) narrow: bool,
+}
+
+impl Newton<'_> {
+    /// Improves `mass` until converged, stalled or out of iterations; gives the iterations used.
+    pub(super) fn run(&self, mass: &mut [f64], progress: &mut Progress) -> usize {
+        let (mut used, mut smallest, mut previous) = (0, 1.0f64, f64::INFINITY);
+        let (mut rounds, mut stalls) = (0, 0);
+        progress.converged = false;
+        while used < self.limit {
+            let mut step = self.kept.apply(&self.balance.residual(mass));
+            used += 1;
+            step.iter_mut().for_each(|value| *value = -*value);
+            let size = norm(&step) / norm(mass);
+            progress.error = size / smallest;
+            if !progress.error.is_finite() {
+                break;
+            }
+            progress.converged = progress.error <= self.tolerance;
+            stalls = if size > 0.5 * previous { stalls + 1 } else { 0 };
+            let exact = self.fresh && !self.narrow;
+            let plain = exact && (rounds == 0 || size <= FAST * previous);
+            if progress.converged || plain {
+                add(mass, &step);
+            }
+            if progress.converged || stalls > 2 {
+                break;
+            }
+            previous = size;
+            rounds += 1;
+            if plain {
+                continue;
+            }
+            let limits = self.limits(progress.error, rounds, self.limit - used);
+            let jacobian = self.balance.jacobian(mass);
+            let outcome = gmres(step, limits, |vector| {
+                self.kept.apply(&jacobian.apply(vector))
+            });
+            used += outcome.iterations;
+            // Newton's first steps may pass by a singular matrix that says nothing of the solution.
+            let early = self.balance.leaks() && rounds <= 2;
+            smallest = outcome.smallest.min(if early { 1.0 } else { smallest });
+            add(mass, &outcome.solution);
+            if !outcome.reached && !self.fresh && !self.narrow {
+                break;
+            }
+        }
+        progress.iterations += used;
+        used
+    }
+
+    fn limits(&self, error: f64, rounds: usize, left: usize) -> Limits {
+        // The first step is not worth more while the escape rate is unknown.
+        let unknown_rate = self.fresh && rounds == 1 && self.balance.leaks();
+        let least = if unknown_rate { 1e-4 } else { LEAST_REDUCTION };
+        Limits {
+            reduction: (0.1 * self.tolerance / error).max(least),
+            iterations: left.min(BASIS),
+            give_up_early: !self.fresh && !self.narrow,
+        }
+    }
+}
+
+/// Solves F'(mass) x = source, restarted until the correction is small against x; `None` when it is not after
+/// `limit` iterations.
+pub(super) fn linear(
+    balance: &Balance<'_>,
+    kept: &Preconditioner,
+    mass: &[f64],
+    source: &[f64],
+    (tolerance, limit): (f64, usize),
+) -> Option<Vec<f64>> {
+    let jacobian = balance.jacobian(mass);
+    let mut solution = vec![0.0; source.len()];
+    let mut used = 0;
+    while used < limit {
+        let product = jacobian.apply(&solution);
+        let rest: Vec<f64> = source.iter().zip(product).map(|(a, b)| a - b).collect();
+        let start = kept.apply(&rest);
+        used += 1;
+        let (size, total) = (norm(&start), norm(&solution));
+        if size <= tolerance * total || size == 0.0 {
+            return Some(solution);
+        }
+        let limits = Limits {
+            reduction: (0.1 * tolerance * total / size).clamp(LEAST_REDUCTION, 0.1),
+            iterations: (limit - used).min(BASIS),
+            give_up_early: false,
+        };
+        let outcome = gmres(start, limits, |vector| kept.apply(&jacobian.apply(vector)));
+        used += outcome.iterations;
+        add(&mut solution, &outcome.solution);
+    }
+    None
+}
+
+fn add(mass: &mut [f64], step: &[f64]) {
+    mass.iter_mut().zip(step).for_each(|(p, z)| *p += z);
+}
+
+/// L1 norm.
+pub(super) fn norm(values: &[f64]) -> f64 {
+    values.iter().map(|value| value.abs()).sum()
+}

@@ -1,0 +1,230 @@
+//! A factorisation of a generator with one cell held, and the choice of one that fits the memory.
+
+use sprs::CsMat;
+
+use super::RateError;
+use super::dissection::{Dissection, Grid};
+use super::fronts::{Factor, allocate, factorise};
+use super::narrowing::narrow;
+use super::prediction::{Prediction, predict};
+use super::symbolic::Symbolic;
+use super::triangular;
+use crate::space::CellSpace;
+
+/// Largest leaf of the dissection, in cells; measured (`benches/rates.rs`): 60 to 200 make no difference.
+const LEAF: usize = 70;
+
+/// Bytes of factors beyond which memory bounds the iterations, so that single precision is faster; it has
+/// needed as many iterations as double in every trial, because GMRES refines in double.
+pub(super) const LARGE: u64 = 64 << 20;
+
+/// The factorisation that solves or preconditions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RateMethod {
+    /// LU of Q.
+    Lu,
+    /// LU of Q in single precision: half the memory, a few more iterations.
+    LuSingle,
+    /// LU of a matrix of reach one with the drift and diffusion of Q.
+    NarrowLu,
+    /// The same in single precision.
+    NarrowLuSingle,
+}
+
+impl RateMethod {
+    /// All methods, most demanding first.
+    pub const ALL: [Self; 4] = [
+        Self::Lu,
+        Self::LuSingle,
+        Self::NarrowLu,
+        Self::NarrowLuSingle,
+    ];
+
+    /// Name used in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Lu => "lu",
+            Self::LuSingle => "lu-single",
+            Self::NarrowLu => "narrow-lu",
+            Self::NarrowLuSingle => "narrow-lu-single",
+        }
+    }
+
+    pub(super) fn is_narrow(self) -> bool {
+        matches!(self, Self::NarrowLu | Self::NarrowLuSingle)
+    }
+
+    fn bytes_per_number(self) -> usize {
+        match self {
+            Self::Lu | Self::NarrowLu => size_of::<f64>(),
+            Self::LuSingle | Self::NarrowLuSingle => size_of::<f32>(),
+        }
+    }
+}
+
+/// What a solve will take.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// The factorisation that will be used.
+    pub method: RateMethod,
+    /// Bytes of the factors.
+    pub factor_bytes: u64,
+    /// Bytes of factors and fronts at the peak.
+    pub peak_bytes: u64,
+    /// Floating-point operations of one factorisation.
+    pub operations: f64,
+    /// Floating-point operations of one iteration.
+    pub iteration_operations: f64,
+}
+
+/// Predicts what one method takes for a stencil that reaches `reach` cells along each axis.
+fn predict_method(space: &CellSpace, reach: &[usize], method: RateMethod) -> Estimate {
+    let reach = if method.is_narrow() { &[][..] } else { reach };
+    let prediction: Prediction = predict(&Grid::new(&space.shape(), reach, LEAF));
+    let number = method.bytes_per_number();
+    Estimate {
+        method,
+        factor_bytes: (prediction.factor_entries * number as f64) as u64,
+        peak_bytes: prediction.bytes(number) as u64,
+        operations: prediction.operations,
+        iteration_operations: 2.0 * prediction.factor_entries,
+    }
+}
+
+/// Predicts memory and work for a stencil that reaches `reach` cells along each axis; `method` is the wanted
+/// factorisation, `None` the first that fits.
+///
+/// # Errors
+/// [`RateError::Memory`] when not even the smallest fits.
+pub fn estimate(
+    space: &CellSpace,
+    reach: &[usize],
+    memory_limit_bytes: u64,
+    method: Option<RateMethod>,
+) -> Result<Estimate, RateError> {
+    let mut needed = 0;
+    for candidate in RateMethod::ALL {
+        if method.is_some_and(|wanted| wanted != candidate) {
+            continue;
+        }
+        let estimate = predict_method(space, reach, candidate);
+        if method.is_none() && candidate == RateMethod::Lu && estimate.factor_bytes > LARGE {
+            continue;
+        }
+        if estimate.peak_bytes <= memory_limit_bytes {
+            return Ok(estimate);
+        }
+        needed = estimate.peak_bytes;
+    }
+    Err(RateError::Memory {
+        needed,
+        limit: memory_limit_bytes,
+    })
+}
+
+enum Numbers {
+    Double(Vec<Factor<f64>>),
+    Single(Vec<Factor<f32>>),
+}
+
+/// M⁻¹ for M = Q (or its stand-in) with the row and column of one cell replaced by the identity's.
+pub(super) struct Preconditioner {
+    method: RateMethod,
+    symbolic: Symbolic,
+    numbers: Numbers,
+    /// Column starts and rows of the matrix that `symbolic` was made for.
+    pattern: (Vec<usize>, Vec<usize>),
+    /// Power of two near the largest rate; the factors are those of the matrix over this.
+    scale: f64,
+    /// The cell held in the current factors.
+    pub(super) held: usize,
+}
+
+impl Preconditioner {
+    /// Factorises; takes over the structure and memory of `old` when the pattern is the same.
+    pub(super) fn new(
+        space: &CellSpace,
+        reach: &[usize],
+        method: RateMethod,
+        matrix: &CsMat<f64>,
+        held: usize,
+        old: Option<Self>,
+    ) -> Self {
+        let narrowed = method.is_narrow().then(|| narrow(space, matrix));
+        let matrix = narrowed.as_ref().unwrap_or(matrix);
+        let starts = matrix.indptr();
+        let starts = starts.raw_storage();
+        let reusable = old.filter(|old| {
+            old.method == method && old.pattern.0 == starts && old.pattern.1 == matrix.indices()
+        });
+        let mut this = reusable.unwrap_or_else(|| {
+            let reach = if method.is_narrow() { &[][..] } else { reach };
+            let grid = Grid::new(&space.shape(), reach, LEAF);
+            let symbolic = Symbolic::new(matrix, Dissection::new(&grid));
+            let numbers = match method {
+                RateMethod::Lu | RateMethod::NarrowLu => Numbers::Double(allocate(&symbolic)),
+                _ => Numbers::Single(allocate(&symbolic)),
+            };
+            Self {
+                method,
+                symbolic,
+                numbers,
+                pattern: (starts.to_vec(), matrix.indices().to_vec()),
+                scale: 1.0,
+                held,
+            }
+        });
+        this.held = held;
+        this.factorise(matrix);
+        this
+    }
+
+    fn factorise(&mut self, matrix: &CsMat<f64>) {
+        let starts = matrix.indptr();
+        let starts = starts.raw_storage();
+        let largest = matrix
+            .data()
+            .iter()
+            .fold(0.0f64, |max, rate| max.max(rate.abs()));
+        self.scale = if largest > 0.0 && largest.is_finite() {
+            largest.log2().round().exp2()
+        } else {
+            1.0
+        };
+        let mut values: Vec<f64> = matrix.data().iter().map(|rate| rate / self.scale).collect();
+        values[starts[self.held]..starts[self.held + 1]].fill(0.0);
+        for (value, &row) in values.iter_mut().zip(matrix.indices()) {
+            if row == self.held {
+                *value = 0.0;
+            }
+        }
+        let held = self.held as u32;
+        let place = self.symbolic.order.iter().position(|&cell| cell == held);
+        let place = place.unwrap_or(0);
+        match &mut self.numbers {
+            Numbers::Double(factors) => factorise(&self.symbolic, &values, place, factors),
+            Numbers::Single(factors) => factorise(&self.symbolic, &values, place, factors),
+        }
+    }
+
+    /// M⁻¹ r, zero at the held cell.
+    pub(super) fn apply(&self, residual: &[f64]) -> Vec<f64> {
+        let order = &self.symbolic.order;
+        let mut x: Vec<f64> = order.iter().map(|&cell| residual[cell as usize]).collect();
+        match &self.numbers {
+            Numbers::Double(factors) => triangular::solve(&self.symbolic, factors, &mut x),
+            Numbers::Single(factors) => triangular::solve(&self.symbolic, factors, &mut x),
+        }
+        let mut out = vec![0.0; x.len()];
+        for (&cell, value) in order.iter().zip(x) {
+            out[cell as usize] = value / self.scale;
+        }
+        out[self.held] = 0.0;
+        out
+    }
+
+    /// Bytes of the factors.
+    pub(super) fn factor_bytes(&self) -> u64 {
+        (self.symbolic.factor_entries() * self.method.bytes_per_number()) as u64
+    }
+}

@@ -1,0 +1,73 @@
+//! Memory and work of a factorisation, from the geometry of the grid alone.
+//!
+//! A front of a node with k own cells and m boundary cells stores k² + 2 k m numbers for good and m² until its
+//! parent has taken them, and costs 2k³/3 + 2k²m + 2km² operations.
+
+use super::dissection::{Grid, GridBox};
+use crate::MAX_DIMENSION;
+
+/// What factorising takes.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Prediction {
+    /// Numbers in the factors.
+    pub(super) factor_entries: f64,
+    /// Largest count of numbers held at once by fronts in flight, whatever the number of threads.
+    pub(super) front_entries: f64,
+    /// Floating-point operations of one factorisation.
+    pub(super) operations: f64,
+}
+
+impl Prediction {
+    /// Adds a front whose children are done: `self` sums the children.
+    pub(super) fn with_front(self, own: usize, boundary: usize) -> Self {
+        let (k, m) = (own as f64, boundary as f64);
+        let held = m * m;
+        Self {
+            factor_entries: self.factor_entries + k * k + 2.0 * k * m,
+            front_entries: self.front_entries.max(held),
+            operations: self.operations + k * (2.0 / 3.0 * k * k + 2.0 * k * m + 2.0 * m * m),
+        }
+    }
+
+    /// Bytes at the peak, for numbers of the given size.
+    pub(super) fn bytes(&self, number: usize) -> f64 {
+        (self.factor_entries + self.front_entries) * number as f64
+    }
+}
+
+/// Cells outside a box, inside the grid, that a star stencil reaches from it.
+fn boundary(grid: &Grid, cells: &GridBox) -> usize {
+    (0..MAX_DIMENSION)
+        .map(|axis| {
+            let below = cells.low[axis].min(grid.reach[axis]);
+            let above = (grid.shape[axis] - cells.high[axis]).min(grid.reach[axis]);
+            cells.count() / cells.length(axis) * (below + above)
+        })
+        .sum()
+}
+
+/// Predicts by walking the tree of boxes, without any matrix.
+pub(super) fn predict(grid: &Grid) -> Prediction {
+    walk(grid, &grid.whole())
+}
+
+fn walk(grid: &Grid, cells: &GridBox) -> Prediction {
+    let around = boundary(grid, cells);
+    let (children, own) = match grid.cut(cells) {
+        None => (Prediction::default(), cells.count()),
+        Some([left, right, slab]) => {
+            let (a, b) = (walk(grid, &left), walk(grid, &right));
+            let waiting = |half: &GridBox| (boundary(grid, half) as f64).powi(2);
+            let own_front = (around as f64).powi(2);
+            let sum = Prediction {
+                factor_entries: a.factor_entries + b.factor_entries,
+                // Both halves may be in flight together, or both wait while this front is filled.
+                front_entries: (a.front_entries + b.front_entries)
+                    .max(waiting(&left) + waiting(&right) + own_front),
+                operations: a.operations + b.operations,
+            };
+            (sum, slab.count())
+        }
+    };
+    children.with_front(own, around)
+}

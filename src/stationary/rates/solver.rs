@@ -1,0 +1,323 @@
+//! The solver: iterates with the factorisation it has, factorises when iterating would cost more.
+
+use sprs::CsMat;
+
+use super::balance::{Balance, add_product};
+use super::narrowing;
+use super::newton::{Newton, Progress, linear};
+use super::preconditioner::{Estimate, LARGE, Preconditioner, estimate};
+use super::{RateError, RateInfo, RateMethod, RateOptions, RateSteadyState};
+use crate::space::CellSpace;
+
+/// Operations of a factorisation that take the time of one operation of an iteration, for factors within and
+/// beyond the caches: iterations are bound by memory, not arithmetic. Measured (`benches/rates.rs`).
+const ITERATION_OPERATION_COST: [f64; 2] = [4.0, 12.0];
+/// If a solve fails and the held cell carries less than this share of the largest mass, another one is held.
+const WEAK_HELD_SHARE: f64 = 1e-2;
+/// The held cell must carry at least this share of the largest mass, or another one is held.
+const LEAST_HELD_SHARE: f64 = 1e-8;
+
+/// Solves generators on one cell space, keeping the factorisation from one to the next.
+pub struct RateSolver {
+    space: CellSpace,
+    options: RateOptions,
+    plan: Option<(Vec<usize>, Estimate)>,
+    preconditioner: Option<Preconditioner>,
+    /// Iterations that a new factorisation would have saved since this one was made.
+    excess: usize,
+    /// Iterations that the solve took for which the factorisation was made.
+    baseline: usize,
+    last: Option<(CsMat<f64>, Vec<f64>)>,
+}
+
+impl RateSolver {
+    /// A solver without a factorisation yet.
+    pub fn new(space: CellSpace, options: RateOptions) -> Self {
+        Self {
+            space,
+            options,
+            plan: None,
+            preconditioner: None,
+            excess: 0,
+            baseline: 0,
+            last: None,
+        }
+    }
+
+    /// The (quasi-)steady state of a generator: `matrix` is n × n by columns (CSC), column j the rates out of
+    /// cell j, summing to -`escape[j]`. `guess` is a neighbour's mass vector, or one predicted from it.
+    ///
+    /// # Errors
+    /// [`RateError`] when the input is no generator or the memory does not suffice.
+    pub fn solve(
+        &mut self,
+        matrix: &CsMat<f64>,
+        escape: &[f64],
+        guess: Option<&[f64]>,
+    ) -> Result<RateSteadyState, RateError> {
+        self.check(matrix, escape)?;
+        let mut mass = match guess {
+            Some(guess) => self.normalised(guess)?,
+            None => Vec::new(),
+        };
+        let mut plan = self.plan(matrix)?;
+        let mut progress = Progress::default();
+        let mut held = self.choose_held(matrix, &mass);
+        let worn = self.excess >= renewal(&plan);
+        let mut fresh = worn
+            || self
+                .preconditioner
+                .as_ref()
+                .is_none_or(|kept| kept.held != held);
+        // At most: the old factorisation, a new one, one with a better cell held, one in double precision.
+        for _ in 0..4 {
+            if fresh {
+                self.factorise(matrix, held, &plan);
+                progress.factorisations += 1;
+            }
+            if mass.is_empty() || !mass.iter().sum::<f64>().is_finite() {
+                mass = vec![0.0; matrix.cols()];
+                mass[held] = 1.0;
+            }
+            let balance = Balance {
+                matrix,
+                escape,
+                held,
+            };
+            self.iterate(&balance, &mut mass, &mut progress, fresh, &plan);
+            // The sign is arbitrary: on a grid too coarse, wiggles may make the held cell's mass negative.
+            if mass.iter().sum::<f64>() < 0.0 {
+                mass.iter_mut().for_each(|value| *value = -*value);
+            }
+            if progress.converged {
+                break;
+            }
+            let (best, largest) = largest(&mass);
+            if best != held && mass[held] < WEAK_HELD_SHARE * largest {
+                held = best;
+            } else if fresh {
+                let Some(double) = self.in_double_precision(&plan) else {
+                    break;
+                };
+                plan = double;
+            }
+            fresh = true;
+        }
+        Ok(self.finish(matrix, escape, mass, &progress, plan.method))
+    }
+
+    /// The plan to fall back to when single precision did not converge; kept for later solves.
+    fn in_double_precision(&mut self, plan: &Estimate) -> Option<Estimate> {
+        let (reach, _) = self.plan.as_ref()?;
+        let limit = self.options.memory_limit_bytes;
+        if plan.method != RateMethod::LuSingle || self.options.method.is_some() {
+            return None;
+        }
+        let double = estimate(&self.space, reach, limit, Some(RateMethod::Lu)).ok()?;
+        self.plan = Some((reach.clone(), double));
+        Some(double)
+    }
+
+    /// dp/dθ (Σ = 0) from Q dp = -(dQ/dθ) p at the last steady state, with its factorisation; `derivative` is
+    /// dQ/dθ (CSC, any pattern), `mass` the steady state. Escape is taken into account.
+    ///
+    /// # Errors
+    /// [`RateError::NoSteadyState`] before the first solve, [`RateError::Shape`] for wrong sizes,
+    /// [`RateError::Sensitivity`] when the iterations do not suffice.
+    pub fn sensitivity(
+        &mut self,
+        derivative: &CsMat<f64>,
+        mass: &[f64],
+    ) -> Result<Vec<f64>, RateError> {
+        let (Some((matrix, escape)), Some(kept)) = (&self.last, &self.preconditioner) else {
+            return Err(RateError::NoSteadyState);
+        };
+        let cells = self.space.n_cells();
+        shape(cells, "derivative's rows", derivative.rows())?;
+        shape(cells, "derivative's columns", derivative.cols())?;
+        shape(cells, "mass", mass.len())?;
+        if !derivative.is_csc() {
+            return Err(RateError::Storage);
+        }
+        let balance = Balance {
+            matrix,
+            escape,
+            held: kept.held,
+        };
+        let total: f64 = mass.iter().sum();
+        // dF/dθ: rates change, and with them the escape, by minus the column sums.
+        let mut source = vec![0.0; cells];
+        add_product(derivative, mass, &mut source);
+        let lost: f64 = -source.iter().sum::<f64>() / total;
+        for (slot, value) in source.iter_mut().zip(mass) {
+            *slot = -(*slot + lost * value);
+        }
+        source[kept.held] = 0.0;
+        let effort = (self.options.tolerance, self.options.max_iterations);
+        let change = linear(&balance, kept, mass, &source, effort);
+        let mut change = change.ok_or(RateError::Sensitivity)?;
+        let excess: f64 = change.iter().sum::<f64>() / total;
+        for (slot, value) in change.iter_mut().zip(mass) {
+            *slot -= excess * value;
+        }
+        Ok(change)
+    }
+
+    fn check(&self, matrix: &CsMat<f64>, escape: &[f64]) -> Result<(), RateError> {
+        let cells = self.space.n_cells();
+        shape(cells, "rows", matrix.rows())?;
+        shape(cells, "columns", matrix.cols())?;
+        shape(cells, "escape", escape.len())?;
+        if !matrix.is_csc() {
+            return Err(RateError::Storage);
+        }
+        for (cell, (column, &escape)) in matrix.outer_iterator().zip(escape).enumerate() {
+            let sum: f64 = column.data().iter().sum();
+            let size: f64 = column.data().iter().map(|rate| rate.abs()).sum();
+            let gap = (sum + escape).abs();
+            if !gap.is_finite() || gap > 1e-10 * (size + escape.abs()) {
+                return Err(RateError::Column { cell, sum, escape });
+            }
+        }
+        Ok(())
+    }
+
+    fn normalised(&self, guess: &[f64]) -> Result<Vec<f64>, RateError> {
+        shape(self.space.n_cells(), "guess", guess.len())?;
+        let sum: f64 = guess.iter().sum();
+        if !(sum > 0.0 && sum.is_finite()) {
+            return Err(RateError::Guess);
+        }
+        Ok(guess.iter().map(|value| value / sum).collect())
+    }
+
+    /// The method, chosen again only when the stencil's reach grows.
+    fn plan(&mut self, matrix: &CsMat<f64>) -> Result<Estimate, RateError> {
+        let reach = narrowing::reach(&self.space, matrix);
+        if let Some((planned, plan)) = &self.plan
+            && planned.iter().zip(&reach).all(|(old, new)| new <= old)
+        {
+            return Ok(*plan);
+        }
+        let options = &self.options;
+        let plan = estimate(
+            &self.space,
+            &reach,
+            options.memory_limit_bytes,
+            options.method,
+        )?;
+        self.plan = Some((reach, plan));
+        Ok(plan)
+    }
+
+    /// The cell to hold: the one that is held, if it carries mass; the most probable one of the guess; without
+    /// a guess the one that is left most slowly, which is near a point of rest.
+    fn choose_held(&self, matrix: &CsMat<f64>, mass: &[f64]) -> usize {
+        if mass.is_empty() {
+            let rate = |cell: usize| matrix.get(cell, cell).map_or(0.0, |rate| rate.abs());
+            let cells = 0..matrix.cols();
+            let slowest = cells.min_by(|&a, &b| rate(a).total_cmp(&rate(b)));
+            return slowest.unwrap_or(0);
+        }
+        let (best, largest) = largest(mass);
+        let kept = self.preconditioner.as_ref().map(|kept| kept.held);
+        kept.filter(|&held| mass[held] >= LEAST_HELD_SHARE * largest)
+            .unwrap_or(best)
+    }
+
+    fn factorise(&mut self, matrix: &CsMat<f64>, held: usize, plan: &Estimate) {
+        let reach = self.plan.as_ref().map_or(&[][..], |(reach, _)| reach);
+        let old = self.preconditioner.take();
+        let new = Preconditioner::new(&self.space, reach, plan.method, matrix, held, old);
+        self.preconditioner = Some(new);
+        self.excess = 0;
+    }
+
+    fn iterate(
+        &mut self,
+        balance: &Balance<'_>,
+        mass: &mut [f64],
+        progress: &mut Progress,
+        fresh: bool,
+        plan: &Estimate,
+    ) {
+        let Some(kept) = &self.preconditioner else {
+            return;
+        };
+        let worth = if fresh {
+            usize::MAX
+        } else {
+            self.baseline + renewal(plan)
+        };
+        let newton = Newton {
+            balance,
+            kept,
+            tolerance: self.options.tolerance,
+            limit: worth.min(self.options.max_iterations),
+            fresh,
+            narrow: plan.method.is_narrow(),
+        };
+        let used = newton.run(mass, progress);
+        if fresh {
+            self.baseline = used;
+        }
+        self.excess += used.saturating_sub(self.baseline);
+    }
+
+    fn finish(
+        &mut self,
+        matrix: &CsMat<f64>,
+        escape: &[f64],
+        mut mass: Vec<f64>,
+        progress: &Progress,
+        method: RateMethod,
+    ) -> RateSteadyState {
+        let sum: f64 = mass.iter().sum();
+        mass.iter_mut().for_each(|value| *value /= sum);
+        let balance = Balance {
+            matrix,
+            escape,
+            held: 0,
+        };
+        let info = RateInfo {
+            method,
+            factorisations: progress.factorisations,
+            iterations: progress.iterations,
+            residual: balance.relative_residual(&mass),
+            error_estimate: progress.error,
+            escape_rate: balance.escape_rate(&mass),
+            negative_mass: mass.iter().map(|value| (-value).max(0.0)).sum(),
+            unknowns: mass.len(),
+            factor_bytes: self
+                .preconditioner
+                .as_ref()
+                .map_or(0, Preconditioner::factor_bytes),
+            converged: progress.converged && sum > 0.0,
+        };
+        self.last = Some((matrix.clone(), escape.to_vec()));
+        RateSteadyState { mass, info }
+    }
+}
+
+fn shape(cells: usize, part: &'static str, found: usize) -> Result<(), RateError> {
+    if found == cells {
+        Ok(())
+    } else {
+        Err(RateError::Shape { cells, part, found })
+    }
+}
+
+/// Iterations that cost as much as a factorisation; a few are always worth a try.
+fn renewal(plan: &Estimate) -> usize {
+    let cost = ITERATION_OPERATION_COST[usize::from(plan.factor_bytes > LARGE / 2)];
+    let iterations = plan.operations / (cost * plan.iteration_operations);
+    (iterations as usize).max(8)
+}
+
+/// The cell with the largest mass, and that mass.
+fn largest(mass: &[f64]) -> (usize, f64) {
+    let cells = mass.iter().copied().enumerate();
+    cells.fold((0, f64::NEG_INFINITY), |best, cell| {
+        if cell.1 > best.1 { cell } else { best }
+    })
+}
