@@ -4,6 +4,8 @@
 //!
 //! Run with `cargo run --release --example new_friction_model`.
 
+#![allow(clippy::print_stdout)] // An example talks to its reader.
+
 use std::sync::Arc;
 
 use pbif::continuation::{LocateOptions, Plan, sweep};

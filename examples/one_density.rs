@@ -2,6 +2,8 @@
 //!
 //! Run with `cargo run --release --example one_density`.
 
+#![allow(clippy::print_stdout)] // An example talks to its reader.
+
 use pbif::density::{Observable, estimate, moments, total_variation_of_masses};
 use pbif::sampling::{Integrator, SamplingOptions, pilot, sample_transitions};
 use pbif::space::{Axis, CellSpace};

@@ -2,6 +2,8 @@
 //!
 //! Run with `cargo run --release --example own_observer`.
 
+#![allow(clippy::print_stdout)] // An example talks to its reader.
+
 use std::sync::Arc;
 
 use pbif::continuation::{LocateOptions, Observer, Plan, Point, sweep};
