@@ -4,7 +4,7 @@ use crate::cli::cost;
 use crate::cli::diagnostic::{Diagnostic, list};
 use crate::cli::document::Value;
 use crate::cli::reader::{Reader, Sited};
-use crate::method::SgcmOptions;
+use crate::method::MethodOptions;
 use crate::space::{Axis, CellSpace, Grading, SpaceError};
 use crate::system::Model;
 
@@ -37,7 +37,7 @@ pub(super) fn read(
     reader: &mut Reader,
     model: &Model,
     swept: Option<&Swept>,
-    method: &SgcmOptions,
+    method: &MethodOptions,
 ) -> Option<(Vec<AxisCells>, CellSpace)> {
     let names: Vec<&str> = model.axes.iter().map(|axis| axis.name).collect();
     for name in reader.names(&["cells"]) {
@@ -62,7 +62,10 @@ pub(super) fn read(
         .map(|(name, cells)| build_axis(reader, name, cells))
         .collect();
     match CellSpace::new(axes.into_iter().collect::<Option<_>>()?) {
-        Ok(space) => Some((cells, space)),
+        Ok(space) => {
+            check_factors(reader, &space, method)?;
+            Some((cells, space))
+        }
         Err(error) => {
             reader.report(at_cells(reader, Diagnostic::new(error.to_string())));
             None
@@ -197,7 +200,7 @@ fn build_axis(reader: &mut Reader, name: &str, cells: &AxisCells) -> Option<Axis
 }
 
 /// Refuses cells whose least need exceeds the machine's memory; runs before anything is laid out.
-fn check_memory(reader: &mut Reader, cells: &[AxisCells], method: &SgcmOptions) -> Option<()> {
+fn check_memory(reader: &mut Reader, cells: &[AxisCells], method: &MethodOptions) -> Option<()> {
     let n_cells: f64 = cells.iter().map(|axis| axis.count as f64).product();
     let least = cost::least_bytes(n_cells, cells.len(), method);
     let Some(memory) = cost::machine_memory().filter(|&memory| least > memory) else {
@@ -216,6 +219,20 @@ fn check_memory(reader: &mut Reader, cells: &[AxisCells], method: &SgcmOptions) 
         .map(|name| format!("cells.{}.count", name.value))
         .collect();
     let diagnostic = Diagnostic::new(title).remedy(format!("lower one of {}", list(&names)));
+    reader.report(at_cells(reader, diagnostic));
+    None
+}
+
+/// Refuses cells whose factors exceed the memory that they may take.
+fn check_factors(reader: &mut Reader, space: &CellSpace, method: &MethodOptions) -> Option<()> {
+    let MethodOptions::Generator(options) = method else {
+        return Some(());
+    };
+    let Err(error) = cost::factorisation(space, options) else {
+        return Some(());
+    };
+    let diagnostic = Diagnostic::new(error.to_string())
+        .remedy("use fewer cells, or raise `method.memory_limit` (gigabytes)");
     reader.report(at_cells(reader, diagnostic));
     None
 }
