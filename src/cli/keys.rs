@@ -141,12 +141,16 @@ pub(super) static KEYS: &[Key] = &[
         "Last value; it may lie below the first."),
     key("sweep.points", Kind::Integer(2, 1_000_000), KeyDefault::Required,
         "Number of parameter values, both ends included, evenly spaced."),
+    key("cells.<axis>.range", Kind::Choice(automatic), KeyDefault::Rule("`from` and `to`"),
+        "`auto` finds a range that holds the density all along the sweep by a few free trajectories; `from` and `to` are then left out."),
     key("cells.<axis>.from", Kind::Number(ANY), KeyDefault::Rule("the model's bound, where it knows one"),
         "Lower end of the domain along an axis."),
     key("cells.<axis>.to", Kind::Number(ANY), KeyDefault::Rule("the model's bound, where it knows one"),
         "Upper end of the domain along an axis."),
     key("cells.<axis>.count", Kind::Integer(2, MOST_CELLS), KeyDefault::Required,
         "Number of cells along an axis. An even number puts a face in the middle."),
+    key("cells.<axis>.grade", Kind::Choice(automatic), KeyDefault::Rule("cells of equal width"),
+        "`auto` narrows the cells toward the model's switching surfaces, to a quarter of the layer that holds the kink of the density; or a table with `at` and `smallest`."),
     key("cells.<axis>.grade.at", Kind::Numbers, KeyDefault::Rule("cells of equal width"),
         "Points toward which the cells get narrower, inside the range; a face falls on each."),
     key("cells.<axis>.grade.smallest", Kind::Number(POSITIVE), KeyDefault::Rule("cells of equal width"),
@@ -197,6 +201,10 @@ fn generator() -> GeneratorMethodOptions {
 
 fn sgcm() -> SgcmOptions {
     SgcmOptions::default()
+}
+
+fn automatic() -> Vec<&'static str> {
+    vec!["auto"]
 }
 
 fn model_names() -> Vec<&'static str> {

@@ -4,6 +4,7 @@ mod any;
 mod findings;
 mod generator;
 mod options;
+mod range;
 mod relaxation;
 mod setting;
 mod sgcm;
@@ -12,6 +13,7 @@ mod steps;
 pub use any::MethodSource;
 pub use generator::GeneratorSource;
 pub use options::{GeneratorMethodOptions, MethodOptions, SgcmOptions, StepChoice};
+pub use range::automatic_ranges;
 pub use setting::{Setting, State};
 pub use sgcm::SgcmSource;
 
