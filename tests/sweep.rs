@@ -18,6 +18,13 @@ fn sweep_file(name: &str) -> PathBuf {
 fn run(name: &str, overrides: &[&str], options: &[&str], folder: &TempDir) -> Output {
     let mut command = Command::cargo_bin("pbif").unwrap();
     command.arg("sweep").arg(sweep_file(name)).args(options);
+    // These tests are of SGCM, on cells of equal width; those of the generator say so.
+    if !overrides
+        .iter()
+        .any(|setting| setting.contains("generator"))
+    {
+        command.args(["--set", "method.kind=sgcm"]);
+    }
     for setting in overrides {
         command.args(["--set", setting]);
     }
@@ -71,7 +78,15 @@ fn changes(folder: &TempDir, observable: &str) -> Vec<(f64, f64, f64, String, St
 
 const SMALL_COULOMB: &[&str] = &[
     "cells.x.count=30",
-    "cells.y.count=30",
+    "cells.y={ from = -5.5, to = 5.5, count = 30 }",
+    "sweep.points=4",
+    "method.samples=800",
+    "locate.tolerance=1e-4",
+];
+
+const SMALL_EQ5: &[&str] = &[
+    "cells.x.count=30",
+    "cells.y={ from = -0.4, to = 0.4, count = 30 }",
     "sweep.points=4",
     "method.samples=800",
 ];
@@ -136,7 +151,7 @@ fn coulomb_goes_from_two_peaks_and_a_crater_to_one_peak() {
 #[test]
 fn coulomb_as_printed_in_equation_five_has_one_peak_in_x() {
     let folder = TempDir::new().unwrap();
-    let output = run("coulomb_fc_eq5", SMALL_COULOMB, &["--quiet"], &folder);
+    let output = run("coulomb_fc_eq5", SMALL_EQ5, &["--quiet"], &folder);
     assert!(matches!(output.status.code(), Some(0 | 1)), "{output:?}");
     let points = Table::read(&folder, "points.csv");
     assert!(points.column("peaks_x").iter().all(|&peaks| peaks == "1"));
@@ -244,7 +259,7 @@ fn dahl_as_printed_ends_in_a_message_and_no_picture() {
 fn results_do_not_depend_on_the_number_of_threads() {
     let overrides = [
         "cells.x.count=20",
-        "cells.y.count=20",
+        "cells.y={ from = -5.5, to = 5.5, count = 20 }",
         "sweep.points=3",
         "method.samples=160",
     ];
@@ -290,6 +305,144 @@ fn quiet_leaves_the_results_alone_and_an_earlier_run_is_kept() {
     run("bistable", &overrides, &["--quiet"], &folder);
     let kept = std::fs::read(folder.path().join("run/previous/features.csv")).unwrap();
     assert_eq!(before, kept);
+}
+
+const GENERATOR_COULOMB: &[&str] = &[
+    "method.kind=generator",
+    "cells.x.count=50",
+    "cells.y.count=60",
+    "sweep.points=31",
+    "locate.tolerance=2e-3",
+];
+
+#[test]
+fn the_generator_finds_every_stage_of_the_joint_density() {
+    let folder = TempDir::new().unwrap();
+    let output = run("coulomb_fc", GENERATOR_COULOMB, &["--quiet"], &folder);
+    assert!(matches!(output.status.code(), Some(0 | 1)), "{output:?}");
+    // The velocity's density has its kink at zero exactly; x and the stages of the joint density change nearby.
+    let y = changes(&folder, "y");
+    assert_eq!(y.len(), 1, "{y:?}");
+    assert!(y[0].1 <= 0.0 && 0.0 <= y[0].2, "{y:?}");
+    let x = changes(&folder, "x");
+    assert_eq!(x.len(), 1, "{x:?}");
+    assert_eq!((x[0].3.as_str(), x[0].4.as_str()), ("2 peaks", "1 peak"));
+    let stages: Vec<String> = changes(&folder, "xy")
+        .into_iter()
+        .map(|row| row.4)
+        .collect();
+    assert_eq!(stages, ["2 peaks", "1 peak"]);
+    let points = Table::read(&folder, "points.csv");
+    assert!(
+        points
+            .column("method")
+            .iter()
+            .all(|&method| method == "generator")
+    );
+    // Work, not time: warm starts save factorisations (a cold one a point would be as many as rows).
+    let factorisations = |row: &&str| row.parse::<usize>().unwrap();
+    let total: usize = points
+        .column("factorisations")
+        .iter()
+        .map(factorisations)
+        .sum();
+    assert!(2 * total < points.rows.len(), "{total} factorisations");
+}
+
+#[test]
+fn the_generator_does_not_depend_on_the_number_of_threads() {
+    let folders = ["1", "2"].map(|threads| {
+        let folder = TempDir::new().unwrap();
+        let overrides = [
+            "method.kind=generator",
+            "cells.x.count=50",
+            "cells.y.count=60",
+            "sweep.points=4",
+            "locate.tolerance=1",
+        ];
+        run(
+            "coulomb_fc",
+            &overrides,
+            &["--quiet", "--threads", threads],
+            &folder,
+        );
+        folder
+    });
+    let text =
+        |folder: &TempDir, file: &str| std::fs::read(folder.path().join("run").join(file)).unwrap();
+    for file in [
+        "features.csv",
+        "bifurcations.csv",
+        "densities.zarr/p_xy/c/2/0/0",
+    ] {
+        assert_eq!(text(&folders[0], file), text(&folders[1], file), "{file}");
+    }
+}
+
+#[test]
+fn the_generator_brackets_exact_bifurcations_tightly() {
+    for (name, observable, width) in [("bistable", "x", 0.01), ("rayleigh_crater", "xy", 0.02)] {
+        let folder = TempDir::new().unwrap();
+        let overrides = ["method.kind=generator", "locate.tolerance=1e-3"];
+        let output = run(name, &overrides, &["--quiet"], &folder);
+        assert!(
+            matches!(output.status.code(), Some(0 | 1)),
+            "{name}: {output:?}"
+        );
+        let rows = changes(&folder, observable);
+        assert_eq!(rows.len(), 1, "{name}: {rows:?}");
+        let (_, lower, upper, ..) = rows[0].clone();
+        assert!(lower <= 0.0 && 0.0 <= upper, "{name}: [{lower}, {upper}]");
+        assert!(upper - lower < width, "{name}: [{lower}, {upper}]");
+    }
+}
+
+#[test]
+fn dahl_as_printed_has_no_steady_state_by_the_generator_either() {
+    let folder = TempDir::new().unwrap();
+    let overrides = [
+        "method.kind=generator",
+        "cells.x.count=16",
+        "cells.y.count=16",
+        "cells.z.count=10",
+        "sweep.points=2",
+    ];
+    let output = run("dahl_alpha_eq8", &overrides, &["--quiet"], &folder);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert!(
+        String::from_utf8(output.stdout)
+            .unwrap()
+            .contains("no steady state in Ω")
+    );
+    assert!(!folder.path().join("run/figures").exists());
+}
+
+#[test]
+fn ranges_and_gradings_are_found() {
+    let file = TempDir::new().unwrap();
+    let path = file.path().join("auto.toml");
+    let text = std::fs::read_to_string(sweep_file("coulomb_fc")).unwrap();
+    let axis = "{ range = \"auto\", count = 40, grade = \"auto\" }";
+    let text: String = text
+        .lines()
+        .map(|line| match line.get(..3) {
+            Some("x =" | "y =") => format!("{} {axis}\n", &line[..3]),
+            _ => format!("{line}\n"),
+        })
+        .collect();
+    std::fs::write(&path, text).unwrap();
+    let mut command = Command::cargo_bin("pbif").unwrap();
+    let output = command.arg("check").arg(&path).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let resolved: toml::Table = toml::from_str(&String::from_utf8(output.stdout).unwrap()).unwrap();
+    let cells = &resolved["cells"];
+    for name in ["x", "y"] {
+        // At f_c = -0.02 the ring has radius 2.5 and noise around it: 5.5 holds all but 1e-5.
+        let to = cells[name]["to"].as_float().unwrap();
+        assert!((4.0..8.0).contains(&to), "{name}: {to}");
+        assert_eq!(cells[name]["from"].as_float(), Some(-to));
+    }
+    assert!(cells["y"].get("grade").is_some() && cells["x"].get("grade").is_none());
 }
 
 #[cfg(unix)]

@@ -7,6 +7,7 @@ use crate::method::{GeneratorMethodOptions, MethodOptions, SgcmOptions, StepChoi
 
 use super::cost;
 use super::spec::SweepSpec;
+use crate::stationary::rates::Estimate;
 
 /// Points beyond which a sweep is said to be long.
 const MANY_POINTS: usize = 1000;
@@ -49,9 +50,11 @@ fn costs(spec: &SweepSpec) -> Vec<String> {
     lines
 }
 
-/// Operations a second that a factorisation reaches on a machine of two ordinary cores; measured, see
-/// `docs/accuracy.md`.
-const OPERATIONS_PER_SECOND: f64 = 1e10;
+/// Seconds of a factorisation on two ordinary cores: large fronts run at 5e10 operations a second, small ones are
+/// bound by memory, 4e8 bytes of factors a second. Measured (`docs/accuracy.md`), good to a factor of two.
+fn factorisation_seconds(factors: &Estimate) -> f64 {
+    factors.operations / 5e10 + factors.factor_bytes as f64 / 4e8
+}
 
 fn generator_costs(spec: &SweepSpec, options: &GeneratorMethodOptions) -> Vec<String> {
     let unknowns = format!(
@@ -69,9 +72,9 @@ fn generator_costs(spec: &SweepSpec, options: &GeneratorMethodOptions) -> Vec<St
                 factors.method.name()
             ),
             format!(
-                "time: a factorisation takes {:.1e} operations, about {:.2} s on two cores; most points need none",
+                "time: a factorisation takes {:.1e} operations, about {:.2} s on two cores; most points reuse a neighbour's",
                 factors.operations,
-                factors.operations / OPERATIONS_PER_SECOND
+                factorisation_seconds(&factors)
             ),
         ],
         Err(error) => vec![unknowns, error.to_string()],
