@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::io;
 
-use crate::method::StepChoice;
+use crate::method::{GeneratorMethodOptions, MethodOptions, SgcmOptions, StepChoice};
 
 use super::cost;
 use super::spec::SweepSpec;
@@ -38,23 +38,52 @@ pub(super) fn text(spec: &SweepSpec) -> io::Result<String> {
 fn costs(spec: &SweepSpec) -> Vec<String> {
     let shape: Vec<String> = spec.space.shape().iter().map(usize::to_string).collect();
     let cells = spec.space.n_cells();
-    let trajectories = cells as f64 * spec.method.samples as f64;
-    let most = cost::estimated_bytes(cells as f64, &spec.method);
-    let least = cost::least_bytes(cells as f64, spec.space.dimension(), &spec.method);
     let mut lines = vec![
         format!("cells: {} = {cells}", shape.join(" x ")),
         points(spec),
-        format!(
-            "memory: {} to {} (every cell reaches 2^d others; every sample ends in a cell of its own)",
-            cost::bytes_in_words(least),
-            cost::bytes_in_words(most)
-        ),
-        format!(
-            "trajectories: at most {trajectories:.3e} a point ({} a cell)",
-            spec.method.samples
-        ),
     ];
-    lines.push(match (spec.method.map_step, spec.method.time_step) {
+    match &spec.method {
+        MethodOptions::Generator(options) => lines.extend(generator_costs(spec, options)),
+        MethodOptions::Sgcm(options) => lines.extend(sgcm_costs(spec, options)),
+    }
+    lines
+}
+
+/// Operations a second that a factorisation reaches on a machine of two ordinary cores; measured, see
+/// `docs/accuracy.md`.
+const OPERATIONS_PER_SECOND: f64 = 1e10;
+
+fn generator_costs(spec: &SweepSpec, options: &GeneratorMethodOptions) -> Vec<String> {
+    let unknowns = format!(
+        "unknowns: {}, scheme {}",
+        spec.space.n_cells(),
+        options.scheme.name()
+    );
+    match cost::factorisation(&spec.space, options) {
+        Ok(factors) => vec![
+            unknowns,
+            format!(
+                "memory: {}, {} of it for factors ({})",
+                cost::bytes_in_words(cost::generator_bytes(&spec.space, options, &factors)),
+                cost::bytes_in_words(factors.factor_bytes as f64),
+                factors.method.name()
+            ),
+            format!(
+                "time: a factorisation takes {:.1e} operations, about {:.2} s on two cores; most points need none",
+                factors.operations,
+                factors.operations / OPERATIONS_PER_SECOND
+            ),
+        ],
+        Err(error) => vec![unknowns, error.to_string()],
+    }
+}
+
+fn sgcm_costs(spec: &SweepSpec, options: &SgcmOptions) -> Vec<String> {
+    let cells = spec.space.n_cells();
+    let trajectories = cells as f64 * options.samples as f64;
+    let most = cost::estimated_bytes(cells as f64, options);
+    let least = cost::least_bytes(cells as f64, spec.space.dimension(), &spec.method);
+    let steps = match (options.map_step, options.time_step) {
         (StepChoice::Fixed(map_step), StepChoice::Fixed(time_step)) => {
             let steps = (map_step / time_step).ceil();
             format!(
@@ -63,8 +92,19 @@ fn costs(spec: &SweepSpec) -> Vec<String> {
             )
         }
         _ => "time steps: chosen when the sweep runs (a step is \"auto\")".to_owned(),
-    });
-    lines
+    };
+    vec![
+        format!(
+            "memory: {} to {} (every cell reaches 2^d others; every sample ends in a cell of its own)",
+            cost::bytes_in_words(least),
+            cost::bytes_in_words(most)
+        ),
+        format!(
+            "trajectories: at most {trajectories:.3e} a point ({} a cell)",
+            options.samples
+        ),
+        steps,
+    ]
 }
 
 /// How many points, and where the first lie.
@@ -88,7 +128,10 @@ fn notes(spec: &SweepSpec) -> Vec<String> {
             spec.points
         ));
     }
-    let most = cost::estimated_bytes(spec.space.n_cells() as f64, &spec.method);
+    let most = match &spec.method {
+        MethodOptions::Generator(_) => 0.0,
+        MethodOptions::Sgcm(options) => cost::estimated_bytes(spec.space.n_cells() as f64, options),
+    };
     if let Some(memory) = cost::machine_memory().filter(|&memory| most > memory) {
         let memory = cost::bytes_in_words(memory);
         notes.push(format!(

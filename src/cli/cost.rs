@@ -1,11 +1,16 @@
-//! What a sweep will cost: memory bounds from the number of cells and samples, and the machine's memory.
+//! What a sweep will cost: memory and work of one point, and the machine's memory.
 //!
-//! Memory of one point. A transition takes 8 bytes for its probability, 8 for its row, and a 2-byte count for
+//! SGCM, memory of one point. A transition takes 8 bytes for its probability, 8 for its row, and a 2-byte count for
 //! each replicate; a cell takes 8 vectors of 8 bytes in the solver and one more for each replicate. The
 //! trajectories of a cell end in at most `samples` cells, and in at most all of them; the image of a box
 //! generally overlaps at least 2^d boxes. The solver's coarser levels at most double the transitions.
+//!
+//! Generator: a stencil holds 2 reach + 1 rates along each axis, 16 bytes each, in up to four matrices (Q, dQ/dθ, the
+//! second scheme, the one kept for sensitivities); the factors come from the elimination order itself.
 
-use crate::method::SgcmOptions;
+use crate::method::{GeneratorMethodOptions, MethodOptions, SgcmOptions};
+use crate::space::CellSpace;
+use crate::stationary::rates::{Estimate, RateError, estimate};
 
 /// Bytes a transition takes.
 fn transition_bytes(options: &SgcmOptions) -> f64 {
@@ -23,11 +28,44 @@ pub(super) fn estimated_bytes(n_cells: f64, options: &SgcmOptions) -> f64 {
     n_cells * (reached * transition_bytes(options) + cell_bytes(options))
 }
 
-/// Lower bound of the same: every cell reaches 2^d cells, `dimension` = d.
-pub(super) fn least_bytes(n_cells: f64, dimension: usize, options: &SgcmOptions) -> f64 {
-    let image = 2_f64.powi(dimension as i32);
-    let reached = n_cells.min(options.samples as f64).min(image);
-    n_cells * (reached * transition_bytes(options) + cell_bytes(options))
+/// Lower bound of the bytes at work at one point: by SGCM every cell reaches 2^d cells, d = `dimension`; by the
+/// generator the matrices alone.
+pub(super) fn least_bytes(n_cells: f64, dimension: usize, method: &MethodOptions) -> f64 {
+    match method {
+        MethodOptions::Generator(options) => matrix_bytes(n_cells, dimension, options),
+        MethodOptions::Sgcm(options) => {
+            let image = 2_f64.powi(dimension as i32);
+            let reached = n_cells.min(options.samples as f64).min(image);
+            n_cells * (reached * transition_bytes(options) + cell_bytes(options))
+        }
+    }
+}
+
+/// Bytes of the sparse matrices of the generator.
+fn matrix_bytes(n_cells: f64, dimension: usize, options: &GeneratorMethodOptions) -> f64 {
+    let rates = dimension * 2 * options.scheme.reach() + 1;
+    4.0 * 16.0 * n_cells * rates as f64
+}
+
+/// Which factorisation the generator will use, its memory and work.
+///
+/// # Errors
+/// [`RateError::Memory`] when not even the smallest fits the limit.
+pub(super) fn factorisation(
+    space: &CellSpace,
+    options: &GeneratorMethodOptions,
+) -> Result<Estimate, RateError> {
+    let reach = vec![options.scheme.reach(); space.dimension()];
+    estimate(space, &reach, (options.memory_limit * 1e9) as u64, None)
+}
+
+/// Bytes at work at one point by the generator: the matrices, and factors and fronts at their peak.
+pub(super) fn generator_bytes(
+    space: &CellSpace,
+    options: &GeneratorMethodOptions,
+    factors: &Estimate,
+) -> f64 {
+    matrix_bytes(space.n_cells() as f64, space.dimension(), options) + factors.peak_bytes as f64
 }
 
 /// Memory of the machine, or of the group of processes where that is limited; `None` if unknown.
@@ -67,7 +105,7 @@ mod tests {
         };
         for n_cells in [4.0, 2500.0, 1e6] {
             let (least, most) = (
-                least_bytes(n_cells, 2, &options),
+                least_bytes(n_cells, 2, &MethodOptions::Sgcm(options.clone())),
                 estimated_bytes(n_cells, &options),
             );
             assert!(least <= most);
@@ -76,7 +114,8 @@ mod tests {
         }
         // 10 cells, 10 transitions each at most: 10·(10·48 + 128) bytes with 8 replicates.
         assert_eq!(estimated_bytes(10.0, &options), 6080.0);
-        assert_eq!(least_bytes(10.0, 2, &options), 10.0 * (4.0 * 48.0 + 128.0));
+        let method = MethodOptions::Sgcm(options);
+        assert_eq!(least_bytes(10.0, 2, &method), 10.0 * (4.0 * 48.0 + 128.0));
     }
 
     #[test]

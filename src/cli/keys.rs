@@ -5,7 +5,8 @@
 
 use crate::continuation::LocateOptions;
 use crate::figure::Format;
-use crate::method::{SgcmOptions, StepChoice};
+use crate::generator::AdvectiveScheme;
+use crate::method::{GeneratorMethodOptions, MethodOptions, SgcmOptions, StepChoice};
 use crate::sampling::Integrator;
 use crate::stationary::Solver;
 use crate::system::registry;
@@ -140,32 +141,40 @@ pub(super) static KEYS: &[Key] = &[
         "Last value; it may lie below the first."),
     key("sweep.points", Kind::Integer(2, 1_000_000), KeyDefault::Required,
         "Number of parameter values, both ends included, evenly spaced."),
+    key("cells.<axis>.range", Kind::Choice(automatic), KeyDefault::Rule("`from` and `to`"),
+        "`auto` finds a range that holds the density all along the sweep by a few free trajectories; `from` and `to` are then left out."),
     key("cells.<axis>.from", Kind::Number(ANY), KeyDefault::Rule("the model's bound, where it knows one"),
         "Lower end of the domain along an axis."),
     key("cells.<axis>.to", Kind::Number(ANY), KeyDefault::Rule("the model's bound, where it knows one"),
         "Upper end of the domain along an axis."),
     key("cells.<axis>.count", Kind::Integer(2, MOST_CELLS), KeyDefault::Required,
         "Number of cells along an axis. An even number puts a face in the middle."),
+    key("cells.<axis>.grade", Kind::Choice(automatic), KeyDefault::Rule("cells of equal width"),
+        "`auto` narrows the cells toward the model's switching surfaces, to a quarter of the layer that holds the kink of the density; or a table with `at` and `smallest`."),
     key("cells.<axis>.grade.at", Kind::Numbers, KeyDefault::Rule("cells of equal width"),
         "Points toward which the cells get narrower, inside the range; a face falls on each."),
     key("cells.<axis>.grade.smallest", Kind::Number(POSITIVE), KeyDefault::Rule("cells of equal width"),
         "Width of the cells at these points; below the width without grading."),
-    key("method.kind", Kind::Choice(method_names), KeyDefault::Value(|| quoted(method_names()[0])),
-        "How the steady-state density is computed: `sgcm` is stochastic generalized cell mapping."),
+    key("method.kind", Kind::Choice(method_names), KeyDefault::Value(|| quoted(MethodOptions::default().kind())),
+        "How the steady-state density is computed: by the generator of the cell map, solved directly, or by `sgcm`, stochastic generalized cell mapping."),
+    key("method.scheme", Kind::Choice(scheme_names), KeyDefault::Value(|| quoted(generator().scheme.name())),
+        "generator: how advective fluxes are reconstructed. The central schemes are more accurate on fine grids and less robust on coarse ones."),
+    key("method.memory_limit", Kind::Number(POSITIVE), KeyDefault::Value(|| number(generator().memory_limit)),
+        "generator: gigabytes that factors may take; beyond, a smaller factorisation preconditions."),
     key("method.map_step", Kind::Step, KeyDefault::Value(|| step(sgcm().map_step)),
-        "Time that one transition of the cell map spans. Longer steps mean less numerical diffusion."),
+        "sgcm: time that one transition of the cell map spans. Longer steps mean less numerical diffusion."),
     key("method.time_step", Kind::Step, KeyDefault::Value(|| step(sgcm().time_step)),
-        "Step of the trajectory integrator; it must not exceed `map_step`."),
+        "sgcm: step of the trajectory integrator; it must not exceed `map_step`."),
     key("method.samples", Kind::Integer(2, u32::MAX as i128), KeyDefault::Value(|| sgcm().samples.to_string()),
-        "Trajectories started in each cell."),
+        "sgcm: trajectories started in each cell."),
     key("method.seed", Kind::Integer(0, i64::MAX as i128), KeyDefault::Value(|| sgcm().seed.to_string()),
-        "Seed of the random streams; the same seed gives the same numbers bit for bit."),
+        "sgcm: seed of the random streams; the same seed gives the same numbers bit for bit."),
     key("method.integrator", Kind::Choice(integrator_names), KeyDefault::Value(|| quoted(sgcm().integrator.name())),
-        "Integrator of the trajectories. `euler-maruyama` takes ω²·time_step away from the damping."),
+        "sgcm: integrator of the trajectories. `euler-maruyama` takes ω²·time_step away from the damping."),
     key("method.replicates", Kind::Integer(2, 65_535), KeyDefault::Value(|| sgcm().replicates.to_string()),
-        "Groups the samples are split into to estimate the sampling error; at most `samples`."),
+        "sgcm: groups the samples are split into to estimate the sampling error; at most `samples`."),
     key("method.solver", Kind::Choice(solver_names), KeyDefault::Value(|| quoted(sgcm().solver.name())),
-        "Solver of the steady state: multilevel aggregation, or power iteration."),
+        "sgcm: solver of the steady state: multilevel aggregation, or power iteration."),
     key("method.solver_tolerance", Kind::Number(OPEN_UNIT), KeyDefault::Value(|| number(sgcm().solver_tolerance)),
         "L1 error of the cell masses at which the solver stops."),
     key("method.escape_limit", Kind::Number(UP_TO_ONE), KeyDefault::Value(|| number(sgcm().escape_limit)),
@@ -176,7 +185,7 @@ pub(super) static KEYS: &[Key] = &[
         "Pairs of axes whose joint densities are watched for changes."),
     key("detect.confidence", Kind::Number(OPEN_UNIT), KeyDefault::Value(|| number(DetectOptions::default().confidence)),
         "Probability that no peak or crater of the whole sweep is sampling noise."),
-    key("detect.floor", Kind::Number(SHARE), KeyDefault::Value(|| number(DetectOptions::default().floor)),
+    key("detect.floor", Kind::Number(SHARE), KeyDefault::Rule("`1e-6` by the generator, `1e-3` by sgcm"),
         "Smallest persistence that counts, as a share of the density's maximum."),
     key("locate.tolerance", Kind::Number(POSITIVE), KeyDefault::Value(|| number(LocateOptions::default().tolerance)),
         "Wanted width of a P-bifurcation's bracket, in units of the swept parameter."),
@@ -186,8 +195,16 @@ pub(super) static KEYS: &[Key] = &[
         "File formats of the figures."),
 ];
 
+fn generator() -> GeneratorMethodOptions {
+    GeneratorMethodOptions::default()
+}
+
 fn sgcm() -> SgcmOptions {
     SgcmOptions::default()
+}
+
+fn automatic() -> Vec<&'static str> {
+    vec!["auto"]
 }
 
 fn model_names() -> Vec<&'static str> {
@@ -195,7 +212,11 @@ fn model_names() -> Vec<&'static str> {
 }
 
 fn method_names() -> Vec<&'static str> {
-    vec!["sgcm"]
+    MethodOptions::KINDS.to_vec()
+}
+
+fn scheme_names() -> Vec<&'static str> {
+    AdvectiveScheme::ALL.map(AdvectiveScheme::name).to_vec()
 }
 
 fn integrator_names() -> Vec<&'static str> {

@@ -189,7 +189,8 @@ fn as_pair(node: &Node) -> Option<[String; 2]> {
 fn check_table<'n>(node: &'n Node, path: &mut Vec<&'n str>, found: &mut Vec<Diagnostic>) {
     for entry in node.entries() {
         path.push(&entry.key);
-        if let Some(key) = keys::find(path) {
+        let opens = matches!(entry.node.value, Value::Table(_)) && !below(path).is_empty();
+        if let Some(key) = keys::find(path).filter(|_| !opens) {
             found.extend(check_value(key, path, &entry.node));
         } else if !KEYS.iter().any(|key| key.starts_with(path)) {
             found.push(unknown_key(entry, path));

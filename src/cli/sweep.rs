@@ -16,7 +16,7 @@ use crate::continuation::{
     BifurcationStatus, Observer, Plan, Point, SweepError, SweepResult, sweep,
 };
 use crate::figure::draw_all;
-use crate::method::{Setting, SgcmSource};
+use crate::method::{MethodSource, Setting};
 use crate::run::{Ending, Manifest, Naming, RunError, RunFolder};
 use crate::topology::PersistenceDetector;
 use progress::Progress;
@@ -52,7 +52,7 @@ fn output_path(spec: &SweepSpec, out: Option<&Path>) -> PathBuf {
 struct Run<'a> {
     spec: &'a SweepSpec,
     naming: Naming<'a>,
-    source: SgcmSource,
+    source: MethodSource,
     folder: RunFolder,
     manifest: Manifest,
     progress: Progress,
@@ -68,7 +68,6 @@ impl<'a> Run<'a> {
         cancelled: Arc<AtomicBool>,
     ) -> Result<Self, CommandError> {
         let progress = Progress::new(spec.points, quiet);
-        progress.say("looking at the system with a few free trajectories");
         let setting = Setting {
             model: spec.model,
             values: &spec.parameters,
@@ -77,16 +76,12 @@ impl<'a> Run<'a> {
             space: &spec.space,
             observables: &spec.observables,
         };
-        let source = SgcmSource::new(&setting, &spec.method, cancelled.clone())?;
-        progress.say(&format!(
-            "map step {:.4}, time step {:.4}, {} cells",
-            source.map_step(),
-            source.time_step(),
-            spec.space.n_cells()
-        ));
+        let source = MethodSource::new(&setting, &spec.method, cancelled.clone())?;
+        let cells = spec.space.n_cells();
+        progress.say(&format!("{}, {cells} cells", source.describe()));
         let resolved = spec.to_toml();
         let threads = rayon::current_num_threads();
-        let manifest = Manifest::start(&resolved, spec.method.seed, threads)?;
+        let manifest = Manifest::start(&resolved, spec.method.seed(), threads)?;
         let folder = RunFolder::create(path)?;
         folder.write_manifest(&manifest)?;
         let naming = Naming {

@@ -6,16 +6,21 @@
 //! line through √q therefore meets zero at θ* in the first case and beyond it, seen from the side where the feature
 //! is present, in the others: θ* lies between that zero and the last point where the feature is present.
 //! The zero's own uncertainty comes from shifting all q by ± two standard errors (common random numbers make
-//! neighbouring errors alike, so they do not average out) and from dropping the point farthest away.
+//! neighbouring errors alike, so they do not average out) and from dropping the point farthest away. A feature only a
+//! few cells from its neighbour is seen through the cells' averages, which shift its birth: a second line through points
+//! where it is well apart must agree, and the band holds both zeros.
 
 use super::bracket::{COUNTED, count, deciding_feature};
 use super::label::{self, BifurcationStatus, LabelledPoint, PointType};
 use super::{LocateOptions, Point};
-use crate::density::Observable;
-use crate::topology::{FeatureKind, Signature, Verdict};
+use crate::density::{EstimatedDensity, Observable};
+use crate::topology::{Detection, Feature, FeatureKind, Signature, Verdict};
 
 /// Points used to extrapolate the birth of a feature.
 const FITTED_POINTS: usize = 5;
+
+/// Cells between two features beyond which the cells' averages do not blur them into one.
+const WELL_APART: f64 = 5.0;
 
 /// A change of one observable's signature between two neighbouring points.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,7 +92,7 @@ fn locate(points: &[&Point], observable: usize, left: usize) -> Change {
         if counts[0] != counts[1] {
             let rank = counts[0].min(counts[1]);
             let present = present_side(points, observable, left, kind, rank, counts[0] > counts[1]);
-            births.extend(birth(&present));
+            births.extend(births_of(&present));
         }
     }
     for &(value, lower, upper) in &births {
@@ -105,8 +110,17 @@ fn locate(points: &[&Point], observable: usize, left: usize) -> Change {
     change
 }
 
-/// Parameter, persistence and its standard error of the deciding feature at the points where it is present,
-/// nearest to the change first.
+/// The deciding feature at one point where it is present.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    value: f64,
+    persistence: f64,
+    error: f64,
+    /// Distance to the nearest other feature, in cells.
+    cells_apart: f64,
+}
+
+/// The deciding feature at the points where it is present, nearest to the change first.
 fn present_side(
     points: &[&Point],
     observable: usize,
@@ -114,22 +128,62 @@ fn present_side(
     kind: FeatureKind,
     rank: usize,
     present_below: bool,
-) -> Vec<(f64, f64, f64)> {
+) -> Vec<Seen> {
     let indices: Vec<usize> = if present_below {
         (0..=left).rev().collect()
     } else {
         (left + 1..points.len()).collect()
     };
-    indices
-        .into_iter()
-        .map_while(|index| {
-            let detection = &points[index].detections[observable];
-            deciding_feature(detection, kind, rank)
-                .filter(|feature| feature.verdict == Verdict::Present)
-                .map(|f| (points[index].value, f.persistence, f.standard_error))
+    let seen = |index: usize| {
+        let point = points[index];
+        let detection = &point.detections[observable];
+        let feature = deciding_feature(detection, kind, rank)
+            .filter(|feature| feature.verdict == Verdict::Present)?;
+        Some(Seen {
+            value: point.value,
+            persistence: feature.persistence,
+            error: feature.standard_error,
+            cells_apart: cells_apart(feature, detection, &point.densities[observable]),
         })
-        .take(FITTED_POINTS)
-        .collect()
+    };
+    indices.into_iter().map_while(seen).collect()
+}
+
+/// Distance of a feature to the nearest other one that is present, in cells (the largest over the axes).
+fn cells_apart(feature: &Feature, detection: &Detection, density: &EstimatedDensity) -> f64 {
+    let others = detection.features.iter();
+    others
+        .filter(|other| other.verdict == Verdict::Present && other.position != feature.position)
+        .map(|other| {
+            let axes = density.density.axes.iter().enumerate();
+            axes.map(|(axis, cells)| {
+                let (from, to) = (feature.position[axis], other.position[axis]);
+                let width = cells.find(from).map_or(f64::INFINITY, |c| cells.width(c));
+                (to - from).abs() / width
+            })
+            .fold(0.0, f64::max)
+        })
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// Births by a line through the nearest points, and by one through the nearest where the feature is well apart.
+fn births_of(present: &[Seen]) -> Vec<(f64, f64, f64)> {
+    let nearest = |apart: f64| -> Vec<(f64, f64, f64)> {
+        let points = present.iter().filter(|seen| seen.cells_apart >= apart);
+        points
+            .map(|seen| (seen.value, seen.persistence, seen.error))
+            .take(FITTED_POINTS)
+            .collect()
+    };
+    let near = birth(&nearest(0.0));
+    let apart = birth(&nearest(WELL_APART));
+    match (near, apart) {
+        // The zero of the line that the cells do not blur is the better value; the band holds both.
+        (Some(near), Some(apart)) => {
+            vec![(apart.0, near.1.min(apart.1), near.2.max(apart.2))]
+        }
+        (near, apart) => near.into_iter().chain(apart).collect(),
+    }
 }
 
 /// Birth of a feature with the ends of its uncertainty: `(value, lower, upper)`, from the zero of the line through

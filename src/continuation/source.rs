@@ -44,7 +44,10 @@ pub struct SolveReport {
     pub method: &'static str,
     /// Solver iterations (cycles).
     pub iterations: usize,
-    /// L1 norm of P p - λ p at the result, Σ p = 1.
+    /// Factorisations made for this point; zero for solvers that make none.
+    pub factorisations: usize,
+    /// What is left of the equation at the result, Σ p = 1: ‖P p - λ p‖₁ for a cell map,
+    /// ‖Q p + r p‖₁ / ‖|Q| |p|‖₁ for a generator.
     pub residual: f64,
     /// Mass that leaves Ω per unit time.
     pub escape_rate: f64,

@@ -3,12 +3,14 @@
 //! *Mass* is a cell's probability, Σ = 1; *density* is mass over volume, ∫ = 1. They never share a variable.
 
 mod common_noise;
+mod discretisation;
 mod distance;
 mod moments;
 mod projection;
 mod uncertainty;
 
 pub use common_noise::CommonNoise;
+pub use discretisation::estimate_from_difference;
 pub use distance::{hellinger, hellinger_of_masses, total_variation, total_variation_of_masses};
 pub use moments::moments;
 pub use projection::{Projection, project};

@@ -149,6 +149,7 @@ mod tests {
                 status: PointStatus::Solved,
                 method: "exact",
                 iterations: 0,
+                factorisations: 0,
                 residual: 0.0,
                 escape_rate: 0.0,
                 negative_mass: 0.0,

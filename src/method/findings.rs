@@ -1,10 +1,16 @@
 //! What a user must know of a point, in sentences: mass at the edge of Ω, escape, numerical diffusion,
 //! non-convergence. Each limit stands here once.
 
+use std::sync::Arc;
+
 use crate::density::Moments;
+use crate::generator::Resolution;
 use crate::space::CellSpace;
 use crate::stationary::ClassShare;
-use crate::system::Model;
+use crate::system::{Model, System};
+
+/// Negative mass (a sign of wiggles that the grid does not resolve) above which it is worth a word.
+const NEGATIVE_MASS_LIMIT: f64 = 1e-3;
 
 /// Mass in the cells at an end of a range above which the range is said to be too narrow.
 const EDGE_MASS_LIMIT: f64 = 1e-3;
@@ -67,6 +73,38 @@ impl<'a> Findings<'a> {
             }
         }
         edges.iter().map(|ends| ends[0] + ends[1]).collect()
+    }
+
+    pub(super) fn negative_mass(&mut self, mass: f64) {
+        if mass > NEGATIVE_MASS_LIMIT {
+            self.sentences.push(format!(
+                "{:.2} % of the mass is negative: the density has wiggles that the cells do not resolve; use more cells",
+                100.0 * mass
+            ));
+        }
+    }
+
+    /// Whether the cells along a noisy axis are fine enough.
+    pub(super) fn resolution(&mut self, judged: &Resolution) {
+        let axis = self.axis(judged.axis);
+        if judged.fitted_peclet > 1.0 {
+            self.sentences.push(format!(
+                "the cells of {axis} are too wide for the noise (cell Péclet number of damping and friction {:.1}): \
+                 use more cells",
+                judged.fitted_peclet
+            ));
+        }
+        if let Some(layer) = judged.layer.filter(|&layer| layer > 1.0) {
+            self.sentences.push(format!(
+                "the cells of {axis} at the switching surface are {layer:.0} times as wide as the layer that holds the \
+                 kink of the density, so the kink is smeared: grade = \"auto\" on {axis} resolves it"
+            ));
+        }
+        for at in &judged.surfaces_off_faces {
+            self.sentences.push(format!(
+                "no face of {axis} falls on the switching surface at {at}: use an even count or grade the axis toward it"
+            ));
+        }
     }
 
     /// Compares the diffusion that the cells add with the noise, each axis in units of its variance.
@@ -152,4 +190,17 @@ impl<'a> Findings<'a> {
             ));
         }
     }
+}
+
+/// Whether the lower and upper end of each axis is a wall that the system cannot pass, all along the sweep.
+pub(super) fn closed_ends(systems: &[Arc<dyn System>], space: &CellSpace) -> Vec<[bool; 2]> {
+    let axes = space.axes().iter().enumerate();
+    axes.map(|(axis, cells)| {
+        let bounds = || systems.iter().map(move |system| system.bounds(axis));
+        [
+            bounds().all(|b| b.is_some_and(|(lower, _)| cells.from() <= lower)),
+            bounds().all(|b| b.is_some_and(|(_, upper)| cells.to() >= upper)),
+        ]
+    })
+    .collect()
 }

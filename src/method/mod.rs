@@ -1,12 +1,21 @@
 //! Methods: sources of densities for a sweep, each made of the modules before it.
 
+mod any;
 mod findings;
+mod generator;
 mod options;
+mod range;
+mod relaxation;
+mod setting;
 mod sgcm;
 mod steps;
 
-pub use options::{SgcmOptions, StepChoice};
-pub use sgcm::{Setting, SgcmSource};
+pub use any::MethodSource;
+pub use generator::GeneratorSource;
+pub use options::{GeneratorMethodOptions, MethodOptions, SgcmOptions, StepChoice};
+pub use range::automatic_ranges;
+pub use setting::{Setting, State};
+pub use sgcm::SgcmSource;
 
 /// Why a method cannot give a solution at all. Failed solves are data, see
 /// [`PointStatus`](crate::continuation::PointStatus).
@@ -18,6 +27,12 @@ pub enum MethodError {
     /// Transitions could not be sampled.
     #[error(transparent)]
     Sampling(#[from] crate::sampling::SamplingError),
+    /// The generator could not be assembled.
+    #[error(transparent)]
+    Generator(#[from] crate::generator::GeneratorError),
+    /// The generator cannot be solved.
+    #[error(transparent)]
+    Rates(#[from] crate::stationary::rates::RateError),
     /// The transition matrix cannot be solved.
     #[error(transparent)]
     Stationary(#[from] crate::stationary::StationaryError),

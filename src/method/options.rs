@@ -1,7 +1,84 @@
 //! Settings of the methods and their defaults, the only place where these defaults stand.
 
+use crate::generator::AdvectiveScheme;
 use crate::sampling::Integrator;
 use crate::stationary::Solver;
+
+/// L1 error of the cell masses at which solvers stop, whatever the method.
+const SOLVER_TOLERANCE: f64 = 1e-10;
+
+/// Largest share of the mass that may leave Ω within one relaxation time, whatever the method.
+const ESCAPE_LIMIT: f64 = 0.5;
+
+/// A method with its settings.
+#[derive(Debug, Clone, PartialEq)]
+pub enum MethodOptions {
+    /// The generator, solved directly.
+    Generator(GeneratorMethodOptions),
+    /// Stochastic generalized cell mapping.
+    Sgcm(SgcmOptions),
+}
+
+impl Default for MethodOptions {
+    fn default() -> Self {
+        Self::Generator(GeneratorMethodOptions::default())
+    }
+}
+
+impl MethodOptions {
+    /// Names used in files, the default first.
+    pub const KINDS: [&'static str; 2] = ["generator", "sgcm"];
+
+    /// Name used in files.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Generator(_) => Self::KINDS[0],
+            Self::Sgcm(_) => Self::KINDS[1],
+        }
+    }
+
+    /// Smallest persistence that counts when none is given, as a share of the maximum: what sampling leaves in the
+    /// tails of a density is larger than what the generator does.
+    pub fn default_floor(&self) -> f64 {
+        match self {
+            Self::Generator(_) => 1e-6,
+            Self::Sgcm(_) => 1e-3,
+        }
+    }
+
+    /// Seed of the random streams; zero for a method without any.
+    pub fn seed(&self) -> u64 {
+        match self {
+            Self::Generator(_) => 0,
+            Self::Sgcm(options) => options.seed,
+        }
+    }
+}
+
+/// Settings of the generator method.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GeneratorMethodOptions {
+    /// How advective fluxes are reconstructed.
+    pub scheme: AdvectiveScheme,
+    /// Gigabytes that factors may take; beyond, a smaller factorisation preconditions.
+    pub memory_limit: f64,
+    /// L1 error at which the solver stops.
+    pub solver_tolerance: f64,
+    /// Largest share of the mass that may leave Ω within one relaxation time before there is said to be no
+    /// steady state.
+    pub escape_limit: f64,
+}
+
+impl Default for GeneratorMethodOptions {
+    fn default() -> Self {
+        Self {
+            scheme: AdvectiveScheme::default(),
+            memory_limit: 8.0,
+            solver_tolerance: SOLVER_TOLERANCE,
+            escape_limit: ESCAPE_LIMIT,
+        }
+    }
+}
 
 /// A step that is given, or left to the program.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,8 +123,8 @@ impl Default for SgcmOptions {
             integrator: Integrator::StochasticHeun,
             replicates: 8,
             solver: Solver::MultilevelAggregation,
-            solver_tolerance: 1e-10,
-            escape_limit: 0.5,
+            solver_tolerance: SOLVER_TOLERANCE,
+            escape_limit: ESCAPE_LIMIT,
         }
     }
 }

@@ -7,8 +7,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use rayon::prelude::*;
 
 use super::findings::Findings;
+use super::generator::QUIET_ESCAPE;
 use super::steps::{Steps, choose_steps};
-use super::{MethodError, SgcmOptions};
+use super::{MethodError, Setting, SgcmOptions, State};
 use crate::continuation::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
 use crate::density::{EstimatedDensity, Observable, estimate, moments};
 use crate::sampling::{
@@ -27,9 +28,6 @@ const REPLICATE_TOLERANCE: f64 = 1e-7;
 /// Escape per map step below which mass is said to stay in Ω, and relaxation is not looked at.
 const NO_ESCAPE: f64 = 1e-12;
 
-/// Share of the mass that may leave within one relaxation time without a word.
-const QUIET_ESCAPE: f64 = 1e-3;
-
 /// Densities along one parameter by SGCM.
 #[derive(Debug)]
 pub struct SgcmSource {
@@ -41,23 +39,6 @@ pub struct SgcmSource {
     options: SgcmOptions,
     steps: Steps,
     cancelled: Arc<AtomicBool>,
-}
-
-/// What is swept, on which cells, and what is watched.
-#[derive(Debug, Clone)]
-pub struct Setting<'a> {
-    /// The model.
-    pub model: &'static Model,
-    /// Its parameters; the swept one is replaced by every value in turn.
-    pub values: &'a ParameterValues,
-    /// Name of the swept parameter.
-    pub parameter: &'a str,
-    /// First and last value of the sweep.
-    pub range: (f64, f64),
-    /// The cells.
-    pub space: &'a CellSpace,
-    /// What is watched, in this order.
-    pub observables: &'a [Observable],
 }
 
 impl SgcmSource {
@@ -156,10 +137,11 @@ impl SgcmSource {
 
     fn solved(
         &self,
+        value: f64,
         transitions: &SampledTransitions,
         matrix: &TransitionMatrix,
         steady: SteadyState,
-    ) -> Result<Solution<Vec<f64>>, MethodError> {
+    ) -> Result<Solution<State>, MethodError> {
         let info = &steady.info;
         let escape_rate = escape_rate(info.escape_per_step, self.steps.map_step);
         let relaxation_time = if info.escape_per_step > NO_ESCAPE {
@@ -201,7 +183,11 @@ impl SgcmSource {
             report,
             moments,
             densities,
-            state: Some(steady.mass),
+            state: Some(State {
+                value,
+                mass: steady.mass,
+                slope: None,
+            }),
         })
     }
 
@@ -210,6 +196,7 @@ impl SgcmSource {
             status,
             method: METHOD,
             iterations,
+            factorisations: 0,
             residual,
             escape_rate: 0.0,
             negative_mass: 0.0,
@@ -220,18 +207,14 @@ impl SgcmSource {
         }
     }
 
-    fn try_solve(
-        &self,
-        value: f64,
-        start: Option<&[f64]>,
-    ) -> Result<Solution<Vec<f64>>, MethodError> {
+    fn try_solve(&self, value: f64, start: Option<&[f64]>) -> Result<Solution<State>, MethodError> {
         let values = self.model.with(&self.values, &self.parameter, value)?;
         let system = self.model.system(&values);
         let transitions = self.sample(system.as_ref(), start)?;
         let matrix = transitions.matrix();
         let options = Options::new(self.options.solver, self.options.solver_tolerance);
         match solve(&matrix, &self.space, start, &options)? {
-            Outcome::Steady(steady) => self.solved(&transitions, &matrix, steady),
+            Outcome::Steady(steady) => self.solved(value, &transitions, &matrix, steady),
             Outcome::SeveralClasses { classes, .. } => {
                 let mut report = self.report(PointStatus::SeveralClasses, 0, 0.0);
                 let mut findings = Findings::new(self.model, &self.space);
@@ -252,15 +235,10 @@ impl SgcmSource {
 }
 
 impl DensitySource for SgcmSource {
-    /// Mass of every cell.
-    type State = Vec<f64>;
+    type State = State;
 
-    fn solve(
-        &self,
-        value: f64,
-        start: Option<&Vec<f64>>,
-    ) -> Result<Solution<Vec<f64>>, SourceError> {
-        match self.try_solve(value, start.map(Vec::as_slice)) {
+    fn solve(&self, value: f64, start: Option<&State>) -> Result<Solution<State>, SourceError> {
+        match self.try_solve(value, start.map(|state| state.mass.as_slice())) {
             Err(MethodError::Sampling(SamplingError::Cancelled)) => Err(SourceError::Interrupted),
             other => other.map_err(|error| SourceError::Method(error.into())),
         }
@@ -273,7 +251,7 @@ fn escape_rate(escape_per_step: f64, map_step: f64) -> f64 {
     -(1.0 - escape_per_step).max(f64::EPSILON).ln() / map_step
 }
 
-fn without_density(report: SolveReport) -> Solution<Vec<f64>> {
+fn without_density(report: SolveReport) -> Solution<State> {
     Solution {
         report,
         moments: Vec::new(),

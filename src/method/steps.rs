@@ -1,8 +1,8 @@
 //! Steps of a sweep by SGCM: given, or chosen from a pilot at both ends and in the middle of the sweep. One choice
 //! serves the whole sweep, so that the transition matrix varies smoothly with the parameter.
 
-use super::sgcm::Setting;
-use super::{MethodError, SgcmOptions, StepChoice};
+use super::findings::closed_ends;
+use super::{MethodError, Setting, SgcmOptions, StepChoice};
 use crate::sampling::{Pilot, pilot};
 
 /// Steps, and what else the pilots showed.
@@ -24,24 +24,11 @@ pub(super) fn choose_steps(
     setting: &Setting<'_>,
     options: &SgcmOptions,
 ) -> Result<Steps, MethodError> {
-    let (from, to) = setting.range;
-    let mut pilots: Vec<Pilot> = Vec::new();
-    let mut closed_ends = vec![[true; 2]; setting.space.dimension()];
-    for value in [from, 0.5 * (from + to), to] {
-        let values = setting
-            .model
-            .with(setting.values, setting.parameter, value)?;
-        let system = setting.model.system(&values);
-        for (axis, ends) in closed_ends.iter_mut().enumerate() {
-            let cells = &setting.space.axes()[axis];
-            let (lower, upper) = system
-                .bounds(axis)
-                .unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
-            ends[0] &= cells.from() <= lower;
-            ends[1] &= cells.to() >= upper;
-        }
-        pilots.push(pilot(system.as_ref(), setting.space, options.seed));
-    }
+    let systems = setting.systems_along()?;
+    let pilots: Vec<Pilot> = systems
+        .iter()
+        .map(|system| pilot(system.as_ref(), setting.space, options.seed))
+        .collect();
     let time_step = match options.time_step {
         StepChoice::Fixed(step) => step,
         StepChoice::Auto => smallest(&pilots, |pilot| {
@@ -66,7 +53,7 @@ pub(super) fn choose_steps(
         time_step,
         cells,
         noise,
-        closed_ends,
+        closed_ends: closed_ends(&systems, setting.space),
     })
 }
 

@@ -49,7 +49,7 @@ fn points_header(naming: &Naming<'_>, observables: &[Observable]) -> Vec<String>
             header.push(format!("craters_{}", naming.observable(observable)));
         }
     }
-    header.extend(["distance", "seconds", "map_step"].map(str::to_owned));
+    header.extend(["distance", "seconds", "map_step", "factorisations"].map(str::to_owned));
     header.extend(axes().map(|axis| format!("numerical_diffusion_{axis}")));
     header.push("warnings".to_owned());
     header
@@ -86,6 +86,7 @@ fn points_row(naming: &Naming<'_>, observables: &[Observable], point: &Point) ->
     row.push(optional(point.distance));
     row.push(format!("{:.3}", point.seconds));
     row.push(optional(report.map_step));
+    row.push(report.factorisations.to_string());
     for axis in 0..naming.model.axes.len() {
         row.push(optional(report.numerical_diffusion.get(axis).copied()));
     }

@@ -46,6 +46,7 @@ fn point(value: f64, densities: Vec<EstimatedDensity>, detections: Vec<Detection
             status,
             method: "exact",
             iterations: 0,
+            factorisations: 0,
             residual: 0.0,
             escape_rate: 0.0,
             negative_mass: 0.0,

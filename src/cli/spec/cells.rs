@@ -1,12 +1,15 @@
 //! The cell space: ranges, counts and grading of each axis, and whether it fits in memory.
 
+use std::sync::Arc;
+
 use crate::cli::cost;
 use crate::cli::diagnostic::{Diagnostic, list};
 use crate::cli::document::Value;
 use crate::cli::reader::{Reader, Sited};
-use crate::method::SgcmOptions;
+use crate::generator::automatic_grading;
+use crate::method::{MethodOptions, SgcmOptions, automatic_ranges};
 use crate::space::{Axis, CellSpace, Grading, SpaceError};
-use crate::system::Model;
+use crate::system::{Model, System};
 
 use super::swept::Swept;
 
@@ -32,12 +35,66 @@ impl AxisCells {
     }
 }
 
+/// An axis as the file has it: what is `None` or `Auto` is left to the program.
+struct RawAxis {
+    range: Option<(f64, f64)>,
+    count: usize,
+    grade: RawGrade,
+}
+
+enum RawGrade {
+    Given(Option<Grading>),
+    Auto,
+}
+
+/// Finds the ranges and gradings that are left to the program.
+fn resolve(reader: &mut Reader, raw: &[RawAxis], swept: Option<&Swept>) -> Option<Vec<AxisCells>> {
+    let systems = swept.map_or(&[][..], |swept| &swept.ends);
+    let known: Vec<Option<(f64, f64)>> = raw.iter().map(|axis| axis.range).collect();
+    let given: Option<Vec<(f64, f64)>> = known.iter().copied().collect();
+    let ranges = match given {
+        Some(ranges) => ranges,
+        None if systems.is_empty() => return None,
+        None => match automatic_ranges(systems, &known, SgcmOptions::default().seed) {
+            Some(ranges) => ranges,
+            None => {
+                let diagnostic = Diagnostic::new(
+                    "no range holds the density: free trajectories run away somewhere along the sweep",
+                )
+                .remedy("give `from` and `to` instead of `range = \"auto\"`");
+                reader.report(at_cells(reader, diagnostic));
+                return None;
+            }
+        },
+    };
+    let cells = raw.iter().enumerate().map(|(index, axis)| {
+        let (from, to) = ranges[index];
+        let count = axis.count;
+        let finest =
+            |system: &Arc<dyn System>| automatic_grading(system.as_ref(), &ranges, index, count);
+        let grading = match &axis.grade {
+            RawGrade::Given(grading) => grading.clone(),
+            RawGrade::Auto => systems
+                .iter()
+                .filter_map(finest)
+                .min_by(|a, b| a.smallest.total_cmp(&b.smallest)),
+        };
+        AxisCells {
+            from,
+            to,
+            count,
+            grading,
+        }
+    });
+    Some(cells.collect())
+}
+
 /// Reads `[cells]`; `None` if anything is wrong with it.
 pub(super) fn read(
     reader: &mut Reader,
     model: &Model,
     swept: Option<&Swept>,
-    method: &SgcmOptions,
+    method: &MethodOptions,
 ) -> Option<(Vec<AxisCells>, CellSpace)> {
     let names: Vec<&str> = model.axes.iter().map(|axis| axis.name).collect();
     for name in reader.names(&["cells"]) {
@@ -51,10 +108,11 @@ pub(super) fn read(
     }
     let axes = names.iter().enumerate();
     // Every axis is read, so that all that is wrong is reported at once.
-    let read: Vec<Option<AxisCells>> = axes
+    let read: Vec<Option<RawAxis>> = axes
         .map(|(index, name)| read_axis(reader, index, name, swept))
         .collect();
-    let cells: Vec<AxisCells> = read.into_iter().collect::<Option<_>>()?;
+    let raw: Vec<RawAxis> = read.into_iter().collect::<Option<_>>()?;
+    let cells = resolve(reader, &raw, swept)?;
     check_memory(reader, &cells, method)?;
     let axes: Vec<Option<Axis>> = names
         .iter()
@@ -62,7 +120,10 @@ pub(super) fn read(
         .map(|(name, cells)| build_axis(reader, name, cells))
         .collect();
     match CellSpace::new(axes.into_iter().collect::<Option<_>>()?) {
-        Ok(space) => Some((cells, space)),
+        Ok(space) => {
+            check_factors(reader, &space, method)?;
+            Some((cells, space))
+        }
         Err(error) => {
             reader.report(at_cells(reader, Diagnostic::new(error.to_string())));
             None
@@ -83,7 +144,7 @@ fn read_axis(
     index: usize,
     name: &str,
     swept: Option<&Swept>,
-) -> Option<AxisCells> {
+) -> Option<RawAxis> {
     let Some(entry) = reader.entry(&["cells", name]) else {
         let diagnostic = Diagnostic::new(format!("no cells for axis `{name}`")).remedy(format!(
             "add `{name} = {{ from = …, to = …, count = 50 }}` to [cells]"
@@ -96,10 +157,17 @@ fn read_axis(
     }
     reader.require(&["cells", name, "count"]);
     let bounds = swept.and_then(|swept| bounds(swept, index));
+    let grade = read_grading(reader, name);
+    let count = reader.integer::<usize>(&["cells", name, "count"]);
+    if reader.text(&["cells", name, "range"]).is_some() {
+        return Some(RawAxis {
+            range: bounds,
+            count: count?.value,
+            grade: grade?,
+        });
+    }
     let from = read_end(reader, name, "from", bounds.map(|bounds| bounds.0), swept);
     let to = read_end(reader, name, "to", bounds.map(|bounds| bounds.1), swept);
-    let grading = read_grading(reader, name);
-    let count = reader.integer::<usize>(&["cells", name, "count"])?.value;
     let (from, to) = (from?, to?);
     if from >= to || !(to - from).is_finite() {
         let title =
@@ -114,11 +182,10 @@ fn read_axis(
         });
         return None;
     }
-    Some(AxisCells {
-        from,
-        to,
-        count,
-        grading: grading?,
+    Some(RawAxis {
+        range: Some((from, to)),
+        count: count?.value,
+        grade: grade?,
     })
 }
 
@@ -148,10 +215,15 @@ fn read_end(
     bound
 }
 
-/// `Some(None)` without grading, `None` if something is wrong with it.
-fn read_grading(reader: &mut Reader, axis: &str) -> Option<Option<Grading>> {
-    if reader.entry(&["cells", axis, "grade"]).is_none() {
-        return Some(None);
+/// What the file says of grading, `None` if something is wrong with it.
+fn read_grading(reader: &mut Reader, axis: &str) -> Option<RawGrade> {
+    let Some(entry) = reader.entry(&["cells", axis, "grade"]) else {
+        return Some(RawGrade::Given(None));
+    };
+    if !matches!(entry.node.value, Value::Table(_)) {
+        return reader
+            .text(&["cells", axis, "grade"])
+            .map(|_| RawGrade::Auto);
     }
     let (at_path, smallest_path) = (
         ["cells", axis, "grade", "at"],
@@ -165,7 +237,8 @@ fn read_grading(reader: &mut Reader, axis: &str) -> Option<Option<Grading>> {
         .map(|at| at.value)
         .collect();
     let smallest = reader.number(&smallest_path)?.value;
-    Some((!at.is_empty()).then_some(Grading { at, smallest }))
+    let grading = (!at.is_empty()).then_some(Grading { at, smallest });
+    Some(RawGrade::Given(grading))
 }
 
 /// Builds an axis; what the space refuses is shown at the key that it concerns.
@@ -197,7 +270,7 @@ fn build_axis(reader: &mut Reader, name: &str, cells: &AxisCells) -> Option<Axis
 }
 
 /// Refuses cells whose least need exceeds the machine's memory; runs before anything is laid out.
-fn check_memory(reader: &mut Reader, cells: &[AxisCells], method: &SgcmOptions) -> Option<()> {
+fn check_memory(reader: &mut Reader, cells: &[AxisCells], method: &MethodOptions) -> Option<()> {
     let n_cells: f64 = cells.iter().map(|axis| axis.count as f64).product();
     let least = cost::least_bytes(n_cells, cells.len(), method);
     let Some(memory) = cost::machine_memory().filter(|&memory| least > memory) else {
@@ -216,6 +289,20 @@ fn check_memory(reader: &mut Reader, cells: &[AxisCells], method: &SgcmOptions) 
         .map(|name| format!("cells.{}.count", name.value))
         .collect();
     let diagnostic = Diagnostic::new(title).remedy(format!("lower one of {}", list(&names)));
+    reader.report(at_cells(reader, diagnostic));
+    None
+}
+
+/// Refuses cells whose factors exceed the memory that they may take.
+fn check_factors(reader: &mut Reader, space: &CellSpace, method: &MethodOptions) -> Option<()> {
+    let MethodOptions::Generator(options) = method else {
+        return Some(());
+    };
+    let Err(error) = cost::factorisation(space, options) else {
+        return Some(());
+    };
+    let diagnostic = Diagnostic::new(error.to_string())
+        .remedy("use fewer cells, or raise `method.memory_limit` (gigabytes)");
     reader.report(at_cells(reader, diagnostic));
     None
 }

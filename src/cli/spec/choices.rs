@@ -5,7 +5,8 @@ use crate::cli::reader::{Reader, Sited};
 use crate::continuation::{LocateOptions, evenly_spaced};
 use crate::density::Observable;
 use crate::figure::Format;
-use crate::method::{SgcmOptions, StepChoice};
+use crate::generator::AdvectiveScheme;
+use crate::method::{GeneratorMethodOptions, MethodOptions, SgcmOptions, StepChoice};
 use crate::sampling::Integrator;
 use crate::stationary::Solver;
 use crate::system::Model;
@@ -13,8 +14,39 @@ use crate::topology::DetectOptions;
 
 use super::swept::Swept;
 
-/// Reads `[method]`; wrong values are reported and replaced by defaults.
-pub(super) fn read_method(reader: &mut Reader) -> SgcmOptions {
+/// Reads `[method]`; wrong values are reported and replaced by defaults. The settings of the method that is not
+/// chosen are checked too, so that a file can hold both and `--set method.kind=…` switches.
+pub(super) fn read_method(reader: &mut Reader) -> MethodOptions {
+    let generator = read_generator(reader);
+    let sgcm = read_sgcm(reader);
+    let kind = reader.text(&["method", "kind"]).map(|name| name.value);
+    match kind.as_deref() {
+        Some("sgcm") => MethodOptions::Sgcm(sgcm),
+        Some("generator") => MethodOptions::Generator(generator),
+        _ => match MethodOptions::default() {
+            MethodOptions::Generator(_) => MethodOptions::Generator(generator),
+            MethodOptions::Sgcm(_) => MethodOptions::Sgcm(sgcm),
+        },
+    }
+}
+
+fn read_generator(reader: &Reader) -> GeneratorMethodOptions {
+    let default = GeneratorMethodOptions::default();
+    let scheme = reader.text(&["method", "scheme"]).and_then(|name| {
+        AdvectiveScheme::ALL
+            .into_iter()
+            .find(|known| known.name() == name.value)
+    });
+    let number = |key| reader.number(&["method", key]).map(|number| number.value);
+    GeneratorMethodOptions {
+        scheme: scheme.unwrap_or(default.scheme),
+        memory_limit: number("memory_limit").unwrap_or(default.memory_limit),
+        solver_tolerance: number("solver_tolerance").unwrap_or(default.solver_tolerance),
+        escape_limit: number("escape_limit").unwrap_or(default.escape_limit),
+    }
+}
+
+fn read_sgcm(reader: &mut Reader) -> SgcmOptions {
     let default = SgcmOptions::default();
     let name = |reader: &Reader, key| reader.text(&["method", key]).map(|name| name.value);
     let integrator = name(reader, "integrator").and_then(|name| {
@@ -36,7 +68,7 @@ pub(super) fn read_method(reader: &mut Reader) -> SgcmOptions {
         solver_tolerance: number("solver_tolerance").unwrap_or(default.solver_tolerance),
         escape_limit: number("escape_limit").unwrap_or(default.escape_limit),
     };
-    check_method(reader, &options);
+    check_sgcm(reader, &options);
     options
 }
 
@@ -56,7 +88,7 @@ fn read_step(reader: &Reader, key: &str) -> Option<StepChoice> {
 }
 
 /// Conditions between settings.
-fn check_method(reader: &mut Reader, options: &SgcmOptions) {
+fn check_sgcm(reader: &mut Reader, options: &SgcmOptions) {
     if options.replicates > options.samples {
         let title = format!(
             "{} replicates cannot be made of {} samples a cell",
@@ -159,12 +191,12 @@ fn watch<T>(reader: &mut Reader, known: &mut Vec<Observable>, new: Observable, a
 }
 
 /// Reads the settings of `[detect]`.
-pub(super) fn read_detect(reader: &Reader) -> DetectOptions {
+pub(super) fn read_detect(reader: &Reader, method: &MethodOptions) -> DetectOptions {
     let default = DetectOptions::default();
     let number = |key| reader.number(&["detect", key]).map(|number| number.value);
     DetectOptions {
         confidence: number("confidence").unwrap_or(default.confidence),
-        floor: number("floor").unwrap_or(default.floor),
+        floor: number("floor").unwrap_or(method.default_floor()),
     }
 }
 

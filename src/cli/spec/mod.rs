@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use crate::continuation::{LocateOptions, Plan};
 use crate::density::Observable;
 use crate::figure::Format;
-use crate::method::SgcmOptions;
+use crate::method::MethodOptions;
 use crate::space::CellSpace;
 use crate::system::{Model, ParameterValues};
 use crate::topology::DetectOptions;
@@ -47,7 +47,7 @@ pub(crate) struct SweepSpec {
     /// The cell space that `cells` makes.
     pub(crate) space: CellSpace,
     /// Settings of the method.
-    pub(crate) method: SgcmOptions,
+    pub(crate) method: MethodOptions,
     /// Settings of detection.
     pub(crate) detect: DetectOptions,
     /// What is watched, marginals first.
@@ -89,7 +89,10 @@ impl SweepSpec {
             model.and_then(|model| cells::read(&mut reader, model, swept.as_ref(), &method));
         let observables = model.map(|model| choices::read_observables(&mut reader, model));
         let figures_at = choices::read_figures_at(&mut reader, swept.as_ref());
-        let (detect, locate) = (choices::read_detect(&reader), choices::read_locate(&reader));
+        let (detect, locate) = (
+            choices::read_detect(&reader, &method),
+            choices::read_locate(&reader),
+        );
         let formats = choices::read_formats(&reader);
         let (Some(model), Some(swept), Some((cells, space)), Some(observables), true) =
             (model, swept, cells, observables, reader.is_clean())

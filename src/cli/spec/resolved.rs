@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use crate::cli::keys::{number, quoted, step};
 use crate::density::Observable;
+use crate::method::{GeneratorMethodOptions, MethodOptions, SgcmOptions};
 
 use super::{AxisCells, SweepSpec};
 
@@ -41,20 +42,11 @@ impl SweepSpec {
 
     /// The tables whose keys all have defaults.
     fn write_choices(&self, text: &mut String) -> std::fmt::Result {
-        let method = &self.method;
-        writeln!(text, "\n[method]\nkind = {}", quoted("sgcm"))?;
-        writeln!(text, "map_step = {}", step(method.map_step))?;
-        writeln!(text, "time_step = {}", step(method.time_step))?;
-        writeln!(text, "samples = {}\nseed = {}", method.samples, method.seed)?;
-        writeln!(text, "integrator = {}", quoted(method.integrator.name()))?;
-        writeln!(text, "replicates = {}", method.replicates)?;
-        writeln!(text, "solver = {}", quoted(method.solver.name()))?;
-        writeln!(
-            text,
-            "solver_tolerance = {}",
-            number(method.solver_tolerance)
-        )?;
-        writeln!(text, "escape_limit = {}", number(method.escape_limit))?;
+        writeln!(text, "\n[method]\nkind = {}", quoted(self.method.kind()))?;
+        match &self.method {
+            MethodOptions::Generator(method) => write_generator(text, method)?,
+            MethodOptions::Sgcm(method) => write_sgcm(text, method)?,
+        }
         let (marginals, joint) = self.observables_toml();
         writeln!(
             text,
@@ -93,6 +85,27 @@ impl SweepSpec {
             });
         (joined(marginals), joined(joint))
     }
+}
+
+fn write_generator(text: &mut String, method: &GeneratorMethodOptions) -> std::fmt::Result {
+    writeln!(text, "scheme = {}", quoted(method.scheme.name()))?;
+    writeln!(text, "memory_limit = {}", number(method.memory_limit))?;
+    write_shared(text, method.solver_tolerance, method.escape_limit)
+}
+
+fn write_sgcm(text: &mut String, method: &SgcmOptions) -> std::fmt::Result {
+    writeln!(text, "map_step = {}", step(method.map_step))?;
+    writeln!(text, "time_step = {}", step(method.time_step))?;
+    writeln!(text, "samples = {}\nseed = {}", method.samples, method.seed)?;
+    writeln!(text, "integrator = {}", quoted(method.integrator.name()))?;
+    writeln!(text, "replicates = {}", method.replicates)?;
+    writeln!(text, "solver = {}", quoted(method.solver.name()))?;
+    write_shared(text, method.solver_tolerance, method.escape_limit)
+}
+
+fn write_shared(text: &mut String, tolerance: f64, escape_limit: f64) -> std::fmt::Result {
+    writeln!(text, "solver_tolerance = {}", number(tolerance))?;
+    writeln!(text, "escape_limit = {}", number(escape_limit))
 }
 
 fn axis_toml(cells: &AxisCells) -> String {

@@ -34,7 +34,7 @@ fn defaults_are_those_of_the_options() {
         spec.title,
         "Duffing oscillator with Coulomb friction, sweep of f_c"
     );
-    assert_eq!(spec.method, SgcmOptions::default());
+    assert_eq!(spec.method, MethodOptions::default());
     assert_eq!(spec.detect, DetectOptions::default());
     assert_eq!(spec.locate, LocateOptions::default());
     let (x, y, xy) = (

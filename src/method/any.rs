@@ -1,0 +1,59 @@
+//! A source by any method, chosen at run time.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use super::{GeneratorSource, MethodError, MethodOptions, Setting, SgcmSource, State};
+use crate::continuation::{DensitySource, Solution, SourceError};
+
+/// A source of densities by one of the methods.
+pub enum MethodSource {
+    /// The generator.
+    Generator(Box<GeneratorSource>),
+    /// Stochastic generalized cell mapping.
+    Sgcm(Box<SgcmSource>),
+}
+
+impl MethodSource {
+    /// Prepares a source by the method that the options name; see the sources.
+    ///
+    /// # Errors
+    /// [`MethodError`].
+    pub fn new(
+        setting: &Setting<'_>,
+        options: &MethodOptions,
+        cancelled: Arc<AtomicBool>,
+    ) -> Result<Self, MethodError> {
+        Ok(match options {
+            MethodOptions::Generator(options) => {
+                Self::Generator(Box::new(GeneratorSource::new(setting, options, cancelled)?))
+            }
+            MethodOptions::Sgcm(options) => {
+                Self::Sgcm(Box::new(SgcmSource::new(setting, options, cancelled)?))
+            }
+        })
+    }
+
+    /// What a user may want to know before the first point: the steps that were chosen.
+    pub fn describe(&self) -> String {
+        match self {
+            Self::Generator(_) => "generator".to_owned(),
+            Self::Sgcm(source) => format!(
+                "sgcm, map step {:.4}, time step {:.4}",
+                source.map_step(),
+                source.time_step()
+            ),
+        }
+    }
+}
+
+impl DensitySource for MethodSource {
+    type State = State;
+
+    fn solve(&self, value: f64, start: Option<&State>) -> Result<Solution<State>, SourceError> {
+        match self {
+            Self::Generator(source) => source.solve(value, start),
+            Self::Sgcm(source) => source.solve(value, start),
+        }
+    }
+}

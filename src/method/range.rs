@@ -1,0 +1,168 @@
+//! A range that holds the density, found by free trajectories: the box is doubled until they stay in it, shrunk while
+//! they fill only a corner of it, and given a margin.
+
+use std::sync::Arc;
+
+use crate::sampling::pilot;
+use crate::space::{Axis, CellSpace};
+use crate::system::System;
+
+/// Cells an axis of the box in which visits are counted.
+const CELLS: usize = 64;
+/// Share of the recorded states that must lie in the box.
+const INSIDE: f64 = 0.9995;
+/// Share of an axis that must have been visited, else the box is shrunk to look more closely.
+const FILLED: f64 = 0.2;
+/// What visits reach is widened by this factor: some 1e5 states show a normal density to 4.3 standard deviations, and
+/// 5.4 leave 1e-7 outside.
+const MARGIN: f64 = 1.25;
+/// Most times that the box is changed.
+const MOST_CHANGES: usize = 40;
+
+/// Ranges, one an axis, that hold the densities of all the systems, as known or found; `None` for an axis means that it is to be
+/// found. No answer when trajectories run away.
+pub fn automatic_ranges(
+    systems: &[Arc<dyn System>],
+    known: &[Option<(f64, f64)>],
+    seed: u64,
+) -> Option<Vec<(f64, f64)>> {
+    let mut hull: Option<Vec<(f64, f64)>> = None;
+    for system in systems {
+        let found = ranges_of(system.as_ref(), known, seed)?;
+        hull = Some(match hull {
+            None => found,
+            Some(hull) => hull
+                .iter()
+                .zip(&found)
+                .map(|(a, b)| (a.0.min(b.0), a.1.max(b.1)))
+                .collect(),
+        });
+    }
+    let hull = hull?;
+    let rounded = hull.iter().zip(known);
+    Some(
+        rounded
+            .map(|(&found, known)| known.unwrap_or_else(|| outward(found)))
+            .collect(),
+    )
+}
+
+fn ranges_of(
+    system: &dyn System,
+    known: &[Option<(f64, f64)>],
+    seed: u64,
+) -> Option<Vec<(f64, f64)>> {
+    let mut ranges: Vec<(f64, f64)> = known.iter().map(|k| k.unwrap_or((-1.0, 1.0))).collect();
+    for _ in 0..MOST_CHANGES {
+        let axes: Result<Vec<Axis>, _> = ranges
+            .iter()
+            .map(|&(from, to)| Axis::uniform(from, to, CELLS))
+            .collect();
+        let space = CellSpace::new(axes.ok()?).ok()?;
+        let seen = pilot(system, &space, seed);
+        let free = || (0..ranges.len()).filter(|&axis| known[axis].is_none());
+        if seen.share_inside < INSIDE {
+            for axis in free().collect::<Vec<_>>() {
+                let (from, to) = ranges[axis];
+                let half = to - from;
+                ranges[axis] = (from - 0.5 * half, to + 0.5 * half);
+            }
+            continue;
+        }
+        let visited = extents(&space, &seen.cells);
+        let narrow: Vec<usize> = free()
+            .filter(|&axis| {
+                let length = ranges[axis].1 - ranges[axis].0;
+                visited[axis].1 - visited[axis].0 < FILLED * length
+            })
+            .collect();
+        if narrow.is_empty() {
+            return Some(widened(system, &visited, known));
+        }
+        for axis in narrow {
+            let (from, to) = visited[axis];
+            let half = to - from;
+            ranges[axis] = (from - 0.5 * half, to + 0.5 * half);
+        }
+    }
+    None
+}
+
+/// What some cells span along each axis.
+fn extents(space: &CellSpace, cells: &[usize]) -> Vec<(f64, f64)> {
+    let axes = space.axes().iter().enumerate();
+    axes.map(|(index, axis)| {
+        let places = || cells.iter().map(|&cell| space.position(cell, index));
+        let first = places().min().unwrap_or(0);
+        let last = places().max().unwrap_or(0);
+        (axis.edges()[first], axis.edges()[last + 1])
+    })
+    .collect()
+}
+
+/// Extents with a margin, and alike on both sides of a centre of symmetry.
+fn widened(
+    system: &dyn System,
+    visited: &[(f64, f64)],
+    known: &[Option<(f64, f64)>],
+) -> Vec<(f64, f64)> {
+    let symmetry = system.symmetry();
+    let axes = visited.iter().zip(known).enumerate();
+    axes.map(|(axis, (&(from, to), known))| {
+        if let Some(known) = known {
+            return *known;
+        }
+        let reflected = symmetry.as_ref().filter(|s| s.reflected[axis]);
+        let (centre, half) = match reflected {
+            Some(symmetry) => {
+                let centre = symmetry.centre[axis];
+                (centre, (centre - from).max(to - centre))
+            }
+            None => (0.5 * (from + to), 0.5 * (to - from)),
+        };
+        (centre - MARGIN * half, centre + MARGIN * half)
+    })
+    .collect()
+}
+
+/// A range with ends rounded outward to two digits of its length.
+fn outward((from, to): (f64, f64)) -> (f64, f64) {
+    let unit = 10_f64.powf((to - from).log10().floor() - 1.0);
+    let ends = ((from / unit).floor() * unit, (to / unit).ceil() * unit);
+    // Multiples of a tenth that is not a binary number are printed as people write them.
+    let plain = |value: f64| format!("{value:.12e}").parse().unwrap_or(value);
+    (plain(ends.0), plain(ends.1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::system::registry;
+
+    #[test]
+    fn a_normal_density_is_held_to_five_deviations_and_not_much_more() {
+        // Without friction and cubic stiffness both marginals are normal with variance σ²/(2κ).
+        let model = registry::find("coulomb").unwrap();
+        for sigma2 in [0.01, 1e-6] {
+            let given = [("kappa", 0.05), ("f_c", 0.0), ("sigma2", sigma2)];
+            let system = model.system_with(&given).unwrap();
+            let deviation = (sigma2 / 0.1_f64).sqrt();
+            let ranges = automatic_ranges(&[system], &[None, None], 1).unwrap();
+            for (from, to) in ranges {
+                assert_eq!(from, -to, "alike on both sides of the centre");
+                assert!(
+                    to > 4.5 * deviation && to < 7.5 * deviation,
+                    "{to} {deviation}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_system_without_a_steady_state_has_no_range() {
+        let model = registry::find("coulomb").unwrap();
+        let given = [("kappa", -0.05), ("f_c", 0.0), ("sigma2", 0.01)];
+        let system = model.system_with(&given).unwrap();
+        assert!(automatic_ranges(&[system], &[None, None], 1).is_none());
+    }
+}
