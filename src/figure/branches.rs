@@ -3,8 +3,13 @@
 use crate::continuation::Point;
 use crate::topology::{Feature, FeatureKind, Verdict};
 
-/// Largest step of a branch from one point to the next, as a share of the window; longer ones are jumps.
+/// Largest step of a branch between near points, as a share of the window; longer ones are jumps.
 const JUMP: f64 = 0.06;
+/// The same per share of the parameter's range: a branch that crosses the window 1.8 times as the parameter crosses
+/// its range is still smooth. Between distant points it may thus go farther than [`JUMP`].
+const SLOPE: f64 = 1.8;
+/// Largest step between however distant points, as a share of the window.
+const FARTHEST: f64 = 0.25;
 /// The next candidate must be this many times as far away for a link to be beyond doubt.
 const CLEAR: f64 = 2.0;
 
@@ -52,10 +57,18 @@ pub(super) fn branches(
     kind: FeatureKind,
     window: (f64, f64),
 ) -> Vec<Branch> {
-    let farthest = JUMP * (window.1 - window.0);
+    let range = match (points.first(), points.last()) {
+        (Some(first), Some(last)) if last.value > first.value => last.value - first.value,
+        _ => f64::INFINITY,
+    };
+    let mut before = f64::NAN;
     let mut finished: Vec<Branch> = Vec::new();
     let mut open: Vec<Branch> = Vec::new();
     for point in points {
+        // Not a number for the first point, which has nothing to be linked to.
+        let spacing = (point.value - before) / range;
+        before = point.value;
+        let farthest = (SLOPE * spacing).max(JUMP).min(FARTHEST) * (window.1 - window.0);
         let Some(found) = positions(point, observable, kind) else {
             finished.append(&mut open);
             continue;
@@ -151,6 +164,17 @@ mod tests {
             distance: None,
             seconds: 0.0,
         }
+    }
+
+    #[test]
+    fn distant_points_are_linked_farther_than_near_ones() {
+        // 0.4 of a window of 2 is 0.2 of it: within reach over a third of the range, not over a thirtieth.
+        let places = |value: f64| point(value, Some(&[0.4 * value]));
+        let few: Vec<Point> = (0..4).map(|i| places(f64::from(i))).collect();
+        assert_eq!(branches(&few, 0, FeatureKind::Peak, (-1.0, 1.0)).len(), 1);
+        let jump = |i: i32| point(f64::from(i), Some(&[if i < 15 { 0.0 } else { 0.4 }]));
+        let many: Vec<Point> = (0..31).map(jump).collect();
+        assert_eq!(branches(&many, 0, FeatureKind::Peak, (-1.0, 1.0)).len(), 2);
     }
 
     #[test]

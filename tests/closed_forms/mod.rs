@@ -106,6 +106,7 @@ fn estimated(
         observable,
         density: Density { axes, values },
         standard_error,
+        common_noise: Default::default(),
     }
 }
 
