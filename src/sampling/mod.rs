@@ -4,6 +4,8 @@
 //! [`pilot`] looks at a system with a few free trajectories: where its mass is, and which steps suit it.
 //! [`sample_transitions`] then samples every reachable cell.
 
+#[cfg(test)]
+mod accuracy;
 mod column;
 mod growth;
 mod integrator;
