@@ -37,15 +37,6 @@ impl MethodOptions {
         }
     }
 
-    /// Smallest persistence that counts when none is given, as a share of the maximum: what sampling leaves in the
-    /// tails of a density is larger than what the generator does.
-    pub fn default_floor(&self) -> f64 {
-        match self {
-            Self::Generator(_) => 1e-6,
-            Self::Sgcm(_) => 1e-3,
-        }
-    }
-
     /// Seed of the random streams; zero for a method without any.
     pub fn seed(&self) -> u64 {
         match self {
