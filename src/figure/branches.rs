@@ -68,7 +68,7 @@ pub(super) fn branches(
         // Not a number for the first point, which has nothing to be linked to.
         let spacing = (point.value - before) / range;
         before = point.value;
-        let farthest = (SLOPE * spacing).max(JUMP).min(FARTHEST) * (window.1 - window.0);
+        let farthest = (SLOPE * spacing).clamp(JUMP, FARTHEST) * (window.1 - window.0);
         let Some(found) = positions(point, observable, kind) else {
             finished.append(&mut open);
             continue;

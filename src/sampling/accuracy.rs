@@ -76,7 +76,6 @@ fn cells_widen_a_density_exactly_as_their_numerical_diffusion_says() {
         let widened = 0.25 + WIDTH * WIDTH / 6.0 / (1.0 - (-2.0 * map_step).exp());
         // The widening is 44 %, 13 %, 4.8 % and 4.2 %. Sampling: the 40 000 displacements of a cell have a relative
         // error of 0.7 % in their mean square, averaged over about ten cells; Heun's own error is dt²/4.
-        println!("{map_step} {variance} {widened} {diffusion}");
         assert!(
             (variance / widened - 1.0).abs() < 5e-3,
             "{map_step}: {variance} {widened}"
