@@ -171,7 +171,7 @@ pub(super) static KEYS: &[Key] = &[
         "sgcm: seed of the random streams; the same seed gives the same numbers bit for bit."),
     key("method.integrator", Kind::Choice(integrator_names), KeyDefault::Value(|| quoted(sgcm().integrator.name())),
         "sgcm: integrator of the trajectories. `euler-maruyama` takes ω²·time_step away from the damping."),
-    key("method.replicates", Kind::Integer(2, 65_535), KeyDefault::Value(|| sgcm().replicates.to_string()),
+    key("method.replicates", Kind::Integer(2, 256), KeyDefault::Value(|| sgcm().replicates.to_string()),
         "sgcm: groups the samples are split into to estimate the sampling error; at most `samples`."),
     key("method.solver", Kind::Choice(solver_names), KeyDefault::Value(|| quoted(sgcm().solver.name())),
         "sgcm: solver of the steady state: multilevel aggregation, or power iteration."),

@@ -61,11 +61,10 @@ pub(super) fn branches(
         (Some(first), Some(last)) if last.value > first.value => last.value - first.value,
         _ => f64::INFINITY,
     };
-    let mut before = f64::NAN;
+    let mut before = points.first().map_or(0.0, |first| first.value);
     let mut finished: Vec<Branch> = Vec::new();
     let mut open: Vec<Branch> = Vec::new();
     for point in points {
-        // Not a number for the first point, which has nothing to be linked to.
         let spacing = (point.value - before) / range;
         before = point.value;
         let farthest = (SLOPE * spacing).clamp(JUMP, FARTHEST) * (window.1 - window.0);

@@ -139,7 +139,7 @@ fn conditions_between_keys_hold() {
         ("sweep.to=-0.02", "the sweep goes from -0.02 to -0.02"),
         ("sweep.to=-0.02000000000000001", "no 31 different numbers"),
         ("sweep.to=1e308", "no 31 different numbers"),
-        ("method.replicates=3000", "3000 replicates"),
+        ("method.samples=4", "8 replicates"),
         ("figures.at=[0.0, 0.02]", "numbers from -0.02 to 0.01"),
         ("detect.joint=[[\"x\", \"x\"]]", "one axis with itself"),
         (
