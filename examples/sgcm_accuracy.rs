@@ -191,7 +191,7 @@ fn integrators(system: &dyn System) -> Result<(), AnyError> {
             Integrator::EulerMaruyama => run.transitions.time_step(),
             Integrator::StochasticHeun => run.transitions.time_step().powi(3) / 4.0,
         };
-        print!("| {} | {time_step:.4} | {taken:.6} | ", integrator.name());
+        print!("| {} | {time_step:.4} | {taken:.1e} | ", integrator.name());
         match &run.steady {
             Some(steady) => {
                 let moments = pbif::density::moments(&trial.space, &steady.mass)?;
