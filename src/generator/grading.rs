@@ -7,6 +7,9 @@ use crate::system::System;
 /// half a per cent with 100 cells (docs/accuracy.md).
 const LAYER_SHARE: f64 = 0.25;
 
+/// Smallest cell at a wall that a coordinate without noise creeps up to, as a share of the uniform width.
+const WALL_SHARE: f64 = 0.2;
+
 /// Places along every other axis where the force across a surface is looked at.
 const PLACES: usize = 9;
 
@@ -14,8 +17,12 @@ const PLACES: usize = 9;
 ///
 /// The density bends within a layer of thickness D/|a| on a surface, D = σ²/2 and a the drift across it: the
 /// smallest cell is a share of that thickness for the root mean square drift over the other axes' `ranges`
-/// (one range an axis, in the system's order). `None` where there is nothing to grade toward, no noise on
-/// the axis, or uniform cells are fine enough.
+/// (one range an axis, in the system's order).
+///
+/// An axis without noise is graded toward its walls: under steady sliding Dahl's z nears them exponentially,
+/// 1 - |z|λ/f_c shrinking by e for every f_c/λ that x moves, and so do the widths of what the density shows.
+///
+/// `None` where there is nothing to grade toward, or uniform cells are fine enough.
 pub fn automatic_grading(
     system: &dyn System,
     ranges: &[(f64, f64)],
@@ -23,8 +30,11 @@ pub fn automatic_grading(
     count: usize,
 ) -> Option<Grading> {
     let &(from, to) = ranges.get(axis)?;
-    if ranges.len() != system.dimension() || !system.noise_axes().contains(&axis) || count == 0 {
+    if ranges.len() != system.dimension() || count == 0 {
         return None;
+    }
+    if !system.noise_axes().contains(&axis) {
+        return toward_walls(system, axis, (from, to), count);
     }
     let inside = |at: &f64| *at > from && *at < to;
     let surfaces = system.switching_surfaces();
@@ -36,6 +46,26 @@ pub fn automatic_grading(
     let smallest = LAYER_SHARE * thickness.fold(f64::INFINITY, f64::min);
     let uniform = (to - from) / count as f64;
     (smallest > 0.0 && smallest < uniform).then_some(Grading { at, smallest })
+}
+
+/// Grading of an axis without noise toward those ends of its range that are walls.
+fn toward_walls(
+    system: &dyn System,
+    axis: usize,
+    (from, to): (f64, f64),
+    count: usize,
+) -> Option<Grading> {
+    let (low, high) = system.bounds(axis)?;
+    let tolerance = 1e-9 * (to - from);
+    let mut at = Vec::new();
+    if from <= low + tolerance {
+        at.push(from);
+    }
+    if to >= high - tolerance {
+        at.push(to);
+    }
+    let smallest = WALL_SHARE * (to - from) / count as f64;
+    (!at.is_empty() && smallest > 0.0).then_some(Grading { at, smallest })
 }
 
 /// Thickness D/|a| of the layer on a surface; infinite without a force across it.
@@ -88,6 +118,26 @@ mod tests {
         assert!((grading.smallest - expected).abs() < 1e-12, "{grading:?}");
         assert_eq!(automatic_grading(&*coulomb, &ranges, 0, 100), None);
         assert_eq!(automatic_grading(&*coulomb, &ranges, 1, 100_000), None);
+    }
+
+    #[test]
+    fn an_axis_between_walls_is_graded_toward_them() {
+        let values = [
+            ("kappa", 0.1),
+            ("lambda", 0.2),
+            ("f_c", 0.1),
+            ("sigma2", 0.2),
+        ];
+        let dahl = registry::find("dahl")
+            .unwrap()
+            .system_with(&values)
+            .unwrap();
+        let grading = |z: (f64, f64)| {
+            automatic_grading(&*dahl, &[(-2.0, 2.0), (-2.0, 2.0), z], 2, 20).map(|found| found.at)
+        };
+        assert_eq!(grading((-0.5, 0.5)), Some(vec![-0.5, 0.5]));
+        assert_eq!(grading((-0.4, 0.5)), Some(vec![0.5]));
+        assert_eq!(grading((-0.4, 0.4)), None);
     }
 
     #[test]

@@ -13,7 +13,7 @@ const BULK_SHARE: f64 = 0.6;
 /// Points toward which an axis is refined.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grading {
-    /// The points, strictly inside the range; a face falls on each.
+    /// The points, in the range (its ends included); a face falls on each.
     pub at: Vec<f64>,
     /// Wanted width of the cells at the points; the widths reached differ by a few per cent.
     pub smallest: f64,
@@ -122,7 +122,7 @@ impl Axis {
         let mut points = grading.at.clone();
         points.sort_by(f64::total_cmp);
         for (index, &at) in points.iter().enumerate() {
-            let inside = at > from && at < to;
+            let inside = at >= from && at <= to;
             if !inside || (index > 0 && points[index - 1] == at) {
                 return Err(SpaceError::GradingPoint { at, from, to });
             }
@@ -149,7 +149,8 @@ impl Axis {
         terms: &[(f64, f64, f64)],
     ) -> Result<Self, SpaceError> {
         let mut ends = vec![from];
-        ends.extend(terms.iter().map(|term| term.1));
+        let inside = |at: &f64| *at > from && *at < to;
+        ends.extend(terms.iter().map(|term| term.1).filter(inside));
         ends.push(to);
         let pieces = ends.len() - 1;
         if count < pieces {
@@ -417,6 +418,21 @@ mod tests {
             Axis::graded(0.0, 1.0, 10, &wide),
             Err(SpaceError::GradingWidth { .. })
         ));
+    }
+
+    #[test]
+    fn cells_can_be_graded_toward_the_ends() {
+        let grading = Grading {
+            at: vec![-1.0, 1.0],
+            smallest: 0.02,
+        };
+        let axis = Axis::graded(-1.0, 1.0, 20, &grading).unwrap();
+        assert_eq!((axis.count(), axis.from(), axis.to()), (20, -1.0, 1.0));
+        for (cell, mirrored) in (0..10).zip((10..20).rev()) {
+            assert!((axis.width(cell) - axis.width(mirrored)).abs() < 1e-12);
+            assert!(cell == 0 || axis.width(cell) > axis.width(cell - 1));
+        }
+        assert!(axis.width(0) < 0.03, "{}", axis.width(0));
     }
 
     proptest! {

@@ -23,10 +23,8 @@ pub enum SpaceError {
         /// Number of cells that was given.
         count: usize,
     },
-    /// A point of grading outside the open range, or repeated.
-    #[error(
-        "cells cannot be graded toward {at}: it must lie inside ({from}, {to}), each point once"
-    )]
+    /// A point of grading outside the range, or repeated.
+    #[error("cells cannot be graded toward {at}: it must lie in [{from}, {to}], each point once")]
     GradingPoint {
         /// The point that was given.
         at: f64,
