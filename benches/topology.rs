@@ -30,7 +30,6 @@ fn noisy_ring(count: usize, dimension: u32) -> EstimatedDensity {
             Observable::Marginal(0)
         },
         standard_error: values.iter().map(|value| 0.03 * value + 1e-4).collect(),
-        common_noise: Default::default(),
         density: Density {
             axes: vec![axis; dimension as usize],
             values,

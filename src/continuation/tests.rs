@@ -52,7 +52,6 @@ impl DensitySource for Ramp {
                 values: vec![0.5 + 0.1 * value, 0.5 - 0.1 * value],
             },
             standard_error: vec![0.0; 2],
-            common_noise: Default::default(),
         };
         let moments = Moments {
             mean: 0.0,

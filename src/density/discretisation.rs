@@ -1,6 +1,6 @@
 //! Densities whose error is that of a grid, not of sampling: the difference between two discretisations.
 
-use super::{CommonNoise, DensityError, EstimatedDensity, Observable, Projection};
+use super::{DensityError, EstimatedDensity, Observable, Projection};
 use crate::space::CellSpace;
 
 /// Density of an observable from the masses of all cells, with the difference to a second discretisation (masses,
@@ -34,7 +34,6 @@ pub fn estimate_from_difference(
         density,
         standard_error: squares.into_iter().map(f64::sqrt).collect(),
         // The error of a grid is systematic: nothing is said of what two cells have in common.
-        common_noise: CommonNoise::default(),
     })
 }
 

@@ -2,14 +2,12 @@
 //!
 //! *Mass* is a cell's probability, Σ = 1; *density* is mass over volume, ∫ = 1. They never share a variable.
 
-mod common_noise;
 mod discretisation;
 mod distance;
 mod moments;
 mod projection;
 mod uncertainty;
 
-pub use common_noise::CommonNoise;
 pub use discretisation::estimate_from_difference;
 pub use distance::{hellinger, hellinger_of_masses, total_variation, total_variation_of_masses};
 pub use moments::moments;
@@ -83,17 +81,6 @@ pub struct EstimatedDensity {
     pub density: Density,
     /// Standard error of each value of the density from sampling; all zero for a method without sampling.
     pub standard_error: Vec<f64>,
-    /// What the noise of two cells has in common; the default where nothing is known of it.
-    pub common_noise: CommonNoise,
-}
-
-impl EstimatedDensity {
-    /// Standard error of the difference between the values of two cells, in units of the density: at most that
-    /// of independent cells.
-    pub(crate) fn standard_error_of_difference(&self, first: usize, second: usize) -> f64 {
-        let independent = self.standard_error[first].hypot(self.standard_error[second]);
-        independent * self.common_noise.share(first, second).sqrt()
-    }
 }
 
 /// Mean and standard deviation of one axis.

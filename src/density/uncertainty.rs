@@ -7,7 +7,7 @@
 //! a cell of volume V. Hence 1/n = Σ var / Σ (p/V) over a window; the ratio of sums, unlike a mean of
 //! ratios, is ruled by the cells that hold the mass, and errs to the large side beside them.
 
-use super::{CommonNoise, Density, DensityError, EstimatedDensity, Observable, Projection};
+use super::{Density, DensityError, EstimatedDensity, Observable, Projection};
 use crate::space::CellSpace;
 
 /// Cells on either side of a cell whose variances are pooled with its own.
@@ -34,27 +34,22 @@ pub fn estimate(
 ) -> Result<EstimatedDensity, DensityError> {
     let projection = Projection::new(space, observable)?;
     let density = projection.density(mass)?;
-    let (standard_error, common_noise) = match replicate_masses.len() {
-        0 => (vec![0.0; density.values.len()], CommonNoise::default()),
+    let standard_error = match replicate_masses.len() {
+        0 => vec![0.0; density.values.len()],
         1 => return Err(DensityError::Replicates { given: 1 }),
         _ => {
             let replicates: Result<Vec<Density>, DensityError> = replicate_masses
                 .iter()
                 .map(|mass| projection.density(mass))
                 .collect();
-            let replicates = replicates?;
-            let variance = jackknife_variance(&replicates, density.values.len());
-            (
-                pooled_error(&density, projection.volumes(), &variance),
-                CommonNoise::from_replicates(&density, &replicates),
-            )
+            let variance = jackknife_variance(&replicates?, density.values.len());
+            pooled_error(&density, projection.volumes(), &variance)
         }
     };
     Ok(EstimatedDensity {
         observable,
         density,
         standard_error,
-        common_noise,
     })
 }
 

@@ -27,6 +27,9 @@ const METHOD: &str = "generator";
 /// Escape per unit time below which mass is said to stay in Ω, and relaxation is not looked at.
 const NO_ESCAPE: f64 = 1e-12;
 
+/// Relative error of slopes, which predict, and of differences between schemes, which estimate errors.
+const ROUGH: f64 = 1e-2;
+
 /// Share of the mass that may leave within one relaxation time without a word.
 pub(super) const QUIET_ESCAPE: f64 = 1e-3;
 
@@ -192,7 +195,7 @@ impl GeneratorSource {
         let system = solved.system.as_ref();
         let second = self.assemble(system, companion(self.options.scheme))?;
         let unknowns = &solved.steady.mass;
-        let change = solver.sensitivity(&second.matrix, unknowns)?;
+        let change = solver.sensitivity_within(&second.matrix, unknowns, ROUGH)?;
         let changed: Vec<f64> = unknowns.iter().zip(&change).map(|(u, du)| u + du).collect();
         let changed = cell_masses(system, &self.space, &changed);
         let difference: Vec<f64> = changed.iter().zip(masses).map(|(b, a)| b - a).collect();
@@ -212,8 +215,9 @@ impl GeneratorSource {
         let (values, parameter) = (&solved.values, self.parameter.as_str());
         let derivative =
             assemble_derivative(self.model, values, parameter, &self.space, &options).ok()?;
+        let mass = &solved.steady.mass;
         solver
-            .sensitivity(&derivative.matrix, &solved.steady.mass)
+            .sensitivity_within(&derivative.matrix, mass, ROUGH)
             .ok()
     }
 }

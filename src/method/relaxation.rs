@@ -8,6 +8,9 @@ use crate::stationary::rates::RateSolver;
 /// Inverse iterations; the last half of them counts.
 const ITERATIONS: usize = 16;
 
+/// Relative error of each of them.
+const ROUGH: f64 = 1e-2;
+
 /// Time in which deviations from the steady state shrink by e, from x ← Q⁻¹ x on vectors of sum zero: the mean growth
 /// over the last iterations is 1/|λ₂|. Rough (a few per cent, more for oscillating modes), which is enough to compare
 /// with the time in which mass escapes. `None` when a solve fails.
@@ -31,7 +34,11 @@ pub(super) fn relaxation_time(solver: &mut RateSolver, mass: &[f64]) -> Option<f
         }
         vector.iter_mut().for_each(|value| *value /= size);
         let next = solver
-            .sensitivity(&as_derivative(&vector, heaviest, mass[heaviest])?, mass)
+            .sensitivity_within(
+                &as_derivative(&vector, heaviest, mass[heaviest])?,
+                mass,
+                ROUGH,
+            )
             .ok()?;
         let grown: f64 = next.iter().map(|value| value.abs()).sum();
         if 2 * iteration >= ITERATIONS {

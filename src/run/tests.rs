@@ -32,7 +32,6 @@ fn point(value: f64, solved: bool) -> Point {
             values: (0..cells).map(|cell| value + cell as f64).collect(),
         },
         standard_error: vec![0.5; cells],
-        common_noise: Default::default(),
     };
     let detection = Detection {
         signature: Signature {

@@ -54,7 +54,6 @@ fn exact(axes: Vec<Axis>, values: Vec<f64>) -> EstimatedDensity {
     EstimatedDensity {
         observable,
         standard_error: vec![0.0; density.values.len()],
-        common_noise: Default::default(),
         density,
     }
 }

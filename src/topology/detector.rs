@@ -53,6 +53,7 @@ impl PersistenceDetector {
         estimated: &EstimatedDensity,
         limits: &Limits,
     ) -> Vec<Candidate> {
+        let errors = &estimated.standard_error;
         found.sort_by(|a, b| {
             b.persistence
                 .total_cmp(&a.persistence)
@@ -62,10 +63,8 @@ impl PersistenceDetector {
         let mut candidates: Vec<Candidate> = found
             .into_iter()
             .filter_map(|component| {
-                let standard_error = match component.death {
-                    Some(saddle) => estimated.standard_error_of_difference(component.birth, saddle),
-                    None => estimated.standard_error[component.birth],
-                };
+                let death_error = component.death.map_or(0.0, |cell| errors[cell]);
+                let standard_error = errors[component.birth].hypot(death_error);
                 // Few stand out of the noise by their cell values: only those are worth a closer look.
                 let by_cells = limits.judge(component.persistence, standard_error).verdict;
                 if by_cells == Verdict::Absent && absent >= ABSENT_LISTED {
@@ -188,7 +187,6 @@ mod tests {
                 values,
             },
             standard_error: errors,
-            common_noise: Default::default(),
         }
     }
 
@@ -243,7 +241,6 @@ mod tests {
                 values: values.collect(),
             },
             standard_error: vec![1.0; 40],
-            common_noise: Default::default(),
         };
         let detection = detector().detect(&density);
         let peaks = |verdict| {

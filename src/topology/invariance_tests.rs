@@ -17,7 +17,6 @@ fn rough(noise: &[f64]) -> EstimatedDensity {
     EstimatedDensity {
         observable: Observable::Joint(0, 1),
         standard_error: (0..99).map(|cell| 0.05 + 0.02 * noise[cell]).collect(),
-        common_noise: Default::default(),
         density: Density {
             values: (0..99).map(value).collect(),
             axes: vec![x, y],
@@ -35,7 +34,6 @@ fn rearranged(
     EstimatedDensity {
         observable: of.observable,
         standard_error: take(&of.standard_error),
-        common_noise: Default::default(),
         density: Density {
             axes,
             values: take(&of.density.values),

@@ -166,7 +166,6 @@ mod tests {
         EstimatedDensity {
             observable: Observable::Marginal(0),
             standard_error: vec![0.0; values.len()],
-            common_noise: Default::default(),
             density: Density { axes, values },
         }
     }

@@ -106,7 +106,6 @@ fn estimated(
         observable,
         density: Density { axes, values },
         standard_error,
-        common_noise: Default::default(),
     }
 }
 

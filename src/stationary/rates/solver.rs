@@ -129,6 +129,20 @@ impl RateSolver {
         derivative: &CsMat<f64>,
         mass: &[f64],
     ) -> Result<Vec<f64>, RateError> {
+        self.sensitivity_within(derivative, mass, self.options.tolerance)
+    }
+
+    /// [`RateSolver::sensitivity`] to a relative error of `tolerance` in L1: predictions and estimates of errors need
+    /// two digits, and with a neighbour's factorisation every digit costs iterations.
+    ///
+    /// # Errors
+    /// As [`RateSolver::sensitivity`].
+    pub fn sensitivity_within(
+        &mut self,
+        derivative: &CsMat<f64>,
+        mass: &[f64],
+        tolerance: f64,
+    ) -> Result<Vec<f64>, RateError> {
         let (Some((matrix, escape)), Some(kept)) = (&self.last, &self.preconditioner) else {
             return Err(RateError::NoSteadyState);
         };
@@ -153,7 +167,7 @@ impl RateSolver {
             *slot = -(*slot + lost * value);
         }
         source[kept.held] = 0.0;
-        let effort = (self.options.tolerance, self.options.max_iterations);
+        let effort = (tolerance, self.options.max_iterations);
         let change = linear(&balance, kept, mass, &source, effort);
         let mut change = change.ok_or(RateError::Sensitivity)?;
         let excess: f64 = change.iter().sum::<f64>() / total;
