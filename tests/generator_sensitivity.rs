@@ -67,7 +67,6 @@ fn coulomb_matches_central_differences() {
     let space = CellSpace::new(vec![axis.clone(), axis]).unwrap();
     for (parameter, step) in [("f_c", 5e-4), ("kappa", 2e-4), ("sigma2", 2e-4)] {
         let error = mismatch("coulomb", &given, parameter, &space, step);
-        println!("coulomb {parameter}: {error:.1e}");
         assert!(error < 1e-5, "{parameter}: {error:e}");
     }
 }
@@ -88,7 +87,6 @@ fn dahl_matches_central_differences() {
     let space = CellSpace::new(axes.to_vec()).unwrap();
     for (parameter, step) in [("alpha", 2e-3), ("sigma2", 1e-3), ("f_c", 2e-4)] {
         let error = mismatch("dahl", &given, parameter, &space, step);
-        println!("dahl {parameter}: {error:.1e}");
         assert!(error < 1e-5, "{parameter}: {error:e}");
     }
 }
