@@ -1,9 +1,9 @@
 //! The generator as a source of densities: assemble Q, solve Q u = 0 with the neighbour's factorisation, and state
 //! the error of the grid as the difference to a second scheme.
 //!
-//! Both the slope du/dθ, which predicts the neighbour, and the difference to the second scheme come from the
-//! factorisation that is there: Q du = -(dQ/dθ) u, and with the second scheme's Q' = Q + δQ to first order
-//! Q δu = -(δQ) u.
+//! The slope du/dθ, which predicts the neighbour, and the difference to the second scheme come from the factorisation
+//! that is there: Q du = -(dQ/dθ) u, and with the second scheme's Q' = Q + δQ to first order Q δu = -(δQ) u. After the
+//! first point the secant through the neighbour replaces the tangent: it predicts as well and costs nothing.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -12,10 +12,10 @@ use super::findings::{Findings, closed_ends};
 use super::relaxation::relaxation_time;
 use super::{GeneratorMethodOptions, MethodError, Setting, State};
 use crate::continuation::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
-use crate::density::{EstimatedDensity, Observable, estimate_from_difference, moments};
+use crate::density::{EstimatedDensity, Moments, Observable, estimate_from_difference};
 use crate::generator::{
     AdvectiveScheme, Generator, GeneratorOptions, assemble, assemble_derivative, cell_masses,
-    resolution,
+    resolution, unknown_moments,
 };
 use crate::space::CellSpace;
 use crate::stationary::rates::{RateOptions, RateSolver, RateSteadyState};
@@ -107,7 +107,14 @@ impl GeneratorSource {
             system,
             steady,
         };
-        self.report(&mut solver, value, &solved)
+        let mut solution = self.report(&mut solver, value, &solved)?;
+        if let Some(state) = &mut solution.state {
+            state.slope = match start {
+                Some(start) => Some(start.secant(state)),
+                None => self.slope(&mut solver, &solved),
+            };
+        }
+        Ok(solution)
     }
 
     /// Judges a solution and turns it into densities.
@@ -175,11 +182,11 @@ impl GeneratorSource {
         report.warnings = findings.into_sentences();
         Ok(Solution {
             report,
-            moments: moments(&self.space, &masses)?,
+            moments: moments_of(&self.space, unknowns),
             densities,
             state: Some(State {
                 value,
-                slope: self.slope(solver, solved),
+                slope: None,
                 mass: unknowns.clone(),
             }),
         })
@@ -220,6 +227,17 @@ impl GeneratorSource {
             .sensitivity_within(&derivative.matrix, mass, ROUGH)
             .ok()
     }
+}
+
+/// Moments from the unknowns, which are free of the h²/6 that moments of cell masses have.
+fn moments_of(space: &CellSpace, unknowns: &[f64]) -> Vec<Moments> {
+    unknown_moments(space, unknowns)
+        .into_iter()
+        .map(|(mean, variance)| Moments {
+            mean,
+            standard_deviation: variance.max(0.0).sqrt(),
+        })
+        .collect()
 }
 
 /// The scheme whose difference to the given one stands for its error.

@@ -50,6 +50,13 @@ pub struct State {
 }
 
 impl State {
+    /// Slope of the secant to another state, which lies at another value.
+    pub(super) fn secant(&self, other: &Self) -> Vec<f64> {
+        let step = other.value - self.value;
+        let pairs = self.mass.iter().zip(&other.mass);
+        pairs.map(|(from, to)| (to - from) / step).collect()
+    }
+
     /// Mass expected at another value: along the tangent, but never to less than nothing in total.
     pub(super) fn predicted(&self, value: f64) -> Vec<f64> {
         let step = value - self.value;

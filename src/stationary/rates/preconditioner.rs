@@ -16,7 +16,7 @@ const LEAF: usize = 70;
 
 /// Bytes of factors beyond which memory bounds the iterations, so that single precision is faster; it has
 /// needed as many iterations as double in every trial, because GMRES refines in double.
-pub(super) const LARGE: u64 = 64 << 20;
+pub(super) const LARGE: u64 = 16 << 20;
 
 /// The factorisation that solves or preconditions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
