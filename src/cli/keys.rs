@@ -175,7 +175,7 @@ pub(super) static KEYS: &[Key] = &[
         "sgcm: groups the samples are split into to estimate the sampling error; at most `samples`."),
     key("method.solver", Kind::Choice(solver_names), KeyDefault::Value(|| quoted(sgcm().solver.name())),
         "sgcm: solver of the steady state: multilevel aggregation, or power iteration."),
-    key("method.solver_tolerance", Kind::Number(OPEN_UNIT), KeyDefault::Value(|| number(sgcm().solver_tolerance)),
+    key("method.solver_tolerance", Kind::Number(OPEN_UNIT), KeyDefault::Rule("`1e-8` by the generator, `1e-10` by sgcm"),
         "L1 error of the cell masses at which the solver stops."),
     key("method.escape_limit", Kind::Number(UP_TO_ONE), KeyDefault::Value(|| number(sgcm().escape_limit)),
         "Largest share of the mass that may leave the domain within one relaxation time before there is said to be no steady state."),

@@ -75,11 +75,19 @@ impl<'a> Findings<'a> {
         edges.iter().map(|ends| ends[0] + ends[1]).collect()
     }
 
-    pub(super) fn negative_mass(&mut self, mass: f64) {
-        if mass > NEGATIVE_MASS_LIMIT {
+    /// Negative mass of the cells, and the largest of the watched densities: wiggles along an axis that is summed
+    /// over do not reach those.
+    pub(super) fn negative_mass(&mut self, cells: f64, watched: f64) {
+        if watched > NEGATIVE_MASS_LIMIT {
             self.sentences.push(format!(
-                "{:.2} % of the mass is negative: the density has wiggles that the cells do not resolve; use more cells",
-                100.0 * mass
+                "{:.2} % of the mass of a watched density is negative: it has wiggles that the cells do not resolve; use more cells",
+                100.0 * watched
+            ));
+        } else if cells > NEGATIVE_MASS_LIMIT {
+            self.sentences.push(format!(
+                "{:.1} % of the mass of single cells is negative: wiggles that the cells do not resolve; the watched densities \
+                 have less than {watched:.0e} of it",
+                100.0 * cells
             ));
         }
     }

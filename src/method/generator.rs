@@ -174,11 +174,12 @@ impl GeneratorSource {
         let masses = cell_masses(solved.system.as_ref(), &self.space, unknowns);
         report.negative_mass = masses.iter().map(|mass| (-mass).max(0.0)).sum();
         report.edge_mass = findings.edge_mass(&masses, &self.closed_ends);
-        findings.negative_mass(report.negative_mass);
         for judged in resolution(solved.system.as_ref(), &self.space, &masses) {
             findings.resolution(&judged);
         }
         let densities = self.densities(solver, solved, &masses)?;
+        let watched = densities.iter().map(negative_mass).fold(0.0, f64::max);
+        findings.negative_mass(report.negative_mass, watched);
         report.warnings = findings.into_sentences();
         Ok(Solution {
             report,
@@ -227,6 +228,12 @@ impl GeneratorSource {
             .sensitivity_within(&derivative.matrix, mass, ROUGH)
             .ok()
     }
+}
+
+/// Σ |min(mass, 0)| of a watched density.
+fn negative_mass(estimate: &EstimatedDensity) -> f64 {
+    let masses = estimate.density.masses();
+    masses.iter().map(|mass| (-mass).max(0.0)).sum()
 }
 
 /// Moments from the unknowns, which are free of the h²/6 that moments of cell masses have.
