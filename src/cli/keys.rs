@@ -185,7 +185,7 @@ pub(super) static KEYS: &[Key] = &[
         "Pairs of axes whose joint densities are watched for changes."),
     key("detect.confidence", Kind::Number(OPEN_UNIT), KeyDefault::Value(|| number(DetectOptions::default().confidence)),
         "Probability that no peak or crater of the whole sweep is sampling noise."),
-    key("detect.floor", Kind::Number(SHARE), KeyDefault::Rule("`1e-6` by the generator, `1e-3` by sgcm"),
+    key("detect.floor", Kind::Number(SHARE), KeyDefault::Value(|| number(DetectOptions::default().floor)),
         "Smallest persistence that counts, as a share of the density's maximum."),
     key("locate.tolerance", Kind::Number(POSITIVE), KeyDefault::Value(|| number(LocateOptions::default().tolerance)),
         "Wanted width of a P-bifurcation's bracket, in units of the swept parameter."),

@@ -33,7 +33,7 @@ pub enum BifurcationStatus {
     Located,
     /// The data cannot tell where in the bracket it lies.
     Unresolved,
-    /// Its evidence did not survive a check.
+    /// The feature that decides is nowhere more than a few cells from another: it may be an effect of the cells.
     Unconfirmed,
 }
 

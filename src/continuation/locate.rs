@@ -8,7 +8,8 @@
 //! The zero's own uncertainty comes from shifting all q by ± two standard errors (common random numbers make
 //! neighbouring errors alike, so they do not average out) and from dropping the point farthest away. A feature only a
 //! few cells from its neighbour is seen through the cells' averages, which shift its birth: a second line through points
-//! where it is well apart must agree, and the band holds both zeros.
+//! where it is well apart must agree, and the band holds both zeros. A change whose feature is nowhere well apart is
+//! `unconfirmed`: it may be one of the cells, not of the density.
 
 use super::bracket::{COUNTED, count, deciding_feature};
 use super::label::{self, BifurcationStatus, LabelledPoint, PointType};
@@ -28,6 +29,8 @@ struct Change {
     value: f64,
     lower: f64,
     upper: f64,
+    /// Whether every deciding feature is well apart from others at some point.
+    resolved_by_cells: bool,
 }
 
 /// All labelled points of a sweep, in ascending parameter. `points` must be ascending.
@@ -70,10 +73,10 @@ fn row(
         observable: Some(observable),
         before: Some(before),
         after: Some(after),
-        status: Some(if located {
-            BifurcationStatus::Located
-        } else {
-            BifurcationStatus::Unresolved
+        status: Some(match (change.resolved_by_cells, located) {
+            (false, _) => BifurcationStatus::Unconfirmed,
+            (true, true) => BifurcationStatus::Located,
+            (true, false) => BifurcationStatus::Unresolved,
         }),
     }
 }
@@ -85,6 +88,7 @@ fn locate(points: &[&Point], observable: usize, left: usize) -> Change {
         value: 0.5 * (a.value + b.value),
         lower: a.value,
         upper: b.value,
+        resolved_by_cells: true,
     };
     let mut births = Vec::new();
     for kind in COUNTED {
@@ -92,6 +96,7 @@ fn locate(points: &[&Point], observable: usize, left: usize) -> Change {
         if counts[0] != counts[1] {
             let rank = counts[0].min(counts[1]);
             let present = present_side(points, observable, left, kind, rank, counts[0] > counts[1]);
+            change.resolved_by_cells &= present.iter().any(|seen| seen.cells_apart >= WELL_APART);
             births.extend(births_of(&present));
         }
     }

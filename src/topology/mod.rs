@@ -27,19 +27,12 @@ pub struct DetectOptions {
     pub floor: f64,
 }
 
-impl DetectOptions {
-    /// Default floor for sampled densities: sampling leaves chance features in the tails.
-    pub const SAMPLING_FLOOR: f64 = 1e-3;
-    /// Default floor for densities without sampling noise, whose error is that of the grid.
-    pub const GRID_FLOOR: f64 = 1e-6;
-}
-
 impl Default for DetectOptions {
-    /// Settings for sampled densities.
     fn default() -> Self {
         Self {
             confidence: 0.95,
-            floor: Self::SAMPLING_FLOOR,
+            // A rim of constant height has peaks of this size from the cells alone.
+            floor: 1e-3,
         }
     }
 }

@@ -191,16 +191,12 @@ fn watch<T>(reader: &mut Reader, known: &mut Vec<Observable>, new: Observable, a
 }
 
 /// Reads the settings of `[detect]`.
-pub(super) fn read_detect(reader: &Reader, method: &MethodOptions) -> DetectOptions {
+pub(super) fn read_detect(reader: &Reader) -> DetectOptions {
     let default = DetectOptions::default();
     let number = |key| reader.number(&["detect", key]).map(|number| number.value);
-    let floor = match method {
-        MethodOptions::Generator(_) => DetectOptions::GRID_FLOOR,
-        MethodOptions::Sgcm(_) => DetectOptions::SAMPLING_FLOOR,
-    };
     DetectOptions {
         confidence: number("confidence").unwrap_or(default.confidence),
-        floor: number("floor").unwrap_or(floor),
+        floor: number("floor").unwrap_or(default.floor),
     }
 }
 

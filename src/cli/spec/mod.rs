@@ -89,10 +89,7 @@ impl SweepSpec {
             model.and_then(|model| cells::read(&mut reader, model, swept.as_ref(), &method));
         let observables = model.map(|model| choices::read_observables(&mut reader, model));
         let figures_at = choices::read_figures_at(&mut reader, swept.as_ref());
-        let (detect, locate) = (
-            choices::read_detect(&reader, &method),
-            choices::read_locate(&reader),
-        );
+        let (detect, locate) = (choices::read_detect(&reader), choices::read_locate(&reader));
         let formats = choices::read_formats(&reader);
         let (Some(model), Some(swept), Some((cells, space)), Some(observables), true) =
             (model, swept, cells, observables, reader.is_clean())

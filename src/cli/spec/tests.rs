@@ -35,8 +35,7 @@ fn defaults_are_those_of_the_options() {
         "Duffing oscillator with Coulomb friction, sweep of f_c"
     );
     assert_eq!(spec.method, MethodOptions::default());
-    assert_eq!(spec.detect.confidence, DetectOptions::default().confidence);
-    assert_eq!(spec.detect.floor, DetectOptions::GRID_FLOOR);
+    assert_eq!(spec.detect, DetectOptions::default());
     assert_eq!(spec.locate, LocateOptions::default());
     let (x, y, xy) = (
         Observable::Marginal(0),
