@@ -304,8 +304,7 @@ fn wrong(key: &Key, path: &[&str], node: &Node) -> Diagnostic {
         .allowed(key.kind.words());
     match (key.kind, &node.value) {
         (Kind::Choice(_), Value::Text(text))
-            if key.path == "method.kind"
-                && ["generator", "monte-carlo"].contains(&text.as_str()) =>
+            if key.path == "method.kind" && text == "monte-carlo" =>
         {
             diagnostic.remedy(format!("`{text}` is not available in this version"))
         }
