@@ -6,7 +6,7 @@ use super::column::{Column, SINK};
 
 /// Transition probabilities between `n` cells of a cell space over one map step.
 ///
-/// Columns sum to one with the sink: Σ_i P[i][j] + escape[j] = 1, so p(m+1) = P p(m), the paper's Eq. (4).
+/// Columns sum to one with the sink: `Σ_i P[i][j] + escape[j] = 1`, so p(m+1) = P p(m), the paper's Eq. (4).
 #[derive(Debug, Clone)]
 pub struct TransitionMatrix {
     /// P, `n × n`, compressed by rows (CSR): row `i` lists the cells `j` from which `i` is reached.
