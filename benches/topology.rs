@@ -30,6 +30,8 @@ fn noisy_ring(count: usize, dimension: u32) -> EstimatedDensity {
             Observable::Marginal(0)
         },
         standard_error: values.iter().map(|value| 0.03 * value + 1e-4).collect(),
+        variants: pbif::density::Variants::None,
+        structure: pbif::density::Structure::default(),
         density: Density {
             axes: vec![axis; dimension as usize],
             values,

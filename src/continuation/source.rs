@@ -49,6 +49,8 @@ pub struct SolveReport {
     /// What is left of the equation at the result, Σ p = 1: ‖P p - λ p‖₁ for a cell map,
     /// ‖Q p + r p‖₁ / ‖|Q| |p|‖₁ for a generator.
     pub residual: f64,
+    /// L1 error of the masses that the solver estimates for itself.
+    pub solver_error: f64,
     /// Mass that leaves Ω per unit time.
     pub escape_rate: f64,
     /// Sum of the magnitudes of negative masses; zero for cell maps.

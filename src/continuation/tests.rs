@@ -38,6 +38,7 @@ impl DensitySource for Ramp {
             iterations: 0,
             factorisations: 0,
             residual: 0.0,
+            solver_error: 0.0,
             escape_rate: 0.0,
             negative_mass: 0.0,
             edge_mass: vec![0.0],
@@ -52,6 +53,8 @@ impl DensitySource for Ramp {
                 values: vec![0.5 + 0.1 * value, 0.5 - 0.1 * value],
             },
             standard_error: vec![0.0; 2],
+            variants: crate::density::Variants::None,
+            structure: crate::density::Structure::default(),
         };
         let moments = Moments {
             mean: 0.0,

@@ -1,6 +1,6 @@
 //! Densities whose error is that of a grid, not of sampling: the difference between two discretisations.
 
-use super::{DensityError, EstimatedDensity, Observable, Projection};
+use super::{DensityError, EstimatedDensity, Observable, Projection, Structure, Variants};
 use crate::space::CellSpace;
 
 /// Density of an observable from the masses of all cells, with the difference to a second discretisation (masses,
@@ -23,6 +23,8 @@ pub fn estimate_from_difference(
         .iter()
         .map(|value| value * value)
         .collect();
+    let both = density.values.iter().zip(&difference.values);
+    let second = both.map(|(value, change)| value + change).collect();
     let counts: Vec<usize> = density.axes.iter().map(|axis| axis.count()).collect();
     let mut stride = squares.len();
     for &count in &counts {
@@ -33,7 +35,8 @@ pub fn estimate_from_difference(
         observable,
         density,
         standard_error: squares.into_iter().map(f64::sqrt).collect(),
-        // The error of a grid is systematic: nothing is said of what two cells have in common.
+        variants: Variants::Scheme(second),
+        structure: Structure::default(),
     })
 }
 

@@ -6,12 +6,14 @@ mod discretisation;
 mod distance;
 mod moments;
 mod projection;
+mod structure;
 mod uncertainty;
 
 pub use discretisation::estimate_from_difference;
 pub use distance::{hellinger, hellinger_of_masses, total_variation, total_variation_of_masses};
 pub use moments::moments;
 pub use projection::{Projection, project};
+pub use structure::{Kink, Structure, Variants};
 pub use uncertainty::estimate;
 
 use crate::space::Axis;
@@ -81,6 +83,10 @@ pub struct EstimatedDensity {
     pub density: Density,
     /// Standard error of each value of the density from sampling; all zero for a method without sampling.
     pub standard_error: Vec<f64>,
+    /// Other estimates of the density, from which errors of what is derived from it follow.
+    pub variants: Variants,
+    /// Symmetry and kinks that the system's equations imply.
+    pub structure: Structure,
 }
 
 /// Mean and standard deviation of one axis.

@@ -7,7 +7,7 @@
 //! a cell of volume V. Hence 1/n = Σ var / Σ (p/V) over a window; the ratio of sums, unlike a mean of
 //! ratios, is ruled by the cells that hold the mass, and errs to the large side beside them.
 
-use super::{Density, DensityError, EstimatedDensity, Observable, Projection};
+use super::{Density, DensityError, EstimatedDensity, Observable, Projection, Structure, Variants};
 use crate::space::CellSpace;
 
 /// Cells on either side of a cell whose variances are pooled with its own.
@@ -34,22 +34,27 @@ pub fn estimate(
 ) -> Result<EstimatedDensity, DensityError> {
     let projection = Projection::new(space, observable)?;
     let density = projection.density(mass)?;
-    let standard_error = match replicate_masses.len() {
-        0 => vec![0.0; density.values.len()],
+    let (standard_error, variants) = match replicate_masses.len() {
+        0 => (vec![0.0; density.values.len()], Variants::None),
         1 => return Err(DensityError::Replicates { given: 1 }),
         _ => {
             let replicates: Result<Vec<Density>, DensityError> = replicate_masses
                 .iter()
                 .map(|mass| projection.density(mass))
                 .collect();
-            let variance = jackknife_variance(&replicates?, density.values.len());
-            pooled_error(&density, projection.volumes(), &variance)
+            let replicates = replicates?;
+            let variance = jackknife_variance(&replicates, density.values.len());
+            let error = pooled_error(&density, projection.volumes(), &variance);
+            let values = replicates.into_iter().map(|one| one.values).collect();
+            (error, Variants::Jackknife(values))
         }
     };
     Ok(EstimatedDensity {
         observable,
         density,
         standard_error,
+        variants,
+        structure: Structure::default(),
     })
 }
 

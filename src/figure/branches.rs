@@ -150,6 +150,7 @@ mod tests {
                 iterations: 0,
                 factorisations: 0,
                 residual: 0.0,
+                solver_error: 0.0,
                 escape_rate: 0.0,
                 negative_mass: 0.0,
                 edge_mass: Vec::new(),

@@ -10,6 +10,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::findings::{Findings, closed_ends};
 use super::relaxation::relaxation_time;
+use super::structure::{kinked_surfaces, structure};
 use super::{GeneratorMethodOptions, MethodError, Setting, State};
 use crate::continuation::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
 use crate::density::{EstimatedDensity, Moments, Observable, estimate_from_difference};
@@ -19,7 +20,7 @@ use crate::generator::{
 };
 use crate::space::CellSpace;
 use crate::stationary::rates::{RateOptions, RateSolver, RateSteadyState};
-use crate::system::{Model, ParameterValues, System};
+use crate::system::{Model, ParameterValues, SwitchingSurface, System};
 
 /// Name of the method in tables.
 const METHOD: &str = "generator";
@@ -42,6 +43,7 @@ pub struct GeneratorSource {
     observables: Vec<Observable>,
     options: GeneratorMethodOptions,
     closed_ends: Vec<[bool; 2]>,
+    kinked: Vec<SwitchingSurface>,
     solver: Mutex<RateSolver>,
     cancelled: Arc<AtomicBool>,
 }
@@ -81,6 +83,7 @@ impl GeneratorSource {
             observables: setting.observables.to_vec(),
             options: options.clone(),
             closed_ends: closed_ends(&systems, setting.space),
+            kinked: kinked_surfaces(&systems, setting.space),
             solver: Mutex::new(RateSolver::new(setting.space.clone(), rates)),
             cancelled,
         })
@@ -132,6 +135,7 @@ impl GeneratorSource {
             iterations: info.iterations,
             factorisations: info.factorisations,
             residual: info.residual,
+            solver_error: info.error_estimate,
             escape_rate: info.escape_rate.max(0.0),
             negative_mass: info.negative_mass,
             edge_mass: Vec::new(),
@@ -208,10 +212,12 @@ impl GeneratorSource {
         let changed = cell_masses(system, &self.space, &changed);
         let difference: Vec<f64> = changed.iter().zip(masses).map(|(b, a)| b - a).collect();
         let estimate = |&observable: &Observable| {
-            estimate_from_difference(&self.space, observable, masses, &difference)
+            let mut estimated =
+                estimate_from_difference(&self.space, observable, masses, &difference)?;
+            estimated.structure = structure(system, &self.space, masses, observable, &self.kinked);
+            Ok::<_, MethodError>(estimated)
         };
-        let densities: Result<Vec<_>, _> = self.observables.iter().map(estimate).collect();
-        Ok(densities?)
+        self.observables.iter().map(estimate).collect()
     }
 
     /// du/dθ at the solution; `None` where Q cannot be varied (at an end of the parameter's range) or the

@@ -9,6 +9,7 @@ mod relaxation;
 mod setting;
 mod sgcm;
 mod steps;
+mod structure;
 
 pub use any::MethodSource;
 pub use generator::GeneratorSource;

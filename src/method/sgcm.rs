@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::findings::Findings;
 use super::generator::QUIET_ESCAPE;
 use super::steps::{Steps, choose_steps};
+use super::structure::structure;
 use super::{MethodError, Setting, SgcmOptions, State};
 use crate::continuation::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
 use crate::density::{EstimatedDensity, Observable, estimate, moments};
@@ -118,6 +119,7 @@ impl SgcmSource {
 
     fn densities(
         &self,
+        system: &dyn System,
         transitions: &SampledTransitions,
         steady: &SteadyState,
     ) -> Result<(Vec<EstimatedDensity>, usize), MethodError> {
@@ -130,14 +132,19 @@ impl SgcmSource {
         let densities: Result<Vec<_>, _> = self
             .observables
             .iter()
-            .map(|&observable| estimate(&self.space, observable, &steady.mass, usable))
+            .map(|&observable| {
+                let mut estimated = estimate(&self.space, observable, &steady.mass, usable)?;
+                let (mass, surfaces) = (&steady.mass, &self.steps.kinked);
+                estimated.structure = structure(system, &self.space, mass, observable, surfaces);
+                Ok::<_, MethodError>(estimated)
+            })
             .collect();
         Ok((densities?, usable.len()))
     }
 
     fn solved(
         &self,
-        value: f64,
+        (value, system): (f64, &dyn System),
         transitions: &SampledTransitions,
         matrix: &TransitionMatrix,
         steady: SteadyState,
@@ -152,6 +159,7 @@ impl SgcmSource {
         let escaping_share = relaxation_time.map_or(0.0, |time| escape_rate * time);
         let mut report = self.report(PointStatus::Solved, info.iterations, info.residual);
         report.escape_rate = escape_rate;
+        report.solver_error = info.error_estimate;
         let mut findings = Findings::new(self.model, &self.space);
         if escaping_share > self.options.escape_limit {
             findings.no_steady_state(escape_rate, relaxation_time, self.options.escape_limit);
@@ -176,7 +184,7 @@ impl SgcmSource {
             report.status = PointStatus::NotConverged;
             findings.not_converged(info.error_estimate);
         }
-        let (densities, replicates) = self.densities(transitions, &steady)?;
+        let (densities, replicates) = self.densities(system, transitions, &steady)?;
         findings.replicates(replicates, transitions.groups());
         report.warnings = findings.into_sentences();
         Ok(Solution {
@@ -198,6 +206,7 @@ impl SgcmSource {
             iterations,
             factorisations: 0,
             residual,
+            solver_error: 0.0,
             escape_rate: 0.0,
             negative_mass: 0.0,
             edge_mass: Vec::new(),
@@ -214,7 +223,9 @@ impl SgcmSource {
         let matrix = transitions.matrix();
         let options = Options::new(self.options.solver, self.options.solver_tolerance);
         match solve(&matrix, &self.space, start, &options)? {
-            Outcome::Steady(steady) => self.solved(value, &transitions, &matrix, steady),
+            Outcome::Steady(steady) => {
+                self.solved((value, system.as_ref()), &transitions, &matrix, steady)
+            }
             Outcome::SeveralClasses { classes, .. } => {
                 let mut report = self.report(PointStatus::SeveralClasses, 0, 0.0);
                 let mut findings = Findings::new(self.model, &self.space);

@@ -2,8 +2,10 @@
 //! serves the whole sweep, so that the transition matrix varies smoothly with the parameter.
 
 use super::findings::closed_ends;
+use super::structure::kinked_surfaces;
 use super::{MethodError, Setting, SgcmOptions, StepChoice};
 use crate::sampling::{Pilot, pilot};
+use crate::system::SwitchingSurface;
 
 /// Steps, and what else the pilots showed.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,6 +20,8 @@ pub(super) struct Steps {
     pub(super) noise: Vec<f64>,
     /// Whether the lower and upper end of each axis is a wall that the system cannot pass.
     pub(super) closed_ends: Vec<[bool; 2]>,
+    /// Switching surfaces on which the density has a kink.
+    pub(super) kinked: Vec<SwitchingSurface>,
 }
 
 pub(super) fn choose_steps(
@@ -54,6 +58,7 @@ pub(super) fn choose_steps(
         cells,
         noise,
         closed_ends: closed_ends(&systems, setting.space),
+        kinked: kinked_surfaces(&systems, setting.space),
     })
 }
 

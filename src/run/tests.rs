@@ -32,6 +32,8 @@ fn point(value: f64, solved: bool) -> Point {
             values: (0..cells).map(|cell| value + cell as f64).collect(),
         },
         standard_error: vec![0.5; cells],
+        variants: crate::density::Variants::None,
+        structure: crate::density::Structure::default(),
     };
     let detection = Detection {
         signature: Signature {
@@ -61,6 +63,7 @@ fn point(value: f64, solved: bool) -> Point {
             iterations: 7,
             factorisations: 0,
             residual: 1e-12,
+            solver_error: 0.0,
             escape_rate: if solved { 0.0 } else { f64::NAN },
             negative_mass: 0.0,
             edge_mass: vec![0.0, 1e-5],

@@ -54,6 +54,8 @@ fn exact(axes: Vec<Axis>, values: Vec<f64>) -> EstimatedDensity {
     EstimatedDensity {
         observable,
         standard_error: vec![0.0; density.values.len()],
+        variants: crate::density::Variants::None,
+        structure: crate::density::Structure::default(),
         density,
     }
 }

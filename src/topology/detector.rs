@@ -187,6 +187,8 @@ mod tests {
                 values,
             },
             standard_error: errors,
+            variants: crate::density::Variants::None,
+            structure: crate::density::Structure::default(),
         }
     }
 
@@ -241,6 +243,8 @@ mod tests {
                 values: values.collect(),
             },
             standard_error: vec![1.0; 40],
+            variants: crate::density::Variants::None,
+            structure: crate::density::Structure::default(),
         };
         let detection = detector().detect(&density);
         let peaks = |verdict| {

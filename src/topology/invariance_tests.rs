@@ -17,6 +17,8 @@ fn rough(noise: &[f64]) -> EstimatedDensity {
     EstimatedDensity {
         observable: Observable::Joint(0, 1),
         standard_error: (0..99).map(|cell| 0.05 + 0.02 * noise[cell]).collect(),
+        variants: crate::density::Variants::None,
+        structure: crate::density::Structure::default(),
         density: Density {
             values: (0..99).map(value).collect(),
             axes: vec![x, y],
@@ -34,6 +36,8 @@ fn rearranged(
     EstimatedDensity {
         observable: of.observable,
         standard_error: take(&of.standard_error),
+        variants: crate::density::Variants::None,
+        structure: crate::density::Structure::default(),
         density: Density {
             axes,
             values: take(&of.density.values),

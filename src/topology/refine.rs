@@ -166,6 +166,8 @@ mod tests {
         EstimatedDensity {
             observable: Observable::Marginal(0),
             standard_error: vec![0.0; values.len()],
+            variants: crate::density::Variants::None,
+            structure: crate::density::Structure::default(),
             density: Density { axes, values },
         }
     }

@@ -48,6 +48,7 @@ fn point(value: f64, densities: Vec<EstimatedDensity>, detections: Vec<Detection
             iterations: 0,
             factorisations: 0,
             residual: 0.0,
+            solver_error: 0.0,
             escape_rate: 0.0,
             negative_mass: 0.0,
             edge_mass: Vec::new(),
@@ -106,6 +107,8 @@ fn estimated(
         observable,
         density: Density { axes, values },
         standard_error,
+        variants: pbif::density::Variants::None,
+        structure: pbif::density::Structure::default(),
     }
 }
 

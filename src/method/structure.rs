@@ -1,0 +1,177 @@
+//! What a system's equations imply for a density that is watched: its centre of symmetry, and its kinks.
+//!
+//! On a plane where the drift across it jumps by Δa, flux and density are continuous, so the derivative of log p
+//! across the plane jumps by (2/b²) Δa (DESIGN section 3, the jump law). Where axes are summed over, Δa is the mean over
+//! the mass beside the plane.
+
+use std::sync::Arc;
+
+use crate::density::{Kink, Observable, Structure};
+use crate::space::CellSpace;
+use crate::system::{SwitchingSurface, System};
+
+/// Distance from the plane, in widths of the cell beside it, at which the drift on either side is taken.
+const BESIDE: f64 = 1e-6;
+
+/// Relative size of a jump of the drift that is rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// The switching surfaces with a kink of the density somewhere along a sweep, given systems along it. Where the drift
+/// across a surface is continuous (as Dahl's is), the density is smooth there.
+pub(super) fn kinked_surfaces(
+    systems: &[Arc<dyn System>],
+    space: &CellSpace,
+) -> Vec<SwitchingSurface> {
+    let Some(first) = systems.first() else {
+        return Vec::new();
+    };
+    let evenly = vec![1.0; space.n_cells()];
+    let jumps = |system: &Arc<dyn System>, surface: SwitchingSurface| {
+        let found = kink(system.as_ref(), space, &evenly, &[surface.axis], surface);
+        found.map_or(0.0, |kink| kink.jump_at(0).abs())
+    };
+    let mut surfaces = first.switching_surfaces();
+    surfaces.retain(|&surface| {
+        let width = space.axes()[surface.axis].to() - space.axes()[surface.axis].from();
+        let largest = systems.iter().map(|system| jumps(system, surface));
+        largest.fold(0.0, f64::max) * width > ROUNDING
+    });
+    surfaces
+}
+
+/// Structure of the density of an observable; `masses` are those of all cells, `surfaces` those with a kink.
+pub(super) fn structure(
+    system: &dyn System,
+    space: &CellSpace,
+    masses: &[f64],
+    observable: Observable,
+    surfaces: &[SwitchingSurface],
+) -> Structure {
+    let axes = observable.axes();
+    let kinks = surfaces
+        .iter()
+        .filter_map(|surface| kink(system, space, masses, &axes, *surface))
+        .collect();
+    Structure {
+        centre: centre(system, &axes),
+        kinks,
+    }
+}
+
+/// The point of symmetry, where all axes that are kept are reflected.
+fn centre(system: &dyn System, axes: &[usize]) -> Option<Vec<f64>> {
+    let symmetry = system.symmetry()?;
+    let all = axes.iter().all(|&axis| symmetry.reflected[axis]);
+    all.then(|| axes.iter().map(|&axis| symmetry.centre[axis]).collect())
+}
+
+/// The kink that a surface makes in the density of the given axes, if it stands on one of them and noise acts across it.
+fn kink(
+    system: &dyn System,
+    space: &CellSpace,
+    masses: &[f64],
+    axes: &[usize],
+    surface: SwitchingSurface,
+) -> Option<Kink> {
+    let place = axes.iter().position(|&axis| axis == surface.axis)?;
+    let axis = &space.axes()[surface.axis];
+    let cell = axis.find(surface.at)?;
+    let step = BESIDE * axis.width(cell);
+    let noise: Vec<usize> = (0..system.noise_axes().len())
+        .filter(|&channel| system.noise_axes()[channel] == surface.axis)
+        .collect();
+    let other = axes.iter().find(|&&axis| axis != surface.axis);
+    let bins = other.map_or(1, |&axis| space.axes()[axis].count());
+    let (mut sums, mut weights) = (vec![0.0; bins], vec![0.0; bins]);
+    for index in beside(space, surface) {
+        let mut state = space.centre(index);
+        state[surface.axis] = surface.at + step;
+        let above = system.drift_at(0.0, &state)[surface.axis];
+        state[surface.axis] = surface.at - step;
+        let below = system.drift_at(0.0, &state)[surface.axis];
+        state[surface.axis] = surface.at;
+        let square = |&channel: &usize| system.amplitude_at(channel, 0.0, &state).powi(2);
+        let intensity: f64 = noise.iter().map(square).sum();
+        // Without mass beside the plane every state counts alike, and little.
+        let weight = masses[index].max(0.0) + f64::MIN_POSITIVE.sqrt();
+        let bin = other.map_or(0, |&axis| space.position(index, axis));
+        if intensity > 0.0 {
+            sums[bin] += weight * 2.0 * (above - below) / intensity;
+        }
+        weights[bin] += weight;
+    }
+    let jump: Vec<f64> = sums.iter().zip(&weights).map(|(s, w)| s / w).collect();
+    let is_kink = !noise.is_empty() && jump.iter().all(|jump| jump.is_finite());
+    is_kink.then_some(Kink {
+        axis: place,
+        at: surface.at,
+        jump,
+    })
+}
+
+/// Cells of the space on both sides of a surface (those that hold it, where it falls into cells).
+fn beside(space: &CellSpace, surface: SwitchingSurface) -> Vec<usize> {
+    let axis = &space.axes()[surface.axis];
+    let Some(above) = axis.find(surface.at) else {
+        return Vec::new();
+    };
+    let on_face = (surface.at - axis.edges()[above]).abs() <= 1e-6 * axis.width(above);
+    let below = if on_face {
+        above.saturating_sub(1)
+    } else {
+        above
+    };
+    (0..space.n_cells())
+        .filter(|&index| {
+            let at = space.position(index, surface.axis);
+            at == above || at == below
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::Axis;
+    use crate::system::registry;
+
+    #[test]
+    fn coulomb_friction_makes_the_slope_of_log_p_jump_by_four_friction_levels_over_the_noise() {
+        let model = registry::find("coulomb").unwrap();
+        let with_friction = |f_c| {
+            let given = [
+                ("kappa", 0.01),
+                ("alpha", 1.0),
+                ("mu", 0.01),
+                ("f_c", f_c),
+                ("sigma2", 0.01),
+            ];
+            model.system_with(&given).unwrap()
+        };
+        let system = with_friction(-0.02);
+        let axis = |count| Axis::uniform(-2.0, 2.0, count).unwrap();
+        let space = CellSpace::new(vec![axis(6), axis(10)]).unwrap();
+        let masses = vec![1.0 / 60.0; 60];
+        let without = with_friction(0.0);
+        assert!(kinked_surfaces(std::slice::from_ref(&without), &space).is_empty());
+        let surfaces = kinked_surfaces(&[without, system.clone()], &space);
+        assert_eq!(surfaces.len(), 1);
+        for (observable, place, bins) in [
+            (Observable::Marginal(1), 0, 1),
+            (Observable::Joint(0, 1), 1, 6),
+            (Observable::Joint(1, 0), 0, 6),
+        ] {
+            let structure = structure(system.as_ref(), &space, &masses, observable, &surfaces);
+            let [kink] = structure.kinks.as_slice() else {
+                panic!("one kink");
+            };
+            assert_eq!((kink.axis, kink.at, kink.jump.len()), (place, 0.0, bins));
+            // p'(0+)/p(0) = -2 f_c/σ² = 4 above, -4 below.
+            assert!(kink.jump.iter().all(|jump| (jump - 8.0).abs() < 1e-9));
+            assert_eq!(structure.centre, Some(vec![0.0; observable.axes().len()]));
+        }
+        let x = Observable::Marginal(0);
+        let of_x = structure(system.as_ref(), &space, &masses, x, &surfaces);
+        assert!(of_x.kinks.is_empty());
+    }
+}
