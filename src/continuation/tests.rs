@@ -104,6 +104,7 @@ impl Detector for SquareLaw {
                 peaks: 1 + usize::from(present),
                 craters: 0,
             },
+            indicators: Vec::new(),
             features: vec![
                 feature(1.0, f64::MAX, Verdict::Present),
                 feature(persistence, significance, verdict),

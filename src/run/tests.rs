@@ -36,6 +36,7 @@ fn point(value: f64, solved: bool) -> Point {
         structure: crate::density::Structure::default(),
     };
     let detection = Detection {
+        indicators: Vec::new(),
         signature: Signature {
             peaks: 2,
             craters: 1,

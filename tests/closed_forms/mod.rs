@@ -27,6 +27,7 @@ fn detection(features: Vec<Feature>) -> Detection {
             .count()
     };
     Detection {
+        indicators: Vec::new(),
         signature: Signature {
             peaks: count(FeatureKind::Peak),
             craters: count(FeatureKind::Crater),
