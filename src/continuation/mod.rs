@@ -4,14 +4,20 @@
 //! and closed-form densities all sweep alike.
 
 mod bracket;
+mod change;
+mod grid;
 mod label;
 mod locate;
 mod observer;
+mod persistence;
+mod root;
 mod source;
 mod sweep;
+mod words;
 
 pub use label::{BifurcationStatus, LabelledPoint, PointType};
 pub use observer::Observer;
+pub use root::ErrorParts;
 pub use source::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
 pub use sweep::{Plan, SweepError, evenly_spaced, sweep};
 
@@ -26,11 +32,19 @@ use crate::topology::Detection;
 pub struct LocateOptions {
     /// Wanted width of a P-bifurcation's bracket, in units of the parameter.
     pub tolerance: f64,
+    /// Hellinger distance between neighbouring densities above which a value between is solved too.
+    pub largest_distance: f64,
+    /// Whether located values are checked on a finer grid, where the source has one.
+    pub grid_check: bool,
 }
 
 impl Default for LocateOptions {
     fn default() -> Self {
-        Self { tolerance: 1e-4 }
+        Self {
+            tolerance: 1e-4,
+            largest_distance: 0.2,
+            grid_check: true,
+        }
     }
 }
 

@@ -128,7 +128,10 @@ fn run(source: &Ramp, detector: &SquareLaw, plan: &Plan, tolerance: f64) -> Swee
         source,
         detector,
         plan,
-        &LocateOptions { tolerance },
+        &LocateOptions {
+            tolerance,
+            ..LocateOptions::default()
+        },
         &mut (),
     )
     .unwrap()

@@ -190,6 +190,10 @@ impl Detector for PersistenceDetector {
         }
     }
 
+    fn confidence(&self) -> f64 {
+        self.options.confidence
+    }
+
     fn doubt(&self) -> f64 {
         (1.0 - self.options.confidence) / self.looks.max(1) as f64
     }

@@ -153,6 +153,11 @@ pub trait Detector: Send + Sync {
         None
     }
 
+    /// Probability with which errors are stated and a sweep's findings hold.
+    fn confidence(&self) -> f64 {
+        0.95
+    }
+
     /// Probability that the sign of a single indicator may be wrong, so that all of a sweep are right at the
     /// chosen confidence.
     fn doubt(&self) -> f64 {

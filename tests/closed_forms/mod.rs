@@ -82,6 +82,9 @@ fn bifurcation(
         before: None,
         after: None,
         status: Some(status),
+        change: "",
+        method: "",
+        parts: None,
     }
 }
 

@@ -15,6 +15,9 @@ use crate::topology::reconstruction::Line;
 /// Distance from the centre, in cells, within which a peak is the one at the centre.
 const NEAR: f64 = 3.0;
 
+/// Change of log p over the whole range that is rounding in a jump of its slope.
+const ROUNDING: f64 = 1e-7;
+
 /// The indicators at the centre of symmetry: one of a marginal, two of a joint density; none where the system
 /// declares no symmetry or the cells about the centre are too few.
 pub(crate) fn at_centre(estimated: &EstimatedDensity) -> Vec<Indicator> {
@@ -64,13 +67,15 @@ fn slope(estimated: &EstimatedDensity, kink: &Kink, centre: &[f64]) -> Option<In
         _ => 0,
     };
     let half = 0.5 * kink.jump_at(cell);
-    let (value, same) = (|_: &[f64]| half, |_: &[f64]| half);
+    let range = &estimated.density.axes[kink.axis];
+    let rounding = ROUNDING / (range.to() - range.from());
+    let (value, rougher) = (|_: &[f64]| half, |_: &[f64]| half + rounding);
     Indicator::derive(
         estimated,
         IndicatorKind::KinkSlope,
         centre.to_vec(),
         value,
-        same,
+        rougher,
     )
 }
 
@@ -193,14 +198,14 @@ pub(crate) fn corrected(
     signature
 }
 
-/// Distance of a place from the centre in cells at the centre, the larger over the axes.
+/// Distance of a place from the centre in cells, those at the centre or of mean width, whichever are wider; the larger
+/// over the axes.
 fn cells_from(estimated: &EstimatedDensity, centre: &[f64], place: &[f64]) -> f64 {
     let axes = estimated.density.axes.iter().enumerate();
     axes.map(|(k, axis)| {
-        let width = axis
-            .find(centre[k])
-            .map_or(f64::INFINITY, |cell| axis.width(cell));
-        (place[k] - centre[k]).abs() / width
+        let local = axis.find(centre[k]).map_or(0.0, |cell| axis.width(cell));
+        let mean = (axis.to() - axis.from()) / axis.count() as f64;
+        (place[k] - centre[k]).abs() / local.max(mean)
     })
     .fold(0.0, f64::max)
 }

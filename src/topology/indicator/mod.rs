@@ -75,6 +75,9 @@ pub struct Indicator {
     pub degrees_of_freedom: f64,
     /// What a second discretisation and a reconstruction of lower order change.
     pub systematic_error: f64,
+    /// Change of the value by relative errors of one, independent in every cell near the place; times the solver's
+    /// relative error it is the solver's part.
+    pub sensitivity: f64,
     /// Its values for the jackknife's replicates; empty without sampling.
     pub replicates: Vec<f64>,
 }
@@ -118,14 +121,50 @@ impl Indicator {
             .all(|number| number.is_finite())
             .then_some(Self {
                 kind,
-                place,
                 value,
                 sampling_error,
                 degrees_of_freedom: variants.degrees_of_freedom(),
                 systematic_error: rough + scheme,
+                sensitivity: sensitivity(estimated, &place, value, &function),
+                place,
                 replicates,
             })
     }
+}
+
+/// Cells on either side of a place that its derivatives may depend on.
+const NEIGHBOURHOOD: usize = 4;
+/// Relative step of the differences that give a sensitivity.
+const RELATIVE_STEP: f64 = 1e-6;
+
+/// Root of the sum of squares of what relative errors of one in the cells near the place change: relative errors of
+/// size ε, independent of each other, change the number by ε times this.
+fn sensitivity(
+    estimated: &EstimatedDensity,
+    place: &[f64],
+    value: f64,
+    function: &impl Fn(&[f64]) -> f64,
+) -> f64 {
+    let axes = &estimated.density.axes;
+    let near = |k: usize| {
+        let middle = axes[k].find(place[k]).unwrap_or(0);
+        middle.saturating_sub(NEIGHBOURHOOD)..(middle + NEIGHBOURHOOD + 1).min(axes[k].count())
+    };
+    let cells: Vec<usize> = match axes.get(1) {
+        None => near(0).collect(),
+        Some(axis) => near(0)
+            .flat_map(|first| near(1).map(move |second| first * axis.count() + second))
+            .collect(),
+    };
+    let mut values = estimated.density.values.clone();
+    let mut square = |cell: usize| {
+        let kept = values[cell];
+        values[cell] *= 1.0 + RELATIVE_STEP;
+        let change = (function(&values) - value) / RELATIVE_STEP;
+        values[cell] = kept;
+        change * change
+    };
+    cells.into_iter().map(&mut square).sum::<f64>().sqrt()
 }
 
 /// Standard errors that a Student variable exceeds in magnitude with probability `doubt`.

@@ -160,6 +160,7 @@ fn noise_makes_a_sign_doubtful() {
         sampling_error: 1.0,
         degrees_of_freedom: 7.0,
         systematic_error: 0.5,
+        sensitivity: 0.0,
         replicates: Vec::new(),
     };
     // Student with 7 degrees of freedom: 2.365 at 5 %.
