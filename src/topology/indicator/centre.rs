@@ -5,9 +5,10 @@
 //! saddle. The type is known long before peaks stand out from each other, and decides between the signatures
 //! that persistence cannot tell apart: other critical points come in pairs.
 
+use super::smooth::Smooth;
 use super::window;
 use super::{Indicator, IndicatorKind};
-use crate::density::{EstimatedDensity, Kink};
+use crate::density::{EstimatedDensity, Kink, Variants};
 use crate::space::Axis;
 use crate::topology::Signature;
 use crate::topology::reconstruction::Line;
@@ -48,6 +49,16 @@ fn kink_at(estimated: &EstimatedDensity, k: usize, at: f64) -> Option<&Kink> {
 
 /// p''/p of a marginal.
 fn curvature(estimated: &EstimatedDensity, at: f64) -> Option<Indicator> {
+    if is_sampled(estimated) {
+        let fit = Smooth::marginal(estimated, at)?;
+        let of =
+            |level: usize| move |fit: &Smooth, values: &[f64]| fit.derivatives(values, level)[0];
+        let (fine, rough) = (of(0), of(1));
+        let kind = IndicatorKind::Curvature;
+        let fine = |values: &[f64]| fine(&fit, values);
+        let rough = |values: &[f64]| rough(&fit, values);
+        return Indicator::derive(estimated, kind, vec![at], fine, rough);
+    }
     let lines = window::about(estimated, 0, at)?;
     let of = |lines: &[Line], values: &[f64]| lines[2].apply(values) / lines[0].apply(values);
     let [fine, rough] = lines.both();
@@ -82,6 +93,16 @@ fn slope(estimated: &EstimatedDensity, kink: &Kink, centre: &[f64]) -> Option<In
 /// The slope across a kink and the curvature along it.
 fn along_kink(estimated: &EstimatedDensity, kink: &Kink, centre: &[f64]) -> Option<Vec<Indicator>> {
     let (across, along) = (kink.axis, 1 - kink.axis);
+    let kind = IndicatorKind::CurvatureAlongKink;
+    if is_sampled(estimated) {
+        let fit = Smooth::along_kink(estimated, centre, across)?;
+        let fine = |values: &[f64]| fit.derivatives(values, 0)[0];
+        let rough = |values: &[f64]| fit.derivatives(values, 1)[0];
+        return Some(vec![
+            slope(estimated, kink, centre)?,
+            Indicator::derive(estimated, kind, centre.to_vec(), fine, rough)?,
+        ]);
+    }
     let trace = window::on_kink(estimated, across, centre[across])?;
     let lines = window::about(estimated, along, centre[along])?;
     let columns = estimated.density.axes[1].count();
@@ -97,7 +118,6 @@ fn along_kink(estimated: &EstimatedDensity, kink: &Kink, centre: &[f64]) -> Opti
     };
     let fine = |values: &[f64]| of(&trace.fine, &lines.fine, values);
     let rough = |values: &[f64]| of(&trace.rough, &lines.rough, values);
-    let kind = IndicatorKind::CurvatureAlongKink;
     Some(vec![
         slope(estimated, kink, centre)?,
         Indicator::derive(estimated, kind, centre.to_vec(), fine, rough)?,
@@ -107,33 +127,43 @@ fn along_kink(estimated: &EstimatedDensity, kink: &Kink, centre: &[f64]) -> Opti
 /// The two eigenvalues of the Hessian of a joint density over the density, axes in units of their ranges.
 fn principal(estimated: &EstimatedDensity, centre: &[f64]) -> Option<Vec<Indicator>> {
     let axes = &estimated.density.axes;
-    let first = window::about(estimated, 0, centre[0])?;
-    let second = window::about(estimated, 1, centre[1])?;
     let range = |axis: &Axis| axis.to() - axis.from();
     let (a, b) = (range(&axes[0]), range(&axes[1]));
+    let eigenvalue = |[xx, xy, yy]: [f64; 3], sign: f64| {
+        let (xx, xy, yy) = (a * a * xx, a * b * xy, b * b * yy);
+        0.5 * (xx + yy) + sign * (0.5 * (xx - yy)).hypot(xy)
+    };
+    let both = |hessian: &dyn Fn(&[f64], usize) -> [f64; 3]| {
+        let one = |kind: IndicatorKind, sign: f64| {
+            let fine = |values: &[f64]| eigenvalue(hessian(values, 0), sign);
+            let rough = |values: &[f64]| eigenvalue(hessian(values, 1), sign);
+            Indicator::derive(estimated, kind, centre.to_vec(), fine, rough)
+        };
+        Some(vec![
+            one(IndicatorKind::LowerCurvature, -1.0)?,
+            one(IndicatorKind::UpperCurvature, 1.0)?,
+        ])
+    };
+    if is_sampled(estimated) {
+        let fit = Smooth::joint(estimated, centre)?;
+        return both(&|values, level| match fit.derivatives(values, level)[..] {
+            [xx, xy, yy] => [xx, xy, yy],
+            _ => [f64::NAN; 3],
+        });
+    }
+    let first = window::about(estimated, 0, centre[0])?;
+    let second = window::about(estimated, 1, centre[1])?;
     let columns = axes[1].count();
-    let hessian = |rows: &[Line], lines: &[Line], values: &[f64]| {
+    both(&|values, level| {
+        let (rows, lines) = (first.both()[level], second.both()[level]);
         let apply = |i: usize, j: usize| rows[i].apply_with(&lines[j], columns, values);
         let p = apply(0, 0);
-        [
-            a * a * apply(2, 0) / p,
-            a * b * apply(1, 1) / p,
-            b * b * apply(0, 2) / p,
-        ]
-    };
-    let indicator = |kind: IndicatorKind, sign: f64| {
-        let of = |rows: &[Line], lines: &[Line], values: &[f64]| {
-            let [xx, xy, yy] = hessian(rows, lines, values);
-            0.5 * (xx + yy) + sign * (0.5 * (xx - yy)).hypot(xy)
-        };
-        let fine = |values: &[f64]| of(&first.fine, &second.fine, values);
-        let rough = |values: &[f64]| of(&first.rough, &second.rough, values);
-        Indicator::derive(estimated, kind, centre.to_vec(), fine, rough)
-    };
-    Some(vec![
-        indicator(IndicatorKind::LowerCurvature, -1.0)?,
-        indicator(IndicatorKind::UpperCurvature, 1.0)?,
-    ])
+        [apply(2, 0) / p, apply(1, 1) / p, apply(0, 2) / p]
+    })
+}
+
+fn is_sampled(estimated: &EstimatedDensity) -> bool {
+    matches!(estimated.variants, Variants::Jackknife(_))
 }
 
 /// Type of the centre.

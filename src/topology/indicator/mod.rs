@@ -15,6 +15,7 @@
 
 mod centre;
 mod shoulder;
+mod smooth;
 #[cfg(test)]
 mod tests;
 mod window;

@@ -188,3 +188,56 @@ fn densities_too_coarse_or_without_symmetry_have_no_indicator() {
     assert!(at_centre(&joint).is_empty());
     assert!(shoulder(&joint, 0.0, true).is_none());
 }
+
+/// The same density as if sampled: eight replicates, each with its own smooth and rough distortion of size `noise`.
+fn sampled(exact: &EstimatedDensity, noise: f64) -> EstimatedDensity {
+    let replicate = |group: usize| {
+        let values = exact.density.values.iter().enumerate();
+        let distort = |(cell, value): (usize, &f64)| {
+            let phase = (cell * 7 + group * 13) as f64 * 0.618_033_988_749_895;
+            value * (1.0 + noise * (phase.fract() - 0.5))
+        };
+        values.map(distort).collect::<Vec<f64>>()
+    };
+    EstimatedDensity {
+        variants: Variants::Jackknife((0..8).map(replicate).collect()),
+        ..exact.clone()
+    }
+}
+
+#[test]
+fn curvatures_of_a_sampled_density_are_fitted_to_its_logarithm() {
+    // Exponentials of polynomials of degree four are fitted exactly, but for averages over cells (h²/24 of p'''').
+    for a in [-0.3, 0.0, 0.3] {
+        let found = at_centre(&sampled(&bistable(a, 100), 1e-3));
+        assert!((found[0].value - 4.0 * a).abs() < 0.02, "{found:?}");
+        assert!(found[0].sampling_error > 0.0 && found[0].replicates.len() == 8);
+    }
+    let joint = symmetric(joint(&axis(60), &axis(60), |x, y| {
+        (0.2 * x * x + 0.1 * x * y - 0.3 * y * y - (x * x + y * y).powi(2)).exp()
+    }));
+    // Hessian [[0.4, 0.1], [0.1, -0.6]]: eigenvalues -0.1 ± √0.26, times the range squared.
+    for (one, expected) in at_centre(&sampled(&joint, 1e-3))
+        .iter()
+        .zip([-0.1 - 0.26f64.sqrt(), -0.1 + 0.26f64.sqrt()])
+    {
+        assert!(
+            (one.value - 16.0 * expected).abs() < 0.1,
+            "{one:?} {expected}"
+        );
+    }
+}
+
+#[test]
+fn along_a_kink_a_sampled_density_is_fitted_on_both_sides_at_once() {
+    let mut estimated = symmetric(joint(&axis(60), &axis(60), |x, y| {
+        (0.3 * x * x - x.powi(4) - 0.8 * y.abs() - y * y).exp()
+    }));
+    estimated.structure.kinks = vec![Kink {
+        axis: 1,
+        at: 0.0,
+        jump: vec![-1.6; 60],
+    }];
+    let found = at_centre(&sampled(&estimated, 1e-3));
+    assert!((found[1].value - 0.6).abs() < 0.02, "{found:?}");
+}
