@@ -3,6 +3,7 @@
 //! This module knows a source of densities and a detector, and nothing of matrices: Monte Carlo, cell maps
 //! and closed-form densities all sweep alike.
 
+mod again;
 mod bracket;
 mod label;
 mod locate;
@@ -10,6 +11,7 @@ mod observer;
 mod source;
 mod sweep;
 
+pub use again::detect_again;
 pub use label::{BifurcationStatus, LabelledPoint, PointType};
 pub use observer::Observer;
 pub use source::{DensitySource, PointStatus, Solution, SolveReport, SourceError};

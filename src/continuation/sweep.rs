@@ -219,7 +219,7 @@ impl<S: DensitySource> Run<'_, S> {
 }
 
 /// Largest Hellinger distance over the watched densities between each point and the one before it that has any.
-fn fill_distances(points: &mut [Point]) {
+pub(super) fn fill_distances(points: &mut [Point]) {
     let mut previous: Option<usize> = None;
     for index in 0..points.len() {
         if points[index].densities.is_empty() {

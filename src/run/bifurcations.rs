@@ -4,6 +4,7 @@
 
 use super::{
     Naming, RunError,
+    latex::escape,
     number::{format_number, format_with_error},
     tables::Table,
 };
@@ -124,7 +125,7 @@ pub fn bifurcations_tex(naming: &Naming<'_>, labels: &[LabelledPoint]) -> String
                 naming.observable_latex(observable).trim_matches(['(', ')'])
             )
         });
-        let [label, .., before, after, status] = words(naming, row);
+        let [label, .., before, after, status] = words(naming, row).map(|word| escape(&word));
         text += &format!(
             "{label} & ${value} \\pm {error}$ & {density} & {before} & {after} & {status} \\\\\n"
         );

@@ -3,13 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use super::{
-    DensityStore, Manifest, Naming, RunError, atomic::write_atomically, bifurcations, tables,
+    DensityStore, Manifest, Naming, RunError, atomic::write_atomically, bifurcations,
+    staged::link_tree, tables,
 };
 use crate::continuation::{Point, SweepResult};
 use crate::density::{EstimatedDensity, Observable};
 
 /// Everything a run may leave in its folder.
-const ENTRIES: [&str; 9] = [
+pub(super) const ENTRIES: [&str; 9] = [
     "run.json",
     "points.csv",
     "features.csv",
@@ -22,7 +23,7 @@ const ENTRIES: [&str; 9] = [
 ];
 
 /// Where an earlier run in the same folder is moved.
-const PREVIOUS: &str = "previous";
+pub(super) const PREVIOUS: &str = "previous";
 
 /// The folder of a run while it is written.
 #[derive(Debug)]
@@ -57,10 +58,15 @@ impl RunFolder {
                 std::fs::rename(path.join(entry), previous.join(entry)).map_err(failed)?;
             }
         }
-        Ok(Self {
+        Ok(Self::fresh(path))
+    }
+
+    /// A folder that is written beside its place, in which nothing was before.
+    pub(super) fn fresh(path: &Path) -> Self {
+        Self {
             path: path.to_owned(),
             store: DensityStore::new(&path.join("densities.zarr")),
-        })
+        }
     }
 
     /// The folder.
@@ -112,6 +118,29 @@ impl RunFolder {
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.
     pub fn finish(&mut self, naming: &Naming<'_>, result: &SweepResult) -> Result<(), RunError> {
+        self.write_tables(naming, result)?;
+        let densities: Vec<(f64, &[EstimatedDensity])> = result
+            .points
+            .iter()
+            .filter(|point| !point.densities.is_empty())
+            .map(|point| (point.value, point.densities.as_slice()))
+            .collect();
+        self.store.replace(naming, &densities)
+    }
+
+    /// Takes over the densities of another run, which keeps them.
+    ///
+    /// # Errors
+    /// [`RunError::Read`] or [`RunError::Write`].
+    pub fn share_densities(&self, store: &Path) -> Result<(), RunError> {
+        link_tree(store, &self.path.join("densities.zarr"))
+    }
+
+    /// Writes all tables of a finished sweep.
+    ///
+    /// # Errors
+    /// [`RunError`] when a file cannot be composed or written.
+    pub fn write_tables(&self, naming: &Naming<'_>, result: &SweepResult) -> Result<(), RunError> {
         let (observables, points) = (&result.observables, &result.points);
         self.write(
             "points.csv",
@@ -137,13 +166,7 @@ impl RunFolder {
         self.write(
             "bifurcations.tex",
             &bifurcations::bifurcations_tex(naming, labels),
-        )?;
-        let densities: Vec<(f64, &[EstimatedDensity])> = points
-            .iter()
-            .filter(|point| !point.densities.is_empty())
-            .map(|point| (point.value, point.densities.as_slice()))
-            .collect();
-        self.store.replace(naming, &densities)
+        )
     }
 
     fn write(&self, name: &str, text: &str) -> Result<(), RunError> {
