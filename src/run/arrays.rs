@@ -11,7 +11,7 @@
 //! | `p_x_replicate` | parameter, replicate, axes … | densities without one group of samples each (SGCM) |
 //! | `p_y_kink_0` | parameter; for a joint density also the other axis | jump of ∂(log p)/∂(axis) across a plane; attributes `axis`, `at` |
 //!
-//! NaN stands for what is not there at a parameter value. A symmetry is that of the equations all along a sweep, hence an attribute.
+//! Kinks are numbered in the order in which they first occur. NaN stands for what is not there at a parameter value. A symmetry is that of the equations all along a sweep, hence an attribute.
 
 use serde_json::{Map, Value, json};
 

@@ -14,6 +14,8 @@ mod store;
 mod stored_densities;
 mod stored_points;
 mod stored_run;
+#[cfg(test)]
+mod stored_tests;
 mod tables;
 #[cfg(test)]
 mod tests;
