@@ -53,6 +53,9 @@ const MATHEMATICS: &[(char, &str)] = &[
     ('³', "^3"),
 ];
 
+/// Letters from À to ž that LaTeX's default encoding of fonts (OT1) cannot make.
+const NOT_IN_FONTS: &str = "ÐÞðþĄąĐđĘęĦħĮįĸĿŀŉŊŋŦŧŲų";
+
 /// A symbol with `_{}` and `^{}` as LaTeX mathematics: its Greek and dotted letters and signs as commands.
 pub(super) fn mathematics(symbol: &str) -> String {
     let mut text = String::new();
@@ -98,15 +101,17 @@ fn escaped(letter: char) -> String {
         '—' => "---".to_owned(),
         '’' => "'".to_owned(),
         _ if letter.is_control() => " ".to_owned(),
-        // LaTeX has read UTF-8 since 2018; its default fonts hold these.
-        _ if letter.is_ascii() || ('À'..='ž').contains(&letter) && letter.is_alphabetic() => {
-            letter.to_string()
-        }
+        _ if letter.is_ascii() || is_in_fonts(letter) => letter.to_string(),
         _ => match command(letter) {
             Some(command) => format!("${command}$"),
             None => format!("\\texttt{{U+{:04X}}}", u32::from(letter)),
         },
     }
+}
+
+/// Accented and European letters. LaTeX has read UTF-8 since 2018.
+fn is_in_fonts(letter: char) -> bool {
+    ('À'..='ž').contains(&letter) && letter.is_alphabetic() && !NOT_IN_FONTS.contains(letter)
 }
 
 #[cfg(test)]
@@ -127,7 +132,7 @@ mod tests {
             ),
             ("θ < 3 ± 1", "$\\theta$ $<$ 3 $\\pm$ 1"),
             ("Itô, Caughey–Ma", "Itô, Caughey--Ma"),
-            ("峰", "\\texttt{U+5CF0}"),
+            ("峰 đ", "\\texttt{U+5CF0} \\texttt{U+0111}"),
         ] {
             assert_eq!(escape(text), expected);
         }
