@@ -37,7 +37,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         &source,
         &detector,
         &plan,
-        &LocateOptions { tolerance: 1e-3 },
+        &LocateOptions {
+            tolerance: 1e-3,
+            ..LocateOptions::default()
+        },
         &mut (),
     )?;
     for row in &found.labels {

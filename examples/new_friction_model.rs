@@ -142,7 +142,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         observables: observables.to_vec(),
     };
     let detector = PersistenceDetector::new(DetectOptions::default(), plan.points);
-    let locate = LocateOptions { tolerance: 0.1 };
+    let locate = LocateOptions {
+        tolerance: 0.1,
+        ..LocateOptions::default()
+    };
     let result = sweep(&source, &detector, &plan, &locate, &mut ())?;
     for point in &result.points {
         let signatures: Vec<String> = point

@@ -263,6 +263,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
         "cells.y={ from = -5.5, to = 5.5, count = 20 }",
         "sweep.points=3",
         "method.samples=160",
+        "locate.largest_distance=0.99",
     ];
     let folders = ["1", "2"].map(|threads| {
         let folder = TempDir::new().unwrap();
@@ -311,7 +312,8 @@ fn quiet_leaves_the_results_alone_and_an_earlier_run_is_kept() {
 const GENERATOR_COULOMB: &[&str] = &[
     "method.kind=generator",
     "sweep.points=61",
-    "locate.tolerance=2e-3",
+    "locate.tolerance=3e-5",
+    "cells.x.grade={ at = [0.0], smallest = 0.03 }",
 ];
 
 #[test]

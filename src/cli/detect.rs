@@ -36,7 +36,7 @@ pub(super) fn run(arguments: &DetectArguments) -> Result<Outcome, CommandError> 
         staged.take_place()?;
     } else {
         let mut folder = RunFolder::create(output.path())?;
-        folder.share_densities(&stored.run.densities())?;
+        folder.share_solutions(&arguments.run)?;
         write(&stored, &result, seconds, &mut folder)?;
     }
     super::print(&summary::text(

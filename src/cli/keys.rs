@@ -189,11 +189,22 @@ pub(super) static KEYS: &[Key] = &[
         "Smallest persistence that counts, as a share of the density's maximum."),
     key("locate.tolerance", Kind::Number(POSITIVE), KeyDefault::Value(|| number(LocateOptions::default().tolerance)),
         "Wanted width of a P-bifurcation's bracket, in units of the swept parameter."),
+    key("locate.largest_distance", Kind::Number(SHARE), KeyDefault::Value(|| number(LocateOptions::default().largest_distance)),
+        "Hellinger distance between neighbouring densities above which a value between them is solved too."),
+    key("locate.grid_check", Kind::Choice(switch), KeyDefault::Value(|| quoted(SWITCH[usize::from(!LocateOptions::default().grid_check)])),
+        "Whether located values are checked on a finer grid (by methods without sampling)."),
     key("figures.at", Kind::Numbers, KeyDefault::Rule("both ends of the sweep and two points between"),
         "Parameter values at which joint densities and marginals are drawn, inside the sweep."),
     key("figures.formats", Kind::Choices(format_names), KeyDefault::Value(default_formats),
         "File formats of the figures."),
 ];
+
+/// The words of a switch, the one for yes first.
+pub(super) const SWITCH: [&str; 2] = ["on", "off"];
+
+fn switch() -> Vec<&'static str> {
+    SWITCH.to_vec()
+}
 
 fn generator() -> GeneratorMethodOptions {
     GeneratorMethodOptions::default()

@@ -6,7 +6,7 @@ use std::path::Path;
 use super::CommandError;
 use super::diagnostic::{Diagnostic, Report, list};
 use super::spec::SweepSpec;
-use crate::continuation::{Point, SweepResult, detect_again};
+use crate::continuation::{FinerIndicator, Point, SweepResult, detect_again};
 use crate::method::MethodOptions;
 use crate::run::{Ending, Naming, RunError, StoredRun};
 
@@ -15,6 +15,7 @@ pub(super) struct Stored {
     pub(super) run: StoredRun,
     pub(super) spec: SweepSpec,
     points: Vec<Point>,
+    finer: Option<Vec<FinerIndicator>>,
 }
 
 impl Stored {
@@ -37,7 +38,13 @@ impl Stored {
             &spec.space,
             &spec.observables,
         )?;
-        let stored = Self { run, spec, points };
+        let finer = run.finer(&naming(&spec), &spec.observables)?;
+        let stored = Self {
+            run,
+            spec,
+            points,
+            finer,
+        };
         if !quiet {
             stored.say();
         }
@@ -47,8 +54,8 @@ impl Stored {
     /// Detects and locates in all points.
     pub(super) fn detect(&self) -> SweepResult {
         let spec = &self.spec;
-        let points = self.points.clone();
-        let mut result = detect_again(&spec.plan(), &spec.detector(), points, &spec.locate);
+        let (points, finer) = (self.points.clone(), self.finer.clone());
+        let mut result = detect_again(&spec.plan(), &spec.detector(), points, finer, &spec.locate);
         result.interrupted = self.run.ending() != Ending::Complete;
         result
     }

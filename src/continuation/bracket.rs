@@ -16,12 +16,6 @@ pub(super) fn count(detection: &Detection, kind: FeatureKind) -> usize {
     }
 }
 
-/// Whether both points have densities and the signature of some observable differs.
-pub(super) fn signatures_differ(a: &Point, b: &Point) -> bool {
-    let pairs = a.detections.iter().zip(&b.detections);
-    pairs.into_iter().any(|(a, b)| a.signature != b.signature)
-}
-
 /// Whether a pair need not be narrowed further: it is as narrow as wanted, or, in every observable that
 /// differs, the feature that makes the difference is unresolved on the side where it is not counted. There
 /// bisection would only chase the confidence level; a quarter of the sweep's step is close enough to show

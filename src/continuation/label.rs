@@ -1,6 +1,6 @@
 //! Labelled points of a sweep: AUTO's habit of a type and an ordinal for everything worth a row.
 
-use super::Point;
+use super::{ErrorParts, Point};
 use crate::density::Observable;
 use crate::topology::Signature;
 
@@ -29,11 +29,12 @@ impl PointType {
 /// How well a P-bifurcation is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum BifurcationStatus {
-    /// Its bracket is narrower than the tolerance.
+    /// Its bracket and its error are within the tolerance.
     Located,
     /// The data cannot tell where in the bracket it lies.
     Unresolved,
-    /// The feature that decides is nowhere more than a few cells from another: it may be an effect of the cells.
+    /// A finer grid does not show it there, or, where only persistence tells, its feature is nowhere more than a few
+    /// cells from another: it may be an effect of the cells.
     Unconfirmed,
 }
 
@@ -71,6 +72,12 @@ pub struct LabelledPoint {
     pub after: Option<Signature>,
     /// How well it is known; `None` for end points and failures.
     pub status: Option<BifurcationStatus>,
+    /// What happens there, in words; empty for end points and failures.
+    pub change: &'static str,
+    /// What it was located by: the name of an indicator, or `persistence`; empty for end points and failures.
+    pub method: &'static str,
+    /// Parts of the error; `None` where persistence alone gives a band, and for end points and failures.
+    pub parts: Option<ErrorParts>,
 }
 
 /// The end points of a sweep, unnumbered.
@@ -109,6 +116,9 @@ fn unplaced(kind: PointType, lower: f64, upper: f64) -> LabelledPoint {
         before: None,
         after: None,
         status: None,
+        change: "",
+        method: "",
+        parts: None,
     }
 }
 

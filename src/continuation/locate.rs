@@ -1,268 +1,158 @@
-//! Where between two points a signature changes, and the band in which it must lie.
-//!
-//! A feature is counted when its persistence q exceeds the noise, which is later than its birth. Near a
-//! smooth P-bifurcation, and at the kink of a switching surface, q grows like (θ - θ*)²; at the birth of a
-//! peak away from symmetry like (θ - θ*)^{3/2}; where the rim of a crater breaks like θ - θ*. The straight
-//! line through √q therefore meets zero at θ* in the first case and beyond it, seen from the side where the feature
-//! is present, in the others: θ* lies between that zero and the last point where the feature is present.
-//! The zero's own uncertainty comes from shifting all q by ± two standard errors (common random numbers make
-//! neighbouring errors alike, so they do not average out) and from dropping the point farthest away. A feature only a
-//! few cells from its neighbour is seen through the cells' averages, which shift its birth: a second line through points
-//! where it is well apart must agree, and the band holds both zeros. A change whose feature is nowhere well apart is
-//! `unconfirmed`: it may be one of the cells, not of the density.
+//! The rows of a sweep: every change of signature with its value, error, bracket and status.
 
-use super::bracket::{COUNTED, count, deciding_feature};
+use super::change::{Change, changes};
+use super::grid::{Checked, GridCheck};
 use super::label::{self, BifurcationStatus, LabelledPoint, PointType};
-use super::{LocateOptions, Point};
-use crate::density::{EstimatedDensity, Observable};
-use crate::topology::{Detection, Feature, FeatureKind, Signature, Verdict};
+use super::root::{Root, root};
+use super::{LocateOptions, Point, persistence, words};
+use crate::density::Observable;
+use crate::topology::{Detector, IndicatorKind};
 
-/// Points used to extrapolate the birth of a feature.
-const FITTED_POINTS: usize = 5;
-
-/// Cells between two features beyond which the cells' averages do not blur them into one.
-const WELL_APART: f64 = 5.0;
-
-/// A change of one observable's signature between two neighbouring points.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Change {
-    value: f64,
-    lower: f64,
-    upper: f64,
-    /// Whether every deciding feature is well apart from others at some point.
-    resolved_by_cells: bool,
-}
+/// The check on a finer grid: takes what is checked, `None` when there is no finer grid.
+pub(super) type Check<'a> = &'a mut dyn FnMut(&Checked<'_>) -> Option<GridCheck>;
 
 /// All labelled points of a sweep, in ascending parameter. `points` must be ascending.
 pub(super) fn label_points(
     points: &[Point],
     observables: &[Observable],
+    detector: &dyn Detector,
     options: &LocateOptions,
+    check: Check<'_>,
 ) -> Vec<LabelledPoint> {
     let mut labels = label::end_points(points);
     labels.extend(label::failures(points));
     let solved: Vec<&Point> = points.iter().filter(|p| !p.detections.is_empty()).collect();
-    for (index, &observable) in observables.iter().enumerate() {
-        for left in 1..solved.len() {
-            let before = solved[left - 1].detections[index].signature;
-            let after = solved[left].detections[index].signature;
-            if before == after {
-                continue;
-            }
-            let change = locate(&solved, index, left - 1);
-            labels.push(row(observable, (before, after), change, options));
+    let mut rows: Vec<LabelledPoint> = Vec::new();
+    for change in changes(&solved, detector) {
+        let row = match &change.crossing {
+            Some(_) => by_indicator(&solved, observables, &change, detector, options, check),
+            None => by_persistence(&solved, observables, &change, options),
+        };
+        // Two indicators whose zeros cannot be told apart make one change.
+        let same = rows.last_mut().filter(|last| inseparable(last, &row));
+        match same {
+            Some(last) => merge(last, &row),
+            None => rows.push(row),
         }
     }
+    labels.extend(rows);
     label::number(labels)
 }
 
-fn row(
-    observable: Observable,
-    (before, after): (Signature, Signature),
-    change: Change,
-    options: &LocateOptions,
-) -> LabelledPoint {
-    let located = change.upper - change.lower <= options.tolerance * (1.0 + 1e-9);
+/// A row with all but value, error and status.
+fn blank(observables: &[Observable], change: &Change) -> LabelledPoint {
+    let crossing = change.crossing.as_ref();
+    let kind = crossing.map(|crossing| crossing.kind());
+    let rises = crossing.is_some_and(|crossing| crossing.ends[1].value > crossing.ends[0].value);
     LabelledPoint {
         label: String::new(),
         kind: PointType::Bifurcation,
-        value: change.value,
-        error: (change.value - change.lower).max(change.upper - change.value),
-        lower: change.lower,
-        upper: change.upper,
-        observable: Some(observable),
-        before: Some(before),
-        after: Some(after),
-        status: Some(match (change.resolved_by_cells, located) {
+        value: 0.0,
+        error: 0.0,
+        lower: 0.0,
+        upper: 0.0,
+        observable: observables.get(change.observable).copied(),
+        before: Some(change.before),
+        after: Some(change.after),
+        status: None,
+        change: words::change(kind, rises, change.before, change.after),
+        method: kind.map_or("persistence", IndicatorKind::name),
+        parts: None,
+    }
+}
+
+fn by_persistence(
+    points: &[&Point],
+    observables: &[Observable],
+    change: &Change,
+    options: &LocateOptions,
+) -> LabelledPoint {
+    let band = persistence::band(points, change.observable, change.left);
+    let located = band.upper - band.lower <= options.tolerance * (1.0 + 1e-9);
+    LabelledPoint {
+        value: band.value,
+        error: (band.value - band.lower).max(band.upper - band.value),
+        lower: band.lower,
+        upper: band.upper,
+        status: Some(match (band.resolved_by_cells, located) {
             (false, _) => BifurcationStatus::Unconfirmed,
             (true, true) => BifurcationStatus::Located,
             (true, false) => BifurcationStatus::Unresolved,
         }),
+        ..blank(observables, change)
     }
 }
 
-/// The band of a change between `points[left]` and its successor: the hull over the counts that differ.
-fn locate(points: &[&Point], observable: usize, left: usize) -> Change {
-    let (a, b) = (points[left], points[left + 1]);
-    let mut change = Change {
-        value: 0.5 * (a.value + b.value),
-        lower: a.value,
-        upper: b.value,
-        resolved_by_cells: true,
-    };
-    let mut births = Vec::new();
-    for kind in COUNTED {
-        let counts = [a, b].map(|point| count(&point.detections[observable], kind));
-        if counts[0] != counts[1] {
-            let rank = counts[0].min(counts[1]);
-            let present = present_side(points, observable, left, kind, rank, counts[0] > counts[1]);
-            change.resolved_by_cells &= present.iter().any(|seen| seen.cells_apart >= WELL_APART);
-            births.extend(births_of(&present));
-        }
-    }
-    for &(value, lower, upper) in &births {
-        change.lower = change.lower.min(lower);
-        change.upper = change.upper.max(upper);
-        change.value = value;
-    }
-    if births.len() > 1 {
-        change.value = births.iter().map(|birth| birth.0).sum::<f64>() / births.len() as f64;
-    }
-    let range = (points[0].value, points[points.len() - 1].value);
-    change.lower = change.lower.max(range.0);
-    change.upper = change.upper.min(range.1);
-    change.value = change.value.clamp(change.lower, change.upper);
-    change
-}
-
-/// The deciding feature at one point where it is present.
-#[derive(Debug, Clone, Copy)]
-struct Seen {
-    value: f64,
-    persistence: f64,
-    error: f64,
-    /// Distance to the nearest other feature, in cells.
-    cells_apart: f64,
-}
-
-/// The deciding feature at the points where it is present, nearest to the change first.
-fn present_side(
+fn by_indicator(
     points: &[&Point],
-    observable: usize,
-    left: usize,
-    kind: FeatureKind,
-    rank: usize,
-    present_below: bool,
-) -> Vec<Seen> {
-    let indices: Vec<usize> = if present_below {
-        (0..=left).rev().collect()
-    } else {
-        (left + 1..points.len()).collect()
+    observables: &[Observable],
+    change: &Change,
+    detector: &dyn Detector,
+    options: &LocateOptions,
+    check: Check<'_>,
+) -> LabelledPoint {
+    let mut row = blank(observables, change);
+    let Some(crossing) = &change.crossing else {
+        return row;
     };
-    let seen = |index: usize| {
-        let point = points[index];
-        let detection = &point.detections[observable];
-        let feature = deciding_feature(detection, kind, rank)
-            .filter(|feature| feature.verdict == Verdict::Present)?;
-        Some(Seen {
-            value: point.value,
-            persistence: feature.persistence,
-            error: feature.standard_error,
-            cells_apart: cells_apart(feature, detection, &point.densities[observable]),
-        })
+    let mut found: Root = root(points, crossing, detector.confidence());
+    let bracket = (points[crossing.left].value, points[crossing.left + 1].value);
+    // The slope at a kink follows from the equations: no grid takes part.
+    let checked = match crossing.kind() {
+        IndicatorKind::KinkSlope => None,
+        kind => check(&Checked {
+            observable: change.observable,
+            kind,
+            place: &crossing.ends[0].place,
+            root: found,
+        }),
     };
-    indices.into_iter().map_while(seen).collect()
+    if let Some(GridCheck::Confirmed(value)) = checked {
+        found.error.grid = (value - found.value).abs();
+        found.value = value;
+    }
+    let error = found.error.total();
+    let narrow = bracket.1 - bracket.0 <= options.tolerance * (1.0 + 1e-9);
+    row.value = found.value;
+    row.error = error;
+    row.lower = bracket.0.min(found.value - error);
+    row.upper = bracket.1.max(found.value + error);
+    row.parts = Some(found.error);
+    row.status = Some(match checked {
+        Some(GridCheck::Unconfirmed) => BifurcationStatus::Unconfirmed,
+        _ if narrow && error <= options.tolerance => BifurcationStatus::Located,
+        _ => BifurcationStatus::Unresolved,
+    });
+    row
 }
 
-/// Distance of a feature to the nearest other one that is present, in cells (the largest over the axes).
-fn cells_apart(feature: &Feature, detection: &Detection, density: &EstimatedDensity) -> f64 {
-    let others = detection.features.iter();
-    others
-        .filter(|other| other.verdict == Verdict::Present && other.position != feature.position)
-        .map(|other| {
-            let axes = density.density.axes.iter().enumerate();
-            axes.map(|(axis, cells)| {
-                let (from, to) = (feature.position[axis], other.position[axis]);
-                let width = cells.find(from).map_or(f64::INFINITY, |c| cells.width(c));
-                (to - from).abs() / width
-            })
-            .fold(0.0, f64::max)
-        })
-        .fold(f64::INFINITY, f64::min)
+/// Whether two changes of one observable follow each other so closely that the stage between them is not certain.
+fn inseparable(first: &LabelledPoint, second: &LabelledPoint) -> bool {
+    let both = first.parts.is_some() && second.parts.is_some();
+    let apart = (second.value - first.value).abs();
+    both && first.observable == second.observable
+        && first.after == second.before
+        && first.before != second.after
+        && apart <= first.error + second.error
 }
 
-/// Births by a line through the nearest points, and by one through the nearest where the feature is well apart.
-fn births_of(present: &[Seen]) -> Vec<(f64, f64, f64)> {
-    let nearest = |apart: f64| -> Vec<(f64, f64, f64)> {
-        let points = present.iter().filter(|seen| seen.cells_apart >= apart);
-        points
-            .map(|seen| (seen.value, seen.persistence, seen.error))
-            .take(FITTED_POINTS)
-            .collect()
-    };
-    let near = birth(&nearest(0.0));
-    let apart = birth(&nearest(WELL_APART));
-    match (near, apart) {
-        // The zero of the line that the cells do not blur is the better value; the band holds both.
-        (Some(near), Some(apart)) => {
-            vec![(apart.0, near.1.min(apart.1), near.2.max(apart.2))]
-        }
-        (near, apart) => near.into_iter().chain(apart).collect(),
+/// Makes one row of two that cannot be told apart.
+fn merge(first: &mut LabelledPoint, second: &LabelledPoint) {
+    first.lower = first.lower.min(second.lower);
+    first.upper = first.upper.max(second.upper);
+    let value = 0.5 * (first.value + second.value);
+    let half = 0.5 * (second.value - first.value).abs();
+    first.error = first.error.max(second.error) + half;
+    if let Some(parts) = &mut first.parts {
+        parts.grid += half;
     }
-}
-
-/// Birth of a feature with the ends of its uncertainty: `(value, lower, upper)`, from the zero of the line through
-/// √q. `None` with fewer than two points, or when q does not grow away from the change.
-fn birth(present: &[(f64, f64, f64)]) -> Option<(f64, f64, f64)> {
-    let value = zero_of_root(present, 0.0)?;
-    let mut ends = vec![value];
-    for shift in [-2.0, 2.0] {
-        ends.extend(zero_of_root(present, shift));
+    first.value = value;
+    first.after = second.after;
+    if first.status == Some(BifurcationStatus::Located) {
+        first.status = second.status;
     }
-    if present.len() > 2 {
-        ends.extend(zero_of_root(&present[..present.len() - 1], 0.0));
-    }
-    let lower = ends.iter().copied().fold(f64::INFINITY, f64::min);
-    let upper = ends.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    Some((value, lower, upper))
-}
-
-/// Zero of the least-squares line through √(q + shift · standard error) against the parameter.
-fn zero_of_root(present: &[(f64, f64, f64)], shift: f64) -> Option<f64> {
-    if present.len() < 2 {
-        return None;
-    }
-    let samples: Vec<(f64, f64)> = present
-        .iter()
-        .map(|&(value, q, error)| (value, (q + shift * error).max(0.0).sqrt()))
-        .collect();
-    let n = samples.len() as f64;
-    let mean_value = samples.iter().map(|s| s.0).sum::<f64>() / n;
-    let mean_root = samples.iter().map(|s| s.1).sum::<f64>() / n;
-    let covariance: f64 = samples
-        .iter()
-        .map(|s| (s.0 - mean_value) * (s.1 - mean_root))
-        .sum();
-    let spread: f64 = samples.iter().map(|s| (s.0 - mean_value).powi(2)).sum();
-    let slope = covariance / spread;
-    // The line must fall toward the change, else it says nothing of a birth.
-    let outward = present[present.len() - 1].0 - present[0].0;
-    (slope * outward > 0.0).then(|| mean_value - mean_root / slope)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_square_law_is_extrapolated_to_its_zero() {
-        let present: Vec<(f64, f64, f64)> = [0.1, 0.2, 0.3, 0.4]
-            .map(|theta: f64| (theta + 0.05, 7.0 * theta * theta, 0.0))
-            .to_vec();
-        let (value, lower, upper) = birth(&present).unwrap();
-        assert!((value - 0.05).abs() < 1e-12 && (upper - lower) < 1e-12);
-    }
-
-    #[test]
-    fn slower_laws_are_extrapolated_before_the_first_present_point_and_after_the_birth() {
-        for exponent in [1.5, 1.0] {
-            let present: Vec<(f64, f64, f64)> = [0.1, 0.2, 0.3]
-                .map(|theta: f64| (theta, theta.powf(exponent), 0.0))
-                .to_vec();
-            let (value, _, _) = birth(&present).unwrap();
-            assert!(
-                value < 0.0,
-                "the band from {value} to 0.1 holds the birth at 0"
-            );
-        }
-    }
-
-    #[test]
-    fn errors_widen_the_band_and_a_falling_law_gives_none() {
-        let present = [(0.1, 0.01, 0.002), (0.2, 0.04, 0.002), (0.3, 0.09, 0.002)];
-        let (value, lower, upper) = birth(&present).unwrap();
-        assert!(value.abs() < 1e-12 && lower < -0.005 && upper > 0.005);
-        assert!(birth(&[(0.1, 0.04, 0.0), (0.2, 0.01, 0.0)]).is_none());
-        assert!(birth(&[(0.1, 0.04, 0.0)]).is_none());
+    if let (Some(before), Some(after)) = (first.before, first.after) {
+        let kind = Some(IndicatorKind::LowerCurvature);
+        first.change = words::change(kind, second.value > first.value, before, after);
     }
 }

@@ -5,15 +5,22 @@
 
 mod again;
 mod bracket;
+mod change;
+mod grid;
 mod label;
 mod locate;
 mod observer;
+mod persistence;
+mod root;
 mod source;
 mod sweep;
+mod words;
 
 pub use again::detect_again;
+pub use grid::FinerIndicator;
 pub use label::{BifurcationStatus, LabelledPoint, PointType};
 pub use observer::Observer;
+pub use root::ErrorParts;
 pub use source::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
 pub use sweep::{Plan, SweepError, evenly_spaced, sweep};
 
@@ -28,11 +35,19 @@ use crate::topology::Detection;
 pub struct LocateOptions {
     /// Wanted width of a P-bifurcation's bracket, in units of the parameter.
     pub tolerance: f64,
+    /// Hellinger distance between neighbouring densities above which a value between is solved too.
+    pub largest_distance: f64,
+    /// Whether located values are checked on a finer grid, where the source has one.
+    pub grid_check: bool,
 }
 
 impl Default for LocateOptions {
     fn default() -> Self {
-        Self { tolerance: 1e-4 }
+        Self {
+            tolerance: 1e-4,
+            largest_distance: 0.2,
+            grid_check: true,
+        }
     }
 }
 
@@ -66,6 +81,8 @@ pub struct SweepResult {
     pub points: Vec<Point>,
     /// Labelled points in ascending parameter: end points `EP`, changes `PB`, failures `MX`.
     pub labels: Vec<LabelledPoint>,
+    /// What was seen on the finer grid that checks located values; `None` where there was no check.
+    pub finer: Option<Vec<FinerIndicator>>,
     /// Whether the sweep was interrupted before it was complete.
     pub interrupted: bool,
 }

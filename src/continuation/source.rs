@@ -112,4 +112,18 @@ pub trait DensitySource {
         value: f64,
         start: Option<&Self::State>,
     ) -> Result<Solution<Self::State>, SourceError>;
+
+    /// The same source on finer cells, to check what was found; `None` where there is none, or it would say
+    /// nothing (sampling errors differ from grid to grid).
+    fn finer(&self) -> Option<Self>
+    where
+        Self: Sized,
+    {
+        None
+    }
+
+    /// Bytes that a state takes, for the sweep to decide how many to keep.
+    fn state_bytes(&self, state: &Self::State) -> usize {
+        size_of_val(state)
+    }
 }

@@ -1,11 +1,15 @@
-//! The sweep itself: solves the given values in order, each warm-started from its neighbour, and narrows
-//! every pair of neighbours whose signatures differ.
+//! The sweep itself: solves the given values in order, each warm-started from its neighbour, with values between
+//! where neighbouring densities differ much; then narrows every change of signature.
 
 use std::time::Instant;
 
-use super::bracket::{is_settled, signatures_differ};
+use super::bracket::is_settled;
+use super::change::{changes, dip};
+use super::grid::{Checked, FinerIndicator, Seen, check, known, solve};
+use super::locate::label_points;
+use super::root::next_value;
 use super::{
-    DensitySource, LocateOptions, Observer, Point, SourceError, SweepResult, locate::label_points,
+    DensitySource, LabelledPoint, LocateOptions, Observer, Point, SourceError, SweepResult,
 };
 use crate::density::{Observable, hellinger};
 use crate::topology::Detector;
@@ -29,6 +33,11 @@ impl Plan {
     /// The given values, in the order in which they are solved.
     pub fn values(&self) -> Vec<f64> {
         evenly_spaced(self.from, self.to, self.points)
+    }
+
+    /// The ends in ascending order.
+    pub(super) fn range(&self) -> (f64, f64) {
+        (self.from.min(self.to), self.from.max(self.to))
     }
 
     /// Distance between neighbouring given values.
@@ -94,43 +103,39 @@ pub fn sweep<S: DensitySource>(
         observer,
         remaining: values.len(),
         points: Vec::new(),
+        states: Vec::new(),
         interrupted: false,
     };
-    let mut previous: Option<Solved<S::State>> = None;
+    let mut previous: Option<f64> = None;
     for value in values {
-        let start = previous.as_ref().and_then(|solved| solved.state.as_ref());
         run.remaining -= 1;
-        let Some(solved) = run.solve(value, start)? else {
-            break;
-        };
-        if let Some(previous) = &previous {
-            run.narrow(previous, &solved)?;
+        run.solve(value)?;
+        if let Some(previous) = previous {
+            run.follow(previous, value, HALVINGS)?;
         }
-        // A failed point leaves no state; its successor starts from the last good one.
-        let last_good = previous.and_then(|before| before.state);
-        previous = Some(Solved {
-            point: solved.point,
-            state: solved.state.or(last_good),
-        });
+        if run.interrupted {
+            break;
+        }
+        previous = Some(value);
     }
-    let (mut points, interrupted) = (run.points, run.interrupted);
-    points.sort_by(|a, b| a.value.total_cmp(&b.value));
-    fill_distances(&mut points);
-    let labels = label_points(&points, &plan.observables, options);
+    run.narrow()?;
+    let (labels, finer) = run.labels();
     Ok(SweepResult {
         parameter: plan.parameter.clone(),
         observables: plan.observables.clone(),
-        points,
+        points: run.points,
         labels,
-        interrupted,
+        finer,
+        interrupted: run.interrupted,
     })
 }
 
-/// A point's place in the list of points, and what warm-starts its neighbours.
-struct Solved<State> {
-    point: usize,
-    state: Option<State>,
-}
+/// How often a step between given values is halved at most, where densities change fast.
+const HALVINGS: usize = 4;
+/// Solves beyond the given values at most.
+const MOST_EXTRA: usize = 400;
+/// Bytes of states that are kept to start from; beyond, every second one is dropped.
+const KEPT_BYTES: usize = 1 << 30;
 
 struct Run<'a, S: DensitySource> {
     source: &'a S,
@@ -139,27 +144,29 @@ struct Run<'a, S: DensitySource> {
     options: &'a LocateOptions,
     observer: &'a mut dyn Observer,
     remaining: usize,
+    /// Ascending in the parameter.
     points: Vec<Point>,
+    /// States to start from, in the order in which they were made.
+    states: Vec<(f64, S::State)>,
     interrupted: bool,
 }
 
 impl<S: DensitySource> Run<'_, S> {
-    /// Solves one value, tells the observer and keeps the point; `None` when interrupted.
-    fn solve(
-        &mut self,
-        value: f64,
-        start: Option<&S::State>,
-    ) -> Result<Option<Solved<S::State>>, SweepError> {
-        if self.observer.interrupted() {
+    /// Solves one value from the nearest state, tells the observer and keeps the point.
+    fn solve(&mut self, value: f64) -> Result<(), SweepError> {
+        if self.interrupted || self.observer.interrupted() {
             self.interrupted = true;
-            return Ok(None);
+            return Ok(());
         }
         let clock = Instant::now();
-        let solution = match self.source.solve(value, start) {
+        let distance = |state: &&(f64, S::State)| (state.0 - value).abs();
+        // The last of equally near ones: it is the neighbour along the sweep.
+        let start = (self.states.iter().rev()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let solution = match self.source.solve(value, start.map(|(_, state)| state)) {
             Ok(solution) => solution,
             Err(SourceError::Interrupted) => {
                 self.interrupted = true;
-                return Ok(None);
+                return Ok(());
             }
             Err(source) => {
                 return Err(SweepError::Source {
@@ -171,6 +178,7 @@ impl<S: DensitySource> Run<'_, S> {
         };
         let densities = solution.densities;
         let detections = densities.iter().map(|d| self.detector.detect(d)).collect();
+        let place = self.points.partition_point(|point| point.value < value);
         let point = Point {
             value,
             report: solution.report,
@@ -180,58 +188,137 @@ impl<S: DensitySource> Run<'_, S> {
             distance: None,
             seconds: clock.elapsed().as_secs_f64(),
         };
-        self.points.push(point);
-        let (index, point) = (self.points.len() - 1, &self.points[self.points.len() - 1]);
+        self.points.insert(place, point);
+        fill_distances(&mut self.points, place);
+        if let Some(state) = solution.state {
+            self.keep(value, state);
+        }
+        let done = self.points.len();
         self.observer
-            .point(point, index + 1, self.remaining)
-            .map_err(SweepError::Observer)?;
-        Ok(Some(Solved {
-            point: index,
-            state: solution.state,
-        }))
+            .point(&self.points[place], done, self.remaining)
+            .map_err(SweepError::Observer)
     }
 
-    /// Bisects between two neighbours until every pair in between is settled.
-    fn narrow(
-        &mut self,
-        left: &Solved<S::State>,
-        right: &Solved<S::State>,
-    ) -> Result<(), SweepError> {
-        let (a, b) = (&self.points[left.point], &self.points[right.point]);
-        if self.interrupted
-            || !signatures_differ(a, b)
-            || is_settled(a, b, self.plan.step(), self.options)
-        {
-            return Ok(());
+    fn keep(&mut self, value: f64, state: S::State) {
+        let bytes = self.source.state_bytes(&state);
+        self.states.push((value, state));
+        if bytes.saturating_mul(self.states.len()) > KEPT_BYTES {
+            let last = self.states.len() - 1;
+            let mut index = 0;
+            self.states.retain(|_| {
+                index += 1;
+                index > last || index % 2 == 0
+            });
         }
-        let (from, to) = (a.value, b.value);
+    }
+
+    fn at(&self, value: f64) -> Option<&Point> {
+        self.points.iter().find(|point| point.value == value)
+    }
+
+    /// Solves between two neighbours whose densities differ by more than wanted.
+    fn follow(&mut self, from: f64, to: f64, halvings: usize) -> Result<(), SweepError> {
+        let (Some(a), Some(b)) = (self.at(from), self.at(to)) else {
+            return Ok(());
+        };
+        let distance = distance_between(a, b).unwrap_or(0.0);
         let middle = 0.5 * (from + to);
-        if middle == from || middle == to {
+        let wide = distance > self.options.largest_distance && middle != from && middle != to;
+        if halvings == 0 || self.interrupted || !wide {
             return Ok(());
         }
-        let start = left.state.as_ref().or(right.state.as_ref());
-        if let Some(solved) = self.solve(middle, start)? {
-            self.narrow(left, &solved)?;
-            self.narrow(&solved, right)?;
+        self.solve(middle)?;
+        self.follow(from, middle, halvings - 1)?;
+        self.follow(middle, to, halvings - 1)
+    }
+
+    /// Solves further values until every change is as narrow as wanted, or as the data allow.
+    fn narrow(&mut self) -> Result<(), SweepError> {
+        for _ in 0..MOST_EXTRA {
+            let Some(value) = self.next() else {
+                break;
+            };
+            self.solve(value)?;
+            if self.interrupted {
+                break;
+            }
         }
         Ok(())
     }
+
+    /// The value to solve next.
+    fn next(&self) -> Option<f64> {
+        let solved: Vec<&Point> = (self.points.iter())
+            .filter(|point| !point.detections.is_empty())
+            .collect();
+        let tolerance = self.options.tolerance;
+        if let Some(value) = dip(&solved, tolerance) {
+            return Some(value);
+        }
+        let changes = changes(&solved, self.detector);
+        changes.iter().find_map(|change| match &change.crossing {
+            Some(crossing) => next_value(&solved, crossing, self.detector.confidence(), tolerance),
+            None => {
+                let (a, b) = (solved[change.left], solved[change.left + 1]);
+                let middle = 0.5 * (a.value + b.value);
+                let settled = is_settled(a, b, self.plan.step(), self.options);
+                (!settled && middle > a.value && middle < b.value).then_some(middle)
+            }
+        })
+    }
+
+    /// The rows, each checked on a finer grid where the source has one, and what was seen there.
+    fn labels(&mut self) -> (Vec<LabelledPoint>, Option<Vec<FinerIndicator>>) {
+        let wanted = self.options.grid_check && !self.interrupted;
+        let mut finer: Option<Option<S>> = (!wanted).then_some(None);
+        let mut seen = Vec::new();
+        let range = self.plan.range();
+        let mut on_finer = |checked: &Checked<'_>| {
+            let finer = finer.get_or_insert_with(|| self.source.finer()).as_ref()?;
+            let mut state = None;
+            let mut evaluate = |value: f64| {
+                let before = known(&seen, checked, value);
+                if before != Seen::Unknown {
+                    return before;
+                }
+                let found = solve(finer, self.detector, checked, value, &mut state);
+                seen.extend(found.record(checked, value));
+                found
+            };
+            check(&mut evaluate, checked, range, self.options.tolerance)
+        };
+        let observables = &self.plan.observables;
+        let labels = label_points(
+            &self.points,
+            observables,
+            self.detector,
+            self.options,
+            &mut on_finer,
+        );
+        let has_finer = finer.map_or_else(|| self.source.finer().is_some(), |one| one.is_some());
+        (labels, has_finer.then_some(seen))
+    }
 }
 
-/// Largest Hellinger distance over the watched densities between each point and the one before it that has any.
-pub(super) fn fill_distances(points: &mut [Point]) {
-    let mut previous: Option<usize> = None;
-    for index in 0..points.len() {
-        if points[index].densities.is_empty() {
-            continue;
-        }
-        if let Some(before) = previous {
-            let pairs = points[before].densities.iter();
-            points[index].distance = pairs
-                .zip(&points[index].densities)
-                .filter_map(|(a, b)| hellinger(&a.density, &b.density).ok())
-                .reduce(f64::max);
-        }
-        previous = Some(index);
+/// Largest Hellinger distance over the watched densities of two points; `None` when one has none.
+fn distance_between(a: &Point, b: &Point) -> Option<f64> {
+    let pairs = a.densities.iter().zip(&b.densities);
+    pairs
+        .filter_map(|(a, b)| hellinger(&a.density, &b.density).ok())
+        .reduce(f64::max)
+}
+
+/// Fills the distances that a new point at `place` changes: its own, and that of the next one with densities.
+pub(super) fn fill_distances(points: &mut [Point], place: usize) {
+    if points[place].densities.is_empty() {
+        return;
+    }
+    let has = |index: &usize| !points[*index].densities.is_empty();
+    let before = (0..place).rev().find(has);
+    let after = (place + 1..points.len()).find(has);
+    points[place].distance =
+        before.and_then(|index| distance_between(&points[index], &points[place]));
+    if let Some(after) = after {
+        points[after].distance = distance_between(&points[place], &points[after]);
     }
 }

@@ -104,6 +104,7 @@ impl Detector for SquareLaw {
                 peaks: 1 + usize::from(present),
                 craters: 0,
             },
+            indicators: Vec::new(),
             features: vec![
                 feature(1.0, f64::MAX, Verdict::Present),
                 feature(persistence, significance, verdict),
@@ -127,7 +128,10 @@ fn run(source: &Ramp, detector: &SquareLaw, plan: &Plan, tolerance: f64) -> Swee
         source,
         detector,
         plan,
-        &LocateOptions { tolerance },
+        &LocateOptions {
+            tolerance,
+            ..LocateOptions::default()
+        },
         &mut (),
     )
     .unwrap()

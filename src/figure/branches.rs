@@ -136,6 +136,7 @@ mod tests {
             verdict: Verdict::Present,
         };
         let detection = |places: &[f64]| Detection {
+            indicators: Vec::new(),
             signature: Signature {
                 peaks: places.len(),
                 craters: 0,

@@ -56,4 +56,19 @@ impl DensitySource for MethodSource {
             Self::Sgcm(source) => source.solve(value, start),
         }
     }
+
+    fn finer(&self) -> Option<Self> {
+        match self {
+            Self::Generator(source) => source.finer().map(Box::new).map(Self::Generator),
+            // The noise of another grid is another one: it would say nothing of the cells.
+            Self::Sgcm(_) => None,
+        }
+    }
+
+    fn state_bytes(&self, state: &State) -> usize {
+        match self {
+            Self::Generator(source) => source.state_bytes(state),
+            Self::Sgcm(source) => source.state_bytes(state),
+        }
+    }
 }

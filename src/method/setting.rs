@@ -50,6 +50,12 @@ pub struct State {
 }
 
 impl State {
+    /// Memory that the state takes.
+    pub(super) fn bytes(&self) -> usize {
+        let slope = self.slope.as_ref().map_or(0, Vec::len);
+        size_of::<f64>() * (self.mass.len() + slope)
+    }
+
     /// Slope of the secant to another state, which lies at another value.
     pub(super) fn secant(&self, other: &Self) -> Vec<f64> {
         let step = other.value - self.value;

@@ -254,6 +254,10 @@ impl DensitySource for SgcmSource {
             other => other.map_err(|error| SourceError::Method(error.into())),
         }
     }
+
+    fn state_bytes(&self, state: &State) -> usize {
+        state.bytes()
+    }
 }
 
 /// Rate r with 1 - exp(-r Δt) = escape per step; where everything leaves in one step, the rate of losing all but a

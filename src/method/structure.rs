@@ -13,8 +13,8 @@ use crate::system::{SwitchingSurface, System};
 /// Distance from the plane, in widths of the cell beside it, at which the drift on either side is taken.
 const BESIDE: f64 = 1e-6;
 
-/// Relative size of a jump of the drift that is rounding.
-const ROUNDING: f64 = 1e-9;
+/// Jump of log p over the whole axis that is rounding.
+const ROUNDING: f64 = 1e-7;
 
 /// The switching surfaces with a kink of the density somewhere along a sweep, given systems along it. Where the drift
 /// across a surface is continuous (as Dahl's is), the density is smooth there.
@@ -85,10 +85,14 @@ fn kink(
     let (mut sums, mut weights) = (vec![0.0; bins], vec![0.0; bins]);
     for index in beside(space, surface) {
         let mut state = space.centre(index);
-        state[surface.axis] = surface.at + step;
-        let above = system.drift_at(0.0, &state)[surface.axis];
-        state[surface.axis] = surface.at - step;
-        let below = system.drift_at(0.0, &state)[surface.axis];
+        let mut across = |step: f64| {
+            state[surface.axis] = surface.at + step;
+            let above = system.drift_at(0.0, &state)[surface.axis];
+            state[surface.axis] = surface.at - step;
+            above - system.drift_at(0.0, &state)[surface.axis]
+        };
+        // The part of the difference that is proportional to the step is no jump.
+        let drop = 2.0 * across(step) - across(2.0 * step);
         state[surface.axis] = surface.at;
         let square = |&channel: &usize| system.amplitude_at(channel, 0.0, &state).powi(2);
         let intensity: f64 = noise.iter().map(square).sum();
@@ -96,7 +100,7 @@ fn kink(
         let weight = masses[index].max(0.0) + f64::MIN_POSITIVE.sqrt();
         let bin = other.map_or(0, |&axis| space.position(index, axis));
         if intensity > 0.0 {
-            sums[bin] += weight * 2.0 * (above - below) / intensity;
+            sums[bin] += weight * 2.0 * drop / intensity;
         }
         weights[bin] += weight;
     }

@@ -11,7 +11,7 @@ use super::{
 use crate::continuation::{LabelledPoint, PointType};
 
 /// Columns of the table, in order.
-const COLUMNS: [&str; 10] = [
+const COLUMNS: [&str; 15] = [
     "label",
     "parameter",
     "value",
@@ -22,10 +22,18 @@ const COLUMNS: [&str; 10] = [
     "before",
     "after",
     "status",
+    "change",
+    "method",
+    "error_solver",
+    "error_grid",
+    "error_sampling",
 ];
 
+/// Columns that are numbers.
+const NUMBERS: [usize; 7] = [2, 3, 4, 5, 12, 13, 14];
+
 /// One row as words, in the order of [`COLUMNS`]; numbers in full.
-fn words(naming: &Naming<'_>, row: &LabelledPoint) -> [String; 10] {
+fn words(naming: &Naming<'_>, row: &LabelledPoint) -> [String; 15] {
     let text = |text: Option<String>| text.unwrap_or_default();
     [
         row.label.clone(),
@@ -41,6 +49,11 @@ fn words(naming: &Naming<'_>, row: &LabelledPoint) -> [String; 10] {
         text(row.before.map(|signature| signature.to_string())),
         text(row.after.map(|signature| signature.to_string())),
         text(row.status.map(|status| status.word().to_owned())),
+        row.change.to_owned(),
+        row.method.to_owned(),
+        text(row.parts.map(|parts| format_number(parts.solver))),
+        text(row.parts.map(|parts| format_number(parts.grid))),
+        text(row.parts.map(|parts| format_number(parts.sampling))),
     ]
 }
 
@@ -64,18 +77,16 @@ pub fn bifurcations_json(
     naming: &Naming<'_>,
     labels: &[LabelledPoint],
 ) -> Result<String, RunError> {
-    let number = |value: f64| serde_json::json!(value);
     let rows: Vec<serde_json::Value> = labels
         .iter()
         .map(|row| {
             let words = words(naming, row);
-            let numbers = [row.value, row.error, row.lower, row.upper];
             let entries = COLUMNS.iter().zip(words).enumerate();
             let object: serde_json::Map<_, _> = entries
                 .map(|(index, (key, word))| {
-                    let value = match index {
-                        2..=5 => number(numbers[index - 2]),
+                    let value = match word.parse::<f64>() {
                         _ if word.is_empty() => serde_json::Value::Null,
+                        Ok(number) if NUMBERS.contains(&index) => serde_json::json!(number),
                         _ => word.into(),
                     };
                     ((*key).to_owned(), value)
@@ -90,21 +101,34 @@ pub fn bifurcations_json(
 /// The Markdown table, values rounded to their errors.
 pub fn bifurcations_markdown(naming: &Naming<'_>, labels: &[LabelledPoint]) -> String {
     let mut text = format!(
-        "| label | {} | bracket | observable | before | after | status |\n| --- | --- | --- | --- | --- | --- | --- |\n",
+        "| label | {} | bracket | observable | before | after | change | status |\n| --- | --- | --- | --- | --- | --- | --- | --- |\n",
         naming.parameter
     );
     for row in labels.iter().filter(|row| row.kind != PointType::EndPoint) {
         let (value, error) = format_with_error(row.value, row.error);
         let (lower, _) = format_with_error(row.lower, row.error);
         let (upper, _) = format_with_error(row.upper, row.error);
-        let [label, .., observable, before, after, status] = words(naming, row);
+        let [
+            label,
+            _,
+            _,
+            _,
+            _,
+            _,
+            observable,
+            before,
+            after,
+            status,
+            change,
+            ..,
+        ] = words(naming, row);
         let status = if row.kind == PointType::NoConvergence {
             "no steady state or not converged".to_owned()
         } else {
             status
         };
         text += &format!(
-            "| {label} | {value} ± {error} | [{lower}, {upper}] | {observable} | {before} | {after} | {status} |\n"
+            "| {label} | {value} ± {error} | [{lower}, {upper}] | {observable} | {before} | {after} | {change} | {status} |\n"
         );
     }
     text
@@ -113,10 +137,10 @@ pub fn bifurcations_markdown(naming: &Naming<'_>, labels: &[LabelledPoint]) -> S
 /// A LaTeX table with booktabs rules, values rounded to their errors.
 pub fn bifurcations_tex(naming: &Naming<'_>, labels: &[LabelledPoint]) -> String {
     let mut text = String::from(
-        "% needs \\usepackage{booktabs}\n\\begin{tabular}{llllll}\n\\toprule\nlabel & $",
+        "% needs \\usepackage{booktabs}\n\\begin{tabular}{lllllll}\n\\toprule\nlabel & $",
     );
     text += &naming.parameter_latex();
-    text += "$ & density & below & above & status \\\\\n\\midrule\n";
+    text += "$ & density & below & above & change & status \\\\\n\\midrule\n";
     for row in labels.iter().filter(|row| row.kind != PointType::EndPoint) {
         let (value, error) = format_with_error(row.value, row.error);
         let density = row.observable.map_or(String::new(), |observable| {
@@ -125,9 +149,10 @@ pub fn bifurcations_tex(naming: &Naming<'_>, labels: &[LabelledPoint]) -> String
                 naming.observable_latex(observable).trim_matches(['(', ')'])
             )
         });
-        let [label, .., before, after, status] = words(naming, row).map(|word| escape(&word));
+        let [label, _, _, _, _, _, _, before, after, status, change, ..] =
+            words(naming, row).map(|word| escape(&word));
         text += &format!(
-            "{label} & ${value} \\pm {error}$ & {density} & {before} & {after} & {status} \\\\\n"
+            "{label} & ${value} \\pm {error}$ & {density} & {before} & {after} & {change} & {status} \\\\\n"
         );
     }
     text + "\\bottomrule\n\\end{tabular}\n"

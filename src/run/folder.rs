@@ -3,14 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use super::{
-    DensityStore, Manifest, Naming, RunError, atomic::write_atomically, bifurcations,
+    DensityStore, Manifest, Naming, RunError, atomic::write_atomically, bifurcations, checks,
     staged::link_tree, tables,
 };
 use crate::continuation::{Point, SweepResult};
 use crate::density::{EstimatedDensity, Observable};
 
 /// Everything a run may leave in its folder.
-pub(super) const ENTRIES: [&str; 9] = [
+pub(super) const ENTRIES: [&str; 10] = [
     "run.json",
     "points.csv",
     "features.csv",
@@ -19,8 +19,12 @@ pub(super) const ENTRIES: [&str; 9] = [
     "bifurcations.tex",
     "bifurcations.json",
     "densities.zarr",
+    "checks.csv",
     "figures",
 ];
+
+/// What a sweep solved for: it stays when the run is detected again.
+pub(super) const SOLVED: [&str; 2] = ["densities.zarr", "checks.csv"];
 
 /// Where an earlier run in the same folder is moved.
 pub(super) const PREVIOUS: &str = "previous";
@@ -119,6 +123,10 @@ impl RunFolder {
     /// [`RunError`] when a file cannot be composed or written.
     pub fn finish(&mut self, naming: &Naming<'_>, result: &SweepResult) -> Result<(), RunError> {
         self.write_tables(naming, result)?;
+        if let Some(finer) = &result.finer {
+            let text = checks::checks_csv(naming, &result.observables, finer)?;
+            self.write("checks.csv", &text)?;
+        }
         let densities: Vec<(f64, &[EstimatedDensity])> = result
             .points
             .iter()
@@ -128,15 +136,16 @@ impl RunFolder {
         self.store.replace(naming, &densities)
     }
 
-    /// Takes over the densities of another run, which keeps them.
+    /// Takes over what another run solved for (densities, checks on a finer grid); that run keeps it.
     ///
     /// # Errors
     /// [`RunError::Read`] or [`RunError::Write`].
-    pub fn share_densities(&self, store: &Path) -> Result<(), RunError> {
-        link_tree(store, &self.path.join("densities.zarr"))
+    pub fn share_solutions(&self, run: &Path) -> Result<(), RunError> {
+        let mut entries = SOLVED.into_iter();
+        entries.try_for_each(|entry| link_tree(&run.join(entry), &self.path.join(entry)))
     }
 
-    /// Writes all tables of a finished sweep.
+    /// Writes all tables that detection and location make.
     ///
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.

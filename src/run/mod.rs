@@ -4,6 +4,7 @@
 mod arrays;
 mod atomic;
 mod bifurcations;
+mod checks;
 mod folder;
 mod latex;
 mod manifest;

@@ -2,11 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::folder::{ENTRIES, PREVIOUS};
+use super::folder::{ENTRIES, PREVIOUS, SOLVED};
 use super::{RunError, RunFolder};
-
-/// The store, which detection does not change.
-const DENSITIES: &str = "densities.zarr";
 
 /// A new version in the making. Dropped before it is in place, it leaves the run as it was.
 #[derive(Debug)]
@@ -29,7 +26,7 @@ impl StagedRun {
         })
     }
 
-    /// The folder to write the new version to; everything but the densities.
+    /// The folder to write the new version to; everything but what was solved for.
     ///
     /// # Errors
     /// [`RunError::Write`].
@@ -60,7 +57,7 @@ impl StagedRun {
         }
         rename(&kept, &previous)?;
         // A file is replaced in one step; a folder must make room first.
-        for entry in ENTRIES.into_iter().filter(|&entry| entry != DENSITIES) {
+        for entry in ENTRIES.into_iter().filter(|entry| !SOLVED.contains(entry)) {
             let (fresh, place) = (self.fresh().join(entry), self.home.join(entry));
             if place.is_dir() {
                 rename(&place, &self.staging.path().join(entry))?;

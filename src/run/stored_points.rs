@@ -19,6 +19,17 @@ pub(super) fn read_points(
     naming: &Naming<'_>,
     methods: &[&'static str],
 ) -> Result<Vec<Point>, RunError> {
+    read_rows(path, |row| row.point(naming, methods))
+}
+
+/// Reads every row of a table.
+///
+/// # Errors
+/// [`RunError::Read`], and those of `parse`.
+pub(super) fn read_rows<T>(
+    path: &Path,
+    parse: impl Fn(&Row<'_>) -> Result<T, RunError>,
+) -> Result<Vec<T>, RunError> {
     let bytes = std::fs::read(path).map_err(|source| RunError::Read {
         path: path.to_owned(),
         source,
@@ -36,8 +47,7 @@ pub(super) fn read_points(
             .map(|name| String::from_utf8_lossy(name).into_owned())
             .collect(),
     };
-    table.require(naming.parameter)?;
-    let mut points = Vec::new();
+    let mut rows = Vec::new();
     for record in reader.byte_records() {
         let record = record.map_err(|error| unreadable(path, &error))?;
         let line = record.position().map_or(0, csv::Position::line);
@@ -49,9 +59,9 @@ pub(super) fn read_points(
             line,
             cells: cells.collect(),
         };
-        points.push(row.point(naming, methods)?);
+        rows.push(parse(&row)?);
     }
-    Ok(points)
+    Ok(rows)
 }
 
 fn unreadable(path: &Path, error: &csv::Error) -> RunError {
@@ -62,7 +72,7 @@ fn unreadable(path: &Path, error: &csv::Error) -> RunError {
 }
 
 /// A table's columns.
-struct Columns {
+pub(super) struct Columns {
     path: PathBuf,
     names: Vec<String>,
 }
@@ -81,7 +91,7 @@ impl Columns {
 }
 
 /// One row.
-struct Row<'t> {
+pub(super) struct Row<'t> {
     table: &'t Columns,
     /// Line of the file, counted from 1.
     line: u64,
@@ -137,7 +147,7 @@ impl Row<'_> {
         })
     }
 
-    fn text(&self, column: &str) -> Result<&str, RunError> {
+    pub(super) fn text(&self, column: &str) -> Result<&str, RunError> {
         let index = self.table.require(column)?;
         match self.cells.get(index) {
             Some(cell) => Ok(cell),
@@ -165,7 +175,7 @@ impl Row<'_> {
             .map_err(|_| self.wrong(column, text, "a whole number"))
     }
 
-    fn optional(&self, column: &str) -> Result<Option<f64>, RunError> {
+    pub(super) fn optional(&self, column: &str) -> Result<Option<f64>, RunError> {
         match self.text(column)? {
             "" => Ok(None),
             _ => self.number(column).map(Some),
@@ -176,13 +186,13 @@ impl Row<'_> {
         Ok(self.optional(column)?.unwrap_or(f64::NAN))
     }
 
-    fn number(&self, column: &str) -> Result<f64, RunError> {
+    pub(super) fn number(&self, column: &str) -> Result<f64, RunError> {
         let text = self.text(column)?;
         let number = text.parse().ok().filter(|number: &f64| number.is_finite());
         number.ok_or_else(|| self.wrong(column, text, "a number"))
     }
 
-    fn wrong(&self, column: &str, value: &str, wanted: &str) -> RunError {
+    pub(super) fn wrong(&self, column: &str, value: &str, wanted: &str) -> RunError {
         RunError::Row {
             path: self.table.path.clone(),
             line: self.line,

@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 
+use super::checks::read_checks;
 use super::stored_densities::StoredDensities;
 use super::stored_points::read_points;
 use super::{Ending, Naming, PhaseSeconds, RunError};
-use crate::continuation::Point;
+use crate::continuation::{FinerIndicator, Point};
 use crate::density::Observable;
 use crate::space::CellSpace;
 
@@ -109,9 +110,20 @@ impl StoredRun {
         &self.manifest.warnings
     }
 
-    /// The store of the densities; not there when no point has any.
-    pub fn densities(&self) -> PathBuf {
-        self.path.join("densities.zarr")
+    /// What the sweep saw on its finer grid, of `observables`; `None` where it made no checks.
+    ///
+    /// # Errors
+    /// [`RunError::Read`], [`RunError::Column`] and [`RunError::Row`].
+    pub fn finer(
+        &self,
+        naming: &Naming<'_>,
+        observables: &[Observable],
+    ) -> Result<Option<Vec<FinerIndicator>>, RunError> {
+        let path = self.path.join("checks.csv");
+        let there = path.is_file();
+        there
+            .then(|| read_checks(&path, naming, observables))
+            .transpose()
     }
 
     /// All points in the order of the table, with the densities of `observables`, bit for bit as they were solved; detections
@@ -133,7 +145,7 @@ impl StoredRun {
         if points.iter().all(|point| point.moments.is_empty()) {
             return Ok(points);
         }
-        let path = self.densities();
+        let path = self.path.join("densities.zarr");
         let stored = StoredDensities::open(&path, naming, space, observables)?;
         for point in points.iter_mut().filter(|point| !point.moments.is_empty()) {
             point.densities = stored.at(point.value)?.ok_or_else(|| RunError::NoDensity {

@@ -36,6 +36,7 @@ fn point(value: f64, solved: bool) -> Point {
         structure: crate::density::Structure::default(),
     };
     let detection = Detection {
+        indicators: Vec::new(),
         signature: Signature {
             peaks: 2,
             craters: 1,
@@ -95,6 +96,7 @@ fn result(points: Vec<Point>) -> SweepResult {
         observables: observables(),
         points,
         labels: Vec::new(),
+        finer: None,
         interrupted: false,
     }
 }
@@ -191,6 +193,9 @@ fn tables_for_people_round_to_the_error() {
         before: signature(2),
         after: signature(1),
         status: Some(BifurcationStatus::Unresolved),
+        change: "symmetric split",
+        method: "curvature at the centre",
+        parts: None,
     };
     let end = LabelledPoint {
         label: "EP1".into(),
@@ -203,24 +208,24 @@ fn tables_for_people_round_to_the_error() {
     };
     let rows = [end, row];
     insta::assert_snapshot!(bifurcations_markdown(&naming(), &rows), @r"
-    | label | f_c | bracket | observable | before | after | status |
-    | --- | --- | --- | --- | --- | --- | --- |
-    | PB1 | -0.01235 ± 0.00045 | [-0.01270, -0.01190] | y | 2 peaks | 1 peak | unresolved |
+    | label | f_c | bracket | observable | before | after | change | status |
+    | --- | --- | --- | --- | --- | --- | --- | --- |
+    | PB1 | -0.01235 ± 0.00045 | [-0.01270, -0.01190] | y | 2 peaks | 1 peak | symmetric split | unresolved |
     ");
     insta::assert_snapshot!(bifurcations_tex(&naming(), &rows), @r"
     % needs \usepackage{booktabs}
-    \begin{tabular}{llllll}
+    \begin{tabular}{lllllll}
     \toprule
-    label & $f_{c}$ & density & below & above & status \\
+    label & $f_{c}$ & density & below & above & change & status \\
     \midrule
-    PB1 & $-0.01235 \pm 0.00045$ & $p(\dot{x})$ & 2 peaks & 1 peak & unresolved \\
+    PB1 & $-0.01235 \pm 0.00045$ & $p(\dot{x})$ & 2 peaks & 1 peak & symmetric split & unresolved \\
     \bottomrule
     \end{tabular}
     ");
     let csv = bifurcations_csv(&naming(), &rows).unwrap();
     assert_eq!(
         csv.lines().next().unwrap(),
-        "label,parameter,value,error,lower,upper,observable,before,after,status"
+        "label,parameter,value,error,lower,upper,observable,before,after,status,change,method,error_solver,error_grid,error_sampling"
     );
     assert!(
         csv.contains("PB1,f_c,-0.012345678,0.00045,-0.0127,-0.0119,y,2 peaks,1 peak,unresolved")

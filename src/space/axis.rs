@@ -203,6 +203,23 @@ impl Axis {
         }
     }
 
+    /// The same axis with about `factor` times as many cells, graded alike: faces stay on the points it is graded
+    /// toward, and an even number of cells stays even, so that a face stays in the middle.
+    pub fn refined(&self, factor: f64) -> Self {
+        let finer = |cells: usize| {
+            let odd = cells % 2;
+            2 * (0.5 * (cells as f64 * factor - odd as f64)).round() as usize + odd
+        };
+        let mut first_cell = 0;
+        let pieces = self.pieces.iter().map(|piece| {
+            let cells = finer(piece.cells).max(piece.cells);
+            let counts = (first_cell, cells);
+            first_cell += cells;
+            Piece::new((piece.from, piece.to), counts, piece.bulk, &piece.terms)
+        });
+        Self::from_pieces(pieces.collect())
+    }
+
     /// Number of cells.
     pub fn count(&self) -> usize {
         self.edges.len() - 1

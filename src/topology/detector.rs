@@ -1,10 +1,14 @@
 //! The detector by persistence: components of the superlevel and sublevel sets, judged and refined.
 
+use super::indicator::{at_centre, corrected, shoulder};
 use super::persistence::{Component, Grid, components};
 use super::refine::refine;
 use super::ridge;
 use super::significance::{Judgement, Limits};
-use super::{DetectOptions, Detection, Detector, Feature, FeatureKind, Signature, Verdict};
+use super::{
+    DetectOptions, Detection, Detector, Feature, FeatureKind, Indicator, IndicatorKind, Signature,
+    Verdict,
+};
 use crate::density::EstimatedDensity;
 
 /// How many absent features of each kind are listed, so that a birth can be followed.
@@ -90,10 +94,6 @@ impl PersistenceDetector {
 }
 
 impl Candidate {
-    fn is_present(&self) -> bool {
-        self.judgement.verdict == Verdict::Present
-    }
-
     /// The feature of the given kind at the given cell, which is that of birth or death.
     fn feature(&self, estimated: &EstimatedDensity, kind: FeatureKind, cell: usize) -> Feature {
         let place = refine(estimated, cell, kind);
@@ -139,6 +139,7 @@ impl Detector for PersistenceDetector {
                     peaks: 0,
                     craters: 0,
                 },
+                indicators: Vec::new(),
                 features: Vec::new(),
             };
         };
@@ -152,11 +153,6 @@ impl Detector for PersistenceDetector {
         let (peaks, craters) = components(grid);
         let peaks = self.judged(peaks, false, density, &limits);
         let craters = self.judged(craters, true, density, &limits);
-        let count = |found: &[Candidate]| found.iter().filter(|one| one.is_present()).count();
-        let signature = Signature {
-            peaks: count(&peaks),
-            craters: count(&craters),
-        };
         let at_birth =
             |kind| move |one: &Candidate| one.feature(density, kind, one.component.birth);
         let mut features: Vec<Feature> = peaks.iter().map(at_birth(FeatureKind::Peak)).collect();
@@ -165,10 +161,41 @@ impl Detector for PersistenceDetector {
             Some(peak.feature(density, FeatureKind::Valley, saddle))
         }));
         features.extend(craters.iter().map(at_birth(FeatureKind::Crater)));
+        let indicators = at_centre(density);
+        let places = |kind| {
+            let present = features
+                .iter()
+                .filter(|feature| feature.kind == kind && feature.verdict == Verdict::Present);
+            present
+                .map(|feature| feature.position.clone())
+                .collect::<Vec<_>>()
+        };
+        let (peaks, craters) = (places(FeatureKind::Peak), places(FeatureKind::Crater));
         Detection {
-            signature,
+            signature: corrected(density, &indicators, self.doubt(), &peaks, &craters),
+            indicators,
             features,
         }
+    }
+
+    fn indicator(
+        &self,
+        density: &EstimatedDensity,
+        kind: IndicatorKind,
+        near: &[f64],
+    ) -> Option<Indicator> {
+        match kind {
+            IndicatorKind::Shoulder { rising } => shoulder(density, *near.first()?, rising),
+            kind => at_centre(density).into_iter().find(|one| one.kind == kind),
+        }
+    }
+
+    fn confidence(&self) -> f64 {
+        self.options.confidence
+    }
+
+    fn doubt(&self) -> f64 {
+        (1.0 - self.options.confidence) / self.looks.max(1) as f64
     }
 }
 

@@ -1,8 +1,10 @@
 //! What a density looks like: its significant peaks and craters, and the signature they make.
 
 mod detector;
+mod indicator;
 mod persistence;
 mod quadratic;
+mod reconstruction;
 mod refine;
 mod ridge;
 mod significance;
@@ -15,6 +17,8 @@ mod calibration_tests;
 mod invariance_tests;
 
 pub use detector::PersistenceDetector;
+pub(crate) use indicator::two_sided_limit;
+pub use indicator::{Indicator, IndicatorKind};
 
 use crate::density::EstimatedDensity;
 
@@ -110,8 +114,10 @@ impl std::fmt::Display for Signature {
 /// The detector's findings on one density.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Detection {
-    /// Counts of the features whose verdict is `Present`.
+    /// Counts of the features whose verdict is `Present`, corrected by the indicators at a centre of symmetry.
     pub signature: Signature,
+    /// Indicators at the centre of symmetry; empty without one.
+    pub indicators: Vec<Indicator>,
     /// All features that are `Present` or `Unresolved`, and of each kind the strongest `Absent` ones (so that
     /// the birth of a feature can be followed), by kind and falling persistence.
     pub features: Vec<Feature>,
@@ -135,4 +141,26 @@ pub trait Detector: Send + Sync {
     /// Features of one density. Scaling the values (and errors), mirroring an axis, or shifting an axis
     /// changes nothing but the numbers scaled, mirrored or shifted.
     fn detect(&self, density: &EstimatedDensity) -> Detection;
+
+    /// An indicator of the given kind nearest to a place, to follow it along a sweep; `None` where there is none.
+    fn indicator(
+        &self,
+        density: &EstimatedDensity,
+        kind: IndicatorKind,
+        near: &[f64],
+    ) -> Option<Indicator> {
+        let _ = (density, kind, near);
+        None
+    }
+
+    /// Probability with which errors are stated and a sweep's findings hold.
+    fn confidence(&self) -> f64 {
+        0.95
+    }
+
+    /// Probability that the sign of a single indicator may be wrong, so that all of a sweep are right at the
+    /// chosen confidence.
+    fn doubt(&self) -> f64 {
+        0.05
+    }
 }

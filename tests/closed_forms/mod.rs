@@ -27,6 +27,7 @@ fn detection(features: Vec<Feature>) -> Detection {
             .count()
     };
     Detection {
+        indicators: Vec::new(),
         signature: Signature {
             peaks: count(FeatureKind::Peak),
             craters: count(FeatureKind::Crater),
@@ -81,6 +82,9 @@ fn bifurcation(
         before: None,
         after: None,
         status: Some(status),
+        change: "",
+        method: "",
+        parts: None,
     }
 }
 
@@ -151,6 +155,7 @@ pub(crate) fn bistable() -> SweepResult {
             Observable::Marginal(0),
             unresolved,
         )],
+        finer: None,
         interrupted: false,
     }
 }

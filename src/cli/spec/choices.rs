@@ -1,5 +1,6 @@
 //! The parts of a specification that have defaults: method, observables, detection, location, figures.
 
+use super::super::keys::SWITCH;
 use crate::cli::diagnostic::Diagnostic;
 use crate::cli::reader::{Reader, Sited};
 use crate::continuation::{LocateOptions, evenly_spaced};
@@ -202,10 +203,14 @@ pub(super) fn read_detect(reader: &Reader) -> DetectOptions {
 
 /// Reads `[locate]`.
 pub(super) fn read_locate(reader: &Reader) -> LocateOptions {
-    let tolerance = reader.number(&["locate", "tolerance"]);
-    tolerance.map_or_else(LocateOptions::default, |tolerance| LocateOptions {
-        tolerance: tolerance.value,
-    })
+    let default = LocateOptions::default();
+    let number = |key| reader.number(&["locate", key]).map(|number| number.value);
+    let check = reader.text(&["locate", "grid_check"]);
+    LocateOptions {
+        tolerance: number("tolerance").unwrap_or(default.tolerance),
+        largest_distance: number("largest_distance").unwrap_or(default.largest_distance),
+        grid_check: check.map_or(default.grid_check, |word| word.value == SWITCH[0]),
+    }
 }
 
 /// Reads `figures.at`; left out, it is both ends and two of the sweep's values between.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::cli::keys::{number, quoted, step};
+use crate::cli::keys::{SWITCH, number, quoted, step};
 use crate::density::Observable;
 use crate::method::{GeneratorMethodOptions, MethodOptions, SgcmOptions};
 
@@ -59,6 +59,10 @@ impl SweepSpec {
             "\n[locate]\ntolerance = {}",
             number(self.locate.tolerance)
         )?;
+        let distance = number(self.locate.largest_distance);
+        writeln!(text, "largest_distance = {distance}")?;
+        let check = quoted(SWITCH[usize::from(!self.locate.grid_check)]);
+        writeln!(text, "grid_check = {check}")?;
         let formats = self
             .figure_formats
             .iter()

@@ -108,6 +108,7 @@ fn files(folder: &Path) -> Vec<String> {
         "points.csv",
         "features.csv",
         "densities.zarr",
+        "checks.csv",
         "run.json",
     ]
     .map(str::to_owned)

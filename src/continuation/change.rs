@@ -1,0 +1,209 @@
+//! Changes of signature between neighbouring points, and the indicator that decides each.
+//!
+//! A signature changes where persistence passes what noise and floor allow, or where an indicator at a centre of
+//! symmetry changes sign. The indicator's own change of sign is the bifurcation: between the same two points, or, when
+//! the signature is late, further on the side where the feature is absent.
+
+use super::Point;
+use super::bracket::{COUNTED, count, deciding_feature};
+use crate::topology::{Detector, FeatureKind, Indicator, IndicatorKind, Signature};
+
+/// A change of one observable's signature between two neighbouring points.
+#[derive(Debug, Clone)]
+pub(super) struct Change {
+    /// Place of the observable among those that are watched.
+    pub(super) observable: usize,
+    /// The point below; the next one is the point above.
+    pub(super) left: usize,
+    pub(super) before: Signature,
+    pub(super) after: Signature,
+    /// Where the indicator that decides changes sign; `None` when only persistence tells.
+    pub(super) crossing: Option<Crossing>,
+}
+
+/// A change of sign of an indicator between two neighbouring points.
+#[derive(Debug, Clone)]
+pub(super) struct Crossing {
+    /// The point below; the next one is the point above.
+    pub(super) left: usize,
+    /// The indicator at both.
+    pub(super) ends: [Indicator; 2],
+}
+
+impl Crossing {
+    pub(super) fn kind(&self) -> IndicatorKind {
+        self.ends[0].kind
+    }
+}
+
+/// All changes along points that are solved, in ascending parameter; both indicators of a centre may change between
+/// the same points, and are then changes of their own only where a point separates them.
+pub(super) fn changes(points: &[&Point], detector: &dyn Detector) -> Vec<Change> {
+    let observables = points.first().map_or(0, |point| point.detections.len());
+    let mut found = Vec::new();
+    for observable in 0..observables {
+        for left in 1..points.len() {
+            let signature = |index: usize| points[index].detections[observable].signature;
+            let (before, after) = (signature(left - 1), signature(left));
+            if before != after {
+                found.push(Change {
+                    observable,
+                    left: left - 1,
+                    before,
+                    after,
+                    crossing: crossing(points, detector, observable, left - 1),
+                });
+            }
+        }
+    }
+    found
+}
+
+/// The change of sign that belongs to a change of signature.
+fn crossing(
+    points: &[&Point],
+    detector: &dyn Detector,
+    observable: usize,
+    left: usize,
+) -> Option<Crossing> {
+    let here = at_centre(points, observable, left);
+    here.or_else(|| doubtful_centre(points, detector, observable, left))
+        .or_else(|| at_shoulder(points, detector, observable, left))
+}
+
+/// An indicator of the centre that changes sign between two neighbours. A value of zero counts with the side below.
+fn at_centre(points: &[&Point], observable: usize, left: usize) -> Option<Crossing> {
+    let (a, b) = (points.get(left)?, points.get(left + 1)?);
+    let pairs = a.detections[observable].indicators.iter();
+    pairs
+        .zip(&b.detections[observable].indicators)
+        .find(|(a, b)| a.kind == b.kind && changes_sign(a, b))
+        .map(|(a, b)| Crossing {
+            left,
+            ends: [a.clone(), b.clone()],
+        })
+}
+
+fn changes_sign(a: &Indicator, b: &Indicator) -> bool {
+    (a.value <= 0.0) != (b.value <= 0.0)
+}
+
+/// The nearest change of sign at the centre, when all points on the way to it leave the sign in doubt.
+fn doubtful_centre(
+    points: &[&Point],
+    detector: &dyn Detector,
+    observable: usize,
+    left: usize,
+) -> Option<Crossing> {
+    let doubtful = |index: usize| {
+        let indicators = &points[index].detections[observable].indicators;
+        let unsure = |one: &Indicator| one.sign(detector.doubt()).is_none();
+        indicators.iter().any(unsure)
+    };
+    let below = (0..=left).rev().take_while(|&index| doubtful(index));
+    let above = (left + 1..points.len()).take_while(|&index| doubtful(index));
+    let below = below.filter_map(|index| at_centre(points, observable, index.checked_sub(1)?));
+    let above = above.filter_map(|index| at_centre(points, observable, index));
+    below
+        .chain(above)
+        .min_by_key(|found| found.left.abs_diff(left))
+}
+
+/// The birth of the deciding peak with its valley: the slope between them, followed to where it changes sign.
+fn at_shoulder(
+    points: &[&Point],
+    detector: &dyn Detector,
+    observable: usize,
+    left: usize,
+) -> Option<Crossing> {
+    let detections = [left, left + 1].map(|index| &points[index].detections[observable]);
+    let counts = detections.map(|one| count(one, FeatureKind::Peak));
+    if counts[0] == counts[1]
+        || COUNTED.iter().any(|&kind| {
+            kind != FeatureKind::Peak && count(detections[0], kind) != count(detections[1], kind)
+        })
+    {
+        return None;
+    }
+    let below = counts[0] > counts[1];
+    let present = if below { left } else { left + 1 };
+    let detection = &points[present].detections[observable];
+    let peak = deciding_feature(detection, FeatureKind::Peak, counts[0].min(counts[1]))?;
+    let valley = detection
+        .features
+        .iter()
+        .find(|one| one.kind == FeatureKind::Valley && one.persistence == peak.persistence)?;
+    let rising = valley.position.first()? < peak.position.first()?;
+    let kind = IndicatorKind::Shoulder { rising };
+    let mut near: Vec<f64> = (valley.position.iter().zip(&peak.position))
+        .map(|(a, b)| 0.5 * (a + b))
+        .collect();
+    let path: Vec<usize> = match below {
+        true => (present..points.len()).collect(),
+        false => (0..=present).rev().collect(),
+    };
+    let mut last: Option<Indicator> = None;
+    for index in path {
+        let density = &points[index].densities[observable];
+        let found = detector.indicator(density, kind, &near)?;
+        near.clone_from(&found.place);
+        if let Some(previous) = last {
+            if previous.value <= 0.0 {
+                return None;
+            }
+            if found.value <= 0.0 {
+                return Some(match below {
+                    true => Crossing {
+                        left: index - 1,
+                        ends: [previous, found],
+                    },
+                    false => Crossing {
+                        left: index,
+                        ends: [found, previous],
+                    },
+                });
+            }
+        }
+        last = Some(found);
+    }
+    None
+}
+
+/// A parameter value between points where an indicator at a centre, of one sign at three neighbours, comes so near
+/// to zero that it may have changed sign twice.
+pub(super) fn dip(points: &[&Point], tolerance: f64) -> Option<f64> {
+    let observables = points.first().map_or(0, |point| point.detections.len());
+    let triples = points.windows(3);
+    triples.into_iter().find_map(|triple| {
+        (0..observables).find_map(|observable| {
+            let of = |index: usize| &triple[index].detections[observable].indicators;
+            (0..of(1).len()).find_map(|which| {
+                let at = |index: usize| of(index).get(which);
+                let (a, b, c) = (at(0)?, at(1)?, at(2)?);
+                let same = a.kind == b.kind && b.kind == c.kind;
+                let x = [triple[0].value, triple[1].value, triple[2].value];
+                let y = [a.value, b.value, c.value];
+                let vertex = if same { lowest(x, y) } else { None }?;
+                let apart = x.iter().all(|x| (x - vertex).abs() > tolerance);
+                apart.then_some(vertex)
+            })
+        })
+    })
+}
+
+/// Vertex of the parabola through three points of one sign, if it lies between them and nearer to zero than a
+/// fourth of the middle one.
+fn lowest(x: [f64; 3], y: [f64; 3]) -> Option<f64> {
+    let sign = y[1].signum();
+    let y = y.map(|value| value * sign);
+    if y.iter().any(|&value| value <= 0.0) || y[1] >= y[0] || y[1] >= y[2] {
+        return None;
+    }
+    let (h, k) = (x[1] - x[0], x[2] - x[1]);
+    let (down, up) = ((y[1] - y[0]) / h, (y[2] - y[1]) / k);
+    let bend = (up - down) / (h + k);
+    let tilt = (down * k + up * h) / (h + k);
+    let step = -0.5 * tilt / bend;
+    let least = y[1] + 0.5 * tilt * step;
+    (least < 0.25 * y[1]).then_some(x[1] + step)
+}

@@ -1,0 +1,219 @@
+//! Where a signature changes when no indicator tells: the band from persistence alone.
+//!
+//! A feature is counted when its persistence q exceeds the noise, which is later than its birth. Near a
+//! smooth P-bifurcation, and at the kink of a switching surface, q grows like (θ - θ*)²; at the birth of a
+//! peak away from symmetry like (θ - θ*)^{3/2}; where the rim of a crater breaks like θ - θ*. The straight
+//! line through √q therefore meets zero at θ* in the first case and beyond it, seen from the side where the feature
+//! is present, in the others: θ* lies between that zero and the last point where the feature is present.
+//! The zero's own uncertainty comes from shifting all q by ± two standard errors (common random numbers make
+//! neighbouring errors alike, so they do not average out) and from dropping the point farthest away. A feature only a
+//! few cells from its neighbour is seen through the cells' averages, which shift its birth: a second line through points
+//! where it is well apart must agree, and the band holds both zeros. A change whose feature is nowhere well apart is
+//! `unconfirmed`: it may be one of the cells, not of the density.
+
+use super::Point;
+use super::bracket::{COUNTED, count, deciding_feature};
+use crate::density::EstimatedDensity;
+use crate::topology::{Detection, Feature, FeatureKind, Verdict};
+
+/// Points used to extrapolate the birth of a feature.
+const FITTED_POINTS: usize = 5;
+
+/// Cells between two features beyond which the cells' averages do not blur them into one.
+const WELL_APART: f64 = 5.0;
+
+/// The band of a change of one observable's signature.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Band {
+    pub(super) value: f64,
+    pub(super) lower: f64,
+    pub(super) upper: f64,
+    /// Whether every deciding feature is well apart from others at some point.
+    pub(super) resolved_by_cells: bool,
+}
+
+/// The band of a change between `points[left]` and its successor: the hull over the counts that differ.
+pub(super) fn band(points: &[&Point], observable: usize, left: usize) -> Band {
+    let (a, b) = (points[left], points[left + 1]);
+    let mut change = Band {
+        value: 0.5 * (a.value + b.value),
+        lower: a.value,
+        upper: b.value,
+        resolved_by_cells: true,
+    };
+    let mut births = Vec::new();
+    for kind in COUNTED {
+        let counts = [a, b].map(|point| count(&point.detections[observable], kind));
+        if counts[0] != counts[1] {
+            let rank = counts[0].min(counts[1]);
+            let present = present_side(points, observable, left, kind, rank, counts[0] > counts[1]);
+            change.resolved_by_cells &= present.iter().any(|seen| seen.cells_apart >= WELL_APART);
+            births.extend(births_of(&present));
+        }
+    }
+    for &(value, lower, upper) in &births {
+        change.lower = change.lower.min(lower);
+        change.upper = change.upper.max(upper);
+        change.value = value;
+    }
+    if births.len() > 1 {
+        change.value = births.iter().map(|birth| birth.0).sum::<f64>() / births.len() as f64;
+    }
+    let range = (points[0].value, points[points.len() - 1].value);
+    change.lower = change.lower.max(range.0);
+    change.upper = change.upper.min(range.1);
+    change.value = change.value.clamp(change.lower, change.upper);
+    change
+}
+
+/// The deciding feature at one point where it is present.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    value: f64,
+    persistence: f64,
+    error: f64,
+    /// Distance to the nearest other feature, in cells.
+    cells_apart: f64,
+}
+
+/// The deciding feature at the points where it is present, nearest to the change first.
+fn present_side(
+    points: &[&Point],
+    observable: usize,
+    left: usize,
+    kind: FeatureKind,
+    rank: usize,
+    present_below: bool,
+) -> Vec<Seen> {
+    let indices: Vec<usize> = if present_below {
+        (0..=left).rev().collect()
+    } else {
+        (left + 1..points.len()).collect()
+    };
+    let seen = |index: usize| {
+        let point = points[index];
+        let detection = &point.detections[observable];
+        let feature = deciding_feature(detection, kind, rank)
+            .filter(|feature| feature.verdict == Verdict::Present)?;
+        Some(Seen {
+            value: point.value,
+            persistence: feature.persistence,
+            error: feature.standard_error,
+            cells_apart: cells_apart(feature, detection, &point.densities[observable]),
+        })
+    };
+    indices.into_iter().map_while(seen).collect()
+}
+
+/// Distance of a feature to the nearest other one that is present, in cells (the largest over the axes).
+fn cells_apart(feature: &Feature, detection: &Detection, density: &EstimatedDensity) -> f64 {
+    let others = detection.features.iter();
+    others
+        .filter(|other| other.verdict == Verdict::Present && other.position != feature.position)
+        .map(|other| {
+            let axes = density.density.axes.iter().enumerate();
+            axes.map(|(axis, cells)| {
+                let (from, to) = (feature.position[axis], other.position[axis]);
+                let width = cells.find(from).map_or(f64::INFINITY, |c| cells.width(c));
+                (to - from).abs() / width
+            })
+            .fold(0.0, f64::max)
+        })
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// Births by a line through the nearest points, and by one through the nearest where the feature is well apart.
+fn births_of(present: &[Seen]) -> Vec<(f64, f64, f64)> {
+    let nearest = |apart: f64| -> Vec<(f64, f64, f64)> {
+        let points = present.iter().filter(|seen| seen.cells_apart >= apart);
+        points
+            .map(|seen| (seen.value, seen.persistence, seen.error))
+            .take(FITTED_POINTS)
+            .collect()
+    };
+    let near = birth(&nearest(0.0));
+    let apart = birth(&nearest(WELL_APART));
+    match (near, apart) {
+        // The zero of the line that the cells do not blur is the better value; the band holds both.
+        (Some(near), Some(apart)) => {
+            vec![(apart.0, near.1.min(apart.1), near.2.max(apart.2))]
+        }
+        (near, apart) => near.into_iter().chain(apart).collect(),
+    }
+}
+
+/// Birth of a feature with the ends of its uncertainty: `(value, lower, upper)`, from the zero of the line through
+/// √q. `None` with fewer than two points, or when q does not grow away from the change.
+fn birth(present: &[(f64, f64, f64)]) -> Option<(f64, f64, f64)> {
+    let value = zero_of_root(present, 0.0)?;
+    let mut ends = vec![value];
+    for shift in [-2.0, 2.0] {
+        ends.extend(zero_of_root(present, shift));
+    }
+    if present.len() > 2 {
+        ends.extend(zero_of_root(&present[..present.len() - 1], 0.0));
+    }
+    let lower = ends.iter().copied().fold(f64::INFINITY, f64::min);
+    let upper = ends.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    Some((value, lower, upper))
+}
+
+/// Zero of the least-squares line through √(q + shift · standard error) against the parameter.
+fn zero_of_root(present: &[(f64, f64, f64)], shift: f64) -> Option<f64> {
+    if present.len() < 2 {
+        return None;
+    }
+    let samples: Vec<(f64, f64)> = present
+        .iter()
+        .map(|&(value, q, error)| (value, (q + shift * error).max(0.0).sqrt()))
+        .collect();
+    let n = samples.len() as f64;
+    let mean_value = samples.iter().map(|s| s.0).sum::<f64>() / n;
+    let mean_root = samples.iter().map(|s| s.1).sum::<f64>() / n;
+    let covariance: f64 = samples
+        .iter()
+        .map(|s| (s.0 - mean_value) * (s.1 - mean_root))
+        .sum();
+    let spread: f64 = samples.iter().map(|s| (s.0 - mean_value).powi(2)).sum();
+    let slope = covariance / spread;
+    // The line must fall toward the change, else it says nothing of a birth.
+    let outward = present[present.len() - 1].0 - present[0].0;
+    (slope * outward > 0.0).then(|| mean_value - mean_root / slope)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_square_law_is_extrapolated_to_its_zero() {
+        let present: Vec<(f64, f64, f64)> = [0.1, 0.2, 0.3, 0.4]
+            .map(|theta: f64| (theta + 0.05, 7.0 * theta * theta, 0.0))
+            .to_vec();
+        let (value, lower, upper) = birth(&present).unwrap();
+        assert!((value - 0.05).abs() < 1e-12 && (upper - lower) < 1e-12);
+    }
+
+    #[test]
+    fn slower_laws_are_extrapolated_before_the_first_present_point_and_after_the_birth() {
+        for exponent in [1.5, 1.0] {
+            let present: Vec<(f64, f64, f64)> = [0.1, 0.2, 0.3]
+                .map(|theta: f64| (theta, theta.powf(exponent), 0.0))
+                .to_vec();
+            let (value, _, _) = birth(&present).unwrap();
+            assert!(
+                value < 0.0,
+                "the band from {value} to 0.1 holds the birth at 0"
+            );
+        }
+    }
+
+    #[test]
+    fn errors_widen_the_band_and_a_falling_law_gives_none() {
+        let present = [(0.1, 0.01, 0.002), (0.2, 0.04, 0.002), (0.3, 0.09, 0.002)];
+        let (value, lower, upper) = birth(&present).unwrap();
+        assert!(value.abs() < 1e-12 && lower < -0.005 && upper > 0.005);
+        assert!(birth(&[(0.1, 0.04, 0.0), (0.2, 0.01, 0.0)]).is_none());
+        assert!(birth(&[(0.1, 0.04, 0.0)]).is_none());
+    }
+}

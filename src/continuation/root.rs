@@ -1,0 +1,118 @@
+//! The zero of an indicator between two points, with the parts of its error.
+//!
+//! An error δg of the indicator moves its zero by δg/|g'|. Sampling is judged by the replicates' own zeros: with common
+//! random numbers their noise is the same at both points, and the jackknife sees what that does to the zero.
+
+use super::Point;
+use super::change::Crossing;
+use crate::topology::{Indicator, two_sided_limit};
+
+/// The parts of the error of a P-bifurcation's value, in units of the parameter; each bounds its part at the
+/// confidence of detection.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ErrorParts {
+    /// Solver, and interpolation between the two points.
+    pub solver: f64,
+    /// Cells, order of the scheme and of the reconstruction.
+    pub grid: f64,
+    /// Sampling.
+    pub sampling: f64,
+}
+
+impl ErrorParts {
+    /// The error: the sum of the parts.
+    pub fn total(&self) -> f64 {
+        self.solver + self.grid + self.sampling
+    }
+}
+
+/// A zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Root {
+    pub(super) value: f64,
+    /// Change of the indicator per unit of the parameter.
+    pub(super) slope: f64,
+    pub(super) error: ErrorParts,
+}
+
+/// The zero between the two points of a crossing.
+pub(super) fn root(points: &[&Point], crossing: &Crossing, confidence: f64) -> Root {
+    let (a, b) = (points[crossing.left], points[crossing.left + 1]);
+    let [low, high] = &crossing.ends;
+    let value = between((a.value, low.value), (b.value, high.value));
+    let slope = (high.value - low.value) / (b.value - a.value);
+    let share = (value - a.value) / (b.value - a.value);
+    let mix = |of: fn(&Indicator) -> f64| (1.0 - share) * of(low) + share * of(high);
+    let solver = a.report.solver_error.max(b.report.solver_error)
+        * mix(|indicator| indicator.sensitivity)
+        / slope.abs();
+    let error = ErrorParts {
+        solver,
+        grid: mix(|indicator| indicator.systematic_error) / slope.abs(),
+        sampling: sampling(a.value, b.value, crossing, value, slope, confidence),
+    };
+    Root {
+        value,
+        slope,
+        error,
+    }
+}
+
+/// Zero of the straight line through two points.
+pub(super) fn between(a: (f64, f64), b: (f64, f64)) -> f64 {
+    let root = a.0 - a.1 * (b.0 - a.0) / (b.1 - a.1);
+    root.clamp(a.0.min(b.0), a.0.max(b.0))
+}
+
+/// Half-width of the confidence interval of the zero, from the jackknife's zeros.
+fn sampling(a: f64, b: f64, crossing: &Crossing, value: f64, slope: f64, confidence: f64) -> f64 {
+    let [low, high] = &crossing.ends;
+    let limit = two_sided_limit(1.0 - confidence, low.degrees_of_freedom);
+    let groups = low.replicates.len();
+    if groups < 2 || high.replicates.len() != groups {
+        return limit_or_zero(limit, low.sampling_error.max(high.sampling_error)) / slope.abs();
+    }
+    // Linearised about the zero: a replicate's own slope would add noise of second order.
+    let share = (value - a) / (b - a);
+    let zeros: Vec<f64> = (low.replicates.iter().zip(&high.replicates))
+        .map(|(low, high)| -((1.0 - share) * low + share * high) / slope)
+        .collect();
+    let count = groups as f64;
+    let mean = zeros.iter().sum::<f64>() / count;
+    let squares: f64 = zeros.iter().map(|zero| (zero - mean).powi(2)).sum();
+    limit * ((count - 1.0) / count * squares).sqrt()
+}
+
+fn limit_or_zero(limit: f64, error: f64) -> f64 {
+    if error > 0.0 { limit * error } else { 0.0 }
+}
+
+/// Where to solve next to narrow the bracket of a crossing to `tolerance`; `None` when it is that narrow, or when the
+/// data cannot tell more.
+pub(super) fn next_value(
+    points: &[&Point],
+    crossing: &Crossing,
+    confidence: f64,
+    tolerance: f64,
+) -> Option<f64> {
+    let (a, b) = (points[crossing.left].value, points[crossing.left + 1].value);
+    let width = b - a;
+    // Rounding must not ask for one more step.
+    if width <= tolerance * (1.0 + 1e-9) {
+        return None;
+    }
+    let root = root(points, crossing, confidence);
+    if root.error.sampling > 0.5 * width {
+        return None;
+    }
+    let half = 0.5 * tolerance;
+    // An end that is on the zero already: the other end is brought as near.
+    let proposal = if root.value - a <= half {
+        a.max(root.value) + half
+    } else if b - root.value <= half {
+        b.min(root.value) - half
+    } else {
+        root.value
+    };
+    (proposal > a && proposal < b).then_some(proposal)
+}

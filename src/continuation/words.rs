@@ -1,0 +1,30 @@
+//! What happens at a P-bifurcation, in words.
+
+use crate::topology::{IndicatorKind, Signature};
+
+/// What happens as the parameter rises through a change of signature, decided by an indicator (`None`: by persistence)
+/// that rises or falls.
+pub(super) fn change(
+    kind: Option<IndicatorKind>,
+    rises: bool,
+    before: Signature,
+    after: Signature,
+) -> &'static str {
+    let craters = after.craters.cmp(&before.craters);
+    let peaks = after.peaks.cmp(&before.peaks);
+    use std::cmp::Ordering::{Equal, Greater, Less};
+    match (kind, craters, peaks) {
+        (Some(IndicatorKind::Curvature), ..) if rises => "symmetric split",
+        (Some(IndicatorKind::Curvature), ..) => "symmetric merger",
+        (Some(IndicatorKind::KinkSlope), Equal, _) if rises => "split at a kink",
+        (Some(IndicatorKind::KinkSlope), Equal, _) => "merger at a kink",
+        (Some(IndicatorKind::Shoulder { .. }), _, Greater) => "peak and valley are born",
+        (Some(IndicatorKind::Shoulder { .. }), ..) => "peak and valley vanish",
+        (_, Greater, _) => "crater opens",
+        (_, Less, _) => "crater closes",
+        (Some(_), Equal, _) if rises => "symmetric split",
+        (Some(_), Equal, _) => "symmetric merger",
+        (None, Equal, Greater) => "peak appears",
+        (None, Equal, _) => "peak vanishes",
+    }
+}

@@ -1,0 +1,211 @@
+//! Indicators at a centre of symmetry, and the signature that they imply.
+//!
+//! By symmetry the centre is a critical point of the density at every parameter value, so its type is that of the
+//! signs of the indicators there: all negative, a peak; all positive, the bottom of a valley or crater; mixed, a
+//! saddle. The type is known long before peaks stand out from each other, and decides between the signatures
+//! that persistence cannot tell apart: other critical points come in pairs.
+
+use super::window;
+use super::{Indicator, IndicatorKind};
+use crate::density::{EstimatedDensity, Kink};
+use crate::space::Axis;
+use crate::topology::Signature;
+use crate::topology::reconstruction::Line;
+
+/// Distance from the centre, in cells, within which a peak is the one at the centre.
+const NEAR: f64 = 3.0;
+
+/// Change of log p over the whole range that is rounding in a jump of its slope.
+const ROUNDING: f64 = 1e-7;
+
+/// The indicators at the centre of symmetry: one of a marginal, two of a joint density; none where the system
+/// declares no symmetry or the cells about the centre are too few.
+pub(crate) fn at_centre(estimated: &EstimatedDensity) -> Vec<Indicator> {
+    let Some(centre) = &estimated.structure.centre else {
+        return Vec::new();
+    };
+    let kinks: Vec<Option<&Kink>> = (0..centre.len())
+        .map(|k| kink_at(estimated, k, centre[k]))
+        .collect();
+    let found = match (centre.as_slice(), kinks.as_slice()) {
+        (_, [Some(kink)]) => slope(estimated, kink, centre).map(|one| vec![one]),
+        (&[at], [None]) => curvature(estimated, at).map(|one| vec![one]),
+        (_, [None, None]) => principal(estimated, centre),
+        (_, [Some(kink), None] | [None, Some(kink)]) => along_kink(estimated, kink, centre),
+        _ => None,
+    };
+    found.unwrap_or_default()
+}
+
+fn kink_at(estimated: &EstimatedDensity, k: usize, at: f64) -> Option<&Kink> {
+    let axis = &estimated.density.axes[k];
+    let width = axis.width(axis.find(at)?);
+    let kinks = estimated.structure.kinks.iter();
+    kinks
+        .filter(|kink| kink.axis == k)
+        .find(|kink| (kink.at - at).abs() <= 1e-6 * width)
+}
+
+/// p''/p of a marginal.
+fn curvature(estimated: &EstimatedDensity, at: f64) -> Option<Indicator> {
+    let lines = window::about(estimated, 0, at)?;
+    let of = |lines: &[Line], values: &[f64]| lines[2].apply(values) / lines[0].apply(values);
+    let [fine, rough] = lines.both();
+    let (fine, rough) = (
+        |values: &[f64]| of(fine, values),
+        |values: &[f64]| of(rough, values),
+    );
+    Indicator::derive(estimated, IndicatorKind::Curvature, vec![at], fine, rough)
+}
+
+/// Half the jump of the slope of log p: the slope on the upper side, because the mean slope is zero by symmetry. It
+/// follows from the equations, not from the cells.
+fn slope(estimated: &EstimatedDensity, kink: &Kink, centre: &[f64]) -> Option<Indicator> {
+    let other = estimated.density.axes.get(1 - kink.axis.min(1));
+    let cell = match other {
+        Some(axis) if centre.len() > 1 => axis.find(centre[1 - kink.axis])?,
+        _ => 0,
+    };
+    let half = 0.5 * kink.jump_at(cell);
+    let range = &estimated.density.axes[kink.axis];
+    let rounding = ROUNDING / (range.to() - range.from());
+    let (value, rougher) = (|_: &[f64]| half, |_: &[f64]| half + rounding);
+    Indicator::derive(
+        estimated,
+        IndicatorKind::KinkSlope,
+        centre.to_vec(),
+        value,
+        rougher,
+    )
+}
+
+/// The slope across a kink and the curvature along it.
+fn along_kink(estimated: &EstimatedDensity, kink: &Kink, centre: &[f64]) -> Option<Vec<Indicator>> {
+    let (across, along) = (kink.axis, 1 - kink.axis);
+    let trace = window::on_kink(estimated, across, centre[across])?;
+    let lines = window::about(estimated, along, centre[along])?;
+    let columns = estimated.density.axes[1].count();
+    let apply = |trace: &Line, line: &Line, values: &[f64]| {
+        if across == 1 {
+            line.apply_with(trace, columns, values)
+        } else {
+            trace.apply_with(line, columns, values)
+        }
+    };
+    let of = |trace: &[Line], lines: &[Line], values: &[f64]| {
+        apply(&trace[0], &lines[2], values) / apply(&trace[0], &lines[0], values)
+    };
+    let fine = |values: &[f64]| of(&trace.fine, &lines.fine, values);
+    let rough = |values: &[f64]| of(&trace.rough, &lines.rough, values);
+    let kind = IndicatorKind::CurvatureAlongKink;
+    Some(vec![
+        slope(estimated, kink, centre)?,
+        Indicator::derive(estimated, kind, centre.to_vec(), fine, rough)?,
+    ])
+}
+
+/// The two eigenvalues of the Hessian of a joint density over the density, axes in units of their ranges.
+fn principal(estimated: &EstimatedDensity, centre: &[f64]) -> Option<Vec<Indicator>> {
+    let axes = &estimated.density.axes;
+    let first = window::about(estimated, 0, centre[0])?;
+    let second = window::about(estimated, 1, centre[1])?;
+    let range = |axis: &Axis| axis.to() - axis.from();
+    let (a, b) = (range(&axes[0]), range(&axes[1]));
+    let columns = axes[1].count();
+    let hessian = |rows: &[Line], lines: &[Line], values: &[f64]| {
+        let apply = |i: usize, j: usize| rows[i].apply_with(&lines[j], columns, values);
+        let p = apply(0, 0);
+        [
+            a * a * apply(2, 0) / p,
+            a * b * apply(1, 1) / p,
+            b * b * apply(0, 2) / p,
+        ]
+    };
+    let indicator = |kind: IndicatorKind, sign: f64| {
+        let of = |rows: &[Line], lines: &[Line], values: &[f64]| {
+            let [xx, xy, yy] = hessian(rows, lines, values);
+            0.5 * (xx + yy) + sign * (0.5 * (xx - yy)).hypot(xy)
+        };
+        let fine = |values: &[f64]| of(&first.fine, &second.fine, values);
+        let rough = |values: &[f64]| of(&first.rough, &second.rough, values);
+        Indicator::derive(estimated, kind, centre.to_vec(), fine, rough)
+    };
+    Some(vec![
+        indicator(IndicatorKind::LowerCurvature, -1.0)?,
+        indicator(IndicatorKind::UpperCurvature, 1.0)?,
+    ])
+}
+
+/// Type of the centre.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Type {
+    Peak,
+    Saddle,
+    Bottom,
+}
+
+/// The type, if every sign is beyond doubt.
+fn type_of(indicators: &[Indicator], doubt: f64) -> Option<Type> {
+    let signs: Option<Vec<bool>> = indicators.iter().map(|one| one.sign(doubt)).collect();
+    let signs = signs?;
+    let up = signs.iter().filter(|&&up| up).count();
+    (!signs.is_empty()).then_some(match up {
+        0 => Type::Peak,
+        up if up == signs.len() => Type::Bottom,
+        _ => Type::Saddle,
+    })
+}
+
+/// The signature that persistence found, corrected by the type of the centre where that is beyond doubt. `peaks`
+/// and `craters` are the places of those that are present.
+pub(crate) fn corrected(
+    estimated: &EstimatedDensity,
+    indicators: &[Indicator],
+    doubt: f64,
+    peaks: &[Vec<f64>],
+    craters: &[Vec<f64>],
+) -> Signature {
+    let found = Signature {
+        peaks: peaks.len(),
+        craters: craters.len(),
+    };
+    let (Some(kind), Some(centre)) = (type_of(indicators, doubt), &estimated.structure.centre)
+    else {
+        return found;
+    };
+    let near = |place: &Vec<f64>| cells_from(estimated, centre, place) <= NEAR;
+    let is_marginal = centre.len() == 1;
+    let even = found.peaks.is_multiple_of(2);
+    let bottom_seen = craters.iter().any(near);
+    let mut signature = found;
+    match (kind, even) {
+        // A peak at the centre is one, all others are pairs: a pair that straddles the centre is this one peak.
+        (Type::Peak, true) if peaks.iter().any(near) => signature.peaks -= 1,
+        (Type::Peak, true) => signature.peaks += 1,
+        (Type::Saddle, false) => signature.peaks += 1,
+        (Type::Bottom, false) if is_marginal => signature.peaks += 1,
+        _ => {}
+    }
+    if !is_marginal {
+        match (kind == Type::Bottom, bottom_seen) {
+            (true, false) => signature.craters += 1,
+            (false, true) => {
+                signature.craters -= craters.iter().filter(|place| near(place)).count()
+            }
+            _ => {}
+        }
+    }
+    signature
+}
+
+/// Distance of a place from the centre in cells, those at the centre or of mean width, whichever are wider; the larger
+/// over the axes.
+fn cells_from(estimated: &EstimatedDensity, centre: &[f64], place: &[f64]) -> f64 {
+    let axes = estimated.density.axes.iter().enumerate();
+    axes.map(|(k, axis)| {
+        let local = axis.find(centre[k]).map_or(0.0, |cell| axis.width(cell));
+        let mean = (axis.to() - axis.from()) / axis.count() as f64;
+        (place[k] - centre[k]).abs() / local.max(mean)
+    })
+    .fold(0.0, f64::max)
+}

@@ -1,0 +1,177 @@
+//! Indicators: signed, continuous functions of the parameter that are zero at a P-bifurcation.
+//!
+//! Near a smooth P-bifurcation the peaks stand above the valley by (θ - θ*)² or less, so that counting them is late; the
+//! derivative that changes sign there goes through zero linearly. Which one it is depends on what happens:
+//!
+//! | what happens | indicator |
+//! | --- | --- |
+//! | one peak splits at a centre of symmetry | curvature p''/p at the centre |
+//! | the same at a kink | slope p'/p on the upper side of the kink |
+//! | a peak and a valley are born together elsewhere | slope \|p'\|/p at the inflection between them |
+//! | joint density, smooth centre | the two curvatures of p/p along its principal directions |
+//! | joint density, centre on a kink | slope across the kink; curvature along it |
+//!
+//! All are relative to the density at the place, so that its scale does not matter.
+
+mod centre;
+mod shoulder;
+#[cfg(test)]
+mod tests;
+mod window;
+
+pub(super) use centre::{at_centre, corrected};
+pub(super) use shoulder::shoulder;
+
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+use crate::density::{EstimatedDensity, Variants};
+
+/// Which derivative an indicator is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum IndicatorKind {
+    /// p''/p of a marginal at its centre of symmetry.
+    Curvature,
+    /// Slope of log p on the upper side of a kink at the centre of symmetry; in a symmetric density half its jump.
+    KinkSlope,
+    /// Curvature of a joint density along a kink through the centre of symmetry.
+    CurvatureAlongKink,
+    /// The lower of the two principal curvatures of a joint density at its centre, axes scaled to their ranges.
+    LowerCurvature,
+    /// The upper one.
+    UpperCurvature,
+    /// Slope at the inflection between a valley and a peak of a marginal, positive when both are there.
+    Shoulder {
+        /// Whether the density rises with the coordinate between the two.
+        rising: bool,
+    },
+}
+
+impl IndicatorKind {
+    /// The words used in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Curvature => "curvature at the centre",
+            Self::KinkSlope => "slope at the kink",
+            Self::CurvatureAlongKink => "curvature along the kink",
+            Self::LowerCurvature => "lower curvature at the centre",
+            Self::UpperCurvature => "upper curvature at the centre",
+            Self::Shoulder { .. } => "slope at the inflection",
+        }
+    }
+}
+
+/// An indicator at one parameter value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Indicator {
+    /// Which.
+    pub kind: IndicatorKind,
+    /// Where, one coordinate an axis of the density.
+    pub place: Vec<f64>,
+    /// Its value, a derivative over the density.
+    pub value: f64,
+    /// Jackknife standard error from sampling.
+    pub sampling_error: f64,
+    /// Degrees of freedom of the sampling error.
+    pub degrees_of_freedom: f64,
+    /// What a second discretisation and a reconstruction of lower order change.
+    pub systematic_error: f64,
+    /// Change of the value by relative errors of one, independent in every cell near the place; times the solver's
+    /// relative error it is the solver's part.
+    pub sensitivity: f64,
+    /// Its values for the jackknife's replicates; empty without sampling.
+    pub replicates: Vec<f64>,
+}
+
+impl Indicator {
+    /// The sign, if it is beyond doubt: the value exceeds the systematic error by more than sampling makes with
+    /// the given probability (both signs together).
+    pub fn sign(&self, doubt: f64) -> Option<bool> {
+        let sampling = if self.sampling_error > 0.0 {
+            self.sampling_error * two_sided_limit(doubt, self.degrees_of_freedom)
+        } else {
+            0.0
+        };
+        (self.value.abs() > self.systematic_error + sampling).then_some(self.value > 0.0)
+    }
+
+    /// An indicator from the function that derives it from the values of a density, and a less accurate one.
+    fn derive(
+        estimated: &EstimatedDensity,
+        kind: IndicatorKind,
+        place: Vec<f64>,
+        function: impl Fn(&[f64]) -> f64,
+        rougher: impl Fn(&[f64]) -> f64,
+    ) -> Option<Self> {
+        let values = &estimated.density.values;
+        let variants = &estimated.variants;
+        let value = function(values);
+        let replicates: Vec<f64> = match variants {
+            Variants::Jackknife(all) => all.iter().map(|one| function(one)).collect(),
+            _ => Vec::new(),
+        };
+        let gap = |values: &[f64]| function(values) - rougher(values);
+        let noise = 2.0 * variants.sampling_error(gap);
+        let rough = (gap(values).abs() - noise).max(0.0);
+        let scheme = variants.second_scheme();
+        let scheme = scheme.map_or(0.0, |values| (function(values) - value).abs());
+        let sampling_error = variants.sampling_error(&function);
+        let finite = [value, sampling_error, rough, scheme];
+        finite
+            .iter()
+            .all(|number| number.is_finite())
+            .then_some(Self {
+                kind,
+                value,
+                sampling_error,
+                degrees_of_freedom: variants.degrees_of_freedom(),
+                systematic_error: rough + scheme,
+                sensitivity: sensitivity(estimated, &place, value, &function),
+                place,
+                replicates,
+            })
+    }
+}
+
+/// Cells on either side of a place that its derivatives may depend on.
+const NEIGHBOURHOOD: usize = 4;
+/// Relative step of the differences that give a sensitivity.
+const RELATIVE_STEP: f64 = 1e-6;
+
+/// Root of the sum of squares of what relative errors of one in the cells near the place change: relative errors of
+/// size ε, independent of each other, change the number by ε times this.
+fn sensitivity(
+    estimated: &EstimatedDensity,
+    place: &[f64],
+    value: f64,
+    function: &impl Fn(&[f64]) -> f64,
+) -> f64 {
+    let axes = &estimated.density.axes;
+    let near = |k: usize| {
+        let middle = axes[k].find(place[k]).unwrap_or(0);
+        middle.saturating_sub(NEIGHBOURHOOD)..(middle + NEIGHBOURHOOD + 1).min(axes[k].count())
+    };
+    let cells: Vec<usize> = match axes.get(1) {
+        None => near(0).collect(),
+        Some(axis) => near(0)
+            .flat_map(|first| near(1).map(move |second| first * axis.count() + second))
+            .collect(),
+    };
+    let mut values = estimated.density.values.clone();
+    let mut square = |cell: usize| {
+        let kept = values[cell];
+        values[cell] *= 1.0 + RELATIVE_STEP;
+        let change = (function(&values) - value) / RELATIVE_STEP;
+        values[cell] = kept;
+        change * change
+    };
+    cells.into_iter().map(&mut square).sum::<f64>().sqrt()
+}
+
+/// Standard errors that a Student variable exceeds in magnitude with probability `doubt`.
+pub(crate) fn two_sided_limit(doubt: f64, freedom: f64) -> f64 {
+    // Beyond a million degrees the distribution is the normal one to all digits that matter.
+    let student = StudentsT::new(0.0, 1.0, freedom.min(1e6));
+    student.map_or(f64::INFINITY, |student| {
+        -student.inverse_cdf((0.5 * doubt).clamp(1e-18, 0.5))
+    })
+}

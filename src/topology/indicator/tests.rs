@@ -1,0 +1,190 @@
+//! Indicators on densities known in closed form.
+
+use super::*;
+use crate::density::{Density, Kink, Observable, Structure};
+use crate::space::Axis;
+use crate::topology::{
+    DetectOptions, Detector, PersistenceDetector, Signature,
+    analytic_tests::{joint, marginal},
+};
+
+fn axis(count: usize) -> Axis {
+    Axis::uniform(-2.0, 2.0, count).unwrap()
+}
+
+fn symmetric(mut estimated: EstimatedDensity) -> EstimatedDensity {
+    let axes = estimated.density.axes.len();
+    estimated.structure.centre = Some(vec![0.0; axes]);
+    estimated
+}
+
+/// exp(2(a x²/2 - x⁴/4)/σ²), σ² = 0.5: p''(0)/p(0) = 2a/σ² = 4a.
+fn bistable(a: f64, count: usize) -> EstimatedDensity {
+    symmetric(marginal(&axis(count), |x| {
+        (4.0 * (0.5 * a * x * x - 0.25 * x.powi(4))).exp()
+    }))
+}
+
+#[test]
+fn curvature_at_the_centre_is_exact_to_high_order() {
+    for a in [-0.3, -1e-3, 1e-3, 0.3] {
+        let error = |count: usize| {
+            let found = at_centre(&bistable(a, count));
+            assert_eq!(found[0].kind, IndicatorKind::Curvature);
+            assert!((found[0].value - 4.0 * a).abs() <= found[0].systematic_error);
+            (found[0].value - 4.0 * a).abs()
+        };
+        // Sixth order: 40 to 80 cells cut the error by 2⁶.
+        assert!(
+            error(80) < 2e-5 && error(80) < error(40) / 30.0,
+            "{}",
+            error(80)
+        );
+    }
+}
+
+#[test]
+fn the_signature_follows_the_centre_long_before_peaks_stand_out() {
+    let detector = PersistenceDetector::new(DetectOptions::default(), 61);
+    for (a, peaks) in [(-1e-3, 1), (1e-3, 2)] {
+        let detection = detector.detect(&bistable(a, 100));
+        assert_eq!(detection.signature, Signature { peaks, craters: 0 });
+    }
+    // Without the symmetry persistence alone decides, and is late.
+    let mut plain = bistable(1e-3, 100);
+    plain.structure = Structure::default();
+    assert_eq!(detector.detect(&plain).signature.peaks, 1);
+}
+
+#[test]
+fn principal_curvatures_tell_peak_saddle_and_crater() {
+    let detector = PersistenceDetector::new(DetectOptions::default(), 61);
+    // Curvatures a and b along directions turned by 30°, walls beyond; eigenvalues times 16 (the range squared).
+    let density = |a: f64, b: f64| {
+        let (cos, sin) = (0.75f64.sqrt(), 0.5);
+        symmetric(joint(&axis(60), &axis(60), |x, y| {
+            let (u, v) = (cos * x + sin * y, cos * y - sin * x);
+            (0.5 * (a * u * u + b * v * v) - (u * u + v * v).powi(2)).exp()
+        }))
+    };
+    for (a, b, peaks, crater) in [(-0.2, -0.1, 1, 0), (-0.2, 0.01, 2, 0), (0.005, 0.01, 2, 1)] {
+        let estimated = density(a, b);
+        let found = at_centre(&estimated);
+        for (one, curvature) in found.iter().zip([a, b]) {
+            assert!(
+                (one.value - 16.0 * curvature).abs() <= one.systematic_error,
+                "{one:?}"
+            );
+            assert!(one.systematic_error < 0.02, "{one:?}");
+        }
+        let signature = detector.detect(&estimated).signature;
+        assert_eq!(signature.craters, crater, "{a} {b}");
+        // On the rim of a crater persistence decides alone.
+        assert!(
+            signature.peaks == peaks || crater == 1,
+            "{a} {b} {signature}"
+        );
+    }
+}
+
+#[test]
+fn at_a_kink_the_jump_law_decides() {
+    let detector = PersistenceDetector::new(DetectOptions::default(), 61);
+    for (slope, peaks) in [(-1e-4, 1), (1e-4, 2)] {
+        let mut estimated = symmetric(marginal(&axis(100), |x| (slope * x.abs() - x * x).exp()));
+        estimated.structure.kinks = vec![Kink {
+            axis: 0,
+            at: 0.0,
+            jump: vec![2.0 * slope],
+        }];
+        let found = at_centre(&estimated);
+        assert_eq!(
+            (found[0].kind, found[0].value),
+            (IndicatorKind::KinkSlope, slope)
+        );
+        assert_eq!(detector.detect(&estimated).signature.peaks, peaks);
+    }
+}
+
+#[test]
+fn along_a_kink_the_curvature_is_that_of_the_trace() {
+    let slope = -0.8;
+    let mut estimated = symmetric(joint(&axis(60), &axis(60), |x, y| {
+        (0.3 * x * x - x.powi(4) + slope * y.abs() - y * y).exp()
+    }));
+    estimated.structure.kinks = vec![Kink {
+        axis: 1,
+        at: 0.0,
+        jump: vec![2.0 * slope; 60],
+    }];
+    let found = at_centre(&estimated);
+    assert_eq!(found[0].value, slope);
+    assert_eq!(found[1].kind, IndicatorKind::CurvatureAlongKink);
+    let error = (found[1].value - 0.6).abs();
+    assert!(
+        error <= found[1].systematic_error && error < 1e-3,
+        "{found:?}"
+    );
+}
+
+/// A peak at 0 and a tilted shoulder about 1.2 that becomes a peak as `tilt` passes the root.
+fn tilted(tilt: f64, count: usize) -> EstimatedDensity {
+    // (log p)' = -u (u² - 1)… with u = x - 1.2 near the shoulder: slope tilt - 3 (x - 0.9)² there, a wall beyond.
+    marginal(&Axis::uniform(-1.0, 3.0, count).unwrap(), |x| {
+        (tilt * x - (x - 0.9).powi(3) - 0.1 * x.powi(4)).exp()
+    })
+}
+
+#[test]
+fn the_slope_at_a_shoulder_changes_sign_where_peak_and_valley_are_born() {
+    // (log p)' = tilt - 3 (x - 0.9)² - 0.4 x³ has a double zero where its own slope vanishes: 6 (x - 0.9) + 1.2 x² = 0.
+    let x = (-6.0 + (36.0f64 + 4.0 * 1.2 * 5.4).sqrt()) / 2.4;
+    let root = 3.0 * (x - 0.9).powi(2) + 0.4 * x.powi(3);
+    for (tilt, sign) in [(root - 0.02, -1.0), (root + 0.02, 1.0)] {
+        let found = shoulder(&tilted(tilt, 100), x, true).unwrap();
+        assert!((found.place[0] - x).abs() < 0.05, "{found:?} {x}");
+        assert!(found.value * sign > 0.0, "{found:?}");
+        assert!(
+            (found.value - (tilt - root)).abs() <= found.systematic_error + 1e-3,
+            "{found:?}"
+        );
+    }
+}
+
+#[test]
+fn noise_makes_a_sign_doubtful() {
+    let indicator = |value: f64| Indicator {
+        kind: IndicatorKind::Curvature,
+        place: vec![0.0],
+        value,
+        sampling_error: 1.0,
+        degrees_of_freedom: 7.0,
+        systematic_error: 0.5,
+        sensitivity: 0.0,
+        replicates: Vec::new(),
+    };
+    // Student with 7 degrees of freedom: 2.365 at 5 %.
+    assert_eq!(indicator(2.86).sign(0.05), None);
+    assert_eq!(indicator(2.87).sign(0.05), Some(true));
+    assert_eq!(indicator(-2.87).sign(0.05), Some(false));
+}
+
+#[test]
+fn densities_too_coarse_or_without_symmetry_have_no_indicator() {
+    assert!(at_centre(&bistable(0.1, 4)).is_empty());
+    let plain = EstimatedDensity {
+        structure: Structure::default(),
+        ..bistable(0.1, 40)
+    };
+    assert!(at_centre(&plain).is_empty());
+    let joint = EstimatedDensity {
+        observable: Observable::Joint(0, 1),
+        density: Density {
+            axes: vec![axis(3), axis(3)],
+            values: vec![1.0; 9],
+        },
+        ..symmetric(joint(&axis(3), &axis(3), |_, _| 1.0))
+    };
+    assert!(at_centre(&joint).is_empty());
+    assert!(shoulder(&joint, 0.0, true).is_none());
+}
