@@ -169,6 +169,27 @@ fn at_shoulder(
     None
 }
 
+/// Every change of sign of an indicator at a centre between neighbours, of densities without sampling errors: by
+/// observable, ascending. (Noise changes signs often; there signatures say which of them matter.)
+pub(super) fn crossings_at_centre(points: &[&Point]) -> Vec<Vec<Crossing>> {
+    let observables = points.first().map_or(0, |point| point.detections.len());
+    let of = |observable: usize| {
+        let pairs = (0..points.len().saturating_sub(1)).flat_map(move |left| {
+            let [a, b] = [left, left + 1].map(|at| &points[at].detections[observable].indicators);
+            a.iter().zip(b).map(move |(a, b)| (left, a, b))
+        });
+        pairs
+            .filter(|(_, a, b)| a.kind == b.kind && changes_sign(a, b))
+            .filter(|(_, a, b)| a.sampling_error == 0.0 && b.sampling_error == 0.0)
+            .map(|(left, a, b)| Crossing {
+                left,
+                ends: [a.clone(), b.clone()],
+            })
+            .collect()
+    };
+    (0..observables).map(of).collect()
+}
+
 /// A parameter value between points where an indicator at a centre, of one sign at three neighbours, comes so near
 /// to zero that it may have changed sign twice.
 pub(super) fn dip(points: &[&Point], tolerance: f64) -> Option<f64> {

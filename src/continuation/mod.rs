@@ -25,6 +25,8 @@ pub use source::{DensitySource, PointStatus, Solution, SolveReport, SourceError}
 pub use sweep::{Plan, SweepError, evenly_spaced, sweep};
 
 #[cfg(test)]
+mod location_tests;
+#[cfg(test)]
 mod tests;
 
 use crate::density::{EstimatedDensity, Moments, Observable};

@@ -4,10 +4,10 @@
 use std::time::Instant;
 
 use super::bracket::is_settled;
-use super::change::{changes, dip};
+use super::change::{changes, crossings_at_centre, dip};
 use super::grid::{Checked, FinerIndicator, Seen, check, known, solve};
 use super::locate::label_points;
-use super::root::next_value;
+use super::root::{next_value, root};
 use super::{
     DensitySource, LabelledPoint, LocateOptions, Observer, Point, SourceError, SweepResult,
 };
@@ -255,6 +255,9 @@ impl<S: DensitySource> Run<'_, S> {
         if let Some(value) = dip(&solved, tolerance) {
             return Some(value);
         }
+        if let Some(value) = self.next_at_centre(&solved) {
+            return Some(value);
+        }
         let changes = changes(&solved, self.detector);
         changes.iter().find_map(|change| match &change.crossing {
             Some(crossing) => next_value(&solved, crossing, self.detector.confidence(), tolerance),
@@ -264,6 +267,27 @@ impl<S: DensitySource> Run<'_, S> {
                 let settled = is_settled(a, b, self.plan.step(), self.options);
                 (!settled && middle > a.value && middle < b.value).then_some(middle)
             }
+        })
+    }
+
+    /// Narrows every change of sign at a centre of symmetry, and looks at the stage between two of them.
+    fn next_at_centre(&self, solved: &[&Point]) -> Option<f64> {
+        let (confidence, tolerance) = (self.detector.confidence(), self.options.tolerance);
+        crossings_at_centre(solved).iter().find_map(|crossings| {
+            let narrower = crossings
+                .iter()
+                .find_map(|crossing| next_value(solved, crossing, confidence, tolerance));
+            let mut roots: Vec<f64> = (crossings.iter())
+                .map(|crossing| root(solved, crossing, confidence).value)
+                .collect();
+            roots.sort_by(f64::total_cmp);
+            let unseen = |pair: &[f64]| {
+                let quarter = 0.25 * (pair[1] - pair[0]);
+                let inside = pair[0] + quarter..pair[1] - quarter;
+                let seen = solved.iter().any(|point| inside.contains(&point.value));
+                (4.0 * quarter > tolerance && !seen).then_some(0.5 * (pair[0] + pair[1]))
+            };
+            narrower.or_else(|| roots.windows(2).find_map(unseen))
         })
     }
 

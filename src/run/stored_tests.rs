@@ -196,7 +196,7 @@ fn a_store_in_its_final_order_holds_the_same() {
     write(folder.path(), &points);
     let mut store = DensityStore::new(&folder.path().join("densities.zarr"));
     let of = |point: &Point| (point.value, point.densities.clone());
-    let densities = points.each_ref().map(|point| of(point));
+    let densities = points.each_ref().map(of);
     let borrowed: Vec<_> = densities
         .iter()
         .map(|(value, d)| (*value, d.as_slice()))

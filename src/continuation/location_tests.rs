@@ -1,0 +1,365 @@
+//! Location with the real detector on closed-form densities, whose bifurcations are known exactly.
+
+use super::*;
+use crate::density::{Density, EstimatedDensity, Kink, Structure, Variants};
+use crate::space::Axis;
+use crate::topology::{DetectOptions, PersistenceDetector};
+
+/// A density p(x; θ) of one or two axes, by Gauss quadrature over cells; counts its solves.
+struct Exact<F> {
+    axes: Vec<Axis>,
+    structure: fn(f64) -> Structure,
+    density: F,
+    scale: f64,
+    solves: std::cell::Cell<usize>,
+}
+
+const GAUSS: [(f64, f64); 3] = [
+    (-0.774_596_669_241_483_4, 5.0 / 18.0),
+    (0.0, 8.0 / 18.0),
+    (0.774_596_669_241_483_4, 5.0 / 18.0),
+];
+
+impl<F: Fn(f64, &[f64]) -> f64 + Clone> Exact<F> {
+    fn new(axes: usize, count: usize, structure: fn(f64) -> Structure, density: F) -> Self {
+        Self {
+            axes: vec![Axis::uniform(-2.0, 2.0, count).unwrap(); axes],
+            structure,
+            density,
+            scale: 1.0,
+            solves: std::cell::Cell::new(0),
+        }
+    }
+
+    fn average(&self, theta: f64, cell: usize) -> f64 {
+        let axis = &self.axes[0];
+        let at = |index: usize, node: f64| axis.centre(index) + 0.5 * node * axis.width(index);
+        let second = self.axes.get(1).map(|_| cell % axis.count());
+        let first = cell / axis.count().pow(self.axes.len() as u32 - 1);
+        let mut sum = 0.0;
+        for (u, weight) in GAUSS {
+            match second {
+                None => sum += weight * (self.density)(theta, &[at(first, u)]),
+                Some(second) => {
+                    for (v, other) in GAUSS {
+                        let place = [at(first, u), at(second, v)];
+                        sum += weight * other * (self.density)(theta, &place);
+                    }
+                }
+            }
+        }
+        sum
+    }
+}
+
+impl<F: Fn(f64, &[f64]) -> f64 + Clone> DensitySource for Exact<F> {
+    type State = ();
+
+    fn solve(&self, value: f64, _: Option<&()>) -> Result<Solution<()>, SourceError> {
+        self.solves.set(self.solves.get() + 1);
+        let cells = self.axes[0].count().pow(self.axes.len() as u32);
+        let values: Vec<f64> = (0..cells).map(|cell| self.average(value, cell)).collect();
+        let mut density = Density {
+            axes: self.axes.clone(),
+            values,
+        };
+        let total: f64 = density.masses().iter().sum();
+        density
+            .values
+            .iter_mut()
+            .for_each(|p| *p *= self.scale / total);
+        let observable = match self.axes.len() {
+            1 => Observable::Marginal(0),
+            _ => Observable::Joint(0, 1),
+        };
+        Ok(Solution {
+            report: SolveReport {
+                status: PointStatus::Solved,
+                method: "exact",
+                iterations: 0,
+                factorisations: 0,
+                residual: 0.0,
+                solver_error: 0.0,
+                escape_rate: 0.0,
+                negative_mass: 0.0,
+                edge_mass: Vec::new(),
+                numerical_diffusion: Vec::new(),
+                map_step: None,
+                warnings: Vec::new(),
+            },
+            moments: Vec::new(),
+            densities: vec![EstimatedDensity {
+                observable,
+                standard_error: vec![0.0; density.values.len()],
+                density,
+                variants: Variants::None,
+                structure: (self.structure)(value),
+            }],
+            state: Some(()),
+        })
+    }
+
+    fn finer(&self) -> Option<Self> {
+        let axes = self.axes.iter().map(|axis| axis.refined(1.5)).collect();
+        Some(Self {
+            axes,
+            structure: self.structure,
+            density: self.density.clone(),
+            scale: self.scale,
+            solves: std::cell::Cell::new(0),
+        })
+    }
+}
+
+fn centred(axes: usize) -> Structure {
+    Structure {
+        centre: Some(vec![0.0; axes]),
+        kinks: Vec::new(),
+    }
+}
+
+fn run<F: Fn(f64, &[f64]) -> f64 + Clone>(
+    source: &Exact<F>,
+    (from, to, points): (f64, f64, usize),
+    tolerance: f64,
+) -> SweepResult {
+    let plan = Plan {
+        parameter: "a".to_owned(),
+        from,
+        to,
+        points,
+        observables: vec![match source.axes.len() {
+            1 => Observable::Marginal(0),
+            _ => Observable::Joint(0, 1),
+        }],
+    };
+    let detector = PersistenceDetector::new(DetectOptions::default(), points);
+    let options = LocateOptions {
+        tolerance,
+        ..LocateOptions::default()
+    };
+    sweep(source, &detector, &plan, &options, &mut ()).unwrap()
+}
+
+fn rows(result: &SweepResult) -> Vec<&LabelledPoint> {
+    let labels = result.labels.iter();
+    labels
+        .filter(|row| row.kind == PointType::Bifurcation)
+        .collect()
+}
+
+fn words(row: &LabelledPoint) -> String {
+    let signature = |one: Option<crate::topology::Signature>| one.unwrap().to_string();
+    format!(
+        "{} → {}, {}",
+        signature(row.before),
+        signature(row.after),
+        row.change
+    )
+}
+
+/// One peak to two at θ = 0.03: log p = 2((θ - 0.03) x²/2 - x⁴/4)/σ², σ² = 0.5.
+fn split() -> Exact<impl Fn(f64, &[f64]) -> f64 + Clone> {
+    Exact::new(
+        1,
+        100,
+        |_| centred(1),
+        |theta: f64, at: &[f64]| {
+            let x = at[0];
+            (4.0 * (0.5 * (theta - 0.03) * x * x - 0.25 * x.powi(4))).exp()
+        },
+    )
+}
+
+#[test]
+fn a_symmetric_split_is_located_to_a_part_in_a_million_with_few_solves() {
+    let source = split();
+    let result = run(&source, (-0.5, 0.5, 11), 1e-4);
+    let rows = rows(&result);
+    assert_eq!(rows.len(), 1);
+    let row = rows[0];
+    assert_eq!(words(row), "1 peak → 2 peaks, symmetric split");
+    assert_eq!(row.status, Some(BifurcationStatus::Located));
+    assert!(
+        (row.value - 0.03).abs() <= row.error && row.error < 1e-5,
+        "{row:?}"
+    );
+    assert!(row.lower <= 0.03 && 0.03 <= row.upper && row.upper - row.lower <= 1.1e-4);
+    // The curvature is almost linear: a secant and one step to either side.
+    assert!(result.points.len() <= 11 + 4, "{}", result.points.len());
+}
+
+#[test]
+fn scale_and_direction_change_no_row() {
+    let all = |scale: f64, from: f64, to: f64| {
+        let source = Exact { scale, ..split() };
+        let result = run(&source, (from, to, 11), 1e-4);
+        let row = rows(&result)[0].clone();
+        (
+            words(&row),
+            row.status,
+            [row.value, row.error, row.lower, row.upper],
+        )
+    };
+    let plain = all(1.0, -0.5, 0.5);
+    for (scale, from, to) in [(10.0, -0.5, 0.5), (1.0, 0.5, -0.5)] {
+        let other = all(scale, from, to);
+        assert_eq!((&plain.0, plain.1), (&other.0, other.1));
+        for (a, b) in plain.2.iter().zip(other.2) {
+            assert!((a - b).abs() < 1e-9, "{plain:?} {other:?}");
+        }
+    }
+}
+
+/// A main peak at -1 and, from θ = 0 on, a pair born at 0.5: (log p)' = -(x + 1)(2 (x - 0.5)² - θ); mirrored for sign -1.
+fn flank(sign: f64) -> Exact<impl Fn(f64, &[f64]) -> f64 + Clone> {
+    Exact::new(
+        1,
+        120,
+        |_| Structure::default(),
+        move |theta: f64, at: &[f64]| {
+            let x = sign * at[0];
+            let potential = 0.5 * x.powi(4) - (1.5 + theta) * 0.5 * x * x + (0.5 - theta) * x;
+            (-potential).exp()
+        },
+    )
+}
+
+#[test]
+fn a_pair_born_on_a_flank_is_located_by_the_slope_at_its_inflection() {
+    let result = run(&flank(1.0), (-0.5, 0.55, 22), 1e-3);
+    let rows = rows(&result);
+    assert_eq!(rows.len(), 1, "{rows:?}");
+    let row = rows[0];
+    assert_eq!(words(row), "1 peak → 2 peaks, peak and valley are born");
+    assert_eq!(row.method, "slope at the inflection");
+    assert_eq!(row.status, Some(BifurcationStatus::Located), "{row:?}");
+    assert!(row.value.abs() <= row.error && row.error < 1e-3, "{row:?}");
+}
+
+#[test]
+fn mirroring_a_density_without_symmetry_changes_no_row() {
+    let located = |sign: f64| {
+        let result = run(&flank(sign), (-0.5, 0.55, 22), 1e-3);
+        let row = rows(&result)[0].clone();
+        (words(&row), row.value, row.error, row.status)
+    };
+    let (plain, mirrored) = (located(1.0), located(-1.0));
+    assert_eq!((&plain.0, plain.3), (&mirrored.0, mirrored.3));
+    assert!((plain.1 - mirrored.1).abs() < 1e-9 && (plain.2 - mirrored.2).abs() < 1e-9);
+}
+
+#[test]
+fn a_stage_within_a_narrow_window_has_its_own_rows() {
+    // Curvatures θ and θ + 0.002 at the centre: two peaks only for -0.002 < θ < 0, between given values.
+    let source = Exact::new(
+        2,
+        60,
+        |_| centred(2),
+        |theta: f64, at: &[f64]| {
+            let (x, y) = (at[0], at[1]);
+            let square = x * x + y * y;
+            (0.5 * (theta * x * x + (theta + 0.002) * y * y) - 0.5 * square * square).exp()
+        },
+    );
+    let result = run(&source, (-0.525, 0.475, 11), 1e-5);
+    let rows = rows(&result);
+    let found: Vec<String> = rows.iter().map(|row| words(row)).collect();
+    assert_eq!(
+        found,
+        [
+            "1 peak → 2 peaks, symmetric split",
+            "2 peaks → crater, crater opens"
+        ]
+    );
+    for (row, truth) in rows.iter().zip([-0.002, 0.0]) {
+        assert!(
+            (row.value - truth).abs() <= row.error && row.error < 1e-4,
+            "{row:?}"
+        );
+    }
+}
+
+#[test]
+fn two_changes_between_two_given_values_are_both_found() {
+    // The curvature (θ - 0.52)² - 0.0004 is positive at all given values; the valley is a peak only from 0.50 to 0.54.
+    let source = Exact::new(
+        1,
+        100,
+        |_| centred(1),
+        |theta: f64, at: &[f64]| {
+            let x = at[0];
+            let curvature = (theta - 0.52).powi(2) - 0.0004;
+            (4.0 * (0.5 * curvature * x * x - 0.25 * x.powi(4))).exp()
+        },
+    );
+    let result = run(&source, (0.0, 0.95, 11), 1e-3);
+    let found: Vec<(String, f64)> = rows(&result)
+        .iter()
+        .map(|row| (words(row), row.value))
+        .collect();
+    assert_eq!(found.len(), 2, "{found:?}");
+    assert!(found[0].0.starts_with("2 peaks → 1 peak") && (found[0].1 - 0.50).abs() < 1e-4);
+    assert!(found[1].0.starts_with("1 peak → 2 peaks") && (found[1].1 - 0.54).abs() < 1e-4);
+}
+
+#[test]
+fn curvatures_that_vanish_together_make_one_row() {
+    let source = Exact::new(
+        2,
+        60,
+        |_| centred(2),
+        |theta: f64, at: &[f64]| {
+            let square = at[0] * at[0] + at[1] * at[1];
+            (0.5 * theta * square - 0.5 * square * square).exp()
+        },
+    );
+    let result = run(&source, (-0.5, 0.5, 10), 1e-4);
+    let rows = rows(&result);
+    assert_eq!(rows.len(), 1, "{rows:?}");
+    assert!(
+        words(rows[0]).starts_with("1 peak → crater"),
+        "{}",
+        words(rows[0])
+    );
+    assert!(rows[0].value.abs() <= rows[0].error && rows[0].error < 1e-4);
+}
+
+#[test]
+fn a_kink_is_located_from_its_jump_and_needs_no_grid() {
+    let structure = |theta: f64| Structure {
+        kinks: vec![Kink {
+            axis: 0,
+            at: 0.0,
+            jump: vec![2.0 * (theta - 0.1)],
+        }],
+        ..centred(1)
+    };
+    let source = Exact::new(1, 100, structure, |theta: f64, at: &[f64]| {
+        ((theta - 0.1) * at[0].abs() - at[0] * at[0]).exp()
+    });
+    let result = run(&source, (-0.9, 1.0, 20), 1e-4);
+    let rows = rows(&result);
+    assert_eq!(rows.len(), 1);
+    assert_eq!(words(rows[0]), "1 peak → 2 peaks, split at a kink");
+    assert!((rows[0].value - 0.1).abs() <= rows[0].error && rows[0].error < 1e-6);
+}
+
+#[test]
+fn densities_that_change_fast_get_values_between() {
+    // A peak that moves by four of its widths a step.
+    let source = Exact::new(
+        1,
+        200,
+        |_| Structure::default(),
+        |theta: f64, at: &[f64]| (-0.5 * ((at[0] - theta) / 0.05).powi(2)).exp(),
+    );
+    let result = run(&source, (-1.0, 1.0, 11), 1e-3);
+    let largest = result
+        .points
+        .iter()
+        .filter_map(|point| point.distance)
+        .fold(0.0, f64::max);
+    assert!(result.points.len() > 11 && largest <= LocateOptions::default().largest_distance);
+    assert!(rows(&result).is_empty());
+}
