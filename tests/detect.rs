@@ -140,6 +140,13 @@ fn unchanged_settings_change_no_byte() {
             rows > 2 && text(&run, "bifurcations.csv").contains("PB1"),
             "{file}: nothing to show"
         );
+        // By the generator, located values were checked on a finer grid, which is repeated from the table.
+        let checked = overrides.contains(&"method.kind=generator");
+        assert_eq!(run.join("checks.csv").exists(), checked, "{file}");
+        assert!(
+            !checked || text(&run, "checks.csv").lines().count() > 1,
+            "{file}"
+        );
         let out = folder.path().join("out");
         detect(&run, &["--quiet", "--out", out.to_str().unwrap()], &[]);
         assert_same(&files(&run), &before, "the run is left alone");
