@@ -24,11 +24,12 @@ Examples:
   pbif detect output/coulomb_fc --set detect.confidence=0.99
   pbif detect output/coulomb_fc --set detect.floor=0.01 --out stricter
 
-Tables, figures and run.json are written anew, the densities stay. Without --out they take the place of those of the run,
-whose earlier version is kept in its folder previous/; with --out the run is left as it is.
+Tables, figures and run.json are written anew, the densities stay. Without --out they take the
+place of those of the run, whose earlier version is kept in its folder previous/; with --out the
+run is left as it is.
 
-Exit status: 0 done; 1 finished, but some row is unresolved, did not converge or has no steady state, or the
-run had been interrupted; 2 bad usage or input, nothing written.";
+Exit status: 0 done; 1 finished, but some row is unresolved, did not converge or has no steady
+state, or the run had been interrupted; 2 bad usage or input, nothing written.";
 
 const PLOT_EXAMPLES: &str = "\
 Examples:
