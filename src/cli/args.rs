@@ -13,9 +13,28 @@ Examples:
   pbif check sweeps/coulomb_fc.toml  what would be run, and what it costs
   pbif sweep sweeps/coulomb_fc.toml  run it; results go to output/coulomb_fc/
   pbif sweep sweeps/coulomb_fc.toml --set sweep.points=11 --set cells.x.count=30 --out trial
+  pbif detect output/coulomb_fc --set detect.confidence=0.99   detect again, without solving
+  pbif plot output/coulomb_fc        draw again
 
 Exit status: 0 done; 1 finished, but some row is unresolved, did not converge or has no steady state;
 2 bad usage or input, nothing written; 130 interrupted.";
+
+const DETECT_EXAMPLES: &str = "\
+Examples:
+  pbif detect output/coulomb_fc --set detect.confidence=0.99
+  pbif detect output/coulomb_fc --set detect.floor=0.01 --out stricter
+
+Tables, figures and run.json are written anew, the densities stay. Without --out they take the
+place of those of the run, whose earlier version is kept in its folder previous/; with --out the
+run is left as it is.
+
+Exit status: 0 done; 1 finished, but some row is unresolved, did not converge or has no steady
+state, or the run had been interrupted; 2 bad usage or input, nothing written.";
+
+const PLOT_EXAMPLES: &str = "\
+Examples:
+  pbif plot output/coulomb_fc
+  pbif plot output/coulomb_fc --set 'figures.at=[0.0, 0.005]' --out more_figures";
 
 /// Finds where the steady-state density of a noisy oscillator changes its topology (P-bifurcations).
 #[derive(Debug, Parser)]
@@ -46,6 +65,20 @@ pub(super) enum Command {
         #[command(flatten)]
         input: SweepFile,
     },
+    /// Detect and locate again from the stored densities of a run, without solving
+    #[command(after_help = DETECT_EXAMPLES)]
+    Detect {
+        /// What to work on.
+        #[command(flatten)]
+        run: DetectArguments,
+    },
+    /// Draw the figures of a stored run again
+    #[command(after_help = PLOT_EXAMPLES)]
+    Plot {
+        /// What to draw.
+        #[command(flatten)]
+        run: PlotArguments,
+    },
     /// List the models, or show one: equations, axes, parameters, domain, source
     #[command(after_help = "Examples:\n  pbif systems\n  pbif systems dahl")]
     Systems {
@@ -73,6 +106,39 @@ pub(crate) struct SweepArguments {
     /// Threads to use, all if left out; results do not depend on it
     #[arg(long, value_name = "N", value_parser = threads)]
     pub(crate) threads: Option<usize>,
+    /// No progress and no warnings on stderr, results alone
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+/// A stored run that is detected again.
+#[derive(Debug, Args)]
+pub(crate) struct DetectArguments {
+    /// Folder of a run, as `pbif sweep` left it
+    pub(crate) run: PathBuf,
+    /// Override a key of the run's sweep under detect, locate or figures, such as detect.confidence=0.99 (repeatable; the
+    /// last one counts)
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(crate) overrides: Vec<String>,
+    /// Folder for the results, a complete run with the same densities [default: RUN itself]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// No progress and no warnings on stderr, results alone
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+/// A stored run that is drawn again.
+#[derive(Debug, Args)]
+pub(crate) struct PlotArguments {
+    /// Folder of a run, as `pbif sweep` left it
+    pub(crate) run: PathBuf,
+    /// Override a key of the run's sweep under figures, such as figures.formats=["svg"] (repeatable; the last one counts)
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(crate) overrides: Vec<String>,
+    /// Folder for the figures [default: RUN/figures]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
     /// No progress and no warnings on stderr, results alone
     #[arg(long)]
     pub(crate) quiet: bool,

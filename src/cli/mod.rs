@@ -3,12 +3,15 @@
 mod args;
 mod check;
 mod cost;
+mod detect;
 mod diagnostic;
 mod document;
 mod keys;
 mod output;
+mod plot;
 mod reader;
 mod spec;
+mod stored;
 mod sweep;
 mod systems;
 
@@ -59,7 +62,7 @@ pub(crate) enum CommandError {
     /// The sweep ended without a result.
     #[error(transparent)]
     Sweep(#[from] crate::continuation::SweepError),
-    /// A file of the run cannot be written.
+    /// A file of the run cannot be written or read.
     #[error(transparent)]
     Run(#[from] crate::run::RunError),
     /// A figure cannot be drawn.
@@ -118,6 +121,8 @@ fn dispatch(command: &Command) -> Result<Outcome, CommandError> {
             let spec = SweepSpec::load(&input.file, &input.overrides)?;
             print(&check::text(&spec)?)
         }
+        Command::Detect { run } => detect::run(run),
+        Command::Plot { run } => plot::run(run),
         Command::Systems { name: None } => print(&systems::list()),
         Command::Systems { name: Some(name) } => print(&systems::describe(name)?),
     }
@@ -136,6 +141,7 @@ fn render(error: CommandError, styled: bool) -> String {
         CommandError::Output(error) => Diagnostic::new(error.to_string())
             .remedy("give another folder with `--out DIR`")
             .into(),
+        CommandError::Run(error) => stored::diagnostic(&error).into(),
         error => Diagnostic::new(error.to_string()).into(),
     };
     report.render(styled)

@@ -1,7 +1,7 @@
 //! `pbif sweep`: solves along the parameter, writes every row as it comes, then the tables and the figures.
 
 mod progress;
-mod summary;
+pub(super) mod summary;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -18,7 +18,6 @@ use crate::continuation::{
 use crate::figure::draw_all;
 use crate::method::{MethodSource, Setting};
 use crate::run::{Ending, Manifest, Naming, RunError, RunFolder};
-use crate::topology::PersistenceDetector;
 use progress::Progress;
 
 /// Runs a sweep and prints what it found.
@@ -109,7 +108,7 @@ impl<'a> Run<'a> {
         self.manifest.seconds.tables = clock.elapsed().as_secs_f64();
         let clock = Instant::now();
         self.progress.say("drawing");
-        self.draw(&result)?;
+        draw(self.spec, &result, &self.folder.figures())?;
         self.manifest.seconds.figures = clock.elapsed().as_secs_f64();
         self.manifest.points = result.points.len();
         self.manifest.warnings = summary::warnings(self.naming.parameter, &result.points);
@@ -129,8 +128,7 @@ impl<'a> Run<'a> {
 
     fn sweep(&mut self) -> Result<SweepResult, CommandError> {
         let plan = self.spec.plan();
-        let looks = plan.points * plan.observables.len();
-        let detector = PersistenceDetector::new(self.spec.detect.clone(), looks);
+        let detector = self.spec.detector();
         let mut recorder = Recorder {
             naming: self.naming,
             plan: &plan,
@@ -154,21 +152,26 @@ impl<'a> Run<'a> {
             error => CommandError::Sweep(error),
         })
     }
+}
 
-    fn draw(&self, result: &SweepResult) -> Result<(), CommandError> {
-        let formats = &self.spec.figure_formats;
-        let at = &self.spec.figures_at;
-        let folder = self.folder.figures();
-        draw_all(
-            result,
-            self.spec.model,
-            &self.spec.title,
-            at,
-            formats,
-            &folder,
-        )?;
-        Ok(())
-    }
+/// Draws the figures of a sweep into a folder; returns the files.
+///
+/// # Errors
+/// [`CommandError::Figure`].
+pub(super) fn draw(
+    spec: &SweepSpec,
+    result: &SweepResult,
+    folder: &Path,
+) -> Result<Vec<PathBuf>, CommandError> {
+    let (at, formats) = (&spec.figures_at, &spec.figure_formats);
+    Ok(draw_all(
+        result,
+        spec.model,
+        &spec.title,
+        at,
+        formats,
+        folder,
+    )?)
 }
 
 /// Writes every point as soon as it is done, and shows how far the sweep is.
@@ -201,7 +204,8 @@ impl Observer for Recorder<'_> {
     }
 }
 
-fn outcome(result: &SweepResult) -> Outcome {
+/// How a command ends that gives this result.
+pub(super) fn outcome(result: &SweepResult) -> Outcome {
     let unresolved = |status: Option<BifurcationStatus>| {
         status.is_some_and(|status| status != BifurcationStatus::Located)
     };

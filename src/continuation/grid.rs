@@ -6,7 +6,7 @@
 
 use super::root::Root;
 use super::{DensitySource, SourceError};
-use crate::topology::{Detector, Indicator, IndicatorKind};
+use crate::topology::{Detector, IndicatorKind};
 
 /// Solves on the finer grid for one value.
 const MOST_SOLVES: usize = 4;
@@ -22,6 +22,50 @@ pub(super) enum GridCheck {
     Unconfirmed,
 }
 
+/// The indicator on the finer grid at one value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Seen {
+    /// Its value.
+    Value(f64),
+    /// There is no such indicator, or no density.
+    Absent,
+    /// The source was asked to stop, or it is not known.
+    Unknown,
+}
+
+impl Seen {
+    /// What is kept of it.
+    pub(super) fn record(self, checked: &Checked<'_>, value: f64) -> Option<FinerIndicator> {
+        let indicator = match self {
+            Self::Value(indicator) => Some(indicator),
+            Self::Absent => None,
+            Self::Unknown => return None,
+        };
+        Some(FinerIndicator {
+            value,
+            observable: checked.observable,
+            kind: checked.kind.name().to_owned(),
+            place: checked.place.to_vec(),
+            indicator,
+        })
+    }
+}
+
+/// An indicator that was seen on the finer grid, from which the check is repeated without solving.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FinerIndicator {
+    /// The parameter's value.
+    pub value: f64,
+    /// Place of the observable in [`super::SweepResult::observables`].
+    pub observable: usize,
+    /// Name of the indicator.
+    pub kind: String,
+    /// Where it was looked for, one coordinate an axis of the density.
+    pub place: Vec<f64>,
+    /// Its value; `None` if there was none.
+    pub indicator: Option<f64>,
+}
+
 /// What is checked.
 pub(super) struct Checked<'a> {
     /// Place of the observable among those that are watched.
@@ -31,35 +75,60 @@ pub(super) struct Checked<'a> {
     pub(super) root: Root,
 }
 
-/// Looks for the zero on the finer grid, within the range of the sweep. `None` when asked to stop.
-pub(super) fn check<S: DensitySource>(
+/// What was seen of an indicator at a value before. Several rows may ask for the same, and a solve from another start differs
+/// by rounding.
+pub(super) fn known(seen: &[FinerIndicator], checked: &Checked<'_>, value: f64) -> Seen {
+    let found = seen.iter().find(|one| {
+        one.value == value
+            && one.observable == checked.observable
+            && one.kind == checked.kind.name()
+            && one.place == checked.place
+    });
+    found.map_or(Seen::Unknown, |one| {
+        one.indicator.map_or(Seen::Absent, Seen::Value)
+    })
+}
+
+/// Solves on the finer grid, from the state of the value before.
+pub(super) fn solve<S: DensitySource>(
     finer: &S,
     detector: &dyn Detector,
+    checked: &Checked<'_>,
+    value: f64,
+    state: &mut Option<S::State>,
+) -> Seen {
+    let solution = match finer.solve(value, state.as_ref()) {
+        Ok(solution) => solution,
+        Err(SourceError::Interrupted) => return Seen::Unknown,
+        Err(SourceError::Method(_)) => return Seen::Absent,
+    };
+    let density = solution.densities.get(checked.observable);
+    let indicator =
+        density.and_then(|density| detector.indicator(density, checked.kind, checked.place));
+    *state = solution.state.or(state.take());
+    indicator.map_or(Seen::Absent, |indicator| Seen::Value(indicator.value))
+}
+
+/// Looks for the zero on the finer grid, within the range of the sweep. `None` when asked to stop.
+pub(super) fn check(
+    evaluate: &mut dyn FnMut(f64) -> Seen,
     checked: &Checked<'_>,
     range: (f64, f64),
     tolerance: f64,
 ) -> Option<GridCheck> {
     let mut value = checked.root.value;
     let mut slope = checked.root.slope;
-    let mut state: Option<S::State> = None;
     let mut last: Option<(f64, f64)> = None;
     for _ in 0..MOST_SOLVES {
-        let solution = match finer.solve(value, state.as_ref()) {
-            Ok(solution) => solution,
-            Err(SourceError::Interrupted) => return None,
-            Err(SourceError::Method(_)) => return Some(GridCheck::Unconfirmed),
-        };
-        let indicator: Option<Indicator> = solution
-            .densities
-            .get(checked.observable)
-            .and_then(|density| detector.indicator(density, checked.kind, checked.place));
-        let Some(indicator) = indicator else {
-            return Some(GridCheck::Unconfirmed);
+        let indicator = match evaluate(value) {
+            Seen::Value(indicator) => indicator,
+            Seen::Absent => return Some(GridCheck::Unconfirmed),
+            Seen::Unknown => return None,
         };
         if let Some((before, then)) = last {
-            slope = (indicator.value - then) / (value - before);
+            slope = (indicator - then) / (value - before);
         }
-        let step = -indicator.value / slope;
+        let step = -indicator / slope;
         let next = value + step;
         if !next.is_finite() || next < range.0 || next > range.1 {
             return Some(GridCheck::Unconfirmed);
@@ -67,9 +136,8 @@ pub(super) fn check<S: DensitySource>(
         if step.abs() <= SMALL * tolerance {
             return Some(GridCheck::Confirmed(next));
         }
-        last = Some((value, indicator.value));
+        last = Some((value, indicator));
         value = next;
-        state = solution.state.or(state);
     }
     Some(GridCheck::Unconfirmed)
 }

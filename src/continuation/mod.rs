@@ -3,6 +3,7 @@
 //! This module knows a source of densities and a detector, and nothing of matrices: Monte Carlo, cell maps
 //! and closed-form densities all sweep alike.
 
+mod again;
 mod bracket;
 mod change;
 mod grid;
@@ -15,6 +16,8 @@ mod source;
 mod sweep;
 mod words;
 
+pub use again::detect_again;
+pub use grid::FinerIndicator;
 pub use label::{BifurcationStatus, LabelledPoint, PointType};
 pub use observer::Observer;
 pub use root::ErrorParts;
@@ -80,6 +83,8 @@ pub struct SweepResult {
     pub points: Vec<Point>,
     /// Labelled points in ascending parameter: end points `EP`, changes `PB`, failures `MX`.
     pub labels: Vec<LabelledPoint>,
+    /// What was seen on the finer grid that checks located values; `None` where there was no check.
+    pub finer: Option<Vec<FinerIndicator>>,
     /// Whether the sweep was interrupted before it was complete.
     pub interrupted: bool,
 }

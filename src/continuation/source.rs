@@ -18,6 +18,15 @@ pub enum PointStatus {
 }
 
 impl PointStatus {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Solved,
+        Self::Escaping,
+        Self::NotConverged,
+        Self::NoSteadyState,
+        Self::SeveralClasses,
+    ];
+
     /// The word used in tables.
     pub fn word(self) -> &'static str {
         match self {

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use super::bracket::is_settled;
 use super::change::{changes, crossings_at_centre, dip};
-use super::grid::{Checked, check};
+use super::grid::{Checked, FinerIndicator, Seen, check, known, solve};
 use super::locate::label_points;
 use super::root::{next_value, root};
 use super::{
@@ -33,6 +33,11 @@ impl Plan {
     /// The given values, in the order in which they are solved.
     pub fn values(&self) -> Vec<f64> {
         evenly_spaced(self.from, self.to, self.points)
+    }
+
+    /// The ends in ascending order.
+    pub(super) fn range(&self) -> (f64, f64) {
+        (self.from.min(self.to), self.from.max(self.to))
     }
 
     /// Distance between neighbouring given values.
@@ -114,12 +119,13 @@ pub fn sweep<S: DensitySource>(
         previous = Some(value);
     }
     run.narrow()?;
-    let labels = run.labels();
+    let (labels, finer) = run.labels();
     Ok(SweepResult {
         parameter: plan.parameter.clone(),
         observables: plan.observables.clone(),
         points: run.points,
         labels,
+        finer,
         interrupted: run.interrupted,
     })
 }
@@ -285,26 +291,36 @@ impl<S: DensitySource> Run<'_, S> {
         })
     }
 
-    /// The rows, each checked on a finer grid where the source has one.
-    fn labels(&mut self) -> Vec<LabelledPoint> {
+    /// The rows, each checked on a finer grid where the source has one, and what was seen there.
+    fn labels(&mut self) -> (Vec<LabelledPoint>, Option<Vec<FinerIndicator>>) {
         let wanted = self.options.grid_check && !self.interrupted;
         let mut finer: Option<Option<S>> = (!wanted).then_some(None);
-        let range = (
-            self.plan.from.min(self.plan.to),
-            self.plan.from.max(self.plan.to),
-        );
+        let mut seen = Vec::new();
+        let range = self.plan.range();
         let mut on_finer = |checked: &Checked<'_>| {
             let finer = finer.get_or_insert_with(|| self.source.finer()).as_ref()?;
-            check(finer, self.detector, checked, range, self.options.tolerance)
+            let mut state = None;
+            let mut evaluate = |value: f64| {
+                let before = known(&seen, checked, value);
+                if before != Seen::Unknown {
+                    return before;
+                }
+                let found = solve(finer, self.detector, checked, value, &mut state);
+                seen.extend(found.record(checked, value));
+                found
+            };
+            check(&mut evaluate, checked, range, self.options.tolerance)
         };
         let observables = &self.plan.observables;
-        label_points(
+        let labels = label_points(
             &self.points,
             observables,
             self.detector,
             self.options,
             &mut on_finer,
-        )
+        );
+        let has_finer = finer.map_or_else(|| self.source.finer().is_some(), |one| one.is_some());
+        (labels, has_finer.then_some(seen))
     }
 }
 
@@ -317,7 +333,7 @@ fn distance_between(a: &Point, b: &Point) -> Option<f64> {
 }
 
 /// Fills the distances that a new point at `place` changes: its own, and that of the next one with densities.
-fn fill_distances(points: &mut [Point], place: usize) {
+pub(super) fn fill_distances(points: &mut [Point], place: usize) {
     if points[place].densities.is_empty() {
         return;
     }

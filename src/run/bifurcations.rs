@@ -4,6 +4,7 @@
 
 use super::{
     Naming, RunError,
+    latex::escape,
     number::{format_number, format_with_error},
     tables::Table,
 };
@@ -148,7 +149,8 @@ pub fn bifurcations_tex(naming: &Naming<'_>, labels: &[LabelledPoint]) -> String
                 naming.observable_latex(observable).trim_matches(['(', ')'])
             )
         });
-        let [label, _, _, _, _, _, _, before, after, status, change, ..] = words(naming, row);
+        let [label, _, _, _, _, _, _, before, after, status, change, ..] =
+            words(naming, row).map(|word| escape(&word));
         text += &format!(
             "{label} & ${value} \\pm {error}$ & {density} & {before} & {after} & {change} & {status} \\\\\n"
         );

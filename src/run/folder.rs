@@ -3,13 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use super::{
-    DensityStore, Manifest, Naming, RunError, atomic::write_atomically, bifurcations, tables,
+    DensityStore, Manifest, Naming, RunError, atomic::write_atomically, bifurcations, checks,
+    staged::link_tree, tables,
 };
 use crate::continuation::{Point, SweepResult};
 use crate::density::{EstimatedDensity, Observable};
 
 /// Everything a run may leave in its folder.
-const ENTRIES: [&str; 9] = [
+pub(super) const ENTRIES: [&str; 10] = [
     "run.json",
     "points.csv",
     "features.csv",
@@ -18,11 +19,15 @@ const ENTRIES: [&str; 9] = [
     "bifurcations.tex",
     "bifurcations.json",
     "densities.zarr",
+    "checks.csv",
     "figures",
 ];
 
+/// What a sweep solved for: it stays when the run is detected again.
+pub(super) const SOLVED: [&str; 2] = ["densities.zarr", "checks.csv"];
+
 /// Where an earlier run in the same folder is moved.
-const PREVIOUS: &str = "previous";
+pub(super) const PREVIOUS: &str = "previous";
 
 /// The folder of a run while it is written.
 #[derive(Debug)]
@@ -57,10 +62,15 @@ impl RunFolder {
                 std::fs::rename(path.join(entry), previous.join(entry)).map_err(failed)?;
             }
         }
-        Ok(Self {
+        Ok(Self::fresh(path))
+    }
+
+    /// A folder that is written beside its place, in which nothing was before.
+    pub(super) fn fresh(path: &Path) -> Self {
+        Self {
             path: path.to_owned(),
             store: DensityStore::new(&path.join("densities.zarr")),
-        })
+        }
     }
 
     /// The folder.
@@ -112,6 +122,34 @@ impl RunFolder {
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.
     pub fn finish(&mut self, naming: &Naming<'_>, result: &SweepResult) -> Result<(), RunError> {
+        self.write_tables(naming, result)?;
+        if let Some(finer) = &result.finer {
+            let text = checks::checks_csv(naming, &result.observables, finer)?;
+            self.write("checks.csv", &text)?;
+        }
+        let densities: Vec<(f64, &[EstimatedDensity])> = result
+            .points
+            .iter()
+            .filter(|point| !point.densities.is_empty())
+            .map(|point| (point.value, point.densities.as_slice()))
+            .collect();
+        self.store.replace(naming, &densities)
+    }
+
+    /// Takes over what another run solved for (densities, checks on a finer grid); that run keeps it.
+    ///
+    /// # Errors
+    /// [`RunError::Read`] or [`RunError::Write`].
+    pub fn share_solutions(&self, run: &Path) -> Result<(), RunError> {
+        let mut entries = SOLVED.into_iter();
+        entries.try_for_each(|entry| link_tree(&run.join(entry), &self.path.join(entry)))
+    }
+
+    /// Writes all tables that detection and location make.
+    ///
+    /// # Errors
+    /// [`RunError`] when a file cannot be composed or written.
+    pub fn write_tables(&self, naming: &Naming<'_>, result: &SweepResult) -> Result<(), RunError> {
         let (observables, points) = (&result.observables, &result.points);
         self.write(
             "points.csv",
@@ -137,13 +175,7 @@ impl RunFolder {
         self.write(
             "bifurcations.tex",
             &bifurcations::bifurcations_tex(naming, labels),
-        )?;
-        let densities: Vec<(f64, &[EstimatedDensity])> = points
-            .iter()
-            .filter(|point| !point.densities.is_empty())
-            .map(|point| (point.value, point.densities.as_slice()))
-            .collect();
-        self.store.replace(naming, &densities)
+        )
     }
 
     fn write(&self, name: &str, text: &str) -> Result<(), RunError> {

@@ -1,12 +1,11 @@
 //! `run.json`: what was run, by which version, and how it ended.
 
-use serde::Serialize;
-use sha2::{Digest, Sha256};
+use serde::{Deserialize, Serialize};
 
-use super::RunError;
+use super::{RunError, stored_run::hash};
 
 /// How a run ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Ending {
     /// Still running, or killed.
@@ -18,7 +17,7 @@ pub enum Ending {
 }
 
 /// Seconds of wall-clock time a phase.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct PhaseSeconds {
     /// Solving and detecting.
     pub sweep: f64,
@@ -26,6 +25,9 @@ pub struct PhaseSeconds {
     pub tables: f64,
     /// Drawing.
     pub figures: f64,
+    /// Reading the densities and detecting again, where `pbif detect` did so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub detect: Option<f64>,
 }
 
 /// The manifest of a run.
@@ -37,7 +39,9 @@ pub struct Manifest {
     pub version: &'static str,
     /// The resolved sweep: every key, defaults filled in.
     pub sweep: serde_json::Value,
-    /// SHA-256 of the resolved sweep as TOML text, hexadecimal.
+    /// The same as text, from which `pbif detect` and `pbif plot` read it again.
+    pub sweep_file: String,
+    /// SHA-256 of `sweep_file`, hexadecimal.
     pub hash: String,
     /// Seed of the random streams.
     pub seed: u64,
@@ -59,13 +63,13 @@ impl Manifest {
     /// # Errors
     /// [`RunError::Resolved`] when `resolved` is not TOML.
     pub fn start(resolved: &str, seed: u64, threads: usize) -> Result<Self, RunError> {
-        let digest = Sha256::digest(resolved.as_bytes());
         let sweep: serde_json::Value = toml::from_str(resolved)?;
         Ok(Self {
             program: env!("CARGO_PKG_NAME"),
             version: env!("CARGO_PKG_VERSION"),
             sweep,
-            hash: digest.iter().map(|byte| format!("{byte:02x}")).collect(),
+            sweep_file: resolved.to_owned(),
+            hash: hash(resolved),
             seed,
             threads,
             ending: Ending::Running,

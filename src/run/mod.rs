@@ -1,12 +1,22 @@
-//! What a run leaves on disk: tables, stored densities, manifest. Every file appears whole or not at all.
+//! What a run leaves on disk: tables, stored densities, manifest. Every file appears whole or not at all, and is read back as
+//! it was.
 
+mod arrays;
 mod atomic;
 mod bifurcations;
+mod checks;
 mod folder;
+mod latex;
 mod manifest;
 mod naming;
 mod number;
+mod staged;
 mod store;
+mod stored_densities;
+mod stored_points;
+mod stored_run;
+#[cfg(test)]
+mod stored_tests;
 mod tables;
 #[cfg(test)]
 mod tests;
@@ -18,12 +28,14 @@ pub use folder::RunFolder;
 pub use manifest::{Ending, Manifest, PhaseSeconds};
 pub use naming::Naming;
 pub use number::{format_number, format_with_error};
+pub use staged::StagedRun;
 pub use store::DensityStore;
+pub use stored_run::StoredRun;
 pub use tables::{features_csv, points_csv};
 
 use std::path::PathBuf;
 
-/// Why a file of a run could not be written.
+/// Why a file of a run could not be written or read.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// The file system refused.
@@ -51,4 +63,98 @@ pub enum RunError {
     /// A value cannot be written as JSON.
     #[error("cannot compose JSON: {0}")]
     Json(#[from] serde_json::Error),
+    /// A folder without a manifest.
+    #[error("`{}` is not the folder of a run: it has no run.json", path.display())]
+    NotARun {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A file of a run is missing or cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// `run.json` is not what a run leaves.
+    #[error("{} is not the manifest of a run: {message}", path.display())]
+    Manifest {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        message: String,
+    },
+    /// A run by another program, or by a version whose files may differ.
+    #[error("{} is of {found}; this is {wanted}", path.display())]
+    Version {
+        /// The manifest.
+        path: PathBuf,
+        /// Program and version that wrote it.
+        found: String,
+        /// This program and version.
+        wanted: String,
+    },
+    /// A sweep that was changed after the run.
+    #[error("the sweep in {} is not the one that was run: its hash does not fit", path.display())]
+    Hash {
+        /// The manifest.
+        path: PathBuf,
+    },
+    /// A table without a column that it must have.
+    #[error("{} has no column `{column}`", path.display())]
+    Column {
+        /// The table.
+        path: PathBuf,
+        /// The column.
+        column: String,
+    },
+    /// A cell of a table that does not hold what it should.
+    #[error("{}, line {line}, column `{column}`: `{value}` is not {wanted}", path.display())]
+    Row {
+        /// The table.
+        path: PathBuf,
+        /// Line of the file, counted from 1.
+        line: u64,
+        /// The column.
+        column: String,
+        /// What stands there.
+        value: String,
+        /// What should.
+        wanted: String,
+    },
+    /// The array store cannot be read.
+    #[error("cannot read the array store {}: {message}", path.display())]
+    ReadStore {
+        /// The store.
+        path: PathBuf,
+        /// What the Zarr library says.
+        message: String,
+    },
+    /// The store has no such density.
+    #[error("the run has not stored the density of `{observable}`, only of {}", stored.join(", "))]
+    NotStored {
+        /// The observable.
+        observable: String,
+        /// Those that are stored.
+        stored: Vec<String>,
+    },
+    /// The stored densities are on other cells than the sweep says.
+    #[error("{}: the cells of axis `{axis}` are not those of the sweep in run.json", path.display())]
+    Cells {
+        /// The store.
+        path: PathBuf,
+        /// The axis.
+        axis: String,
+    },
+    /// A point whose density is missing in the store.
+    #[error("{} has no density at {parameter} = {value}, which points.csv says was solved", path.display())]
+    NoDensity {
+        /// The store.
+        path: PathBuf,
+        /// The swept parameter.
+        parameter: String,
+        /// Its value.
+        value: f64,
+    },
 }

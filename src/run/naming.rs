@@ -1,5 +1,6 @@
 //! Names of axes, observables and the swept parameter, for files and for LaTeX.
 
+use super::latex::mathematics;
 use crate::density::Observable;
 use crate::system::Model;
 
@@ -39,7 +40,7 @@ impl Naming<'_> {
 
     /// The swept parameter as LaTeX mathematics, for example `f_{c}` or `\alpha`.
     pub fn parameter_latex(&self) -> String {
-        latex(self.parameter_symbol())
+        mathematics(self.parameter_symbol())
     }
 
     /// An observable as LaTeX mathematics, for example `(x, \dot{x})`.
@@ -48,45 +49,13 @@ impl Naming<'_> {
             self.model
                 .axes
                 .get(axis)
-                .map_or("?".into(), |a| latex(a.symbol))
+                .map_or("?".into(), |axis| mathematics(axis.symbol))
         };
         match observable {
             Observable::Marginal(axis) => symbol(axis),
             Observable::Joint(first, second) => format!("({}, {})", symbol(first), symbol(second)),
         }
     }
-}
-
-/// Greek letters and dotted letters as LaTeX commands.
-fn latex(symbol: &str) -> String {
-    const COMMANDS: &[(char, &str)] = &[
-        ('α', "\\alpha"),
-        ('β', "\\beta"),
-        ('γ', "\\gamma"),
-        ('δ', "\\delta"),
-        ('ε', "\\varepsilon"),
-        ('ζ', "\\zeta"),
-        ('η', "\\eta"),
-        ('θ', "\\theta"),
-        ('κ', "\\kappa"),
-        ('λ', "\\lambda"),
-        ('μ', "\\mu"),
-        ('ν', "\\nu"),
-        ('ξ', "\\xi"),
-        ('ρ', "\\rho"),
-        ('σ', "\\sigma"),
-        ('τ', "\\tau"),
-        ('φ', "\\varphi"),
-        ('ω', "\\omega"),
-        ('ẋ', "\\dot{x}"),
-        ('ẏ', "\\dot{y}"),
-        ('ż', "\\dot{z}"),
-    ];
-    let command = |letter: char| {
-        let known = COMMANDS.iter().find(|(known, _)| *known == letter);
-        known.map_or(letter.to_string(), |(_, command)| (*command).to_owned())
-    };
-    symbol.chars().map(command).collect()
 }
 
 #[cfg(test)]
@@ -106,6 +75,35 @@ mod tests {
             naming.observable_latex(Observable::Joint(0, 1)),
             "(x, \\dot{x})"
         );
-        assert_eq!(latex("σ^{2}"), "\\sigma^{2}");
+    }
+
+    #[test]
+    fn every_symbol_of_every_model_is_mathematics_that_compiles() {
+        for model in registry::MODELS {
+            for parameter in model.parameters {
+                let parameter = parameter.name;
+                let naming = Naming { model, parameter };
+                let text = naming.parameter_latex();
+                assert!(
+                    text.is_ascii() && !text.contains(['$', '%', '&', '#']),
+                    "{text}"
+                );
+                assert_eq!(
+                    text.matches('{').count(),
+                    text.matches('}').count(),
+                    "{text}"
+                );
+                // One subscript at most, for two in a row are an error.
+                assert!(text.matches('_').count() <= 1, "{text}");
+            }
+            for axis in 0..model.axes.len() {
+                let text = Naming {
+                    model,
+                    parameter: "",
+                }
+                .observable_latex(Observable::Marginal(axis));
+                assert!(text.is_ascii(), "{text}");
+            }
+        }
     }
 }

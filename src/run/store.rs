@@ -1,10 +1,9 @@
 //! `densities.zarr`: marginal and joint densities as a Zarr v3 store that `xarray.open_zarr` reads as it is.
 //!
-//! Arrays: the swept parameter; a coordinate an axis (cell centres, `x`) with its edges (`x_edges`); a density an
-//! observable (`p_x`, `p_xy`) with dimensions (parameter, axes …) and its standard error (`p_x_error`). One chunk a
-//! parameter value. The Zarr library composes every key in memory; the files are then put in place by renaming, since
-//! its own file store truncates in place and a kill would leave half a chunk. The densities of a running sweep stand in the
-//! order in which they were solved and are put in ascending order at the end.
+//! What the arrays are is said in `arrays`. One chunk a parameter value. The Zarr library composes every key in
+//! memory; the files are then put in place by renaming, since its own file store truncates in place and a kill would
+//! leave half a chunk. The densities of a running sweep stand in the order in which they were solved and are put in ascending
+//! order at the end.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -14,26 +13,20 @@ use zarrs::array::{Array, ArrayBuilder, data_type};
 use zarrs::storage::store::MemoryStore;
 use zarrs::storage::{ListableStorageTraits, ReadableStorageTraits};
 
+use super::arrays::{Layout, PARAMETER_CHUNK, REPLICATE_CHUNK};
 use super::{Naming, RunError, atomic::write_atomically};
-use crate::density::{EstimatedDensity, Observable};
+use crate::density::{EstimatedDensity, Variants};
 use crate::space::Axis;
-
-/// Values a chunk of the parameter's coordinate holds.
-const PARAMETER_CHUNK: u64 = 1024;
 
 /// The store of a run's densities.
 #[derive(Debug)]
 pub struct DensityStore {
     path: PathBuf,
     values: Vec<f64>,
-}
-
-/// One array of the store: name, dimensions with lengths, and what it says of itself.
-struct Layout {
-    name: String,
-    dimensions: Vec<(String, u64)>,
-    chunk: Vec<u64>,
-    long_name: String,
+    /// Centres and edges of the axes so far.
+    axes: Vec<Layout>,
+    /// Every array so far with a dimension along the parameter.
+    arrays: Vec<Layout>,
 }
 
 impl DensityStore {
@@ -42,6 +35,8 @@ impl DensityStore {
         Self {
             path: path.to_owned(),
             values: Vec::new(),
+            axes: Vec::new(),
+            arrays: Vec::new(),
         }
     }
 
@@ -55,30 +50,8 @@ impl DensityStore {
         value: f64,
         densities: &[EstimatedDensity],
     ) -> Result<(), RunError> {
-        let place = self.values.len() as u64;
-        self.values.push(value);
-        let mut metadata = Map::new();
-        for (name, axis) in axes_of(naming, densities) {
-            self.write_axis(&name, &axis, &mut metadata)?;
-        }
-        self.write_parameter(naming, &mut metadata)?;
-        for estimate in densities {
-            let name = format!("p_{}", naming.observable(estimate.observable));
-            let error = format!("{name}_error");
-            let words = words(naming, estimate.observable);
-            let chunk = [place, 0, 0];
-            let chunk = &chunk[..=estimate.density.axes.len()];
-            let layout = self.layout(naming, estimate, &name, &words);
-            self.write_array(&layout, chunk, &estimate.density.values, &mut metadata)?;
-            let layout = self.layout(
-                naming,
-                estimate,
-                &error,
-                &format!("standard error of the {words}"),
-            );
-            self.write_array(&layout, chunk, &estimate.standard_error, &mut metadata)?;
-        }
-        self.write_root(naming, metadata)
+        self.add(naming, value, densities)?;
+        self.write_all_metadata(naming)
     }
 
     /// Replaces the whole store by the given densities, in their order; the old one stays until the new one is
@@ -99,113 +72,205 @@ impl DensityStore {
             source,
         };
         let fresh = self.path.with_extension("zarr.new");
-        if fresh.exists() {
-            std::fs::remove_dir_all(&fresh).map_err(failed)?;
+        let old = self.path.with_extension("zarr.old");
+        for left_over in [&fresh, &old] {
+            if left_over.exists() {
+                std::fs::remove_dir_all(left_over).map_err(failed)?;
+            }
         }
         let mut store = Self::new(&fresh);
         for (value, densities) in densities {
-            store.append(naming, *value, densities)?;
+            store.add(naming, *value, densities)?;
         }
+        store.write_all_metadata(naming)?;
         if self.path.exists() {
-            std::fs::remove_dir_all(&self.path).map_err(failed)?;
+            std::fs::rename(&self.path, &old).map_err(failed)?;
         }
         std::fs::rename(&fresh, &self.path).map_err(failed)?;
-        self.values = store.values;
+        if old.exists() {
+            std::fs::remove_dir_all(&old).map_err(failed)?;
+        }
+        store.path.clone_from(&self.path);
+        *self = store;
         Ok(())
     }
 
-    fn layout(
-        &self,
+    /// Writes the chunks of one parameter value, and with the first those of the axes.
+    fn add(
+        &mut self,
         naming: &Naming<'_>,
-        estimate: &EstimatedDensity,
-        name: &str,
-        long_name: &str,
-    ) -> Layout {
-        let mut dimensions = vec![(naming.parameter.to_owned(), self.values.len() as u64)];
-        let axes = observed_axes(estimate.observable);
-        for (axis, cells) in axes.iter().zip(&estimate.density.axes) {
-            dimensions.push((naming.axis(*axis).to_owned(), cells.count() as u64));
+        value: f64,
+        densities: &[EstimatedDensity],
+    ) -> Result<(), RunError> {
+        self.values.push(value);
+        for (name, axis) in axes_of(naming, densities) {
+            if self.axes.iter().all(|known| known.name != name) {
+                let [centres, edges] = Layout::axis(&name, &axis);
+                self.write_chunk(&centres, &[0], &axis.centres())?;
+                self.write_chunk(&edges, &[0], axis.edges())?;
+                self.axes.extend([centres, edges]);
+            }
         }
-        let mut chunk: Vec<u64> = dimensions.iter().map(|dimension| dimension.1).collect();
-        chunk[0] = 1;
-        Layout {
-            name: name.to_owned(),
-            dimensions,
-            chunk,
-            long_name: long_name.to_owned(),
+        for estimate in densities {
+            self.write_estimate(naming, estimate)?;
         }
+        self.write_parameter(naming)
     }
 
-    fn write_parameter(
-        &self,
+    /// Writes the metadata of every array at the present number of parameter values, and last that of the store.
+    fn write_all_metadata(&self, naming: &Naming<'_>) -> Result<(), RunError> {
+        let parameter = Layout::parameter(naming, self.values.len() as u64);
+        let mut metadata = Map::new();
+        for layout in self.axes.iter().chain([&parameter]).chain(&self.arrays) {
+            self.write_metadata(layout, &mut metadata)?;
+        }
+        self.write_root(naming, metadata)
+    }
+
+    /// Writes the chunks of one density at the last parameter value.
+    fn write_estimate(
+        &mut self,
         naming: &Naming<'_>,
-        metadata: &mut Map<String, Value>,
+        estimate: &EstimatedDensity,
     ) -> Result<(), RunError> {
+        let values = &estimate.density.values;
+        self.write_values(Layout::density(naming, estimate), values)?;
+        self.write_values(Layout::error(naming, estimate), &estimate.standard_error)?;
+        match &estimate.variants {
+            Variants::None => {}
+            Variants::Scheme(second) => {
+                self.write_values(Layout::second(naming, estimate), second)?;
+            }
+            Variants::Jackknife(replicates) => {
+                let layout = Layout::replicates(naming, estimate, replicates.len());
+                self.write_replicates(layout, replicates)?;
+            }
+        }
+        let mut number = 0;
+        for kink in &estimate.structure.kinks {
+            // A kink keeps its number although another may be missing at some parameter value.
+            let mut layout = Layout::kink(naming, estimate, kink, number);
+            match self.arrays.iter().find(|known| known.is_kink(&layout)) {
+                Some(known) => layout.name.clone_from(&known.name),
+                None => {
+                    while self.arrays.iter().any(|known| known.name == layout.name) {
+                        number += 1;
+                        layout = Layout::kink(naming, estimate, kink, number);
+                    }
+                }
+            }
+            let bins: u64 = layout.chunk.iter().product();
+            let jumps: Vec<f64> = (0..bins as usize).map(|bin| kink.jump_at(bin)).collect();
+            self.write_values(layout, &jumps)?;
+        }
+        Ok(())
+    }
+
+    /// Writes one value a cell at the last parameter value.
+    fn write_values(&mut self, layout: Layout, values: &[f64]) -> Result<(), RunError> {
+        let layout = self.register(layout);
+        let mut place = vec![0; layout.dimensions.len()];
+        place[0] = self.values.len() as u64 - 1;
+        self.write_chunk(&layout, &place, values)
+    }
+
+    /// Writes replicates at the last parameter value, chunk by chunk; what a chunk does not fill is NaN.
+    fn write_replicates(
+        &mut self,
+        layout: Layout,
+        replicates: &[Vec<f64>],
+    ) -> Result<(), RunError> {
+        let layout = self.register(layout);
+        let length = layout.chunk.iter().product::<u64>() as usize;
+        for (number, part) in replicates.chunks(REPLICATE_CHUNK as usize).enumerate() {
+            let mut values = part.concat();
+            values.resize(length, f64::NAN);
+            let mut place = vec![0; layout.dimensions.len()];
+            (place[0], place[1]) = (self.values.len() as u64 - 1, number as u64);
+            self.write_chunk(&layout, &place, &values)?;
+        }
+        Ok(())
+    }
+
+    /// Remembers an array, brings all to the present number of parameter values, and returns it as it is now.
+    fn register(&mut self, layout: Layout) -> Layout {
+        let known = self.arrays.iter().position(|one| one.name == layout.name);
+        let index = known.unwrap_or_else(|| {
+            self.arrays.push(layout.clone());
+            self.arrays.len() - 1
+        });
+        let dimensions = self.arrays[index].dimensions.iter_mut();
+        for (length, other) in dimensions.zip(&layout.dimensions) {
+            length.1 = length.1.max(other.1);
+        }
+        for known in &mut self.arrays {
+            known.dimensions[0].1 = self.values.len() as u64;
+        }
+        self.arrays[index].clone()
+    }
+
+    /// Writes the chunk of parameter values that holds the last one.
+    fn write_parameter(&self, naming: &Naming<'_>) -> Result<(), RunError> {
         let count = self.values.len() as u64;
-        let layout = Layout {
-            name: naming.parameter.to_owned(),
-            dimensions: vec![(naming.parameter.to_owned(), count)],
-            chunk: vec![PARAMETER_CHUNK],
-            long_name: "swept parameter".to_owned(),
-        };
+        let layout = Layout::parameter(naming, count);
         let index = (count - 1) / PARAMETER_CHUNK;
         let mut chunk = self.values[(index * PARAMETER_CHUNK) as usize..].to_vec();
         chunk.resize(PARAMETER_CHUNK as usize, 0.0);
-        self.write_array(&layout, &[index], &chunk, metadata)
+        self.write_chunk(&layout, &[index], &chunk)
     }
 
-    fn write_axis(
-        &self,
-        name: &str,
-        axis: &Axis,
-        metadata: &mut Map<String, Value>,
-    ) -> Result<(), RunError> {
-        let one_dimension = |name: &str, dimension: &str, count: usize, long_name: &str| Layout {
-            name: name.to_owned(),
-            dimensions: vec![(dimension.to_owned(), count as u64)],
-            chunk: vec![count as u64],
-            long_name: long_name.to_owned(),
-        };
-        let centres = one_dimension(name, name, axis.count(), "centres of the cells");
-        self.write_array(&centres, &[0], &axis.centres(), metadata)?;
-        let edges = format!("{name}_edges");
-        let layout = one_dimension(&edges, &edges, axis.count() + 1, "edges of the cells");
-        self.write_array(&layout, &[0], axis.edges(), metadata)
-    }
-
-    /// Writes one chunk of an array with the array's metadata, which is also added to `metadata`.
-    fn write_array(
+    /// Writes an array's metadata, which is also added to `metadata`.
+    fn write_metadata(
         &self,
         layout: &Layout,
-        chunk: &[u64],
-        values: &[f64],
         metadata: &mut Map<String, Value>,
     ) -> Result<(), RunError> {
+        let (memory, array) = self.array(layout)?;
+        array
+            .store_metadata()
+            .map_err(|error| self.failed(error.to_string()))?;
+        metadata.insert(layout.name.clone(), serde_json::to_value(array.metadata())?);
+        self.put_in_place(&memory)
+    }
+
+    /// Writes one chunk of an array.
+    fn write_chunk(&self, layout: &Layout, place: &[u64], values: &[f64]) -> Result<(), RunError> {
+        let (memory, array) = self.array(layout)?;
+        array
+            .store_chunk(place, values)
+            .map_err(|error| self.failed(error.to_string()))?;
+        self.put_in_place(&memory)
+    }
+
+    /// An array in memory.
+    fn array(&self, layout: &Layout) -> Result<(Arc<MemoryStore>, Array<MemoryStore>), RunError> {
         let memory = Arc::new(MemoryStore::new());
-        let failed = |message: String| RunError::Store {
-            path: self.path.clone(),
-            message,
-        };
         let shape: Vec<u64> = layout.dimensions.iter().map(|d| d.1).collect();
         let names: Vec<&str> = layout.dimensions.iter().map(|d| d.0.as_str()).collect();
-        let mut attributes = Map::new();
-        attributes.insert("long_name".to_owned(), layout.long_name.clone().into());
-        let array: Array<MemoryStore> =
-            ArrayBuilder::new(shape, layout.chunk.clone(), data_type::float64(), f64::NAN)
-                .dimension_names(names.into())
-                .attributes(attributes)
-                .build(memory.clone(), &format!("/{}", layout.name))
-                .map_err(|error| failed(error.to_string()))?;
-        array.store_metadata().map_err(|e| failed(e.to_string()))?;
-        array
-            .store_chunk(chunk, values)
-            .map_err(|error| failed(error.to_string()))?;
-        metadata.insert(layout.name.clone(), serde_json::to_value(array.metadata())?);
-        for key in memory.list().map_err(|e| failed(e.to_string()))? {
-            let bytes = memory.get(&key).map_err(|e| failed(e.to_string()))?;
+        let array = ArrayBuilder::new(shape, layout.chunk.clone(), data_type::float64(), f64::NAN)
+            .dimension_names(names.into())
+            .attributes(layout.attributes.clone())
+            .build(memory.clone(), &format!("/{}", layout.name))
+            .map_err(|error| self.failed(error.to_string()))?;
+        Ok((memory, array))
+    }
+
+    /// Writes what was composed in memory.
+    fn put_in_place(&self, memory: &MemoryStore) -> Result<(), RunError> {
+        let keys = memory.list();
+        for key in keys.map_err(|error| self.failed(error.to_string()))? {
+            let bytes = memory.get(&key);
+            let bytes = bytes.map_err(|error| self.failed(error.to_string()))?;
             write_atomically(&self.path.join(key.as_str()), &bytes.unwrap_or_default())?;
         }
         Ok(())
+    }
+
+    fn failed(&self, message: String) -> RunError {
+        RunError::Store {
+            path: self.path.clone(),
+            message,
+        }
     }
 
     /// Writes the group's metadata with that of all arrays, so that readers need not list the folder.
@@ -233,7 +298,7 @@ impl DensityStore {
 fn axes_of(naming: &Naming<'_>, densities: &[EstimatedDensity]) -> Vec<(String, Axis)> {
     let mut axes: Vec<(String, Axis)> = Vec::new();
     for estimate in densities {
-        let numbers = observed_axes(estimate.observable);
+        let numbers = estimate.observable.axes();
         for (number, axis) in numbers.iter().zip(&estimate.density.axes) {
             let name = naming.axis(*number);
             if axes.iter().all(|(known, _)| known != name) {
@@ -242,24 +307,4 @@ fn axes_of(naming: &Naming<'_>, densities: &[EstimatedDensity]) -> Vec<(String, 
         }
     }
     axes
-}
-
-fn observed_axes(observable: Observable) -> Vec<usize> {
-    match observable {
-        Observable::Marginal(axis) => vec![axis],
-        Observable::Joint(first, second) => vec![first, second],
-    }
-}
-
-fn words(naming: &Naming<'_>, observable: Observable) -> String {
-    match observable {
-        Observable::Marginal(axis) => format!("marginal density of {}", naming.axis(axis)),
-        Observable::Joint(first, second) => {
-            format!(
-                "joint density of {} and {}",
-                naming.axis(first),
-                naming.axis(second)
-            )
-        }
-    }
 }

@@ -155,6 +155,7 @@ pub(crate) fn bistable() -> SweepResult {
             Observable::Marginal(0),
             unresolved,
         )],
+        finer: None,
         interrupted: false,
     }
 }
@@ -220,6 +221,7 @@ pub(crate) fn rayleigh(parameter: &str, scale: f64, y: &Axis) -> SweepResult {
         observables: observables.clone(),
         points,
         labels,
+        finer: None,
         interrupted: false,
     }
 }

@@ -13,7 +13,7 @@ use crate::figure::Format;
 use crate::method::MethodOptions;
 use crate::space::CellSpace;
 use crate::system::{Model, ParameterValues};
-use crate::topology::DetectOptions;
+use crate::topology::{DetectOptions, PersistenceDetector};
 
 pub(crate) use cells::AxisCells;
 
@@ -67,6 +67,20 @@ impl SweepSpec {
     /// A report of everything that is wrong with them.
     pub(crate) fn load(file: &Path, overrides: &[String]) -> Result<Self, Report> {
         Self::build(file, Document::read(file, overrides)?)
+    }
+
+    /// Reads the resolved sweep file of a stored run, `text` of the manifest `file`, with its overrides.
+    ///
+    /// # Errors
+    /// As [`SweepSpec::load`].
+    pub(crate) fn stored(file: &Path, text: &str, overrides: &[String]) -> Result<Self, Report> {
+        let name = file.display().to_string();
+        Self::build(file, Document::parse(&name, text, overrides)?)
+    }
+
+    /// The detector: its confidence holds for all densities of the sweep together.
+    pub(crate) fn detector(&self) -> PersistenceDetector {
+        PersistenceDetector::new(self.detect.clone(), self.points * self.observables.len())
     }
 
     /// What to sweep.

@@ -8,7 +8,7 @@ use crate::continuation::{LabelledPoint, Point, PointType, SweepResult};
 use crate::run::{Naming, format_number, format_with_error};
 
 /// The labelled points as a table, the signatures at both ends, and where the files are.
-pub(super) fn text(naming: &Naming<'_>, result: &SweepResult, folder: &Path) -> String {
+pub(in crate::cli) fn text(naming: &Naming<'_>, result: &SweepResult, folder: &Path) -> String {
     let rows: Vec<&LabelledPoint> = result
         .labels
         .iter()
@@ -108,6 +108,7 @@ fn files(folder: &Path) -> Vec<String> {
         "points.csv",
         "features.csv",
         "densities.zarr",
+        "checks.csv",
         "run.json",
     ]
     .map(str::to_owned)
@@ -126,7 +127,7 @@ fn files(folder: &Path) -> Vec<String> {
 
 /// The warnings of all points: each kind once, with the range of parameter values it concerns. Sentences that
 /// differ only in their numbers are one kind; the first is quoted.
-pub(super) fn warnings(parameter: &str, points: &[Point]) -> Vec<String> {
+pub(in crate::cli) fn warnings(parameter: &str, points: &[Point]) -> Vec<String> {
     struct Kind {
         shape: String,
         sentence: String,

@@ -1,0 +1,91 @@
+//! `pbif detect`: detection and location from the stored densities of a run, with other settings, without solving.
+
+use std::path::Path;
+use std::time::Instant;
+
+use super::args::DetectArguments;
+use super::output::OutputFolder;
+use super::stored::{Stored, naming};
+use super::sweep::{draw, outcome, summary};
+use super::{CommandError, Outcome};
+use crate::continuation::SweepResult;
+use crate::run::{Ending, Manifest, RunFolder, StagedRun};
+
+/// Sections of a sweep file that do not concern the densities.
+const SECTIONS: [&str; 3] = ["detect", "locate", "figures"];
+
+/// Detects again, writes tables, figures and manifest, and prints what was found.
+///
+/// # Errors
+/// [`CommandError`] when the run cannot be read or the results not be written; then everything is as it was.
+pub(super) fn run(arguments: &DetectArguments) -> Result<Outcome, CommandError> {
+    let clock = Instant::now();
+    let stored = Stored::read(
+        &arguments.run,
+        &arguments.overrides,
+        &SECTIONS,
+        arguments.quiet,
+    )?;
+    let result = stored.detect();
+    let seconds = clock.elapsed().as_secs_f64();
+    let out = arguments.out.as_deref().unwrap_or(&arguments.run);
+    let output = OutputFolder::prepare(out)?;
+    if is_same(output.path(), &arguments.run) {
+        let staged = StagedRun::new(&arguments.run)?;
+        write(&stored, &result, seconds, &mut staged.folder()?)?;
+        staged.take_place()?;
+    } else {
+        let mut folder = RunFolder::create(output.path())?;
+        folder.share_solutions(&arguments.run)?;
+        write(&stored, &result, seconds, &mut folder)?;
+    }
+    super::print(&summary::text(
+        &naming(&stored.spec),
+        &result,
+        output.path(),
+    ))?;
+    Ok(match outcome(&result) {
+        // It was the run that was interrupted, not this command.
+        Outcome::Interrupted => Outcome::Partial,
+        outcome => outcome,
+    })
+}
+
+fn is_same(one: &Path, other: &Path) -> bool {
+    match (one.canonicalize(), other.canonicalize()) {
+        (Ok(one), Ok(other)) => one == other,
+        _ => one == other,
+    }
+}
+
+/// Writes tables, figures, and last the manifest.
+fn write(
+    stored: &Stored,
+    result: &SweepResult,
+    detect_seconds: f64,
+    folder: &mut RunFolder,
+) -> Result<(), CommandError> {
+    let (run, spec) = (&stored.run, &stored.spec);
+    let naming = naming(spec);
+    let mut manifest = Manifest::start(&spec.to_toml(), run.seed(), run.threads())?;
+    manifest.seconds = run.seconds();
+    manifest.seconds.detect = Some(detect_seconds);
+    let clock = Instant::now();
+    folder.write_tables(&naming, result)?;
+    manifest.seconds.tables = clock.elapsed().as_secs_f64();
+    let clock = Instant::now();
+    draw(spec, result, &folder.figures())?;
+    manifest.seconds.figures = clock.elapsed().as_secs_f64();
+    manifest.points = result.points.len();
+    // A run that was killed has written none.
+    manifest.warnings = match run.ending() {
+        Ending::Running => summary::warnings(naming.parameter, &result.points),
+        _ => run.warnings().to_vec(),
+    };
+    manifest.ending = match run.ending() {
+        Ending::Complete => Ending::Complete,
+        Ending::Running | Ending::Interrupted => Ending::Interrupted,
+    };
+    folder.write_manifest(&manifest)?;
+    Ok(())
+}

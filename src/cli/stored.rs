@@ -1,0 +1,130 @@
+//! What `pbif detect` and `pbif plot` share: a stored run with its sweep, its points, and what is found in them.
+
+use std::io::Write as _;
+use std::path::Path;
+
+use super::CommandError;
+use super::diagnostic::{Diagnostic, Report, list};
+use super::spec::SweepSpec;
+use crate::continuation::{FinerIndicator, Point, SweepResult, detect_again};
+use crate::method::MethodOptions;
+use crate::run::{Ending, Naming, RunError, StoredRun};
+
+/// A run that was read.
+pub(super) struct Stored {
+    pub(super) run: StoredRun,
+    pub(super) spec: SweepSpec,
+    points: Vec<Point>,
+    finer: Option<Vec<FinerIndicator>>,
+}
+
+impl Stored {
+    /// Reads a run, with overrides of the keys under `sections`.
+    ///
+    /// # Errors
+    /// [`CommandError::Input`] for overrides, [`CommandError::Run`] for the run's files.
+    pub(super) fn read(
+        path: &Path,
+        overrides: &[String],
+        sections: &[&str],
+        quiet: bool,
+    ) -> Result<Self, CommandError> {
+        let run = StoredRun::open(path)?;
+        check_overrides(overrides, sections)?;
+        let spec = SweepSpec::stored(&path.join("run.json"), run.resolved(), overrides)?;
+        let points = run.points(
+            &naming(&spec),
+            &MethodOptions::KINDS,
+            &spec.space,
+            &spec.observables,
+        )?;
+        let finer = run.finer(&naming(&spec), &spec.observables)?;
+        let stored = Self {
+            run,
+            spec,
+            points,
+            finer,
+        };
+        if !quiet {
+            stored.say();
+        }
+        Ok(stored)
+    }
+
+    /// Detects and locates in all points.
+    pub(super) fn detect(&self) -> SweepResult {
+        let spec = &self.spec;
+        let (points, finer) = (self.points.clone(), self.finer.clone());
+        let mut result = detect_again(&spec.plan(), &spec.detector(), points, finer, &spec.locate);
+        result.interrupted = self.run.ending() != Ending::Complete;
+        result
+    }
+
+    /// Says what was read, and what is missing of it.
+    fn say(&self) {
+        let with_density = self.points.iter().filter(|p| !p.densities.is_empty());
+        let (points, densities) = (self.points.len(), with_density.count());
+        let mut text = format!("{points} points read, {densities} of them with densities\n");
+        if self.run.ending() != Ending::Complete {
+            let given = self.spec.points;
+            text += &format!(
+                "the run was interrupted: of its {given} given values, and those that refine brackets, there are {points} points\n"
+            );
+        }
+        // Without a reader of stderr there is nobody to tell.
+        let _ = std::io::stderr().lock().write_all(text.as_bytes());
+    }
+}
+
+/// The names of a sweep.
+pub(super) fn naming(spec: &SweepSpec) -> Naming<'_> {
+    Naming {
+        model: spec.model,
+        parameter: &spec.parameter,
+    }
+}
+
+/// Refuses overrides of keys that a finished run has used up.
+fn check_overrides(overrides: &[String], sections: &[&str]) -> Result<(), Report> {
+    for argument in overrides {
+        let key = argument.split('=').next().unwrap_or_default().trim();
+        let section = key.split('.').next().unwrap_or_default().trim();
+        if !sections.contains(&section) {
+            let title = format!("`{key}` cannot be set for a stored run");
+            let keys: Vec<String> = sections.iter().map(|name| format!("{name}.…")).collect();
+            return Err(Diagnostic::new(title)
+                .allowed(format!("keys under {}", list(&keys)))
+                .remedy("its densities stay as they are; `pbif sweep FILE --set …` solves with other settings")
+                .into());
+        }
+    }
+    Ok(())
+}
+
+/// What a user is told of a run's files that cannot be written or read.
+pub(super) fn diagnostic(error: &RunError) -> Diagnostic {
+    let finding = Diagnostic::new(error.to_string());
+    let solve = "`pbif sweep FILE` makes a run anew";
+    match error {
+        RunError::NotARun { .. } => {
+            finding.remedy("give the folder that `pbif sweep` wrote, such as `output/coulomb_fc`")
+        }
+        RunError::NotStored { stored, .. } => finding
+            .allowed(format!("observables of {}", list(stored)))
+            .remedy("`pbif sweep FILE --set detect.marginals=…` or `detect.joint=…` solves and stores more"),
+        RunError::Version { .. } => {
+            finding.remedy(format!("use the version that made the run, or {solve}"))
+        }
+        RunError::Read { .. }
+        | RunError::Manifest { .. }
+        | RunError::Hash { .. }
+        | RunError::Column { .. }
+        | RunError::Row { .. }
+        | RunError::ReadStore { .. }
+        | RunError::Cells { .. }
+        | RunError::NoDensity { .. } => {
+            finding.remedy(format!("the run was changed or is not complete; {solve}"))
+        }
+        _ => finding,
+    }
+}

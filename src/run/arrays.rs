@@ -1,0 +1,254 @@
+//! The arrays of `densities.zarr`: names, dimensions and meaning. What writes the store and what reads it both take
+//! them from here.
+//!
+//! | array | dimensions | content |
+//! | --- | --- | --- |
+//! | `f_c` (the parameter) | parameter | its values |
+//! | `x`, `x_edges` | cells of the axis, edges | centres and edges of the cells |
+//! | `p_x`, `p_xy` | parameter, axes … | density; attribute `centre_of_symmetry` where the system declares one |
+//! | `p_x_error` | as `p_x` | standard error |
+//! | `p_x_second` | as `p_x` | density by a second discretisation (generator) |
+//! | `p_x_replicate` | parameter, replicate, axes … | densities without one group of samples each (SGCM) |
+//! | `p_y_kink_0` | parameter; for a joint density also the other axis | jump of ∂(log p)/∂(axis) across a plane; attributes `axis`, `at` |
+//!
+//! Kinks are numbered in the order in which they first occur. NaN stands for what is not there at a parameter value. A symmetry is that of the equations all along a sweep, hence an attribute.
+
+use serde_json::{Map, Value, json};
+
+use super::Naming;
+use crate::density::{EstimatedDensity, Kink, Observable};
+use crate::space::Axis;
+
+/// Values a chunk of the parameter's coordinate holds.
+pub(super) const PARAMETER_CHUNK: u64 = 1024;
+
+/// Replicates a chunk holds. Groups of samples that leave no steady state give no replicate, so their number may grow along a
+/// sweep; chunks of fixed extent let it.
+pub(super) const REPLICATE_CHUNK: u64 = 8;
+
+/// Attribute of a density.
+pub(super) const CENTRE: &str = "centre_of_symmetry";
+
+/// Attributes of a kink: name of the axis on which the plane stands, and its coordinate.
+pub(super) const KINK_AXIS: &str = "axis";
+/// See [`KINK_AXIS`].
+pub(super) const KINK_AT: &str = "at";
+
+/// One array of the store.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Layout {
+    pub(super) name: String,
+    /// Names with lengths.
+    pub(super) dimensions: Vec<(String, u64)>,
+    pub(super) chunk: Vec<u64>,
+    pub(super) attributes: Map<String, Value>,
+}
+
+impl Layout {
+    fn new(
+        name: String,
+        dimensions: Vec<(String, u64)>,
+        chunk: Vec<u64>,
+        long_name: String,
+    ) -> Self {
+        let mut attributes = Map::new();
+        attributes.insert("long_name".to_owned(), long_name.into());
+        Self {
+            name,
+            dimensions,
+            chunk,
+            attributes,
+        }
+    }
+
+    fn attribute(mut self, name: &str, value: Value) -> Self {
+        self.attributes.insert(name.to_owned(), value);
+        self
+    }
+
+    /// The swept parameter with `count` values.
+    pub(super) fn parameter(naming: &Naming<'_>, count: u64) -> Self {
+        let name = naming.parameter.to_owned();
+        let dimensions = vec![(name.clone(), count)];
+        Self::new(
+            name,
+            dimensions,
+            vec![PARAMETER_CHUNK],
+            "swept parameter".to_owned(),
+        )
+    }
+
+    /// Centres and edges of an axis.
+    pub(super) fn axis(name: &str, axis: &Axis) -> [Self; 2] {
+        let array = |name: String, count: usize, words: &str| {
+            let count = count as u64;
+            Self::new(
+                name.clone(),
+                vec![(name, count)],
+                vec![count],
+                words.to_owned(),
+            )
+        };
+        [
+            array(name.to_owned(), axis.count(), "centres of the cells"),
+            array(edges(name), axis.count() + 1, "edges of the cells"),
+        ]
+    }
+
+    /// The density itself.
+    pub(super) fn density(naming: &Naming<'_>, estimate: &EstimatedDensity) -> Self {
+        let words = words(naming, estimate.observable);
+        let layout = Self::of_cells(
+            naming,
+            estimate,
+            density(naming, estimate.observable),
+            words,
+        );
+        match &estimate.structure.centre {
+            Some(centre) => layout.attribute(CENTRE, json!(centre)),
+            None => layout,
+        }
+    }
+
+    /// Its standard error.
+    pub(super) fn error(naming: &Naming<'_>, estimate: &EstimatedDensity) -> Self {
+        let long_name = format!(
+            "standard error of the {}",
+            words(naming, estimate.observable)
+        );
+        Self::of_cells(
+            naming,
+            estimate,
+            error(naming, estimate.observable),
+            long_name,
+        )
+    }
+
+    /// The density by a second discretisation.
+    pub(super) fn second(naming: &Naming<'_>, estimate: &EstimatedDensity) -> Self {
+        let long_name = format!(
+            "{} by a second discretisation",
+            words(naming, estimate.observable)
+        );
+        Self::of_cells(
+            naming,
+            estimate,
+            second(naming, estimate.observable),
+            long_name,
+        )
+    }
+
+    /// The densities without one group of samples each.
+    pub(super) fn replicates(
+        naming: &Naming<'_>,
+        estimate: &EstimatedDensity,
+        count: usize,
+    ) -> Self {
+        let long_name = format!(
+            "{} without one group of samples each",
+            words(naming, estimate.observable)
+        );
+        let name = replicates(naming, estimate.observable);
+        let mut layout = Self::of_cells(naming, estimate, name, long_name);
+        layout
+            .dimensions
+            .insert(1, ("replicate".to_owned(), count as u64));
+        layout.chunk.insert(1, REPLICATE_CHUNK);
+        layout
+    }
+
+    /// The kink of the given number.
+    pub(super) fn kink(
+        naming: &Naming<'_>,
+        estimate: &EstimatedDensity,
+        kink: &Kink,
+        number: usize,
+    ) -> Self {
+        let name = format!("{}{number}", kink_prefix(naming, estimate.observable));
+        let axes = estimate.observable.axes();
+        let axis = axes.get(kink.axis).map_or("?", |&axis| naming.axis(axis));
+        let density = words(naming, estimate.observable);
+        let at = kink.at;
+        let long_name =
+            format!("jump of the slope along {axis} of the logarithm of the {density} at {at}");
+        let mut layout = Self::of_cells(naming, estimate, name, long_name);
+        // The plane leaves the other axis, if there is one.
+        layout.dimensions.remove(1 + kink.axis);
+        layout.chunk.remove(1 + kink.axis);
+        layout
+            .attribute(KINK_AXIS, axis.into())
+            .attribute(KINK_AT, json!(kink.at))
+    }
+
+    /// An array with one value a cell and parameter value; the number of parameter values is set when it is stored.
+    fn of_cells(
+        naming: &Naming<'_>,
+        estimate: &EstimatedDensity,
+        name: String,
+        long_name: String,
+    ) -> Self {
+        let mut dimensions = vec![(naming.parameter.to_owned(), 1)];
+        let axes = estimate.observable.axes();
+        for (&axis, cells) in axes.iter().zip(&estimate.density.axes) {
+            dimensions.push((naming.axis(axis).to_owned(), cells.count() as u64));
+        }
+        let chunk = dimensions.iter().map(|dimension| dimension.1).collect();
+        Self::new(name, dimensions, chunk, long_name)
+    }
+
+    /// Whether this is the array of that kink, whatever its number.
+    pub(super) fn is_kink(&self, other: &Self) -> bool {
+        let of = |layout: &Self| {
+            let name = layout
+                .name
+                .trim_end_matches(|c: char| c.is_ascii_digit())
+                .to_owned();
+            (
+                name,
+                layout.attributes.get(KINK_AXIS).cloned(),
+                layout.attributes.get(KINK_AT).cloned(),
+            )
+        };
+        self.attributes.contains_key(KINK_AT) && of(self) == of(other)
+    }
+}
+
+/// Name of the edges of an axis.
+pub(super) fn edges(axis: &str) -> String {
+    format!("{axis}_edges")
+}
+
+/// Name of a density.
+pub(super) fn density(naming: &Naming<'_>, observable: Observable) -> String {
+    format!("p_{}", naming.observable(observable))
+}
+
+/// Name of its standard error.
+pub(super) fn error(naming: &Naming<'_>, observable: Observable) -> String {
+    density(naming, observable) + "_error"
+}
+
+/// Name of its second discretisation.
+pub(super) fn second(naming: &Naming<'_>, observable: Observable) -> String {
+    density(naming, observable) + "_second"
+}
+
+/// Name of its replicates.
+pub(super) fn replicates(naming: &Naming<'_>, observable: Observable) -> String {
+    density(naming, observable) + "_replicate"
+}
+
+/// Names of its kinks without their numbers.
+pub(super) fn kink_prefix(naming: &Naming<'_>, observable: Observable) -> String {
+    density(naming, observable) + "_kink_"
+}
+
+fn words(naming: &Naming<'_>, observable: Observable) -> String {
+    match observable {
+        Observable::Marginal(axis) => format!("marginal density of {}", naming.axis(axis)),
+        Observable::Joint(first, second) => {
+            let (first, second) = (naming.axis(first), naming.axis(second));
+            format!("joint density of {first} and {second}")
+        }
+    }
+}

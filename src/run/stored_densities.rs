@@ -1,0 +1,295 @@
+//! `densities.zarr`, read back: the same densities bit for bit, with their errors, variants and structure.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde_json::Value;
+use zarrs::array::{Array, ArraySubset};
+use zarrs::filesystem::FilesystemStore;
+
+use super::{Naming, RunError, arrays};
+use crate::density::{Density, EstimatedDensity, Kink, Observable, Structure, Variants};
+use crate::space::{Axis, CellSpace};
+
+type StoredArray = Array<FilesystemStore>;
+
+/// The store of a run, opened for the observables that are wanted of it.
+pub(super) struct StoredDensities {
+    path: PathBuf,
+    /// Parameter values in the order of the store.
+    values: Vec<f64>,
+    observed: Vec<Observed>,
+}
+
+/// The arrays of one observable.
+struct Observed {
+    observable: Observable,
+    axes: Vec<Axis>,
+    density: StoredArray,
+    error: StoredArray,
+    second: Option<StoredArray>,
+    replicates: Option<StoredArray>,
+    centre: Option<Vec<f64>>,
+    kinks: Vec<StoredKink>,
+}
+
+struct StoredKink {
+    axis: usize,
+    at: f64,
+    jump: StoredArray,
+}
+
+impl StoredDensities {
+    /// Opens the store at `path`.
+    ///
+    /// # Errors
+    /// [`RunError::ReadStore`]; [`RunError::NotStored`] for an observable that the store does not have;
+    /// [`RunError::Cells`] when its cells are not those of `space`.
+    pub(super) fn open(
+        path: &Path,
+        naming: &Naming<'_>,
+        space: &CellSpace,
+        observables: &[Observable],
+    ) -> Result<Self, RunError> {
+        let opened = Opened::new(path)?;
+        let values = opened.whole(naming.parameter)?;
+        let observed = observables
+            .iter()
+            .map(|&observable| opened.observed(naming, space, observable))
+            .collect::<Result<_, _>>()?;
+        Ok(Self {
+            path: path.to_owned(),
+            values,
+            observed,
+        })
+    }
+
+    /// The densities at a parameter value; `None` if the store has none there.
+    ///
+    /// # Errors
+    /// [`RunError::ReadStore`].
+    pub(super) fn at(&self, value: f64) -> Result<Option<Vec<EstimatedDensity>>, RunError> {
+        let Some(index) = self.values.iter().position(|&known| known == value) else {
+            return Ok(None);
+        };
+        let densities = self.observed.iter();
+        densities
+            .map(|observed| observed.estimate(&self.path, index as u64))
+            .collect::<Result<_, _>>()
+            .map(Some)
+    }
+}
+
+impl Observed {
+    fn estimate(&self, path: &Path, index: u64) -> Result<EstimatedDensity, RunError> {
+        let read = |array: &StoredArray| at_index(path, array, index);
+        let mut kinks = Vec::new();
+        for kink in &self.kinks {
+            let jump = read(&kink.jump)?;
+            if !is_missing(&jump) {
+                let (axis, at) = (kink.axis, kink.at);
+                kinks.push(Kink { axis, at, jump });
+            }
+        }
+        Ok(EstimatedDensity {
+            observable: self.observable,
+            density: Density {
+                axes: self.axes.clone(),
+                values: read(&self.density)?,
+            },
+            standard_error: read(&self.error)?,
+            variants: self.variants(path, index)?,
+            structure: Structure {
+                centre: self.centre.clone(),
+                kinks,
+            },
+        })
+    }
+
+    fn variants(&self, path: &Path, index: u64) -> Result<Variants, RunError> {
+        if let Some(second) = &self.second {
+            let second = at_index(path, second, index)?;
+            if !is_missing(&second) {
+                return Ok(Variants::Scheme(second));
+            }
+        }
+        let Some(array) = &self.replicates else {
+            return Ok(Variants::None);
+        };
+        let cells = self.axes.iter().map(Axis::count).product();
+        let values = at_index(path, array, index)?;
+        let replicates: Vec<Vec<f64>> = values
+            .chunks(cells)
+            .take_while(|one| !is_missing(one))
+            .map(<[f64]>::to_vec)
+            .collect();
+        Ok(if replicates.is_empty() {
+            Variants::None
+        } else {
+            Variants::Jackknife(replicates)
+        })
+    }
+}
+
+/// NaN stands for values that a parameter value does not have.
+fn is_missing(values: &[f64]) -> bool {
+    values.iter().all(|value| value.is_nan())
+}
+
+/// An array at one parameter value.
+fn at_index(path: &Path, array: &StoredArray, index: u64) -> Result<Vec<f64>, RunError> {
+    let mut ranges: Vec<_> = array.shape().iter().map(|&length| 0..length).collect();
+    ranges[0] = index..index + 1;
+    array
+        .retrieve_array_subset(&ArraySubset::new_with_ranges(&ranges))
+        .map_err(|error| unreadable(path, error))
+}
+
+fn unreadable(path: &Path, error: impl std::fmt::Display) -> RunError {
+    RunError::ReadStore {
+        path: path.to_owned(),
+        message: error.to_string(),
+    }
+}
+
+/// A store while its arrays are looked up.
+struct Opened {
+    path: PathBuf,
+    store: Arc<FilesystemStore>,
+    /// Names of all arrays, sorted.
+    names: Vec<String>,
+}
+
+impl Opened {
+    fn new(path: &Path) -> Result<Self, RunError> {
+        let store = FilesystemStore::new(path).map_err(|error| unreadable(path, error))?;
+        let entries = std::fs::read_dir(path).map_err(|error| unreadable(path, error))?;
+        let mut names: Vec<String> = entries
+            .flatten()
+            .filter(|entry| entry.path().is_dir())
+            .map(|entry| entry.file_name().to_string_lossy().into_owned())
+            .collect();
+        names.sort_by_key(|name| (name.len(), name.clone()));
+        Ok(Self {
+            path: path.to_owned(),
+            store: Arc::new(store),
+            names,
+        })
+    }
+
+    fn has(&self, name: &str) -> bool {
+        self.names.iter().any(|known| known == name)
+    }
+
+    fn array(&self, name: &str) -> Result<StoredArray, RunError> {
+        Array::open(self.store.clone(), &format!("/{name}"))
+            .map_err(|error| unreadable(&self.path, format!("array `{name}`: {error}")))
+    }
+
+    fn optional(&self, name: &str, shape: &[u64]) -> Result<Option<StoredArray>, RunError> {
+        self.has(name).then(|| self.shaped(name, shape)).transpose()
+    }
+
+    /// An array whose last dimensions must be `shape`, behind that of the parameter.
+    fn shaped(&self, name: &str, shape: &[u64]) -> Result<StoredArray, RunError> {
+        let array = self.array(name)?;
+        let found = array.shape();
+        if found.len() <= shape.len() || !found.ends_with(shape) {
+            let words = format!("array `{name}` has shape {found:?}, not (parameter, {shape:?})");
+            return Err(unreadable(&self.path, words));
+        }
+        Ok(array)
+    }
+
+    fn whole(&self, name: &str) -> Result<Vec<f64>, RunError> {
+        let array = self.array(name)?;
+        let all = array.subset_all();
+        array
+            .retrieve_array_subset(&all)
+            .map_err(|error| unreadable(&self.path, error))
+    }
+
+    fn observed(
+        &self,
+        naming: &Naming<'_>,
+        space: &CellSpace,
+        observable: Observable,
+    ) -> Result<Observed, RunError> {
+        let name = arrays::density(naming, observable);
+        if !self.has(&name) {
+            return Err(RunError::NotStored {
+                observable: naming.observable(observable),
+                stored: self.stored(),
+            });
+        }
+        let numbers = observable.axes();
+        let axes: Vec<Axis> = numbers
+            .iter()
+            .filter_map(|&axis| space.axes().get(axis).cloned())
+            .collect();
+        for (&number, axis) in numbers.iter().zip(&axes) {
+            if self.whole(&arrays::edges(naming.axis(number)))? != axis.edges() {
+                return Err(RunError::Cells {
+                    path: self.path.clone(),
+                    axis: naming.axis(number).to_owned(),
+                });
+            }
+        }
+        let shape: Vec<u64> = axes.iter().map(|axis| axis.count() as u64).collect();
+        let density = self.shaped(&name, &shape)?;
+        let centre = density.attributes().get(arrays::CENTRE);
+        let centre = centre.and_then(Value::as_array).map(|centre| {
+            let numbers = centre.iter().filter_map(Value::as_f64);
+            numbers.collect::<Vec<f64>>()
+        });
+        Ok(Observed {
+            observable,
+            error: self.shaped(&arrays::error(naming, observable), &shape)?,
+            second: self.optional(&arrays::second(naming, observable), &shape)?,
+            replicates: self.optional(&arrays::replicates(naming, observable), &shape)?,
+            centre: centre.filter(|centre| centre.len() == axes.len()),
+            kinks: self.kinks(naming, observable, &shape)?,
+            axes,
+            density,
+        })
+    }
+
+    /// The kinks of a density in the order of their numbers.
+    fn kinks(
+        &self,
+        naming: &Naming<'_>,
+        observable: Observable,
+        shape: &[u64],
+    ) -> Result<Vec<StoredKink>, RunError> {
+        let prefix = arrays::kink_prefix(naming, observable);
+        let names = self.names.iter().filter(|name| name.starts_with(&prefix));
+        names
+            .map(|name| {
+                let array = self.array(name)?;
+                let attributes = array.attributes();
+                let axis = attributes.get(arrays::KINK_AXIS).and_then(Value::as_str);
+                let axes = observable.axes();
+                let axis = axes.iter().position(|&a| Some(naming.axis(a)) == axis);
+                let at = attributes.get(arrays::KINK_AT).and_then(Value::as_f64);
+                let (Some(axis), Some(at)) = (axis, at) else {
+                    let words = format!("array `{name}` does not say on which plane it stands");
+                    return Err(unreadable(&self.path, words));
+                };
+                let mut rest = shape.to_vec();
+                rest.remove(axis);
+                let jump = self.shaped(name, &rest)?;
+                Ok(StoredKink { axis, at, jump })
+            })
+            .collect()
+    }
+
+    /// Names of the observables that the store has.
+    fn stored(&self) -> Vec<String> {
+        let names = self.names.iter();
+        names
+            .filter_map(|name| name.strip_prefix("p_"))
+            .filter(|name| self.has(&format!("p_{name}_error")))
+            .map(str::to_owned)
+            .collect()
+    }
+}

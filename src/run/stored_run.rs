@@ -1,0 +1,188 @@
+//! A finished run, read back: `run.json`, then its points with their densities.
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use sha2::{Digest, Sha256};
+
+use super::checks::read_checks;
+use super::stored_densities::StoredDensities;
+use super::stored_points::read_points;
+use super::{Ending, Naming, PhaseSeconds, RunError};
+use crate::continuation::{FinerIndicator, Point};
+use crate::density::Observable;
+use crate::space::CellSpace;
+
+/// The folder of a run that is read.
+#[derive(Debug)]
+pub struct StoredRun {
+    path: PathBuf,
+    resolved: String,
+    manifest: StoredManifest,
+}
+
+/// What is read of `run.json`.
+#[derive(Debug, Deserialize)]
+struct StoredManifest {
+    program: String,
+    version: String,
+    sweep: serde_json::Value,
+    /// The resolved sweep file as text; runs of early versions have `sweep` alone.
+    sweep_file: Option<String>,
+    hash: String,
+    seed: u64,
+    threads: usize,
+    ending: Ending,
+    seconds: PhaseSeconds,
+    warnings: Vec<String>,
+}
+
+impl StoredRun {
+    /// Opens a run and checks that it is one of this program, and that its sweep is the one that was run.
+    ///
+    /// # Errors
+    /// [`RunError::NotARun`], [`RunError::Read`], [`RunError::Manifest`], [`RunError::Version`],
+    /// [`RunError::Hash`].
+    pub fn open(path: &Path) -> Result<Self, RunError> {
+        let file = path.join("run.json");
+        if !file.is_file() {
+            return Err(RunError::NotARun {
+                path: path.to_owned(),
+            });
+        }
+        let broken = |message: String| RunError::Manifest {
+            path: file.clone(),
+            message,
+        };
+        let bytes = std::fs::read(&file).map_err(|source| RunError::Read {
+            path: file.clone(),
+            source,
+        })?;
+        let manifest: StoredManifest =
+            serde_json::from_slice(&bytes).map_err(|error| broken(error.to_string()))?;
+        check_version(&file, &manifest)?;
+        let resolved = match &manifest.sweep_file {
+            Some(text) => {
+                check_hash(&file, text, &manifest.hash)?;
+                text.clone()
+            }
+            None => toml::to_string(&manifest.sweep).map_err(|error| broken(error.to_string()))?,
+        };
+        Ok(Self {
+            path: path.to_owned(),
+            resolved,
+            manifest,
+        })
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The resolved sweep file as TOML.
+    pub fn resolved(&self) -> &str {
+        &self.resolved
+    }
+
+    /// How the run ended.
+    pub fn ending(&self) -> Ending {
+        self.manifest.ending
+    }
+
+    /// Seed of the random streams.
+    pub fn seed(&self) -> u64 {
+        self.manifest.seed
+    }
+
+    /// Threads that the run used.
+    pub fn threads(&self) -> usize {
+        self.manifest.threads
+    }
+
+    /// Seconds that the phases of the run took.
+    pub fn seconds(&self) -> PhaseSeconds {
+        self.manifest.seconds
+    }
+
+    /// Warnings of the run; none where it was killed before it wrote them.
+    pub fn warnings(&self) -> &[String] {
+        &self.manifest.warnings
+    }
+
+    /// What the sweep saw on its finer grid, of `observables`; `None` where it made no checks.
+    ///
+    /// # Errors
+    /// [`RunError::Read`], [`RunError::Column`] and [`RunError::Row`].
+    pub fn finer(
+        &self,
+        naming: &Naming<'_>,
+        observables: &[Observable],
+    ) -> Result<Option<Vec<FinerIndicator>>, RunError> {
+        let path = self.path.join("checks.csv");
+        let there = path.is_file();
+        there
+            .then(|| read_checks(&path, naming, observables))
+            .transpose()
+    }
+
+    /// All points in the order of the table, with the densities of `observables`, bit for bit as they were solved; detections
+    /// are empty. A run that was killed may hold a density whose row was not written: it is left out.
+    ///
+    /// # Errors
+    /// [`RunError::Read`], [`RunError::Column`] and [`RunError::Row`] for the table; [`RunError::ReadStore`],
+    /// [`RunError::NotStored`], [`RunError::Cells`] and [`RunError::NoDensity`] for the densities.
+    pub fn points(
+        &self,
+        naming: &Naming<'_>,
+        methods: &[&'static str],
+        space: &CellSpace,
+        observables: &[Observable],
+    ) -> Result<Vec<Point>, RunError> {
+        let table = self.path.join("points.csv");
+        let mut points = read_points(&table, naming, methods)?;
+        // Only points with a density have moments.
+        if points.iter().all(|point| point.moments.is_empty()) {
+            return Ok(points);
+        }
+        let path = self.path.join("densities.zarr");
+        let stored = StoredDensities::open(&path, naming, space, observables)?;
+        for point in points.iter_mut().filter(|point| !point.moments.is_empty()) {
+            point.densities = stored.at(point.value)?.ok_or_else(|| RunError::NoDensity {
+                path: path.clone(),
+                parameter: naming.parameter.to_owned(),
+                value: point.value,
+            })?;
+        }
+        Ok(points)
+    }
+}
+
+/// Versions are compatible when they differ in the last number alone.
+fn check_version(file: &Path, manifest: &StoredManifest) -> Result<(), RunError> {
+    let of = |version: &str| version.rsplit_once('.').map(|parts| parts.0.to_owned());
+    let (program, version) = (env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
+    if manifest.program == program && of(&manifest.version) == of(version) {
+        return Ok(());
+    }
+    Err(RunError::Version {
+        path: file.to_owned(),
+        found: format!("{} {}", manifest.program, manifest.version),
+        wanted: format!("{program} {version}"),
+    })
+}
+
+fn check_hash(file: &Path, text: &str, stored: &str) -> Result<(), RunError> {
+    if hash(text) == stored {
+        return Ok(());
+    }
+    Err(RunError::Hash {
+        path: file.to_owned(),
+    })
+}
+
+/// SHA-256 of a resolved sweep file, hexadecimal.
+pub(super) fn hash(resolved: &str) -> String {
+    let digest = Sha256::digest(resolved.as_bytes());
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+}
