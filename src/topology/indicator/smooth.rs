@@ -28,9 +28,6 @@ const CLIP: f64 = 1e-4;
 /// Cells of the other axis (one over this share of it on either side) over which a profile is averaged.
 const PROFILE: usize = 16;
 
-/// A basis function at an offset from the centre in units of the window.
-type Term = fn(&[f64]) -> f64;
-
 /// Powers of the two coordinates (of the second one's magnitude, along a kink).
 type Powers = [i32; 2];
 
