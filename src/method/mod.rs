@@ -9,6 +9,7 @@ mod relaxation;
 mod setting;
 mod sgcm;
 mod steps;
+mod trail;
 
 pub use any::MethodSource;
 pub use generator::GeneratorSource;

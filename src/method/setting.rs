@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::MethodError;
+use super::trail::Trail;
 use crate::density::Observable;
 use crate::space::CellSpace;
 use crate::system::{Model, ParameterValues, System};
@@ -41,31 +42,8 @@ impl Setting<'_> {
 /// What a solved point leaves for its neighbour.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
-    /// The parameter's value.
-    pub(super) value: f64,
     /// Mass of every cell (for the generator its unknowns), Σ = 1.
-    pub(super) mass: Vec<f64>,
-    /// Its derivative by the parameter, where known; Σ = 0.
-    pub(super) slope: Option<Vec<f64>>,
-}
-
-impl State {
-    /// Slope of the secant to another state, which lies at another value.
-    pub(super) fn secant(&self, other: &Self) -> Vec<f64> {
-        let step = other.value - self.value;
-        let pairs = self.mass.iter().zip(&other.mass);
-        pairs.map(|(from, to)| (to - from) / step).collect()
-    }
-
-    /// Mass expected at another value: along the tangent, but never to less than nothing in total.
-    pub(super) fn predicted(&self, value: f64) -> Vec<f64> {
-        let step = value - self.value;
-        match &self.slope {
-            Some(slope) => {
-                let pairs = self.mass.iter().zip(slope);
-                pairs.map(|(mass, slope)| mass + step * slope).collect()
-            }
-            None => self.mass.clone(),
-        }
-    }
+    pub(super) mass: Arc<Vec<f64>>,
+    /// What the generator remembers of the points before.
+    pub(super) trail: Trail,
 }

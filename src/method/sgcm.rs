@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::findings::Findings;
 use super::generator::QUIET_ESCAPE;
 use super::steps::{Steps, choose_steps};
+use super::trail::Trail;
 use super::{MethodError, Setting, SgcmOptions, State};
 use crate::continuation::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
 use crate::density::{EstimatedDensity, Observable, estimate, moments};
@@ -137,7 +138,6 @@ impl SgcmSource {
 
     fn solved(
         &self,
-        value: f64,
         transitions: &SampledTransitions,
         matrix: &TransitionMatrix,
         steady: SteadyState,
@@ -184,9 +184,8 @@ impl SgcmSource {
             moments,
             densities,
             state: Some(State {
-                value,
-                mass: steady.mass,
-                slope: None,
+                mass: Arc::new(steady.mass),
+                trail: Trail::default(),
             }),
         })
     }
@@ -214,7 +213,7 @@ impl SgcmSource {
         let matrix = transitions.matrix();
         let options = Options::new(self.options.solver, self.options.solver_tolerance);
         match solve(&matrix, &self.space, start, &options)? {
-            Outcome::Steady(steady) => self.solved(value, &transitions, &matrix, steady),
+            Outcome::Steady(steady) => self.solved(&transitions, &matrix, steady),
             Outcome::SeveralClasses { classes, .. } => {
                 let mut report = self.report(PointStatus::SeveralClasses, 0, 0.0);
                 let mut findings = Findings::new(self.model, &self.space);

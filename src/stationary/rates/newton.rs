@@ -96,17 +96,17 @@ impl Newton<'_> {
     }
 }
 
-/// Solves F'(mass) x = source, restarted until the correction is small against x; `None` when it is not after
+/// Solves F'(mass) x = source from a start that is zero at the held cell, restarted until the correction is small against x; `None` when it is not after
 /// `limit` iterations.
 pub(super) fn linear(
     balance: &Balance<'_>,
     kept: &Preconditioner,
     mass: &[f64],
-    source: &[f64],
+    (source, start): (&[f64], Option<Vec<f64>>),
     (tolerance, limit): (f64, usize),
 ) -> Option<Vec<f64>> {
     let jacobian = balance.jacobian(mass);
-    let mut solution = vec![0.0; source.len()];
+    let mut solution = start.unwrap_or_else(|| vec![0.0; source.len()]);
     let mut used = 0;
     while used < limit {
         let product = jacobian.apply(&solution);

@@ -129,11 +129,11 @@ impl RateSolver {
         derivative: &CsMat<f64>,
         mass: &[f64],
     ) -> Result<Vec<f64>, RateError> {
-        self.sensitivity_within(derivative, mass, self.options.tolerance)
+        self.sensitivity_within(derivative, mass, None, self.options.tolerance)
     }
 
     /// [`RateSolver::sensitivity`] to a relative error of `tolerance` in L1: predictions and estimates of errors need
-    /// two digits, and with a neighbour's factorisation every digit costs iterations.
+    /// two digits, and with a neighbour's factorisation every digit costs iterations. `guess` is what is expected.
     ///
     /// # Errors
     /// As [`RateSolver::sensitivity`].
@@ -141,11 +141,9 @@ impl RateSolver {
         &mut self,
         derivative: &CsMat<f64>,
         mass: &[f64],
+        guess: Option<&[f64]>,
         tolerance: f64,
     ) -> Result<Vec<f64>, RateError> {
-        let (Some((matrix, escape)), Some(kept)) = (&self.last, &self.preconditioner) else {
-            return Err(RateError::NoSteadyState);
-        };
         let cells = self.space.n_cells();
         shape(cells, "derivative's rows", derivative.rows())?;
         shape(cells, "derivative's columns", derivative.cols())?;
@@ -153,6 +151,30 @@ impl RateSolver {
         if !derivative.is_csc() {
             return Err(RateError::Storage);
         }
+        let mut change = vec![0.0; cells];
+        add_product(derivative, mass, &mut change);
+        self.response(&change, mass, guess, tolerance)
+    }
+
+    /// How the last steady state `mass` answers to a change of its balance: p' (Σ = 0) from Q p' = -`change`, where `change`
+    /// is by how much more mass enters each cell than before, per unit time; what its sum lacks escapes.
+    ///
+    /// # Errors
+    /// As [`RateSolver::sensitivity`].
+    pub fn response(
+        &mut self,
+        change: &[f64],
+        mass: &[f64],
+        guess: Option<&[f64]>,
+        tolerance: f64,
+    ) -> Result<Vec<f64>, RateError> {
+        let (Some((matrix, escape)), Some(kept)) = (&self.last, &self.preconditioner) else {
+            return Err(RateError::NoSteadyState);
+        };
+        let cells = self.space.n_cells();
+        shape(cells, "change", change.len())?;
+        shape(cells, "mass", mass.len())?;
+        shape(cells, "guess", guess.map_or(cells, <[f64]>::len))?;
         let balance = Balance {
             matrix,
             escape,
@@ -160,21 +182,25 @@ impl RateSolver {
         };
         let total: f64 = mass.iter().sum();
         // dF/dθ: rates change, and with them the escape, by minus the column sums.
-        let mut source = vec![0.0; cells];
-        add_product(derivative, mass, &mut source);
-        let lost: f64 = -source.iter().sum::<f64>() / total;
-        for (slot, value) in source.iter_mut().zip(mass) {
-            *slot = -(*slot + lost * value);
-        }
+        let lost: f64 = -change.iter().sum::<f64>() / total;
+        let pairs = change.iter().zip(mass);
+        let mut source: Vec<f64> = pairs.map(|(c, p)| -(c + lost * p)).collect();
         source[kept.held] = 0.0;
+        // The cell that is held does not answer; p may be added freely.
+        let start = guess.map(|guess| {
+            let share = guess[kept.held] / mass[kept.held];
+            let pairs = guess.iter().zip(mass);
+            pairs.map(|(x, p)| x - share * p).collect::<Vec<f64>>()
+        });
+        let start = start.filter(|start| start.iter().all(|value| value.is_finite()));
         let effort = (tolerance, self.options.max_iterations);
-        let change = linear(&balance, kept, mass, &source, effort);
-        let mut change = change.ok_or(RateError::Sensitivity)?;
-        let excess: f64 = change.iter().sum::<f64>() / total;
-        for (slot, value) in change.iter_mut().zip(mass) {
+        let response = linear(&balance, kept, mass, (&source, start), effort);
+        let mut response = response.ok_or(RateError::Sensitivity)?;
+        let excess: f64 = response.iter().sum::<f64>() / total;
+        for (slot, value) in response.iter_mut().zip(mass) {
             *slot -= excess * value;
         }
-        Ok(change)
+        Ok(response)
     }
 
     fn check(&self, matrix: &CsMat<f64>, escape: &[f64]) -> Result<(), RateError> {
