@@ -94,16 +94,22 @@ fn judge(system: &dyn System, space: &CellSpace, masses: &[f64], index: usize) -
     let (mut peclet, mut fitted_peclet, mut layer, mut weight) = (0.0_f64, 0.0_f64, 0.0, 0.0);
     for first in (0..masses.len()).filter(|&cell| space.position(cell, index) == 0) {
         let line = (0..axis.count()).map(|position| first + position * stride);
+        let counts = |cell: &usize| masses[*cell] / space.volume(*cell) > WEIGHT * heaviest;
+        if !line.clone().any(|cell| counts(&cell)) {
+            continue;
+        }
         let length = axis.to() - axis.from();
-        let mean: f64 = line
-            .clone()
-            .map(|cell| drift_at(cell) * axis.width(space.position(cell, index)))
+        let drifts: Vec<f64> = line.clone().map(drift_at).collect();
+        let mean: f64 = drifts
+            .iter()
+            .enumerate()
+            .map(|(position, drift)| drift * axis.width(position))
             .sum::<f64>()
             / length;
-        for cell in line.filter(|&cell| masses[cell] / space.volume(cell) > WEIGHT * heaviest) {
+        for cell in line.filter(counts) {
             let position = space.position(cell, index);
             let scale = axis.width(position) / diffusion_at(system, space, index, cell);
-            let drift = drift_at(cell);
+            let drift = drifts[position];
             peclet = peclet.max(0.5 * drift.abs() * scale);
             fitted_peclet = fitted_peclet.max(0.5 * (drift - mean).abs() * scale);
             if faces

@@ -53,6 +53,8 @@ struct Solved {
     values: ParameterValues,
     system: Arc<dyn System>,
     steady: RateSteadyState,
+    /// The generator by the second scheme.
+    second: Generator,
 }
 
 impl GeneratorSource {
@@ -104,11 +106,17 @@ impl GeneratorSource {
         let guess = trail.and_then(|trail| trail.mass_at(value));
         // A panic elsewhere cannot leave a factorisation half-made that would be used: every solve checks its result.
         let mut solver = self.solver.lock().unwrap_or_else(PoisonError::into_inner);
-        let steady = solver.solve(&generator.matrix, &generator.escape, guess.as_deref())?;
+        let rates = &mut *solver;
+        // The solve leaves a core idle most of the time.
+        let (steady, second) = rayon::join(
+            || rates.solve(&generator.matrix, &generator.escape, guess.as_deref()),
+            || self.assemble(system.as_ref(), companion(self.options.scheme)),
+        );
         let solved = Solved {
             values,
             system,
-            steady,
+            steady: steady?,
+            second: second?,
         };
         let mut solution = self.report(&mut solver, value, &solved, trail)?;
         if let (Some(state), None) = (&mut solution.state, start) {
@@ -214,9 +222,8 @@ impl GeneratorSource {
         expected: Option<&[f64]>,
     ) -> Result<(Vec<EstimatedDensity>, Vec<f64>), MethodError> {
         let system = solved.system.as_ref();
-        let second = self.assemble(system, companion(self.options.scheme))?;
         let unknowns = &solved.steady.mass;
-        let change = solver.sensitivity_within(&second.matrix, unknowns, expected, ROUGH)?;
+        let change = solver.sensitivity_within(&solved.second.matrix, unknowns, expected, ROUGH)?;
         let changed: Vec<f64> = unknowns.iter().zip(&change).map(|(u, du)| u + du).collect();
         let changed = cell_masses(system, &self.space, &changed);
         let difference: Vec<f64> = changed.iter().zip(masses).map(|(b, a)| b - a).collect();

@@ -8,14 +8,23 @@ use std::sync::Arc;
 
 use crate::stationary::rates::RateSolver;
 
-/// Inverse iterations from an arbitrary start, and from a neighbour's mode; the last half of them counts.
-const ITERATIONS: [usize; 2] = [16, 8];
+/// Most inverse iterations.
+const ITERATIONS: usize = 24;
+
+/// The growth of an iteration is averaged over so many, because that of an oscillating mode oscillates.
+const AVERAGED: usize = 4;
+
+/// Change of that average, relative, at which it is taken.
+const SETTLED: f64 = 0.03;
 
 /// Relative error of each of them.
 const ROUGH: f64 = 1e-2;
 
-/// Factor by which a time may change from one point of a sweep to the next, as far as we dare to trust it.
-const TRUST: f64 = 3.0;
+/// Factor by which a time may change from one point of a sweep to the next while nothing is known of it.
+const UNKNOWN_CHANGE: f64 = 3.0;
+
+/// The same on top of twice the change that was seen before.
+const LEAST_CHANGE: f64 = 1.05;
 
 /// How fast deviations from a steady state die out.
 #[derive(Debug, PartialEq)]
@@ -24,20 +33,22 @@ pub(super) struct Relaxation {
     pub(super) time: f64,
     /// The deviation that lives longest, Σ = 0.
     mode: Arc<Vec<f64>>,
+    /// Factor by which the time may change from point to point.
+    change: f64,
     /// Points of the sweep since it was computed.
     age: i32,
 }
 
 impl Relaxation {
-    /// The neighbour's time where it answers for sure on which side of `limit` the share of mass is that leaves, at
-    /// this escape rate, within it.
+    /// The neighbour's time where it tells for sure that less than `limit` of the mass leaves, at this escape rate,
+    /// within it. (A share that is reported must be that of the point itself.)
     pub(super) fn carried(neighbour: &Self, escape_rate: f64, limit: f64) -> Option<Self> {
         let age = neighbour.age + 1;
-        let share = escape_rate * neighbour.time;
-        // A share that is reported must be that of this point.
-        (share * TRUST.powi(age) < limit).then(|| Self {
+        let largest_time = neighbour.time * neighbour.change.powi(age);
+        (escape_rate * largest_time < limit).then(|| Self {
             time: neighbour.time,
             mode: neighbour.mode.clone(),
+            change: neighbour.change,
             age,
         })
     }
@@ -50,28 +61,41 @@ impl Relaxation {
         mass: &[f64],
         neighbour: Option<&Self>,
     ) -> Option<Self> {
-        let iterations = ITERATIONS[usize::from(neighbour.is_some())];
         let mut mode = neighbour.map_or_else(|| uneven(mass), |known| known.mode.to_vec());
-        let mut growth = 0.0;
-        for iteration in 0..iterations {
+        let mut growth: Vec<f64> = Vec::with_capacity(ITERATIONS);
+        while growth.len() < ITERATIONS && !settled(&growth) {
             let size: f64 = mode.iter().map(|value| value.abs()).sum();
             if size == 0.0 || !size.is_finite() {
                 return None;
             }
             mode.iter_mut().for_each(|value| *value /= size);
-            let next = solver.response(&mode, mass, None, ROUGH).ok()?;
-            let grown: f64 = next.iter().map(|value| value.abs()).sum();
-            if 2 * iteration >= iterations {
-                growth += grown.ln();
-            }
-            mode = next;
+            mode = solver.response(&mode, mass, None, ROUGH).ok()?;
+            growth.push(mode.iter().map(|value| value.abs()).sum::<f64>().ln());
         }
-        let time = (growth / (iterations / 2) as f64).exp();
+        let time = mean(growth.rchunks(AVERAGED).next()?).exp();
+        let change = neighbour.map_or(UNKNOWN_CHANGE, |known| {
+            let seen = (time / known.time).ln().abs() / f64::from(known.age + 1);
+            LEAST_CHANGE * (2.0 * seen).exp()
+        });
         (time > 0.0 && time.is_finite()).then(|| Self {
             time,
             mode: Arc::new(mode),
+            change,
             age: 0,
         })
+    }
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Whether the average over the last iterations is that of those before.
+fn settled(growth: &[f64]) -> bool {
+    let mut averages = growth.rchunks_exact(AVERAGED).map(mean);
+    match (averages.next(), averages.next()) {
+        (Some(last), Some(before)) => (last - before).abs() <= SETTLED,
+        _ => false,
     }
 }
 
