@@ -126,5 +126,5 @@ fn the_range_of_z_is_the_widest_of_the_sweep() {
         "--set",
         "figures.at=[]",
     ];
-    assert!(check(&copy, &sets).contains("z = { from = -1.0, to = 1.0, count = 12,"));
+    assert!(check(&copy, &sets).contains("z = { from = -1.0, to = 1.0, count = 16,"));
 }

@@ -9,6 +9,9 @@ use crate::system::System;
 /// Share of the heaviest mass density below which a cell does not count.
 const WEIGHT: f64 = 1e-4;
 
+/// Distance from a surface, as a share of a cell, at which the drift on its two sides is taken.
+const JUST_BESIDE: f64 = 1e-6;
+
 /// How well the cells along one noisy axis resolve drift against diffusion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Resolution {
@@ -21,7 +24,8 @@ pub struct Resolution {
     /// along this axis. Above 1 the density changes by more than e² from cell to cell.
     pub fitted_peclet: f64,
     /// Mass-weighted root mean square of |a| h/D in the cells beside switching surfaces: cell width over the
-    /// thickness of the layer that holds the kink. `None` without a surface on a face of the axis.
+    /// thickness of the layer that holds the kink. `None` without a surface, on a face of the axis, across which the drift
+    /// jumps.
     pub layer: Option<f64>,
     /// Switching surfaces inside the range that no face falls on.
     pub surfaces_off_faces: Vec<f64>,
@@ -94,21 +98,27 @@ fn judge(system: &dyn System, space: &CellSpace, masses: &[f64], index: usize) -
     let (mut peclet, mut fitted_peclet, mut layer, mut weight) = (0.0_f64, 0.0_f64, 0.0, 0.0);
     for first in (0..masses.len()).filter(|&cell| space.position(cell, index) == 0) {
         let line = (0..axis.count()).map(|position| first + position * stride);
+        let counts = |cell: &usize| masses[*cell] / space.volume(*cell) > WEIGHT * heaviest;
+        if !line.clone().any(|cell| counts(&cell)) {
+            continue;
+        }
         let length = axis.to() - axis.from();
-        let mean: f64 = line
-            .clone()
-            .map(|cell| drift_at(cell) * axis.width(space.position(cell, index)))
+        let drifts: Vec<f64> = line.clone().map(drift_at).collect();
+        let mean: f64 = drifts
+            .iter()
+            .enumerate()
+            .map(|(position, drift)| drift * axis.width(position))
             .sum::<f64>()
             / length;
-        for cell in line.filter(|&cell| masses[cell] / space.volume(cell) > WEIGHT * heaviest) {
+        for cell in line.filter(counts) {
             let position = space.position(cell, index);
             let scale = axis.width(position) / diffusion_at(system, space, index, cell);
-            let drift = drift_at(cell);
+            let drift = drifts[position];
             peclet = peclet.max(0.5 * drift.abs() * scale);
             fitted_peclet = fitted_peclet.max(0.5 * (drift - mean).abs() * scale);
-            if faces
-                .iter()
-                .any(|&face| position == face || position + 1 == face)
+            let beside = |face: &&usize| position == **face || position + 1 == **face;
+            if let Some(&face) = faces.iter().find(beside)
+                && jumps(system, &space.centre(cell), index, axis.edges()[face])
             {
                 layer += masses[cell] * (drift * scale).powi(2);
                 weight += masses[cell];
@@ -125,6 +135,19 @@ fn judge(system: &dyn System, space: &CellSpace, masses: &[f64], index: usize) -
         layer: (weight > 0.0).then(|| (layer / weight).sqrt()),
         surfaces_off_faces: here.map(|surface| surface.at).filter(inside).collect(),
     }
+}
+
+/// Whether the drift across a surface jumps on it, or only other components do: Dahl's friction bends with the sign of
+/// the velocity, and the density has no kink.
+fn jumps(system: &dyn System, beside: &[f64], axis: usize, at: f64) -> bool {
+    let mut state = beside.to_vec();
+    let distance = JUST_BESIDE * (beside[axis] - at).abs();
+    let [below, above] = [-distance, distance].map(|offset| {
+        state[axis] = at + offset;
+        system.drift_at(0.0, &state)[axis]
+    });
+    // A continuous drift changes by as little as the distance.
+    (above - below).abs() > 1e3 * JUST_BESIDE * (above.abs() + below.abs())
 }
 
 /// D = Σ b²/2 over the processes that drive the axis.
@@ -175,6 +198,25 @@ mod tests {
             "{uniform:?}"
         );
         assert!(!uniform.is_fine() && uniform.to_string().contains("kink"));
+    }
+
+    #[test]
+    fn a_surface_without_a_jump_across_it_makes_no_layer() {
+        let values = [
+            ("kappa", 0.02),
+            ("lambda", 0.06),
+            ("f_c", 0.05),
+            ("sigma2", 0.02),
+        ];
+        let dahl = registry::find("dahl")
+            .unwrap()
+            .system_with(&values)
+            .unwrap();
+        let axis = || Axis::uniform(-2.0, 2.0, 20).unwrap();
+        let z = Axis::uniform(-0.8, 0.8, 4).unwrap();
+        let space = CellSpace::new(vec![axis(), axis(), z]).unwrap();
+        let masses = vec![1.0; space.n_cells()];
+        assert_eq!(resolution(&*dahl, &space, &masses)[0].layer, None);
     }
 
     #[test]

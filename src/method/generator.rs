@@ -3,14 +3,16 @@
 //!
 //! The slope du/dθ, which predicts the neighbour, and the difference to the second scheme come from the factorisation
 //! that is there: Q du = -(dQ/dθ) u, and with the second scheme's Q' = Q + δQ to first order Q δu = -(δQ) u. After the
-//! first point the secant through the neighbour replaces the tangent: it predicts as well and costs nothing.
+//! first point a polynomial through the last few points replaces the tangent: it predicts better and costs nothing.
+//! The difference is predicted likewise, and iterated only as far as the prediction is not good enough.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::findings::{Findings, closed_ends};
-use super::relaxation::relaxation_time;
+use super::relaxation::Relaxation;
 use super::structure::{kinked_surfaces, structure};
+use super::trail::{self, Trail};
 use super::{GeneratorMethodOptions, MethodError, Setting, State};
 use crate::continuation::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
 use crate::density::{EstimatedDensity, Moments, Observable, estimate_from_difference};
@@ -57,6 +59,8 @@ struct Solved {
     values: ParameterValues,
     system: Arc<dyn System>,
     steady: RateSteadyState,
+    /// The generator by the second scheme.
+    second: Generator,
 }
 
 impl GeneratorSource {
@@ -106,21 +110,25 @@ impl GeneratorSource {
         let values = self.model.with(&self.values, &self.parameter, value)?;
         let system = self.model.system(&values);
         let generator = self.assemble(system.as_ref(), self.options.scheme)?;
-        let guess = start.map(|state| state.predicted(value));
+        let trail = start.map(|state| &state.trail);
+        let guess = trail.and_then(|trail| trail.mass_at(value));
         // A panic elsewhere cannot leave a factorisation half-made that would be used: every solve checks its result.
         let mut solver = self.solver.lock().unwrap_or_else(PoisonError::into_inner);
-        let steady = solver.solve(&generator.matrix, &generator.escape, guess.as_deref())?;
+        let rates = &mut *solver;
+        // The solve leaves a core idle most of the time.
+        let (steady, second) = rayon::join(
+            || rates.solve(&generator.matrix, &generator.escape, guess.as_deref()),
+            || self.assemble(system.as_ref(), companion(self.options.scheme)),
+        );
         let solved = Solved {
             values,
             system,
-            steady,
+            steady: steady?,
+            second: second?,
         };
-        let mut solution = self.report(&mut solver, value, &solved)?;
-        if let Some(state) = &mut solution.state {
-            state.slope = match start {
-                Some(start) => Some(start.secant(state)),
-                None => self.slope(&mut solver, &solved),
-            };
+        let mut solution = self.report(&mut solver, value, &solved, trail)?;
+        if let (Some(state), None) = (&mut solution.state, start) {
+            state.trail.slope = self.slope(&mut solver, &solved).map(Arc::new);
         }
         Ok(solution)
     }
@@ -131,6 +139,7 @@ impl GeneratorSource {
         solver: &mut RateSolver,
         value: f64,
         solved: &Solved,
+        before: Option<&Trail>,
     ) -> Result<Solution<State>, MethodError> {
         let info = &solved.steady.info;
         let unknowns = &solved.steady.mass;
@@ -154,15 +163,16 @@ impl GeneratorSource {
             report.status = PointStatus::NotConverged;
             findings.not_converged(info.error_estimate);
         }
-        let relaxation = if report.escape_rate > NO_ESCAPE && finite {
-            relaxation_time(solver, unknowns)
+        let relaxation = if finite {
+            relaxation(solver, solved, before)
         } else {
             None
         };
-        let escaping_share = relaxation.map_or(0.0, |time| report.escape_rate * time);
+        let time = relaxation.as_ref().map(|known| known.time);
+        let escaping_share = time.map_or(0.0, |time| report.escape_rate * time);
         let leaves = escaping_share > self.options.escape_limit;
         if leaves {
-            findings.no_steady_state(report.escape_rate, relaxation, self.options.escape_limit);
+            findings.no_steady_state(report.escape_rate, time, self.options.escape_limit);
             report.status = PointStatus::NoSteadyState;
         }
         if leaves || !finite {
@@ -186,33 +196,43 @@ impl GeneratorSource {
         for judged in resolution(solved.system.as_ref(), &self.space, &masses) {
             findings.resolution(&judged);
         }
-        let densities = self.densities(solver, solved, &masses)?;
+        let expected = before.and_then(|trail| trail.difference_at(value));
+        let (densities, difference) =
+            self.densities(solver, solved, &masses, expected.as_deref())?;
         let watched = densities.iter().map(negative_mass).fold(0.0, f64::max);
         findings.negative_mass(report.negative_mass, watched);
         report.warnings = findings.into_sentences();
+        let mass = Arc::new(unknowns.clone());
+        let point = trail::Solved {
+            value,
+            mass: mass.clone(),
+            difference,
+        };
+        // What has not converged is no start for an extrapolation.
+        let trail = before.filter(|_| info.converged).cloned();
+        let trail = trail.unwrap_or_default();
         Ok(Solution {
             report,
             moments: moments_of(&self.space, unknowns),
             densities,
             state: Some(State {
-                value,
-                slope: None,
-                mass: unknowns.clone(),
+                mass: mass.clone(),
+                trail: trail.with(point, relaxation.map(Arc::new)),
             }),
         })
     }
 
-    /// Densities with the difference to the second scheme as their error.
+    /// Densities with the difference to the second scheme as their error, and that difference of the unknowns.
     fn densities(
         &self,
         solver: &mut RateSolver,
         solved: &Solved,
         masses: &[f64],
-    ) -> Result<Vec<EstimatedDensity>, MethodError> {
+        expected: Option<&[f64]>,
+    ) -> Result<(Vec<EstimatedDensity>, Vec<f64>), MethodError> {
         let system = solved.system.as_ref();
-        let second = self.assemble(system, companion(self.options.scheme))?;
         let unknowns = &solved.steady.mass;
-        let change = solver.sensitivity_within(&second.matrix, unknowns, ROUGH)?;
+        let change = solver.sensitivity_within(&solved.second.matrix, unknowns, expected, ROUGH)?;
         let changed: Vec<f64> = unknowns.iter().zip(&change).map(|(u, du)| u + du).collect();
         let changed = cell_masses(system, &self.space, &changed);
         let difference: Vec<f64> = changed.iter().zip(masses).map(|(b, a)| b - a).collect();
@@ -222,7 +242,9 @@ impl GeneratorSource {
             estimated.structure = structure(system, &self.space, masses, observable, &self.kinked);
             Ok::<_, MethodError>(estimated)
         };
-        self.observables.iter().map(estimate).collect()
+        let densities: Result<Vec<_>, MethodError> =
+            self.observables.iter().map(estimate).collect();
+        Ok((densities?, change))
     }
 
     /// du/dθ at the solution; `None` where Q cannot be varied (at an end of the parameter's range) or the
@@ -236,9 +258,25 @@ impl GeneratorSource {
             assemble_derivative(self.model, values, parameter, &self.space, &options).ok()?;
         let mass = &solved.steady.mass;
         solver
-            .sensitivity_within(&derivative.matrix, mass, ROUGH)
+            .sensitivity_within(&derivative.matrix, mass, None, ROUGH)
             .ok()
     }
+}
+
+/// The time in which deviations die out, where mass escapes: a neighbour's where it will do.
+fn relaxation(
+    solver: &mut RateSolver,
+    solved: &Solved,
+    before: Option<&Trail>,
+) -> Option<Relaxation> {
+    let rate = solved.steady.info.escape_rate;
+    let neighbour = before.and_then(|trail| trail.relaxation.as_deref());
+    if rate <= NO_ESCAPE {
+        return None;
+    }
+    neighbour
+        .and_then(|known| Relaxation::carried(known, rate, QUIET_ESCAPE))
+        .or_else(|| Relaxation::compute(solver, &solved.steady.mass, neighbour))
 }
 
 /// Σ |min(mass, 0)| of a watched density.

@@ -10,6 +10,7 @@ mod setting;
 mod sgcm;
 mod steps;
 mod structure;
+mod trail;
 
 pub use any::MethodSource;
 pub use generator::GeneratorSource;

@@ -1,61 +1,112 @@
 //! How fast a generator forgets its start: the slowest decay rate beside the steady state, by inverse iteration with
 //! the factorisation of the steady state.
+//!
+//! The time is compared with the time in which mass escapes, to say whether there is a steady state. Far from such a limit
+//! a neighbour's time will do, and close to it the iteration starts from the neighbour's mode.
 
-use sprs::CsMat;
+use std::sync::Arc;
 
 use crate::stationary::rates::RateSolver;
 
-/// Inverse iterations; the last half of them counts.
-const ITERATIONS: usize = 16;
+/// Most inverse iterations.
+const ITERATIONS: usize = 24;
+
+/// The growth of an iteration is averaged over so many, because that of an oscillating mode oscillates.
+const AVERAGED: usize = 4;
+
+/// Change of that average, relative, at which it is taken.
+const SETTLED: f64 = 0.03;
 
 /// Relative error of each of them.
 const ROUGH: f64 = 1e-2;
 
-/// Time in which deviations from the steady state shrink by e, from x ← Q⁻¹ x on vectors of sum zero: the mean growth
-/// over the last iterations is 1/|λ₂|. Rough (a few per cent, more for oscillating modes), which is enough to compare
-/// with the time in which mass escapes. `None` when a solve fails.
-pub(super) fn relaxation_time(solver: &mut RateSolver, mass: &[f64]) -> Option<f64> {
-    let cells = mass.len();
-    let heaviest = (0..cells).max_by(|&a, &b| mass[a].total_cmp(&mass[b]))?;
-    // A start that excites every mode: mass times an uneven, deterministic weight, made to sum to zero.
-    let uneven =
-        |cell: usize| ((cell as f64 * 0.754_877_666).fract() - 0.5) + cell as f64 / cells as f64;
-    let mut vector: Vec<f64> = (0..cells).map(|cell| mass[cell] * uneven(cell)).collect();
-    let excess: f64 = vector.iter().sum();
-    vector
-        .iter_mut()
-        .zip(mass)
-        .for_each(|(value, mass)| *value -= excess * mass);
-    let mut growth = 0.0;
-    for iteration in 0..ITERATIONS {
-        let size: f64 = vector.iter().map(|value| value.abs()).sum();
-        if size == 0.0 || !size.is_finite() {
-            return None;
-        }
-        vector.iter_mut().for_each(|value| *value /= size);
-        let next = solver
-            .sensitivity_within(
-                &as_derivative(&vector, heaviest, mass[heaviest])?,
-                mass,
-                ROUGH,
-            )
-            .ok()?;
-        let grown: f64 = next.iter().map(|value| value.abs()).sum();
-        if 2 * iteration >= ITERATIONS {
-            growth += grown.ln();
-        }
-        vector = next;
-    }
-    let time = (growth / (ITERATIONS / 2) as f64).exp();
-    (time > 0.0 && time.is_finite()).then_some(time)
+/// Factor by which a time may change from one point of a sweep to the next while nothing is known of it.
+const UNKNOWN_CHANGE: f64 = 3.0;
+
+/// The same on top of twice the change that was seen before.
+const LEAST_CHANGE: f64 = 1.05;
+
+/// How fast deviations from a steady state die out.
+#[derive(Debug, PartialEq)]
+pub(super) struct Relaxation {
+    /// Time in which they shrink by e.
+    pub(super) time: f64,
+    /// The deviation that lives longest, Σ = 0.
+    mode: Arc<Vec<f64>>,
+    /// Factor by which the time may change from point to point.
+    change: f64,
+    /// Points of the sweep since it was computed.
+    age: i32,
 }
 
-/// A matrix whose product with the mass is the vector: all of it in the column of the heaviest cell.
-fn as_derivative(vector: &[f64], column: usize, mass: f64) -> Option<CsMat<f64>> {
-    let cells = vector.len();
-    let mut starts = vec![0; cells + 1];
-    starts[column + 1..].fill(cells);
-    let rows: Vec<usize> = (0..cells).collect();
-    let values: Vec<f64> = vector.iter().map(|value| value / mass).collect();
-    CsMat::try_new_csc((cells, cells), starts, rows, values).ok()
+impl Relaxation {
+    /// The neighbour's time where it tells for sure that less than `limit` of the mass leaves, at this escape rate,
+    /// within it. (A share that is reported must be that of the point itself.)
+    pub(super) fn carried(neighbour: &Self, escape_rate: f64, limit: f64) -> Option<Self> {
+        let age = neighbour.age + 1;
+        let largest_time = neighbour.time * neighbour.change.powi(age);
+        (escape_rate * largest_time < limit).then(|| Self {
+            time: neighbour.time,
+            mode: neighbour.mode.clone(),
+            change: neighbour.change,
+            age,
+        })
+    }
+
+    /// From x ← Q⁻¹ x on vectors of sum zero: the mean growth over the last iterations is 1/|λ₂|. Rough (a few per cent,
+    /// more for oscillating modes), which is enough to compare with the time in which mass escapes. `None` when a
+    /// solve fails.
+    pub(super) fn compute(
+        solver: &mut RateSolver,
+        mass: &[f64],
+        neighbour: Option<&Self>,
+    ) -> Option<Self> {
+        let mut mode = neighbour.map_or_else(|| uneven(mass), |known| known.mode.to_vec());
+        let mut growth: Vec<f64> = Vec::with_capacity(ITERATIONS);
+        while growth.len() < ITERATIONS && !settled(&growth) {
+            let size: f64 = mode.iter().map(|value| value.abs()).sum();
+            if size == 0.0 || !size.is_finite() {
+                return None;
+            }
+            mode.iter_mut().for_each(|value| *value /= size);
+            mode = solver.response(&mode, mass, None, ROUGH).ok()?;
+            growth.push(mode.iter().map(|value| value.abs()).sum::<f64>().ln());
+        }
+        let time = mean(growth.rchunks(AVERAGED).next()?).exp();
+        let change = neighbour.map_or(UNKNOWN_CHANGE, |known| {
+            let seen = (time / known.time).ln().abs() / f64::from(known.age + 1);
+            LEAST_CHANGE * (2.0 * seen).exp()
+        });
+        (time > 0.0 && time.is_finite()).then(|| Self {
+            time,
+            mode: Arc::new(mode),
+            change,
+            age: 0,
+        })
+    }
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Whether the average over the last iterations is that of those before.
+fn settled(growth: &[f64]) -> bool {
+    let mut averages = growth.rchunks_exact(AVERAGED).map(mean);
+    match (averages.next(), averages.next()) {
+        (Some(last), Some(before)) => (last - before).abs() <= SETTLED,
+        _ => false,
+    }
+}
+
+/// A start that excites every mode: mass times an uneven, deterministic weight, made to sum to zero.
+fn uneven(mass: &[f64]) -> Vec<f64> {
+    let cells = mass.len() as f64;
+    let weight = |cell: usize| ((cell as f64 * 0.754_877_666).fract() - 0.5) + cell as f64 / cells;
+    let entries = mass.iter().enumerate();
+    let mut vector: Vec<f64> = entries.map(|(cell, mass)| mass * weight(cell)).collect();
+    let excess: f64 = vector.iter().sum();
+    let pairs = vector.iter_mut().zip(mass);
+    pairs.for_each(|(value, mass)| *value -= excess * mass);
+    vector
 }

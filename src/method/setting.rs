@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::MethodError;
+use super::trail::Trail;
 use crate::density::Observable;
 use crate::space::CellSpace;
 use crate::system::{Model, ParameterValues, System};
@@ -41,37 +42,16 @@ impl Setting<'_> {
 /// What a solved point leaves for its neighbour.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
-    /// The parameter's value.
-    pub(super) value: f64,
     /// Mass of every cell (for the generator its unknowns), Σ = 1.
-    pub(super) mass: Vec<f64>,
-    /// Its derivative by the parameter, where known; Σ = 0.
-    pub(super) slope: Option<Vec<f64>>,
+    pub(super) mass: Arc<Vec<f64>>,
+    /// What the generator remembers of the points before.
+    pub(super) trail: Trail,
 }
 
 impl State {
-    /// Memory that the state takes.
+    /// Memory that the state takes, what it shares with others not counted.
     pub(super) fn bytes(&self) -> usize {
-        let slope = self.slope.as_ref().map_or(0, Vec::len);
-        size_of::<f64>() * (self.mass.len() + slope)
-    }
-
-    /// Slope of the secant to another state, which lies at another value.
-    pub(super) fn secant(&self, other: &Self) -> Vec<f64> {
-        let step = other.value - self.value;
-        let pairs = self.mass.iter().zip(&other.mass);
-        pairs.map(|(from, to)| (to - from) / step).collect()
-    }
-
-    /// Mass expected at another value: along the tangent, but never to less than nothing in total.
-    pub(super) fn predicted(&self, value: f64) -> Vec<f64> {
-        let step = value - self.value;
-        match &self.slope {
-            Some(slope) => {
-                let pairs = self.mass.iter().zip(slope);
-                pairs.map(|(mass, slope)| mass + step * slope).collect()
-            }
-            None => self.mass.clone(),
-        }
+        // The masses, and for the generator as many differences between schemes.
+        2 * size_of_val(self.mass.as_slice())
     }
 }

@@ -10,6 +10,7 @@ use super::findings::Findings;
 use super::generator::QUIET_ESCAPE;
 use super::steps::{Steps, choose_steps};
 use super::structure::structure;
+use super::trail::Trail;
 use super::{MethodError, Setting, SgcmOptions, State};
 use crate::continuation::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
 use crate::density::{EstimatedDensity, Observable, estimate, moments};
@@ -144,7 +145,7 @@ impl SgcmSource {
 
     fn solved(
         &self,
-        (value, system): (f64, &dyn System),
+        system: &dyn System,
         transitions: &SampledTransitions,
         matrix: &TransitionMatrix,
         steady: SteadyState,
@@ -192,9 +193,8 @@ impl SgcmSource {
             moments,
             densities,
             state: Some(State {
-                value,
-                mass: steady.mass,
-                slope: None,
+                mass: Arc::new(steady.mass),
+                trail: Trail::default(),
             }),
         })
     }
@@ -223,9 +223,7 @@ impl SgcmSource {
         let matrix = transitions.matrix();
         let options = Options::new(self.options.solver, self.options.solver_tolerance);
         match solve(&matrix, &self.space, start, &options)? {
-            Outcome::Steady(steady) => {
-                self.solved((value, system.as_ref()), &transitions, &matrix, steady)
-            }
+            Outcome::Steady(steady) => self.solved(system.as_ref(), &transitions, &matrix, steady),
             Outcome::SeveralClasses { classes, .. } => {
                 let mut report = self.report(PointStatus::SeveralClasses, 0, 0.0);
                 let mut findings = Findings::new(self.model, &self.space);

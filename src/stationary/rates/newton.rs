@@ -14,6 +14,11 @@ const LEAST_REDUCTION: f64 = 1e-9;
 /// Vectors that GMRES keeps before it restarts.
 const BASIS: usize = 120;
 
+/// Share of the tolerance that is asked of GMRES, whose norm is not ours.
+const UNSEEN: f64 = 0.2;
+/// Tolerance from which on a result is not looked at again.
+const ROUGH: f64 = 1e-3;
+
 /// Work and state of one solve.
 #[derive(Default)]
 pub(super) struct Progress {
@@ -96,35 +101,48 @@ impl Newton<'_> {
     }
 }
 
-/// Solves F'(mass) x = source, restarted until the correction is small against x; `None` when it is not after
-/// `limit` iterations.
+/// Solves F'(mass) x = source from a start that is zero at the held cell, restarted until the correction is small
+/// against x; gives x and the iterations used, `None` when it is not after `limit` of them.
 pub(super) fn linear(
     balance: &Balance<'_>,
     kept: &Preconditioner,
     mass: &[f64],
-    source: &[f64],
+    (source, start): (&[f64], Option<Vec<f64>>),
     (tolerance, limit): (f64, usize),
-) -> Option<Vec<f64>> {
+) -> Option<(Vec<f64>, usize)> {
     let jacobian = balance.jacobian(mass);
-    let mut solution = vec![0.0; source.len()];
+    let mut solution = start.unwrap_or_else(|| vec![0.0; source.len()]);
     let mut used = 0;
     while used < limit {
-        let product = jacobian.apply(&solution);
-        let rest: Vec<f64> = source.iter().zip(product).map(|(a, b)| a - b).collect();
-        let start = kept.apply(&rest);
-        used += 1;
-        let (size, total) = (norm(&start), norm(&solution));
-        if size <= tolerance * total || size == 0.0 {
-            return Some(solution);
+        let mut rest = source.to_vec();
+        if norm(&solution) > 0.0 {
+            let product = jacobian.apply(&solution);
+            rest.iter_mut().zip(product).for_each(|(a, b)| *a -= b);
         }
+        let correction = kept.apply(&rest);
+        used += 1;
+        let (size, total) = (norm(&correction), norm(&solution));
+        if size <= tolerance * total || size == 0.0 {
+            add(&mut solution, &correction);
+            return Some((solution, used));
+        }
+        // Without a start the first correction is itself of the size of x.
+        let wanted = UNSEEN * tolerance * if total > 0.0 { total } else { size };
         let limits = Limits {
-            reduction: (0.1 * tolerance * total / size).clamp(LEAST_REDUCTION, 0.1),
+            reduction: (wanted / size).clamp(LEAST_REDUCTION, 0.1),
             iterations: (limit - used).min(BASIS),
             give_up_early: false,
         };
-        let outcome = gmres(start, limits, |vector| kept.apply(&jacobian.apply(vector)));
+        let outcome = gmres(correction, limits, |vector| {
+            kept.apply(&jacobian.apply(vector))
+        });
         used += outcome.iterations;
         add(&mut solution, &outcome.solution);
+        // GMRES knows its residual, which a look at it confirms; two digits need no look.
+        let left = limits.reduction * size;
+        if outcome.reached && tolerance >= ROUGH && left <= tolerance * norm(&solution) {
+            return Some((solution, used));
+        }
     }
     None
 }

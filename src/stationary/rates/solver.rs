@@ -5,14 +5,18 @@ use sprs::CsMat;
 use super::balance::{Balance, add_product};
 use super::narrowing;
 use super::newton::{Newton, Progress, linear};
-use super::preconditioner::{Estimate, LARGE, Preconditioner, estimate};
+use super::preconditioner::{Estimate, Preconditioner, estimate};
 use super::{RateError, RateInfo, RateMethod, RateOptions, RateSteadyState};
 use crate::space::CellSpace;
 
-/// Operations of a factorisation that take the time of one operation of an iteration, for factors within and
-/// beyond the caches: iterations are bound by memory, not arithmetic. Measured (`benches/rates.rs`).
-const ITERATION_OPERATION_COST: [f64; 2] = [4.0, 12.0];
-/// If a solve fails and the held cell carries less than this share of the largest mass, another one is held.
+/// Iterations that a factorisation takes the time of: so many for moving every number of the factors about, and so many
+/// for each arithmetic operation a number. Measured (`benches/rates.rs`) from 50² to 30³ cells, in both precisions, within
+/// a third: iterations are bound by memory, factorisations by arithmetic the larger they are.
+const RENEWAL: (f64, f64) = (12.0, 0.027);
+/// Iterations of a [`RateSolver::response`] to two digits with the factors of its own matrix.
+const FRESH_RESPONSE: usize = 2;
+/// If the held cell carries less than this share of the largest mass, another one is held in new factors, and new ones are
+/// made if a solve fails.
 const WEAK_HELD_SHARE: f64 = 1e-2;
 /// The held cell must carry at least this share of the largest mass, or another one is held.
 const LEAST_HELD_SHARE: f64 = 1e-8;
@@ -72,6 +76,7 @@ impl RateSolver {
         // At most: the old factorisation, a new one, one with a better cell held, one in double precision.
         for _ in 0..4 {
             if fresh {
+                held = self.better_held(held, &mass);
                 self.factorise(matrix, held, &plan);
                 progress.factorisations += 1;
             }
@@ -129,11 +134,11 @@ impl RateSolver {
         derivative: &CsMat<f64>,
         mass: &[f64],
     ) -> Result<Vec<f64>, RateError> {
-        self.sensitivity_within(derivative, mass, self.options.tolerance)
+        self.sensitivity_within(derivative, mass, None, self.options.tolerance)
     }
 
     /// [`RateSolver::sensitivity`] to a relative error of `tolerance` in L1: predictions and estimates of errors need
-    /// two digits, and with a neighbour's factorisation every digit costs iterations.
+    /// two digits, and with a neighbour's factorisation every digit costs iterations. `guess` is what is expected.
     ///
     /// # Errors
     /// As [`RateSolver::sensitivity`].
@@ -141,11 +146,9 @@ impl RateSolver {
         &mut self,
         derivative: &CsMat<f64>,
         mass: &[f64],
+        guess: Option<&[f64]>,
         tolerance: f64,
     ) -> Result<Vec<f64>, RateError> {
-        let (Some((matrix, escape)), Some(kept)) = (&self.last, &self.preconditioner) else {
-            return Err(RateError::NoSteadyState);
-        };
         let cells = self.space.n_cells();
         shape(cells, "derivative's rows", derivative.rows())?;
         shape(cells, "derivative's columns", derivative.cols())?;
@@ -153,6 +156,30 @@ impl RateSolver {
         if !derivative.is_csc() {
             return Err(RateError::Storage);
         }
+        let mut change = vec![0.0; cells];
+        add_product(derivative, mass, &mut change);
+        self.response(&change, mass, guess, tolerance)
+    }
+
+    /// How the last steady state `mass` answers to a change of its balance: p' (Σ = 0) from Q p' = -`change`, where `change`
+    /// is by how much more mass enters each cell than before, per unit time; what its sum lacks escapes.
+    ///
+    /// # Errors
+    /// As [`RateSolver::sensitivity`].
+    pub fn response(
+        &mut self,
+        change: &[f64],
+        mass: &[f64],
+        guess: Option<&[f64]>,
+        tolerance: f64,
+    ) -> Result<Vec<f64>, RateError> {
+        let (Some((matrix, escape)), Some(kept)) = (&self.last, &self.preconditioner) else {
+            return Err(RateError::NoSteadyState);
+        };
+        let cells = self.space.n_cells();
+        shape(cells, "change", change.len())?;
+        shape(cells, "mass", mass.len())?;
+        shape(cells, "guess", guess.map_or(cells, <[f64]>::len))?;
         let balance = Balance {
             matrix,
             escape,
@@ -160,21 +187,26 @@ impl RateSolver {
         };
         let total: f64 = mass.iter().sum();
         // dF/dθ: rates change, and with them the escape, by minus the column sums.
-        let mut source = vec![0.0; cells];
-        add_product(derivative, mass, &mut source);
-        let lost: f64 = -source.iter().sum::<f64>() / total;
-        for (slot, value) in source.iter_mut().zip(mass) {
-            *slot = -(*slot + lost * value);
-        }
+        let lost: f64 = -change.iter().sum::<f64>() / total;
+        let pairs = change.iter().zip(mass);
+        let mut source: Vec<f64> = pairs.map(|(c, p)| -(c + lost * p)).collect();
         source[kept.held] = 0.0;
+        // The cell that is held does not answer; p may be added freely.
+        let start = guess.map(|guess| {
+            let share = guess[kept.held] / mass[kept.held];
+            let pairs = guess.iter().zip(mass);
+            pairs.map(|(x, p)| x - share * p).collect::<Vec<f64>>()
+        });
+        let start = start.filter(|start| start.iter().all(|value| value.is_finite()));
         let effort = (tolerance, self.options.max_iterations);
-        let change = linear(&balance, kept, mass, &source, effort);
-        let mut change = change.ok_or(RateError::Sensitivity)?;
-        let excess: f64 = change.iter().sum::<f64>() / total;
-        for (slot, value) in change.iter_mut().zip(mass) {
+        let response = linear(&balance, kept, mass, (&source, start), effort);
+        let (mut response, used) = response.ok_or(RateError::Sensitivity)?;
+        self.excess += used.saturating_sub(FRESH_RESPONSE);
+        let excess: f64 = response.iter().sum::<f64>() / total;
+        for (slot, value) in response.iter_mut().zip(mass) {
             *slot -= excess * value;
         }
-        Ok(change)
+        Ok(response)
     }
 
     fn check(&self, matrix: &CsMat<f64>, escape: &[f64]) -> Result<(), RateError> {
@@ -207,6 +239,12 @@ impl RateSolver {
 
     /// The method, chosen again only when the stencil's reach grows.
     fn plan(&mut self, matrix: &CsMat<f64>) -> Result<Estimate, RateError> {
+        if let (Some((_, plan)), Some((last, _))) = (&self.plan, &self.last)
+            && last.indptr() == matrix.indptr()
+            && last.indices() == matrix.indices()
+        {
+            return Ok(*plan);
+        }
         let reach = narrowing::reach(&self.space, matrix);
         if let Some((planned, plan)) = &self.plan
             && planned.iter().zip(&reach).all(|(old, new)| new <= old)
@@ -237,6 +275,20 @@ impl RateSolver {
         let kept = self.preconditioner.as_ref().map(|kept| kept.held);
         kept.filter(|&held| mass[held] >= LEAST_HELD_SHARE * largest)
             .unwrap_or(best)
+    }
+
+    /// The cell to hold in new factors: the old one unless it carries little mass, which would be lost in the next
+    /// points.
+    fn better_held(&self, held: usize, mass: &[f64]) -> usize {
+        if mass.is_empty() {
+            return held;
+        }
+        let (best, largest) = largest(mass);
+        if mass[held] < WEAK_HELD_SHARE * largest {
+            best
+        } else {
+            held
+        }
     }
 
     fn factorise(&mut self, matrix: &CsMat<f64>, held: usize, plan: &Estimate) {
@@ -321,11 +373,10 @@ fn shape(cells: usize, part: &'static str, found: usize) -> Result<(), RateError
     }
 }
 
-/// Iterations that cost as much as a factorisation; a few are always worth a try.
+/// Iterations that cost as much as a factorisation.
 fn renewal(plan: &Estimate) -> usize {
-    let cost = ITERATION_OPERATION_COST[usize::from(plan.factor_bytes > LARGE / 2)];
-    let iterations = plan.operations / (cost * plan.iteration_operations);
-    (iterations as usize).max(8)
+    let numbers = 0.5 * plan.iteration_operations;
+    (RENEWAL.0 + RENEWAL.1 * plan.operations / numbers) as usize
 }
 
 /// The cell with the largest mass, and that mass.

@@ -1,0 +1,179 @@
+//! What the last points of a sweep say of the next one: solutions and differences between schemes, extrapolated.
+//!
+//! A fine sweep moves along a smooth curve, so a polynomial through the last few points predicts the next one far
+//! better than their secant, and what is left for the solver is small.
+
+use std::sync::Arc;
+
+use super::relaxation::Relaxation;
+
+/// Points that are remembered: one more than the highest degree of the polynomial.
+const POINTS: usize = 6;
+
+/// The same for differences between schemes: they are known to two digits only, which higher degrees would amplify.
+const ROUGH_POINTS: usize = 3;
+
+/// A term of the polynomial is used when it is smaller than this share of the one before. Terms of a converging series
+/// fall; where they do not, the sweep's step is too wide or the noise of the solver has been reached.
+const FALLING: f64 = 0.5;
+
+/// A solved point.
+#[derive(Debug, PartialEq)]
+pub(super) struct Solved {
+    /// The parameter's value.
+    pub(super) value: f64,
+    /// The generator's unknowns, Σ = 1.
+    pub(super) mass: Arc<Vec<f64>>,
+    /// By how much the second scheme's unknowns differ, Σ = 0.
+    pub(super) difference: Vec<f64>,
+}
+
+/// The last points along the sweep, newest first, and what else changes slowly from one to the next.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Trail {
+    points: Vec<Arc<Solved>>,
+    /// Derivative of the unknowns by the parameter at the first point, Σ = 0: predicts while there is no second one.
+    pub(super) slope: Option<Arc<Vec<f64>>>,
+    /// How fast deviations die out, where it was needed.
+    pub(super) relaxation: Option<Arc<Relaxation>>,
+}
+
+impl Trail {
+    /// The trail with one more point; the oldest one is forgotten.
+    pub(super) fn with(&self, point: Solved, relaxation: Option<Arc<Relaxation>>) -> Self {
+        let mut points = vec![Arc::new(point)];
+        let older = self.points.iter();
+        let older = older.filter(|older| older.value != points[0].value);
+        let older: Vec<_> = older.take(POINTS - 1).cloned().collect();
+        points.extend(older);
+        Self {
+            points,
+            slope: None,
+            relaxation,
+        }
+    }
+
+    /// Unknowns expected at a value; `None` without any point.
+    pub(super) fn mass_at(&self, value: f64) -> Option<Vec<f64>> {
+        let [only] = self.points.as_slice() else {
+            return self.extrapolated(value, POINTS, |point| &point.mass);
+        };
+        let mut mass = only.mass.to_vec();
+        if let Some(slope) = &self.slope {
+            add_scaled(&mut mass, value - only.value, slope);
+        }
+        Some(mass)
+    }
+
+    /// Difference between the schemes expected at a value; `None` without any point.
+    pub(super) fn difference_at(&self, value: f64) -> Option<Vec<f64>> {
+        self.extrapolated(value, ROUGH_POINTS, |point| &point.difference)
+    }
+
+    /// Newton's form of the polynomial through the points nearest to a value, as far as its terms fall.
+    fn extrapolated(
+        &self,
+        value: f64,
+        most: usize,
+        part: impl Fn(&Solved) -> &[f64],
+    ) -> Option<Vec<f64>> {
+        let mut nearest: Vec<&Solved> = self.points.iter().map(AsRef::as_ref).collect();
+        nearest.sort_by(|a, b| (a.value - value).abs().total_cmp(&(b.value - value).abs()));
+        let first = nearest.first()?;
+        let mut sum = part(first).to_vec();
+        let mut last = f64::INFINITY;
+        for degree in 1..nearest.len().min(most) {
+            let term = term(&nearest[..=degree], value, &part);
+            let size: f64 = term.iter().map(|entry| entry.abs()).sum();
+            if size.is_nan() || size > FALLING * last {
+                break;
+            }
+            add_scaled(&mut sum, 1.0, &term);
+            last = size;
+        }
+        Some(sum)
+    }
+}
+
+/// The term of highest degree in Newton's form at a value: the divided difference of all points times the distances to
+/// all but the last.
+fn term<'a>(
+    points: &[&'a Solved],
+    value: f64,
+    part: &impl Fn(&'a Solved) -> &'a [f64],
+) -> Vec<f64> {
+    let (_, before) = points.split_last().unwrap_or((&points[0], &[]));
+    let distances: f64 = before.iter().map(|point| value - point.value).product();
+    let mut sum = vec![0.0; part(points[0]).len()];
+    for (index, point) in points.iter().enumerate() {
+        let others = points
+            .iter()
+            .enumerate()
+            .filter(|(other, _)| *other != index);
+        let spacing: f64 = others.map(|(_, other)| point.value - other.value).product();
+        add_scaled(&mut sum, distances / spacing, part(point));
+    }
+    sum
+}
+
+/// y ← y + factor x.
+fn add_scaled(y: &mut [f64], factor: f64, x: &[f64]) {
+    for (slot, value) in y.iter_mut().zip(x) {
+        *slot += factor * value;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn trail(values: &[f64], curve: impl Fn(f64) -> Vec<f64>) -> Trail {
+        values.iter().fold(Trail::default(), |trail, &value| {
+            let mass = Arc::new(curve(value));
+            let difference = curve(2.0 * value);
+            let point = Solved {
+                value,
+                mass,
+                difference,
+            };
+            trail.with(point, None)
+        })
+    }
+
+    fn distance(a: &[f64], b: &[f64]) -> f64 {
+        a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum()
+    }
+
+    #[test]
+    fn a_smooth_curve_is_predicted_to_the_order_of_the_points() {
+        let curve = |x: f64| vec![x.sin(), 1.0 - x.sin(), x.exp()];
+        let error = |step: f64| {
+            let values: Vec<f64> = (0..POINTS).map(|i| step * i as f64).collect();
+            let at = step * POINTS as f64;
+            let trail = trail(&values, curve);
+            let of_difference = trail.difference_at(at).unwrap();
+            let difference = distance(&of_difference, &curve(2.0 * at));
+            assert!(difference < 1e3 * step.powi(3), "{difference:e}");
+            distance(&trail.mass_at(at).unwrap(), &curve(at))
+        };
+        let order = (error(0.1) / error(0.05)).log2();
+        assert!((order - POINTS as f64).abs() < 0.5, "{order}");
+    }
+
+    #[test]
+    fn a_kink_is_passed_with_the_secant_at_most() {
+        // |x| from a long step: the high terms do not fall, and what they would add is left out.
+        let trail = trail(&[-0.3, -0.2, -0.1, 0.05, 0.1], |x| vec![x.abs(), 0.0]);
+        let at = 0.2;
+        assert!((trail.mass_at(at).unwrap()[0] - at).abs() < 0.05);
+    }
+
+    #[test]
+    fn a_single_point_predicts_along_its_slope() {
+        let mut trail = trail(&[1.0], |x| vec![x * x, 0.0]);
+        assert_eq!(trail.mass_at(1.5), Some(vec![1.0, 0.0]));
+        trail.slope = Some(Arc::new(vec![2.0, 0.0]));
+        assert_eq!(trail.mass_at(1.5), Some(vec![2.0, 0.0]));
+        assert_eq!(Trail::default().mass_at(1.0), None);
+    }
+}
