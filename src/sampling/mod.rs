@@ -18,7 +18,9 @@ mod transition;
 
 pub use growth::{SamplingOptions, estimated_bytes, sample_transitions};
 pub use integrator::Integrator;
+pub(crate) use integrator::Stepper;
 pub use pilot::{Pilot, pilot};
+pub(crate) use random::{NormalStream, StreamKey, mix, unit};
 pub use transition::{SampledTransitions, TransitionMatrix};
 
 /// Why transitions could not be sampled.
