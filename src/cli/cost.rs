@@ -5,10 +5,15 @@
 //! trajectories of a cell end in at most `samples` cells, and in at most all of them; the image of a box
 //! generally overlaps at least 2^d boxes. The solver's coarser levels at most double the transitions.
 //!
+//! Monte Carlo: 32 blocks, each with a count and then a replicate's mass a cell.
+//!
 //! Generator: a stencil holds 2 reach + 1 rates along each axis, 16 bytes each, in up to four matrices (Q, dQ/dθ, the
 //! second scheme, the one kept for sensitivities); the factors come from the elimination order itself.
 
-use crate::method::{GeneratorMethodOptions, MethodOptions, SgcmOptions};
+use crate::method::{
+    Estimator, GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions, StepChoice,
+};
+use crate::monte_carlo::BLOCKS;
 use crate::space::CellSpace;
 use crate::stationary::rates::{Estimate, RateError, estimate};
 
@@ -38,7 +43,27 @@ pub(super) fn least_bytes(n_cells: f64, dimension: usize, method: &MethodOptions
             let reached = n_cells.min(options.samples as f64).min(image);
             n_cells * (reached * transition_bytes(options) + cell_bytes(options))
         }
+        MethodOptions::MonteCarlo(_) => monte_carlo_bytes(n_cells),
     }
+}
+
+/// Bytes at work at one point by Monte Carlo: a count and a replicate's mass for each cell and block.
+pub(super) fn monte_carlo_bytes(n_cells: f64) -> f64 {
+    n_cells * 16.0 * BLOCKS as f64
+}
+
+/// Integrator steps at one point by Monte Carlo, where all that they depend on is given.
+pub(super) fn monte_carlo_steps(options: &MonteCarloOptions) -> Option<f64> {
+    let given = |choice: StepChoice| match choice {
+        StepChoice::Fixed(value) => Some(value),
+        StepChoice::Auto => None,
+    };
+    let length = match options.estimator {
+        Estimator::Ergodic => given(options.length)?,
+        Estimator::Ensemble => 0.0,
+    };
+    let time = given(options.burn_in)? + length;
+    Some(given(options.trajectories)? * time / given(options.time_step)?)
 }
 
 /// Bytes of the sparse matrices of the generator.

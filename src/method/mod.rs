@@ -3,6 +3,7 @@
 mod any;
 mod findings;
 mod generator;
+mod monte_carlo;
 mod options;
 mod range;
 mod relaxation;
@@ -12,7 +13,10 @@ mod steps;
 
 pub use any::MethodSource;
 pub use generator::GeneratorSource;
-pub use options::{GeneratorMethodOptions, MethodOptions, SgcmOptions, StepChoice};
+pub use monte_carlo::MonteCarloSource;
+pub use options::{
+    Estimator, GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions, StepChoice,
+};
 pub use range::automatic_ranges;
 pub use setting::{Setting, State};
 pub use sgcm::SgcmSource;
@@ -27,6 +31,9 @@ pub enum MethodError {
     /// Transitions could not be sampled.
     #[error(transparent)]
     Sampling(#[from] crate::sampling::SamplingError),
+    /// Free trajectories could not be run.
+    #[error(transparent)]
+    MonteCarlo(#[from] crate::monte_carlo::MonteCarloError),
     /// The generator could not be assembled.
     #[error(transparent)]
     Generator(#[from] crate::generator::GeneratorError),

@@ -168,6 +168,11 @@ impl SgcmSource {
             .collect();
         report.numerical_diffusion = transitions.numerical_diffusion(&local_mass);
         findings.numerical_diffusion(&report.numerical_diffusion, &self.steps.noise, &moments);
+        findings.time_step(
+            self.steps.time_step,
+            self.steps.bias.as_ref(),
+            f64::INFINITY,
+        );
         if escaping_share > QUIET_ESCAPE {
             report.status = PointStatus::Escaping;
             findings.escaping(escape_rate, escaping_share);
@@ -203,6 +208,7 @@ impl SgcmSource {
             edge_mass: Vec::new(),
             numerical_diffusion: Vec::new(),
             map_step: Some(self.steps.map_step),
+            time_step_bias: self.steps.bias.map(|bias| bias.relative.abs()),
             warnings: Vec::new(),
         }
     }

@@ -25,8 +25,8 @@ const REGION: f64 = 0.1;
 const FARTHEST: f64 = 1e3;
 /// Shortenings of an automatic step.
 const MOST_ROUNDS: usize = 6;
-/// Largest bias that is passed over even when sampling is far better: a twentieth.
-pub const TOLERATED_BIAS: f64 = 0.05;
+/// Largest bias that is passed over when the sampling error is larger still, or not known.
+pub const TOLERATED_BIAS: f64 = 0.02;
 
 /// A number of the steady state that a time step may shift.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

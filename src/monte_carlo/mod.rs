@@ -16,7 +16,7 @@ mod tests;
 
 pub use ensemble::{EnsembleRun, ensemble};
 pub use ergodic::{ErgodicRun, ergodic};
-pub use estimate::Estimate;
+pub use estimate::{BLOCKS, Estimate};
 pub use halving::{BiasedQuantity, StepBias, TOLERATED_BIAS, automatic_step, step_bias};
 pub use relaxation::{Relaxation, relaxation};
 

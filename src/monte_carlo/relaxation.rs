@@ -52,6 +52,25 @@ impl Relaxation {
     pub fn time_step(&self, integrator: Integrator, share: f64) -> f64 {
         self.pilot.time_step_within(integrator, share)
     }
+
+    /// States at the end of the trajectories that did not run away, d values each: draws from the steady state.
+    pub fn settled(&self) -> &[Vec<f64>] {
+        &self.settled
+    }
+
+    /// Variance of (x_i - m_i)² relative to its mean's square, the largest of all axes: 2 for a normal density. The relative
+    /// standard error of the variance of n independent states is the root of this over n.
+    pub fn relative_square(&self) -> f64 {
+        let of_axis = |axis: usize| {
+            let off = |state: &Vec<f64>| (state[axis] - self.mean[axis]).powi(2);
+            let count = self.settled.len() as f64;
+            let mean = self.settled.iter().map(off).sum::<f64>() / count;
+            let squares = self.settled.iter().map(|state| off(state).powi(2));
+            squares.sum::<f64>() / count / (mean * mean) - 1.0
+        };
+        let ratios = (0..self.mean.len()).map(of_axis);
+        ratios.filter(|ratio| ratio.is_finite()).fold(0.0, f64::max)
+    }
 }
 
 /// Series of one trajectory: means of x_i, and of x_i², an axis.

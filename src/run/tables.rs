@@ -51,7 +51,7 @@ fn points_header(naming: &Naming<'_>, observables: &[Observable]) -> Vec<String>
     }
     header.extend(["distance", "seconds", "map_step", "factorisations"].map(str::to_owned));
     header.extend(axes().map(|axis| format!("numerical_diffusion_{axis}")));
-    header.push("warnings".to_owned());
+    header.extend(["time_step_bias", "warnings"].map(str::to_owned));
     header
 }
 
@@ -90,6 +90,7 @@ fn points_row(naming: &Naming<'_>, observables: &[Observable], point: &Point) ->
     for axis in 0..naming.model.axes.len() {
         row.push(optional(report.numerical_diffusion.get(axis).copied()));
     }
+    row.push(optional(report.time_step_bias));
     row.push(report.warnings.join("; "));
     row
 }

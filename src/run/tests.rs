@@ -66,6 +66,7 @@ fn point(value: f64, solved: bool) -> Point {
             edge_mass: vec![0.0, 1e-5],
             numerical_diffusion: vec![1e-4, 2e-4],
             map_step: Some(6.25),
+            time_step_bias: None,
             warnings: vec!["first, with a comma".into(), "second".into()],
         },
         moments: vec![
