@@ -67,7 +67,10 @@ fn long_trajectories(criterion: &mut Criterion) {
                 stride,
             };
             let run = || ergodic(&*system, space, &[], &run, &|| false);
-            let name = format!("{name}, every {stride} steps, {}, {threads} threads", integrator.name());
+            let name = format!(
+                "{name}, every {stride} steps, {}, {threads} threads",
+                integrator.name()
+            );
             group.bench_function(name, |bencher| {
                 bencher.iter(|| pool.install(|| black_box(run())))
             });

@@ -96,7 +96,16 @@ impl MonteCarloSource {
             .iter()
             .map(|system| relaxation(system.as_ref(), setting.space, options.seed))
             .collect();
-        let plan = plan(&systems, setting.space, &relaxed, options);
+        // Where everything runs away there is nothing to be planned for, unless it does so all along the sweep.
+        let stays = |relaxed: &Relaxation| !relaxed.settled().is_empty();
+        let somewhere = relaxed.iter().any(stays);
+        let (planned, relaxed): (Vec<_>, Vec<_>) = systems
+            .iter()
+            .cloned()
+            .zip(relaxed)
+            .filter(|(_, relaxed)| stays(relaxed) || !somewhere)
+            .unzip();
+        let plan = plan(&planned, setting.space, &relaxed, options);
         Ok(Self {
             model: setting.model,
             values: setting.values.clone(),
@@ -268,7 +277,7 @@ fn plan(
     let biases = ends().filter_map(|(system, relaxed)| {
         step_bias(system.as_ref(), space, relaxed, step, options.seed)
     });
-    let bias = biases.max_by(|a, b| a.certain().total_cmp(&b.certain()));
+    let bias = biases.reduce(StepBias::worse);
     let relaxation_time = relaxed.iter().map(|one| one.time).fold(0.0, f64::max);
     let burn_in = options.burn_in.or(|| BURN_IN * relaxation_time);
     // Total time that makes the relative error of every variance one.

@@ -88,7 +88,7 @@ fn time_step(
     let biases = ends().filter_map(|(system, relaxed)| {
         step_bias(system.as_ref(), space, relaxed, (integrator, step), seed)
     });
-    let bias = biases.max_by(|a, b| a.certain().total_cmp(&b.certain()));
+    let bias = biases.reduce(StepBias::worse);
     (step, bias)
 }
 

@@ -56,6 +56,16 @@ impl StepBias {
     pub fn certain(&self) -> f64 {
         (self.relative.abs() - 2.0 * self.standard_error).max(0.0)
     }
+
+    /// The one of two that is more certain to be large; of two that may be nothing, the one that shows more clearly.
+    pub fn worse(self, other: Self) -> Self {
+        let clear = |bias: &Self| bias.relative.abs() / bias.standard_error.max(f64::MIN_POSITIVE);
+        let by_size = self.certain().total_cmp(&other.certain());
+        match by_size.then(clear(&self).total_cmp(&clear(&other))) {
+            std::cmp::Ordering::Less => other,
+            _ => self,
+        }
+    }
 }
 
 /// The bias of a time step, that of the quantity for which it is most certain to be large. Keyed by `seed`; does not depend on
@@ -97,7 +107,7 @@ pub fn step_bias(
         }
     });
     let finite = biases.filter(|bias| bias.relative.is_finite());
-    finite.max_by(|a, b| a.certain().total_cmp(&b.certain()))
+    finite.reduce(StepBias::worse)
 }
 
 /// Weak order of an integrator.

@@ -207,6 +207,8 @@ fn judge(watched: &[Watched], pilot: crate::sampling::Pilot, spacing: f64) -> Re
     correlations.push(energy);
     let longest = correlations.iter().map(|one| one.time).fold(0.5, f64::max);
     let alive: usize = watched.iter().map(|one| one.batch.n_alive()).sum();
+    // Of what has run away, only how long it was watched is known.
+    let longest = if alive > 0 { longest } else { RECORDS as f64 };
     let speed = |axis: usize| pilot.frequency * variance[axis].sqrt();
     Relaxation {
         time: longest * spacing,
