@@ -138,6 +138,7 @@ fn map_steps(system: &dyn System) -> Result<(), AnyError> {
                 groups: 8,
                 seed: 1,
                 integrator,
+                keep_starts: false,
             })?;
             let steady = run.steady.as_ref().ok_or("no steady state in Ω")?;
             let local: Vec<f64> = run
@@ -186,6 +187,7 @@ fn integrators(system: &dyn System) -> Result<(), AnyError> {
             groups: 8,
             seed: 1,
             integrator,
+            keep_starts: false,
         })?;
         let taken = match integrator {
             Integrator::EulerMaruyama => run.transitions.time_step(),

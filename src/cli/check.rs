@@ -87,7 +87,7 @@ fn generator_costs(spec: &SweepSpec, options: &GeneratorMethodOptions) -> Vec<St
 fn sgcm_costs(spec: &SweepSpec, options: &SgcmOptions) -> Vec<String> {
     let cells = spec.space.n_cells();
     let trajectories = cells as f64 * options.samples as f64;
-    let most = cost::estimated_bytes(cells as f64, options);
+    let most = cost::estimated_bytes(cells as f64, spec.space.dimension(), options);
     let least = cost::least_bytes(cells as f64, spec.space.dimension(), &spec.method);
     let steps = match (options.map_step, options.time_step) {
         (StepChoice::Fixed(map_step), StepChoice::Fixed(time_step)) => {
@@ -155,7 +155,10 @@ fn notes(spec: &SweepSpec) -> Vec<String> {
     }
     let most = match &spec.method {
         MethodOptions::Generator(_) => 0.0,
-        MethodOptions::Sgcm(options) => cost::estimated_bytes(spec.space.n_cells() as f64, options),
+        MethodOptions::Sgcm(options) => {
+            let cells = spec.space.n_cells() as f64;
+            cost::estimated_bytes(cells, spec.space.dimension(), options)
+        }
         MethodOptions::MonteCarlo(_) => cost::monte_carlo_bytes(spec.space.n_cells() as f64),
     };
     if let Some(memory) = cost::machine_memory().filter(|&memory| most > memory) {

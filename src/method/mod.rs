@@ -9,17 +9,20 @@ mod range;
 mod relaxation;
 mod setting;
 mod sgcm;
+mod slope_correction;
 mod steps;
 
 pub use any::MethodSource;
 pub use generator::GeneratorSource;
 pub use monte_carlo::MonteCarloSource;
 pub use options::{
-    Estimator, GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions, StepChoice,
+    Correction, Estimator, GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions,
+    StepChoice,
 };
 pub use range::automatic_ranges;
 pub use setting::{Setting, State};
 pub use sgcm::SgcmSource;
+pub use slope_correction::{Corrected, solve_corrected};
 
 /// Why a method cannot give a solution at all. Failed solves are data, see
 /// [`PointStatus`](crate::continuation::PointStatus).

@@ -92,6 +92,28 @@ impl StepChoice {
     }
 }
 
+/// What SGCM takes the density inside a cell for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Correction {
+    /// Linear, with the slope that the neighbouring cells show.
+    Slope,
+    /// Flat: the paper's method.
+    None,
+}
+
+impl Correction {
+    /// All corrections.
+    pub const ALL: [Self; 2] = [Self::Slope, Self::None];
+
+    /// Name used in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Slope => "slope",
+            Self::None => "none",
+        }
+    }
+}
+
 /// Settings of stochastic generalized cell mapping.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SgcmOptions {
@@ -107,6 +129,8 @@ pub struct SgcmOptions {
     pub integrator: Integrator,
     /// Groups the samples are split into to estimate the sampling error of the density (delete-a-group jackknife).
     pub replicates: usize,
+    /// What the density inside a cell is taken for.
+    pub correction: Correction,
     /// Solver of the steady state.
     pub solver: Solver,
     /// L1 error at which the solver stops.
@@ -125,6 +149,7 @@ impl Default for SgcmOptions {
             seed: 1,
             integrator: Integrator::StochasticHeun,
             replicates: 8,
+            correction: Correction::Slope,
             solver: Solver::MultilevelAggregation,
             solver_tolerance: 1e-10,
             escape_limit: ESCAPE_LIMIT,

@@ -13,6 +13,7 @@ mod jacobian;
 mod normal;
 mod pilot;
 mod random;
+mod slopes;
 mod starts;
 mod transition;
 
@@ -21,6 +22,7 @@ pub use integrator::Integrator;
 pub(crate) use integrator::Stepper;
 pub use pilot::{Pilot, pilot};
 pub(crate) use random::{NormalStream, StreamKey, mix, unit};
+pub use slopes::cell_slopes;
 pub use transition::{SampledTransitions, TransitionMatrix};
 
 /// Why transitions could not be sampled.

@@ -7,7 +7,8 @@ use crate::density::Observable;
 use crate::figure::Format;
 use crate::generator::AdvectiveScheme;
 use crate::method::{
-    Estimator, GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions, StepChoice,
+    Correction, Estimator, GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions,
+    StepChoice,
 };
 use crate::sampling::Integrator;
 use crate::stationary::Solver;
@@ -57,6 +58,11 @@ fn read_sgcm(reader: &mut Reader) -> SgcmOptions {
     let integrator = read_integrator(reader);
     let solver = name(reader, "solver")
         .and_then(|name| Solver::ALL.into_iter().find(|known| known.name() == name));
+    let correction = name(reader, "correction").and_then(|name| {
+        Correction::ALL
+            .into_iter()
+            .find(|known| known.name() == name)
+    });
     let number = |key| reader.number(&["method", key]).map(|number| number.value);
     let options = SgcmOptions {
         map_step: read_step(reader, "map_step").unwrap_or(default.map_step),
@@ -65,6 +71,7 @@ fn read_sgcm(reader: &mut Reader) -> SgcmOptions {
         seed: integer(reader, "seed").unwrap_or(default.seed),
         integrator: integrator.unwrap_or(default.integrator),
         replicates: integer(reader, "replicates").unwrap_or(default.replicates),
+        correction: correction.unwrap_or(default.correction),
         solver: solver.unwrap_or(default.solver),
         solver_tolerance: number("solver_tolerance").unwrap_or(default.solver_tolerance),
         escape_limit: number("escape_limit").unwrap_or(default.escape_limit),

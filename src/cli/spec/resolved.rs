@@ -100,6 +100,7 @@ fn write_sgcm(text: &mut String, method: &SgcmOptions) -> std::fmt::Result {
     writeln!(text, "samples = {}\nseed = {}", method.samples, method.seed)?;
     writeln!(text, "integrator = {}", quoted(method.integrator.name()))?;
     writeln!(text, "replicates = {}", method.replicates)?;
+    writeln!(text, "correction = {}", quoted(method.correction.name()))?;
     writeln!(text, "solver = {}", quoted(method.solver.name()))?;
     write_shared(text, method.solver_tolerance, method.escape_limit)
 }
