@@ -93,3 +93,6 @@ pub fn solve_corrected(
 fn l1(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum()
 }
+
+#[cfg(test)]
+mod tests;

@@ -111,6 +111,15 @@ impl SampledTransitions {
         group.filter(|&group| group < self.groups && self.groups > 1)
     }
 
+    /// Forgets where samples started, as if they had not been kept.
+    #[cfg(test)]
+    pub(crate) fn forget_starts(&mut self) {
+        for column in &mut self.columns {
+            column.starts.clear();
+            column.ends.clear();
+        }
+    }
+
     /// Whether it is known where in their cells the samples started.
     pub fn keeps_starts(&self) -> bool {
         self.columns.iter().any(|column| !column.starts.is_empty())
