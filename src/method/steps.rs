@@ -4,14 +4,10 @@
 use std::sync::Arc;
 
 use super::findings::closed_ends;
-use super::{Correction, MethodError, Setting, SgcmOptions, StepChoice};
+use super::{MethodError, Setting, SgcmOptions, StepChoice};
 use crate::monte_carlo::{StepBias, TOLERATED_BIAS, automatic_step, relaxation, step_bias};
 use crate::sampling::{Pilot, pilot};
 use crate::system::System;
-
-/// Numerical diffusion that flat cells may have, relative to the noise, when it is removed by slope correction: what remains
-/// of it is less than a tenth (docs/sgcm.md), and the shorter map step saves time.
-const CORRECTED_SHARE: f64 = 0.25;
 
 /// Steps, and what else the pilots showed.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,10 +38,7 @@ pub(super) fn choose_steps(
     let (time_step, bias) = time_step(setting, options, &systems);
     let map_step = match options.map_step {
         StepChoice::Fixed(step) => step,
-        StepChoice::Auto => -smallest(&pilots, |pilot| match options.correction {
-            Correction::Slope => -pilot.map_step_within(time_step, CORRECTED_SHARE),
-            Correction::None => -pilot.automatic_map_step(time_step),
-        }),
+        StepChoice::Auto => -smallest(&pilots, |pilot| -pilot.automatic_map_step(time_step)),
     };
     let mut cells: Vec<usize> = pilots
         .iter()

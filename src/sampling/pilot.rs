@@ -76,11 +76,6 @@ impl Pilot {
     /// ε of the variance of both axes moves the density by a total variation of 0.37 ε. At least one time step, at
     /// most 1e5.
     pub fn automatic_map_step(&self, time_step: f64) -> f64 {
-        self.map_step_within(time_step, NOISE_SHARE)
-    }
-
-    /// The same with another share of the noise than 5 %.
-    pub fn map_step_within(&self, time_step: f64, share: f64) -> f64 {
         let (mut cells, mut noise) = (0.0, 0.0);
         for (axis, &deviation) in self.standard_deviation.iter().enumerate() {
             let square = self.mean_square_width[axis];
@@ -90,7 +85,7 @@ impl Pilot {
             noise += self.noise_intensity[axis] / variance;
         }
         let longest = MOST_MAP_STEPS * time_step;
-        let wanted = cells / (share * noise);
+        let wanted = cells / (NOISE_SHARE * noise);
         if wanted.is_finite() {
             wanted.clamp(time_step, longest)
         } else {
