@@ -107,18 +107,22 @@ pub fn relaxation(system: &dyn System, space: &CellSpace, seed: u64) -> Relaxati
 
 fn start(space: &CellSpace, seed: u64, number: u64) -> Watched {
     let dimension = space.dimension();
-    let mut states = vec![[0.0; LANES]; dimension];
-    for lane in 0..LANES {
-        let point = random_point(seed, number * LANES as u64 + lane as u64, dimension);
-        for (axis, edges) in space.axes().iter().enumerate() {
+    let points: Vec<_> = (0..LANES as u64)
+        .map(|lane| random_point(seed, number * LANES as u64 + lane, dimension))
+        .collect();
+    let of_axis = |(axis, edges): (usize, &crate::space::Axis)| {
+        let mut lanes = [0.0; LANES];
+        for (value, point) in lanes.iter_mut().zip(&points) {
             let share = if 2 * number >= BATCHES {
                 point[axis]
             } else {
                 0.5
             };
-            states[axis][lane] = edges.from() + share * (edges.to() - edges.from());
+            *value = edges.from() + share * (edges.to() - edges.from());
         }
-    }
+        lanes
+    };
+    let states: Vec<Lanes> = space.axes().iter().enumerate().map(of_axis).collect();
     Watched {
         batch: Batch::new(states, key(seed, Purpose::Settle, number)),
         means: vec![Vec::new(); 2 * dimension],
@@ -173,14 +177,10 @@ fn judge(watched: &[Watched], pilot: crate::sampling::Pilot, spacing: f64) -> Re
     let power = |place: usize| {
         move |one: &Watched, record: usize, lane: usize| one.means[place][record][lane]
     };
-    let mut mean = vec![0.0; dimension];
-    let mut variance = vec![0.0; dimension];
-    let mut correlations: Vec<Correlation> = Vec::new();
-    for axis in 0..dimension {
-        let first = correlation(&series(watched, &power(2 * axis)));
-        mean[axis] = first.mean;
-        correlations.push(first);
-    }
+    let mut correlations: Vec<Correlation> = (0..dimension)
+        .map(|axis| correlation(&series(watched, &power(2 * axis))))
+        .collect();
+    let mean: Vec<f64> = correlations.iter().map(|first| first.mean).collect();
     let square = |axis: usize, one: &Watched, record: usize, lane: usize| {
         let of = |place: usize| one.means[place][record][lane];
         of(2 * axis + 1) - mean[axis] * (2.0 * of(2 * axis) - mean[axis])
@@ -190,14 +190,16 @@ fn judge(watched: &[Watched], pilot: crate::sampling::Pilot, spacing: f64) -> Re
         let relative = found.long_run_variance * spacing / (found.mean * found.mean);
         if relative.is_finite() { relative } else { 0.0 }
     };
-    for axis in 0..dimension {
-        let found = correlation(&series(watched, &|one, record, lane| {
-            square(axis, one, record, lane)
-        }));
-        variance[axis] = found.mean;
-        averaging_time.push(ratio(&found));
-        correlations.push(found);
-    }
+    let squares: Vec<Correlation> = (0..dimension)
+        .map(|axis| {
+            correlation(&series(watched, &|one, record, lane| {
+                square(axis, one, record, lane)
+            }))
+        })
+        .collect();
+    let variance: Vec<f64> = squares.iter().map(|found| found.mean).collect();
+    averaging_time.extend(squares.iter().map(ratio));
+    correlations.extend(squares);
     let energy = correlation(&series(watched, &|one, record, lane| {
         let part =
             |axis: usize| square(axis, one, record, lane) / variance[axis].max(f64::MIN_POSITIVE);
