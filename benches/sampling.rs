@@ -59,6 +59,7 @@ fn sampling(criterion: &mut Criterion) {
                 groups: 8,
                 seed: 1,
                 integrator,
+                keep_starts: false,
             };
             let run = || sample_transitions(&*system, &space, &seeds, &options, &|| false);
             let name = format!("{}, {threads} threads", integrator.name());

@@ -36,6 +36,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         groups: 8,
         seed: 1,
         integrator: Integrator::StochasticHeun,
+        keep_starts: false,
     };
     let transitions =
         sample_transitions(system.as_ref(), &space, &pilot.cells, &options, &|| false)?;

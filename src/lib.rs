@@ -6,6 +6,7 @@
 //! | state a model, look up the built-in ones | [`system`] |
 //! | lay a grid of cells over the domain | [`space`] |
 //! | sample a transition matrix by trajectories (SGCM) | [`sampling`] |
+//! | run free trajectories: reference densities, relaxation times, the bias of a time step | [`monte_carlo`] |
 //! | discretise the generator, the cell map in the limit of a short step | [`generator`] |
 //! | find the steady state of a transition matrix | [`stationary`] |
 //! | turn masses into densities, marginals, moments, distances | [`density`] |
@@ -24,6 +25,7 @@ pub mod density;
 pub mod figure;
 pub mod generator;
 pub mod method;
+pub mod monte_carlo;
 pub mod run;
 pub mod sampling;
 pub mod space;

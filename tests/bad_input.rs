@@ -159,7 +159,7 @@ fn wrong_kinds_and_ranges() {
         ("x = { from = -5, to = 5, count = 10 }", "x = { from = 5, to = -5, count = 10 }", "empty or reversed"),
         ("x = { from = -5, to = 5, count = 10 }", "x = { from = 5, to = 5, count = 10 }", "empty or reversed"),
         ("x = { from = -5, to = 5, count = 10 }", "x = 10", "`cells.x` must be a table"),
-        ("[cells]", "[method]\nkind = \"monte-carlo\"\n[cells]", "not available in this version"),
+        ("[cells]", "[method]\nkind = \"monte-carol\"\n[cells]", "did you mean `monte-carlo`?"),
         ("[cells]", "[method]\nmap_step = \"atuo\"\n[cells]", "did you mean `\"auto\"`?"),
         ("[cells]", "[method]\nmap_step = -1\n[cells]", "greater than zero"),
         ("[cells]", "[method]\nseed = -1\n[cells]", "an integer, 0 or more"),

@@ -1,31 +1,48 @@
 //! What a sweep will cost: memory and work of one point, and the machine's memory.
 //!
 //! SGCM, memory of one point. A transition takes 8 bytes for its probability, 8 for its row, and a 2-byte count for
-//! each replicate; a cell takes 8 vectors of 8 bytes in the solver and one more for each replicate. The
+//! each replicate, with slope correction 4 bytes more a replicate and axis; a cell takes 8 vectors of 8 bytes in the solver and one more for each replicate. The
 //! trajectories of a cell end in at most `samples` cells, and in at most all of them; the image of a box
 //! generally overlaps at least 2^d boxes. The solver's coarser levels at most double the transitions.
+//!
+//! Monte Carlo: 32 blocks, each with a count and then a replicate's mass a cell.
 //!
 //! Generator: a stencil holds 2 reach + 1 rates along each axis, 16 bytes each, in up to four matrices (Q, dQ/dθ, the
 //! second scheme, the one kept for sensitivities); the factors come from the elimination order itself.
 
-use crate::method::{GeneratorMethodOptions, MethodOptions, SgcmOptions};
+use crate::MAX_DIMENSION;
+use crate::method::{
+    Correction, Estimator, GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions,
+    StepChoice,
+};
+use crate::monte_carlo::BLOCKS;
 use crate::space::CellSpace;
 use crate::stationary::rates::{Estimate, RateError, estimate};
 
 /// Bytes a transition takes.
-fn transition_bytes(options: &SgcmOptions) -> f64 {
-    2.0 * 16.0 + 2.0 * options.replicates as f64
+fn transition_bytes(options: &SgcmOptions, dimension: usize) -> f64 {
+    let starts = match options.correction {
+        Correction::Slope => 4.0 * dimension as f64,
+        Correction::None => 0.0,
+    };
+    2.0 * 16.0 + (2.0 + starts) * options.replicates as f64
 }
 
 /// Bytes a cell takes beside its transitions.
-fn cell_bytes(options: &SgcmOptions) -> f64 {
-    8.0 * (8.0 + options.replicates as f64)
+fn cell_bytes(options: &SgcmOptions, dimension: usize) -> f64 {
+    // Moments of the end points by start, 11 numbers an axis, and slopes.
+    let corrected = match options.correction {
+        Correction::Slope => 11.0 * dimension as f64 + 2.0 * MAX_DIMENSION as f64,
+        Correction::None => 0.0,
+    };
+    8.0 * (8.0 + options.replicates as f64 + corrected)
 }
 
 /// Upper bound of the bytes at work at one point: every sample of a cell ends in a cell of its own.
-pub(super) fn estimated_bytes(n_cells: f64, options: &SgcmOptions) -> f64 {
+pub(super) fn estimated_bytes(n_cells: f64, dimension: usize, options: &SgcmOptions) -> f64 {
     let reached = n_cells.min(options.samples as f64);
-    n_cells * (reached * transition_bytes(options) + cell_bytes(options))
+    let transition = transition_bytes(options, dimension);
+    n_cells * (reached * transition + cell_bytes(options, dimension))
 }
 
 /// Lower bound of the bytes at work at one point: by SGCM every cell reaches 2^d cells, d = `dimension`; by the
@@ -36,9 +53,30 @@ pub(super) fn least_bytes(n_cells: f64, dimension: usize, method: &MethodOptions
         MethodOptions::Sgcm(options) => {
             let image = 2_f64.powi(dimension as i32);
             let reached = n_cells.min(options.samples as f64).min(image);
-            n_cells * (reached * transition_bytes(options) + cell_bytes(options))
+            let transition = transition_bytes(options, dimension);
+            n_cells * (reached * transition + cell_bytes(options, dimension))
         }
+        MethodOptions::MonteCarlo(_) => monte_carlo_bytes(n_cells),
     }
+}
+
+/// Bytes at work at one point by Monte Carlo: a count and a replicate's mass for each cell and block.
+pub(super) fn monte_carlo_bytes(n_cells: f64) -> f64 {
+    n_cells * 16.0 * BLOCKS as f64
+}
+
+/// Integrator steps at one point by Monte Carlo, where all that they depend on is given.
+pub(super) fn monte_carlo_steps(options: &MonteCarloOptions) -> Option<f64> {
+    let given = |choice: StepChoice| match choice {
+        StepChoice::Fixed(value) => Some(value),
+        StepChoice::Auto => None,
+    };
+    let length = match options.estimator {
+        Estimator::Ergodic => given(options.length)?,
+        Estimator::Ensemble => 0.0,
+    };
+    let time = given(options.burn_in)? + length;
+    Some(given(options.trajectories)? * time / given(options.time_step)?)
 }
 
 /// Bytes of the sparse matrices of the generator.
@@ -106,14 +144,27 @@ mod tests {
         for n_cells in [4.0, 2500.0, 1e6] {
             let (least, most) = (
                 least_bytes(n_cells, 2, &MethodOptions::Sgcm(options.clone())),
-                estimated_bytes(n_cells, &options),
+                estimated_bytes(n_cells, 2, &options),
             );
             assert!(least <= most);
-            assert!(estimated_bytes(2.0 * n_cells, &options) >= 2.0 * most);
-            assert!(estimated_bytes(n_cells, &more) >= most);
+            assert!(estimated_bytes(2.0 * n_cells, 2, &options) >= 2.0 * most);
+            assert!(estimated_bytes(n_cells, 2, &more) >= most);
         }
         // 10 cells, 10 transitions each at most: 10·(10·48 + 128) bytes with 8 replicates.
-        assert_eq!(estimated_bytes(10.0, &options), 6080.0);
+        let options = SgcmOptions {
+            correction: Correction::None,
+            ..options
+        };
+        assert_eq!(estimated_bytes(10.0, 2, &options), 6080.0);
+        // Slopes: 2·4 bytes more a replicate and transition, 8·(2·11 + 8) a cell.
+        let corrected = SgcmOptions {
+            correction: Correction::Slope,
+            ..options.clone()
+        };
+        assert_eq!(
+            estimated_bytes(10.0, 2, &corrected),
+            6080.0 + 10.0 * (10.0 * 64.0 + 240.0)
+        );
         let method = MethodOptions::Sgcm(options);
         assert_eq!(least_bytes(10.0, 2, &method), 10.0 * (4.0 * 48.0 + 128.0));
     }

@@ -6,7 +6,10 @@
 use crate::continuation::LocateOptions;
 use crate::figure::Format;
 use crate::generator::AdvectiveScheme;
-use crate::method::{GeneratorMethodOptions, MethodOptions, SgcmOptions, StepChoice};
+use crate::method::{
+    Correction, Estimator, GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions,
+    StepChoice,
+};
 use crate::sampling::Integrator;
 use crate::stationary::Solver;
 use crate::system::registry;
@@ -156,7 +159,7 @@ pub(super) static KEYS: &[Key] = &[
     key("cells.<axis>.grade.smallest", Kind::Number(POSITIVE), KeyDefault::Rule("cells of equal width"),
         "Width of the cells at these points; below the width without grading."),
     key("method.kind", Kind::Choice(method_names), KeyDefault::Value(|| quoted(MethodOptions::default().kind())),
-        "How the steady-state density is computed: by the generator of the cell map, solved directly, or by `sgcm`, stochastic generalized cell mapping."),
+        "How the steady-state density is computed: by the generator of the cell map, solved directly, by `sgcm`, stochastic generalized cell mapping, or by `monte-carlo`, counting free trajectories."),
     key("method.scheme", Kind::Choice(scheme_names), KeyDefault::Value(|| quoted(generator().scheme.name())),
         "generator: how advective fluxes are reconstructed. The central schemes are more accurate on fine grids and less robust on coarse ones."),
     key("method.memory_limit", Kind::Number(POSITIVE), KeyDefault::Value(|| number(generator().memory_limit)),
@@ -164,17 +167,29 @@ pub(super) static KEYS: &[Key] = &[
     key("method.map_step", Kind::Step, KeyDefault::Value(|| step(sgcm().map_step)),
         "sgcm: time that one transition of the cell map spans. Longer steps mean less numerical diffusion."),
     key("method.time_step", Kind::Step, KeyDefault::Value(|| step(sgcm().time_step)),
-        "sgcm: step of the trajectory integrator; it must not exceed `map_step`."),
+        "sgcm, monte-carlo: step of the trajectory integrator; by sgcm it must not exceed `map_step`. Its bias is found by halving it, and stated."),
     key("method.samples", Kind::Integer(2, u32::MAX as i128), KeyDefault::Value(|| sgcm().samples.to_string()),
         "sgcm: trajectories started in each cell."),
     key("method.seed", Kind::Integer(0, i64::MAX as i128), KeyDefault::Value(|| sgcm().seed.to_string()),
-        "sgcm: seed of the random streams; the same seed gives the same numbers bit for bit."),
+        "sgcm, monte-carlo: seed of the random streams; the same seed gives the same numbers bit for bit."),
     key("method.integrator", Kind::Choice(integrator_names), KeyDefault::Value(|| quoted(sgcm().integrator.name())),
-        "sgcm: integrator of the trajectories. `euler-maruyama` takes ω²·time_step away from the damping."),
+        "sgcm, monte-carlo: integrator of the trajectories. `euler-maruyama` takes ω²·time_step away from the damping."),
     key("method.replicates", Kind::Integer(2, 256), KeyDefault::Value(|| sgcm().replicates.to_string()),
         "sgcm: groups the samples are split into to estimate the sampling error; at most `samples`."),
+    key("method.correction", Kind::Choice(correction_names), KeyDefault::Value(|| quoted(sgcm().correction.name())),
+        "sgcm: `slope` lets the density vary linearly inside cells, which removes nearly all numerical diffusion; `none` is the method of the paper."),
     key("method.solver", Kind::Choice(solver_names), KeyDefault::Value(|| quoted(sgcm().solver.name())),
         "sgcm: solver of the steady state: multilevel aggregation, or power iteration."),
+    key("method.estimator", Kind::Choice(estimator_names), KeyDefault::Value(|| quoted(monte_carlo().estimator.name())),
+        "monte-carlo: `ergodic` averages long trajectories over time, `ensemble` counts many trajectories, started all over the domain, at one time."),
+    key("method.error", Kind::Number(OPEN_UNIT), KeyDefault::Value(|| number(monte_carlo().error)),
+        "monte-carlo: wanted relative standard error of the variance of every axis; what is `\"auto\"` is chosen for it."),
+    key("method.burn_in", Kind::Step, KeyDefault::Value(|| step(monte_carlo().burn_in)),
+        "monte-carlo: time before states are counted (ensemble: at which they are counted); twelve autocorrelation times by itself."),
+    key("method.length", Kind::Step, KeyDefault::Value(|| step(monte_carlo().length)),
+        "monte-carlo, ergodic: time during which the states of one trajectory are counted; chosen for `error` by itself."),
+    key("method.trajectories", Kind::Step, KeyDefault::Value(|| step(monte_carlo().trajectories)),
+        "monte-carlo: trajectories, rounded up to a multiple of 64; 2048 by themselves, in an ensemble as many as `error` takes."),
     key("method.solver_tolerance", Kind::Number(OPEN_UNIT), KeyDefault::Rule("`1e-8` by the generator, `1e-10` by sgcm"),
         "L1 error of the cell masses at which the solver stops."),
     key("method.escape_limit", Kind::Number(UP_TO_ONE), KeyDefault::Value(|| number(sgcm().escape_limit)),
@@ -212,6 +227,18 @@ fn generator() -> GeneratorMethodOptions {
 
 fn sgcm() -> SgcmOptions {
     SgcmOptions::default()
+}
+
+fn monte_carlo() -> MonteCarloOptions {
+    MonteCarloOptions::default()
+}
+
+fn correction_names() -> Vec<&'static str> {
+    Correction::ALL.map(Correction::name).to_vec()
+}
+
+fn estimator_names() -> Vec<&'static str> {
+    Estimator::ALL.map(Estimator::name).to_vec()
 }
 
 fn automatic() -> Vec<&'static str> {

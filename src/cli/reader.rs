@@ -303,11 +303,6 @@ fn wrong(key: &Key, path: &[&str], node: &Node) -> Diagnostic {
         .at(&node.place, format!("this is {}", node.value.kind()))
         .allowed(key.kind.words());
     match (key.kind, &node.value) {
-        (Kind::Choice(_), Value::Text(text))
-            if key.path == "method.kind" && text == "monte-carlo" =>
-        {
-            diagnostic.remedy(format!("`{text}` is not available in this version"))
-        }
         (Kind::Choice(names) | Kind::Choices(names), Value::Text(text)) => {
             let allowed = key.kind.words();
             diagnostic.nearest(text, names()).allowed(allowed)

@@ -1,7 +1,7 @@
 //! The rows of a sweep: every change of signature with its value, error, bracket and status.
 
 use super::change::{Change, changes};
-use super::grid::{Checked, GridCheck};
+use super::grid::{Checked, GridCheck, SHARE_OF_DISTANCE};
 use super::label::{self, BifurcationStatus, LabelledPoint, PointType};
 use super::root::{Root, root};
 use super::{LocateOptions, Point, persistence, words};
@@ -108,7 +108,7 @@ fn by_indicator(
         }),
     };
     if let Some(GridCheck::Confirmed(value)) = checked {
-        found.error.grid = (value - found.value).abs();
+        found.error.grid = SHARE_OF_DISTANCE * (value - found.value).abs();
         found.value = value;
     }
     let error = found.error.total();

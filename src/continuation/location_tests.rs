@@ -85,6 +85,7 @@ impl<F: Fn(f64, &[f64]) -> f64 + Clone> DensitySource for Exact<F> {
                 edge_mass: Vec::new(),
                 numerical_diffusion: Vec::new(),
                 map_step: None,
+                time_step_bias: None,
                 warnings: Vec::new(),
             },
             moments: Vec::new(),

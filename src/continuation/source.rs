@@ -70,6 +70,9 @@ pub struct SolveReport {
     pub numerical_diffusion: Vec<f64>,
     /// Time one transition spans; `None` for methods without a map step.
     pub map_step: Option<f64>,
+    /// Relative shift of the variances (or of the mass beside a switching surface) by the time step of trajectories, the
+    /// largest that halving the step makes certain; `None` for methods without trajectories.
+    pub time_step_bias: Option<f64>,
     /// Anything the user should know of this point, one sentence each.
     pub warnings: Vec<String>,
 }

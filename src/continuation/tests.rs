@@ -44,6 +44,7 @@ impl DensitySource for Ramp {
             edge_mass: vec![0.0],
             numerical_diffusion: vec![0.0],
             map_step: None,
+            time_step_bias: None,
             warnings: Vec::new(),
         };
         let density = EstimatedDensity {

@@ -157,6 +157,7 @@ mod tests {
                 edge_mass: Vec::new(),
                 numerical_diffusion: Vec::new(),
                 map_step: None,
+                time_step_bias: None,
                 warnings: Vec::new(),
             },
             moments: Vec::new(),

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use super::{GeneratorSource, MethodError, MethodOptions, Setting, SgcmSource, State};
+use super::{
+    GeneratorSource, MethodError, MethodOptions, MonteCarloSource, Setting, SgcmSource, State,
+};
 use crate::continuation::{DensitySource, Solution, SourceError};
 
 /// A source of densities by one of the methods.
@@ -12,6 +14,8 @@ pub enum MethodSource {
     Generator(Box<GeneratorSource>),
     /// Stochastic generalized cell mapping.
     Sgcm(Box<SgcmSource>),
+    /// Free trajectories.
+    MonteCarlo(Box<MonteCarloSource>),
 }
 
 impl MethodSource {
@@ -31,6 +35,9 @@ impl MethodSource {
             MethodOptions::Sgcm(options) => {
                 Self::Sgcm(Box::new(SgcmSource::new(setting, options, cancelled)?))
             }
+            MethodOptions::MonteCarlo(options) => Self::MonteCarlo(Box::new(
+                MonteCarloSource::new(setting, options, cancelled)?,
+            )),
         })
     }
 
@@ -43,6 +50,7 @@ impl MethodSource {
                 source.map_step(),
                 source.time_step()
             ),
+            Self::MonteCarlo(source) => source.describe(),
         }
     }
 }
@@ -54,6 +62,7 @@ impl DensitySource for MethodSource {
         match self {
             Self::Generator(source) => source.solve(value, start),
             Self::Sgcm(source) => source.solve(value, start),
+            Self::MonteCarlo(source) => source.solve(value, start),
         }
     }
 
@@ -61,7 +70,7 @@ impl DensitySource for MethodSource {
         match self {
             Self::Generator(source) => source.finer().map(Box::new).map(Self::Generator),
             // The noise of another grid is another one: it would say nothing of the cells.
-            Self::Sgcm(_) => None,
+            Self::Sgcm(_) | Self::MonteCarlo(_) => None,
         }
     }
 
@@ -69,6 +78,7 @@ impl DensitySource for MethodSource {
         match self {
             Self::Generator(source) => source.state_bytes(state),
             Self::Sgcm(source) => source.state_bytes(state),
+            Self::MonteCarlo(source) => source.state_bytes(state),
         }
     }
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::density::Moments;
 use crate::generator::Resolution;
+use crate::monte_carlo::{BiasedQuantity, StepBias, TOLERATED_BIAS};
 use crate::space::CellSpace;
 use crate::stationary::ClassShare;
 use crate::system::{Model, System};
@@ -183,6 +184,67 @@ impl<'a> Findings<'a> {
             "{} separate steady states, so which one is reached depends on the start: {}",
             classes.len(),
             words.join("; ")
+        ));
+    }
+
+    /// Says so when halving the time step shifts what it should not, beyond the sampling error or a stated share.
+    pub(super) fn time_step(
+        &mut self,
+        time_step: f64,
+        bias: Option<&StepBias>,
+        sampling_error: f64,
+    ) {
+        let Some(bias) = bias.filter(|bias| bias.certain() > sampling_error.min(TOLERATED_BIAS))
+        else {
+            return;
+        };
+        let quantity = match bias.quantity {
+            BiasedQuantity::Variance(axis) => format!("the variance of {}", self.axis(axis)),
+            BiasedQuantity::Energy => "the mean energy".to_owned(),
+            BiasedQuantity::SurfaceShare(axis) => {
+                format!(
+                    "the mass beside the switching surface of {}",
+                    self.axis(axis)
+                )
+            }
+        };
+        self.sentences.push(format!(
+            "the time step {time_step:.4} shifts {quantity} by about {:+.1} % (± {:.1} %; found by halving it on a sample): \
+             use a shorter one, `time_step = \"auto\"`, or `integrator = \"heun\"`",
+            100.0 * bias.relative,
+            100.0 * bias.standard_error
+        ));
+    }
+
+    pub(super) fn outside(&mut self, share: f64) {
+        self.sentences.push(format!(
+            "the trajectories spend {:.1} % of their time outside Ω: the densities are conditioned on being inside; widen the \
+             ranges",
+            100.0 * share
+        ));
+    }
+
+    /// Free trajectories that do not stay: a share of them ran away, or a share of their time is spent outside.
+    pub(super) fn nothing_stays(&mut self, runaways: f64, outside: f64, limit: f64) {
+        self.sentences.push(format!(
+            "no steady state in Ω: {:.0} % of the trajectories ran away, the others spent {:.0} % of their time outside; the \
+             limit is {:.0} %",
+            100.0 * runaways,
+            100.0 * outside,
+            100.0 * limit
+        ));
+    }
+
+    pub(super) fn short_burn_in(&mut self, burn_in: f64, time: f64) {
+        self.sentences.push(format!(
+            "the burn-in of {burn_in:.3} is short against the autocorrelation time of {time:.3}: the start is not forgotten"
+        ));
+    }
+
+    pub(super) fn unresolved_relaxation(&mut self, time: f64) {
+        self.sentences.push(format!(
+            "the autocorrelation time, {time:.1} or more, is too long to be measured: trajectories may not have found all \
+             states, and errors may be too small"
         ));
     }
 

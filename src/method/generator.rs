@@ -155,6 +155,7 @@ impl GeneratorSource {
             edge_mass: Vec::new(),
             numerical_diffusion: Vec::new(),
             map_step: None,
+            time_step_bias: None,
             warnings: Vec::new(),
         };
         let mut findings = Findings::new(self.model, &self.space);

@@ -3,21 +3,28 @@
 mod any;
 mod findings;
 mod generator;
+mod monte_carlo;
 mod options;
 mod range;
 mod relaxation;
 mod setting;
 mod sgcm;
+mod slope_correction;
 mod steps;
 mod structure;
 mod trail;
 
 pub use any::MethodSource;
 pub use generator::GeneratorSource;
-pub use options::{GeneratorMethodOptions, MethodOptions, SgcmOptions, StepChoice};
+pub use monte_carlo::MonteCarloSource;
+pub use options::{
+    Correction, Estimator, GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions,
+    StepChoice,
+};
 pub use range::automatic_ranges;
 pub use setting::{Setting, State};
 pub use sgcm::SgcmSource;
+pub use slope_correction::{Corrected, solve_corrected};
 
 /// Why a method cannot give a solution at all. Failed solves are data, see
 /// [`PointStatus`](crate::continuation::PointStatus).
@@ -29,6 +36,9 @@ pub enum MethodError {
     /// Transitions could not be sampled.
     #[error(transparent)]
     Sampling(#[from] crate::sampling::SamplingError),
+    /// Free trajectories could not be run.
+    #[error(transparent)]
+    MonteCarlo(#[from] crate::monte_carlo::MonteCarloError),
     /// The generator could not be assembled.
     #[error(transparent)]
     Generator(#[from] crate::generator::GeneratorError),

@@ -8,17 +8,19 @@ use rayon::prelude::*;
 
 use super::findings::Findings;
 use super::generator::QUIET_ESCAPE;
+use super::slope_correction::{Corrected, solve_corrected};
 use super::steps::{Steps, choose_steps};
 use super::structure::structure;
 use super::trail::Trail;
-use super::{MethodError, Setting, SgcmOptions, State};
+use super::{Correction, MethodError, Setting, SgcmOptions, State};
+use crate::MAX_DIMENSION;
 use crate::continuation::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
 use crate::density::{EstimatedDensity, Observable, estimate, moments};
 use crate::sampling::{
     SampledTransitions, SamplingError, SamplingOptions, TransitionMatrix, sample_transitions,
 };
 use crate::space::CellSpace;
-use crate::stationary::{Options, Outcome, SteadyState, second_eigenvalue, solve};
+use crate::stationary::{Options, Outcome, SteadyState, second_eigenvalue};
 use crate::system::{Model, ParameterValues, System};
 
 /// Name of the method in tables.
@@ -26,6 +28,10 @@ const METHOD: &str = "sgcm";
 
 /// L1 error to which replicates are solved: far below any sampling error, which is all they are for.
 const REPLICATE_TOLERANCE: f64 = 1e-7;
+
+/// L1 change by a turn of the slope correction at which it ends, and that of replicates.
+const CHANGE: f64 = 1e-6;
+const REPLICATE_CHANGE: f64 = 1e-4;
 
 /// Escape per map step below which mass is said to stay in Ω, and relaxation is not looked at.
 const NO_ESCAPE: f64 = 1e-12;
@@ -92,6 +98,7 @@ impl SgcmSource {
             groups: self.options.replicates,
             seed: self.options.seed,
             integrator: self.options.integrator,
+            keep_starts: self.options.correction == Correction::Slope,
         };
         // The pilot's cells are always among the seeds: a state that the neighbour did not have is then found too.
         let mut seeds = self.steps.cells.clone();
@@ -106,8 +113,17 @@ impl SgcmSource {
     fn replicates(&self, transitions: &SampledTransitions, full: &SteadyState) -> Vec<Vec<f64>> {
         let options = Options::new(self.options.solver, REPLICATE_TOLERANCE);
         let replicate = |group: usize| {
-            let matrix = transitions.matrix_without_group(group);
-            match solve(&matrix, &self.space, Some(&full.mass), &options) {
+            let start = Some(full.mass.as_slice());
+            let change = REPLICATE_CHANGE;
+            let solved = solve_corrected(
+                transitions,
+                &self.space,
+                start,
+                Some(group),
+                &options,
+                change,
+            );
+            match solved.map(|solved| solved.outcome) {
                 Ok(Outcome::Steady(steady)) => Some(steady.mass),
                 _ => None,
             }
@@ -148,6 +164,7 @@ impl SgcmSource {
         system: &dyn System,
         transitions: &SampledTransitions,
         matrix: &TransitionMatrix,
+        slopes: &[[f64; MAX_DIMENSION]],
         steady: SteadyState,
     ) -> Result<Solution<State>, MethodError> {
         let info = &steady.info;
@@ -175,8 +192,14 @@ impl SgcmSource {
             .iter()
             .map(|&c| steady.mass[c])
             .collect();
-        report.numerical_diffusion = transitions.numerical_diffusion(&local_mass);
+        report.numerical_diffusion =
+            transitions.remaining_diffusion(&self.space, &local_mass, slopes);
         findings.numerical_diffusion(&report.numerical_diffusion, &self.steps.noise, &moments);
+        findings.time_step(
+            self.steps.time_step,
+            self.steps.bias.as_ref(),
+            f64::INFINITY,
+        );
         if escaping_share > QUIET_ESCAPE {
             report.status = PointStatus::Escaping;
             findings.escaping(escape_rate, escaping_share);
@@ -212,6 +235,7 @@ impl SgcmSource {
             edge_mass: Vec::new(),
             numerical_diffusion: Vec::new(),
             map_step: Some(self.steps.map_step),
+            time_step_bias: self.steps.bias.map(|bias| bias.relative.abs()),
             warnings: Vec::new(),
         }
     }
@@ -220,10 +244,17 @@ impl SgcmSource {
         let values = self.model.with(&self.values, &self.parameter, value)?;
         let system = self.model.system(&values);
         let transitions = self.sample(system.as_ref(), start)?;
-        let matrix = transitions.matrix();
         let options = Options::new(self.options.solver, self.options.solver_tolerance);
-        match solve(&matrix, &self.space, start, &options)? {
-            Outcome::Steady(steady) => self.solved(system.as_ref(), &transitions, &matrix, steady),
+        let Corrected {
+            outcome,
+            matrix,
+            slopes,
+            ..
+        } = solve_corrected(&transitions, &self.space, start, None, &options, CHANGE)?;
+        match outcome {
+            Outcome::Steady(steady) => {
+                self.solved(system.as_ref(), &transitions, &matrix, &slopes, steady)
+            }
             Outcome::SeveralClasses { classes, .. } => {
                 let mut report = self.report(PointStatus::SeveralClasses, 0, 0.0);
                 let mut findings = Findings::new(self.model, &self.space);

@@ -1,11 +1,14 @@
 //! Steps of a sweep by SGCM: given, or chosen from a pilot at both ends and in the middle of the sweep. One choice
 //! serves the whole sweep, so that the transition matrix varies smoothly with the parameter.
 
+use std::sync::Arc;
+
 use super::findings::closed_ends;
 use super::structure::kinked_surfaces;
 use super::{MethodError, Setting, SgcmOptions, StepChoice};
+use crate::monte_carlo::{StepBias, TOLERATED_BIAS, automatic_step, relaxation, step_bias};
 use crate::sampling::{Pilot, pilot};
-use crate::system::SwitchingSurface;
+use crate::system::{SwitchingSurface, System};
 
 /// Steps, and what else the pilots showed.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,6 +17,8 @@ pub(super) struct Steps {
     pub(super) map_step: f64,
     /// Step of the integrator.
     pub(super) time_step: f64,
+    /// Its bias, the most certain at both ends and in the middle of the sweep.
+    pub(super) bias: Option<StepBias>,
     /// Cells to grow from: visited by a pilot somewhere along the sweep.
     pub(super) cells: Vec<usize>,
     /// Largest mean noise intensity b²/2 along the sweep, one value an axis.
@@ -33,12 +38,7 @@ pub(super) fn choose_steps(
         .iter()
         .map(|system| pilot(system.as_ref(), setting.space, options.seed))
         .collect();
-    let time_step = match options.time_step {
-        StepChoice::Fixed(step) => step,
-        StepChoice::Auto => smallest(&pilots, |pilot| {
-            pilot.automatic_time_step(options.integrator)
-        }),
-    };
+    let (time_step, bias) = time_step(setting, options, &systems);
     let map_step = match options.map_step {
         StepChoice::Fixed(step) => step,
         StepChoice::Auto => -smallest(&pilots, |pilot| -pilot.automatic_map_step(time_step)),
@@ -55,11 +55,45 @@ pub(super) fn choose_steps(
     Ok(Steps {
         map_step,
         time_step,
+        bias,
         cells,
         noise,
         closed_ends: closed_ends(&systems, setting.space),
         kinked: kinked_surfaces(&systems, setting.space),
     })
+}
+
+/// The time step, given or chosen, and its bias, by halving it on a sample of settled trajectories.
+fn time_step(
+    setting: &Setting<'_>,
+    options: &SgcmOptions,
+    systems: &[Arc<dyn System>],
+) -> (f64, Option<StepBias>) {
+    let (space, seed, integrator) = (setting.space, options.seed, options.integrator);
+    let relaxed: Vec<_> = systems
+        .iter()
+        .map(|system| relaxation(system.as_ref(), space, seed))
+        .collect();
+    let ends = || systems.iter().zip(&relaxed);
+    let step = options.time_step.or(|| {
+        let steps = ends().map(|(system, relaxed)| {
+            automatic_step(
+                system.as_ref(),
+                space,
+                relaxed,
+                integrator,
+                TOLERATED_BIAS,
+                seed,
+            )
+            .0
+        });
+        steps.fold(f64::INFINITY, f64::min)
+    });
+    let biases = ends().filter_map(|(system, relaxed)| {
+        step_bias(system.as_ref(), space, relaxed, (integrator, step), seed)
+    });
+    let bias = biases.reduce(StepBias::worse);
+    (step, bias)
 }
 
 fn smallest(pilots: &[Pilot], value: impl Fn(&Pilot) -> f64) -> f64 {

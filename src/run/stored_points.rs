@@ -134,6 +134,11 @@ impl Row<'_> {
                 edge_mass: self.optional("edge_mass")?.into_iter().collect(),
                 numerical_diffusion,
                 map_step: self.optional("map_step")?,
+                // Nor this.
+                time_step_bias: match self.table.find("time_step_bias") {
+                    Some(_) => self.optional("time_step_bias")?,
+                    None => None,
+                },
                 warnings: (!warnings.is_empty())
                     .then(|| warnings.to_owned())
                     .into_iter()

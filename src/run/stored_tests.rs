@@ -89,6 +89,7 @@ fn point(value: f64, replicates: Option<usize>, kinks: usize) -> Point {
             edge_mass: vec![1e-5 / 3.0],
             numerical_diffusion: vec![0.1 / 3.0, 0.2 / 3.0],
             map_step: Some(6.25 / 3.0),
+            time_step_bias: Some(1e-3 / 7.0),
             warnings: vec!["one; or two, \"quoted\"".into()],
         },
         moments: vec![

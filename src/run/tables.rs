@@ -51,7 +51,7 @@ fn points_header(naming: &Naming<'_>, observables: &[Observable]) -> Vec<String>
     }
     header.extend(["distance", "seconds", "map_step", "factorisations"].map(str::to_owned));
     header.extend(axes().map(|axis| format!("numerical_diffusion_{axis}")));
-    header.extend(["solver_error", "warnings"].map(str::to_owned));
+    header.extend(["solver_error", "time_step_bias", "warnings"].map(str::to_owned));
     header
 }
 
@@ -91,6 +91,7 @@ fn points_row(naming: &Naming<'_>, observables: &[Observable], point: &Point) ->
         row.push(optional(report.numerical_diffusion.get(axis).copied()));
     }
     row.push(format_number(report.solver_error));
+    row.push(optional(report.time_step_bias));
     row.push(report.warnings.join("; "));
     row
 }

@@ -70,6 +70,7 @@ fn point(value: f64, solved: bool) -> Point {
             edge_mass: vec![0.0, 1e-5],
             numerical_diffusion: vec![1e-4, 2e-4],
             map_step: Some(6.25),
+            time_step_bias: None,
             warnings: vec!["first, with a comma".into(), "second".into()],
         },
         moments: vec![
@@ -116,7 +117,7 @@ fn points_have_the_columns_of_the_contract_and_no_nan() {
     assert_eq!(
         lines.next().unwrap(),
         "f_c,status,method,iterations,residual,escape_rate,negative_mass,edge_mass,mean_x,sd_x,mean_y,sd_y,\
-         peaks_x,peaks_xy,craters_xy,distance,seconds,map_step,factorisations,numerical_diffusion_x,numerical_diffusion_y,solver_error,warnings"
+         peaks_x,peaks_xy,craters_xy,distance,seconds,map_step,factorisations,numerical_diffusion_x,numerical_diffusion_y,solver_error,time_step_bias,warnings"
     );
     let first = lines.next().unwrap();
     assert!(first.starts_with("-0.02,no-steady-state,sgcm,7,1e-12,,0,1e-5,,,,,,,,"));

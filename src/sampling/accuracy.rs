@@ -55,6 +55,7 @@ fn variance_and_diffusion(map_step: f64, samples: usize) -> (f64, f64) {
         groups: 2,
         seed: 3,
         integrator: Integrator::StochasticHeun,
+        keep_starts: false,
     };
     let sampled =
         sample_transitions(&OrnsteinUhlenbeck, &space, &[20], &options, &|| false).unwrap();

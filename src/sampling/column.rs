@@ -21,9 +21,26 @@ pub(super) struct Column {
     pub(super) destinations: Vec<(u32, u32)>,
     /// Group of every sample, ordered by end cell and group.
     pub(super) groups: Vec<u8>,
+    /// Σ over the samples of an end cell and group of where they started in their cell, a value an axis, from -½ to ½ of its
+    /// width; in the order of `groups`. Empty unless starts are kept.
+    pub(super) starts: Vec<f32>,
+    /// Moments of the end points of the samples that did not end in the sink; empty unless starts are kept.
+    pub(super) ends: Vec<EndMoments>,
     /// Mean square displacement by spreading a sample evenly over its end cell, an axis; samples in the sink
     /// are left out.
     pub(super) spreading: [f64; MAX_DIMENSION],
+}
+
+/// Sums over samples of one axis of their end points, plain and times where they started: what is needed to know moments
+/// one map step after any density that is linear in the cell.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct EndMoments {
+    /// Σ x and Σ x².
+    pub(super) plain: [f64; 2],
+    /// Σ x u_b and Σ x² u_b, u_b where the sample started along axis b.
+    pub(super) by_start: [[f64; 2]; MAX_DIMENSION],
+    /// Σ 1.
+    pub(super) count: f64,
 }
 
 impl Column {
@@ -80,7 +97,11 @@ impl<'a> ColumnSampler<'a> {
     /// Runs the trajectories of one cell. Depends on the cell's number and the options alone.
     pub(super) fn column(&self, cell: usize) -> Column {
         let dimension = self.space.dimension();
-        let mut ends: Vec<(u32, u8)> = Vec::with_capacity(self.options.samples);
+        let mut ends: Vec<End> = Vec::with_capacity(self.options.samples);
+        let keeps = self.options.keep_starts;
+        let mut starts: Vec<[f32; MAX_DIMENSION]> = Vec::new();
+        let mut moments = vec![EndMoments::default(); if keeps { dimension } else { 0 }];
+        let mut offsets = [[0.0; LANES]; MAX_DIMENSION];
         let mut spreading = [0.0; MAX_DIMENSION];
         let mut states = [[0.0; LANES]; MAX_DIMENSION];
         let mut group = 0;
@@ -94,16 +115,25 @@ impl<'a> ColumnSampler<'a> {
                 }
                 *of_lane = group;
             }
-            self.place_starts(cell, first, &groups, &mut states[..dimension]);
+            self.place_starts(cell, first, &groups, &mut states[..dimension], &mut offsets);
             let mut stream = NormalStream::new(self.key(cell, block as u64));
             self.stepper
                 .advance(&mut states[..dimension], 0, self.steps, &mut stream);
             for (lane, &of_lane) in groups.iter().enumerate().take(count) {
                 let end = self.find_end(lane, &states[..dimension], &mut spreading);
-                ends.push((end, of_lane as u8));
+                ends.push((end, of_lane as u8, (first + lane) as u32));
+                if keeps {
+                    let start = offsets.map(|axis: Lanes| axis[lane] as f32);
+                    starts.push(start);
+                    if end != SINK {
+                        add_moments(&mut moments, &states[..dimension], lane, &start);
+                    }
+                }
             }
         }
-        compress(ends, spreading)
+        let mut column = compress(ends, spreading, &starts, dimension);
+        column.ends = moments;
+        column
     }
 
     fn key(&self, cell: usize, block: u64) -> StreamKey {
@@ -115,7 +145,14 @@ impl<'a> ColumnSampler<'a> {
     }
 
     /// Starts of a batch. Lanes past the last sample start in group 0 and are not counted.
-    fn place_starts(&self, cell: usize, first: usize, groups: &[usize], states: &mut [Lanes]) {
+    fn place_starts(
+        &self,
+        cell: usize,
+        first: usize,
+        groups: &[usize],
+        states: &mut [Lanes],
+        offsets: &mut [Lanes; MAX_DIMENSION],
+    ) {
         let (mut group, mut key) = (usize::MAX, 0);
         for (lane, &of_lane) in groups.iter().enumerate() {
             if of_lane != group {
@@ -128,6 +165,7 @@ impl<'a> ColumnSampler<'a> {
                 let position = self.space.position(cell, axis);
                 let inside = self.lattice.coordinate(key, sample, axis);
                 lanes[lane] = edges.edges()[position] + edges.width(position) * inside;
+                offsets[axis][lane] = inside - 0.5;
             }
         }
     }
@@ -152,24 +190,62 @@ impl<'a> ColumnSampler<'a> {
     }
 }
 
-fn compress(mut ends: Vec<(u32, u8)>, mut spreading: [f64; MAX_DIMENSION]) -> Column {
+/// End cell, group and number of a sample.
+type End = (u32, u8, u32);
+
+fn add_moments(
+    moments: &mut [EndMoments],
+    states: &[Lanes],
+    lane: usize,
+    start: &[f32; MAX_DIMENSION],
+) {
+    for (moments, lanes) in moments.iter_mut().zip(states) {
+        let x = lanes[lane];
+        moments.plain[0] += x;
+        moments.plain[1] += x * x;
+        for (sums, &start) in moments.by_start.iter_mut().zip(start) {
+            sums[0] += x * f64::from(start);
+            sums[1] += x * x * f64::from(start);
+        }
+        moments.count += 1.0;
+    }
+}
+
+fn compress(
+    mut ends: Vec<End>,
+    mut spreading: [f64; MAX_DIMENSION],
+    starts: &[[f32; MAX_DIMENSION]],
+    dimension: usize,
+) -> Column {
     ends.sort_unstable();
     let mut destinations: Vec<(u32, u32)> = Vec::new();
-    for (index, &(cell, _)) in ends.iter().enumerate() {
+    for (index, &(cell, ..)) in ends.iter().enumerate() {
         let end = index as u32 + 1;
         match destinations.last_mut() {
             Some(last) if last.0 == cell => last.1 = end,
             _ => destinations.push((cell, end)),
         }
     }
-    let inside = ends.partition_point(|&(cell, _)| cell != SINK);
+    let inside = ends.partition_point(|&(cell, ..)| cell != SINK);
     for sum in &mut spreading {
         *sum /= inside.max(1) as f64;
     }
     destinations.shrink_to_fit();
+    let mut sums: Vec<f32> = Vec::new();
+    if !starts.is_empty() {
+        for run in ends.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+            let of_run = run.iter().map(|end| &starts[end.2 as usize]);
+            sums.extend(
+                (0..dimension).map(|axis| of_run.clone().map(|start| start[axis]).sum::<f32>()),
+            );
+        }
+        sums.shrink_to_fit();
+    }
     Column {
         destinations,
-        groups: ends.into_iter().map(|(_, group)| group).collect(),
+        groups: ends.into_iter().map(|(_, group, _)| group).collect(),
+        starts: sums,
+        ends: Vec::new(),
         spreading,
     }
 }

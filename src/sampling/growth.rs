@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::column::{Column, ColumnSampler, SINK};
+use super::column::{Column, ColumnSampler, EndMoments, SINK};
 use super::{Integrator, SampledTransitions, SamplingError};
 use crate::space::CellSpace;
 use crate::system::System;
@@ -22,6 +22,9 @@ pub struct SamplingOptions {
     pub seed: u64,
     /// Integrator of the trajectories.
     pub integrator: Integrator,
+    /// Whether to keep where in its cell the samples of each transition started, for
+    /// [`SampledTransitions::corrected_matrix`].
+    pub keep_starts: bool,
 }
 
 impl SamplingOptions {
@@ -115,12 +118,20 @@ fn unknown_of(cells: impl Iterator<Item = usize>, known: &mut [bool]) -> Vec<usi
 
 /// Upper bound in bytes of what sampled transitions and one matrix made of them hold, if every cell of `n_cells`
 /// is reached and every sample ends in a different one. Usually ten times less is used.
-pub fn estimated_bytes(n_cells: usize, samples: usize, groups: usize, dimension: usize) -> u64 {
-    let entries = samples.min(n_cells.saturating_add(1)) as u64;
-    let samples = samples as u64;
-    // Groups are stored a byte a sample, whatever their number; the mean squares have a fixed length.
-    let _ = (groups, dimension);
-    let column = size_of::<(usize, Column)>() as u64 + 8 * entries + samples;
+pub fn estimated_bytes(n_cells: usize, options: &SamplingOptions, dimension: usize) -> u64 {
+    let samples = options.samples;
+    let entries = samples.min(n_cells.saturating_add(1));
+    // Starts are summed over the samples of each end cell and group; moments of end points go with them.
+    let starts = match options.keep_starts {
+        true => {
+            let sums = samples.min(entries.saturating_mul(options.groups));
+            4 * dimension * sums + size_of::<EndMoments>() * dimension
+        }
+        false => 0,
+    } as u64;
+    let (entries, samples) = (entries as u64, samples as u64);
+    // Groups are stored a byte a sample, whatever their number.
+    let column = size_of::<(usize, Column)>() as u64 + 8 * entries + samples + starts;
     // A row entry is an index and a value; row ends are kept twice while rows are filled.
     let matrix = 16 * entries + 8 * 4;
     // The list of cells, their positions, the marks.

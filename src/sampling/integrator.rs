@@ -36,7 +36,7 @@ impl Integrator {
 const ROWS: usize = 16;
 
 /// A system with a fixed step.
-pub(super) struct Stepper<'a> {
+pub(crate) struct Stepper<'a> {
     system: &'a dyn System,
     integrator: Integrator,
     time_step: f64,
@@ -52,7 +52,7 @@ struct Channel {
 
 impl<'a> Stepper<'a> {
     /// Steps of `time_step`.
-    pub(super) fn new(system: &'a dyn System, integrator: Integrator, time_step: f64) -> Self {
+    pub(crate) fn new(system: &'a dyn System, integrator: Integrator, time_step: f64) -> Self {
         let channel = |(channel, &axis): (usize, &usize)| Channel {
             axis,
             increment: system
@@ -73,7 +73,7 @@ impl<'a> Stepper<'a> {
     }
 
     /// Advances a batch, `states[axis][lane]`, by `steps` steps from the step of number `first`.
-    pub(super) fn advance(
+    pub(crate) fn advance(
         &self,
         states: &mut [Lanes],
         first: usize,
@@ -102,7 +102,13 @@ impl<'a> Stepper<'a> {
     }
 
     /// Advances by `steps` steps with the given standard normals, one row a step and Wiener process.
-    fn advance_with(&self, states: &mut [Lanes], first: usize, steps: usize, normals: &[Lanes]) {
+    pub(crate) fn advance_with(
+        &self,
+        states: &mut [Lanes],
+        first: usize,
+        steps: usize,
+        normals: &[Lanes],
+    ) {
         match self.integrator {
             Integrator::StochasticHeun => heun(self, states, first, steps, normals),
             Integrator::EulerMaruyama => euler_maruyama(self, states, first, steps, normals),

@@ -13,12 +13,16 @@ mod jacobian;
 mod normal;
 mod pilot;
 mod random;
+mod slopes;
 mod starts;
 mod transition;
 
 pub use growth::{SamplingOptions, estimated_bytes, sample_transitions};
 pub use integrator::Integrator;
+pub(crate) use integrator::Stepper;
 pub use pilot::{Pilot, pilot};
+pub(crate) use random::{NormalStream, StreamKey, mix, unit};
+pub use slopes::cell_slopes;
 pub use transition::{SampledTransitions, TransitionMatrix};
 
 /// Why transitions could not be sampled.

@@ -58,7 +58,14 @@ impl Pilot {
     /// A time step for an integrator: dt ≤ 0.1/ω, and where the oscillation is damped by γ > 0, the damping that
     /// the integrator takes away, ω⁴dt³/4 for Heun and ω²dt for Euler-Maruyama, at most 1 % of γ.
     pub fn automatic_time_step(&self, integrator: Integrator) -> f64 {
-        time_step(self.frequency, self.frequency, self.damping, integrator)
+        self.time_step_within(integrator, DAMPING_SHARE)
+    }
+
+    /// The same with another share of the damping than 1 %: about the relative error of the variances that the step
+    /// leaves.
+    pub fn time_step_within(&self, integrator: Integrator, share: f64) -> f64 {
+        let (frequency, damping) = (self.frequency, self.damping);
+        time_step(frequency, frequency, damping, share, integrator)
     }
 
     /// The smallest map step Δt for which the numerical diffusion h²/(12Δt) stays below 5 % of the noise, each
@@ -87,11 +94,11 @@ impl Pilot {
     }
 }
 
-/// The largest step with dt ≤ 0.1/`fastest` and an anti-damping at `typical` below 1 % of `damping`.
-fn time_step(fastest: f64, typical: f64, damping: f64, integrator: Integrator) -> f64 {
+/// The largest step with dt ≤ 0.1/`fastest` and an anti-damping at `typical` below a share of `damping`.
+fn time_step(fastest: f64, typical: f64, damping: f64, share: f64, integrator: Integrator) -> f64 {
     let mut step = ANGLE / fastest.max(f64::MIN_POSITIVE);
     if damping > 0.0 && typical > 0.0 {
-        let spare = DAMPING_SHARE * damping;
+        let spare = share * damping;
         step = step.min(match integrator {
             Integrator::StochasticHeun => (4.0 * spare / typical.powi(4)).cbrt(),
             Integrator::EulerMaruyama => spare / typical.powi(2),
@@ -124,7 +131,13 @@ pub fn pilot(system: &dyn System, space: &CellSpace, seed: u64) -> Pilot {
         .collect();
     let (fastest, damping) = summary(&scouted, 1.0);
     let (typical, _) = summary(&scouted, 0.5);
-    let step = time_step(fastest, typical, damping, Integrator::StochasticHeun);
+    let step = time_step(
+        fastest,
+        typical,
+        damping,
+        DAMPING_SHARE,
+        Integrator::StochasticHeun,
+    );
     // Energy settles in a few times 1/γ; without damping to go by, in some tens of periods.
     let periods = 300.0 / typical.max(f64::MIN_POSITIVE);
     let settling = if damping > 0.0 {

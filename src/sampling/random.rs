@@ -15,18 +15,18 @@ type Words = [u64; LANES];
 
 /// What a stream is keyed by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct StreamKey {
+pub(crate) struct StreamKey {
     /// The run's seed.
-    pub(super) seed: u64,
+    pub(crate) seed: u64,
     /// Number of the cell in the cell space.
-    pub(super) cell: u64,
+    pub(crate) cell: u64,
     /// Number of the batch within the cell.
-    pub(super) block: u64,
+    pub(crate) block: u64,
 }
 
 impl StreamKey {
     /// A word that mixes all of the key.
-    pub(super) fn word(self) -> u64 {
+    pub(crate) fn word(self) -> u64 {
         let seed = mix(self.seed.wrapping_add(WEYL));
         let cell = mix(seed ^ self.cell.wrapping_mul(WEYL).wrapping_add(1));
         mix(cell ^ self.block.wrapping_mul(WEYL).wrapping_add(2))
@@ -38,25 +38,25 @@ const WEYL: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// The output function of splitmix64, a bijection of 64-bit words that passes for random.
 #[inline(always)]
-pub(super) fn mix(word: u64) -> u64 {
+pub(crate) fn mix(word: u64) -> u64 {
     let word = (word ^ (word >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let word = (word ^ (word >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     word ^ (word >> 31)
 }
 
 /// A number in [0, 1) with 53 random bits from a word.
-pub(super) fn unit(word: u64) -> f64 {
+pub(crate) fn unit(word: u64) -> f64 {
     (word >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
 }
 
 /// Independent standard normals in every lane.
-pub(super) struct NormalStream {
+pub(crate) struct NormalStream {
     state: [Words; 4],
 }
 
 impl NormalStream {
     /// The stream of a key.
-    pub(super) fn new(key: StreamKey) -> Self {
+    pub(crate) fn new(key: StreamKey) -> Self {
         let mut state = [[0; LANES]; 4];
         seed_lanes(key.word(), &mut state);
         Self { state }
@@ -64,7 +64,7 @@ impl NormalStream {
 
     /// Fills rows of standard normals. Numbers come in pairs of rows: after an odd number of rows the second
     /// half of the last pair is dropped.
-    pub(super) fn fill(&mut self, normals: &mut [Lanes]) {
+    pub(crate) fn fill(&mut self, normals: &mut [Lanes]) {
         fill(&mut self.state, normals);
     }
 }

@@ -3,6 +3,8 @@
 use sprs::CsMat;
 
 use super::column::{Column, SINK};
+use crate::MAX_DIMENSION;
+use crate::space::CellSpace;
 
 /// Transition probabilities between `n` cells of a cell space over one map step.
 ///
@@ -85,12 +87,42 @@ impl SampledTransitions {
 
     /// The transition matrix of all samples.
     pub fn matrix(&self) -> TransitionMatrix {
-        self.assemble(None)
+        self.assemble(None, None)
     }
 
     /// The transition matrix of all samples but those of one group (of none, if there is no such group).
     pub fn matrix_without_group(&self, group: usize) -> TransitionMatrix {
-        self.assemble(Some(group).filter(|&group| group < self.groups && self.groups > 1))
+        self.assemble(self.existing(Some(group)), None)
+    }
+
+    /// The transition matrix for a density that is linear in each cell, p_j/V (1 + Σ_a s_a u_a) with u_a from -½ to ½
+    /// across the cell: every sample counts by the density at its start. `slopes` holds the s_a of every sampled cell, as
+    /// [`cell_slopes`](super::cell_slopes) makes them (Σ |s_a| < 2, so that no weight is negative). `left_out` names a group that is
+    /// not counted. Without kept starts this is the plain matrix.
+    pub fn corrected_matrix(
+        &self,
+        slopes: &[[f64; MAX_DIMENSION]],
+        left_out: Option<usize>,
+    ) -> TransitionMatrix {
+        self.assemble(self.existing(left_out), Some(slopes))
+    }
+
+    fn existing(&self, group: Option<usize>) -> Option<usize> {
+        group.filter(|&group| group < self.groups && self.groups > 1)
+    }
+
+    /// Forgets where samples started, as if they had not been kept.
+    #[cfg(test)]
+    pub(crate) fn forget_starts(&mut self) {
+        for column in &mut self.columns {
+            column.starts.clear();
+            column.ends.clear();
+        }
+    }
+
+    /// Whether it is known where in their cells the samples started.
+    pub fn keeps_starts(&self) -> bool {
+        self.columns.iter().any(|column| !column.starts.is_empty())
     }
 
     /// Diffusion that the cells add, one value an axis, in units of the axis squared per unit time:
@@ -109,21 +141,96 @@ impl SampledTransitions {
         (0..self.dimension).map(diffusion).collect()
     }
 
-    /// Counts of one column, `left_out` not counted: destination and number of samples.
-    fn counts(column: &Column, left_out: Option<usize>) -> impl Iterator<Item = (u32, usize)> {
-        let entries = column.entries().map(move |(cell, groups)| {
-            let counts = |group: &&u8| left_out != Some(usize::from(**group));
-            (cell, groups.iter().filter(counts).count())
-        });
-        entries.filter(|&(_, count)| count > 0)
+    /// Diffusion that remains with densities linear in the cells, an axis, as [`Self::numerical_diffusion`]: by how much the
+    /// variance of the reconstructed density exceeds that of the end points which it is made of, over 2Δt. May be slightly
+    /// negative. `mass` and `slopes` are of the sampled cells; without kept starts the diffusion of flat cells.
+    pub fn remaining_diffusion(
+        &self,
+        space: &CellSpace,
+        mass: &[f64],
+        slopes: &[[f64; MAX_DIMENSION]],
+    ) -> Vec<f64> {
+        if !self.keeps_starts() {
+            return self.numerical_diffusion(mass);
+        }
+        let diffusion = |axis: usize| {
+            // Σ 1, Σ x, Σ x² of end points, and of the reconstructed density.
+            let (mut ends, mut cells) = ([0.0; 3], [0.0; 3]);
+            for (j, column) in self.columns.iter().enumerate() {
+                let (moments, slope) = (&column.ends[axis], &slopes[j]);
+                let samples = column.groups.len() as f64;
+                let weighted = |power: usize| -> f64 {
+                    let by_start = moments.by_start.iter().zip(slope);
+                    moments.plain[power] + by_start.map(|(sums, s)| sums[power] * s).sum::<f64>()
+                };
+                ends[0] += mass[j] * moments.count / samples;
+                ends[1] += mass[j] * weighted(0) / samples;
+                ends[2] += mass[j] * weighted(1) / samples;
+                let edges = &space.axes()[axis];
+                let position = space.position(self.cells[j], axis);
+                let (centre, width) = (edges.centre(position), edges.width(position));
+                // ∫ u (1 + s u) du = s/12 and ∫ u² (1 + s u) du = 1/12 over the cell.
+                let off = width * slope[axis] / 12.0;
+                cells[0] += mass[j];
+                cells[1] += mass[j] * (centre + off);
+                cells[2] += mass[j] * (centre * (centre + 2.0 * off) + width * width / 12.0);
+            }
+            let variance = |sums: [f64; 3]| sums[2] / sums[0] - (sums[1] / sums[0]).powi(2);
+            (variance(cells) - variance(ends)) / (2.0 * self.map_step)
+        };
+        (0..self.dimension).map(diffusion).collect()
+    }
+
+    /// Weights of one column, `left_out` not counted: destination and Σ over its samples of the density at their starts,
+    /// relative to the cell's mean.
+    fn weights(
+        &self,
+        column: &Column,
+        left_out: Option<usize>,
+        slope: Option<&[f64; MAX_DIMENSION]>,
+        weights: &mut Vec<(u32, f64)>,
+    ) {
+        weights.clear();
+        let dimension = self.dimension;
+        let slope = slope.filter(|_| !column.starts.is_empty());
+        let mut run = 0;
+        for (cell, groups) in column.entries() {
+            let (mut count, mut tilt) = (0, 0.0);
+            let Some(slope) = slope else {
+                let counts = |group: &&u8| left_out != Some(usize::from(**group));
+                count = groups.iter().filter(counts).count();
+                if count > 0 {
+                    weights.push((cell, count as f64));
+                }
+                continue;
+            };
+            for stretch in groups.chunk_by(|a, b| a == b) {
+                if left_out != Some(usize::from(stretch[0])) {
+                    count += stretch.len();
+                    let starts = &column.starts[run * dimension..(run + 1) * dimension];
+                    let terms = starts.iter().zip(slope);
+                    tilt += terms.map(|(&start, s)| f64::from(start) * s).sum::<f64>();
+                }
+                run += 1;
+            }
+            if count > 0 {
+                weights.push((cell, count as f64 + tilt));
+            }
+        }
     }
 
     /// Counts into rows in two passes: the size of each row, then its entries in order of their columns.
-    fn assemble(&self, left_out: Option<usize>) -> TransitionMatrix {
+    fn assemble(
+        &self,
+        left_out: Option<usize>,
+        slopes: Option<&[[f64; MAX_DIMENSION]]>,
+    ) -> TransitionMatrix {
         let n = self.cells.len();
         let mut row_ends = vec![0_usize; n + 1];
+        let mut weights = Vec::new();
         for column in &self.columns {
-            for (cell, _) in Self::counts(column, left_out) {
+            self.weights(column, left_out, None, &mut weights);
+            for &(cell, _) in &weights {
                 if cell != SINK {
                     row_ends[cell as usize + 1] += 1;
                 }
@@ -136,9 +243,11 @@ impl SampledTransitions {
         let (mut indices, mut values) = (vec![0_usize; row_ends[n]], vec![0.0; row_ends[n]]);
         let mut escape = vec![0.0; n];
         for (j, column) in self.columns.iter().enumerate() {
-            let total: usize = Self::counts(column, left_out).map(|entry| entry.1).sum();
-            for (cell, count) in Self::counts(column, left_out) {
-                let probability = count as f64 / total as f64;
+            let slope = slopes.and_then(|slopes| slopes.get(j));
+            self.weights(column, left_out, slope, &mut weights);
+            let total: f64 = weights.iter().map(|entry| entry.1).sum();
+            for &(cell, weight) in &weights {
+                let probability = weight / total;
                 if cell == SINK {
                     escape[j] = probability;
                 } else {

@@ -55,6 +55,7 @@ fn point(value: f64, densities: Vec<EstimatedDensity>, detections: Vec<Detection
             edge_mass: Vec::new(),
             numerical_diffusion: Vec::new(),
             map_step: None,
+            time_step_bias: None,
             warnings: Vec::new(),
         },
         moments: Vec::new(),

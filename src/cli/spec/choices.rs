@@ -7,7 +7,10 @@ use crate::continuation::{LocateOptions, evenly_spaced};
 use crate::density::Observable;
 use crate::figure::Format;
 use crate::generator::AdvectiveScheme;
-use crate::method::{GeneratorMethodOptions, MethodOptions, SgcmOptions, StepChoice};
+use crate::method::{
+    Correction, Estimator, GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions,
+    StepChoice,
+};
 use crate::sampling::Integrator;
 use crate::stationary::Solver;
 use crate::system::Model;
@@ -20,13 +23,16 @@ use super::swept::Swept;
 pub(super) fn read_method(reader: &mut Reader) -> MethodOptions {
     let generator = read_generator(reader);
     let sgcm = read_sgcm(reader);
+    let monte_carlo = read_monte_carlo(reader);
     let kind = reader.text(&["method", "kind"]).map(|name| name.value);
     match kind.as_deref() {
         Some("sgcm") => MethodOptions::Sgcm(sgcm),
+        Some("monte-carlo") => MethodOptions::MonteCarlo(monte_carlo),
         Some("generator") => MethodOptions::Generator(generator),
         _ => match MethodOptions::default() {
             MethodOptions::Generator(_) => MethodOptions::Generator(generator),
             MethodOptions::Sgcm(_) => MethodOptions::Sgcm(sgcm),
+            MethodOptions::MonteCarlo(_) => MethodOptions::MonteCarlo(monte_carlo),
         },
     }
 }
@@ -50,13 +56,14 @@ fn read_generator(reader: &Reader) -> GeneratorMethodOptions {
 fn read_sgcm(reader: &mut Reader) -> SgcmOptions {
     let default = SgcmOptions::default();
     let name = |reader: &Reader, key| reader.text(&["method", key]).map(|name| name.value);
-    let integrator = name(reader, "integrator").and_then(|name| {
-        Integrator::ALL
+    let integrator = read_integrator(reader);
+    let solver = name(reader, "solver")
+        .and_then(|name| Solver::ALL.into_iter().find(|known| known.name() == name));
+    let correction = name(reader, "correction").and_then(|name| {
+        Correction::ALL
             .into_iter()
             .find(|known| known.name() == name)
     });
-    let solver = name(reader, "solver")
-        .and_then(|name| Solver::ALL.into_iter().find(|known| known.name() == name));
     let number = |key| reader.number(&["method", key]).map(|number| number.value);
     let options = SgcmOptions {
         map_step: read_step(reader, "map_step").unwrap_or(default.map_step),
@@ -65,12 +72,42 @@ fn read_sgcm(reader: &mut Reader) -> SgcmOptions {
         seed: integer(reader, "seed").unwrap_or(default.seed),
         integrator: integrator.unwrap_or(default.integrator),
         replicates: integer(reader, "replicates").unwrap_or(default.replicates),
+        correction: correction.unwrap_or(default.correction),
         solver: solver.unwrap_or(default.solver),
         solver_tolerance: number("solver_tolerance").unwrap_or(default.solver_tolerance),
         escape_limit: number("escape_limit").unwrap_or(default.escape_limit),
     };
     check_sgcm(reader, &options);
     options
+}
+
+fn read_integrator(reader: &Reader) -> Option<Integrator> {
+    let name = reader.text(&["method", "integrator"])?.value;
+    Integrator::ALL
+        .into_iter()
+        .find(|known| known.name() == name)
+}
+
+fn read_monte_carlo(reader: &Reader) -> MonteCarloOptions {
+    let default = MonteCarloOptions::default();
+    let estimator = reader.text(&["method", "estimator"]).and_then(|name| {
+        Estimator::ALL
+            .into_iter()
+            .find(|known| known.name() == name.value)
+    });
+    let number = |key| reader.number(&["method", key]).map(|number| number.value);
+    let step = |key, default| read_step(reader, key).unwrap_or(default);
+    MonteCarloOptions {
+        estimator: estimator.unwrap_or(default.estimator),
+        time_step: step("time_step", default.time_step),
+        burn_in: step("burn_in", default.burn_in),
+        length: step("length", default.length),
+        error: number("error").unwrap_or(default.error),
+        trajectories: step("trajectories", default.trajectories),
+        seed: integer(reader, "seed").unwrap_or(default.seed),
+        integrator: read_integrator(reader).unwrap_or(default.integrator),
+        escape_limit: number("escape_limit").unwrap_or(default.escape_limit),
+    }
 }
 
 fn integer<T: TryFrom<i128>>(reader: &Reader, key: &str) -> Option<T> {

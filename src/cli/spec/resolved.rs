@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use crate::cli::keys::{SWITCH, number, quoted, step};
 use crate::density::Observable;
-use crate::method::{GeneratorMethodOptions, MethodOptions, SgcmOptions};
+use crate::method::{GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions};
 
 use super::{AxisCells, SweepSpec};
 
@@ -46,6 +46,7 @@ impl SweepSpec {
         match &self.method {
             MethodOptions::Generator(method) => write_generator(text, method)?,
             MethodOptions::Sgcm(method) => write_sgcm(text, method)?,
+            MethodOptions::MonteCarlo(method) => write_monte_carlo(text, method)?,
         }
         let (marginals, joint) = self.observables_toml();
         writeln!(
@@ -103,8 +104,21 @@ fn write_sgcm(text: &mut String, method: &SgcmOptions) -> std::fmt::Result {
     writeln!(text, "samples = {}\nseed = {}", method.samples, method.seed)?;
     writeln!(text, "integrator = {}", quoted(method.integrator.name()))?;
     writeln!(text, "replicates = {}", method.replicates)?;
+    writeln!(text, "correction = {}", quoted(method.correction.name()))?;
     writeln!(text, "solver = {}", quoted(method.solver.name()))?;
     write_shared(text, method.solver_tolerance, method.escape_limit)
+}
+
+fn write_monte_carlo(text: &mut String, method: &MonteCarloOptions) -> std::fmt::Result {
+    writeln!(text, "estimator = {}", quoted(method.estimator.name()))?;
+    writeln!(text, "time_step = {}", step(method.time_step))?;
+    writeln!(text, "burn_in = {}", step(method.burn_in))?;
+    writeln!(text, "length = {}", step(method.length))?;
+    writeln!(text, "error = {}", number(method.error))?;
+    writeln!(text, "trajectories = {}", step(method.trajectories))?;
+    writeln!(text, "seed = {}", method.seed)?;
+    writeln!(text, "integrator = {}", quoted(method.integrator.name()))?;
+    writeln!(text, "escape_limit = {}", number(method.escape_limit))
 }
 
 fn write_shared(text: &mut String, tolerance: f64, escape_limit: f64) -> std::fmt::Result {

@@ -19,6 +19,7 @@ fn options() -> SamplingOptions {
         groups: 8,
         seed: 1,
         integrator: Integrator::StochasticHeun,
+        keep_starts: false,
     }
 }
 
@@ -286,7 +287,7 @@ fn the_time_step_divides_the_map_step_and_memory_is_bounded() {
     let (system, space) = (coulomb(0.0), square(3.0, 20));
     let matrix = sample(&*system, &space, &[210], &options()).matrix();
     let held = 16 * matrix.matrix.nnz() + 240 * matrix.cells.len();
-    let bound = estimated_bytes(400, 240, 8, 2);
+    let bound = estimated_bytes(400, &options(), 2);
     assert!(
         held as u64 <= bound && bound < 400 * 240 * 40,
         "{held} {bound}"

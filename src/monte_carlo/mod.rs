@@ -1,0 +1,64 @@
+//! Free trajectories as a reference: densities by counting visits, without a cell map and without a generator.
+//!
+//! [`relaxation()`] measures how long a system remembers; [`ergodic()`] averages a fixed number of long trajectories over time,
+//! [`ensemble()`] counts many at one time; [`step_bias`] finds what a time step does to the density.
+
+mod autocorrelation;
+mod batch;
+mod ensemble;
+mod ergodic;
+mod estimate;
+mod halving;
+mod lookup;
+mod relaxation;
+#[cfg(test)]
+mod tests;
+
+pub use ensemble::{EnsembleRun, ensemble};
+pub use ergodic::{ErgodicRun, ergodic};
+pub use estimate::{BLOCKS, Estimate};
+pub use halving::{BiasedQuantity, StepBias, TOLERATED_BIAS, automatic_step, step_bias};
+pub use relaxation::{Relaxation, relaxation};
+
+use crate::space::CellSpace;
+use crate::system::System;
+
+/// Why a run of trajectories could not be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum MonteCarloError {
+    /// A time that is not a positive number.
+    #[error("the {name} is {value}; it must be a finite number greater than zero")]
+    Time {
+        /// Which time.
+        name: &'static str,
+        /// The value that was given.
+        value: f64,
+    },
+    /// No step between looks.
+    #[error("looks at a trajectory must be at least one step apart")]
+    Stride,
+    /// A start that does not have a value for each axis.
+    #[error("a state to start from does not have one value an axis")]
+    Start,
+    /// The system and the cell space differ in dimension.
+    #[error("the system has {system} axes, the cell space {space}")]
+    Dimension {
+        /// Axes of the system.
+        system: usize,
+        /// Axes of the cell space.
+        space: usize,
+    },
+    /// The caller asked to stop.
+    #[error("the run was cancelled")]
+    Cancelled,
+}
+
+impl MonteCarloError {
+    fn dimensions(system: &dyn System, space: &CellSpace) -> Result<(), Self> {
+        let (system, space) = (system.dimension(), space.dimension());
+        match system == space {
+            true => Ok(()),
+            false => Err(Self::Dimension { system, space }),
+        }
+    }
+}

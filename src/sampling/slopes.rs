@@ -1,0 +1,93 @@
+//! Slopes of a density inside its cells, from the masses of neighbouring cells.
+
+use crate::MAX_DIMENSION;
+use crate::space::CellSpace;
+
+/// Largest Σ |s_a|: the density at the lowest corner of a cell stays at 5 % of the mean or above.
+const STEEPEST: f64 = 1.9;
+
+/// Relative slopes of the density in some cells: inside cell j it is p_j/V (1 + Σ_a s_a u_a), u_a from -½ to ½ across the cell.
+///
+/// Slopes are differences over both neighbours, which errs by O(h²); at an end of the range over the one that is there. Where
+/// the density would fall below zero in a corner the slopes are shortened together. `mass` has one value a cell of the space.
+/// An empty cell is flat.
+pub fn cell_slopes(space: &CellSpace, cells: &[usize], mass: &[f64]) -> Vec<[f64; MAX_DIMENSION]> {
+    let dimension = space.dimension();
+    let mut strides = vec![1; dimension];
+    for axis in (1..dimension).rev() {
+        strides[axis - 1] = strides[axis] * space.axes()[axis].count();
+    }
+    let of_cell = |&cell: &usize| {
+        let mut slopes = [0.0; MAX_DIMENSION];
+        if mass[cell] > 0.0 {
+            for (axis, &stride) in strides.iter().enumerate() {
+                slopes[axis] = slope(space, cell, axis, stride, mass);
+            }
+        }
+        let steepness: f64 = slopes.iter().map(|slope| slope.abs()).sum();
+        if steepness > STEEPEST {
+            slopes
+                .iter_mut()
+                .for_each(|slope| *slope *= STEEPEST / steepness);
+        }
+        slopes
+    };
+    cells.iter().map(of_cell).collect()
+}
+
+/// Relative slope along one axis.
+fn slope(space: &CellSpace, cell: usize, axis: usize, stride: usize, mass: &[f64]) -> f64 {
+    let edges = &space.axes()[axis];
+    let position = space.position(cell, axis);
+    let below = position.saturating_sub(1);
+    let above = (position + 1).min(edges.count() - 1);
+    // Cells of one line share their extent along the other axes.
+    let density = |at: usize| mass[cell + at * stride - position * stride] / edges.width(at);
+    let difference = density(above) - density(below);
+    let distance = edges.centre(above) - edges.centre(below);
+    edges.width(position) * difference / distance / density(position)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::{Axis, Grading};
+
+    #[test]
+    fn a_linear_density_has_its_slopes_on_any_cells() {
+        let grading = Grading {
+            at: vec![0.3],
+            smallest: 0.02,
+        };
+        let x = Axis::graded(0.0, 1.0, 20, &grading).unwrap();
+        let y = Axis::uniform(-1.0, 1.0, 10).unwrap();
+        let space = CellSpace::new(vec![x, y]).unwrap();
+        // Cell means of a linear density are its values at the centres.
+        let density = |at: &[f64]| 3.0 + at[0] - 0.5 * at[1];
+        let mass: Vec<f64> = (0..space.n_cells())
+            .map(|cell| density(&space.centre(cell)) * space.volume(cell))
+            .collect();
+        let cells: Vec<usize> = (0..space.n_cells()).collect();
+        for (&cell, slopes) in cells.iter().zip(cell_slopes(&space, &cells, &mass)) {
+            let middle = density(&space.centre(cell));
+            let width = |axis: usize| space.axes()[axis].width(space.position(cell, axis));
+            assert!((slopes[0] - width(0) / middle).abs() < 1e-12);
+            assert!((slopes[1] + 0.5 * width(1) / middle).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn no_corner_is_negative_and_empty_cells_are_flat() {
+        let axis = Axis::uniform(0.0, 1.0, 4).unwrap();
+        let space = CellSpace::new(vec![axis.clone(), axis]).unwrap();
+        let mut mass = vec![1.0; 16];
+        (mass[5], mass[6], mass[9]) = (1e-6, 1e3, 0.0);
+        let cells: Vec<usize> = (0..16).collect();
+        let slopes = cell_slopes(&space, &cells, &mass);
+        for slopes in &slopes {
+            let lowest = 1.0 - 0.5 * slopes.iter().map(|s| s.abs()).sum::<f64>();
+            assert!(lowest >= 0.05 - 1e-12, "{slopes:?}");
+        }
+        assert_eq!(slopes[9], [0.0; MAX_DIMENSION]);
+    }
+}
