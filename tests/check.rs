@@ -94,7 +94,10 @@ fn faces_off_the_switching_surface_and_long_sweeps_are_noted() {
     );
     assert!(text.contains("2000 points is a long sweep"), "{text}");
     assert!(!text.contains("x = 0 lies inside"), "{text}");
-    let text = check(&file, &["--set", "cells.x.count=61"]);
+    let text = check(
+        &file,
+        &["--set", "cells.x={ from = -5.5, to = 5.5, count = 61 }"],
+    );
     assert!(
         text.contains("the centre of symmetry x = 0 lies inside a cell"),
         "{text}"

@@ -103,6 +103,7 @@ fn assert_located(result: &SweepResult, observable: Observable, truth: f64, larg
         (row.value - truth).abs() <= row.error,
         "{row:?} but {truth}"
     );
+    println!("{} ± {}", row.value, row.error);
     assert!(row.error <= largest, "{row:?}");
 }
 
@@ -138,6 +139,7 @@ fn sgcm(samples: usize, map_step: f64, seed: u64) -> MethodOptions {
         samples,
         seed,
         map_step: StepChoice::Fixed(map_step),
+        replicates: 16,
         ..SgcmOptions::default()
     })
 }
@@ -160,7 +162,7 @@ fn a_million_samples_locate_exact_families_within_a_hundredth_of_the_range() {
     // 100 cells × 10⁴ samples; 50² cells × 400.
     let result = bistable(11, (-1.0, 1.0)).run(&sgcm(10_000, 5.0, 1));
     assert_located(&result, x, 0.0, 0.02);
-    let result = rayleigh(50, 9, (-0.1, 0.1)).run(&sgcm(400, 30.0, 1));
+    let result = rayleigh(50, 5, (-0.1, 0.1)).run(&sgcm(400, 80.0, 1));
     assert_located(&result, Observable::Joint(0, 1), 0.0, 0.002);
 }
 

@@ -16,6 +16,7 @@ const SMALL: &[&str] = &[
     "locate.tolerance=1",
     "cells.x={ from = -5.5, to = 5.5, count = 30 }",
     "cells.y={ from = -5.5, to = 5.5, count = 30 }",
+    "locate.largest_distance=0.99",
 ];
 
 fn pbif(command: &str, sweep: &str, overrides: &[&str], options: &[&str]) -> Output {

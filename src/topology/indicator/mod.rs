@@ -111,7 +111,7 @@ impl Indicator {
             _ => Vec::new(),
         };
         let gap = |values: &[f64]| function(values) - rougher(values);
-        let noise = 2.0 * variants.sampling_error(gap);
+        let noise = variants.sampling_error(gap);
         let rough = (gap(values).abs() - noise).max(0.0);
         let scheme = variants.second_scheme();
         let scheme = scheme.map_or(0.0, |values| (function(values) - value).abs());

@@ -14,15 +14,17 @@ use super::window::face_at;
 use crate::density::EstimatedDensity;
 
 /// Share of the largest value of a profile down to which the stretch goes.
-const LOWEST: f64 = 0.3;
+const LOWEST: f64 = 0.02;
 /// And the share of the value at the centre, where that is low itself.
-const LOWEST_OF_CENTRE: f64 = 0.5;
+const LOWEST_OF_CENTRE: f64 = 0.2;
 /// Least cells on either side of the centre.
 const LEAST: usize = 4;
 /// Degree of the first fit, and the higher one.
 const DEGREE: [i32; 2] = [6, 8];
 /// The same along a kink.
 const DEGREE_AT_KINK: [i32; 2] = [4, 5];
+/// Cells below this share of the largest value do not take part.
+const EMPTY: f64 = 0.01;
 /// Values below this share of the largest are raised to it before the logarithm.
 const CLIP: f64 = 1e-4;
 /// Cells of the other axis (one over this share of it on either side) over which a profile is averaged.
@@ -167,11 +169,21 @@ impl Window {
 
     /// Weights for the second derivatives that a model wants.
     fn fit(self, estimated: &EstimatedDensity, model: &Model) -> Option<Smooth> {
+        // log p of a histogram has the variance 1/(n p V): cells with little mass count less, nearly empty ones nothing.
+        let largest = estimated.density.maximum();
+        let precision: Vec<f64> = (self.cells.iter())
+            .map(|&cell| estimated.density.values[cell] / largest)
+            .map(|share| if share < EMPTY { 0.0 } else { share })
+            .collect();
         let weights = |terms: &[Powers]| -> Option<Vec<Vec<f64>>> {
             let design = DMatrix::from_fn(self.cells.len(), terms.len(), |row, column| {
                 term(terms[column], &self.offsets[row], model.kinked)
             });
-            let normal = (design.transpose() * &design).cholesky()?;
+            let mut weighted = design.clone();
+            for (mut row, weight) in weighted.row_iter_mut().zip(&precision) {
+                row *= *weight;
+            }
+            let normal = (design.transpose() * &weighted).cholesky()?;
             let row = |&powers: &Powers| {
                 let place = terms.iter().position(|&one| one == powers)?;
                 let second = self.units.get(1).copied().unwrap_or(1.0);
@@ -180,7 +192,7 @@ impl Window {
                 let factor = if powers == [1, 1] { 1.0 } else { 2.0 };
                 let mut one = DVector::zeros(terms.len());
                 one[place] = factor / unit;
-                Some((&design * normal.solve(&one)).iter().copied().collect())
+                Some((&weighted * normal.solve(&one)).iter().copied().collect())
             };
             model.wanted.iter().map(row).collect()
         };
