@@ -1,6 +1,6 @@
 //! The detector by persistence: components of the superlevel and sublevel sets, judged and refined.
 
-use super::indicator::{at_centre, corrected, shoulder};
+use super::indicator::{at_centre, corrected, put_right, shoulder};
 use super::persistence::{Component, Grid, components};
 use super::refine::refine;
 use super::ridge;
@@ -171,8 +171,10 @@ impl Detector for PersistenceDetector {
                 .collect::<Vec<_>>()
         };
         let (peaks, craters) = (places(FeatureKind::Peak), places(FeatureKind::Crater));
+        let signature = corrected(density, &indicators, self.doubt(), &peaks, &craters);
+        put_right(density, &indicators, self.doubt(), &mut features);
         Detection {
-            signature: corrected(density, &indicators, self.doubt(), &peaks, &craters),
+            signature,
             indicators,
             features,
         }

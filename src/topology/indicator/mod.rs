@@ -14,6 +14,7 @@
 //! All are relative to the density at the place, so that its scale does not matter.
 
 mod centre;
+mod pair;
 mod shoulder;
 mod smooth;
 #[cfg(test)]
@@ -21,6 +22,7 @@ mod tests;
 mod window;
 
 pub(super) use centre::{at_centre, corrected};
+pub(super) use pair::put_right;
 pub(super) use shoulder::shoulder;
 
 use statrs::distribution::{ContinuousCDF, StudentsT};

@@ -4,7 +4,7 @@ use super::*;
 use crate::density::{Density, Kink, Observable, Structure};
 use crate::space::Axis;
 use crate::topology::{
-    DetectOptions, Detector, PersistenceDetector, Signature,
+    DetectOptions, Detector, FeatureKind, PersistenceDetector, Signature, Verdict,
     analytic_tests::{joint, marginal},
 };
 
@@ -240,4 +240,31 @@ fn along_a_kink_a_sampled_density_is_fitted_on_both_sides_at_once() {
     }];
     let found = at_centre(&sampled(&estimated, 1e-3));
     assert!((found[1].value - 0.6).abs() < 0.02, "{found:?}");
+}
+
+#[test]
+fn features_about_the_centre_say_what_the_signature_says() {
+    let detector = PersistenceDetector::new(DetectOptions::default(), 61);
+    for a in [-0.05, -1e-3, 1e-4, 1e-3, 1e-2, 0.05, 0.2] {
+        let detection = detector.detect(&bistable(a, 100));
+        let of = |kind: FeatureKind| -> Vec<f64> {
+            let features = detection.features.iter();
+            let present =
+                features.filter(|one| one.kind == kind && one.verdict == Verdict::Present);
+            present.map(|one| one.position[0]).collect()
+        };
+        let (peaks, valleys) = (of(FeatureKind::Peak), of(FeatureKind::Valley));
+        assert_eq!(peaks.len(), detection.signature.peaks, "{a}: {peaks:?}");
+        assert_eq!(valleys.len() + 1, peaks.len());
+        // Peaks of exp(4(a x²/2 - x⁴/4)) stand at ±√a; a quarter of a cell, 0.04 wide, is what a parabola is off by.
+        let place = a.max(0.0).sqrt();
+        assert!(
+            peaks.iter().all(|peak| (peak.abs() - place).abs() < 0.01),
+            "{a}: {peaks:?}"
+        );
+        assert!(
+            valleys.iter().all(|valley| valley.abs() < 1e-3),
+            "{a}: {valleys:?}"
+        );
+    }
 }
