@@ -77,6 +77,7 @@ fn write(
     draw(spec, result, &folder.figures())?;
     manifest.seconds.figures = clock.elapsed().as_secs_f64();
     manifest.points = result.points.len();
+    manifest.largest_distance = result.largest_distance();
     // A run that was killed has written none.
     manifest.warnings = match run.ending() {
         Ending::Running => summary::warnings(naming.parameter, &result.points),

@@ -111,6 +111,7 @@ impl<'a> Run<'a> {
         draw(self.spec, &result, &self.folder.figures())?;
         self.manifest.seconds.figures = clock.elapsed().as_secs_f64();
         self.manifest.points = result.points.len();
+        self.manifest.largest_distance = result.largest_distance();
         self.manifest.warnings = summary::warnings(self.naming.parameter, &result.points);
         self.manifest.ending = if result.interrupted {
             Ending::Interrupted

@@ -88,3 +88,11 @@ pub struct SweepResult {
     /// Whether the sweep was interrupted before it was complete.
     pub interrupted: bool,
 }
+
+impl SweepResult {
+    /// Largest Hellinger distance between neighbouring densities that was accepted; `None` with fewer than two.
+    pub fn largest_distance(&self) -> Option<f64> {
+        let distances = self.points.iter().filter_map(|point| point.distance);
+        distances.reduce(f64::max)
+    }
+}

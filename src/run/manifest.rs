@@ -51,6 +51,8 @@ pub struct Manifest {
     pub ending: Ending,
     /// Points solved, those that refine brackets included.
     pub points: usize,
+    /// Largest Hellinger distance between neighbouring densities; `None` with fewer than two.
+    pub largest_distance: Option<f64>,
     /// Seconds a phase.
     pub seconds: PhaseSeconds,
     /// Warnings, one sentence each, with the parameter values they concern.
@@ -74,6 +76,7 @@ impl Manifest {
             threads,
             ending: Ending::Running,
             points: 0,
+            largest_distance: None,
             seconds: PhaseSeconds::default(),
             warnings: Vec::new(),
         })

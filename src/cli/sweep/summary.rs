@@ -24,6 +24,9 @@ pub(in crate::cli) fn text(naming: &Naming<'_>, result: &SweepResult, folder: &P
         text += "no steady state in Ω at any value: nothing to draw\n";
     }
     text += &ends(naming, result);
+    if let Some(distance) = result.largest_distance() {
+        text += &format!("largest Hellinger distance between neighbours: {distance:.2}\n");
+    }
     if result.interrupted {
         text += "interrupted: the tables hold the points that were done\n";
     }
@@ -41,7 +44,7 @@ fn table(naming: &Naming<'_>, rows: &[&LabelledPoint]) -> String {
         naming.parameter,
         "bracket",
         "observable",
-        "before → after",
+        "before → after, what happens",
         "status",
     ]);
     for row in rows {
@@ -49,7 +52,7 @@ fn table(naming: &Naming<'_>, rows: &[&LabelledPoint]) -> String {
         let (lower, _) = format_with_error(row.lower, row.error);
         let (upper, _) = format_with_error(row.upper, row.error);
         let change = match (row.before, row.after) {
-            (Some(before), Some(after)) => format!("{before} → {after}"),
+            (Some(before), Some(after)) => format!("{before} → {after}, {}", row.change),
             _ => String::new(),
         };
         let observable = row

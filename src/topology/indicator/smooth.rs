@@ -3,15 +3,15 @@
 //! Noise of a second derivative falls with the 3/2 to 5/2 power of the stretch it is taken over, so the stretch should be as
 //! wide as a polynomial of low degree follows the density. Densities of stochastic oscillators are exponentials of smooth
 //! potentials: log p is followed much farther than p, and its curvature at a centre of symmetry is p''/p. By the same
-//! symmetry only terms of even degree are needed; along a kink, terms in the distance from it are added. A fit
-//! of a higher degree shows what is missed, as far as noise lets it.
+//! symmetry only terms of even degree are needed; along a kink, terms in the distance from it are added. Where the fit leaves
+//! more than noise, the stretch is narrowed; a fit of a higher degree shows what is missed, as far as noise lets it.
 
 use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 
 use super::window::face_at;
-use crate::density::EstimatedDensity;
+use crate::density::{EstimatedDensity, Variants};
 
 /// Share of the largest value of a profile down to which the stretch goes.
 const LOWEST: f64 = 0.02;
@@ -23,6 +23,10 @@ const LEAST: usize = 4;
 const DEGREE: [i32; 2] = [6, 8];
 /// The same along a kink.
 const DEGREE_AT_KINK: [i32; 2] = [4, 5];
+/// Shares of the stretch that are tried, until the fit leaves no more than noise.
+const SHARES: [f64; 6] = [1.0, 0.75, 0.56, 0.42, 0.32, 0.24];
+/// Squares of residuals over what noise makes of them, up to which a fit is accepted.
+const LARGEST_MISFIT: f64 = 1.7;
 /// Cells below this share of the largest value do not take part.
 const EMPTY: f64 = 0.01;
 /// Values below this share of the largest are raised to it before the logarithm.
@@ -77,24 +81,22 @@ pub(super) struct Smooth {
 impl Smooth {
     /// For a marginal about its centre.
     pub(super) fn marginal(estimated: &EstimatedDensity, at: f64) -> Option<Self> {
-        let window = Window::new(estimated, &[at], &[0])?;
         let model = Model {
             terms: [marginal_terms(DEGREE[0]), marginal_terms(DEGREE[1])],
             wanted: vec![[2, 0]],
             kinked: false,
         };
-        window.fit(estimated, &model)
+        widest_that_fits(estimated, &[at], &[0], &model)
     }
 
     /// For a joint density about its centre.
     pub(super) fn joint(estimated: &EstimatedDensity, centre: &[f64]) -> Option<Self> {
-        let window = Window::new(estimated, centre, &[0, 1])?;
         let model = Model {
             terms: [joint_terms(DEGREE[0]), joint_terms(DEGREE[1])],
             wanted: vec![[2, 0], [1, 1], [0, 2]],
             kinked: false,
         };
-        window.fit(estimated, &model)
+        widest_that_fits(estimated, centre, &[0, 1], &model)
     }
 
     /// For a joint density about its centre, along a kink that stands on axis `across`.
@@ -103,7 +105,6 @@ impl Smooth {
         centre: &[f64],
         across: usize,
     ) -> Option<Self> {
-        let window = Window::new(estimated, centre, &[1 - across, across])?;
         let model = Model {
             terms: [
                 kinked_terms(DEGREE_AT_KINK[0]),
@@ -112,7 +113,7 @@ impl Smooth {
             wanted: vec![[2, 0]],
             kinked: true,
         };
-        window.fit(estimated, &model)
+        widest_that_fits(estimated, centre, &[1 - across, across], &model)
     }
 
     /// The second derivatives for given values of the density, by the first fit or by that of a higher degree (1).
@@ -125,6 +126,29 @@ impl Smooth {
     }
 }
 
+/// The fit on the widest window on which the first model leaves no more than noise.
+fn widest_that_fits(
+    estimated: &EstimatedDensity,
+    centre: &[f64],
+    order: &[usize],
+    model: &Model,
+) -> Option<Smooth> {
+    let mut found = None;
+    for share in SHARES {
+        let Some(window) = Window::new(estimated, centre, order, share) else {
+            break;
+        };
+        let Some((smooth, misfit)) = window.fit(estimated, model) else {
+            break;
+        };
+        found = Some(smooth);
+        if misfit <= LARGEST_MISFIT {
+            break;
+        }
+    }
+    found
+}
+
 /// Cells about the centre: offsets in units of the half-widths, in the order of axes asked for.
 struct Window {
     cells: Vec<usize>,
@@ -133,10 +157,15 @@ struct Window {
 }
 
 impl Window {
-    fn new(estimated: &EstimatedDensity, centre: &[f64], order: &[usize]) -> Option<Self> {
+    fn new(
+        estimated: &EstimatedDensity,
+        centre: &[f64],
+        order: &[usize],
+        share: f64,
+    ) -> Option<Self> {
         let axes = &estimated.density.axes;
         let stretches: Option<Vec<Range<usize>>> = (0..axes.len())
-            .map(|k| stretch(estimated, centre, k))
+            .map(|k| stretch(estimated, centre, k, share))
             .collect();
         let stretches = stretches?;
         let unit = |k: usize| {
@@ -167,45 +196,97 @@ impl Window {
         })
     }
 
-    /// Weights for the second derivatives that a model wants.
-    fn fit(self, estimated: &EstimatedDensity, model: &Model) -> Option<Smooth> {
+    /// Weights for the second derivatives that a model wants, and the misfit of its first terms.
+    fn fit(self, estimated: &EstimatedDensity, model: &Model) -> Option<(Smooth, f64)> {
         // log p of a histogram has the variance 1/(n p V): cells with little mass count less, nearly empty ones nothing.
         let largest = estimated.density.maximum();
         let precision: Vec<f64> = (self.cells.iter())
             .map(|&cell| estimated.density.values[cell] / largest)
             .map(|share| if share < EMPTY { 0.0 } else { share })
             .collect();
-        let weights = |terms: &[Powers]| -> Option<Vec<Vec<f64>>> {
-            let design = DMatrix::from_fn(self.cells.len(), terms.len(), |row, column| {
-                term(terms[column], &self.offsets[row], model.kinked)
-            });
-            let mut weighted = design.clone();
-            for (mut row, weight) in weighted.row_iter_mut().zip(&precision) {
-                row *= *weight;
-            }
-            let normal = (design.transpose() * &weighted).cholesky()?;
-            let row = |&powers: &Powers| {
-                let place = terms.iter().position(|&one| one == powers)?;
-                let second = self.units.get(1).copied().unwrap_or(1.0);
-                let unit = self.units[0].powi(powers[0]) * second.powi(powers[1]);
-                // ∂² of a square is twice its coefficient, of a product the coefficient.
-                let factor = if powers == [1, 1] { 1.0 } else { 2.0 };
-                let mut one = DVector::zeros(terms.len());
-                one[place] = factor / unit;
-                Some((&weighted * normal.solve(&one)).iter().copied().collect())
-            };
-            model.wanted.iter().map(row).collect()
-        };
-        Some(Smooth {
-            floor: CLIP * estimated.density.maximum(),
-            weights: [weights(&model.terms[0])?, weights(&model.terms[1])?],
+        let first = self.solve(&model.terms[0], &precision, model)?;
+        let second = self.solve(&model.terms[1], &precision, model)?;
+        let misfit = self.misfit(estimated, &first, &precision);
+        let smooth = Smooth {
+            floor: CLIP * largest,
+            weights: [first.weights, second.weights],
             cells: self.cells,
+        };
+        Some((smooth, misfit))
+    }
+
+    fn solve(&self, terms: &[Powers], precision: &[f64], model: &Model) -> Option<Solved> {
+        let design = DMatrix::from_fn(self.cells.len(), terms.len(), |row, column| {
+            term(terms[column], &self.offsets[row], model.kinked)
+        });
+        let mut weighted = design.clone();
+        for (mut row, weight) in weighted.row_iter_mut().zip(precision) {
+            row *= *weight;
+        }
+        let normal = (design.transpose() * &weighted).cholesky()?;
+        let row = |&powers: &Powers| {
+            let place = terms.iter().position(|&one| one == powers)?;
+            let second = self.units.get(1).copied().unwrap_or(1.0);
+            let unit = self.units[0].powi(powers[0]) * second.powi(powers[1]);
+            // ∂² of a square is twice its coefficient, of a product the coefficient.
+            let factor = if powers == [1, 1] { 1.0 } else { 2.0 };
+            let mut one = DVector::zeros(terms.len());
+            one[place] = factor / unit;
+            Some((&weighted * normal.solve(&one)).iter().copied().collect())
+        };
+        let weights: Option<Vec<Vec<f64>>> = model.wanted.iter().map(row).collect();
+        Some(Solved {
+            weights: weights?,
+            coefficients: normal.solve(&weighted.transpose()),
+            design,
         })
+    }
+
+    /// Weighted sum of the squares of the residuals over that of their jackknife variances: about one where the model
+    /// follows the density to within noise.
+    fn misfit(&self, estimated: &EstimatedDensity, solved: &Solved, precision: &[f64]) -> f64 {
+        let Variants::Jackknife(replicates) = &estimated.variants else {
+            return 0.0;
+        };
+        let floor = CLIP * estimated.density.maximum();
+        let residual = |values: &[f64]| {
+            let logarithms = self.cells.iter().map(|&cell| values[cell].max(floor).ln());
+            let logarithms = DVector::from_iterator(self.cells.len(), logarithms);
+            let fitted = &solved.design * (&solved.coefficients * &logarithms);
+            logarithms - fitted
+        };
+        let all: Vec<DVector<f64>> = replicates.iter().map(|one| residual(one)).collect();
+        let groups = all.len() as f64;
+        let own = residual(&estimated.density.values);
+        let (mut found, mut expected) = (0.0, 0.0);
+        for (cell, weight) in precision.iter().enumerate() {
+            let mean = all.iter().map(|one| one[cell]).sum::<f64>() / groups;
+            let squares: f64 = all.iter().map(|one| (one[cell] - mean).powi(2)).sum();
+            found += weight * own[cell] * own[cell];
+            expected += weight * (groups - 1.0) / groups * squares;
+        }
+        if expected > 0.0 {
+            found / expected
+        } else {
+            0.0
+        }
     }
 }
 
+/// One fit: weights for what is wanted, and the matrices that give all coefficients and the fitted values.
+struct Solved {
+    weights: Vec<Vec<f64>>,
+    coefficients: DMatrix<f64>,
+    design: DMatrix<f64>,
+}
+
 /// Cells of axis `k` about the centre, equally many on both sides, on which the density is not small.
-fn stretch(estimated: &EstimatedDensity, centre: &[f64], k: usize) -> Option<Range<usize>> {
+fn stretch(
+    estimated: &EstimatedDensity,
+    centre: &[f64],
+    k: usize,
+    share: f64,
+) -> Option<Range<usize>> {
     let axis = &estimated.density.axes[k];
     let profile = profile(estimated, centre, k);
     let (below, above) = match face_at(axis, centre[k]) {
@@ -221,7 +302,8 @@ fn stretch(estimated: &EstimatedDensity, centre: &[f64], k: usize) -> Option<Ran
     let middle = (1..=LEAST).map(pair).sum::<f64>() / LEAST as f64;
     let lowest = (LOWEST * largest).min(LOWEST_OF_CENTRE * middle);
     let reach = (1..=most).take_while(|&reach| pair(reach) >= lowest).last();
-    let reach = reach.unwrap_or(0).max(LEAST);
+    let reach = (reach.unwrap_or(0) as f64 * share).round() as usize;
+    let reach = reach.max(LEAST).min(most);
     Some(below - reach..above + reach)
 }
 
