@@ -37,14 +37,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         &source,
         &detector,
         &plan,
-        &LocateOptions {
-            tolerance: 1e-3,
-            ..LocateOptions::default()
-        },
+        &LocateOptions::default(),
         &mut (),
     )?;
     for row in &found.labels {
-        println!("{}: a from {:.3} to {:.3}", row.label, row.lower, row.upper);
+        println!("{}: a = {:.2} ± {:.2}", row.label, row.value, row.error);
     }
     Ok(())
 }

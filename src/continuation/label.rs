@@ -33,7 +33,7 @@ pub enum BifurcationStatus {
     Located,
     /// The data cannot tell where in the bracket it lies.
     Unresolved,
-    /// A finer grid does not show it there, or, where only persistence tells, its feature is nowhere more than a few
+    /// A finer grid does not show it there, or there is none to check a cell map that adds diffusion of its own, or, where only persistence tells, its feature is nowhere more than a few
     /// cells from another: it may be an effect of the cells.
     Unconfirmed,
 }

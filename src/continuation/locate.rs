@@ -118,10 +118,14 @@ fn by_indicator(
     row.lower = bracket.0.min(found.value - error);
     row.upper = bracket.1.max(found.value + error);
     row.parts = Some(found.error);
+    // The diffusion that the cells of a sampled map add moves values; without a finer grid nobody knows by how much.
+    let diffused = !points[crossing.left].report.numerical_diffusion.is_empty();
+    let depends_on_cells = crossing.kind() != IndicatorKind::KinkSlope;
     row.status = Some(match checked {
         Some(GridCheck::Unconfirmed) => BifurcationStatus::Unconfirmed,
-        _ if narrow && error <= options.tolerance => BifurcationStatus::Located,
-        _ => BifurcationStatus::Unresolved,
+        _ if !narrow || error > options.tolerance => BifurcationStatus::Unresolved,
+        None if diffused && depends_on_cells => BifurcationStatus::Unconfirmed,
+        _ => BifurcationStatus::Located,
     });
     row
 }
