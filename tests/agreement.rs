@@ -27,6 +27,7 @@ struct Example {
     values: ParameterValues,
     parameter: String,
     space: CellSpace,
+    scheme: AdvectiveScheme,
     /// The paper's values.
     at: Vec<f64>,
 }
@@ -54,11 +55,14 @@ impl Example {
         let values = model.values(&given).unwrap();
         let axes = model.axes.iter();
         let space = CellSpace::new(axes.map(|a| axis(&file["cells"][a.name])).collect()).unwrap();
+        let scheme = file["method"]["scheme"].as_str().unwrap();
+        let named = |one: &AdvectiveScheme| one.name() == scheme;
         Self {
             model,
             values,
             parameter,
             space,
+            scheme: AdvectiveScheme::ALL.into_iter().find(named).unwrap(),
             at,
         }
     }
@@ -254,7 +258,7 @@ fn independent_bins(deviations: &[&Vec<f64>]) -> f64 {
 /// Compares all marginals at one value and prints a row each.
 fn compare(example: &Example, value: f64, error: f64, seed: u64) -> Vec<Agreement> {
     let clock = Instant::now();
-    let reference = example.generator(value, AdvectiveScheme::default());
+    let reference = example.generator(value, example.scheme);
     let solved = clock.elapsed().as_secs_f64();
     let (sampled, steps) = example.trajectories(value, error, seed);
     let run = clock.elapsed().as_secs_f64() - solved;
@@ -292,46 +296,57 @@ fn wanted_error() -> f64 {
     })
 }
 
-/// One bin in a hundred may be further off; with fewer than a hundred bins, one.
-fn assert_agreement(found: &Agreement, of: &str) {
-    let allowed = (found.bins / 100).max(1);
-    assert!(
-        found.beyond <= allowed,
-        "{of}: {} of {} bins",
-        found.beyond,
-        found.bins
-    );
+/// Bins of all marginals together, and how many of them are further apart than three standard errors.
+fn pooled<'a>(found: impl IntoIterator<Item = &'a Agreement>) -> (usize, usize) {
+    let add = |(bins, beyond), one: &Agreement| (bins + one.bins, beyond + one.beyond);
+    found.into_iter().fold((0, 0), add)
+}
+
+/// Runs all values of an example and pools the marginals of x and y. One bin in a hundred may be further off: the bins of
+/// a marginal vary by a few numbers only (its energy above all), so the share of a single one says little.
+fn agrees_at_the_values_of_the_paper(example: &Example, first_seed: u64) {
+    println!("{HEADER}");
+    let found: Vec<Agreement> = (first_seed..)
+        .zip(&example.at)
+        .flat_map(|(seed, &value)| {
+            let mut marginals = compare(example, value, wanted_error(), seed);
+            // What the paper shows; z is known to be off, docs/accuracy.md says why.
+            marginals.truncate(2);
+            marginals
+        })
+        .collect();
+    let (bins, beyond) = pooled(&found);
+    println!("x and y at all values: {beyond} of {bins} bins");
+    assert!(100 * beyond <= bins, "{beyond} of {bins} bins");
 }
 
 #[test]
-#[ignore = "a minute or more: prints the tables of docs/paper.md; ERROR=0.001 asks for a smaller sampling error"]
+#[ignore = "a minute or more: prints a table of docs/paper.md; ERROR=0.001 asks for a smaller sampling error"]
 fn coulomb_at_the_four_values_of_the_paper() {
-    println!("{HEADER}");
-    let example = Example::read("paper_example1", &[]);
-    let mut all = Vec::new();
-    for (seed, &value) in (1..).zip(&example.at) {
-        all.push((value, compare(&example, value, wanted_error(), seed)));
-    }
-    for (value, found) in all {
-        for marginal in found {
-            assert_agreement(&marginal, &format!("f_c = {value}"));
-        }
-    }
+    agrees_at_the_values_of_the_paper(&Example::read("paper_example1", &[]), 1);
 }
 
 #[test]
-#[ignore = "minutes: prints the tables of docs/paper.md"]
+#[ignore = "minutes: prints a table of docs/paper.md"]
 fn dahl_at_the_four_values_of_the_paper() {
-    println!("{HEADER}");
-    let example = Example::read("paper_example2", &[]);
-    let mut all = Vec::new();
-    for (seed, &value) in (11..).zip(&example.at) {
-        all.push((value, compare(&example, value, wanted_error(), seed)));
-    }
-    for (value, found) in all {
-        // The paper watches x and y; z is known to be off, docs/accuracy.md says why.
-        for marginal in &found[..2] {
-            assert_agreement(marginal, &format!("alpha = {value}"));
-        }
-    }
+    agrees_at_the_values_of_the_paper(&Example::read("paper_example2", &[]), 11);
+}
+
+/// The same with fewer trajectories; and a difference of a tenth in f_c would be seen by them.
+#[test]
+fn a_short_run_agrees_and_would_see_another_parameter_value() {
+    let coulomb = Example::read(
+        "paper_example1",
+        &["cells.x.count=100", "cells.y.count=100"],
+    );
+    let mut found = compare(&coulomb, -0.02, 0.01, 1);
+    let (sampled, _) = coulomb.trajectories(-0.02, 0.01, 1);
+    let other = coulomb.generator(-0.018, AdvectiveScheme::Central6);
+    let (bins, beyond) = pooled(&[Agreement::of(&other[0], &sampled[0])]);
+    assert!(4 * beyond > bins, "{beyond} of {bins} bins");
+
+    let dahl = Example::read("paper_example2", &["cells.x.count=50", "cells.z.count=8"]);
+    found.extend(compare(&dahl, -1.0, 0.02, 11).into_iter().take(2));
+    let (bins, beyond) = pooled(&found);
+    assert!(100 * beyond <= bins, "{beyond} of {bins} bins");
 }
