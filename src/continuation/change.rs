@@ -24,6 +24,8 @@ pub(super) struct Change {
 /// A change of sign of an indicator between two neighbouring points.
 #[derive(Debug, Clone)]
 pub(super) struct Crossing {
+    /// Place of the observable among those that are watched.
+    pub(super) observable: usize,
     /// The point below; the next one is the point above.
     pub(super) left: usize,
     /// The indicator at both.
@@ -79,6 +81,7 @@ fn at_centre(points: &[&Point], observable: usize, left: usize) -> Option<Crossi
         .zip(&b.detections[observable].indicators)
         .find(|(a, b)| a.kind == b.kind && changes_sign(a, b))
         .map(|(a, b)| Crossing {
+            observable,
             left,
             ends: [a.clone(), b.clone()],
         })
@@ -154,10 +157,12 @@ fn at_shoulder(
             if found.value <= 0.0 {
                 return Some(match below {
                     true => Crossing {
+                        observable,
                         left: index - 1,
                         ends: [previous, found],
                     },
                     false => Crossing {
+                        observable,
                         left: index,
                         ends: [found, previous],
                     },
@@ -182,6 +187,7 @@ pub(super) fn crossings_at_centre(points: &[&Point]) -> Vec<Vec<Crossing>> {
             .filter(|(_, a, b)| a.kind == b.kind && changes_sign(a, b))
             .filter(|(_, a, b)| a.sampling_error == 0.0 && b.sampling_error == 0.0)
             .map(|(left, a, b)| Crossing {
+                observable,
                 left,
                 ends: [a.clone(), b.clone()],
             })

@@ -11,7 +11,7 @@ use crate::topology::{Indicator, two_sided_limit};
 /// confidence of detection.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ErrorParts {
-    /// Solver, and interpolation between the two points.
+    /// Solver, and the straight line between the two points.
     pub solver: f64,
     /// Cells, order of the scheme and of the reconstruction.
     pub grid: f64,
@@ -47,7 +47,7 @@ pub(super) fn root(points: &[&Point], crossing: &Crossing, confidence: f64) -> R
         * mix(|indicator| indicator.sensitivity)
         / slope.abs();
     let error = ErrorParts {
-        solver,
+        solver: solver + interpolation(points, crossing, value),
         grid: mix(|indicator| indicator.systematic_error) / slope.abs(),
         sampling: sampling(a.value, b.value, crossing, value, slope, confidence),
     };
@@ -55,6 +55,44 @@ pub(super) fn root(points: &[&Point], crossing: &Crossing, confidence: f64) -> R
         value,
         slope,
         error,
+    }
+}
+
+/// Share of a bracket that stands for the error of the straight line where no third point shows its curvature.
+const UNKNOWN_CURVATURE: f64 = 0.25;
+
+/// Error of the straight line through both ends: how far the zero of the parabola through the nearest third point lies
+/// from it, at most the bracket.
+fn interpolation(points: &[&Point], crossing: &Crossing, value: f64) -> f64 {
+    let (a, b) = (points[crossing.left].value, points[crossing.left + 1].value);
+    let [low, high] = &crossing.ends;
+    if low.value == 0.0 || high.value == 0.0 {
+        return 0.0;
+    }
+    let third = |index: usize| {
+        let point = points.get(index)?;
+        let indicators = &point.detections.get(crossing.observable)?.indicators;
+        let same = indicators.iter().find(|one| one.kind == low.kind)?;
+        Some((point.value, same.value))
+    };
+    let below = crossing.left.checked_sub(1).and_then(third);
+    let above = third(crossing.left + 2);
+    let nearest = match (below, above) {
+        (Some(below), Some(above)) if a - below.0 <= above.0 - b => Some(below),
+        (below, above) => above.or(below),
+    };
+    let Some((x, y)) = nearest else {
+        return UNKNOWN_CURVATURE * (b - a);
+    };
+    let slope = (high.value - low.value) / (b - a);
+    let bend = ((y - high.value) / (x - b) - slope) / (x - a);
+    // The parabola at the line's zero, over the slope there.
+    let local = slope + bend * (2.0 * value - a - b);
+    let step = bend * (value - a) * (value - b) / local;
+    if step.is_finite() {
+        step.abs().min(b - a)
+    } else {
+        b - a
     }
 }
 
