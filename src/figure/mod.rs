@@ -30,6 +30,7 @@ use std::path::{Path, PathBuf};
 
 use plotters::drawing::DrawingAreaErrorKind;
 
+use crate::compare::Comparison;
 use crate::continuation::SweepResult;
 use crate::density::Observable;
 use crate::system::Model;
@@ -136,6 +137,29 @@ pub fn draw_all(
             }
         }
     }
+    let mut paths = Vec::new();
+    for figure in &figures {
+        for &format in formats {
+            paths.push(save(figure, format, folder)?);
+        }
+    }
+    Ok(paths)
+}
+
+/// Draws a comparison of methods: marginals by every method (`marginals.svg`), joint densities side by side (`joint_xy.svg`), and the error
+/// against time (`time_to_accuracy.svg`). The model and the name of the swept parameter give the symbols.
+///
+/// # Errors
+/// [`FigureError`]; files made before stay.
+pub fn draw_comparison(
+    comparison: &Comparison,
+    (model, parameter): (&Model, &str),
+    title: &str,
+    formats: &[Format],
+    folder: &Path,
+) -> Result<Vec<PathBuf>, FigureError> {
+    let names = select::Names::of(model, parameter);
+    let mut figures = Vec::new();
     let mut paths = Vec::new();
     for figure in &figures {
         for &format in formats {

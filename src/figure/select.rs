@@ -29,6 +29,10 @@ impl<'a> Names<'a> {
         }
     }
 
+    pub(super) fn of(model: &'a Model, parameter: &'a str) -> Self {
+        Self { model, parameter }
+    }
+
     /// Symbol of the swept parameter, as markup; its name where the model does not know it.
     pub(super) fn parameter(&self) -> String {
         let mut parameters = self.model.parameters.iter();
