@@ -43,6 +43,11 @@ impl<'a> Names<'a> {
         }
     }
 
+    /// Name of the swept parameter as plain text.
+    pub(super) fn plain(&self) -> &'a str {
+        self.parameter
+    }
+
     /// Symbol of an axis, as markup.
     pub(super) fn axis(&self, axis: usize) -> String {
         match self.model.axes.get(axis) {

@@ -209,7 +209,7 @@ fn accuracy(run: &ComparedRun<'_>) -> Rows {
         "tv_error",
         "tv_noise",
     ]);
-    for accuracy in &run.comparison.accuracy {
+    if let Some(accuracy) = &run.comparison.accuracy {
         let reference = match accuracy.reference {
             Reference::Exact => "exact".to_owned(),
             Reference::Generator(cells) => format!("generator on {cells} cells"),
