@@ -89,7 +89,10 @@ fn methods_stand_to_each_other_as_the_exact_density_says() {
         // Bins of a marginal err together, so that one run may be twice as far off as its noise says.
         assert!(tv < 2.5 * noise && tv > 0.3 * noise, "{sampled:?}");
         let truth = pair("monte-carlo", "exact", observable);
-        assert!(number(truth, "tv") < 2.5 * number(truth, "tv_noise"), "{truth:?}");
+        assert!(
+            number(truth, "tv") < 2.5 * number(truth, "tv_noise"),
+            "{truth:?}"
+        );
         let paper = pair("generator", "sgcm", observable);
         assert_eq!(paper["tv_significant"], "true", "{paper:?}");
     }
@@ -97,13 +100,19 @@ fn methods_stand_to_each_other_as_the_exact_density_says() {
     let agreement = rows(folder.path().join("agreement.csv"));
     assert_eq!(agreement.len(), 2);
     for row in &agreement {
-        assert!(number(row, "bins") > 30.0 && number(row, "share") > 0.95, "{row:?}");
+        assert!(
+            number(row, "bins") > 30.0 && number(row, "share") > 0.95,
+            "{row:?}"
+        );
     }
 
     let accuracy = rows(folder.path().join("accuracy.csv"));
     assert!(accuracy.iter().all(|row| row["reference"] == "exact"));
     let of = |name: &str| -> Vec<&Row> {
-        accuracy.iter().filter(|row| row["method"] == name).collect()
+        accuracy
+            .iter()
+            .filter(|row| row["method"] == name)
+            .collect()
     };
     for name in ["generator", "sgcm", "sgcm-slope", "monte-carlo"] {
         assert_eq!(of(name).len(), 3, "{name}");
@@ -117,7 +126,10 @@ fn methods_stand_to_each_other_as_the_exact_density_says() {
     assert!(generator[0].1 > 8.0 * generator[2].1, "{generator:?}");
 
     let stdout = String::from_utf8(output.stdout).unwrap();
-    assert!(stdout.contains("generator and Monte Carlo agree"), "{stdout}");
+    assert!(
+        stdout.contains("generator and Monte Carlo agree"),
+        "{stdout}"
+    );
     for file in [
         "compare.md",
         "compare.tex",
@@ -165,7 +177,12 @@ fn an_earlier_comparison_is_kept_and_numbers_repeat_on_any_threads() {
     assert!(output.stderr.is_empty(), "{output:?}");
     assert_eq!(first, (read("densities.csv"), read("distances.csv")));
     assert_eq!(first.0, read("previous/densities.csv"));
-    assert!(folder.path().join("previous/figures/marginals.svg").is_file());
+    assert!(
+        folder
+            .path()
+            .join("previous/figures/marginals.svg")
+            .is_file()
+    );
     assert_eq!(read("mine.txt"), "stays");
     // Nothing half-made is left beside.
     let mut names = std::fs::read_dir(folder.path()).unwrap();

@@ -21,10 +21,7 @@ use crate::run::{CompareFolder, ComparedRun, Naming, compare_tables, format_numb
 ///
 /// # Errors
 /// [`CommandError`] when the results cannot be written or a method refuses; failed solves are data.
-pub(super) fn run(
-    spec: &SweepSpec,
-    arguments: &CompareArguments,
-) -> Result<Outcome, CommandError> {
+pub(super) fn run(spec: &SweepSpec, arguments: &CompareArguments) -> Result<Outcome, CommandError> {
     if spec.figures_at.is_empty() {
         let diagnostic = Diagnostic::new("`figures.at` is empty: there is no value to compare at")
             .remedy("leave `figures.at` out, or give values of the swept parameter");
@@ -153,6 +150,13 @@ fn warnings(spec: &SweepSpec, comparison: &Comparison) -> Vec<String> {
     let mut seen: Vec<(Method, String)> = Vec::new();
     let mut warnings = Vec::new();
     for value in &comparison.values {
+        if let Some((rate, outside)) = value.leaves() {
+            warnings.push(format!(
+                "{} = {}: mass leaves Ω (at a rate of {rate:.1e}; Monte Carlo is outside for {outside:.1e} of the time). The generator's density is that of what never left, Monte Carlo's of what is inside: widen the ranges to compare them",
+                spec.parameter,
+                format_number(value.value)
+            ));
+        }
         for solved in &value.solved {
             for sentence in &solved.report.warnings {
                 let shape: String = sentence.chars().filter(|c| !c.is_ascii_digit()).collect();
@@ -189,7 +193,8 @@ fn text(run: &ComparedRun<'_>, files: &[PathBuf]) -> String {
         true => "generator and Monte Carlo agree",
         false => "generator and Monte Carlo DISAGREE beyond their stated uncertainties",
     };
-    text += &format!("{verdict}: {beyond} of {bins} marginal bins are beyond all errors\n\nfiles\n");
+    text +=
+        &format!("{verdict}: {beyond} of {bins} marginal bins are beyond all errors\n\nfiles\n");
     for file in files {
         text += &format!("  {}\n", file.display());
     }

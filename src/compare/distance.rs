@@ -53,28 +53,24 @@ pub fn distances(
     let (p, q) = (one.density.masses(), other.density.masses());
     let sets = replicates(one, other, shared);
     let variance = difference_variance(&sets, p.len());
-    let distance =
-        |measure: &Measure, noise: f64| -> Result<Distance, DensityError> {
-            let second = |estimated: &EstimatedDensity, mass: &[f64]| match estimated
-                .variants
-                .second_scheme()
-            {
+    let distance = |measure: &Measure, noise: f64| -> Result<Distance, DensityError> {
+        let second =
+            |estimated: &EstimatedDensity, mass: &[f64]| match estimated.variants.second_scheme() {
                 Some(values) => measure(mass, &masses(estimated, values)),
                 None => Ok(0.0),
             };
-            let mut squared = 0.0;
-            for set in &sets {
-                let values: Result<Vec<f64>, _> =
-                    set.iter().map(|(p, q)| measure(p, q)).collect();
-                squared += jackknife_variance(&values?);
-            }
-            Ok(Distance {
-                value: measure(&p, &q)?,
-                error: squared.sqrt(),
-                systematic: second(one, &p)? + second(other, &q)?,
-                noise,
-            })
-        };
+        let mut squared = 0.0;
+        for set in &sets {
+            let values: Result<Vec<f64>, _> = set.iter().map(|(p, q)| measure(p, q)).collect();
+            squared += jackknife_variance(&values?);
+        }
+        Ok(Distance {
+            value: measure(&p, &q)?,
+            error: squared.sqrt(),
+            systematic: second(one, &p)? + second(other, &q)?,
+            noise,
+        })
+    };
     Ok(Distances {
         total_variation: distance(&total_variation_of_masses, variation_noise(&variance))?,
         hellinger: distance(&hellinger_of_masses, hellinger_noise(&p, &q, &variance))?,
@@ -196,7 +192,10 @@ mod tests {
             })
             .collect();
         let without = |left_out: Option<usize>| -> Vec<f64> {
-            let kept = groups.iter().enumerate().filter(|(g, _)| Some(*g) != left_out);
+            let kept = groups
+                .iter()
+                .enumerate()
+                .filter(|(g, _)| Some(*g) != left_out);
             let mut sum = vec![0.0; truth.len()];
             for (_, group) in kept {
                 sum.iter_mut().zip(group).for_each(|(sum, n)| *sum += n);
@@ -255,9 +254,8 @@ mod tests {
                 error += found.error / runs as f64;
             }
             let mean = sum / runs as f64;
-            let spread = ((squares / runs as f64 - mean * mean) * runs as f64
-                / (runs as f64 - 1.0))
-                .sqrt();
+            let spread =
+                ((squares / runs as f64 - mean * mean) * runs as f64 / (runs as f64 - 1.0)).sqrt();
             // The spread of 12 runs is uncertain by 1/√22 = 21 %.
             assert!((spread / error - 1.0).abs() < 0.65, "{spread:e} {error:e}");
         }

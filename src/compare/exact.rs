@@ -10,10 +10,7 @@ use crate::system::System;
 fn quadrature() -> [(f64, f64); 4] {
     let root = 2.0 / 7.0 * 1.2f64.sqrt();
     let (near, far) = ((3.0 / 7.0 - root).sqrt(), (3.0 / 7.0 + root).sqrt());
-    let (large, small) = (
-        (18.0 + 30f64.sqrt()) / 72.0,
-        (18.0 - 30f64.sqrt()) / 72.0,
-    );
+    let (large, small) = ((18.0 + 30f64.sqrt()) / 72.0, (18.0 - 30f64.sqrt()) / 72.0);
     [
         (-0.5 * far, small),
         (-0.5 * near, large),
@@ -76,10 +73,7 @@ pub fn exact_density(
         return Ok(None);
     };
     let exact = estimate(space, observable, &masses, &[])?;
-    Ok(Some(rebin_density(
-        &exact,
-        &axes_of(common, observable)?,
-    )?))
+    Ok(Some(rebin_density(&exact, &axes_of(common, observable)?)?))
 }
 
 /// The axes of a cell space that an observable keeps.

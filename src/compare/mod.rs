@@ -132,10 +132,18 @@ impl ComparedValue {
     ) -> Option<&Distances> {
         let mut pairs = self.pairs.iter();
         pairs
-            .find(|pair| {
-                (pair.first, pair.second, pair.observable) == (first, second, observable)
-            })
+            .find(|pair| (pair.first, pair.second, pair.observable) == (first, second, observable))
             .map(|pair| &pair.distances)
+    }
+
+    /// Whether generator and Monte Carlo differ beyond their uncertainties although mass leaves Ω: the one is conditioned on never having
+    /// left, the other on being inside. Gives the escape rate and the share of the time outside.
+    pub fn leaves(&self) -> Option<(f64, f64)> {
+        let by = |method| self.solved.iter().find(|solved| solved.method == method);
+        let rate = by(Method::Generator)?.report.escape_rate;
+        let outside = by(Method::MonteCarlo)?.share_outside?;
+        let beyond = self.agreement.iter().any(|one| one.beyond > one.bins / 100);
+        (beyond && rate > 0.0 && outside > 0.0).then_some((rate, outside))
     }
 
     /// The density of an observable by one method, on the common cells.

@@ -55,6 +55,8 @@ pub struct Solved {
     pub work: Work,
     /// Step of the integrator; `None` for the generator.
     pub time_step: Option<f64>,
+    /// Share of the time that Monte Carlo's trajectories spent outside Ω and were not counted; `None` for the others.
+    pub share_outside: Option<f64>,
     /// The densities that are watched, on the common cells; empty without a density.
     pub densities: Vec<EstimatedDensity>,
 }
@@ -263,7 +265,10 @@ pub(super) fn monte_carlo_by(
         ..Work::default()
     };
     let step = Some(source.plan().time_step);
-    solved(Method::MonteCarlo, solution, work, step, common)
+    Ok(Solved {
+        share_outside: Some(estimate.share_outside),
+        ..solved(Method::MonteCarlo, solution, work, step, common)?
+    })
 }
 
 /// Tells an interrupt from a failure.
@@ -285,7 +290,12 @@ fn solved(
 ) -> Result<Solved, CompareError> {
     let densities = solution.densities.iter();
     let densities: Result<Vec<EstimatedDensity>, CompareError> = densities
-        .map(|density| Ok(rebin_density(density, &axes_of(common, density.observable)?)?))
+        .map(|density| {
+            Ok(rebin_density(
+                density,
+                &axes_of(common, density.observable)?,
+            )?)
+        })
         .collect();
     Ok(Solved {
         method,
@@ -293,6 +303,7 @@ fn solved(
         report: solution.report,
         work,
         time_step,
+        share_outside: None,
         densities: densities?,
     })
 }

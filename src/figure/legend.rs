@@ -115,7 +115,10 @@ fn draw_sample(page: &Page, sample: Sample, (x, y): (f64, f64)) -> Result<(), Fi
     match sample {
         Sample::Curve(stroke) => page.draw(&line, Shape::Line(stroke)),
         Sample::Symbol(colour) => {
-            let bar = [(middle.0, y - 0.55 * TICK_TEXT), (middle.0, y + 0.55 * TICK_TEXT)];
+            let bar = [
+                (middle.0, y - 0.55 * TICK_TEXT),
+                (middle.0, y + 0.55 * TICK_TEXT),
+            ];
             page.draw(&bar, Shape::Line(Stroke::solid(colour, ERROR_LINE)))?;
             symbol(|points, shape| page.draw(points, shape), 0, middle, colour)
         }

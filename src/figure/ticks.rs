@@ -62,7 +62,8 @@ pub(super) fn decades(from: f64, to: f64) -> Ticks {
     let inside = |exponent: f64| exponent >= from - slack && exponent <= to + slack;
     let powers = from.floor() as i32..=to.ceil() as i32;
     let major = powers.clone().map(f64::from).filter(|&power| inside(power));
-    let minor = powers.flat_map(|power| (2..10).map(move |n| f64::from(power) + f64::from(n).log10()));
+    let minor =
+        powers.flat_map(|power| (2..10).map(move |n| f64::from(power) + f64::from(n).log10()));
     Ticks {
         major: major
             .map(|value| Tick {

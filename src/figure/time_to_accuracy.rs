@@ -52,7 +52,7 @@ pub(super) fn figure(
     let y = range(accuracy.points.iter().map(|point| place(point).1));
     let density = names.density(accuracy.observable);
     let across = Scale::logarithmic(x, "seconds")?;
-    let up = Scale::logarithmic(y, &format!("total variation of {density} to {}", by(accuracy)))?;
+    let up = Scale::logarithmic(y, &format!("total variation to {} {density}", by(accuracy)))?;
     let left = MARGIN + up.left();
     let width = left + PANEL.0 + 12.0 + MARGIN;
     let title = match title {
@@ -93,7 +93,12 @@ pub(super) fn figure(
             };
             let bar = Shape::Line(Stroke::solid(colour, ERROR_LINE));
             panel.draw(&[end(-1.0), end(1.0)], bar)?;
-            legend::symbol(|points, shape| panel.draw(points, shape), number, at, colour)?;
+            legend::symbol(
+                |points, shape| panel.draw(points, shape),
+                number,
+                at,
+                colour,
+            )?;
         }
     }
     frame::border(&page, rect)?;
@@ -119,7 +124,7 @@ fn line(method: Method) -> Stroke {
 /// What errors are measured by, in words.
 fn by(accuracy: &Accuracy) -> &'static str {
     match accuracy.reference {
-        Reference::Exact => "the exact one",
-        Reference::Generator(_) => "the generator’s",
+        Reference::Exact => "exact",
+        Reference::Generator(_) => "finest",
     }
 }

@@ -210,9 +210,7 @@ impl SgcmSource {
             .map(|&c| steady.mass[c])
             .collect();
         report.numerical_diffusion = match correction {
-            Correction::Slope => {
-                transitions.remaining_diffusion(&self.space, &local_mass, slopes)
-            }
+            Correction::Slope => transitions.remaining_diffusion(&self.space, &local_mass, slopes),
             Correction::None => transitions.numerical_diffusion(&local_mass),
         };
         findings.numerical_diffusion(&report.numerical_diffusion, &self.steps.noise, &moments);

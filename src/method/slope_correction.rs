@@ -100,14 +100,7 @@ pub(super) fn solve_by(
     (options, largest_change): (&Options, f64),
 ) -> Result<Corrected, MethodError> {
     if correction == Correction::Slope {
-        return solve_corrected(
-            transitions,
-            space,
-            guess,
-            left_out,
-            options,
-            largest_change,
-        );
+        return solve_corrected(transitions, space, guess, left_out, options, largest_change);
     }
     let matrix = match left_out {
         Some(group) => transitions.matrix_without_group(group),

@@ -8,9 +8,7 @@ pub use folder::CompareFolder;
 pub use people::{CompareTable, compare_tables};
 
 use people::{compare_markdown, compare_tex};
-use rows::{
-    accuracy_csv, agreement_csv, compare_csv, compare_json, densities_csv, distances_csv,
-};
+use rows::{accuracy_csv, agreement_csv, compare_csv, compare_json, densities_csv, distances_csv};
 
 use super::Naming;
 use crate::compare::{Comparison, Method, Solved};

@@ -182,7 +182,8 @@ fn agreement(run: &ComparedRun<'_>) -> CompareTable {
         }
     }
     CompareTable {
-        caption: "Generator and Monte Carlo, bin by bin, in standard errors of Monte Carlo".to_owned(),
+        caption: "Generator and Monte Carlo, bin by bin, in standard errors of Monte Carlo"
+            .to_owned(),
         header: header.map(str::to_owned).to_vec(),
         rows,
     }

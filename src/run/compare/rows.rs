@@ -40,7 +40,11 @@ impl Rows {
                 (_, Ok(number)) if number.is_finite() => json!(number),
                 _ => json!(word),
             };
-            Value::Object(cells.map(|(key, word)| (key.clone(), value(word))).collect())
+            Value::Object(
+                cells
+                    .map(|(key, word)| (key.clone(), value(word)))
+                    .collect(),
+            )
         };
         self.rows.iter().map(object).collect()
     }
@@ -82,6 +86,7 @@ fn methods(run: &ComparedRun<'_>) -> Rows {
         "time_step",
         "time_step_bias",
         "escape_rate",
+        "share_outside",
     ]);
     let observables = &run.comparison.observables;
     let axes = 0..run.comparison.common.dimension();
@@ -91,8 +96,10 @@ fn methods(run: &ComparedRun<'_>) -> Rows {
     rows.header.extend(names);
     for &observable in observables {
         let name = run.naming.observable(observable);
-        rows.header
-            .extend([format!("tv_exact_{name}"), format!("hellinger_exact_{name}")]);
+        rows.header.extend([
+            format!("tv_exact_{name}"),
+            format!("hellinger_exact_{name}"),
+        ]);
     }
     rows.header.push("warnings".to_owned());
     for value in &run.comparison.values {
@@ -122,6 +129,7 @@ fn methods(run: &ComparedRun<'_>) -> Rows {
                 optional(solved.time_step),
                 optional(report.time_step_bias),
                 format_number(report.escape_rate),
+                optional(solved.share_outside),
             ];
             let diffusion = |axis: usize| report.numerical_diffusion.get(axis).copied();
             row.extend(axes.clone().map(|axis| optional(diffusion(axis))));
