@@ -9,14 +9,14 @@ use std::process::Output;
 use assert_cmd::Command;
 use tempfile::TempDir;
 
-/// A Coulomb oscillator damped enough to forget in a hundred time units; at f_c = 0 its density is known.
+/// A Coulomb oscillator that forgets three times as fast as the shipped one; at f_c = 0 its density is known, and the same.
 const SMALL: &[&str] = &[
-    "system.parameters.kappa=0.1",
-    "system.parameters.sigma2=0.1",
+    "system.parameters.kappa=0.03",
+    "system.parameters.sigma2=0.03",
     "sweep.from=-0.01",
     "cells.x={ from = -3.6, to = 3.6, count = 60 }",
     "cells.y={ from = -3.6, to = 3.6, count = 60 }",
-    "method.samples=400",
+    "method.samples=600",
     "method.error=0.006",
 ];
 
@@ -58,10 +58,10 @@ fn methods_stand_to_each_other_as_the_exact_density_says() {
     let by = |name: &str| methods.iter().find(|row| row["method"] == name).unwrap();
     let error = |name: &str| number(by(name), "tv_exact_xy");
     let (generator, plain, slope) = (error("generator"), error("sgcm"), error("sgcm-slope"));
-    // The numerical diffusion h²/(12Δt) = 0.0017 beside a noise of 0.05 moves the density by a few per cent; the correction takes out
-    // most of it, and the generator has an error of the grid alone.
-    assert!(plain > 0.02, "{plain}");
-    assert!(slope < plain / 2.0, "{slope} {plain}");
+    // The cells add a diffusion of up to h²/(12Δt) = 0.0017 to each axis beside a noise of 0.015 on one: about 20 % in variance, 0.37 times as
+    // much in total variation. The correction takes out most of it, and the generator has an error of the grid alone.
+    assert!((0.04..0.12).contains(&plain), "{plain}");
+    assert!(slope < plain / 3.0, "{slope} {plain}");
     assert!(generator < slope / 3.0, "{generator} {slope}");
     for name in ["generator", "sgcm", "sgcm-slope", "monte-carlo"] {
         let row = by(name);
