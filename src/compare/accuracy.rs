@@ -3,28 +3,26 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use super::solve::{Sources, generator_on, monte_carlo_by, monte_carlo_of, sgcm_both, sgcm_with};
+use super::solve::{Sources, generator_on};
 use super::{
     CompareError, ComparedValue, Distance, Method, PAPER_CELLS, Solved, Task, distances,
     exact_density, uniform_cells,
 };
 use crate::density::{EstimatedDensity, Observable};
-use crate::method::{MonteCarloOptions, StepChoice};
 use crate::space::CellSpace;
 
-/// Cells an axis over those of the file, for the generator, in up to two dimensions and in more. The finest, where there is one beyond
-/// the file's, only serves as a reference.
-const GENERATOR_GRIDS: [&[f64]; 2] = [&[0.5, 0.7], &[0.5, 0.7]];
+/// Cells an axis over those of the file, for the generator.
+const GENERATOR_GRIDS: [f64; 2] = [0.5, 0.7];
 
 /// Cells an axis of the finer grid that is the reference where no exact density is known; in more than two dimensions the file's own
 /// grid is the finest that a short comparison can afford.
 const REFERENCE_GRIDS: [Option<f64>; 2] = [Some(1.5), None];
 
-/// Cells an axis over the paper's, for SGCM.
+/// Cells an axis over the paper's, for SGCM, in up to two dimensions and in more.
 const SGCM_GRIDS: [&[f64]; 2] = [&[0.5, 2.0], &[0.5, 0.7]];
 
-/// Wanted error of Monte Carlo over that of the comparison: a sixteenth and a quarter of the time.
-const MONTE_CARLO_ERRORS: [f64; 2] = [4.0, 2.0];
+/// Shares of the time of the comparison's Monte Carlo; burn-in is not shortened.
+const MONTE_CARLO_TIMES: [f64; 2] = [1.0 / 16.0, 1.0 / 4.0];
 
 /// What errors are measured by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -109,27 +107,17 @@ impl Gauge<'_> {
         let value = self.compared.value;
         let many = usize::from(self.common.dimension() > 2);
         let mut runs: Vec<(CellSpace, Solved)> = Vec::new();
-        for &factor in GENERATOR_GRIDS[many] {
+        for factor in GENERATOR_GRIDS {
             runs.push(self.generator(factor)?);
         }
-        let (map_step, time_step, step) = sources.steps();
         for &factor in SGCM_GRIDS[many] {
             let count = (PAPER_CELLS as f64 * factor).round() as usize;
             let space = uniform_cells(self.common, count)?;
-            let source = sgcm_with(self.task, &space, (map_step, time_step), self.cancelled)?;
-            let both = sgcm_both(&source, &self.task.sgcm, self.common, value)?;
+            let both = sources.sgcm_on(&space, value)?;
             runs.extend(both.into_iter().map(|solved| (space.clone(), solved)));
         }
-        let (burn_in, length) = sources.monte_carlo_times();
-        for factor in MONTE_CARLO_ERRORS {
-            let options = MonteCarloOptions {
-                time_step: StepChoice::Fixed(step),
-                burn_in: StepChoice::Fixed(burn_in),
-                length: StepChoice::Fixed(length / (factor * factor)),
-                ..self.task.monte_carlo.clone()
-            };
-            let source = monte_carlo_of(self.task, self.common, &options, self.cancelled)?;
-            let solved = monte_carlo_by(&source, self.common, value)?;
+        for share in MONTE_CARLO_TIMES {
+            let solved = sources.monte_carlo_for(share, value)?;
             runs.push((self.common.clone(), solved));
         }
         for solved in &self.compared.solved {

@@ -9,8 +9,8 @@ use super::{CompareError, Method, PAPER_MAP_STEP, Task, overlap::rebin_density};
 use crate::continuation::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
 use crate::density::EstimatedDensity;
 use crate::method::{
-    Correction, GeneratorSource, MethodError, MonteCarloOptions, MonteCarloSource, Setting,
-    SgcmOptions, SgcmSource, State, StepChoice,
+    Correction, GeneratorSource, MethodError, MonteCarloSource, Setting, SgcmOptions, SgcmSource,
+    State, StepChoice,
 };
 use crate::monte_carlo::MonteCarloError;
 use crate::sampling::SamplingError;
@@ -82,7 +82,8 @@ impl<'a> Sources<'a> {
         let sgcm = sgcm_on(task, common, cancelled)?;
         let sgcm_seconds = clock.elapsed().as_secs_f64();
         let clock = Instant::now();
-        let monte_carlo = monte_carlo_of(task, common, &task.monte_carlo, cancelled)?;
+        let setting = setting_on(task, common);
+        let monte_carlo = MonteCarloSource::new(&setting, &task.monte_carlo, cancelled.clone())?;
         Ok(Self {
             task,
             common,
@@ -118,19 +119,18 @@ impl<'a> Sources<'a> {
         Ok(solved)
     }
 
-    /// Time before states are counted, and during which they are.
-    pub(super) fn monte_carlo_times(&self) -> (f64, f64) {
-        let plan = self.monte_carlo.plan();
-        (plan.burn_in, plan.length)
+    /// Both cell maps on other cells.
+    pub(super) fn sgcm_on(
+        &self,
+        space: &CellSpace,
+        value: f64,
+    ) -> Result<Vec<Solved>, CompareError> {
+        sgcm_both(&self.sgcm.on(space), &self.task.sgcm, self.common, value)
     }
 
-    /// Steps that were chosen for the cell map and for Monte Carlo.
-    pub(super) fn steps(&self) -> (f64, f64, f64) {
-        (
-            self.sgcm.map_step(),
-            self.sgcm.time_step(),
-            self.monte_carlo.plan().time_step,
-        )
+    /// Monte Carlo for a share of its time.
+    pub(super) fn monte_carlo_for(&self, share: f64, value: f64) -> Result<Solved, CompareError> {
+        monte_carlo_by(&self.monte_carlo.shortened(share), self.common, value)
     }
 }
 
@@ -163,33 +163,6 @@ fn sgcm_on(
     })
 }
 
-/// The cell map on some cells with steps that are known already.
-pub(super) fn sgcm_with(
-    task: &Task<'_>,
-    space: &CellSpace,
-    (map_step, time_step): (f64, f64),
-    cancelled: &Arc<AtomicBool>,
-) -> Result<SgcmSource, CompareError> {
-    let options = SgcmOptions {
-        map_step: StepChoice::Fixed(map_step),
-        time_step: StepChoice::Fixed(time_step),
-        correction: Correction::Slope,
-        ..task.sgcm.clone()
-    };
-    let setting = setting_on(task, space);
-    Ok(SgcmSource::new(&setting, &options, cancelled.clone())?)
-}
-
-pub(super) fn monte_carlo_of(
-    task: &Task<'_>,
-    common: &CellSpace,
-    options: &MonteCarloOptions,
-    cancelled: &Arc<AtomicBool>,
-) -> Result<MonteCarloSource, CompareError> {
-    let setting = setting_on(task, common);
-    Ok(MonteCarloSource::new(&setting, options, cancelled.clone())?)
-}
-
 /// The generator on some cells, from nothing: every value pays for its factorisation.
 pub(super) fn generator_on(
     task: &Task<'_>,
@@ -214,7 +187,7 @@ pub(super) fn generator_on(
 }
 
 /// The cell map plain and slope-corrected, from the same samples.
-pub(super) fn sgcm_both(
+fn sgcm_both(
     source: &SgcmSource,
     options: &SgcmOptions,
     common: &CellSpace,
@@ -250,7 +223,7 @@ pub(super) fn sgcm_both(
     .collect()
 }
 
-pub(super) fn monte_carlo_by(
+fn monte_carlo_by(
     source: &MonteCarloSource,
     common: &CellSpace,
     value: f64,

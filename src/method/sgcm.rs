@@ -89,6 +89,27 @@ impl SgcmSource {
         })
     }
 
+    /// The same source on other cells over the same ranges, with the steps that were chosen.
+    pub fn on(&self, space: &CellSpace) -> Self {
+        let mut steps = self.steps.clone();
+        // Cells to grow from; all others that hold mass are reached from them.
+        let centres = steps.cells.iter().map(|&cell| self.space.centre(cell));
+        let mut cells: Vec<usize> = centres.filter_map(|centre| space.find(&centre)).collect();
+        cells.sort_unstable();
+        cells.dedup();
+        steps.cells = cells;
+        Self {
+            model: self.model,
+            values: self.values.clone(),
+            parameter: self.parameter.clone(),
+            space: space.clone(),
+            observables: self.observables.clone(),
+            options: self.options.clone(),
+            steps,
+            cancelled: self.cancelled.clone(),
+        }
+    }
+
     /// Time one transition spans.
     pub fn map_step(&self) -> f64 {
         self.steps.map_step
