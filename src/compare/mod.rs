@@ -136,14 +136,28 @@ impl ComparedValue {
             .map(|pair| &pair.distances)
     }
 
-    /// Whether generator and Monte Carlo differ beyond their uncertainties although mass leaves Ω: the one is conditioned on never having
-    /// left, the other on being inside. Gives the escape rate and the share of the time outside.
+    /// Marginals on which generator and Monte Carlo disagree beyond their stated uncertainties: in more than 1 % of the bins (two are let
+    /// pass), and as a whole by total variation. Bins err together, so that one fluctuation may put many of them outside; the
+    /// replicates of the distance know that.
+    pub fn disagreements(&self) -> Vec<Observable> {
+        let disagrees = |one: &&Agreement| {
+            let both = (Method::Generator, Some(Method::MonteCarlo));
+            let whole = self.pair(both.0, both.1, one.observable);
+            one.beyond > (one.bins / 100).max(2)
+                && whole.is_some_and(|whole| whole.total_variation.is_significant())
+        };
+        let found = self.agreement.iter().filter(disagrees);
+        found.map(|one| one.observable).collect()
+    }
+
+    /// Where generator and Monte Carlo disagree and mass leaves Ω: the escape rate and the share of the time outside. The one
+    /// is conditioned on never having left, the other on being inside.
     pub fn leaves(&self) -> Option<(f64, f64)> {
         let by = |method| self.solved.iter().find(|solved| solved.method == method);
         let rate = by(Method::Generator)?.report.escape_rate;
         let outside = by(Method::MonteCarlo)?.share_outside?;
-        let beyond = self.agreement.iter().any(|one| one.beyond > one.bins / 100);
-        (beyond && rate > 0.0 && outside > 0.0).then_some((rate, outside))
+        let leaves = rate > 0.0 && outside > 0.0;
+        (leaves && !self.disagreements().is_empty()).then_some((rate, outside))
     }
 
     /// The density of an observable by one method, on the common cells.
@@ -183,11 +197,10 @@ impl Comparison {
         })
     }
 
-    /// Whether generator and Monte Carlo agree within their stated uncertainties: in all bins but 1 %. Chance alone puts 0.5 % outside
-    /// (three standard errors from 32 blocks), neighbours together, so that two are let pass in any number.
+    /// Whether generator and Monte Carlo agree within their stated uncertainties on every marginal at every value.
     pub fn agrees(&self) -> bool {
-        let (bins, beyond) = self.bins();
-        beyond <= (bins / 100).max(2)
+        let mut values = self.values.iter();
+        values.all(|value| value.disagreements().is_empty())
     }
 }
 
