@@ -152,7 +152,7 @@ fn warnings(spec: &SweepSpec, comparison: &Comparison) -> Vec<String> {
     for value in &comparison.values {
         if let Some((rate, outside)) = value.leaves() {
             warnings.push(format!(
-                "{} = {}: mass leaves Ω (at a rate of {rate:.1e}; Monte Carlo is outside for {outside:.1e} of the time). The generator's density is that of what never left, Monte Carlo's of what is inside: widen the ranges to compare them",
+                "{} = {}: generator and Monte Carlo disagree, and mass leaves Ω (at a rate of {rate:.1e}; Monte Carlo is outside for {outside:.1e} of the time); the generator's density is that of what never left, Monte Carlo's of what is inside: wider ranges tell whether that is why",
                 spec.parameter,
                 format_number(value.value)
             ));
@@ -193,8 +193,15 @@ fn text(run: &ComparedRun<'_>, files: &[PathBuf]) -> String {
         true => "generator and Monte Carlo agree",
         false => "generator and Monte Carlo DISAGREE beyond their stated uncertainties",
     };
-    text +=
-        &format!("{verdict}: {beyond} of {bins} marginal bins are beyond all errors\n\nfiles\n");
+    text += &format!("{verdict}: {beyond} of {bins} marginal bins are beyond all errors\n");
+    for value in &run.comparison.values {
+        for observable in value.disagreements() {
+            let name = run.naming.observable(observable);
+            let at = format_number(value.value);
+            text += &format!("  {} = {at}: {name}\n", run.naming.parameter);
+        }
+    }
+    text += "\nfiles\n";
     for file in files {
         text += &format!("  {}\n", file.display());
     }
