@@ -13,6 +13,7 @@
 //! | count significant peaks and craters | [`topology`] |
 //! | sweep a parameter and locate changes of topology | [`continuation`] |
 //! | join the above into a source of densities | [`method`] |
+//! | set the methods side by side: distances with uncertainties, times | [`compare`] |
 //! | write tables and arrays | [`run`] |
 //! | draw | [`figure`] |
 //! | the program `pbif` | [`cli`] |
@@ -20,6 +21,7 @@
 //! Modules depend on those above them in this table, never the other way.
 
 pub mod cli;
+pub mod compare;
 pub mod continuation;
 pub mod density;
 pub mod figure;

@@ -31,12 +31,38 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "compare",
+        &[
+            "system",
+            "space",
+            "sampling",
+            "monte_carlo",
+            "density",
+            "continuation",
+            "method",
+        ],
+    ),
+    (
         "run",
-        &["system", "space", "density", "topology", "continuation"],
+        &[
+            "system",
+            "space",
+            "density",
+            "topology",
+            "continuation",
+            "compare",
+        ],
     ),
     (
         "figure",
-        &["system", "space", "density", "topology", "continuation"],
+        &[
+            "system",
+            "space",
+            "density",
+            "topology",
+            "continuation",
+            "compare",
+        ],
     ),
     (
         "cli",
@@ -51,6 +77,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "topology",
             "continuation",
             "method",
+            "compare",
             "run",
             "figure",
         ],

@@ -13,6 +13,7 @@ Examples:
   pbif check sweeps/coulomb_fc.toml  what would be run, and what it costs
   pbif sweep sweeps/coulomb_fc.toml  run it; results go to output/coulomb_fc/
   pbif sweep sweeps/coulomb_fc.toml --set sweep.points=11 --set cells.x.count=30 --out trial
+  pbif compare sweeps/coulomb_fc.toml                          the methods side by side
   pbif detect output/coulomb_fc --set detect.confidence=0.99   detect again, without solving
   pbif plot output/coulomb_fc        draw again
 
@@ -30,6 +31,20 @@ run is left as it is.
 
 Exit status: 0 done; 1 finished, but some row is unresolved, did not converge or has no steady
 state, or the run had been interrupted; 2 bad usage or input, nothing written.";
+
+const COMPARE_EXAMPLES: &str = "\
+Examples:
+  pbif compare sweeps/coulomb_fc.toml
+  pbif compare sweeps/coulomb_fc.toml --set 'figures.at=[-0.02, 0.0]' --set method.error=0.004 --out trial
+
+Methods are compared at the values of figures.at: the generator with the settings of the file; SGCM as the
+paper has it (50 x 50 cells of equal width, method.samples samples a cell, map step 1, densities flat in the
+cells); the same samples with slope correction; and Monte Carlo to the relative error method.error. Tables
+and figures go to output/NAME-compare/ or --out; what was there before is kept in its folder previous/.
+
+Exit status: 0 done; 1 finished, but generator and Monte Carlo disagree beyond their uncertainties, or a
+method did not converge or has no steady state; 2 bad usage or input, nothing written; 130 interrupted.
+The keys of a sweep file: pbif sweep --help";
 
 const PLOT_EXAMPLES: &str = "\
 Examples:
@@ -64,6 +79,16 @@ pub(super) enum Command {
         /// What to check.
         #[command(flatten)]
         input: SweepFile,
+    },
+    /// Solve by every method and compare: times, distances with their uncertainties, figures
+    #[command(after_help = COMPARE_EXAMPLES)]
+    Compare {
+        /// What to compare.
+        #[command(flatten)]
+        input: SweepFile,
+        /// How to run it.
+        #[command(flatten)]
+        run: CompareArguments,
     },
     /// Detect and locate again from the stored densities of a run, without solving
     #[command(after_help = DETECT_EXAMPLES)]
@@ -104,6 +129,20 @@ pub(crate) struct SweepArguments {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Threads to use, all if left out; results do not depend on it
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub(crate) threads: Option<usize>,
+    /// No progress and no warnings on stderr, results alone
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+/// How a comparison is run.
+#[derive(Debug, Args)]
+pub(crate) struct CompareArguments {
+    /// Folder for the results [default: output/NAME-compare, after the sweep file]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Threads to use, all if left out; only times depend on it
     #[arg(long, value_name = "N", value_parser = threads)]
     pub(crate) threads: Option<usize>,
     /// No progress and no warnings on stderr, results alone

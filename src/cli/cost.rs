@@ -45,6 +45,17 @@ pub(super) fn estimated_bytes(n_cells: f64, dimension: usize, options: &SgcmOpti
     n_cells * (reached * transition + cell_bytes(options, dimension))
 }
 
+/// Bytes at work at one point by SGCM with so many entries of the transition matrix, counted, in so many cells.
+pub(super) fn sgcm_bytes(
+    transitions: usize,
+    cells: usize,
+    dimension: usize,
+    options: &SgcmOptions,
+) -> f64 {
+    let transition = transition_bytes(options, dimension);
+    transitions as f64 * transition + cells as f64 * cell_bytes(options, dimension)
+}
+
 /// Lower bound of the bytes at work at one point: by SGCM every cell reaches 2^d cells, d = `dimension`; by the
 /// generator the matrices alone.
 pub(super) fn least_bytes(n_cells: f64, dimension: usize, method: &MethodOptions) -> f64 {

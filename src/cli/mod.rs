@@ -2,6 +2,7 @@
 
 mod args;
 mod check;
+mod compare;
 mod cost;
 mod detect;
 mod diagnostic;
@@ -59,6 +60,9 @@ pub(crate) enum CommandError {
     /// The method refuses.
     #[error(transparent)]
     Method(#[from] crate::method::MethodError),
+    /// The methods cannot be compared.
+    #[error(transparent)]
+    Compare(#[from] crate::compare::CompareError),
     /// The sweep ended without a result.
     #[error(transparent)]
     Sweep(#[from] crate::continuation::SweepError),
@@ -120,6 +124,10 @@ fn dispatch(command: &Command) -> Result<Outcome, CommandError> {
         Command::Check { input } => {
             let spec = SweepSpec::load(&input.file, &input.overrides)?;
             print(&check::text(&spec)?)
+        }
+        Command::Compare { input, run } => {
+            let spec = SweepSpec::load(&input.file, &input.overrides)?;
+            compare::run(&spec, run)
         }
         Command::Detect { run } => detect::run(run),
         Command::Plot { run } => plot::run(run),

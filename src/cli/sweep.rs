@@ -1,6 +1,6 @@
 //! `pbif sweep`: solves along the parameter, writes every row as it comes, then the tables and the figures.
 
-mod progress;
+pub(super) mod progress;
 pub(super) mod summary;
 
 use std::path::{Path, PathBuf};

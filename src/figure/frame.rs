@@ -7,7 +7,7 @@ use super::backend::Lettering;
 use super::page::{Page, Rectangle, Shape, lettering};
 use super::render;
 use super::style::{BLACK, FRAME_LINE, MINOR_TICK, Stroke, TEXT, TICK, TICK_TEXT};
-use super::ticks::{Ticks, ticks};
+use super::ticks::{Ticks, decades, ticks};
 
 /// Gap between ticks, labels and titles, in pixels.
 const GAP: f64 = 4.0;
@@ -62,8 +62,19 @@ impl Scale {
         Self::with(range, most.clamp(2, 7), title)
     }
 
+    /// Lays out an axis of logarithms to base ten, labelled at powers of ten: `range` and what is drawn are exponents.
+    ///
+    /// # Errors
+    /// [`FigureError::Svg`].
+    pub(super) fn logarithmic(range: (f64, f64), title: &str) -> Result<Self, FigureError> {
+        Self::of(range, decades(range.0, range.1), title)
+    }
+
     fn with(range: (f64, f64), most: usize, title: &str) -> Result<Self, FigureError> {
-        let ticks = ticks(range.0, range.1, most);
+        Self::of(range, ticks(range.0, range.1, most), title)
+    }
+
+    fn of(range: (f64, f64), ticks: Ticks, title: &str) -> Result<Self, FigureError> {
         let mut widest: f64 = 0.0;
         for tick in &ticks.major {
             widest = widest.max(render::text_width(&tick.label, TICK_TEXT, false)?);

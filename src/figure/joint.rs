@@ -28,10 +28,10 @@ const BETWEEN: f64 = 14.0;
 const COMPARABLE: f64 = 3.0;
 
 /// A joint density with what was found in it.
-struct Found<'a> {
-    value: f64,
-    estimated: &'a EstimatedDensity,
-    features: &'a [Feature],
+pub(super) struct Found<'a> {
+    pub(super) value: f64,
+    pub(super) estimated: &'a EstimatedDensity,
+    pub(super) features: &'a [Feature],
 }
 
 impl<'a> Found<'a> {
@@ -45,7 +45,7 @@ impl<'a> Found<'a> {
         })
     }
 
-    fn density(&self) -> &'a Density {
+    pub(super) fn density(&self) -> &'a Density {
         &self.estimated.density
     }
 
@@ -61,7 +61,7 @@ impl<'a> Found<'a> {
 }
 
 /// The windows of both axes.
-fn windows(found: &[Found<'_>]) -> Option<((f64, f64), (f64, f64))> {
+pub(super) fn windows(found: &[Found<'_>]) -> Option<((f64, f64), (f64, f64))> {
     let densities: Vec<&Density> = found.iter().map(Found::density).collect();
     Some((
         select::window(&densities, 0)?,
@@ -241,7 +241,7 @@ pub(super) fn sheet(
 }
 
 /// Writes a line above a map.
-fn write_above(page: &Page, map: Rectangle, markup: String) -> Result<(), FigureError> {
+pub(super) fn write_above(page: &Page, map: Rectangle, markup: String) -> Result<(), FigureError> {
     let place = (map.left, map.top - 0.75 * TEXT);
     page.text(place, lettering(markup, HPos::Left))
 }
@@ -264,7 +264,7 @@ fn entries(found: &[Found<'_>]) -> Vec<(Sample, String)> {
 }
 
 /// Draws heat map, contours and marks into a rectangle; colours run from zero to `largest`.
-fn draw_map(
+pub(super) fn draw_map(
     page: &Page,
     map: Rectangle,
     found: &Found<'_>,

@@ -6,7 +6,7 @@ use plotters_backend::text_anchor::HPos;
 use super::FigureError;
 use super::page::{Page, Shape, lettering};
 use super::render;
-use super::style::{BLACK, CURVE_LINE, Stroke, TEXT, TICK_TEXT, WHITE, heat};
+use super::style::{BLACK, CURVE_LINE, ERROR_LINE, Stroke, TEXT, TICK_TEXT, WHITE, heat};
 
 /// Length of a sample, in pixels.
 const SAMPLE: f64 = 30.0;
@@ -22,6 +22,10 @@ pub(super) const ROW: f64 = 1.5 * TEXT;
 pub(super) enum Sample {
     /// A curve.
     Curve(Stroke),
+    /// A symbol with an error bar.
+    Symbol(BackendColor),
+    /// A line through symbols: line, place in the list of symbols.
+    Marked(Stroke, usize),
     /// The line of a branch of peaks.
     Peaks,
     /// The line of a branch of valleys.
@@ -110,6 +114,19 @@ fn draw_sample(page: &Page, sample: Sample, (x, y): (f64, f64)) -> Result<(), Fi
     let middle = (x + 0.5 * SAMPLE, y);
     match sample {
         Sample::Curve(stroke) => page.draw(&line, Shape::Line(stroke)),
+        Sample::Symbol(colour) => {
+            let bar = [
+                (middle.0, y - 0.55 * TICK_TEXT),
+                (middle.0, y + 0.55 * TICK_TEXT),
+            ];
+            page.draw(&bar, Shape::Line(Stroke::solid(colour, ERROR_LINE)))?;
+            symbol(|points, shape| page.draw(points, shape), 0, middle, colour)
+        }
+        Sample::Marked(stroke, number) => {
+            page.draw(&line, Shape::Line(stroke))?;
+            let draw = |points: &[(f64, f64)], shape| page.draw(points, shape);
+            symbol(draw, number, middle, stroke.colour)
+        }
         Sample::Peaks => {
             page.draw(&corners, ground(0.5))?;
             draw_peaks(|points, shape| page.draw(points, shape), &line)
@@ -159,6 +176,28 @@ pub(super) fn draw_valleys(
         dash: &[4.0, 3.0],
     };
     draw(places, Shape::Line(dashes))
+}
+
+/// One of four symbols, told apart without colour: disc, circle, and these with a cross.
+pub(super) fn symbol(
+    draw: impl Fn(&[(f64, f64)], Shape) -> Result<(), FigureError>,
+    number: usize,
+    place: (f64, f64),
+    colour: BackendColor,
+) -> Result<(), FigureError> {
+    let rim = Stroke::solid(colour, 1.2);
+    match number % 4 {
+        0 => draw(&[place], Shape::Dot(2.0, colour, rim)),
+        1 => draw(&[place], Shape::Dot(3.6, WHITE, rim)),
+        2 => {
+            draw(&[place], Shape::Dot(4.4, WHITE, rim))?;
+            draw(&[place], Shape::Plus(4.4, rim))
+        }
+        _ => {
+            draw(&[place], Shape::Plus(5.0, Stroke::solid(WHITE, 4.0)))?;
+            draw(&[place], Shape::Plus(4.6, Stroke::solid(colour, 2.2)))
+        }
+    }
 }
 
 /// The mark of a peak in a map.

@@ -146,13 +146,13 @@ fn draw_panel(page: &Page, laid: &Laid<'_>, rect: Rectangle) -> Result<(), Figur
 }
 
 /// Numbers and centres of the cells inside a window.
-fn cells(density: &Density, window: (f64, f64)) -> impl Iterator<Item = (usize, f64)> {
+pub(super) fn cells(density: &Density, window: (f64, f64)) -> impl Iterator<Item = (usize, f64)> {
     let centres = density.axes[0].centres().into_iter().enumerate();
     centres.filter(move |(_, centre)| *centre >= window.0 && *centre <= window.1)
 }
 
 /// The density at the centres of its cells.
-fn curve(density: &Density, window: (f64, f64), range: (f64, f64)) -> Vec<(f64, f64)> {
+pub(super) fn curve(density: &Density, window: (f64, f64), range: (f64, f64)) -> Vec<(f64, f64)> {
     cells(density, window)
         .filter(|(cell, _)| density.values[*cell].is_finite())
         .map(|(cell, centre)| (centre, density.values[cell].clamp(range.0, range.1)))

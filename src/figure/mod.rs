@@ -9,6 +9,8 @@ mod backend;
 mod bifurcations;
 mod branches;
 mod colour_bar;
+mod compared_joint;
+mod compared_marginals;
 mod contour;
 mod diagram;
 mod frame;
@@ -23,6 +25,7 @@ mod select;
 mod style;
 mod symbols;
 mod ticks;
+mod time_to_accuracy;
 
 use std::convert::Infallible;
 use std::io::Write;
@@ -30,6 +33,7 @@ use std::path::{Path, PathBuf};
 
 use plotters::drawing::DrawingAreaErrorKind;
 
+use crate::compare::Comparison;
 use crate::continuation::SweepResult;
 use crate::density::Observable;
 use crate::system::Model;
@@ -136,8 +140,42 @@ pub fn draw_all(
             }
         }
     }
+    save_all(&figures, formats, folder)
+}
+
+/// Draws a comparison of methods: marginals by every method (`marginals.svg`), joint densities side by side (`joint_xy.svg`), and the error
+/// against time (`time_to_accuracy.svg`). The model and the name of the swept parameter give the symbols.
+///
+/// # Errors
+/// [`FigureError`]; files made before stay.
+pub fn draw_comparison(
+    comparison: &Comparison,
+    (model, parameter): (&Model, &str),
+    title: &str,
+    formats: &[Format],
+    folder: &Path,
+) -> Result<Vec<PathBuf>, FigureError> {
+    let names = select::Names::of(model, parameter);
+    let mut figures = Vec::new();
+    figures.extend(compared_marginals::figure(comparison, names, title)?);
+    for &observable in &comparison.observables {
+        if matches!(observable, Observable::Joint(..)) {
+            let sheet = compared_joint::figure(comparison, observable, names, title)?;
+            figures.extend(sheet);
+        }
+    }
+    figures.extend(time_to_accuracy::figure(comparison, names, title)?);
+    save_all(&figures, formats, folder)
+}
+
+/// Writes figures in every format; returns the files.
+fn save_all(
+    figures: &[Figure],
+    formats: &[Format],
+    folder: &Path,
+) -> Result<Vec<PathBuf>, FigureError> {
     let mut paths = Vec::new();
-    for figure in &figures {
+    for figure in figures {
         for &format in formats {
             paths.push(save(figure, format, folder)?);
         }

@@ -29,6 +29,10 @@ impl<'a> Names<'a> {
         }
     }
 
+    pub(super) fn of(model: &'a Model, parameter: &'a str) -> Self {
+        Self { model, parameter }
+    }
+
     /// Symbol of the swept parameter, as markup; its name where the model does not know it.
     pub(super) fn parameter(&self) -> String {
         let mut parameters = self.model.parameters.iter();
@@ -37,6 +41,11 @@ impl<'a> Names<'a> {
             None if self.parameter.chars().count() == 1 => symbols::variable(self.parameter),
             None => symbols::plain(self.parameter),
         }
+    }
+
+    /// Name of the swept parameter as plain text.
+    pub(super) fn plain(&self) -> &'a str {
+        self.parameter
     }
 
     /// Symbol of an axis, as markup.

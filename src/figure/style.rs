@@ -28,6 +28,9 @@ pub(super) const FRAME_LINE: f64 = 1.0;
 /// Width of curves.
 pub(super) const CURVE_LINE: f64 = 1.7;
 
+/// Width of error bars.
+pub(super) const ERROR_LINE: f64 = 0.9;
+
 const fn colour(rgb: (u8, u8, u8), alpha: f64) -> BackendColor {
     BackendColor { alpha, rgb }
 }

@@ -56,6 +56,26 @@ pub(super) fn ticks(from: f64, to: f64, most: usize) -> Ticks {
     }
 }
 
+/// Ticks at the powers of ten between two exponents, small ones at 2 to 9 times each.
+pub(super) fn decades(from: f64, to: f64) -> Ticks {
+    let slack = 1e-9;
+    let inside = |exponent: f64| exponent >= from - slack && exponent <= to + slack;
+    let powers = from.floor() as i32..=to.ceil() as i32;
+    let major = powers.clone().map(f64::from).filter(|&power| inside(power));
+    let minor =
+        powers.flat_map(|power| (2..10).map(move |n| f64::from(power) + f64::from(n).log10()));
+    Ticks {
+        major: major
+            .map(|value| Tick {
+                value,
+                label: format!("10^{{{}}}", symbols::fixed(value, 0)),
+            })
+            .collect(),
+        minor: minor.filter(|&exponent| inside(exponent)).collect(),
+        exponent: 0,
+    }
+}
+
 /// The smallest round step that gives at most `most` ticks, and into how many parts small ticks cut it.
 fn step(from: f64, to: f64, most: usize) -> (f64, i64) {
     let slack = 1e-9 * (to - from);
@@ -119,6 +139,15 @@ mod tests {
         assert_eq!(small.major.last().unwrap().label, "3");
         let large = ticks(0.0, 2e7, 3);
         assert_eq!((large.exponent, large.major[2].label.as_str()), (7, "2"));
+    }
+
+    #[test]
+    fn decades_are_labelled_and_divided() {
+        let ticks = decades(-2.1, 1.0);
+        let labels: Vec<&str> = ticks.major.iter().map(|tick| tick.label.as_str()).collect();
+        assert_eq!(labels, ["10^{−2}", "10^{−1}", "10^{0}", "10^{1}"]);
+        // 0.008 and 0.009 below 10⁻², and eight in each of three decades.
+        assert_eq!(ticks.minor.len(), 26);
     }
 
     proptest! {

@@ -23,7 +23,7 @@ pub use options::{
 };
 pub use range::automatic_ranges;
 pub use setting::{Setting, State};
-pub use sgcm::SgcmSource;
+pub use sgcm::{SampledPoint, SgcmSource};
 pub use slope_correction::{Corrected, solve_corrected};
 
 /// Why a method cannot give a solution at all. Failed solves are data, see

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::findings::Findings;
 use super::generator::QUIET_ESCAPE;
-use super::slope_correction::{Corrected, solve_corrected};
+use super::slope_correction::{Corrected, solve_by};
 use super::steps::{Steps, choose_steps};
 use super::structure::structure;
 use super::trail::Trail;
@@ -49,6 +49,19 @@ pub struct SgcmSource {
     cancelled: Arc<AtomicBool>,
 }
 
+/// The sampled cell map at one parameter value, to be solved with either [`Correction`].
+pub struct SampledPoint {
+    system: Arc<dyn System>,
+    transitions: SampledTransitions,
+}
+
+impl SampledPoint {
+    /// The samples.
+    pub fn transitions(&self) -> &SampledTransitions {
+        &self.transitions
+    }
+}
+
 impl SgcmSource {
     /// Prepares a source; steps left to the program are chosen here, once, so that the transition matrix varies
     /// smoothly along the sweep. Setting `cancelled` makes a running solve return [`SourceError::Interrupted`].
@@ -74,6 +87,27 @@ impl SgcmSource {
             steps,
             cancelled,
         })
+    }
+
+    /// The same source on other cells over the same ranges, with the steps that were chosen.
+    pub fn on(&self, space: &CellSpace) -> Self {
+        let mut steps = self.steps.clone();
+        // Cells to grow from; all others that hold mass are reached from them.
+        let centres = steps.cells.iter().map(|&cell| self.space.centre(cell));
+        let mut cells: Vec<usize> = centres.filter_map(|centre| space.find(&centre)).collect();
+        cells.sort_unstable();
+        cells.dedup();
+        steps.cells = cells;
+        Self {
+            model: self.model,
+            values: self.values.clone(),
+            parameter: self.parameter.clone(),
+            space: space.clone(),
+            observables: self.observables.clone(),
+            options: self.options.clone(),
+            steps,
+            cancelled: self.cancelled.clone(),
+        }
     }
 
     /// Time one transition spans.
@@ -110,18 +144,22 @@ impl SgcmSource {
     }
 
     /// Steady states without one group of samples each; fewer than asked for when one of them has none.
-    fn replicates(&self, transitions: &SampledTransitions, full: &SteadyState) -> Vec<Vec<f64>> {
+    fn replicates(
+        &self,
+        correction: Correction,
+        transitions: &SampledTransitions,
+        full: &SteadyState,
+    ) -> Vec<Vec<f64>> {
         let options = Options::new(self.options.solver, REPLICATE_TOLERANCE);
         let replicate = |group: usize| {
             let start = Some(full.mass.as_slice());
-            let change = REPLICATE_CHANGE;
-            let solved = solve_corrected(
+            let solved = solve_by(
+                correction,
                 transitions,
                 &self.space,
                 start,
                 Some(group),
-                &options,
-                change,
+                (&options, REPLICATE_CHANGE),
             );
             match solved.map(|solved| solved.outcome) {
                 Ok(Outcome::Steady(steady)) => Some(steady.mass),
@@ -136,11 +174,11 @@ impl SgcmSource {
 
     fn densities(
         &self,
-        system: &dyn System,
-        transitions: &SampledTransitions,
+        (system, transitions): (&dyn System, &SampledTransitions),
+        correction: Correction,
         steady: &SteadyState,
     ) -> Result<(Vec<EstimatedDensity>, usize), MethodError> {
-        let replicates = self.replicates(transitions, steady);
+        let replicates = self.replicates(correction, transitions, steady);
         let usable: &[Vec<f64>] = if replicates.len() < 2 {
             &[]
         } else {
@@ -161,8 +199,8 @@ impl SgcmSource {
 
     fn solved(
         &self,
-        system: &dyn System,
-        transitions: &SampledTransitions,
+        (system, transitions): (&dyn System, &SampledTransitions),
+        correction: Correction,
         matrix: &TransitionMatrix,
         slopes: &[[f64; MAX_DIMENSION]],
         steady: SteadyState,
@@ -192,8 +230,10 @@ impl SgcmSource {
             .iter()
             .map(|&c| steady.mass[c])
             .collect();
-        report.numerical_diffusion =
-            transitions.remaining_diffusion(&self.space, &local_mass, slopes);
+        report.numerical_diffusion = match correction {
+            Correction::Slope => transitions.remaining_diffusion(&self.space, &local_mass, slopes),
+            Correction::None => transitions.numerical_diffusion(&local_mass),
+        };
         findings.numerical_diffusion(&report.numerical_diffusion, &self.steps.noise, &moments);
         findings.time_step(
             self.steps.time_step,
@@ -208,7 +248,7 @@ impl SgcmSource {
             report.status = PointStatus::NotConverged;
             findings.not_converged(info.error_estimate);
         }
-        let (densities, replicates) = self.densities(system, transitions, &steady)?;
+        let (densities, replicates) = self.densities((system, transitions), correction, &steady)?;
         findings.replicates(replicates, transitions.groups());
         report.warnings = findings.into_sentences();
         Ok(Solution {
@@ -240,20 +280,54 @@ impl SgcmSource {
         }
     }
 
-    fn try_solve(&self, value: f64, start: Option<&[f64]>) -> Result<Solution<State>, MethodError> {
+    /// Samples the cell map at a parameter value, to be solved by [`SgcmSource::solve_sampled`]. Where samples started is
+    /// kept when the options ask for slope correction.
+    ///
+    /// # Errors
+    /// [`MethodError`] when the value is not allowed, or sampling was cancelled.
+    pub fn sample_at(
+        &self,
+        value: f64,
+        start: Option<&[f64]>,
+    ) -> Result<SampledPoint, MethodError> {
         let values = self.model.with(&self.values, &self.parameter, value)?;
         let system = self.model.system(&values);
         let transitions = self.sample(system.as_ref(), start)?;
+        Ok(SampledPoint {
+            system,
+            transitions,
+        })
+    }
+
+    /// Solves a sampled cell map, with the correction of one's choice: the same samples serve both. `start` has one mass a cell.
+    ///
+    /// # Errors
+    /// [`MethodError`] when the samples cannot be solved.
+    pub fn solve_sampled(
+        &self,
+        point: &SampledPoint,
+        correction: Correction,
+        start: Option<&[f64]>,
+    ) -> Result<Solution<State>, MethodError> {
+        let (system, transitions) = (point.system.as_ref(), &point.transitions);
         let options = Options::new(self.options.solver, self.options.solver_tolerance);
         let Corrected {
             outcome,
             matrix,
             slopes,
             ..
-        } = solve_corrected(&transitions, &self.space, start, None, &options, CHANGE)?;
+        } = solve_by(
+            correction,
+            transitions,
+            &self.space,
+            start,
+            None,
+            (&options, CHANGE),
+        )?;
         match outcome {
             Outcome::Steady(steady) => {
-                self.solved(system.as_ref(), &transitions, &matrix, &slopes, steady)
+                let sampled = (system, transitions);
+                self.solved(sampled, correction, &matrix, &slopes, steady)
             }
             Outcome::SeveralClasses { classes, .. } => {
                 let mut report = self.report(PointStatus::SeveralClasses, 0, 0.0);
@@ -278,7 +352,11 @@ impl DensitySource for SgcmSource {
     type State = State;
 
     fn solve(&self, value: f64, start: Option<&State>) -> Result<Solution<State>, SourceError> {
-        match self.try_solve(value, start.map(|state| state.mass.as_slice())) {
+        let start = start.map(|state| state.mass.as_slice());
+        let solved = self
+            .sample_at(value, start)
+            .and_then(|point| self.solve_sampled(&point, self.options.correction, start));
+        match solved {
             Err(MethodError::Sampling(SamplingError::Cancelled)) => Err(SourceError::Interrupted),
             other => other.map_err(|error| SourceError::Method(error.into())),
         }

@@ -6,7 +6,7 @@
 //! that is sought; the equation is solved by turns, slopes from the last masses, masses from the matrix with these
 //! slopes, until nothing changes.
 
-use super::MethodError;
+use super::{Correction, MethodError};
 use crate::MAX_DIMENSION;
 use crate::sampling::{SampledTransitions, TransitionMatrix, cell_slopes};
 use crate::space::CellSpace;
@@ -88,6 +88,31 @@ pub fn solve_corrected(
         slopes = slopes_of(&steady.mass);
         last = Some(steady);
     }
+}
+
+/// Solves the cell map with the correction that is asked for; without any, as if starts had not been kept.
+pub(super) fn solve_by(
+    correction: Correction,
+    transitions: &SampledTransitions,
+    space: &CellSpace,
+    guess: Option<&[f64]>,
+    left_out: Option<usize>,
+    (options, largest_change): (&Options, f64),
+) -> Result<Corrected, MethodError> {
+    if correction == Correction::Slope {
+        return solve_corrected(transitions, space, guess, left_out, options, largest_change);
+    }
+    let matrix = match left_out {
+        Some(group) => transitions.matrix_without_group(group),
+        None => transitions.matrix(),
+    };
+    Ok(Corrected {
+        outcome: solve(&matrix, space, guess, options)?,
+        matrix,
+        slopes: vec![[0.0; MAX_DIMENSION]; transitions.cells().len()],
+        rounds: 1,
+        change: 0.0,
+    })
 }
 
 fn l1(a: &[f64], b: &[f64]) -> f64 {

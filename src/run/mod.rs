@@ -5,6 +5,7 @@ mod arrays;
 mod atomic;
 mod bifurcations;
 mod checks;
+mod compare;
 mod folder;
 mod latex;
 mod manifest;
@@ -24,6 +25,7 @@ mod tests;
 pub use bifurcations::{
     bifurcations_csv, bifurcations_json, bifurcations_markdown, bifurcations_tex,
 };
+pub use compare::{CompareFolder, CompareTable, ComparedRun, compare_tables};
 pub use folder::RunFolder;
 pub use manifest::{Ending, Manifest, PhaseSeconds};
 pub use naming::Naming;

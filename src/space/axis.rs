@@ -203,8 +203,8 @@ impl Axis {
         }
     }
 
-    /// The same axis with about `factor` times as many cells, graded alike: faces stay on the points it is graded
-    /// toward, and an even number of cells stays even, so that a face stays in the middle.
+    /// The same axis with about `factor` times as many cells (fewer below 1, at least two a stretch between graded points), graded
+    /// alike: faces stay on the points it is graded toward, and an even number of cells stays even, so that a face stays in the middle.
     pub fn refined(&self, factor: f64) -> Self {
         let finer = |cells: usize| {
             let odd = cells % 2;
@@ -212,7 +212,8 @@ impl Axis {
         };
         let mut first_cell = 0;
         let pieces = self.pieces.iter().map(|piece| {
-            let cells = finer(piece.cells).max(piece.cells);
+            let least = if factor < 1.0 { 2 } else { piece.cells };
+            let cells = finer(piece.cells).max(least);
             let counts = (first_cell, cells);
             first_cell += cells;
             Piece::new((piece.from, piece.to), counts, piece.bulk, &piece.terms)

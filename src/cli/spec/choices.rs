@@ -18,23 +18,38 @@ use crate::topology::DetectOptions;
 
 use super::swept::Swept;
 
-/// Reads `[method]`; wrong values are reported and replaced by defaults. The settings of the method that is not
-/// chosen are checked too, so that a file can hold both and `--set method.kind=…` switches.
-pub(super) fn read_method(reader: &mut Reader) -> MethodOptions {
-    let generator = read_generator(reader);
-    let sgcm = read_sgcm(reader);
-    let monte_carlo = read_monte_carlo(reader);
+/// The settings of every method that the file has, chosen or not.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct EveryMethod {
+    /// The generator's.
+    pub(crate) generator: GeneratorMethodOptions,
+    /// SGCM's.
+    pub(crate) sgcm: SgcmOptions,
+    /// Monte Carlo's.
+    pub(crate) monte_carlo: MonteCarloOptions,
+}
+
+/// Reads `[method]`: the chosen one, and all; wrong values are reported and replaced by defaults. The settings of the method that
+/// is not chosen are checked too, so that a file can hold both and `--set method.kind=…` switches.
+pub(super) fn read_method(reader: &mut Reader) -> (MethodOptions, EveryMethod) {
+    let every = EveryMethod {
+        generator: read_generator(reader),
+        sgcm: read_sgcm(reader),
+        monte_carlo: read_monte_carlo(reader),
+    };
+    let all = every.clone();
     let kind = reader.text(&["method", "kind"]).map(|name| name.value);
-    match kind.as_deref() {
-        Some("sgcm") => MethodOptions::Sgcm(sgcm),
-        Some("monte-carlo") => MethodOptions::MonteCarlo(monte_carlo),
-        Some("generator") => MethodOptions::Generator(generator),
+    let chosen = match kind.as_deref() {
+        Some("sgcm") => MethodOptions::Sgcm(all.sgcm),
+        Some("monte-carlo") => MethodOptions::MonteCarlo(all.monte_carlo),
+        Some("generator") => MethodOptions::Generator(all.generator),
         _ => match MethodOptions::default() {
-            MethodOptions::Generator(_) => MethodOptions::Generator(generator),
-            MethodOptions::Sgcm(_) => MethodOptions::Sgcm(sgcm),
-            MethodOptions::MonteCarlo(_) => MethodOptions::MonteCarlo(monte_carlo),
+            MethodOptions::Generator(_) => MethodOptions::Generator(all.generator),
+            MethodOptions::Sgcm(_) => MethodOptions::Sgcm(all.sgcm),
+            MethodOptions::MonteCarlo(_) => MethodOptions::MonteCarlo(all.monte_carlo),
         },
-    }
+    };
+    (chosen, every)
 }
 
 fn read_generator(reader: &Reader) -> GeneratorMethodOptions {

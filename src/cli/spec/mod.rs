@@ -16,6 +16,7 @@ use crate::system::{Model, ParameterValues};
 use crate::topology::{DetectOptions, PersistenceDetector};
 
 pub(crate) use cells::AxisCells;
+pub(crate) use choices::EveryMethod;
 
 use super::diagnostic::Report;
 use super::document::Document;
@@ -48,6 +49,8 @@ pub(crate) struct SweepSpec {
     pub(crate) space: CellSpace,
     /// Settings of the method.
     pub(crate) method: MethodOptions,
+    /// Settings of all methods, the chosen one among them.
+    pub(crate) every_method: EveryMethod,
     /// Settings of detection.
     pub(crate) detect: DetectOptions,
     /// What is watched, marginals first.
@@ -96,7 +99,7 @@ impl SweepSpec {
 
     fn build(file: &Path, document: Document) -> Result<Self, Report> {
         let mut reader = Reader::new(document);
-        let method = choices::read_method(&mut reader);
+        let (method, every_method) = choices::read_method(&mut reader);
         let model = swept::read_model(&mut reader);
         let swept = model.and_then(|model| swept::read(&mut reader, model));
         let cells =
@@ -128,6 +131,7 @@ impl SweepSpec {
             cells,
             space,
             method,
+            every_method,
             detect,
             observables,
             locate,

@@ -9,16 +9,16 @@ use crate::continuation::{Plan, Point};
 use crate::run::Naming;
 
 /// Shows how far a sweep is.
-pub(super) struct Progress {
+pub(in crate::cli) struct Progress {
     bar: Option<ProgressBar>,
     quiet: bool,
 }
 
 impl Progress {
-    pub(super) fn new(points: usize, quiet: bool) -> Self {
+    pub(in crate::cli) fn new(points: usize, quiet: bool) -> Self {
         let bar = (!quiet && std::io::stderr().is_terminal()).then(|| {
             let bar = ProgressBar::new(points as u64);
-            let template = "{bar:30} {pos}/{len} points, {elapsed} gone, {eta} left  {msg}";
+            let template = "{bar:30} {pos}/{len}, {elapsed} gone, {eta} left  {msg}";
             if let Ok(style) = ProgressStyle::with_template(template) {
                 bar.set_style(style);
             }
@@ -29,7 +29,7 @@ impl Progress {
     }
 
     /// What the program is doing.
-    pub(super) fn say(&self, text: &str) {
+    pub(in crate::cli) fn say(&self, text: &str) {
         match &self.bar {
             Some(bar) => bar.set_message(text.to_owned()),
             None => self.line(text),
@@ -37,7 +37,7 @@ impl Progress {
     }
 
     /// A point is done.
-    pub(super) fn point(
+    pub(in crate::cli) fn point(
         &self,
         naming: &Naming<'_>,
         plan: &Plan,
@@ -63,15 +63,27 @@ impl Progress {
         }
     }
 
+    /// A step of something else than a sweep begins.
+    pub(in crate::cli) fn step(&self, text: &str, done: usize, total: usize) {
+        match &self.bar {
+            Some(bar) => {
+                bar.set_length(total as u64);
+                bar.set_position(done as u64);
+                bar.set_message(text.to_owned());
+            }
+            None => self.line(&format!("{:4} of {total:4}  {text}", done + 1)),
+        }
+    }
+
     /// Takes the bar away.
-    pub(super) fn finish(&self) {
+    pub(in crate::cli) fn finish(&self) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
     }
 
     /// Warnings of a finished run.
-    pub(super) fn warn(&self, warnings: &[String]) {
+    pub(in crate::cli) fn warn(&self, warnings: &[String]) {
         for warning in warnings {
             self.line(&format!("warning: {warning}"));
         }

@@ -1,0 +1,209 @@
+//! `pbif compare`: solves by every method at the values of `figures.at`, and writes tables and figures of how they agree.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use comfy_table::{Table, presets};
+
+use super::args::CompareArguments;
+use super::diagnostic::Diagnostic;
+use super::output::OutputFolder;
+use super::spec::SweepSpec;
+use super::sweep::progress::Progress;
+use super::{CommandError, Outcome, cost};
+use crate::compare::{CompareError, Comparison, Method, Solved, Task, compare};
+use crate::figure::draw_comparison;
+use crate::method::Setting;
+use crate::run::{CompareFolder, ComparedRun, Naming, compare_tables, format_number};
+
+/// Compares, writes, draws and prints.
+///
+/// # Errors
+/// [`CommandError`] when the results cannot be written or a method refuses; failed solves are data.
+pub(super) fn run(spec: &SweepSpec, arguments: &CompareArguments) -> Result<Outcome, CommandError> {
+    if spec.figures_at.is_empty() {
+        let diagnostic = Diagnostic::new("`figures.at` is empty: there is no value to compare at")
+            .remedy("leave `figures.at` out, or give values of the swept parameter");
+        return Err(CommandError::Input(diagnostic.into()));
+    }
+    let default = || Path::new("output").join(format!("{}-compare", spec.name));
+    let path = arguments.out.clone().unwrap_or_else(default);
+    let output = OutputFolder::prepare(&path)?;
+    let threads = rayon::ThreadPoolBuilder::new()
+        .num_threads(arguments.threads.unwrap_or(0))
+        .build()?;
+    let cancelled = Arc::new(AtomicBool::new(false));
+    let flag = cancelled.clone();
+    // A second interrupt ends the program at once.
+    ctrlc::set_handler(move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            // Nothing is half-written: the folder is put in place when it is whole.
+            #[allow(clippy::exit)]
+            std::process::exit(130);
+        }
+    })?;
+    let quiet = arguments.quiet;
+    threads.install(|| carry_out(spec, output.path(), quiet, &cancelled))
+}
+
+fn carry_out(
+    spec: &SweepSpec,
+    path: &Path,
+    quiet: bool,
+    cancelled: &Arc<AtomicBool>,
+) -> Result<Outcome, CommandError> {
+    let mut at: Vec<f64> = Vec::new();
+    for &value in &spec.figures_at {
+        if !at.contains(&value) {
+            at.push(value);
+        }
+    }
+    let task = Task {
+        setting: Setting {
+            model: spec.model,
+            values: &spec.parameters,
+            parameter: &spec.parameter,
+            range: (spec.from, spec.to),
+            space: &spec.space,
+            observables: &spec.observables,
+        },
+        at: &at,
+        generator: spec.every_method.generator.clone(),
+        sgcm: spec.every_method.sgcm.clone(),
+        monte_carlo: spec.every_method.monte_carlo.clone(),
+    };
+    let progress = Progress::new(2 + 3 * at.len(), quiet);
+    let compared = compare(&task, cancelled, &mut |step| {
+        progress.step(&step.next, step.done, step.total);
+    });
+    let comparison = match compared {
+        Ok(comparison) => comparison,
+        Err(CompareError::Interrupted) => {
+            progress.finish();
+            super::print("interrupted: nothing was written\n")?;
+            return Ok(Outcome::Interrupted);
+        }
+        Err(error) => return Err(error.into()),
+    };
+    let bytes = |solved: &Solved| memory(spec, &comparison, solved);
+    let resolved = spec.to_toml();
+    let run = ComparedRun {
+        naming: Naming {
+            model: spec.model,
+            parameter: &spec.parameter,
+        },
+        comparison: &comparison,
+        bytes: &bytes,
+        sweep: &resolved,
+        threads: rayon::current_num_threads(),
+    };
+    let folder = CompareFolder::new(path)?;
+    folder.write(&run)?;
+    progress.say("drawing");
+    draw_comparison(
+        &comparison,
+        (spec.model, &spec.parameter),
+        &spec.title,
+        &spec.figure_formats,
+        &folder.figures(),
+    )?;
+    let files = folder.take_place()?;
+    progress.finish();
+    progress.warn(&warnings(spec, &comparison));
+    super::print(&text(&run, &files))?;
+    Ok(match comparison.is_complete() && comparison.agrees() {
+        true => Outcome::Complete,
+        false => Outcome::Partial,
+    })
+}
+
+/// Bytes at work at one point, and what the number rests on.
+fn memory(spec: &SweepSpec, comparison: &Comparison, solved: &Solved) -> (f64, &'static str) {
+    let (every, dimension) = (&spec.every_method, spec.space.dimension());
+    match solved.method {
+        Method::Generator => match cost::factorisation(&spec.space, &every.generator) {
+            Ok(factors) => (
+                cost::generator_bytes(&spec.space, &every.generator, &factors),
+                "estimated from the elimination order",
+            ),
+            Err(_) => (f64::NAN, "unknown"),
+        },
+        Method::Sgcm | Method::SgcmSlope => {
+            let (transitions, cells) = (solved.work.transitions, solved.work.cells);
+            let mut options = every.sgcm.clone();
+            options.correction = crate::method::Correction::Slope;
+            (
+                cost::sgcm_bytes(transitions, cells, dimension, &options),
+                "estimated from the transitions that were counted",
+            )
+        }
+        Method::MonteCarlo => (
+            cost::monte_carlo_bytes(comparison.common.n_cells() as f64),
+            "estimated from cells and blocks",
+        ),
+    }
+}
+
+/// What the methods say of themselves, each sentence once a method, at its first value.
+fn warnings(spec: &SweepSpec, comparison: &Comparison) -> Vec<String> {
+    let mut seen: Vec<(Method, String)> = Vec::new();
+    let mut warnings = Vec::new();
+    for value in &comparison.values {
+        if let Some((rate, outside)) = value.leaves() {
+            warnings.push(format!(
+                "{} = {}: generator and Monte Carlo disagree, and mass leaves Ω (at a rate of {rate:.1e}; Monte Carlo is outside for {outside:.1e} of the time); the generator's density is that of what never left, Monte Carlo's of what is inside: wider ranges tell whether that is why",
+                spec.parameter,
+                format_number(value.value)
+            ));
+        }
+        for solved in &value.solved {
+            for sentence in &solved.report.warnings {
+                let shape: String = sentence.chars().filter(|c| !c.is_ascii_digit()).collect();
+                let kind = (solved.method, shape);
+                if !seen.contains(&kind) {
+                    seen.push(kind);
+                    let (name, at) = (solved.method.name(), format_number(value.value));
+                    warnings.push(format!("{name} at {} = {at}: {sentence}", spec.parameter));
+                }
+            }
+        }
+    }
+    warnings
+}
+
+/// The tables, the verdict and the files.
+fn text(run: &ComparedRun<'_>, files: &[PathBuf]) -> String {
+    let mut text = String::new();
+    for table in compare_tables(run) {
+        let mut lines = Table::new();
+        lines
+            .load_style(presets::NOTHING)
+            .set_header(&table.header)
+            .add_rows(&table.rows);
+        text += &format!("{}\n", table.caption);
+        for line in lines.to_string().lines() {
+            text += &format!("{}\n", line.trim_end());
+        }
+        text.push('\n');
+    }
+    let (bins, beyond) = run.comparison.bins();
+    let verdict = match run.comparison.agrees() {
+        _ if bins == 0 => "generator and Monte Carlo have no value in common",
+        true => "generator and Monte Carlo agree",
+        false => "generator and Monte Carlo DISAGREE beyond their stated uncertainties",
+    };
+    text += &format!("{verdict}: {beyond} of {bins} marginal bins are beyond all errors\n");
+    for value in &run.comparison.values {
+        for observable in value.disagreements() {
+            let name = run.naming.observable(observable);
+            let at = format_number(value.value);
+            text += &format!("  {} = {at}: {name}\n", run.naming.parameter);
+        }
+    }
+    text += "\nfiles\n";
+    for file in files {
+        text += &format!("  {}\n", file.display());
+    }
+    text
+}

@@ -1,0 +1,282 @@
+//! One method at one parameter value: its density on the common cells, and what it cost.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+use super::exact::axes_of;
+use super::{CompareError, Method, PAPER_MAP_STEP, Task, overlap::rebin_density};
+use crate::continuation::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
+use crate::density::EstimatedDensity;
+use crate::method::{
+    Correction, GeneratorSource, MethodError, MonteCarloSource, Setting, SgcmOptions, SgcmSource,
+    State, StepChoice,
+};
+use crate::monte_carlo::MonteCarloError;
+use crate::sampling::SamplingError;
+use crate::space::CellSpace;
+
+/// What a solve took.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Work {
+    /// Seconds before the first value, shared by all: choosing steps and lengths.
+    pub preparation_seconds: f64,
+    /// Seconds of running trajectories; of SGCM both corrections share them, and each counts them in full.
+    pub sampling_seconds: f64,
+    /// Seconds of solving, replicates and second scheme included.
+    pub solve_seconds: f64,
+    /// Integrator steps of all trajectories together.
+    pub steps: u64,
+    /// Samples a cell (SGCM), or trajectories (Monte Carlo).
+    pub samples: usize,
+    /// Entries of the transition matrix (SGCM).
+    pub transitions: usize,
+    /// Cells that were worked on.
+    pub cells: usize,
+}
+
+impl Work {
+    /// Seconds at this value.
+    pub fn seconds(&self) -> f64 {
+        self.sampling_seconds + self.solve_seconds
+    }
+}
+
+/// A method's result at one parameter value.
+#[derive(Debug, Clone)]
+pub struct Solved {
+    /// The method.
+    pub method: Method,
+    /// How it ended.
+    pub status: PointStatus,
+    /// What it says of itself.
+    pub report: SolveReport,
+    /// What it took.
+    pub work: Work,
+    /// Step of the integrator; `None` for the generator.
+    pub time_step: Option<f64>,
+    /// Share of the time that Monte Carlo's trajectories spent outside Ω and were not counted; `None` for the others.
+    pub share_outside: Option<f64>,
+    /// The densities that are watched, on the common cells; empty without a density.
+    pub densities: Vec<EstimatedDensity>,
+}
+
+/// The methods, prepared for all values.
+pub(super) struct Sources<'a> {
+    task: &'a Task<'a>,
+    common: &'a CellSpace,
+    cancelled: &'a Arc<AtomicBool>,
+    sgcm: SgcmSource,
+    sgcm_seconds: f64,
+    monte_carlo: MonteCarloSource,
+    monte_carlo_seconds: f64,
+}
+
+impl<'a> Sources<'a> {
+    pub(super) fn new(
+        task: &'a Task<'a>,
+        common: &'a CellSpace,
+        cancelled: &'a Arc<AtomicBool>,
+    ) -> Result<Self, CompareError> {
+        let clock = Instant::now();
+        let sgcm = sgcm_on(task, common, cancelled)?;
+        let sgcm_seconds = clock.elapsed().as_secs_f64();
+        let clock = Instant::now();
+        let setting = setting_on(task, common);
+        let monte_carlo = MonteCarloSource::new(&setting, &task.monte_carlo, cancelled.clone())?;
+        Ok(Self {
+            task,
+            common,
+            cancelled,
+            sgcm,
+            sgcm_seconds,
+            monte_carlo,
+            monte_carlo_seconds: clock.elapsed().as_secs_f64(),
+        })
+    }
+
+    pub(super) fn generator(&self, value: f64) -> Result<Solved, CompareError> {
+        generator_on(
+            self.task,
+            self.task.setting.space,
+            self.common,
+            value,
+            self.cancelled,
+        )
+    }
+
+    pub(super) fn sgcm(&self, value: f64) -> Result<Vec<Solved>, CompareError> {
+        let mut both = sgcm_both(&self.sgcm, &self.task.sgcm, self.common, value)?;
+        for solved in &mut both {
+            solved.work.preparation_seconds = self.sgcm_seconds;
+        }
+        Ok(both)
+    }
+
+    pub(super) fn monte_carlo(&self, value: f64) -> Result<Solved, CompareError> {
+        let mut solved = monte_carlo_by(&self.monte_carlo, self.common, value)?;
+        solved.work.preparation_seconds = self.monte_carlo_seconds;
+        Ok(solved)
+    }
+
+    /// Both cell maps on other cells.
+    pub(super) fn sgcm_on(
+        &self,
+        space: &CellSpace,
+        value: f64,
+    ) -> Result<Vec<Solved>, CompareError> {
+        sgcm_both(&self.sgcm.on(space), &self.task.sgcm, self.common, value)
+    }
+
+    /// Monte Carlo for a share of its time.
+    pub(super) fn monte_carlo_for(&self, share: f64, value: f64) -> Result<Solved, CompareError> {
+        monte_carlo_by(&self.monte_carlo.shortened(share), self.common, value)
+    }
+}
+
+/// The setting on other cells.
+fn setting_on<'a>(task: &'a Task<'a>, space: &'a CellSpace) -> Setting<'a> {
+    Setting {
+        space,
+        ..task.setting.clone()
+    }
+}
+
+/// The cell map on some cells, with the paper's map step, or a single time step where that is longer.
+fn sgcm_on(
+    task: &Task<'_>,
+    space: &CellSpace,
+    cancelled: &Arc<AtomicBool>,
+) -> Result<SgcmSource, CompareError> {
+    let source = |map_step: f64| {
+        let options = SgcmOptions {
+            map_step: StepChoice::Fixed(map_step),
+            correction: Correction::Slope,
+            ..task.sgcm.clone()
+        };
+        SgcmSource::new(&setting_on(task, space), &options, cancelled.clone())
+    };
+    let paper = source(PAPER_MAP_STEP)?;
+    Ok(match paper.time_step() > PAPER_MAP_STEP {
+        true => source(paper.time_step())?,
+        false => paper,
+    })
+}
+
+/// The generator on some cells, from nothing: every value pays for its factorisation.
+pub(super) fn generator_on(
+    task: &Task<'_>,
+    space: &CellSpace,
+    common: &CellSpace,
+    value: f64,
+    cancelled: &Arc<AtomicBool>,
+) -> Result<Solved, CompareError> {
+    let clock = Instant::now();
+    let setting = setting_on(task, space);
+    let source = GeneratorSource::new(&setting, &task.generator, cancelled.clone())?;
+    let solution = source.solve(value, None).map_err(|error| match error {
+        SourceError::Interrupted => CompareError::Interrupted,
+        SourceError::Method(error) => CompareError::Source(error),
+    })?;
+    let work = Work {
+        solve_seconds: clock.elapsed().as_secs_f64(),
+        cells: space.n_cells(),
+        ..Work::default()
+    };
+    solved(Method::Generator, solution, work, None, common)
+}
+
+/// The cell map plain and slope-corrected, from the same samples.
+fn sgcm_both(
+    source: &SgcmSource,
+    options: &SgcmOptions,
+    common: &CellSpace,
+    value: f64,
+) -> Result<Vec<Solved>, CompareError> {
+    let clock = Instant::now();
+    let point = source.sample_at(value, None).map_err(stopped)?;
+    let sampling_seconds = clock.elapsed().as_secs_f64();
+    let transitions = point.transitions();
+    let work = Work {
+        sampling_seconds,
+        steps: transitions.n_steps(),
+        samples: options.samples,
+        transitions: transitions.matrix().matrix.nnz(),
+        cells: transitions.cells().len(),
+        ..Work::default()
+    };
+    [
+        (Method::Sgcm, Correction::None),
+        (Method::SgcmSlope, Correction::Slope),
+    ]
+    .into_iter()
+    .map(|(method, correction)| {
+        let clock = Instant::now();
+        let solution = source.solve_sampled(&point, correction, None)?;
+        let work = Work {
+            solve_seconds: clock.elapsed().as_secs_f64(),
+            ..work.clone()
+        };
+        let step = Some(transitions.time_step());
+        solved(method, solution, work, step, common)
+    })
+    .collect()
+}
+
+fn monte_carlo_by(
+    source: &MonteCarloSource,
+    common: &CellSpace,
+    value: f64,
+) -> Result<Solved, CompareError> {
+    let clock = Instant::now();
+    let (solution, estimate) = source.estimate(value).map_err(stopped)?;
+    let work = Work {
+        sampling_seconds: clock.elapsed().as_secs_f64(),
+        steps: estimate.steps,
+        samples: source.plan().trajectories,
+        cells: common.n_cells(),
+        ..Work::default()
+    };
+    let step = Some(source.plan().time_step);
+    Ok(Solved {
+        share_outside: Some(estimate.share_outside),
+        ..solved(Method::MonteCarlo, solution, work, step, common)?
+    })
+}
+
+/// Tells an interrupt from a failure.
+fn stopped(error: MethodError) -> CompareError {
+    match error {
+        MethodError::Sampling(SamplingError::Cancelled)
+        | MethodError::MonteCarlo(MonteCarloError::Cancelled) => CompareError::Interrupted,
+        error => error.into(),
+    }
+}
+
+/// Brings the densities to the common cells.
+fn solved(
+    method: Method,
+    solution: Solution<State>,
+    work: Work,
+    time_step: Option<f64>,
+    common: &CellSpace,
+) -> Result<Solved, CompareError> {
+    let densities = solution.densities.iter();
+    let densities: Result<Vec<EstimatedDensity>, CompareError> = densities
+        .map(|density| {
+            Ok(rebin_density(
+                density,
+                &axes_of(common, density.observable)?,
+            )?)
+        })
+        .collect();
+    Ok(Solved {
+        method,
+        status: solution.report.status,
+        report: solution.report,
+        work,
+        time_step,
+        share_outside: None,
+        densities: densities?,
+    })
+}

@@ -1,0 +1,130 @@
+//! Error against time: total variation to the reference over seconds, both logarithmic, a line a method.
+
+use crate::compare::{Accuracy, AccuracyPoint, Comparison, Method, Reference};
+
+use super::compared_marginals::stroke;
+use super::frame::{self, Scale};
+use super::legend::{self, Legend, Sample};
+use super::page::{Heading, Page, Rectangle, Shape};
+use super::select::Names;
+use super::style::{BLACK, ERROR_LINE, MARGIN, Stroke};
+use super::{Figure, FigureError};
+
+/// Size of the panel, in pixels.
+const PANEL: (f64, f64) = (390.0, 270.0);
+/// Share of a decade that is left free beside the data.
+const BORDER: f64 = 0.25;
+/// Least decades of an axis.
+const LEAST: f64 = 2.0;
+/// Shortest time and smallest error that are told apart.
+const SMALLEST: f64 = 1e-9;
+
+fn exponent(value: f64) -> f64 {
+    value.max(SMALLEST).log10()
+}
+
+/// The ends of an axis of exponents.
+fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(value), high.max(value))
+    });
+    let missing = (0.5 * (LEAST - (high - low))).max(0.0);
+    (low - missing - BORDER, high + missing + BORDER)
+}
+
+/// The figure; `None` if nothing was measured.
+///
+/// # Errors
+/// Any [`FigureError`] but that of writing.
+pub(super) fn figure(
+    comparison: &Comparison,
+    names: Names<'_>,
+    title: &str,
+) -> Result<Option<Figure>, FigureError> {
+    let Some(accuracy) = &comparison.accuracy else {
+        return Ok(None);
+    };
+    if accuracy.points.is_empty() {
+        return Ok(None);
+    }
+    let place = |point: &AccuracyPoint| (exponent(point.seconds), exponent(point.error.value));
+    let x = range(accuracy.points.iter().map(|point| place(point).0));
+    let y = range(accuracy.points.iter().map(|point| place(point).1));
+    let density = names.density(accuracy.observable);
+    let across = Scale::logarithmic(x, "seconds")?;
+    let up = Scale::logarithmic(y, &format!("total variation to {} {density}", by(accuracy)))?;
+    let left = MARGIN + up.left();
+    let width = left + PANEL.0 + 12.0 + MARGIN;
+    let title = match title {
+        "" => String::new(),
+        title => format!("{title}; "),
+    };
+    let value = crate::figure::symbols::rounded(accuracy.value);
+    let heading = Heading::new(&format!("{title}at {} = {value}", names.plain()), width)?;
+    let shown = |method: &Method| accuracy.points.iter().any(|one| one.method == *method);
+    let methods: Vec<(usize, Method)> = Method::ALL.into_iter().enumerate().collect();
+    let methods = methods.into_iter().filter(|(_, method)| shown(method));
+    let methods: Vec<(usize, Method)> = methods.collect();
+    let entries = methods.iter().map(|&(number, method)| {
+        let sample = Sample::Marked(line(method), number);
+        (sample, method.title().to_owned())
+    });
+    let legend = Legend::new(entries.collect(), width - 2.0 * MARGIN)?;
+    let rect = Rectangle {
+        left,
+        top: heading.height() + legend.height() + 6.0,
+        width: PANEL.0,
+        height: PANEL.1,
+    };
+    let page = Page::new(width, rect.bottom() + Scale::below() + MARGIN);
+    heading.draw(&page)?;
+    legend.draw(&page, 0.5 * width, heading.height())?;
+    let panel = page.panel(rect, x, y);
+    for &(number, method) in &methods {
+        let own = || accuracy.points.iter().filter(|one| one.method == method);
+        let places: Vec<(f64, f64)> = own().map(place).collect();
+        panel.draw(&places, Shape::Line(line(method)))?;
+        let colour = line(method).colour;
+        for point in own() {
+            let (at, error) = (place(point), 2.0 * point.error.error);
+            let end = |sign: f64| {
+                let value = exponent(point.error.value + sign * error);
+                (at.0, value.clamp(y.0, y.1))
+            };
+            let bar = Shape::Line(Stroke::solid(colour, ERROR_LINE));
+            panel.draw(&[end(-1.0), end(1.0)], bar)?;
+            legend::symbol(
+                |points, shape| panel.draw(points, shape),
+                number,
+                at,
+                colour,
+            )?;
+        }
+    }
+    frame::border(&page, rect)?;
+    across.draw_below(&page, rect, true)?;
+    up.draw_left(&page, rect, true)?;
+    Ok(Some(Figure {
+        name: "time_to_accuracy".to_owned(),
+        svg: page.svg(),
+    }))
+}
+
+/// The line of a method; Monte Carlo's is black, as its symbols elsewhere.
+fn line(method: Method) -> Stroke {
+    match method {
+        Method::MonteCarlo => Stroke {
+            colour: BLACK,
+            ..stroke(method)
+        },
+        method => stroke(method),
+    }
+}
+
+/// What errors are measured by, in words.
+fn by(accuracy: &Accuracy) -> &'static str {
+    match accuracy.reference {
+        Reference::Exact => "exact",
+        Reference::Generator(_) => "finest",
+    }
+}
