@@ -110,21 +110,26 @@ fn coulomb_goes_from_two_peaks_and_a_crater_to_one_peak() {
     ] {
         assert_eq!(ends(column), (first.into(), last.into()), "{column}");
     }
-    for (observable, before, after) in [
-        ("x", "2 peaks", "1 peak"),
-        ("y", "2 peaks", "1 peak"),
-        ("xy", "crater", "1 peak"),
-    ] {
+    for (observable, before, after) in [("x", "2 peaks", "1 peak"), ("y", "2 peaks", "1 peak")] {
         let rows = changes(&folder, observable);
         assert_eq!(rows.len(), 1, "{observable}: no spurious change");
         assert_eq!((rows[0].3.as_str(), rows[0].4.as_str()), (before, after));
     }
+    // From the crater by way of two peaks, or at once where noise hides that stage.
+    let stages: Vec<String> = changes(&folder, "xy")
+        .into_iter()
+        .map(|row| row.4)
+        .collect();
+    assert!(
+        stages == ["2 peaks", "1 peak"] || stages == ["1 peak"],
+        "{stages:?}"
+    );
     // The velocity's density changes exactly at zero.
     let (_, lower, upper, _, _) = changes(&folder, "y")[0];
     assert!(lower <= 0.0 && 0.0 <= upper, "[{lower}, {upper}]");
     let stdout = String::from_utf8(output.stdout).unwrap();
     assert!(
-        stdout.contains("PB1") && stdout.contains("crater → 1 peak"),
+        stdout.contains("PB1") && stdout.contains("merger at a kink"),
         "{stdout}"
     );
     for file in [
