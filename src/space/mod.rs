@@ -2,9 +2,11 @@
 
 mod axis;
 mod cells;
+mod grading;
 
-pub use axis::{Axis, Grading};
+pub use axis::Axis;
 pub use cells::CellSpace;
+pub use grading::Grading;
 
 /// Why an axis or a cell space could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -1,0 +1,123 @@
+//! The grading of an axis: its law, and the stretches between graded points that hold whole numbers of cells.
+
+/// Share of the cells that a graded axis spreads evenly over its range.
+pub(super) const BULK_SHARE: f64 = 0.6;
+
+/// Points toward which an axis is refined.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grading {
+    /// The points, in the range (its ends included); a face falls on each.
+    pub at: Vec<f64>,
+    /// Wanted width of the cells at the points; the widths reached differ by a few per cent.
+    pub smallest: f64,
+}
+
+/// A stretch between two graded points (or ends) that holds a whole number of cells.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Piece {
+    pub(super) from: f64,
+    pub(super) to: f64,
+    pub(super) first_cell: usize,
+    pub(super) cells: usize,
+    pub(super) bulk: f64,
+    pub(super) terms: Vec<(f64, f64, f64)>,
+    pub(super) raw_from: f64,
+    pub(super) scale: f64,
+}
+
+impl Piece {
+    /// Cell coordinate before it is scaled to a whole number of cells.
+    pub(super) fn raw(bulk: f64, terms: &[(f64, f64, f64)], x: f64) -> f64 {
+        let graded: f64 = terms
+            .iter()
+            .map(|&(amplitude, centre, width)| amplitude * ((x - centre) / width).asinh())
+            .sum();
+        bulk * x + graded
+    }
+
+    pub(super) fn new(
+        ends: (f64, f64),
+        cells: (usize, usize),
+        bulk: f64,
+        terms: &[(f64, f64, f64)],
+    ) -> Self {
+        let raw_from = Self::raw(bulk, terms, ends.0);
+        let span = Self::raw(bulk, terms, ends.1) - raw_from;
+        Self {
+            from: ends.0,
+            to: ends.1,
+            first_cell: cells.0,
+            cells: cells.1,
+            bulk,
+            terms: terms.to_vec(),
+            raw_from,
+            scale: cells.1 as f64 / span,
+        }
+    }
+
+    /// Cell coordinate inside the piece: 0 at `from`, `cells` at `to`.
+    pub(super) fn coordinate(&self, x: f64) -> f64 {
+        (Self::raw(self.bulk, &self.terms, x) - self.raw_from) * self.scale
+    }
+
+    /// dx/du, the width of a cell that would lie evenly about `x`.
+    pub(super) fn stretch(&self, x: f64) -> f64 {
+        let graded: f64 = self
+            .terms
+            .iter()
+            .map(|&(amplitude, centre, width)| amplitude / (x - centre).hypot(width))
+            .sum();
+        1.0 / (self.scale * (self.bulk + graded))
+    }
+
+    /// The x with the given cell coordinate, by bisection (used once an edge).
+    pub(super) fn inverse(&self, coordinate: f64) -> f64 {
+        if self.terms.is_empty() {
+            return self.from + (self.to - self.from) * coordinate / self.cells as f64;
+        }
+        let (mut low, mut high) = (self.from, self.to);
+        for _ in 0..200 {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                break;
+            }
+            if self.coordinate(middle) < coordinate {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        0.5 * (low + high)
+    }
+}
+
+/// Amplitude, centre and width of each grading term, such that the cells at the points are about
+/// `smallest` wide and the terms hold the cells that the bulk leaves.
+pub(super) fn grading_terms(
+    (from, to): (f64, f64),
+    count: usize,
+    bulk: f64,
+    points: &[f64],
+    smallest: f64,
+) -> Vec<(f64, f64, f64)> {
+    let wanted = (1.0 - BULK_SHARE) * count as f64;
+    let peak = 1.0 / smallest - bulk;
+    let terms = |width: f64| -> Vec<(f64, f64, f64)> {
+        points.iter().map(|&at| (peak * width, at, width)).collect()
+    };
+    let cells = |width: f64| {
+        let terms = terms(width);
+        Piece::raw(0.0, &terms, to) - Piece::raw(0.0, &terms, from)
+    };
+    // The number of cells grows with the width; bisect its logarithm.
+    let (mut low, mut high) = (1e-12 * smallest, 1e3 * (to - from));
+    for _ in 0..200 {
+        let middle = (low * high).sqrt();
+        if cells(middle) < wanted {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    terms((low * high).sqrt())
+}
