@@ -155,9 +155,9 @@ fn symmetry(model: &Model, system: &dyn System) -> String {
     format!("({}) -> ({})", names.join(", "), image.join(", "))
 }
 
-/// A symbol without its markup: `f_{c}` becomes `f_c`.
+/// A symbol without its markup: `f_{c}` becomes `f_c`, `σ^{2}` σ².
 fn plain(symbol: &str) -> String {
-    symbol.replace(['{', '}'], "")
+    symbol.replace(['{', '}'], "").replace("^2", "²")
 }
 
 #[cfg(test)]
