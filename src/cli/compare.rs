@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use comfy_table::{Table, presets};
 
@@ -30,19 +30,7 @@ pub(super) fn run(spec: &SweepSpec, arguments: &CompareArguments) -> Result<Outc
     let default = || Path::new("output").join(format!("{}-compare", spec.name));
     let path = arguments.out.clone().unwrap_or_else(default);
     let output = OutputFolder::prepare(&path)?;
-    let threads = rayon::ThreadPoolBuilder::new()
-        .num_threads(arguments.threads.unwrap_or(0))
-        .build()?;
-    let cancelled = Arc::new(AtomicBool::new(false));
-    let flag = cancelled.clone();
-    // A second interrupt ends the program at once.
-    ctrlc::set_handler(move || {
-        if flag.swap(true, Ordering::Relaxed) {
-            // Nothing is half-written: the folder is put in place when it is whole.
-            #[allow(clippy::exit)]
-            std::process::exit(130);
-        }
-    })?;
+    let (threads, cancelled) = super::interruptible(arguments.threads)?;
     let quiet = arguments.quiet;
     threads.install(|| carry_out(spec, output.path(), quiet, &cancelled))
 }

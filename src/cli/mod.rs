@@ -18,6 +18,8 @@ mod systems;
 
 use std::io::{self, IsTerminal as _, Write as _};
 use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Parser as _;
 
@@ -153,4 +155,24 @@ fn render(error: CommandError, styled: bool) -> String {
         error => Diagnostic::new(error.to_string()).into(),
     };
     report.render(styled)
+}
+
+/// The threads that a command runs on (`None`: one a core), and a flag that the first interrupt sets. The second ends
+/// the program at once.
+fn interruptible(
+    threads: Option<usize>,
+) -> Result<(rayon::ThreadPool, Arc<AtomicBool>), CommandError> {
+    let threads = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads.unwrap_or(0))
+        .build()?;
+    let cancelled = Arc::new(AtomicBool::new(false));
+    let flag = cancelled.clone();
+    ctrlc::set_handler(move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            // Nothing is half-written: files are put in place by renaming.
+            #[allow(clippy::exit)]
+            std::process::exit(130);
+        }
+    })?;
+    Ok((threads, cancelled))
 }

@@ -26,19 +26,7 @@ use progress::Progress;
 /// [`CommandError`] when the results cannot be written or the threads not be made; failed points are data.
 pub(super) fn run(spec: &SweepSpec, arguments: &SweepArguments) -> Result<Outcome, CommandError> {
     let output = OutputFolder::prepare(&output_path(spec, arguments.out.as_deref()))?;
-    let threads = rayon::ThreadPoolBuilder::new()
-        .num_threads(arguments.threads.unwrap_or(0))
-        .build()?;
-    let cancelled = Arc::new(AtomicBool::new(false));
-    let flag = cancelled.clone();
-    // A second interrupt ends the program at once.
-    ctrlc::set_handler(move || {
-        if flag.swap(true, Ordering::Relaxed) {
-            // Nothing is half-written: files are put in place by renaming.
-            #[allow(clippy::exit)]
-            std::process::exit(130);
-        }
-    })?;
+    let (threads, cancelled) = super::interruptible(arguments.threads)?;
     let path = output.path().to_owned();
     threads.install(|| Run::new(spec, &path, arguments.quiet, cancelled)?.carry_out())
 }

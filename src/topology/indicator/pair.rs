@@ -43,7 +43,8 @@ pub(crate) fn put_right(
         .collect();
     let complete = peaks(features).is_multiple_of(2) == split;
     if complete
-        && (seen.is_empty() || (split && seen.len() > 1 && !is_close(estimated, indicator, reach)))
+        && (seen.is_empty()
+            || (split && seen.len() > 1 && expansion(estimated, indicator, reach).is_none()))
     {
         return;
     }
@@ -106,11 +107,6 @@ pub(crate) fn put_right(
             .then(b.persistence.total_cmp(&a.persistence))
     });
     *features = made;
-}
-
-/// Whether the two peaks are so near the centre that their cells do not tell where.
-fn is_close(estimated: &EstimatedDensity, indicator: &Indicator, reach: f64) -> bool {
-    expansion(estimated, indicator, reach).is_some()
 }
 
 /// Distance of the two peaks from the centre by the expansion, where it holds.
