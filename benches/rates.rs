@@ -10,14 +10,14 @@
     reason = "a bench reports and stops at the first fault"
 )]
 
-#[path = "../src/stationary/rates/tests/generators.rs"]
+#[path = "../src/stationary/generator/tests/generators.rs"]
 mod generators;
 
 use std::time::Instant;
 
 use faer::sparse::{SparseColMat, Triplet};
 use pbif::space::{Axis, CellSpace};
-use pbif::stationary::rates::{RateMethod, RateOptions, RateSolver, estimate};
+use pbif::stationary::generator::{RateMethod, RateOptions, RateSolver, estimate};
 
 fn space(shape: &[usize]) -> CellSpace {
     let axes = shape

@@ -9,7 +9,7 @@ use pbif::sampling::TransitionMatrix;
 use pbif::space::{Axis, CellSpace};
 use pbif::stationary::{Options, Outcome, Solver, second_eigenvalue, solve};
 
-#[path = "../src/stationary/sampled_chain.rs"]
+#[path = "../src/stationary/transition_matrix/sampled_chain.rs"]
 mod sampled_chain;
 
 use sampled_chain::{Settings, sampled_chain};

@@ -13,7 +13,7 @@ use pbif::generator::{
     GeneratorOptions, Repair, assemble, automatic_grading, cell_masses, repair_negative,
 };
 use pbif::space::{Axis, CellSpace};
-use pbif::stationary::rates::{RateOptions, RateSolver};
+use pbif::stationary::generator::{RateOptions, RateSolver};
 use pbif::system::{System, registry};
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256Plus;

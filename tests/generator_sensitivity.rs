@@ -7,7 +7,7 @@
 
 use pbif::generator::{GeneratorOptions, assemble, assemble_derivative};
 use pbif::space::{Axis, CellSpace};
-use pbif::stationary::rates::{RateMethod, RateOptions, RateSolver};
+use pbif::stationary::generator::{RateMethod, RateOptions, RateSolver};
 use pbif::system::registry;
 
 /// Relative L1 difference between the sensitivity and a fourth-order central difference of step `step`.

@@ -13,7 +13,7 @@ use pbif::generator::{
     AdvectiveScheme, GeneratorOptions, assemble, automatic_grading, cell_masses,
 };
 use pbif::space::{Axis, CellSpace};
-use pbif::stationary::rates::{RateMethod, RateOptions, RateSolver, RateSteadyState};
+use pbif::stationary::generator::{RateMethod, RateOptions, RateSolver, RateSteadyState};
 use pbif::system::{System, registry};
 
 fn coulomb(f_c: f64) -> Arc<dyn System> {

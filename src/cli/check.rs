@@ -9,7 +9,7 @@ use crate::method::{
 
 use super::cost;
 use super::spec::SweepSpec;
-use crate::stationary::rates::Estimate;
+use crate::stationary::generator::Estimate;
 
 /// Points beyond which a sweep is said to be long.
 const MANY_POINTS: usize = 1000;

@@ -17,7 +17,7 @@ use crate::method::{
 };
 use crate::monte_carlo::BLOCKS;
 use crate::space::CellSpace;
-use crate::stationary::rates::{Estimate, RateError, estimate};
+use crate::stationary::generator::{Estimate, RateError, estimate};
 
 /// Bytes a transition takes.
 fn transition_bytes(options: &SgcmOptions, dimension: usize) -> f64 {

@@ -19,6 +19,9 @@ const EDGE_MASS_LIMIT: f64 = 1e-3;
 /// Relative increase of the noise by numerical diffusion above which it is worth a word.
 const NUMERICAL_DIFFUSION_LIMIT: f64 = 0.1;
 
+/// Share of the mass that may leave within one relaxation time without a word.
+pub(super) const QUIET_ESCAPE: f64 = 1e-3;
+
 /// Sentences in the making.
 #[derive(Debug)]
 pub(super) struct Findings<'a> {

@@ -1,4 +1,4 @@
-//! Methods: sources of densities for a sweep, each made of the modules before it.
+//! Methods: sources of densities for a sweep, each made of the modules before it and each in a wing of its own.
 
 mod any;
 mod findings;
@@ -6,25 +6,17 @@ mod generator;
 mod monte_carlo;
 mod options;
 mod range;
-mod relaxation;
 mod setting;
 mod sgcm;
-mod slope_correction;
-mod steps;
 mod structure;
-mod trail;
 
 pub use any::MethodSource;
-pub use generator::GeneratorSource;
-pub use monte_carlo::MonteCarloSource;
-pub use options::{
-    Correction, Estimator, GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions,
-    StepChoice,
-};
+pub use generator::{GeneratorMethodOptions, GeneratorSource};
+pub use monte_carlo::{Estimator, MonteCarloOptions, MonteCarloPlan, MonteCarloSource};
+pub use options::{MethodOptions, StepChoice};
 pub use range::automatic_ranges;
 pub use setting::{Setting, State};
-pub use sgcm::{SampledPoint, SgcmSource};
-pub use slope_correction::{Corrected, solve_corrected};
+pub use sgcm::{Corrected, Correction, SampledPoint, SgcmOptions, SgcmSource, solve_corrected};
 
 /// Why a method cannot give a solution at all. Failed solves are data, see
 /// [`PointStatus`](crate::continuation::PointStatus).
@@ -44,7 +36,7 @@ pub enum MethodError {
     Generator(#[from] crate::generator::GeneratorError),
     /// The generator cannot be solved.
     #[error(transparent)]
-    Rates(#[from] crate::stationary::rates::RateError),
+    Rates(#[from] crate::stationary::generator::RateError),
     /// The transition matrix cannot be solved.
     #[error(transparent)]
     Stationary(#[from] crate::stationary::StationaryError),

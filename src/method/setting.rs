@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::MethodError;
-use super::trail::Trail;
+use super::generator::Trail;
 use crate::density::Observable;
 use crate::space::CellSpace;
 use crate::system::{Model, ParameterValues, System};

@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use crate::stationary::rates::RateSolver;
+use crate::stationary::generator::RateSolver;
 
 /// Most inverse iterations.
 const ITERATIONS: usize = 24;

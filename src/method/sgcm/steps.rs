@@ -3,9 +3,10 @@
 
 use std::sync::Arc;
 
-use super::findings::closed_ends;
-use super::structure::kinked_surfaces;
-use super::{MethodError, Setting, SgcmOptions, StepChoice};
+use super::SgcmOptions;
+use crate::method::findings::closed_ends;
+use crate::method::structure::kinked_surfaces;
+use crate::method::{MethodError, Setting, StepChoice};
 use crate::monte_carlo::{StepBias, TOLERATED_BIAS, automatic_step, relaxation, step_bias};
 use crate::sampling::{Pilot, pilot};
 use crate::system::{SwitchingSurface, System};

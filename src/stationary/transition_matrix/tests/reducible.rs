@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::stationary::sampled_chain::Random;
+use crate::stationary::transition_matrix::sampled_chain::Random;
 
 /// Two-cell classes {0, 1} and {4, 5}; cells 2 and 3 send mass to either.
 fn two_wells(left_leak: f64, right_leak: f64) -> TransitionMatrix {

@@ -6,8 +6,9 @@
 //! that is sought; the equation is solved by turns, slopes from the last masses, masses from the matrix with these
 //! slopes, until nothing changes.
 
-use super::{Correction, MethodError};
+use super::Correction;
 use crate::MAX_DIMENSION;
+use crate::method::MethodError;
 use crate::sampling::{SampledTransitions, TransitionMatrix, cell_slopes};
 use crate::space::CellSpace;
 use crate::stationary::{Options, Outcome, SteadyState, solve};

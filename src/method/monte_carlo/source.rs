@@ -4,13 +4,13 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::findings::{Findings, closed_ends};
-use super::generator::QUIET_ESCAPE;
-use super::structure::{kinked_surfaces, structure};
-use super::trail::Trail;
-use super::{Estimator, MethodError, MonteCarloOptions, Setting, State};
+use super::{Estimator, MonteCarloOptions};
 use crate::continuation::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
 use crate::density::{EstimatedDensity, Moments, Observable, estimate};
+use crate::method::findings::{Findings, QUIET_ESCAPE, closed_ends};
+use crate::method::generator::Trail;
+use crate::method::structure::{kinked_surfaces, structure};
+use crate::method::{MethodError, Setting, State};
 use crate::monte_carlo::{
     EnsembleRun, ErgodicRun, Estimate, MonteCarloError, Relaxation, StepBias, automatic_step,
     ensemble, ergodic, relaxation, step_bias,
@@ -141,7 +141,7 @@ impl MonteCarloSource {
     }
 
     /// The plan in words.
-    pub(super) fn describe(&self) -> String {
+    pub(in crate::method) fn describe(&self) -> String {
         let plan = &self.plan;
         format!(
             "monte-carlo ({}), {} trajectories of {:.0} after {:.0}, time step {:.4}, a look every {} steps: {:.1e} steps a point",

@@ -30,7 +30,7 @@ pub(super) struct Solved {
 
 /// The last points along the sweep, newest first, and what else changes slowly from one to the next.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Trail {
+pub(in crate::method) struct Trail {
     points: Vec<Arc<Solved>>,
     /// Derivative of the unknowns by the parameter at the first point, Σ = 0: predicts while there is no second one.
     pub(super) slope: Option<Arc<Vec<f64>>>,

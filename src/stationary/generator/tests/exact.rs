@@ -6,7 +6,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use sprs::{CsMat, TriMat};
 
 use super::{dense, distance, generators, space};
-use crate::stationary::rates::{RateError, RateMethod, RateOptions, RateSolver};
+use crate::stationary::generator::{RateError, RateMethod, RateOptions, RateSolver};
 
 /// A birth-death chain: rates up and down, and its exact steady state by detailed balance.
 fn birth_death(count: usize, seed: u64) -> (DMatrix<f64>, Vec<f64>) {

@@ -2,7 +2,7 @@
 
 use super::super::second_eigenvalue;
 use super::*;
-use crate::stationary::sampled_chain::{Settings, sampled_chain};
+use crate::stationary::transition_matrix::sampled_chain::{Settings, sampled_chain};
 
 fn chain(count: usize, samples: usize, leaks: bool) -> (TransitionMatrix, CellSpace) {
     let (matrix, escape) = sampled_chain(&Settings {

@@ -9,19 +9,20 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::findings::{Findings, closed_ends};
+use super::GeneratorMethodOptions;
 use super::relaxation::Relaxation;
-use super::structure::{kinked_surfaces, structure};
 use super::trail::{self, Trail};
-use super::{GeneratorMethodOptions, MethodError, Setting, State};
 use crate::continuation::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
 use crate::density::{EstimatedDensity, Moments, Observable, estimate_from_difference};
 use crate::generator::{
     AdvectiveScheme, Generator, GeneratorOptions, assemble, assemble_derivative, cell_masses,
     resolution, unknown_moments,
 };
+use crate::method::findings::{Findings, QUIET_ESCAPE, closed_ends};
+use crate::method::structure::{kinked_surfaces, structure};
+use crate::method::{MethodError, Setting, State};
 use crate::space::CellSpace;
-use crate::stationary::rates::{RateOptions, RateSolver, RateSteadyState};
+use crate::stationary::generator::{RateOptions, RateSolver, RateSteadyState};
 use crate::system::{Model, ParameterValues, SwitchingSurface, System};
 
 /// Name of the method in tables.
@@ -35,9 +36,6 @@ const ROUGH: f64 = 1e-2;
 
 /// Cells an axis of the finer grid over those of this one, in up to two dimensions and in more.
 const FINER: [f64; 2] = [1.5, 1.25];
-
-/// Share of the mass that may leave within one relaxation time without a word.
-pub(super) const QUIET_ESCAPE: f64 = 1e-3;
 
 /// Densities along one parameter by the generator.
 pub struct GeneratorSource {

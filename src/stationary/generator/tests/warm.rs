@@ -3,10 +3,10 @@
 use sprs::CsMat;
 
 use super::{distance, generators, space};
-use crate::stationary::rates::dissection::{Dissection, Grid};
-use crate::stationary::rates::prediction::predict;
-use crate::stationary::rates::symbolic::Symbolic;
-use crate::stationary::rates::{
+use crate::stationary::generator::dissection::{Dissection, Grid};
+use crate::stationary::generator::prediction::predict;
+use crate::stationary::generator::symbolic::Symbolic;
+use crate::stationary::generator::{
     RateMethod, RateOptions, RateSolver, RateSteadyState, estimate, narrowing,
 };
 

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use super::super::{StationaryError, second_eigenvalue};
 use super::*;
-use crate::stationary::sampled_chain::Random;
+use crate::stationary::transition_matrix::sampled_chain::Random;
 
 /// A birth-death chain: up with `up(i)`, down with `down(i)`; detailed balance gives the steady state.
 fn birth_death(

@@ -6,16 +6,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
-use super::findings::Findings;
-use super::generator::QUIET_ESCAPE;
 use super::slope_correction::{Corrected, solve_by};
 use super::steps::{Steps, choose_steps};
-use super::structure::structure;
-use super::trail::Trail;
-use super::{Correction, MethodError, Setting, SgcmOptions, State};
+use super::{Correction, SgcmOptions};
 use crate::MAX_DIMENSION;
 use crate::continuation::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
 use crate::density::{EstimatedDensity, Observable, estimate, moments};
+use crate::method::findings::{Findings, QUIET_ESCAPE};
+use crate::method::generator::Trail;
+use crate::method::structure::structure;
+use crate::method::{MethodError, Setting, State};
 use crate::sampling::{
     SampledTransitions, SamplingError, SamplingOptions, TransitionMatrix, sample_transitions,
 };

@@ -1,0 +1,68 @@
+//! Settings of Monte Carlo and their defaults.
+
+use crate::method::StepChoice;
+use crate::method::options::ESCAPE_LIMIT;
+use crate::sampling::Integrator;
+
+/// How free trajectories make a density.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Estimator {
+    /// A fixed number of long trajectories, averaged over time.
+    Ergodic,
+    /// Many trajectories, counted at one time.
+    Ensemble,
+}
+
+impl Estimator {
+    /// All estimators.
+    pub const ALL: [Self; 2] = [Self::Ergodic, Self::Ensemble];
+
+    /// Name used in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ergodic => "ergodic",
+            Self::Ensemble => "ensemble",
+        }
+    }
+}
+
+/// Settings of Monte Carlo.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MonteCarloOptions {
+    /// How the density is made.
+    pub estimator: Estimator,
+    /// Step of the trajectory integrator.
+    pub time_step: StepChoice,
+    /// Time before states are counted.
+    pub burn_in: StepChoice,
+    /// Time during which the states of one trajectory are counted (ergodic).
+    pub length: StepChoice,
+    /// Wanted relative standard error of the variance of every axis; what is left to the program is chosen for it.
+    pub error: f64,
+    /// Number of trajectories.
+    pub trajectories: StepChoice,
+    /// Seed of the random streams.
+    pub seed: u64,
+    /// Integrator of the trajectories.
+    pub integrator: Integrator,
+    /// Largest share of the time outside Ω, or of the trajectories that run away within one autocorrelation time, before
+    /// there is said to be no steady state.
+    pub escape_limit: f64,
+}
+
+impl Default for MonteCarloOptions {
+    fn default() -> Self {
+        Self {
+            estimator: Estimator::Ergodic,
+            time_step: StepChoice::Auto,
+            burn_in: StepChoice::Auto,
+            length: StepChoice::Auto,
+            // About ten seconds for the paper's first example on two cores.
+            error: 0.002,
+            trajectories: StepChoice::Auto,
+            seed: 1,
+            integrator: Integrator::StochasticHeun,
+            escape_limit: ESCAPE_LIMIT,
+        }
+    }
+}
