@@ -16,6 +16,7 @@
 //! | set the methods side by side: distances with uncertainties, times | [`compare`] |
 //! | write tables and arrays | [`run`] |
 //! | draw | [`figure`] |
+//! | read, check and write a sweep file | [`sweep_file`] |
 //! | the program `pbif` | [`cli`] |
 //!
 //! Modules depend on those above them in this table, never the other way.
@@ -32,6 +33,7 @@ pub mod run;
 pub mod sampling;
 pub mod space;
 pub mod stationary;
+pub mod sweep_file;
 pub mod system;
 pub mod topology;
 

@@ -65,6 +65,21 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "sweep_file",
+        &[
+            "system",
+            "space",
+            "sampling",
+            "generator",
+            "stationary",
+            "density",
+            "topology",
+            "continuation",
+            "method",
+            "figure",
+        ],
+    ),
+    (
         "cli",
         &[
             "system",
@@ -80,6 +95,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "compare",
             "run",
             "figure",
+            "sweep_file",
         ],
     ),
 ];

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
-use super::keys;
+use crate::sweep_file;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -64,7 +64,7 @@ pub(super) struct Arguments {
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
     /// Sweep a parameter, locate the P-bifurcations, write tables, densities and figures
-    #[command(after_help = "The keys of a sweep file: pbif sweep --help", after_long_help = keys::help())]
+    #[command(after_help = "The keys of a sweep file: pbif sweep --help", after_long_help = sweep_file::help())]
     Sweep {
         /// What to run.
         #[command(flatten)]
@@ -74,7 +74,7 @@ pub(super) enum Command {
         run: SweepArguments,
     },
     /// Check a sweep file, print it with every default filled in and what it will cost; run nothing
-    #[command(after_help = "The keys of a sweep file: pbif check --help", after_long_help = keys::help())]
+    #[command(after_help = "The keys of a sweep file: pbif check --help", after_long_help = sweep_file::help())]
     Check {
         /// What to check.
         #[command(flatten)]

@@ -7,9 +7,9 @@ use crate::method::{
     GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions, StepChoice,
 };
 
-use super::cost;
-use super::spec::SweepSpec;
+use crate::method::cost;
 use crate::stationary::generator::Estimate;
+use crate::sweep_file::SweepSpec;
 
 /// Points beyond which a sweep is said to be long.
 const MANY_POINTS: usize = 1000;

@@ -7,15 +7,14 @@ use std::sync::atomic::AtomicBool;
 use comfy_table::{Table, presets};
 
 use super::args::CompareArguments;
-use super::diagnostic::Diagnostic;
 use super::output::OutputFolder;
-use super::spec::SweepSpec;
 use super::sweep::progress::Progress;
-use super::{CommandError, Outcome, cost};
+use super::{CommandError, Outcome};
 use crate::compare::{CompareError, Comparison, Method, Solved, Task, compare};
 use crate::figure::draw_comparison;
-use crate::method::Setting;
+use crate::method::{Setting, cost};
 use crate::run::{CompareFolder, ComparedRun, Naming, compare_tables, format_number};
+use crate::sweep_file::{Diagnostic, SweepSpec};
 
 /// Compares, writes, draws and prints.
 ///

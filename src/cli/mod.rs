@@ -1,17 +1,11 @@
-//! The program `pbif`: commands, the sweep file, messages, exit codes. The only module that prints.
+//! The program `pbif`: commands, progress, exit codes. The only module that prints.
 
 mod args;
 mod check;
 mod compare;
-mod cost;
 mod detect;
-mod diagnostic;
-mod document;
-mod keys;
 mod output;
 mod plot;
-mod reader;
-mod spec;
 mod stored;
 mod sweep;
 mod systems;
@@ -23,10 +17,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Parser as _;
 
+use crate::sweep_file::{Diagnostic, Report, SweepSpec};
 use args::{Arguments, Command};
-use diagnostic::{Diagnostic, Report};
 use output::OutputError;
-use spec::SweepSpec;
 
 /// How a command ended that did what it was asked to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,11 +4,10 @@ use std::io::Write as _;
 use std::path::Path;
 
 use super::CommandError;
-use super::diagnostic::{Diagnostic, Report, list};
-use super::spec::SweepSpec;
 use crate::continuation::{FinerIndicator, Point, SweepResult, detect_again};
 use crate::method::MethodOptions;
 use crate::run::{Ending, Naming, RunError, StoredRun};
+use crate::sweep_file::{Diagnostic, Report, SweepSpec, list};
 
 /// A run that was read.
 pub(super) struct Stored {

@@ -10,7 +10,6 @@ use std::time::Instant;
 
 use super::args::SweepArguments;
 use super::output::OutputFolder;
-use super::spec::SweepSpec;
 use super::{CommandError, Outcome};
 use crate::continuation::{
     BifurcationStatus, Observer, Plan, Point, SweepError, SweepResult, sweep,
@@ -18,6 +17,7 @@ use crate::continuation::{
 use crate::figure::draw_all;
 use crate::method::{MethodSource, Setting};
 use crate::run::{Ending, Manifest, Naming, RunError, RunFolder};
+use crate::sweep_file::SweepSpec;
 use progress::Progress;
 
 /// Runs a sweep and prints what it found.

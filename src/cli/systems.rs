@@ -4,9 +4,8 @@ use std::fmt::Write as _;
 
 use comfy_table::{Table, presets};
 
+use crate::sweep_file::{Diagnostic, Report};
 use crate::system::{Model, System, registry};
-
-use super::diagnostic::{Diagnostic, Report};
 
 /// The table of models.
 pub(super) fn list() -> String {

@@ -1,6 +1,7 @@
 //! Methods: sources of densities for a sweep, each made of the modules before it and each in a wing of its own.
 
 mod any;
+pub mod cost;
 mod findings;
 mod generator;
 mod monte_carlo;

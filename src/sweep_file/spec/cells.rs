@@ -2,28 +2,28 @@
 
 use std::sync::Arc;
 
-use crate::cli::cost;
-use crate::cli::diagnostic::{Diagnostic, list};
-use crate::cli::document::Value;
-use crate::cli::reader::{Reader, Sited};
 use crate::generator::automatic_grading;
+use crate::method::cost;
 use crate::method::{MethodOptions, SgcmOptions, automatic_ranges};
 use crate::space::{Axis, CellSpace, Grading, SpaceError};
+use crate::sweep_file::diagnostic::{Diagnostic, list};
+use crate::sweep_file::document::Value;
+use crate::sweep_file::reader::{Reader, Sited};
 use crate::system::{Model, System};
 
 use super::swept::Swept;
 
 /// How one axis is cut into cells.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct AxisCells {
+pub struct AxisCells {
     /// Lower end.
-    pub(crate) from: f64,
+    pub from: f64,
     /// Upper end.
-    pub(crate) to: f64,
+    pub to: f64,
     /// Number of cells.
-    pub(crate) count: usize,
+    pub count: usize,
     /// Where the cells get narrower; `None` for cells of equal width.
-    pub(crate) grading: Option<Grading>,
+    pub grading: Option<Grading>,
 }
 
 impl AxisCells {

@@ -39,14 +39,14 @@ fn cell_bytes(options: &SgcmOptions, dimension: usize) -> f64 {
 }
 
 /// Upper bound of the bytes at work at one point: every sample of a cell ends in a cell of its own.
-pub(super) fn estimated_bytes(n_cells: f64, dimension: usize, options: &SgcmOptions) -> f64 {
+pub fn estimated_bytes(n_cells: f64, dimension: usize, options: &SgcmOptions) -> f64 {
     let reached = n_cells.min(options.samples as f64);
     let transition = transition_bytes(options, dimension);
     n_cells * (reached * transition + cell_bytes(options, dimension))
 }
 
 /// Bytes at work at one point by SGCM with so many entries of the transition matrix, counted, in so many cells.
-pub(super) fn sgcm_bytes(
+pub fn sgcm_bytes(
     transitions: usize,
     cells: usize,
     dimension: usize,
@@ -58,7 +58,7 @@ pub(super) fn sgcm_bytes(
 
 /// Lower bound of the bytes at work at one point: by SGCM every cell reaches 2^d cells, d = `dimension`; by the
 /// generator the matrices alone.
-pub(super) fn least_bytes(n_cells: f64, dimension: usize, method: &MethodOptions) -> f64 {
+pub fn least_bytes(n_cells: f64, dimension: usize, method: &MethodOptions) -> f64 {
     match method {
         MethodOptions::Generator(options) => matrix_bytes(n_cells, dimension, options),
         MethodOptions::Sgcm(options) => {
@@ -72,12 +72,12 @@ pub(super) fn least_bytes(n_cells: f64, dimension: usize, method: &MethodOptions
 }
 
 /// Bytes at work at one point by Monte Carlo: a count and a replicate's mass for each cell and block.
-pub(super) fn monte_carlo_bytes(n_cells: f64) -> f64 {
+pub fn monte_carlo_bytes(n_cells: f64) -> f64 {
     n_cells * 16.0 * BLOCKS as f64
 }
 
 /// Integrator steps at one point by Monte Carlo, where all that they depend on is given.
-pub(super) fn monte_carlo_steps(options: &MonteCarloOptions) -> Option<f64> {
+pub fn monte_carlo_steps(options: &MonteCarloOptions) -> Option<f64> {
     let given = |choice: StepChoice| match choice {
         StepChoice::Fixed(value) => Some(value),
         StepChoice::Auto => None,
@@ -100,7 +100,7 @@ fn matrix_bytes(n_cells: f64, dimension: usize, options: &GeneratorMethodOptions
 ///
 /// # Errors
 /// [`RateError::Memory`] when not even the smallest fits the limit.
-pub(super) fn factorisation(
+pub fn factorisation(
     space: &CellSpace,
     options: &GeneratorMethodOptions,
 ) -> Result<Estimate, RateError> {
@@ -109,7 +109,7 @@ pub(super) fn factorisation(
 }
 
 /// Bytes at work at one point by the generator: the matrices, and factors and fronts at their peak.
-pub(super) fn generator_bytes(
+pub fn generator_bytes(
     space: &CellSpace,
     options: &GeneratorMethodOptions,
     factors: &Estimate,
@@ -118,7 +118,7 @@ pub(super) fn generator_bytes(
 }
 
 /// Memory of the machine, or of the group of processes where that is limited; `None` if unknown.
-pub(super) fn machine_memory() -> Option<f64> {
+pub fn machine_memory() -> Option<f64> {
     let mut system = sysinfo::System::new().ok()?;
     system.refresh_memory();
     let limit = system.cgroup_limits().map(|limits| limits.total_memory);
@@ -130,7 +130,7 @@ pub(super) fn machine_memory() -> Option<f64> {
 }
 
 /// A number of bytes as people write it.
-pub(super) fn bytes_in_words(bytes: f64) -> String {
+pub fn bytes_in_words(bytes: f64) -> String {
     let units = ["kB", "MB", "GB", "TB", "PB"];
     let mut value = bytes / 1e3;
     let mut unit = 0;

@@ -1,8 +1,6 @@
 //! The parts of a specification that have defaults: method, observables, detection, location, figures.
 
 use super::super::keys::SWITCH;
-use crate::cli::diagnostic::Diagnostic;
-use crate::cli::reader::{Reader, Sited};
 use crate::continuation::{LocateOptions, evenly_spaced};
 use crate::density::Observable;
 use crate::figure::Format;
@@ -13,6 +11,8 @@ use crate::method::{
 };
 use crate::sampling::Integrator;
 use crate::stationary::Solver;
+use crate::sweep_file::diagnostic::Diagnostic;
+use crate::sweep_file::reader::{Reader, Sited};
 use crate::system::Model;
 use crate::topology::DetectOptions;
 
@@ -20,13 +20,13 @@ use super::swept::Swept;
 
 /// The settings of every method that the file has, chosen or not.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct EveryMethod {
+pub struct EveryMethod {
     /// The generator's.
-    pub(crate) generator: GeneratorMethodOptions,
+    pub generator: GeneratorMethodOptions,
     /// SGCM's.
-    pub(crate) sgcm: SgcmOptions,
+    pub sgcm: SgcmOptions,
     /// Monte Carlo's.
-    pub(crate) monte_carlo: MonteCarloOptions,
+    pub monte_carlo: MonteCarloOptions,
 }
 
 /// Reads `[method]`: the chosen one, and all; wrong values are reported and replaced by defaults. The settings of the method that

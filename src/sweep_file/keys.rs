@@ -339,7 +339,7 @@ pub(super) fn markdown() -> String {
 }
 
 /// The keys for the long help of the commands that read a sweep file.
-pub(super) fn help() -> String {
+pub fn help() -> String {
     let mut text = "Keys of a sweep file (--set KEY=VALUE overrides any of them):\n".to_owned();
     for key in KEYS {
         let (path, words, default) = (key.path, key.kind.words(), key.default_words());

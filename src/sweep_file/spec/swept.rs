@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::cli::diagnostic::{Diagnostic, Place, nearest_name};
-use crate::cli::reader::{Reader, Sited};
 use crate::continuation::evenly_spaced;
+use crate::sweep_file::diagnostic::{Diagnostic, Place, nearest_name};
+use crate::sweep_file::reader::{Reader, Sited};
 use crate::system::{Model, ParameterDescription, ParameterValues, System, registry};
 
 /// The part of a specification that says what is swept.

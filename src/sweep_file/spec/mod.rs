@@ -15,8 +15,8 @@ use crate::space::CellSpace;
 use crate::system::{Model, ParameterValues};
 use crate::topology::{DetectOptions, PersistenceDetector};
 
-pub(crate) use cells::AxisCells;
-pub(crate) use choices::EveryMethod;
+pub use cells::AxisCells;
+pub use choices::EveryMethod;
 
 use super::diagnostic::Report;
 use super::document::Document;
@@ -24,43 +24,43 @@ use super::reader::Reader;
 
 /// Everything a sweep needs.
 #[derive(Debug, Clone)]
-pub(crate) struct SweepSpec {
+pub struct SweepSpec {
     /// Title of the run.
-    pub(crate) title: String,
+    pub title: String,
     /// The sweep file.
-    pub(crate) file: PathBuf,
+    pub file: PathBuf,
     /// The file's name without folder and ending; the output folder is named after it.
-    pub(crate) name: String,
+    pub name: String,
     /// The model.
-    pub(crate) model: &'static Model,
+    pub model: &'static Model,
     /// Its parameters, the swept one at [`SweepSpec::from`].
-    pub(crate) parameters: ParameterValues,
+    pub parameters: ParameterValues,
     /// Name of the swept parameter.
-    pub(crate) parameter: String,
+    pub parameter: String,
     /// First value of the swept parameter.
-    pub(crate) from: f64,
+    pub from: f64,
     /// Last value; above or below the first, never equal.
-    pub(crate) to: f64,
+    pub to: f64,
     /// Number of values, at least 2.
-    pub(crate) points: usize,
+    pub points: usize,
     /// How each axis is cut into cells, in the model's order of axes.
-    pub(crate) cells: Vec<AxisCells>,
+    pub cells: Vec<AxisCells>,
     /// The cell space that `cells` makes.
-    pub(crate) space: CellSpace,
+    pub space: CellSpace,
     /// Settings of the method.
-    pub(crate) method: MethodOptions,
+    pub method: MethodOptions,
     /// Settings of all methods, the chosen one among them.
-    pub(crate) every_method: EveryMethod,
+    pub every_method: EveryMethod,
     /// Settings of detection.
-    pub(crate) detect: DetectOptions,
+    pub detect: DetectOptions,
     /// What is watched, marginals first.
-    pub(crate) observables: Vec<Observable>,
+    pub observables: Vec<Observable>,
     /// Settings of location.
-    pub(crate) locate: LocateOptions,
+    pub locate: LocateOptions,
     /// Parameter values at which densities are drawn.
-    pub(crate) figures_at: Vec<f64>,
+    pub figures_at: Vec<f64>,
     /// Formats of the figures.
-    pub(crate) figure_formats: Vec<Format>,
+    pub figure_formats: Vec<Format>,
 }
 
 impl SweepSpec {
@@ -68,7 +68,7 @@ impl SweepSpec {
     ///
     /// # Errors
     /// A report of everything that is wrong with them.
-    pub(crate) fn load(file: &Path, overrides: &[String]) -> Result<Self, Report> {
+    pub fn load(file: &Path, overrides: &[String]) -> Result<Self, Report> {
         Self::build(file, Document::read(file, overrides)?)
     }
 
@@ -76,18 +76,18 @@ impl SweepSpec {
     ///
     /// # Errors
     /// As [`SweepSpec::load`].
-    pub(crate) fn stored(file: &Path, text: &str, overrides: &[String]) -> Result<Self, Report> {
+    pub fn stored(file: &Path, text: &str, overrides: &[String]) -> Result<Self, Report> {
         let name = file.display().to_string();
         Self::build(file, Document::parse(&name, text, overrides)?)
     }
 
     /// The detector: its confidence holds for all densities of the sweep together.
-    pub(crate) fn detector(&self) -> PersistenceDetector {
+    pub fn detector(&self) -> PersistenceDetector {
         PersistenceDetector::new(self.detect.clone(), self.points * self.observables.len())
     }
 
     /// What to sweep.
-    pub(crate) fn plan(&self) -> Plan {
+    pub fn plan(&self) -> Plan {
         Plan {
             parameter: self.parameter.clone(),
             from: self.from,

@@ -9,23 +9,23 @@ use annotate_snippets::{AnnotationKind, Element, Group, Level, Origin, Renderer,
 
 /// A span of bytes in one of the [`Sources`].
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Place {
+pub struct Place {
     /// Number of the source.
-    pub(crate) source: usize,
+    pub source: usize,
     /// Bytes of its text.
-    pub(crate) span: Range<usize>,
+    pub span: Range<usize>,
 }
 
 /// The texts that were read: source 0 is the file, the others are `--set` arguments in their order.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Sources {
+pub struct Sources {
     names: Vec<String>,
     texts: Vec<String>,
 }
 
 impl Sources {
     /// Adds a text and returns its number.
-    pub(crate) fn add(&mut self, name: &str, text: &str) -> usize {
+    pub fn add(&mut self, name: &str, text: &str) -> usize {
         self.names.push(name.to_owned());
         self.texts.push(text.to_owned());
         self.names.len() - 1
@@ -38,7 +38,7 @@ impl Sources {
 
 /// One finding.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Diagnostic {
+pub struct Diagnostic {
     title: String,
     place: Option<Place>,
     label: String,
@@ -48,7 +48,7 @@ pub(crate) struct Diagnostic {
 
 impl Diagnostic {
     /// A finding about the input as a whole.
-    pub(crate) fn new(title: impl Into<String>) -> Self {
+    pub fn new(title: impl Into<String>) -> Self {
         Self {
             title: title.into(),
             place: None,
@@ -59,30 +59,26 @@ impl Diagnostic {
     }
 
     /// Where it stands, with a few words beside the caret.
-    pub(crate) fn at(mut self, place: &Place, label: impl Into<String>) -> Self {
+    pub fn at(mut self, place: &Place, label: impl Into<String>) -> Self {
         self.place = Some(place.clone());
         self.label = label.into();
         self
     }
 
     /// What is allowed there.
-    pub(crate) fn allowed(mut self, words: impl Into<String>) -> Self {
+    pub fn allowed(mut self, words: impl Into<String>) -> Self {
         self.allowed = Some(words.into());
         self
     }
 
     /// What to do.
-    pub(crate) fn remedy(mut self, words: impl Into<String>) -> Self {
+    pub fn remedy(mut self, words: impl Into<String>) -> Self {
         self.remedy = Some(words.into());
         self
     }
 
     /// Adds "did you mean" where one of `names` is near `given`, and lists the names as allowed.
-    pub(crate) fn nearest<'n>(
-        mut self,
-        given: &str,
-        names: impl IntoIterator<Item = &'n str>,
-    ) -> Self {
+    pub fn nearest<'n>(mut self, given: &str, names: impl IntoIterator<Item = &'n str>) -> Self {
         let names: Vec<&str> = names.into_iter().collect();
         if let Some(name) = nearest_name(given, names.iter().copied()) {
             self.remedy = Some(format!("did you mean `{name}`?"));
@@ -120,11 +116,11 @@ impl Diagnostic {
 
 /// Everything found wrong, with the texts it was found in. Never empty when it is an error.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Report {
+pub struct Report {
     /// The texts.
-    pub(crate) sources: Sources,
+    pub sources: Sources,
     /// The findings.
-    pub(crate) diagnostics: Vec<Diagnostic>,
+    pub diagnostics: Vec<Diagnostic>,
 }
 
 impl From<Diagnostic> for Report {
@@ -138,7 +134,7 @@ impl From<Diagnostic> for Report {
 
 impl Report {
     /// The report as text, in the order of the places; escape codes only when `styled`.
-    pub(crate) fn render(&self, styled: bool) -> String {
+    pub fn render(&self, styled: bool) -> String {
         let mut ordered: Vec<&Diagnostic> = self.diagnostics.iter().collect();
         ordered.sort_by_key(|diagnostic| {
             let place = diagnostic.place.as_ref();
@@ -163,7 +159,7 @@ impl Report {
 }
 
 /// The name nearest to `given`, if one is near enough to be a slip of the pen.
-pub(crate) fn nearest_name<'n>(
+pub(super) fn nearest_name<'n>(
     given: &str,
     names: impl IntoIterator<Item = &'n str>,
 ) -> Option<&'n str> {
@@ -177,7 +173,7 @@ pub(crate) fn nearest_name<'n>(
 }
 
 /// Names in backquotes, separated by commas.
-pub(crate) fn list<S: AsRef<str>>(names: &[S]) -> String {
+pub fn list<S: AsRef<str>>(names: &[S]) -> String {
     let quoted: Vec<String> = names
         .iter()
         .map(|name| format!("`{}`", name.as_ref()))

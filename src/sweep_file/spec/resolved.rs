@@ -2,15 +2,15 @@
 
 use std::fmt::Write as _;
 
-use crate::cli::keys::{SWITCH, number, quoted, step};
 use crate::density::Observable;
 use crate::method::{GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions};
+use crate::sweep_file::keys::{SWITCH, number, quoted, step};
 
 use super::{AxisCells, SweepSpec};
 
 impl SweepSpec {
     /// The sweep as a complete sweep file.
-    pub(crate) fn to_toml(&self) -> String {
+    pub fn to_toml(&self) -> String {
         let mut text = String::new();
         // Writing to a string cannot fail.
         let _ = self.write_toml(&mut text);
