@@ -8,8 +8,9 @@ mod closed_forms;
 use std::path::{Path, PathBuf};
 
 use pbif::continuation::SweepResult;
-use pbif::figure::{Format, draw_all};
+use pbif::figure::{FigureError, Figures, Format, write_figures};
 use pbif::space::Axis;
+use pbif::system::Model;
 use pbif::system::registry;
 
 use closed_forms::{bistable, rayleigh, uniform};
@@ -24,6 +25,19 @@ fn folder(name: &str) -> (Option<tempfile::TempDir>, PathBuf) {
             (Some(folder), path)
         }
     }
+}
+
+/// Draws every figure of a sweep into a folder; returns the files.
+fn draw_all(
+    result: &SweepResult,
+    model: &Model,
+    title: &str,
+    at: &[f64],
+    formats: &[Format],
+    folder: &Path,
+) -> Vec<PathBuf> {
+    let figures = Figures::of_sweep(result, model, title, at);
+    write_figures(&figures.draw_all().unwrap(), formats, folder).unwrap()
 }
 
 fn names(files: &[PathBuf]) -> Vec<String> {
@@ -74,8 +88,7 @@ fn a_bistable_sweep_gives_its_diagram_and_marginals() {
         &at,
         &Format::ALL,
         &folder,
-    )
-    .unwrap();
+    );
     assert_eq!(
         names(&files),
         [
@@ -115,7 +128,7 @@ fn every_svg_parses_and_every_png_has_its_size_three_times() {
     let model = registry::find("rayleigh").unwrap();
     let result = rayleigh("a", 1.0, &uniform());
     let at = [-1.0, -0.5, 0.25, 1.0];
-    let files = draw_all(&result, model, "", &at, &Format::ALL, &folder).unwrap();
+    let files = draw_all(&result, model, "", &at, &Format::ALL, &folder);
     assert!(
         names(&files).contains(&"joint_xy_-0.5.png".to_owned()),
         "{files:?}"
@@ -166,8 +179,7 @@ fn symbols_and_values_are_those_of_the_model() {
         &[-0.02, 0.0, 0.02],
         &Format::ALL,
         &folder,
-    )
-    .unwrap();
+    );
     let svg = std::fs::read_to_string(&files[0]).unwrap();
     let lowered =
         "<tspan font-style=\"oblique\">f</tspan><tspan dy=\"61\" font-size=\"202\">c</tspan>";
@@ -191,7 +203,7 @@ fn equal_results_give_equal_bytes() {
     let draw = || {
         let folder = tempfile::tempdir().unwrap();
         let result = rayleigh("a", 1.0, &uniform());
-        let files = draw_all(&result, model, "t", &[0.5], &Format::ALL, folder.path()).unwrap();
+        let files = draw_all(&result, model, "t", &[0.5], &Format::ALL, folder.path());
         let bytes = files.iter().map(|file| std::fs::read(file).unwrap());
         bytes.collect::<Vec<_>>()
     };
@@ -204,7 +216,14 @@ fn without_densities_there_are_no_figures() {
     let model = registry::find("bistable").unwrap();
     let mut result = bistable();
     let drawn = |result: &SweepResult, at: f64| {
-        names(&draw_all(result, model, "", &[at], &[Format::Svg], folder.path()).unwrap())
+        names(&draw_all(
+            result,
+            model,
+            "",
+            &[at],
+            &[Format::Svg],
+            folder.path(),
+        ))
     };
     // The point nearest to the wanted value has no density: no marginals, but a diagram of the others.
     assert_eq!(drawn(&result, -0.85), ["diagram_x.svg"]);
@@ -224,6 +243,41 @@ fn a_single_point_is_drawn_too() {
     result.points.drain(..30);
     result.points.truncate(1);
     let model = registry::find("bistable").unwrap();
-    let files = draw_all(&result, model, "", &[0.0], &[Format::Svg], folder.path()).unwrap();
+    let files = draw_all(&result, model, "", &[0.0], &[Format::Svg], folder.path());
     assert_eq!(names(&files), ["diagram_x.svg", "marginals.svg"]);
+}
+
+#[test]
+fn a_figure_is_drawn_by_its_name() {
+    let model = registry::find("rayleigh").unwrap();
+    let result = rayleigh("a", 1.0, &uniform());
+    let figures = Figures::of_sweep(&result, model, "t", &[-0.5, 0.5]);
+    let names = figures.names();
+    assert_eq!(
+        names,
+        [
+            "diagram_x",
+            "diagram_y",
+            "marginals",
+            "joint_xy",
+            "joint_xy_-0.5",
+            "joint_xy_0.5"
+        ]
+    );
+    let all = figures.draw_all().unwrap();
+    for (name, figure) in names.iter().zip(&all) {
+        assert_eq!(figures.draw(name).unwrap().as_ref(), Some(figure));
+    }
+    let error = figures.draw("diagram_z").unwrap_err();
+    assert!(
+        matches!(&error, FigureError::Unknown { known, .. } if *known == names),
+        "{error}"
+    );
+    // Without a density there is nothing to see, which is no error.
+    let empty = SweepResult {
+        points: Vec::new(),
+        ..result
+    };
+    let figures = Figures::of_sweep(&empty, model, "t", &[0.5]);
+    assert_eq!(figures.draw("diagram_x").unwrap(), None);
 }

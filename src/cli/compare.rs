@@ -11,7 +11,7 @@ use super::output::OutputFolder;
 use super::sweep::progress::Progress;
 use super::{CommandError, Outcome};
 use crate::compare::{CompareError, Comparison, Method, Solved, Task, compare};
-use crate::figure::draw_comparison;
+use crate::figure::{Figures, write_figures};
 use crate::method::{Setting, cost};
 use crate::run::{CompareFolder, ComparedRun, Naming, compare_tables, format_number};
 use crate::sweep_file::{Diagnostic, SweepSpec};
@@ -88,13 +88,9 @@ fn carry_out(
     let folder = CompareFolder::new(path)?;
     folder.write(&run)?;
     progress.say("drawing");
-    draw_comparison(
-        &comparison,
-        (spec.model, &spec.parameter),
-        &spec.title,
-        &spec.figure_formats,
-        &folder.figures(),
-    )?;
+    let names = (spec.model, spec.parameter.as_str());
+    let figures = Figures::of_comparison(&comparison, names, &spec.title).draw_all()?;
+    write_figures(&figures, &spec.figure_formats, &folder.figures())?;
     let files = folder.take_place()?;
     progress.finish();
     progress.warn(&warnings(spec, &comparison));

@@ -14,7 +14,7 @@ use super::{CommandError, Outcome};
 use crate::continuation::{
     BifurcationStatus, Observer, Plan, Point, SweepError, SweepResult, sweep,
 };
-use crate::figure::draw_all;
+use crate::figure::{Figures, write_figures};
 use crate::method::{MethodSource, Setting};
 use crate::run::{Ending, Manifest, Naming, RunError, RunFolder};
 use crate::sweep_file::SweepSpec;
@@ -152,13 +152,10 @@ pub(super) fn draw(
     result: &SweepResult,
     folder: &Path,
 ) -> Result<Vec<PathBuf>, CommandError> {
-    let (at, formats) = (&spec.figures_at, &spec.figure_formats);
-    Ok(draw_all(
-        result,
-        spec.model,
-        &spec.title,
-        at,
-        formats,
+    let figures = Figures::of_sweep(result, spec.model, &spec.title, &spec.figures_at);
+    Ok(write_figures(
+        &figures.draw_all()?,
+        &spec.figure_formats,
         folder,
     )?)
 }

@@ -6,10 +6,10 @@ use plotters_backend::text_anchor::HPos;
 use crate::continuation::{BifurcationStatus, LabelledPoint, PointType, SweepResult};
 use crate::density::Observable;
 
-use super::legend::Sample;
-use super::page::{Page, Panel, Rectangle, Shape, lettering};
-use super::style::{BIFURCATION, GREY, Stroke, TICK_TEXT, WHITE};
-use super::{FigureError, render, symbols};
+use super::canvas::legend::Sample;
+use super::canvas::page::{Page, Panel, Rectangle, Shape, lettering};
+use super::canvas::style::{BIFURCATION, GREY, Stroke, TICK_TEXT, WHITE};
+use super::canvas::{DrawError, render, symbols};
 
 /// Height of a row of labels.
 const ROW: f64 = 16.0;
@@ -59,13 +59,13 @@ impl<'a> Labels<'a> {
     /// `range` is that of the parameter; the map begins `map.0` pixels from the left and is `map.1` wide.
     ///
     /// # Errors
-    /// [`FigureError::Svg`].
+    /// [`DrawError::Svg`].
     pub(super) fn new(
         result: &'a SweepResult,
         watched: Observable,
         range: (f64, f64),
         (left, width): (f64, f64),
-    ) -> Result<Self, FigureError> {
+    ) -> Result<Self, DrawError> {
         let inside = |point: &&LabelledPoint| {
             point.kind == PointType::Bifurcation && point.value >= range.0 && point.value <= range.1
         };
@@ -109,12 +109,12 @@ impl<'a> Labels<'a> {
     /// Draws bands and lines over the map: strongly for the own observable, faintly for others.
     ///
     /// # Errors
-    /// [`FigureError::Drawing`].
+    /// [`DrawError::Layout`].
     pub(super) fn draw_lines(
         &self,
         panel: &Panel,
         (from, to): (f64, f64),
-    ) -> Result<(), FigureError> {
+    ) -> Result<(), DrawError> {
         for label in self.placed.iter().rev() {
             let point = label.point;
             let line = [(point.value, from), (point.value, to)];
@@ -145,8 +145,8 @@ impl<'a> Labels<'a> {
     /// Writes the labels above the map, with leaders to the higher rows.
     ///
     /// # Errors
-    /// [`FigureError::Drawing`].
-    pub(super) fn draw_texts(&self, page: &Page, map: Rectangle) -> Result<(), FigureError> {
+    /// [`DrawError::Layout`].
+    pub(super) fn draw_texts(&self, page: &Page, map: Rectangle) -> Result<(), DrawError> {
         let middle_of = |row: usize| map.top - GAP - (row as f64 + 0.5) * ROW;
         for label in self.placed.iter().filter(|label| label.row > 0) {
             let line = [

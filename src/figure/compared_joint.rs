@@ -1,15 +1,16 @@
 //! Joint densities by every method side by side: a row a parameter value, a column a method.
 
-use crate::compare::{ComparedValue, Comparison, Method};
+use crate::compare::{ComparedValue, Method};
 use crate::density::Observable;
 
-use super::colour_bar::ColourBar;
-use super::frame::Scale;
+use super::canvas::DrawError;
+use super::canvas::colour_bar::ColourBar;
+use super::canvas::frame::Scale;
+use super::canvas::page::{Heading, Page, Rectangle};
+use super::canvas::style::{MARGIN, TEXT};
 use super::joint::{Found, draw_map, windows, write_above};
-use super::page::{Heading, Page, Rectangle};
 use super::select::{self, Names};
-use super::style::{MARGIN, TEXT};
-use super::{Figure, FigureError};
+use super::sketch::{ComparisonScene, Sketch};
 
 /// Side of a map, in pixels.
 const SIDE: f64 = 165.0;
@@ -32,17 +33,23 @@ fn row(value: &ComparedValue, observable: Observable) -> Vec<(Method, Found<'_>)
     Method::ALL.into_iter().filter_map(found).collect()
 }
 
+/// A figure a pair of axes.
+pub(super) fn sketches<'a>(scene: &'a ComparisonScene<'a>) -> Vec<Sketch<'a>> {
+    let observables = scene.comparison.observables.iter();
+    observables
+        .filter(|observable| matches!(observable, Observable::Joint(..)))
+        .map(|&observable| {
+            let name = format!("joint_{}", scene.names.file(observable));
+            Sketch::new(name, move || draw(scene, observable))
+        })
+        .collect()
+}
+
 /// The figure; `None` if there is nothing to draw. Maps of a row share their colours, all share their windows.
-///
-/// # Errors
-/// Any [`FigureError`] but that of writing.
-pub(super) fn figure(
-    comparison: &Comparison,
-    observable: Observable,
-    names: Names<'_>,
-    title: &str,
-) -> Result<Option<Figure>, FigureError> {
-    let rows: Vec<Vec<(Method, Found<'_>)>> = comparison
+fn draw(scene: &ComparisonScene<'_>, observable: Observable) -> Result<Option<Page>, DrawError> {
+    let (names, title) = (scene.names, scene.title);
+    let rows: Vec<Vec<(Method, Found<'_>)>> = scene
+        .comparison
         .values
         .iter()
         .map(|value| row(value, observable))
@@ -99,10 +106,7 @@ pub(super) fn figure(
             }
         }
     }
-    Ok(Some(Figure {
-        name: format!("joint_{}", names.file(observable)),
-        svg: page.svg(),
-    }))
+    Ok(Some(page))
 }
 
 /// The line above a map: the value at the head of a row, and the method.

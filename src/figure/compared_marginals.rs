@@ -6,13 +6,14 @@ use plotters_backend::text_anchor::HPos;
 use crate::compare::{ComparedValue, Comparison, Method};
 use crate::density::{Density, EstimatedDensity, Observable};
 
-use super::frame::{self, Scale};
-use super::legend::{self, Legend, Sample};
+use super::canvas::DrawError;
+use super::canvas::frame::{self, Scale};
+use super::canvas::legend::{self, Legend, Sample};
+use super::canvas::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
+use super::canvas::style::{BLACK, ERROR_LINE, MARGIN, Stroke, TEXT};
 use super::marginals::{cells, curve};
-use super::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
 use super::select::{self, Names};
-use super::style::{BLACK, ERROR_LINE, MARGIN, Stroke, TEXT};
-use super::{Figure, FigureError};
+use super::sketch::{ComparisonScene, Sketch};
 
 /// Size of a panel, in pixels.
 const PANEL: (f64, f64) = (270.0, 165.0);
@@ -37,15 +38,14 @@ struct Laid<'a> {
     up: Scale,
 }
 
+/// The figure of all marginals.
+pub(super) fn sketches<'a>(scene: &'a ComparisonScene<'a>) -> Vec<Sketch<'a>> {
+    vec![Sketch::new("marginals", || draw(scene))]
+}
+
 /// The figure; `None` if there is nothing to draw.
-///
-/// # Errors
-/// Any [`FigureError`] but that of writing.
-pub(super) fn figure(
-    comparison: &Comparison,
-    names: Names<'_>,
-    title: &str,
-) -> Result<Option<Figure>, FigureError> {
+fn draw(scene: &ComparisonScene<'_>) -> Result<Option<Page>, DrawError> {
+    let (comparison, names, title) = (scene.comparison, scene.names, scene.title);
     let is_marginal = |one: &Observable| matches!(one, Observable::Marginal(_));
     let watched: Vec<Observable> = comparison
         .observables
@@ -92,10 +92,7 @@ pub(super) fn figure(
             draw_panel(&page, laid, rect, number + 1 == rows.len())?;
         }
     }
-    Ok(Some(Figure {
-        name: "marginals".to_owned(),
-        svg: page.svg(),
-    }))
+    Ok(Some(page))
 }
 
 fn entries() -> Vec<(Sample, String)> {
@@ -119,7 +116,7 @@ fn lay_out<'a>(
     value: &'a ComparedValue,
     observable: Observable,
     names: Names<'_>,
-) -> Result<Option<Laid<'a>>, FigureError> {
+) -> Result<Option<Laid<'a>>, DrawError> {
     let Observable::Marginal(axis) = observable else {
         return Ok(None);
     };
@@ -160,7 +157,7 @@ fn draw_panel(
     laid: &Laid<'_>,
     rect: Rectangle,
     labels: bool,
-) -> Result<(), FigureError> {
+) -> Result<(), DrawError> {
     let panel = page.panel(rect, laid.across.range, laid.up.range);
     let drawn = |method: Method| laid.value.density(method, laid.observable);
     // Symbols lie over the lines, and the generator's line over those of SGCM.
@@ -184,7 +181,7 @@ fn draw_symbols(
     estimated: &EstimatedDensity,
     window: (f64, f64),
     range: (f64, f64),
-) -> Result<(), FigureError> {
+) -> Result<(), DrawError> {
     let density = &estimated.density;
     for (cell, centre) in cells(density, window) {
         let (value, error) = (density.values[cell], estimated.standard_error[cell]);

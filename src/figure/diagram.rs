@@ -8,28 +8,34 @@ use crate::topology::FeatureKind;
 
 use super::bifurcations::Labels;
 use super::branches::{Branch, branches};
-use super::colour_bar::ColourBar;
-use super::frame::{self, Scale};
-use super::heat::{self, Picture};
-use super::legend::{self, Legend, Sample};
-use super::page::{Heading, Page, Panel, Rectangle, Shape};
-use super::select::{self, Names};
-use super::style::{MARGIN, PNG_SCALE};
-use super::{Figure, FigureError, hatch};
+use super::canvas::colour_bar::ColourBar;
+use super::canvas::frame::{self, Scale};
+use super::canvas::heat::{self, Picture};
+use super::canvas::legend::{self, Legend, Sample};
+use super::canvas::page::{Heading, Page, Panel, Rectangle, Shape};
+use super::canvas::style::{MARGIN, PNG_SCALE};
+use super::canvas::{DrawError, hatch};
+use super::select;
+use super::sketch::{Sketch, SweepScene};
 
 /// Size of the map, in pixels.
 const MAP: (f64, f64) = (380.0, 250.0);
 
+/// A diagram an observed marginal.
+pub(super) fn sketches<'a>(scene: &'a SweepScene<'a>) -> Vec<Sketch<'a>> {
+    let observables = scene.result.observables.iter().enumerate();
+    observables
+        .filter(|(_, observable)| matches!(observable, Observable::Marginal(_)))
+        .map(|(number, &observable)| {
+            let name = format!("diagram_{}", scene.names.file(observable));
+            Sketch::new(name, move || draw(scene, number))
+        })
+        .collect()
+}
+
 /// The diagram of the marginal with the given number among the observables; `None` without any density.
-///
-/// # Errors
-/// Any [`FigureError`] but that of writing.
-pub(super) fn diagram(
-    result: &SweepResult,
-    observable: usize,
-    names: Names<'_>,
-    title: &str,
-) -> Result<Option<Figure>, FigureError> {
+fn draw(scene: &SweepScene<'_>, observable: usize) -> Result<Option<Page>, DrawError> {
+    let (result, names, title) = (scene.result, scene.names, scene.title);
     let Some(&watched @ Observable::Marginal(axis)) = result.observables.get(observable) else {
         return Ok(None);
     };
@@ -74,10 +80,7 @@ pub(super) fn diagram(
     up.draw_left(&page, map, true)?;
     bar.draw(&page, map, &[])?;
     legend.draw(&page, map.left + 0.5 * map.width, below)?;
-    Ok(Some(Figure {
-        name: format!("diagram_{}", names.file(watched)),
-        svg: page.svg(),
-    }))
+    Ok(Some(page))
 }
 
 /// The density of each point, where it has one.
@@ -120,7 +123,7 @@ fn draw_map(
     result: &SweepResult,
     observable: usize,
     (range, window, largest): ((f64, f64), (f64, f64), f64),
-) -> Result<(), FigureError> {
+) -> Result<(), DrawError> {
     let densities = densities(result, observable);
     let edges = column_edges(&result.points, range);
     for (column, _) in densities
@@ -155,7 +158,7 @@ fn draw_branches(
     panel: &Panel,
     followed: &[Vec<Branch>; 2],
     window: (f64, f64),
-) -> Result<(), FigureError> {
+) -> Result<(), DrawError> {
     let inside = |place: &&(f64, f64)| place.1 >= window.0 && place.1 <= window.1;
     for branch in followed.iter().rev().flatten() {
         let places: Vec<(f64, f64)> = branch.places.iter().filter(inside).copied().collect();

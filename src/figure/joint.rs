@@ -2,19 +2,20 @@
 
 use plotters_backend::text_anchor::HPos;
 
-use crate::continuation::{Point, SweepResult};
+use crate::continuation::Point;
 use crate::density::{Density, EstimatedDensity, Observable};
 use crate::topology::{Feature, FeatureKind, Verdict};
 
-use super::colour_bar::ColourBar;
-use super::contour::Grid;
-use super::frame::{self, Scale};
-use super::heat::Picture;
-use super::legend::{self, Legend, Sample};
-use super::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
-use super::select::{self, Names};
-use super::style::{self, MARGIN, Stroke, TEXT};
-use super::{Figure, FigureError, symbols};
+use super::canvas::colour_bar::ColourBar;
+use super::canvas::contour::Grid;
+use super::canvas::frame::{self, Scale};
+use super::canvas::heat::Picture;
+use super::canvas::legend::{self, Legend, Sample};
+use super::canvas::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
+use super::canvas::style::{self, MARGIN, Stroke, TEXT};
+use super::canvas::{DrawError, symbols};
+use super::select;
+use super::sketch::{Sketch, SweepScene};
 
 /// Contours are drawn at these shares of the largest density.
 const LEVELS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
@@ -76,7 +77,7 @@ fn open_page(
     title: &str,
     (left, page_width): (f64, f64),
     (width, height): (f64, f64),
-) -> Result<(Page, Rectangle), FigureError> {
+) -> Result<(Page, Rectangle), DrawError> {
     let heading = Heading::new(title, page_width)?;
     let legend = Legend::new(entries(found), page_width - 2.0 * MARGIN)?;
     let maps = Rectangle {
@@ -92,18 +93,34 @@ fn open_page(
     Ok((page, maps))
 }
 
+/// A sheet an observed pair of axes, then its maps one by one.
+pub(super) fn sketches<'a>(scene: &'a SweepScene<'a>) -> Vec<Sketch<'a>> {
+    let mut sketches = Vec::new();
+    for (number, &observable) in scene.result.observables.iter().enumerate() {
+        if matches!(observable, Observable::Joint(..)) {
+            let name = format!("joint_{}", scene.names.file(observable));
+            let single = |&point: &&'a Point| {
+                let value = select::safe(&symbols::rounded(point.value).to_string());
+                Sketch::new(format!("{name}_{value}"), move || {
+                    draw_single(scene, number, point)
+                })
+            };
+            let singles = scene.chosen.iter().map(single);
+            sketches.push(Sketch::new(&name, move || draw_sheet(scene, number)));
+            sketches.extend(singles);
+        }
+    }
+    sketches
+}
+
 /// One map at one point; `None` without a density.
-///
-/// # Errors
-/// Any [`FigureError`] but that of writing.
-pub(super) fn single(
-    result: &SweepResult,
+fn draw_single(
+    scene: &SweepScene<'_>,
     observable: usize,
     point: &Point,
-    names: Names<'_>,
-    title: &str,
-) -> Result<Option<Figure>, FigureError> {
-    let watched = result.observables[observable];
+) -> Result<Option<Page>, DrawError> {
+    let names = scene.names;
+    let watched = scene.result.observables[observable];
     let (Observable::Joint(first, second), Some(found)) = (watched, Found::new(point, observable))
     else {
         return Ok(None);
@@ -118,17 +135,13 @@ pub(super) fn single(
     let bar = ColourBar::new(largest, SINGLE, &names.density(watched))?;
     let left = MARGIN + up.left();
     let width = left + SINGLE + bar.width() + MARGIN;
-    let (page, map) = open_page(&found, title, (left, width), (SINGLE, SINGLE))?;
+    let (page, map) = open_page(&found, scene.title, (left, width), (SINGLE, SINGLE))?;
     write_above(&page, map, names.at(point.value))?;
     draw_map(&page, map, &found[0], (x, y), largest)?;
     across.draw_below(&page, map, true)?;
     up.draw_left(&page, map, true)?;
     bar.draw(&page, map, &LEVELS)?;
-    let value = select::safe(&symbols::rounded(point.value).to_string());
-    Ok(Some(Figure {
-        name: format!("joint_{}_{value}", names.file(watched)),
-        svg: page.svg(),
-    }))
+    Ok(Some(page))
 }
 
 /// How the maps of a sheet are arranged and coloured.
@@ -186,7 +199,7 @@ impl Sheet {
     }
 
     /// The colour bar of all maps.
-    fn bar(&self, density: &str) -> Result<ColourBar, FigureError> {
+    fn bar(&self, density: &str) -> Result<ColourBar, DrawError> {
         match self.common {
             Some(largest) => ColourBar::new(largest, self.whole.1, density),
             None => ColourBar::new(1.0, self.whole.1, &format!("{density} / max")),
@@ -195,18 +208,11 @@ impl Sheet {
 }
 
 /// All maps of a pair on one sheet, with the same windows; `None` for fewer than two densities.
-///
-/// # Errors
-/// Any [`FigureError`] but that of writing.
-pub(super) fn sheet(
-    result: &SweepResult,
-    observable: usize,
-    chosen: &[&Point],
-    names: Names<'_>,
-    title: &str,
-) -> Result<Option<Figure>, FigureError> {
-    let watched = result.observables[observable];
-    let found: Vec<Found<'_>> = chosen
+fn draw_sheet(scene: &SweepScene<'_>, observable: usize) -> Result<Option<Page>, DrawError> {
+    let names = scene.names;
+    let watched = scene.result.observables[observable];
+    let found: Vec<Found<'_>> = scene
+        .chosen
         .iter()
         .filter_map(|point| Found::new(point, observable))
         .collect();
@@ -222,7 +228,7 @@ pub(super) fn sheet(
     let bar = sheet.bar(&names.density(watched))?;
     let left = MARGIN + up.left();
     let width = left + sheet.whole.0 + bar.width() + MARGIN;
-    let (page, all) = open_page(&found, title, (left, width), sheet.whole)?;
+    let (page, all) = open_page(&found, scene.title, (left, width), sheet.whole)?;
     for (number, (found, &top)) in found.iter().zip(&sheet.tops).enumerate() {
         let map = sheet.map(all, number);
         let letter = char::from(b'a' + (number % 26) as u8);
@@ -234,14 +240,11 @@ pub(super) fn sheet(
     }
     let marks: &[f64] = if sheet.common.is_some() { &[] } else { &LEVELS };
     bar.draw(&page, all, marks)?;
-    Ok(Some(Figure {
-        name: format!("joint_{}", names.file(watched)),
-        svg: page.svg(),
-    }))
+    Ok(Some(page))
 }
 
 /// Writes a line above a map.
-pub(super) fn write_above(page: &Page, map: Rectangle, markup: String) -> Result<(), FigureError> {
+pub(super) fn write_above(page: &Page, map: Rectangle, markup: String) -> Result<(), DrawError> {
     let place = (map.left, map.top - 0.75 * TEXT);
     page.text(place, lettering(markup, HPos::Left))
 }
@@ -270,7 +273,7 @@ pub(super) fn draw_map(
     found: &Found<'_>,
     (x, y): ((f64, f64), (f64, f64)),
     largest: f64,
-) -> Result<(), FigureError> {
+) -> Result<(), DrawError> {
     let panel = page.panel(map, x, y);
     let density = found.density();
     let [across, up] = &density.axes[..] else {
@@ -306,7 +309,7 @@ fn draw_contours(
     density: &Density,
     (x, y): ((f64, f64), (f64, f64)),
     largest: f64,
-) -> Result<(), FigureError> {
+) -> Result<(), DrawError> {
     let inside = |axis: usize, window: (f64, f64)| -> Vec<(usize, f64)> {
         let centres = density.axes[axis].centres().into_iter().enumerate();
         centres

@@ -5,12 +5,13 @@ use plotters_backend::BackendColor;
 use crate::continuation::{Point, SweepResult};
 use crate::density::{Density, EstimatedDensity, Observable};
 
-use super::frame::{self, Scale};
-use super::legend::{Legend, Sample};
-use super::page::{Heading, Page, Rectangle, Shape};
+use super::canvas::DrawError;
+use super::canvas::frame::{self, Scale};
+use super::canvas::legend::{Legend, Sample};
+use super::canvas::page::{Heading, Page, Rectangle, Shape};
+use super::canvas::style::{MARGIN, Stroke};
 use super::select::{self, Names};
-use super::style::{MARGIN, Stroke};
-use super::{Figure, FigureError};
+use super::sketch::{Sketch, SweepScene};
 
 /// Height of a panel, in pixels.
 const HEIGHT: f64 = 210.0;
@@ -27,16 +28,15 @@ struct Laid<'a> {
     left: f64,
 }
 
+/// The figure of all observed marginals.
+pub(super) fn sketches<'a>(scene: &'a SweepScene<'a>) -> Vec<Sketch<'a>> {
+    vec![Sketch::new("marginals", || draw(scene))]
+}
+
 /// The figure of all observed marginals at the chosen points; `None` if there is nothing to draw.
-///
-/// # Errors
-/// Any [`FigureError`] but that of writing.
-pub(super) fn marginals(
-    result: &SweepResult,
-    chosen: &[&Point],
-    names: Names<'_>,
-    title: &str,
-) -> Result<Option<Figure>, FigureError> {
+fn draw(scene: &SweepScene<'_>) -> Result<Option<Page>, DrawError> {
+    let (result, names, title) = (scene.result, scene.names, scene.title);
+    let chosen = scene.chosen.as_slice();
     let is_marginal =
         |(_, observable): &(usize, &Observable)| matches!(observable, Observable::Marginal(_));
     let watched: Vec<usize> = result
@@ -84,10 +84,7 @@ pub(super) fn marginals(
         };
         draw_panel(&page, panel, rect)?;
     }
-    Ok(Some(Figure {
-        name: "marginals".to_owned(),
-        svg: page.svg(),
-    }))
+    Ok(Some(page))
 }
 
 /// Lays out the panel of one marginal, from `from` pixels on.
@@ -97,7 +94,7 @@ fn lay_out<'a>(
     chosen: &[&'a Point],
     names: Names<'_>,
     (from, width): (f64, f64),
-) -> Result<Option<Laid<'a>>, FigureError> {
+) -> Result<Option<Laid<'a>>, DrawError> {
     let watched = result.observables[observable];
     let Observable::Marginal(axis) = watched else {
         return Ok(None);
@@ -123,7 +120,7 @@ fn lay_out<'a>(
     }))
 }
 
-fn draw_panel(page: &Page, laid: &Laid<'_>, rect: Rectangle) -> Result<(), FigureError> {
+fn draw_panel(page: &Page, laid: &Laid<'_>, rect: Rectangle) -> Result<(), DrawError> {
     let panel = page.panel(rect, laid.across.range, laid.up.range);
     for (number, estimated) in &laid.densities {
         let stroke = Stroke::curve(*number);

@@ -6,8 +6,8 @@ use crate::density::{Density, EstimatedDensity, Observable};
 use crate::space::Axis;
 use crate::system::Model;
 
-use super::style::PNG_SCALE;
-use super::symbols;
+use super::canvas::style::PNG_SCALE;
+use super::canvas::symbols;
 
 /// Share of the largest density below which a cell counts as empty.
 const EMPTY: f64 = 1e-3;
@@ -22,13 +22,6 @@ pub(super) struct Names<'a> {
 }
 
 impl<'a> Names<'a> {
-    pub(super) fn new(result: &'a SweepResult, model: &'a Model) -> Self {
-        Self {
-            model,
-            parameter: &result.parameter,
-        }
-    }
-
     pub(super) fn of(model: &'a Model, parameter: &'a str) -> Self {
         Self { model, parameter }
     }

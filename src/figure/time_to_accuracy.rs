@@ -1,14 +1,14 @@
 //! Error against time: total variation to the reference over seconds, both logarithmic, a line a method.
 
-use crate::compare::{Accuracy, AccuracyPoint, Comparison, Method, Reference};
+use crate::compare::{Accuracy, AccuracyPoint, Method, Reference};
 
+use super::canvas::frame::{self, Scale};
+use super::canvas::legend::{self, Legend, Sample};
+use super::canvas::page::{Heading, Page, Rectangle, Shape};
+use super::canvas::style::{BLACK, ERROR_LINE, MARGIN, Stroke};
+use super::canvas::{DrawError, symbols};
 use super::compared_marginals::stroke;
-use super::frame::{self, Scale};
-use super::legend::{self, Legend, Sample};
-use super::page::{Heading, Page, Rectangle, Shape};
-use super::select::Names;
-use super::style::{BLACK, ERROR_LINE, MARGIN, Stroke};
-use super::{Figure, FigureError};
+use super::sketch::{ComparisonScene, Sketch};
 
 /// Size of the panel, in pixels.
 const PANEL: (f64, f64) = (390.0, 270.0);
@@ -32,16 +32,15 @@ fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     (low - missing - BORDER, high + missing + BORDER)
 }
 
+/// The figure, where errors were measured.
+pub(super) fn sketches<'a>(scene: &'a ComparisonScene<'a>) -> Vec<Sketch<'a>> {
+    vec![Sketch::new("time_to_accuracy", || draw(scene))]
+}
+
 /// The figure; `None` if nothing was measured.
-///
-/// # Errors
-/// Any [`FigureError`] but that of writing.
-pub(super) fn figure(
-    comparison: &Comparison,
-    names: Names<'_>,
-    title: &str,
-) -> Result<Option<Figure>, FigureError> {
-    let Some(accuracy) = &comparison.accuracy else {
+fn draw(scene: &ComparisonScene<'_>) -> Result<Option<Page>, DrawError> {
+    let (names, title) = (scene.names, scene.title);
+    let Some(accuracy) = &scene.comparison.accuracy else {
         return Ok(None);
     };
     if accuracy.points.is_empty() {
@@ -59,7 +58,7 @@ pub(super) fn figure(
         "" => String::new(),
         title => format!("{title}; "),
     };
-    let value = crate::figure::symbols::rounded(accuracy.value);
+    let value = symbols::rounded(accuracy.value);
     let heading = Heading::new(&format!("{title}at {} = {value}", names.plain()), width)?;
     let shown = |method: &Method| accuracy.points.iter().any(|one| one.method == *method);
     let methods: Vec<(usize, Method)> = Method::ALL.into_iter().enumerate().collect();
@@ -104,10 +103,7 @@ pub(super) fn figure(
     frame::border(&page, rect)?;
     across.draw_below(&page, rect, true)?;
     up.draw_left(&page, rect, true)?;
-    Ok(Some(Figure {
-        name: "time_to_accuracy".to_owned(),
-        svg: page.svg(),
-    }))
+    Ok(Some(page))
 }
 
 /// The line of a method; Monte Carlo's is black, as its symbols elsewhere.

@@ -8,7 +8,7 @@ use plotters::prelude::{Cartesian2d, CoordTranslate, DrawingArea, IntoDrawingAre
 use plotters_backend::text_anchor::HPos;
 use plotters_backend::{BackendColor, BackendCoord};
 
-use super::FigureError;
+use super::DrawError;
 use super::backend::{Canvas, Drawn, Lettering};
 use super::render;
 use super::style::{BLACK, GREY, MARGIN, Stroke, TEXT, TITLE_TEXT, UNITS};
@@ -16,26 +16,26 @@ use super::symbols;
 
 /// A rectangle on the page, in pixels from the upper left.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Rectangle {
-    pub(super) left: f64,
-    pub(super) top: f64,
-    pub(super) width: f64,
-    pub(super) height: f64,
+pub(in crate::figure) struct Rectangle {
+    pub(in crate::figure) left: f64,
+    pub(in crate::figure) top: f64,
+    pub(in crate::figure) width: f64,
+    pub(in crate::figure) height: f64,
 }
 
 impl Rectangle {
-    pub(super) fn right(&self) -> f64 {
+    pub(in crate::figure) fn right(&self) -> f64 {
         self.left + self.width
     }
 
-    pub(super) fn bottom(&self) -> f64 {
+    pub(in crate::figure) fn bottom(&self) -> f64 {
         self.top + self.height
     }
 }
 
 /// What is drawn at one or several points.
 #[derive(Clone)]
-pub(super) enum Shape {
+pub(in crate::figure) enum Shape {
     /// A polyline through the points.
     Line(Stroke),
     /// The polygon of the points.
@@ -98,19 +98,19 @@ impl<Coord> Drawable<Canvas> for Mark<Coord> {
 }
 
 /// A page in figure pixels.
-pub(super) struct Page {
+pub(in crate::figure) struct Page {
     canvas: Canvas,
     area: DrawingArea<Canvas, Shift>,
 }
 
 /// A rectangle of a page in the units of the data.
-pub(super) struct Panel {
+pub(in crate::figure) struct Panel {
     area: DrawingArea<Canvas, Cartesian2d<RangedCoordf64, RangedCoordf64>>,
 }
 
 impl Page {
     /// An empty page; size in pixels.
-    pub(super) fn new(width: f64, height: f64) -> Self {
+    pub(in crate::figure) fn new(width: f64, height: f64) -> Self {
         let canvas = Canvas::new(width, height);
         Self {
             area: canvas.clone().into_drawing_area(),
@@ -119,7 +119,11 @@ impl Page {
     }
 
     /// Draws at points given in pixels.
-    pub(super) fn draw(&self, points: &[(f64, f64)], shape: Shape) -> Result<(), FigureError> {
+    pub(in crate::figure) fn draw(
+        &self,
+        points: &[(f64, f64)],
+        shape: Shape,
+    ) -> Result<(), DrawError> {
         let on_canvas =
             |&(x, y): &(f64, f64)| ((x * UNITS).round() as i32, (y * UNITS).round() as i32);
         let points = points.iter().map(on_canvas).collect();
@@ -127,12 +131,12 @@ impl Page {
     }
 
     /// Writes a text whose end `anchor` stands at a point, centred on it in height.
-    pub(super) fn text(&self, at: (f64, f64), text: Lettering) -> Result<(), FigureError> {
+    pub(in crate::figure) fn text(&self, at: (f64, f64), text: Lettering) -> Result<(), DrawError> {
         self.draw(&[at], Shape::Text(text))
     }
 
     /// A panel over a rectangle; `x` grows to the right, `y` upward.
-    pub(super) fn panel(&self, rect: Rectangle, x: (f64, f64), y: (f64, f64)) -> Panel {
+    pub(in crate::figure) fn panel(&self, rect: Rectangle, x: (f64, f64), y: (f64, f64)) -> Panel {
         let whole = |pixels: f64| (pixels * UNITS).round() as i32;
         let across = whole(rect.left)..whole(rect.right());
         let down = whole(rect.top)..whole(rect.bottom());
@@ -144,27 +148,31 @@ impl Page {
     }
 
     /// The page as SVG.
-    pub(super) fn svg(&self) -> String {
+    pub(in crate::figure) fn svg(&self) -> String {
         self.canvas.document()
     }
 }
 
 impl Panel {
     /// Draws at points given in the units of the data.
-    pub(super) fn draw(&self, points: &[(f64, f64)], shape: Shape) -> Result<(), FigureError> {
+    pub(in crate::figure) fn draw(
+        &self,
+        points: &[(f64, f64)],
+        shape: Shape,
+    ) -> Result<(), DrawError> {
         let points = points.to_vec();
         Ok(self.area.draw(&Mark { points, shape })?)
     }
 
     /// Place of a point on the page, in pixels.
-    pub(super) fn place(&self, point: (f64, f64)) -> (f64, f64) {
+    pub(in crate::figure) fn place(&self, point: (f64, f64)) -> (f64, f64) {
         let (x, y) = self.area.as_coord_spec().translate(&point);
         (f64::from(x) / UNITS, f64::from(y) / UNITS)
     }
 }
 
 /// Black lettering of the usual size.
-pub(super) fn lettering(markup: impl Into<String>, anchor: HPos) -> Lettering {
+pub(in crate::figure) fn lettering(markup: impl Into<String>, anchor: HPos) -> Lettering {
     Lettering {
         markup: markup.into(),
         size: TEXT,
@@ -176,7 +184,7 @@ pub(super) fn lettering(markup: impl Into<String>, anchor: HPos) -> Lettering {
 }
 
 /// The title of a run, cut into lines, above everything else on a page.
-pub(super) struct Heading {
+pub(in crate::figure) struct Heading {
     lines: Vec<String>,
 }
 
@@ -184,22 +192,22 @@ impl Heading {
     /// Cuts a title (plain text, may be empty) for a page of the given width.
     ///
     /// # Errors
-    /// [`FigureError::Svg`].
-    pub(super) fn new(title: &str, width: f64) -> Result<Self, FigureError> {
+    /// [`DrawError::Svg`].
+    pub(in crate::figure) fn new(title: &str, width: f64) -> Result<Self, DrawError> {
         let lines = render::wrap(&symbols::plain(title), TITLE_TEXT, width - 2.0 * MARGIN)?;
         Ok(Self { lines })
     }
 
     /// Height it takes, the upper margin included.
-    pub(super) fn height(&self) -> f64 {
+    pub(in crate::figure) fn height(&self) -> f64 {
         MARGIN + 1.5 * TITLE_TEXT * self.lines.len() as f64
     }
 
     /// Draws it.
     ///
     /// # Errors
-    /// [`FigureError::Drawing`].
-    pub(super) fn draw(&self, page: &Page) -> Result<(), FigureError> {
+    /// [`DrawError::Layout`].
+    pub(in crate::figure) fn draw(&self, page: &Page) -> Result<(), DrawError> {
         for (number, line) in self.lines.iter().enumerate() {
             let y = MARGIN + 1.5 * TITLE_TEXT * (number as f64 + 0.45);
             let text = Lettering {

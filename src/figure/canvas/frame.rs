@@ -2,7 +2,7 @@
 
 use plotters_backend::text_anchor::HPos;
 
-use super::FigureError;
+use super::DrawError;
 use super::backend::Lettering;
 use super::page::{Page, Rectangle, Shape, lettering};
 use super::render;
@@ -14,9 +14,9 @@ const GAP: f64 = 4.0;
 
 /// An axis laid out on a given length.
 #[derive(Debug, Clone)]
-pub(super) struct Scale {
+pub(in crate::figure) struct Scale {
     /// The range.
-    pub(super) range: (f64, f64),
+    pub(in crate::figure) range: (f64, f64),
     ticks: Ticks,
     title: String,
     widest: f64,
@@ -26,12 +26,12 @@ impl Scale {
     /// Lays out a horizontal axis: as many labels as stand apart.
     ///
     /// # Errors
-    /// [`FigureError::Svg`].
-    pub(super) fn horizontal(
+    /// [`DrawError::Svg`].
+    pub(in crate::figure) fn horizontal(
         range: (f64, f64),
         length: f64,
         title: &str,
-    ) -> Result<Self, FigureError> {
+    ) -> Result<Self, DrawError> {
         let mut most = 7;
         loop {
             let scale = Self::with(range, most, title)?;
@@ -52,12 +52,12 @@ impl Scale {
     /// Lays out a vertical axis.
     ///
     /// # Errors
-    /// [`FigureError::Svg`].
-    pub(super) fn vertical(
+    /// [`DrawError::Svg`].
+    pub(in crate::figure) fn vertical(
         range: (f64, f64),
         length: f64,
         title: &str,
-    ) -> Result<Self, FigureError> {
+    ) -> Result<Self, DrawError> {
         let most = (length / (2.6 * TICK_TEXT)) as usize;
         Self::with(range, most.clamp(2, 7), title)
     }
@@ -65,16 +65,19 @@ impl Scale {
     /// Lays out an axis of logarithms to base ten, labelled at powers of ten: `range` and what is drawn are exponents.
     ///
     /// # Errors
-    /// [`FigureError::Svg`].
-    pub(super) fn logarithmic(range: (f64, f64), title: &str) -> Result<Self, FigureError> {
+    /// [`DrawError::Svg`].
+    pub(in crate::figure) fn logarithmic(
+        range: (f64, f64),
+        title: &str,
+    ) -> Result<Self, DrawError> {
         Self::of(range, decades(range.0, range.1), title)
     }
 
-    fn with(range: (f64, f64), most: usize, title: &str) -> Result<Self, FigureError> {
+    fn with(range: (f64, f64), most: usize, title: &str) -> Result<Self, DrawError> {
         Self::of(range, ticks(range.0, range.1, most), title)
     }
 
-    fn of(range: (f64, f64), ticks: Ticks, title: &str) -> Result<Self, FigureError> {
+    fn of(range: (f64, f64), ticks: Ticks, title: &str) -> Result<Self, DrawError> {
         let mut widest: f64 = 0.0;
         for tick in &ticks.major {
             widest = widest.max(render::text_width(&tick.label, TICK_TEXT, false)?);
@@ -97,22 +100,22 @@ impl Scale {
     }
 
     /// The title, with the power of ten that the labels leave out.
-    pub(super) fn title(&self) -> &str {
+    pub(in crate::figure) fn title(&self) -> &str {
         &self.title
     }
 
     /// Width of ticks and labels beside a vertical axis.
-    pub(super) fn label_width(&self) -> f64 {
+    pub(in crate::figure) fn label_width(&self) -> f64 {
         TICK + GAP + self.widest
     }
 
     /// Room to the left of a vertical axis with title.
-    pub(super) fn left(&self) -> f64 {
+    pub(in crate::figure) fn left(&self) -> f64 {
         self.label_width() + GAP + 1.45 * TEXT
     }
 
     /// Room below a horizontal axis with title.
-    pub(super) fn below() -> f64 {
+    pub(in crate::figure) fn below() -> f64 {
         TICK + GAP + TICK_TEXT + GAP + 1.5 * TEXT
     }
 
@@ -139,13 +142,13 @@ impl Scale {
     /// Draws ticks below a rectangle and, if wanted, labels and title.
     ///
     /// # Errors
-    /// [`FigureError::Drawing`].
-    pub(super) fn draw_below(
+    /// [`DrawError::Layout`].
+    pub(in crate::figure) fn draw_below(
         &self,
         page: &Page,
         rect: Rectangle,
         labels: bool,
-    ) -> Result<(), FigureError> {
+    ) -> Result<(), DrawError> {
         let bottom = rect.bottom();
         for (share, labelled) in self.all() {
             let x = rect.left + share * rect.width;
@@ -171,13 +174,13 @@ impl Scale {
     /// Draws ticks left of a rectangle and, if wanted, labels and title.
     ///
     /// # Errors
-    /// [`FigureError::Drawing`].
-    pub(super) fn draw_left(
+    /// [`DrawError::Layout`].
+    pub(in crate::figure) fn draw_left(
         &self,
         page: &Page,
         rect: Rectangle,
         labels: bool,
-    ) -> Result<(), FigureError> {
+    ) -> Result<(), DrawError> {
         for (share, labelled) in self.all() {
             let y = rect.bottom() - share * rect.height;
             let end = rect.left - if labelled { TICK } else { MINOR_TICK };
@@ -209,8 +212,12 @@ impl Scale {
     /// Draws ticks and labels right of a rectangle (a colour bar).
     ///
     /// # Errors
-    /// [`FigureError::Drawing`].
-    pub(super) fn draw_right(&self, page: &Page, rect: Rectangle) -> Result<(), FigureError> {
+    /// [`DrawError::Layout`].
+    pub(in crate::figure) fn draw_right(
+        &self,
+        page: &Page,
+        rect: Rectangle,
+    ) -> Result<(), DrawError> {
         let right = rect.right();
         for tick in &self.ticks.major {
             let y = rect.bottom() - self.share(tick.value) * rect.height;
@@ -235,8 +242,8 @@ fn tick_label(label: &str, anchor: HPos) -> Lettering {
 /// Draws the border of a rectangle.
 ///
 /// # Errors
-/// [`FigureError::Drawing`].
-pub(super) fn border(page: &Page, rect: Rectangle) -> Result<(), FigureError> {
+/// [`DrawError::Layout`].
+pub(in crate::figure) fn border(page: &Page, rect: Rectangle) -> Result<(), DrawError> {
     let (left, right, top, bottom) = (rect.left, rect.right(), rect.top, rect.bottom());
     let corners = [
         (left, top),

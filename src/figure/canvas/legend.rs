@@ -3,7 +3,7 @@
 use plotters_backend::BackendColor;
 use plotters_backend::text_anchor::HPos;
 
-use super::FigureError;
+use super::DrawError;
 use super::page::{Page, Shape, lettering};
 use super::render;
 use super::style::{BLACK, CURVE_LINE, ERROR_LINE, Stroke, TEXT, TICK_TEXT, WHITE, heat};
@@ -15,11 +15,11 @@ const GAP: f64 = 6.0;
 /// Gap between two entries.
 const BETWEEN: f64 = 20.0;
 /// Height of a row.
-pub(super) const ROW: f64 = 1.5 * TEXT;
+pub(in crate::figure) const ROW: f64 = 1.5 * TEXT;
 
 /// What stands for an entry.
 #[derive(Clone, Copy)]
-pub(super) enum Sample {
+pub(in crate::figure) enum Sample {
     /// A curve.
     Curve(Stroke),
     /// A symbol with an error bar.
@@ -39,7 +39,7 @@ pub(super) enum Sample {
 }
 
 /// A legend laid out in rows.
-pub(super) struct Legend {
+pub(in crate::figure) struct Legend {
     /// Sample, text, and place of the sample's left end: pixels from the left, number of the row.
     entries: Vec<(Sample, String, f64, usize)>,
     rows: Vec<f64>,
@@ -49,8 +49,11 @@ impl Legend {
     /// Lays out entries (texts are markup) in rows no wider than `width`.
     ///
     /// # Errors
-    /// [`FigureError::Svg`].
-    pub(super) fn new(entries: Vec<(Sample, String)>, width: f64) -> Result<Self, FigureError> {
+    /// [`DrawError::Svg`].
+    pub(in crate::figure) fn new(
+        entries: Vec<(Sample, String)>,
+        width: f64,
+    ) -> Result<Self, DrawError> {
         let mut rows: Vec<f64> = Vec::new();
         let mut placed = Vec::new();
         for (sample, text) in entries {
@@ -75,15 +78,20 @@ impl Legend {
     }
 
     /// Height of all rows.
-    pub(super) fn height(&self) -> f64 {
+    pub(in crate::figure) fn height(&self) -> f64 {
         ROW * self.rows.len() as f64
     }
 
     /// Draws it with its rows centred on `middle`, from `top` down.
     ///
     /// # Errors
-    /// [`FigureError::Drawing`].
-    pub(super) fn draw(&self, page: &Page, middle: f64, top: f64) -> Result<(), FigureError> {
+    /// [`DrawError::Layout`].
+    pub(in crate::figure) fn draw(
+        &self,
+        page: &Page,
+        middle: f64,
+        top: f64,
+    ) -> Result<(), DrawError> {
         for (sample, text, left, row) in &self.entries {
             let x = middle - 0.5 * self.rows[*row] + left;
             let y = top + (*row as f64 + 0.5) * ROW;
@@ -96,7 +104,7 @@ impl Legend {
     }
 }
 
-fn draw_sample(page: &Page, sample: Sample, (x, y): (f64, f64)) -> Result<(), FigureError> {
+fn draw_sample(page: &Page, sample: Sample, (x, y): (f64, f64)) -> Result<(), DrawError> {
     let line = [(x, y), (x + SAMPLE, y)];
     let half = 0.5 * TICK_TEXT;
     let corners = [
@@ -148,10 +156,10 @@ fn draw_sample(page: &Page, sample: Sample, (x, y): (f64, f64)) -> Result<(), Fi
 }
 
 /// A branch of peaks: black on white, seen on every colour of the map.
-pub(super) fn draw_peaks(
-    draw: impl Fn(&[(f64, f64)], Shape) -> Result<(), FigureError>,
+pub(in crate::figure) fn draw_peaks(
+    draw: impl Fn(&[(f64, f64)], Shape) -> Result<(), DrawError>,
     places: &[(f64, f64)],
-) -> Result<(), FigureError> {
+) -> Result<(), DrawError> {
     if let [place] = places {
         let rim = Stroke::solid(WHITE, 0.8);
         return draw(&[*place], Shape::Dot(2.2, BLACK, rim));
@@ -161,10 +169,10 @@ pub(super) fn draw_peaks(
 }
 
 /// A branch of valleys: white dashes on black.
-pub(super) fn draw_valleys(
-    draw: impl Fn(&[(f64, f64)], Shape) -> Result<(), FigureError>,
+pub(in crate::figure) fn draw_valleys(
+    draw: impl Fn(&[(f64, f64)], Shape) -> Result<(), DrawError>,
     places: &[(f64, f64)],
-) -> Result<(), FigureError> {
+) -> Result<(), DrawError> {
     if let [place] = places {
         let rim = Stroke::solid(BLACK, 1.0);
         return draw(&[*place], Shape::Dot(2.0, WHITE, rim));
@@ -179,12 +187,12 @@ pub(super) fn draw_valleys(
 }
 
 /// One of four symbols, told apart without colour: disc, circle, and these with a cross.
-pub(super) fn symbol(
-    draw: impl Fn(&[(f64, f64)], Shape) -> Result<(), FigureError>,
+pub(in crate::figure) fn symbol(
+    draw: impl Fn(&[(f64, f64)], Shape) -> Result<(), DrawError>,
     number: usize,
     place: (f64, f64),
     colour: BackendColor,
-) -> Result<(), FigureError> {
+) -> Result<(), DrawError> {
     let rim = Stroke::solid(colour, 1.2);
     match number % 4 {
         0 => draw(&[place], Shape::Dot(2.0, colour, rim)),
@@ -201,19 +209,19 @@ pub(super) fn symbol(
 }
 
 /// The mark of a peak in a map.
-pub(super) fn plus(
-    draw: impl Fn(&[(f64, f64)], Shape) -> Result<(), FigureError>,
+pub(in crate::figure) fn plus(
+    draw: impl Fn(&[(f64, f64)], Shape) -> Result<(), DrawError>,
     place: (f64, f64),
-) -> Result<(), FigureError> {
+) -> Result<(), DrawError> {
     draw(&[place], Shape::Plus(5.0, Stroke::solid(WHITE, 3.0)))?;
     draw(&[place], Shape::Plus(4.5, Stroke::solid(BLACK, 1.4)))
 }
 
 /// The mark of a crater in a map.
-pub(super) fn ring(
-    draw: impl Fn(&[(f64, f64)], Shape) -> Result<(), FigureError>,
+pub(in crate::figure) fn ring(
+    draw: impl Fn(&[(f64, f64)], Shape) -> Result<(), DrawError>,
     place: (f64, f64),
-) -> Result<(), FigureError> {
+) -> Result<(), DrawError> {
     let clear = BackendColor {
         alpha: 0.0,
         rgb: (255, 255, 255),

@@ -7,44 +7,44 @@ use plotters::style::colors::colormaps::{ColorMap, ViridisRGB};
 use plotters_backend::BackendColor;
 
 /// Sub-pixel units in a figure pixel: plotters places everything on whole units.
-pub(super) const UNITS: f64 = 20.0;
+pub(in crate::figure) const UNITS: f64 = 20.0;
 /// Pixels of a PNG to a figure pixel.
-pub(super) const PNG_SCALE: f64 = 3.0;
+pub(in crate::figure) const PNG_SCALE: f64 = 3.0;
 
 /// Lettering of axis titles and legends.
-pub(super) const TEXT: f64 = 14.0;
+pub(in crate::figure) const TEXT: f64 = 14.0;
 /// Lettering of tick labels.
-pub(super) const TICK_TEXT: f64 = 12.5;
+pub(in crate::figure) const TICK_TEXT: f64 = 12.5;
 /// Lettering of the line with the title of the run.
-pub(super) const TITLE_TEXT: f64 = 12.0;
+pub(in crate::figure) const TITLE_TEXT: f64 = 12.0;
 /// White border of a page.
-pub(super) const MARGIN: f64 = 8.0;
+pub(in crate::figure) const MARGIN: f64 = 8.0;
 /// Length of a tick, outward.
-pub(super) const TICK: f64 = 5.0;
+pub(in crate::figure) const TICK: f64 = 5.0;
 /// Length of a tick without label.
-pub(super) const MINOR_TICK: f64 = 3.0;
+pub(in crate::figure) const MINOR_TICK: f64 = 3.0;
 /// Width of frames and ticks.
-pub(super) const FRAME_LINE: f64 = 1.0;
+pub(in crate::figure) const FRAME_LINE: f64 = 1.0;
 /// Width of curves.
-pub(super) const CURVE_LINE: f64 = 1.7;
+pub(in crate::figure) const CURVE_LINE: f64 = 1.7;
 
 /// Width of error bars.
-pub(super) const ERROR_LINE: f64 = 0.9;
+pub(in crate::figure) const ERROR_LINE: f64 = 0.9;
 
 const fn colour(rgb: (u8, u8, u8), alpha: f64) -> BackendColor {
     BackendColor { alpha, rgb }
 }
 
-pub(super) const BLACK: BackendColor = colour((0, 0, 0), 1.0);
-pub(super) const WHITE: BackendColor = colour((255, 255, 255), 1.0);
+pub(in crate::figure) const BLACK: BackendColor = colour((0, 0, 0), 1.0);
+pub(in crate::figure) const WHITE: BackendColor = colour((255, 255, 255), 1.0);
 /// Lettering that stands back.
-pub(super) const GREY: BackendColor = colour((95, 95, 95), 1.0);
+pub(in crate::figure) const GREY: BackendColor = colour((95, 95, 95), 1.0);
 /// Ground where there is no density.
-pub(super) const BLANK: BackendColor = colour((240, 240, 240), 1.0);
+pub(in crate::figure) const BLANK: BackendColor = colour((240, 240, 240), 1.0);
 /// Hatching of that ground.
-pub(super) const HATCH: BackendColor = colour((150, 150, 150), 1.0);
+pub(in crate::figure) const HATCH: BackendColor = colour((150, 150, 150), 1.0);
 /// Located bifurcations: a red that no colour of the map comes near.
-pub(super) const BIFURCATION: BackendColor = colour((214, 20, 20), 1.0);
+pub(in crate::figure) const BIFURCATION: BackendColor = colour((214, 20, 20), 1.0);
 
 /// Colours of curves, after Okabe and Ito (told apart with any colour vision), without their yellow.
 const CURVES: [(u8, u8, u8); 7] = [
@@ -68,18 +68,18 @@ const DASHES: [&[f64]; 5] = [
 
 /// How a line is drawn.
 #[derive(Clone, Copy)]
-pub(super) struct Stroke {
+pub(in crate::figure) struct Stroke {
     /// Its colour.
-    pub(super) colour: BackendColor,
+    pub(in crate::figure) colour: BackendColor,
     /// Its width, in pixels.
-    pub(super) width: f64,
+    pub(in crate::figure) width: f64,
     /// Lengths of dashes and gaps, in pixels; empty for a solid line.
-    pub(super) dash: &'static [f64],
+    pub(in crate::figure) dash: &'static [f64],
 }
 
 impl Stroke {
     /// A solid line.
-    pub(super) const fn solid(colour: BackendColor, width: f64) -> Self {
+    pub(in crate::figure) const fn solid(colour: BackendColor, width: f64) -> Self {
         Self {
             colour,
             width,
@@ -88,7 +88,7 @@ impl Stroke {
     }
 
     /// The line of the curve with the given number.
-    pub(super) fn curve(number: usize) -> Self {
+    pub(in crate::figure) fn curve(number: usize) -> Self {
         Self {
             colour: colour(CURVES[number % CURVES.len()], 1.0),
             width: CURVE_LINE,
@@ -98,13 +98,13 @@ impl Stroke {
 }
 
 /// The colour of a share (0 to 1) of the largest value: viridis, perceptually uniform and readable in grey.
-pub(super) fn heat(share: f64) -> (u8, u8, u8) {
+pub(in crate::figure) fn heat(share: f64) -> (u8, u8, u8) {
     let colour = ViridisRGB.get_color(share.clamp(0.0, 1.0) as f32);
     (colour.0, colour.1, colour.2)
 }
 
 /// Black or white, whichever is seen better on the colour of a share.
-pub(super) fn on_heat(share: f64) -> BackendColor {
+pub(in crate::figure) fn on_heat(share: f64) -> BackendColor {
     if share > 0.55 { BLACK } else { WHITE }
 }
 

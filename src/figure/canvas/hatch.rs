@@ -1,6 +1,6 @@
 //! Hatching, for where there is no density to show.
 
-use super::FigureError;
+use super::DrawError;
 use super::page::{Page, Shape};
 use super::style::{BLANK, HATCH, Stroke};
 
@@ -10,12 +10,12 @@ const SPACING: f64 = 7.0;
 /// Hatches the rectangle between two abscissas and two ordinates (upper first), in pixels.
 ///
 /// # Errors
-/// [`FigureError::Drawing`].
-pub(super) fn draw(
+/// [`DrawError::Layout`].
+pub(in crate::figure) fn draw(
     page: &Page,
     (left, right): (f64, f64),
     (top, bottom): (f64, f64),
-) -> Result<(), FigureError> {
+) -> Result<(), DrawError> {
     let corners = [(left, top), (right, top), (right, bottom), (left, bottom)];
     page.draw(&corners, Shape::Area(BLANK))?;
     for stroke in strokes((left, right), (top, bottom)) {

@@ -6,7 +6,7 @@ use plotters_backend::text_anchor::HPos;
 use resvg::tiny_skia::{Color, Pixmap, Transform};
 use resvg::usvg::{self, fontdb};
 
-use super::FigureError;
+use super::DrawError;
 use super::backend::{Canvas, Lettering};
 use super::style::{BLACK, PNG_SCALE};
 
@@ -37,13 +37,13 @@ fn options() -> usvg::Options<'static> {
 /// An SVG as a PNG of 8-bit RGB on white, [`PNG_SCALE`] pixels to a figure pixel.
 ///
 /// # Errors
-/// [`FigureError::Svg`], [`FigureError::Raster`] or [`FigureError::Png`].
-pub(super) fn png(svg: &str) -> Result<Vec<u8>, FigureError> {
+/// [`DrawError::Svg`], [`DrawError::Raster`] or [`DrawError::Png`].
+pub(in crate::figure) fn png(svg: &str) -> Result<Vec<u8>, DrawError> {
     let tree = usvg::Tree::from_str(svg, &options())?;
     let scale = PNG_SCALE as f32;
     let width = (tree.size().width() * scale).round() as u32;
     let height = (tree.size().height() * scale).round() as u32;
-    let mut pixels = Pixmap::new(width, height).ok_or(FigureError::Raster { width, height })?;
+    let mut pixels = Pixmap::new(width, height).ok_or(DrawError::Raster { width, height })?;
     pixels.fill(Color::WHITE);
     resvg::render(
         &tree,
@@ -76,8 +76,8 @@ pub(super) fn png(svg: &str) -> Result<Vec<u8>, FigureError> {
 /// Width of a text, in pixels, as it will be drawn.
 ///
 /// # Errors
-/// [`FigureError::Svg`].
-pub(super) fn text_width(markup: &str, size: f64, bold: bool) -> Result<f64, FigureError> {
+/// [`DrawError::Svg`].
+pub(in crate::figure) fn text_width(markup: &str, size: f64, bold: bool) -> Result<f64, DrawError> {
     if markup.is_empty() {
         return Ok(0.0);
     }
@@ -114,8 +114,12 @@ fn text_right(node: &usvg::Node) -> f64 {
 /// The text cut into lines that fit a width, at spaces.
 ///
 /// # Errors
-/// [`FigureError::Svg`].
-pub(super) fn wrap(markup: &str, size: f64, width: f64) -> Result<Vec<String>, FigureError> {
+/// [`DrawError::Svg`].
+pub(in crate::figure) fn wrap(
+    markup: &str,
+    size: f64,
+    width: f64,
+) -> Result<Vec<String>, DrawError> {
     let mut lines: Vec<String> = Vec::new();
     for word in markup.split_whitespace() {
         let longer = match lines.last() {

@@ -22,19 +22,19 @@ pub(super) type Drawn = Result<(), DrawingErrorKind<Infallible>>;
 
 /// Lettering: markup with size and place.
 #[derive(Clone)]
-pub(super) struct Lettering {
+pub(in crate::figure) struct Lettering {
     /// The text, as markup of [`symbols`].
-    pub(super) markup: String,
+    pub(in crate::figure) markup: String,
     /// Height of the letters' body, in pixels.
-    pub(super) size: f64,
+    pub(in crate::figure) size: f64,
     /// Colour.
-    pub(super) colour: BackendColor,
+    pub(in crate::figure) colour: BackendColor,
     /// Which end stands at the given point.
-    pub(super) anchor: HPos,
+    pub(in crate::figure) anchor: HPos,
     /// Whether the text runs upward.
-    pub(super) upward: bool,
+    pub(in crate::figure) upward: bool,
     /// Whether it is bold.
-    pub(super) bold: bool,
+    pub(in crate::figure) bold: bool,
 }
 
 /// A page that collects SVG elements. Clones share the page.

@@ -5,13 +5,13 @@
 
 /// Values at the points of a rectilinear grid.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Grid<'a> {
+pub(in crate::figure) struct Grid<'a> {
     /// Abscissas, ascending; length `n`.
-    pub(super) x: &'a [f64],
+    pub(in crate::figure) x: &'a [f64],
     /// Ordinates, ascending; length `m`.
-    pub(super) y: &'a [f64],
+    pub(in crate::figure) y: &'a [f64],
     /// `n × m` values, the ordinate fastest.
-    pub(super) values: &'a [f64],
+    pub(in crate::figure) values: &'a [f64],
 }
 
 /// Marks an end of a contour piece that nothing joins.
@@ -74,7 +74,7 @@ impl Grid<'_> {
     }
 
     /// The contour of a level: polylines, closed ones with the first point repeated at the end.
-    pub(super) fn contour(&self, level: f64) -> Vec<Vec<(f64, f64)>> {
+    pub(in crate::figure) fn contour(&self, level: f64) -> Vec<Vec<(f64, f64)>> {
         let (n, m) = (self.x.len(), self.y.len());
         // Each crossed edge joins at most two pieces, one of either square beside it.
         let mut neighbours = vec![[NONE; 2]; 2 * n * m];

@@ -2,7 +2,7 @@
 
 use plotters_backend::text_anchor::HPos;
 
-use super::FigureError;
+use super::DrawError;
 use super::frame::{self, Scale};
 use super::heat::Picture;
 use super::page::{Page, Rectangle, Shape, lettering};
@@ -15,7 +15,7 @@ const WIDTH: f64 = 13.0;
 const GAP: f64 = 14.0;
 
 /// A colour bar from zero to a largest value, laid out.
-pub(super) struct ColourBar {
+pub(in crate::figure) struct ColourBar {
     scale: Scale,
     title_width: f64,
 }
@@ -24,33 +24,37 @@ impl ColourBar {
     /// Lays out a bar of the given height; the title (markup) stands above it.
     ///
     /// # Errors
-    /// [`FigureError::Svg`].
-    pub(super) fn new(largest: f64, height: f64, title: &str) -> Result<Self, FigureError> {
+    /// [`DrawError::Svg`].
+    pub(in crate::figure) fn new(
+        largest: f64,
+        height: f64,
+        title: &str,
+    ) -> Result<Self, DrawError> {
         let scale = Scale::vertical((0.0, largest), height, title)?;
         let title_width = render::text_width(scale.title(), TEXT, false)?;
         Ok(Self { scale, title_width })
     }
 
     /// Room it takes to the right of a map.
-    pub(super) fn width(&self) -> f64 {
+    pub(in crate::figure) fn width(&self) -> f64 {
         GAP + (WIDTH + self.scale.label_width()).max(self.title_width)
     }
 
     /// Room it takes above the map.
-    pub(super) fn above() -> f64 {
+    pub(in crate::figure) fn above() -> f64 {
         2.0 * TEXT
     }
 
     /// Draws it right of `map`, with marks at some shares (0 to 1) of the largest value.
     ///
     /// # Errors
-    /// [`FigureError::Drawing`] or [`FigureError::Png`].
-    pub(super) fn draw(
+    /// [`DrawError::Layout`] or [`DrawError::Png`].
+    pub(in crate::figure) fn draw(
         &self,
         page: &Page,
         map: Rectangle,
         marks: &[f64],
-    ) -> Result<(), FigureError> {
+    ) -> Result<(), DrawError> {
         let bar = Rectangle {
             left: map.right() + GAP,
             width: WIDTH,

@@ -1,7 +1,7 @@
 //! Heat maps as small indexed PNGs: one embedded picture instead of a rectangle a cell, so that a figure of
 //! 500² cells stays small. Resampled by nearest cell where cells differ in width.
 
-use super::FigureError;
+use super::DrawError;
 use super::style;
 
 /// Palette entry of places without a value; it is transparent.
@@ -11,7 +11,7 @@ const COLOURS: usize = 255;
 
 /// A picture of values: `width × height`, from the upper left, rows downward.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Picture {
+pub(in crate::figure) struct Picture {
     width: usize,
     height: usize,
     indices: Vec<u8>,
@@ -20,7 +20,7 @@ pub(super) struct Picture {
 impl Picture {
     /// A picture whose pixel `(column, row)`, counted from the **lower** left, has the share (0 to 1) of the
     /// largest value that `share` gives; `None` and NaN are left transparent.
-    pub(super) fn new(
+    pub(in crate::figure) fn new(
         (width, height): (usize, usize),
         share: impl Fn(usize, usize) -> Option<f64>,
     ) -> Self {
@@ -42,8 +42,8 @@ impl Picture {
     /// The picture as an indexed PNG.
     ///
     /// # Errors
-    /// [`FigureError::Png`].
-    pub(super) fn png(&self) -> Result<Vec<u8>, FigureError> {
+    /// [`DrawError::Png`].
+    pub(in crate::figure) fn png(&self) -> Result<Vec<u8>, DrawError> {
         let mut palette = Vec::with_capacity(3 * COLOURS + 3);
         for colour in 0..COLOURS {
             let (r, g, b) = style::heat(colour as f64 / (COLOURS - 1) as f64);
@@ -69,7 +69,11 @@ impl Picture {
 }
 
 /// For each of `count` pixels over `from..to`, the interval of `edges` (ascending) that holds its middle.
-pub(super) fn nearest(edges: &[f64], (from, to): (f64, f64), count: usize) -> Vec<usize> {
+pub(in crate::figure) fn nearest(
+    edges: &[f64],
+    (from, to): (f64, f64),
+    count: usize,
+) -> Vec<usize> {
     let last = edges.len().saturating_sub(2);
     (0..count)
         .map(|pixel| {

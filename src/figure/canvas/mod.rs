@@ -1,0 +1,22 @@
+//! What draws: pages and panels in figure pixels, axes, curves, maps, contours, legends, and the way to SVG and pixels. It
+//! knows nothing of sweeps and densities.
+//!
+//! plotters lays the data out on a canvas of its own making (`backend`), with sub-pixel places, real subscripts,
+//! and heat maps as one embedded picture. Lettering is DejaVu Sans, which comes with the program; no font of the
+//! machine is used, and equal drawings give equal bytes.
+
+mod backend;
+pub(super) mod colour_bar;
+pub(super) mod contour;
+mod error;
+pub(super) mod frame;
+pub(super) mod hatch;
+pub(super) mod heat;
+pub(super) mod legend;
+pub(super) mod page;
+pub(super) mod render;
+pub(super) mod style;
+pub(super) mod symbols;
+mod ticks;
+
+pub use error::DrawError;

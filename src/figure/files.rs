@@ -1,0 +1,78 @@
+//! Figures as files: each appears whole or not at all.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use super::drawn::Figure;
+use super::error::FigureError;
+
+/// File formats of figures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// Scalable vector graphics; heat maps are embedded pictures.
+    Svg,
+    /// Pixels, three to a figure pixel (288 to the inch).
+    Png,
+}
+
+impl Format {
+    /// All formats.
+    pub const ALL: [Self; 2] = [Self::Svg, Self::Png];
+
+    /// Name used in sweep files, and extension of the files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Svg => "svg",
+            Self::Png => "png",
+        }
+    }
+
+    /// The format of that name.
+    pub fn parse(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|format| format.name() == name)
+    }
+}
+
+/// Writes figures in every format into a folder, which is made if need be; returns the files in the order in which they were
+/// made. Files of the same names are replaced.
+///
+/// # Errors
+/// [`FigureError::Draw`] for a PNG, [`FigureError::Write`]; files made before stay.
+pub fn write_figures(
+    figures: &[Figure],
+    formats: &[Format],
+    folder: &Path,
+) -> Result<Vec<PathBuf>, FigureError> {
+    let mut paths = Vec::new();
+    for figure in figures {
+        for &format in formats {
+            paths.push(write(figure, format, folder)?);
+        }
+    }
+    Ok(paths)
+}
+
+/// Writes a figure under a temporary name and renames it.
+fn write(figure: &Figure, format: Format, folder: &Path) -> Result<PathBuf, FigureError> {
+    let path = folder.join(format!("{}.{}", figure.name, format.name()));
+    let bytes = match format {
+        Format::Svg => figure.svg().as_bytes().to_vec(),
+        Format::Png => figure.png()?,
+    };
+    let write = || -> std::io::Result<()> {
+        std::fs::create_dir_all(folder)?;
+        let mut builder = tempfile::Builder::new();
+        // Temporary files are private by default; figures are as readable as any other file.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        let mut file = builder.prefix(".figure").tempfile_in(folder)?;
+        file.write_all(&bytes)?;
+        file.persist(&path)?;
+        Ok(())
+    };
+    write().map_err(|source| FigureError::Write {
+        path: path.clone(),
+        source,
+    })?;
+    Ok(path)
+}
