@@ -7,16 +7,18 @@
 mod bistable;
 #[cfg(test)]
 mod contract;
-mod coulomb;
-mod dahl;
-mod dahl_eq8;
+pub mod friction;
 mod model;
+mod oscillator;
 mod parameters;
 mod rayleigh;
 pub mod registry;
 
 pub use model::{
     AxisDescription, Model, ParameterDescription, ParameterRange, ParameterValues, SystemError,
+};
+pub use oscillator::{
+    DISPLACEMENT, Damping, Duffing, FIRST_INTERNAL_STATE, Oscillator, VELOCITY, Viscous,
 };
 
 /// Number of states that are advanced together. Kernels work on whole batches, so that a model's

@@ -2,10 +2,9 @@
 
 use std::sync::Arc;
 
-use multiversion::multiversion;
-
+use super::friction::Frictionless;
 use super::parameters::{ALPHA, GROWTH, MU, SATURATION, SIGMA2, X, Y};
-use super::{Lanes, Model, Symmetry, System};
+use super::{Damping, Duffing, Model, Oscillator};
 
 /// x' = y, y' = -(-a + bH)y - αx - μx³ + ξ, H the energy.
 pub(super) static MODEL: Model = Model {
@@ -24,77 +23,31 @@ pub(super) static MODEL: Model = Model {
         "The steady state is p ∝ exp(-(2/σ²)(-a H + b H²/2)): with α > 0 and μ ≥ 0 the joint density has one peak for a ≤ 0 and a crater for a > 0.",
     ],
     bind: |values| {
-        Arc::new(Rayleigh {
-            a: values[0],
-            b: values[1],
-            alpha: values[2],
-            mu: values[3],
-            sigma: values[4].sqrt(),
-            sigma2: values[4],
-        })
+        let (alpha, mu) = (values[2], values[3]);
+        let damping = EnergyDamping {
+            growth: values[0],
+            saturation: values[1],
+        };
+        let spring = Duffing { alpha, mu };
+        Arc::new(Oscillator::new(spring, damping, Frictionless, values[4]))
     },
 };
 
-struct Rayleigh {
-    a: f64,
-    b: f64,
-    alpha: f64,
-    mu: f64,
-    sigma: f64,
-    sigma2: f64,
+/// h = -a + bH.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct EnergyDamping {
+    growth: f64,
+    saturation: f64,
 }
 
-/// H = y²/2 + αx²/2 + μx⁴/4.
-#[inline(always)]
-fn energy(parameters: &Rayleigh, x: f64, y: f64) -> f64 {
-    let square = x * x;
-    0.5 * (y * y + square * (parameters.alpha + 0.5 * parameters.mu * square))
-}
-
-#[multiversion(targets = "simd")]
-fn drift(parameters: &Rayleigh, states: &[Lanes], drift: &mut [Lanes]) {
-    let ([x, y], [x_slope, y_slope]) = (states, drift) else {
-        return;
-    };
-    let &Rayleigh {
-        a, b, alpha, mu, ..
-    } = parameters;
-    for lane in 0..x.len() {
-        let (x, y) = (x[lane], y[lane]);
-        x_slope[lane] = y;
-        y_slope[lane] = (a - b * energy(parameters, x, y)) * y - x * (alpha + mu * x * x);
-    }
-}
-
-impl System for Rayleigh {
-    fn dimension(&self) -> usize {
-        2
+impl Damping for EnergyDamping {
+    #[inline(always)]
+    fn coefficient(&self, energy: f64) -> f64 {
+        self.saturation * energy - self.growth
     }
 
-    fn drift(&self, _time: f64, states: &[Lanes], slopes: &mut [Lanes]) {
-        drift(self, states, slopes);
-    }
-
-    fn noise_axes(&self) -> &[usize] {
-        &[1]
-    }
-
-    fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
-        Some(self.sigma)
-    }
-
-    fn symmetry(&self) -> Option<Symmetry> {
-        Some(Symmetry {
-            centre: vec![0.0, 0.0],
-            reflected: vec![true, true],
-        })
-    }
-
-    /// p ∝ exp(-(2/σ²)(-aH + bH²/2)).
-    fn exact_log_density(&self, state: &[f64]) -> Option<f64> {
-        let &[x, y] = state else { return None };
-        let energy = energy(self, x, y);
-        Some(2.0 / self.sigma2 * energy * (self.a - 0.5 * self.b * energy))
+    fn integral(&self, energy: f64) -> f64 {
+        energy * (0.5 * self.saturation * energy - self.growth)
     }
 }
 

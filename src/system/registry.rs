@@ -1,12 +1,13 @@
 //! The list of built-in models. A new model is one file beside this one and one line here.
 
-use super::{Model, SystemError, bistable, coulomb, dahl, dahl_eq8, rayleigh};
+use super::friction::{coulomb, dahl};
+use super::{Model, SystemError, bistable, rayleigh};
 
 /// Every built-in model, in the order in which they are listed.
 pub static MODELS: &[&Model] = &[
     &coulomb::MODEL,
     &dahl::MODEL,
-    &dahl_eq8::MODEL,
+    &dahl::MODEL_EQ8,
     &rayleigh::MODEL,
     &bistable::MODEL,
 ];

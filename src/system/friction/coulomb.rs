@@ -1,16 +1,14 @@
-//! Duffing oscillator with Coulomb friction (the paper's first example).
+//! Coulomb's dry friction: a force of constant size against the velocity (the paper's first example).
 //!
 //! Convention of the paper's Eq. (7): κ is the viscous damping, α the linear stiffness.
 
-use std::sync::Arc;
-
-use multiversion::multiversion;
-
-use super::parameters::{ALPHA, COULOMB_LEVEL, KAPPA, MU, SIGMA2, X, Y};
-use super::{Lanes, Model, SwitchingSurface, Symmetry, System};
+use super::{FrictionLaw, Motion};
+use crate::system::oscillator::with_friction;
+use crate::system::parameters::{ALPHA, COULOMB_LEVEL, KAPPA, MU, SIGMA2, X, Y};
+use crate::system::{Model, SwitchingSurface, VELOCITY};
 
 /// x' = y, y' = -κy - αx - μx³ - f_c sgn(y) + ξ.
-pub(super) static MODEL: Model = Model {
+pub(in crate::system) static MODEL: Model = Model {
     name: "coulomb",
     title: "Duffing oscillator with Coulomb friction",
     equations: &[
@@ -25,25 +23,13 @@ pub(super) static MODEL: Model = Model {
         "The paper's Eq. (5) prints α = 1 as damping and κ = 0.01 as stiffness. With that reading the marginal of x has one peak at every f_c, against the paper's Fig. 2(a); with the letters of its Eq. (7), used here, its figures come out.",
         "The marginal of y has a kink at 0, p'(0+)/p(0) = -2 f_c/σ², so it changes from two peaks to one exactly at f_c = 0.",
     ],
-    bind: |values| {
-        Arc::new(Coulomb {
-            alpha: values[0],
-            kappa: values[1],
-            mu: values[2],
-            f_c: values[3],
-            sigma: values[4].sqrt(),
-            sigma2: values[4],
-        })
-    },
+    bind: |values| with_friction(values, |own| Coulomb { level: own[0] }),
 };
 
+/// F = f_c sgn(y).
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct Coulomb {
-    alpha: f64,
-    kappa: f64,
-    mu: f64,
-    f_c: f64,
-    sigma: f64,
-    sigma2: f64,
+    level: f64,
 }
 
 /// Sign with sgn(0) = 0, written so that it compiles to selects on vector registers.
@@ -54,64 +40,36 @@ fn sign(value: f64) -> f64 {
     positive - negative
 }
 
-#[multiversion(targets = "simd")]
-fn drift(parameters: &Coulomb, states: &[Lanes], drift: &mut [Lanes]) {
-    let ([x, y], [x_slope, y_slope]) = (states, drift) else {
-        return;
-    };
-    let &Coulomb {
-        alpha,
-        kappa,
-        mu,
-        f_c,
-        ..
-    } = parameters;
-    for lane in 0..x.len() {
-        let (x, y) = (x[lane], y[lane]);
-        x_slope[lane] = y;
-        y_slope[lane] = -kappa * y - x * (alpha + mu * x * x) - f_c * sign(y);
-    }
-}
-
-impl System for Coulomb {
-    fn dimension(&self) -> usize {
-        2
+impl FrictionLaw<0> for Coulomb {
+    #[inline(always)]
+    fn rates(&self, _motion: Motion, _state: &[f64; 0]) -> [f64; 0] {
+        []
     }
 
-    fn drift(&self, _time: f64, states: &[Lanes], slopes: &mut [Lanes]) {
-        drift(self, states, slopes);
-    }
-
-    fn noise_axes(&self) -> &[usize] {
-        &[1]
-    }
-
-    fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
-        Some(self.sigma)
+    #[inline(always)]
+    fn force(&self, motion: Motion, _state: &[f64; 0], _rates: &[f64; 0]) -> f64 {
+        self.level * sign(motion.velocity)
     }
 
     fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
-        vec![SwitchingSurface { axis: 1, at: 0.0 }]
+        vec![SwitchingSurface {
+            axis: VELOCITY,
+            at: 0.0,
+        }]
     }
 
-    fn symmetry(&self) -> Option<Symmetry> {
-        Some(Symmetry {
-            centre: vec![0.0, 0.0],
-            reflected: vec![true, true],
-        })
+    fn is_odd(&self) -> bool {
+        true
     }
 
-    /// Known without friction: p ∝ exp(-(2κ/σ²)(y²/2 + αx²/2 + μx⁴/4)).
-    fn exact_log_density(&self, state: &[f64]) -> Option<f64> {
-        let &[x, y] = state else { return None };
-        let energy = 0.5 * y * y + 0.5 * self.alpha * x * x + 0.25 * self.mu * x.powi(4);
-        (self.f_c == 0.0).then_some(-2.0 * self.kappa / self.sigma2 * energy)
+    fn is_absent(&self) -> bool {
+        self.level == 0.0
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::contract::{assert_stationary, bound};
+    use crate::system::contract::bound;
 
     #[test]
     fn the_drift_is_the_equation() {
@@ -141,7 +99,8 @@ mod tests {
     #[test]
     fn the_density_is_known_only_without_friction() {
         let values = |f_c| [("kappa", 0.3), ("mu", 0.2), ("f_c", f_c), ("sigma2", 0.5)];
-        assert_stationary(&*bound("coulomb", &values(0.0)), true);
+        let free = bound("coulomb", &values(0.0));
+        assert!(free.exact_log_density(&[0.5, 0.5]).is_some());
         let rubbing = bound("coulomb", &values(0.1));
         assert_eq!(rubbing.exact_log_density(&[0.5, 0.5]), None);
     }
