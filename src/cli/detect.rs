@@ -1,6 +1,5 @@
 //! `pbif detect`: detection and location from the stored densities of a run, with other settings, without solving.
 
-use std::path::Path;
 use std::time::Instant;
 
 use super::args::DetectArguments;
@@ -30,15 +29,9 @@ pub(super) fn run(arguments: &DetectArguments) -> Result<Outcome, CommandError> 
     let seconds = clock.elapsed().as_secs_f64();
     let out = arguments.out.as_deref().unwrap_or(&arguments.run);
     let output = OutputFolder::prepare(out)?;
-    if is_same(output.path(), &arguments.run) {
-        let staged = StagedRun::new(&arguments.run)?;
-        write(&stored, &result, seconds, &mut staged.folder()?)?;
-        staged.take_place()?;
-    } else {
-        let mut folder = RunFolder::create(output.path())?;
-        folder.share_solutions(&arguments.run)?;
-        write(&stored, &result, seconds, &mut folder)?;
-    }
+    let staged = StagedRun::new(output.path(), &arguments.run)?;
+    write(&stored, &result, seconds, staged.folder())?;
+    staged.take_place()?;
     super::print(&summary::text(
         &naming(&stored.spec),
         &result,
@@ -51,19 +44,12 @@ pub(super) fn run(arguments: &DetectArguments) -> Result<Outcome, CommandError> 
     })
 }
 
-fn is_same(one: &Path, other: &Path) -> bool {
-    match (one.canonicalize(), other.canonicalize()) {
-        (Ok(one), Ok(other)) => one == other,
-        _ => one == other,
-    }
-}
-
 /// Writes tables, figures, and last the manifest.
 fn write(
     stored: &Stored,
     result: &SweepResult,
     detect_seconds: f64,
-    folder: &mut RunFolder,
+    folder: &RunFolder,
 ) -> Result<(), CommandError> {
     let (run, spec) = (&stored.run, &stored.spec);
     let naming = naming(spec);

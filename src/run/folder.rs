@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use super::staging::Staging;
 use super::{
     DensityStore, Manifest, Naming, RunError, atomic::write_atomically, bifurcations, checks,
-    staged::link_tree, tables,
+    tables,
 };
 use crate::continuation::{Point, SweepResult};
 use crate::density::{EstimatedDensity, Observable};
@@ -23,12 +24,6 @@ pub(super) const ENTRIES: [&str; 10] = [
     "figures",
 ];
 
-/// What a sweep solved for: it stays when the run is detected again.
-pub(super) const SOLVED: [&str; 2] = ["densities.zarr", "checks.csv"];
-
-/// Where an earlier run in the same folder is moved.
-pub(super) const PREVIOUS: &str = "previous";
-
 /// The folder of a run while it is written.
 #[derive(Debug)]
 pub struct RunFolder {
@@ -43,25 +38,12 @@ impl RunFolder {
     /// # Errors
     /// [`RunError::Write`].
     pub fn create(path: &Path) -> Result<Self, RunError> {
-        let failed = |source| RunError::Write {
+        std::fs::create_dir_all(path).map_err(|source| RunError::Write {
             path: path.to_owned(),
             source,
-        };
-        std::fs::create_dir_all(path).map_err(failed)?;
-        let earlier: Vec<&str> = ENTRIES
-            .into_iter()
-            .filter(|entry| path.join(entry).exists())
-            .collect();
-        if !earlier.is_empty() {
-            let previous = path.join(PREVIOUS);
-            if previous.exists() {
-                std::fs::remove_dir_all(&previous).map_err(failed)?;
-            }
-            std::fs::create_dir(&previous).map_err(failed)?;
-            for entry in earlier {
-                std::fs::rename(path.join(entry), previous.join(entry)).map_err(failed)?;
-            }
-        }
+        })?;
+        // A run is written as it goes on, so that a reader sees how far it is: only the earlier one is staged.
+        Staging::new(path, &ENTRIES)?.take_place(&[])?;
         Ok(Self::fresh(path))
     }
 
@@ -134,15 +116,6 @@ impl RunFolder {
             .map(|point| (point.value, point.densities.as_slice()))
             .collect();
         self.store.replace(naming, &densities)
-    }
-
-    /// Takes over what another run solved for (densities, checks on a finer grid); that run keeps it.
-    ///
-    /// # Errors
-    /// [`RunError::Read`] or [`RunError::Write`].
-    pub fn share_solutions(&self, run: &Path) -> Result<(), RunError> {
-        let mut entries = SOLVED.into_iter();
-        entries.try_for_each(|entry| link_tree(&run.join(entry), &self.path.join(entry)))
     }
 
     /// Writes all tables that detection and location make.

@@ -12,6 +12,7 @@ mod manifest;
 mod naming;
 mod number;
 mod staged;
+mod staging;
 mod store;
 mod stored_densities;
 mod stored_points;

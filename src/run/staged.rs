@@ -1,104 +1,62 @@
-//! A new version of the tables and figures of a run, written beside the old one and put in its place when it is whole.
+//! A run whose tables and figures are made anew from what was solved before.
 
 use std::path::{Path, PathBuf};
 
-use super::folder::{ENTRIES, PREVIOUS, SOLVED};
-use super::{RunError, RunFolder};
+use super::staging::{Staging, link_tree};
+use super::{RunError, RunFolder, folder};
 
-/// A new version in the making. Dropped before it is in place, it leaves the run as it was.
+/// What a sweep solved for: it stays when the run is detected again.
+const SOLVED: [&str; 2] = ["densities.zarr", "checks.csv"];
+
+/// The new version in the making. Dropped before it is in place, it leaves everything as it was.
 #[derive(Debug)]
 pub struct StagedRun {
-    home: PathBuf,
-    staging: tempfile::TempDir,
+    staging: Staging,
+    folder: RunFolder,
+    /// Whether what was solved for is in place already.
+    same: bool,
 }
 
 impl StagedRun {
-    /// A new version of the run at `home`.
+    /// A new version of the run at `solved`, to stand at `home`: the folder of that run, or another one that exists.
     ///
     /// # Errors
-    /// [`RunError::Write`].
-    pub fn new(home: &Path) -> Result<Self, RunError> {
-        let staging = tempfile::Builder::new().prefix(".pbif-").tempdir_in(home);
-        let staging = staging.map_err(|source| failed(home, source))?;
+    /// [`RunError::Read`] or [`RunError::Write`].
+    pub fn new(home: &Path, solved: &Path) -> Result<Self, RunError> {
+        let staging = Staging::new(home, &folder::ENTRIES)?;
+        let same = is_same(home, solved);
+        if !same {
+            for entry in SOLVED {
+                link_tree(&solved.join(entry), &staging.fresh().join(entry))?;
+            }
+        }
+        let folder = RunFolder::fresh(&staging.fresh());
         Ok(Self {
-            home: home.to_owned(),
             staging,
+            folder,
+            same,
         })
     }
 
-    /// The folder to write the new version to; everything but what was solved for.
+    /// The folder to write tables, manifest and figures to.
+    pub fn folder(&self) -> &RunFolder {
+        &self.folder
+    }
+
+    /// Puts the new version in place and returns its files. A run that was there becomes a complete one in `previous/`, its
+    /// densities linked, in place of what `previous/` held.
     ///
     /// # Errors
-    /// [`RunError::Write`].
-    pub fn folder(&self) -> Result<RunFolder, RunError> {
-        let path = self.fresh();
-        std::fs::create_dir_all(&path).map_err(|source| failed(&path, source))?;
-        Ok(RunFolder::fresh(&path))
-    }
-
-    fn fresh(&self) -> PathBuf {
-        self.staging.path().join("fresh")
-    }
-
-    /// Puts the new version in place. The version before becomes a complete run in `previous/`, its densities linked, in place of what
-    /// was there.
-    ///
-    /// # Errors
-    /// [`RunError::Write`].
-    pub fn take_place(self) -> Result<(), RunError> {
-        let previous = self.home.join(PREVIOUS);
-        let kept = self.staging.path().join("kept");
-        std::fs::create_dir(&kept).map_err(|source| failed(&kept, source))?;
-        for entry in ENTRIES {
-            link_tree(&self.home.join(entry), &kept.join(entry))?;
-        }
-        if previous.exists() {
-            rename(&previous, &self.staging.path().join("older"))?;
-        }
-        rename(&kept, &previous)?;
-        // A file is replaced in one step; a folder must make room first.
-        for entry in ENTRIES.into_iter().filter(|entry| !SOLVED.contains(entry)) {
-            let (fresh, place) = (self.fresh().join(entry), self.home.join(entry));
-            if place.is_dir() {
-                rename(&place, &self.staging.path().join(entry))?;
-            }
-            if fresh.exists() {
-                rename(&fresh, &place)?;
-            }
-        }
-        Ok(())
+    /// [`RunError::Read`] or [`RunError::Write`].
+    pub fn take_place(self) -> Result<Vec<PathBuf>, RunError> {
+        let staying: &[&str] = if self.same { &SOLVED } else { &[] };
+        self.staging.take_place(staying)
     }
 }
 
-/// Gives the store of densities a second place: files are linked, and copied where the file system cannot link. The
-/// program never changes a file in place, so either place may be rewritten or removed.
-pub(super) fn link_tree(from: &Path, to: &Path) -> Result<(), RunError> {
-    if from.is_dir() {
-        std::fs::create_dir(to).map_err(|source| failed(to, source))?;
-        let entries = std::fs::read_dir(from).map_err(|source| RunError::Read {
-            path: from.to_owned(),
-            source,
-        })?;
-        for entry in entries {
-            let entry = entry.map_err(|source| RunError::Read {
-                path: from.to_owned(),
-                source,
-            })?;
-            link_tree(&entry.path(), &to.join(entry.file_name()))?;
-        }
-    } else if from.is_file() && std::fs::hard_link(from, to).is_err() {
-        std::fs::copy(from, to).map_err(|source| failed(to, source))?;
-    }
-    Ok(())
-}
-
-fn rename(from: &Path, to: &Path) -> Result<(), RunError> {
-    std::fs::rename(from, to).map_err(|source| failed(to, source))
-}
-
-fn failed(path: &Path, source: std::io::Error) -> RunError {
-    RunError::Write {
-        path: path.to_owned(),
-        source,
+fn is_same(one: &Path, other: &Path) -> bool {
+    match (one.canonicalize(), other.canonicalize()) {
+        (Ok(one), Ok(other)) => one == other,
+        _ => one == other,
     }
 }

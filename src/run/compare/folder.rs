@@ -8,7 +8,7 @@ use super::{
 };
 use crate::run::RunError;
 use crate::run::atomic::write_atomically;
-use crate::run::folder::PREVIOUS;
+use crate::run::staging::Staging;
 
 /// Everything a comparison leaves in its folder.
 const ENTRIES: [&str; 9] = [
@@ -26,8 +26,7 @@ const ENTRIES: [&str; 9] = [
 /// A comparison's folder in the making. Dropped before it is in place, it leaves what was there.
 #[derive(Debug)]
 pub struct CompareFolder {
-    home: PathBuf,
-    staging: tempfile::TempDir,
+    staging: Staging,
 }
 
 impl CompareFolder {
@@ -36,20 +35,13 @@ impl CompareFolder {
     /// # Errors
     /// [`RunError::Write`].
     pub fn new(home: &Path) -> Result<Self, RunError> {
-        let staging = tempfile::Builder::new().prefix(".pbif-").tempdir_in(home);
-        Ok(Self {
-            home: home.to_owned(),
-            staging: staging.map_err(|source| failed(home, source))?,
-        })
+        let staging = Staging::new(home, &ENTRIES)?;
+        Ok(Self { staging })
     }
 
     /// Where figures are drawn to.
     pub fn figures(&self) -> PathBuf {
-        self.fresh().join("figures")
-    }
-
-    fn fresh(&self) -> PathBuf {
-        self.staging.path().join("fresh")
+        self.staging.fresh().join("figures")
     }
 
     /// Writes all tables.
@@ -67,58 +59,16 @@ impl CompareFolder {
             ("accuracy.csv", accuracy_csv(run)?),
             ("densities.csv", densities_csv(run)?),
         ] {
-            write_atomically(&self.fresh().join(name), text.as_bytes())?;
+            write_atomically(&self.staging.fresh().join(name), text.as_bytes())?;
         }
         Ok(())
     }
 
-    /// Moves what an earlier comparison left into `previous/`, in place of what was there, and puts the new one in its place. Returns the
-    /// files.
+    /// Puts the comparison in its place and returns its files; what an earlier one left goes to `previous/`, in place of what was there.
     ///
     /// # Errors
-    /// [`RunError::Write`].
+    /// [`RunError::Read`] or [`RunError::Write`].
     pub fn take_place(self) -> Result<Vec<PathBuf>, RunError> {
-        let earlier: Vec<&str> = ENTRIES
-            .into_iter()
-            .filter(|entry| self.home.join(entry).exists())
-            .collect();
-        if !earlier.is_empty() {
-            let previous = self.home.join(PREVIOUS);
-            if previous.exists() {
-                rename(&previous, &self.staging.path().join("older"))?;
-            }
-            std::fs::create_dir(&previous).map_err(|source| failed(&previous, source))?;
-            for entry in earlier {
-                rename(&self.home.join(entry), &previous.join(entry))?;
-            }
-        }
-        let mut files = Vec::new();
-        for entry in ENTRIES {
-            let (fresh, place) = (self.fresh().join(entry), self.home.join(entry));
-            if !fresh.exists() {
-                continue;
-            }
-            rename(&fresh, &place)?;
-            match std::fs::read_dir(&place) {
-                Ok(inside) => {
-                    let mut inside: Vec<PathBuf> = inside.flatten().map(|one| one.path()).collect();
-                    inside.sort();
-                    files.extend(inside);
-                }
-                Err(_) => files.push(place),
-            }
-        }
-        Ok(files)
-    }
-}
-
-fn rename(from: &Path, to: &Path) -> Result<(), RunError> {
-    std::fs::rename(from, to).map_err(|source| failed(to, source))
-}
-
-fn failed(path: &Path, source: std::io::Error) -> RunError {
-    RunError::Write {
-        path: path.to_owned(),
-        source,
+        self.staging.take_place(&[])
     }
 }
