@@ -17,57 +17,41 @@ use pbif::system::{
 };
 use pbif::topology::{DetectOptions, PersistenceDetector};
 
-const fn parameter(
-    name: &'static str,
-    meaning: &'static str,
-    default: f64,
-) -> ParameterDescription {
-    ParameterDescription {
-        name,
-        symbol: name,
-        meaning,
-        default: Some(default),
-        range: ParameterRange::Positive,
-    }
-}
-
-static BELT: Model = Model {
-    name: "belt",
-    title: "Oscillator on a moving belt with Stribeck friction",
-    equations: &["x' = y", "y' = -κ y - x - F(y - v) + ξ(t)"],
-    axes: &[
-        AxisDescription {
-            name: "x",
-            symbol: "x",
-            meaning: "displacement",
+fn belt() -> Model {
+    let parameter = |name: &str, meaning: &str, default: f64| {
+        ParameterDescription::new(name, name, meaning)
+            .with_default(default)
+            .within(ParameterRange::Positive)
+    };
+    Model::new(
+        "belt",
+        "Oscillator on a moving belt with Stribeck friction",
+        |values| {
+            Arc::new(Belt {
+                kappa: values[0],
+                f_s: values[1],
+                f_c: values[2],
+                v_s: values[3],
+                speed: values[4],
+                sigma: values[5].sqrt(),
+            })
         },
-        AxisDescription {
-            name: "y",
-            symbol: "ẋ",
-            meaning: "velocity",
-        },
-    ],
-    parameters: &[
+    )
+    .with_equations(["x' = y", "y' = -κ y - x - F(y - v) + ξ(t)"])
+    .with_axes([
+        AxisDescription::new("x", "x", "displacement"),
+        AxisDescription::new("y", "ẋ", "velocity"),
+    ])
+    .with_parameters([
         parameter("kappa", "viscous damping", 0.05),
         parameter("f_s", "static friction level", 0.4),
         parameter("f_c", "sliding friction level", 0.2),
         parameter("v_s", "Stribeck velocity", 0.5),
         parameter("v", "speed of the belt", 1.0),
         parameter("sigma2", "noise intensity", 0.02),
-    ],
-    source: "this example",
-    notes: &[],
-    bind: |values| {
-        Arc::new(Belt {
-            kappa: values[0],
-            f_s: values[1],
-            f_c: values[2],
-            v_s: values[3],
-            speed: values[4],
-            sigma: values[5].sqrt(),
-        })
-    },
-};
+    ])
+    .with_source("this example")
+}
 
 struct Belt {
     kappa: f64,
@@ -120,9 +104,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Axis::uniform(-2.5, 2.5, 40)?,
     ])?;
     let observables = [Observable::Marginal(0), Observable::Joint(0, 1)];
-    let values = BELT.values(&[])?;
+    let model = Arc::new(belt());
+    let values = model.values(&[])?;
     let setting = Setting {
-        model: &BELT,
+        model: &model,
         values: &values,
         parameter: "v",
         range: (0.2, 1.6),

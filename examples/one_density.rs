@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let cycles = steady.info.iterations;
     println!("map step {:.2}, {cycles} cycles", options.map_step);
     for (axis, moment) in moments(&space, &steady.mass)?.iter().enumerate() {
-        let name = model.axes[axis].name;
+        let name = &model.axes[axis].name;
         println!("sd of {name}: {:.4}", moment.standard_deviation);
     }
 

@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let space = CellSpace::new(vec![Axis::uniform(-2.5, 2.5, 100)?])?;
     let observables = [Observable::Marginal(0)];
     let setting = Setting {
-        model,
+        model: &model,
         values: &values,
         parameter: "a",
         range: (-1.0, 1.0),

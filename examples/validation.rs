@@ -124,7 +124,7 @@ impl Case {
         given.push(self.parameter);
         let (parameter, value) = self.parameter;
         let setting = Setting {
-            model,
+            model: &model,
             values: &model.values(&given)?,
             parameter,
             range: (value, value),
@@ -383,7 +383,7 @@ impl Family {
         let mut given = self.case.parameters.to_vec();
         given.push((parameter, self.range.0));
         let setting = Setting {
-            model,
+            model: &model,
             values: &model.values(&given)?,
             parameter,
             range: self.range,
@@ -462,12 +462,13 @@ pub(crate) fn location_rows(with_sampling: bool) -> Result<Vec<String>, AnyError
     let mut rows = Vec::new();
     for (family, name, method) in runs {
         let (value, error) = family.locate(&method)?;
-        let axes = registry::find(family.case.model)?.axes;
+        let model = registry::find(family.case.model)?;
+        let axes = &model.axes;
         let observable: String = family
             .observable
             .axes()
             .iter()
-            .map(|&axis| axes[axis].name)
+            .map(|&axis| axes[axis].name.as_str())
             .collect();
         rows.push(format!(
             "| {} | {observable} | {} | {name} | {} | {} | {} |",

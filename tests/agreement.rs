@@ -9,6 +9,7 @@
 
 use std::ops::Range;
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 use assert_cmd::Command;
@@ -23,7 +24,7 @@ use pbif::system::{Model, ParameterValues, registry};
 
 /// A shipped sweep.
 struct Example {
-    model: &'static Model,
+    model: Arc<Model>,
     values: ParameterValues,
     parameter: String,
     space: CellSpace,
@@ -54,7 +55,11 @@ impl Example {
         given.push((&parameter, at[0]));
         let values = model.values(&given).unwrap();
         let axes = model.axes.iter();
-        let space = CellSpace::new(axes.map(|a| axis(&file["cells"][a.name])).collect()).unwrap();
+        let space = CellSpace::new(
+            axes.map(|a| axis(&file["cells"][a.name.as_str()]))
+                .collect(),
+        )
+        .unwrap();
         let scheme = file["method"]["scheme"].as_str().unwrap();
         let named = |one: &AdvectiveScheme| one.name() == scheme;
         Self {
@@ -76,7 +81,7 @@ impl Example {
 
     fn setting<'a>(&'a self, value: f64, observables: &'a [Observable]) -> Setting<'a> {
         Setting {
-            model: self.model,
+            model: &self.model,
             values: &self.values,
             parameter: &self.parameter,
             range: (value, value),
@@ -266,7 +271,7 @@ fn compare(example: &Example, value: f64, error: f64, seed: u64) -> Vec<Agreemen
         "{} = {value}: generator {solved:.2} s, {steps:.2e} Heun steps {run:.1} s",
         example.parameter
     );
-    let pairs = reference.iter().zip(&sampled).zip(example.model.axes);
+    let pairs = reference.iter().zip(&sampled).zip(&example.model.axes);
     pairs
         .map(|((reference, sampled), axis)| {
             let found = Agreement::of(reference, sampled);

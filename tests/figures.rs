@@ -36,7 +36,7 @@ fn draw_all(
     formats: &[Format],
     folder: &Path,
 ) -> Vec<PathBuf> {
-    let figures = Figures::of_sweep(result, model, title, at);
+    let figures = Figures::of_sweep(result, &model, title, at);
     write_figures(&figures.draw_all().unwrap(), formats, folder).unwrap()
 }
 
@@ -83,7 +83,7 @@ fn a_bistable_sweep_gives_its_diagram_and_marginals() {
     let at = [-0.5, 0.0, 0.5, 1.0];
     let files = draw_all(
         &bistable(),
-        model,
+        &model,
         "Bistable, a title",
         &at,
         &Format::ALL,
@@ -128,7 +128,7 @@ fn every_svg_parses_and_every_png_has_its_size_three_times() {
     let model = registry::find("rayleigh").unwrap();
     let result = rayleigh("a", 1.0, &uniform());
     let at = [-1.0, -0.5, 0.25, 1.0];
-    let files = draw_all(&result, model, "", &at, &Format::ALL, &folder);
+    let files = draw_all(&result, &model, "", &at, &Format::ALL, &folder);
     assert!(
         names(&files).contains(&"joint_xy_-0.5.png".to_owned()),
         "{files:?}"
@@ -174,7 +174,7 @@ fn symbols_and_values_are_those_of_the_model() {
     let title = "Duffing oscillator with Coulomb friction: a title too long for one line of a figure & <more>";
     let files = draw_all(
         &result,
-        model,
+        &model,
         title,
         &[-0.02, 0.0, 0.02],
         &Format::ALL,
@@ -203,7 +203,7 @@ fn equal_results_give_equal_bytes() {
     let draw = || {
         let folder = tempfile::tempdir().unwrap();
         let result = rayleigh("a", 1.0, &uniform());
-        let files = draw_all(&result, model, "t", &[0.5], &Format::ALL, folder.path());
+        let files = draw_all(&result, &model, "t", &[0.5], &Format::ALL, folder.path());
         let bytes = files.iter().map(|file| std::fs::read(file).unwrap());
         bytes.collect::<Vec<_>>()
     };
@@ -218,7 +218,7 @@ fn without_densities_there_are_no_figures() {
     let drawn = |result: &SweepResult, at: f64| {
         names(&draw_all(
             result,
-            model,
+            &model,
             "",
             &[at],
             &[Format::Svg],
@@ -243,7 +243,7 @@ fn a_single_point_is_drawn_too() {
     result.points.drain(..30);
     result.points.truncate(1);
     let model = registry::find("bistable").unwrap();
-    let files = draw_all(&result, model, "", &[0.0], &[Format::Svg], folder.path());
+    let files = draw_all(&result, &model, "", &[0.0], &[Format::Svg], folder.path());
     assert_eq!(names(&files), ["diagram_x.svg", "marginals.svg"]);
 }
 
@@ -251,7 +251,7 @@ fn a_single_point_is_drawn_too() {
 fn a_figure_is_drawn_by_its_name() {
     let model = registry::find("rayleigh").unwrap();
     let result = rayleigh("a", 1.0, &uniform());
-    let figures = Figures::of_sweep(&result, model, "t", &[-0.5, 0.5]);
+    let figures = Figures::of_sweep(&result, &model, "t", &[-0.5, 0.5]);
     let names = figures.names();
     assert_eq!(
         names,
@@ -278,6 +278,6 @@ fn a_figure_is_drawn_by_its_name() {
         points: Vec::new(),
         ..result
     };
-    let figures = Figures::of_sweep(&empty, model, "t", &[0.5]);
+    let figures = Figures::of_sweep(&empty, &model, "t", &[0.5]);
     assert_eq!(figures.draw("diagram_x").unwrap(), None);
 }

@@ -49,7 +49,7 @@ fn mismatch(
         }
     }
     let mass = steady(value);
-    let derivative = assemble_derivative(model, &values, parameter, space, &options).unwrap();
+    let derivative = assemble_derivative(&model, &values, parameter, space, &options).unwrap();
     let change = solver.sensitivity(&derivative.matrix, &mass).unwrap();
     let gap = change.iter().zip(&difference).map(|(a, b)| (a - b).abs());
     gap.sum::<f64>() / difference.iter().map(|value| value.abs()).sum::<f64>()

@@ -34,7 +34,7 @@ fn with_source<T>(task: impl FnOnce(&GeneratorSource) -> T) -> T {
     let y = Axis::graded(-4.0, 4.0, 40, &grading).unwrap();
     let space = CellSpace::new(vec![x, y]).unwrap();
     let setting = Setting {
-        model,
+        model: &model,
         values: &values,
         parameter: "f_c",
         range: (-0.01, 0.01),

@@ -35,7 +35,7 @@ impl Case<'_> {
         let values = model.values(&given).unwrap();
         let space = CellSpace::new(self.axes.clone()).unwrap();
         let setting = Setting {
-            model,
+            model: &model,
             values: &values,
             parameter: self.parameter,
             range: self.range,

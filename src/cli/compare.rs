@@ -48,7 +48,7 @@ fn carry_out(
     }
     let task = Task {
         setting: Setting {
-            model: spec.model,
+            model: &spec.model,
             values: &spec.parameters,
             parameter: &spec.parameter,
             range: (spec.from, spec.to),
@@ -77,7 +77,7 @@ fn carry_out(
     let resolved = spec.to_toml();
     let run = ComparedRun {
         naming: Naming {
-            model: spec.model,
+            model: &spec.model,
             parameter: &spec.parameter,
         },
         comparison: &comparison,
@@ -88,7 +88,7 @@ fn carry_out(
     let folder = CompareFolder::new(path)?;
     folder.write(&run)?;
     progress.say("drawing");
-    let names = (spec.model, spec.parameter.as_str());
+    let names = (spec.model.as_ref(), spec.parameter.as_str());
     let figures = Figures::of_comparison(&comparison, names, &spec.title).draw_all()?;
     write_figures(&figures, &spec.figure_formats, &folder.figures())?;
     let files = folder.take_place()?;

@@ -78,7 +78,7 @@ impl Stored {
 /// The names of a sweep.
 pub(super) fn naming(spec: &SweepSpec) -> Naming<'_> {
     Naming {
-        model: spec.model,
+        model: &spec.model,
         parameter: &spec.parameter,
     }
 }

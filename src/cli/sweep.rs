@@ -56,7 +56,7 @@ impl<'a> Run<'a> {
     ) -> Result<Self, CommandError> {
         let progress = Progress::new(spec.points, quiet);
         let setting = Setting {
-            model: spec.model,
+            model: &spec.model,
             values: &spec.parameters,
             parameter: &spec.parameter,
             range: (spec.from, spec.to),
@@ -72,7 +72,7 @@ impl<'a> Run<'a> {
         let folder = RunFolder::create(path)?;
         folder.write_manifest(&manifest)?;
         let naming = Naming {
-            model: spec.model,
+            model: &spec.model,
             parameter: &spec.parameter,
         };
         Ok(Self {
@@ -152,7 +152,7 @@ pub(super) fn draw(
     result: &SweepResult,
     folder: &Path,
 ) -> Result<Vec<PathBuf>, CommandError> {
-    let figures = Figures::of_sweep(result, spec.model, &spec.title, &spec.figures_at);
+    let figures = Figures::of_sweep(result, &spec.model, &spec.title, &spec.figures_at);
     Ok(write_figures(
         &figures.draw_all()?,
         &spec.figure_formats,

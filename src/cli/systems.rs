@@ -10,15 +10,18 @@ use crate::system::{Model, System, registry};
 /// The table of models.
 pub(super) fn list() -> String {
     let mut table = table(&["model", "axes", "parameters", "description"]);
-    for model in registry::MODELS {
-        let axes: Vec<&str> = model.axes.iter().map(|axis| axis.name).collect();
-        let parameters = model.parameters.iter().map(|parameter| parameter.name);
+    for model in registry::models() {
+        let axes: Vec<&str> = model.axes.iter().map(|axis| axis.name.as_str()).collect();
+        let parameters = model
+            .parameters
+            .iter()
+            .map(|parameter| parameter.name.as_str());
         let parameters: Vec<&str> = parameters.collect();
         table.add_row([
-            model.name.to_owned(),
+            model.name.clone(),
             axes.join(" "),
             parameters.join(" "),
-            model.title.to_owned(),
+            model.title.clone(),
         ]);
     }
     format!("{table}\n\nOne model in full: pbif systems NAME\n")
@@ -38,32 +41,32 @@ fn table(header: &[&str]) -> Table {
 /// A report when there is no such model.
 pub(super) fn describe(name: &str) -> Result<String, Report> {
     let model = registry::find(name).map_err(|error| {
-        let names = registry::MODELS.iter().map(|model| model.name);
+        let names = registry::models().iter().map(|model| model.name.as_str());
         Diagnostic::new(error.to_string()).nearest(name, names)
     })?;
     let mut text = String::new();
     // Writing to a string cannot fail.
-    let _ = write_model(&mut text, model);
+    let _ = write_model(&mut text, &model);
     Ok(text)
 }
 
 fn write_model(text: &mut String, model: &Model) -> std::fmt::Result {
     writeln!(text, "{}: {}\n\nEquations", model.name, model.title)?;
-    for equation in model.equations {
+    for equation in &model.equations {
         writeln!(text, "  {equation}")?;
     }
     writeln!(text, "\nAxes")?;
-    for axis in model.axes {
-        let (name, symbol, meaning) = (axis.name, plain(axis.symbol), axis.meaning);
+    for axis in &model.axes {
+        let (name, symbol, meaning) = (&axis.name, plain(&axis.symbol), &axis.meaning);
         writeln!(text, "  {name}  {meaning} ({symbol} in figures)")?;
     }
     let mut parameters = table(&["parameter", "symbol", "meaning", "allowed", "default"]);
-    for parameter in model.parameters {
+    for parameter in &model.parameters {
         let default = parameter.default;
         parameters.add_row([
-            parameter.name.to_owned(),
-            plain(parameter.symbol),
-            parameter.meaning.to_owned(),
+            parameter.name.clone(),
+            plain(&parameter.symbol),
+            parameter.meaning.clone(),
             parameter.range.words().to_owned(),
             default.map_or("must be given".to_owned(), |value| value.to_string()),
         ]);
@@ -74,7 +77,7 @@ fn write_model(text: &mut String, model: &Model) -> std::fmt::Result {
     if !model.notes.is_empty() {
         writeln!(text, "\nNotes")?;
     }
-    for note in model.notes {
+    for note in &model.notes {
         writeln!(text, "  - {note}")?;
     }
     Ok(())
@@ -85,7 +88,12 @@ fn write_model(text: &mut String, model: &Model) -> std::fmt::Result {
 fn write_facts(text: &mut String, model: &Model) -> std::fmt::Result {
     let values = |default: f64| {
         let parameters = model.parameters.iter();
-        parameters.map(move |parameter| (parameter.name, parameter.default.unwrap_or(default)))
+        parameters.map(move |parameter| {
+            (
+                parameter.name.as_str(),
+                parameter.default.unwrap_or(default),
+            )
+        })
     };
     let given: Vec<(&str, f64)> = values(1.0).collect();
     let Ok(system) = model.system_with(&given) else {
@@ -126,7 +134,7 @@ fn surfaces(model: &Model, system: &dyn System) -> String {
         .filter_map(|surface| {
             Some(format!(
                 "{} = {}",
-                model.axes.get(surface.axis)?.name,
+                &model.axes.get(surface.axis)?.name,
                 surface.at
             ))
         })
@@ -141,7 +149,7 @@ fn symmetry(model: &Model, system: &dyn System) -> String {
     let Some(symmetry) = system.symmetry() else {
         return "none declared".to_owned();
     };
-    let names: Vec<&str> = model.axes.iter().map(|axis| axis.name).collect();
+    let names: Vec<&str> = model.axes.iter().map(|axis| axis.name.as_str()).collect();
     let image = names.iter().enumerate().map(|(index, name)| {
         let reflected = symmetry.reflected.get(index).copied().unwrap_or(false);
         match symmetry.centre.get(index) {
@@ -166,18 +174,15 @@ mod tests {
     #[test]
     fn every_model_is_listed_and_described() {
         let list = list();
-        for model in registry::MODELS {
-            assert!(list.contains(model.name));
-            let text = describe(model.name).unwrap();
-            let equations = model.equations.iter().copied();
-            for words in equations
-                .chain([model.source, model.title])
-                .chain(model.notes.iter().copied())
-            {
+        for model in registry::models() {
+            assert!(list.contains(&model.name));
+            let text = describe(&model.name).unwrap();
+            let stated = [&model.source, &model.title].into_iter();
+            for words in stated.chain(&model.equations).chain(&model.notes) {
                 assert!(text.contains(words), "{words} not in\n{text}");
             }
-            for parameter in model.parameters {
-                assert!(text.contains(parameter.meaning));
+            for parameter in &model.parameters {
+                assert!(text.contains(&parameter.meaning));
             }
         }
     }

@@ -30,7 +30,7 @@ impl<'a> Names<'a> {
     pub(super) fn parameter(&self) -> String {
         let mut parameters = self.model.parameters.iter();
         match parameters.find(|parameter| parameter.name == self.parameter) {
-            Some(parameter) => symbols::variable(parameter.symbol),
+            Some(parameter) => symbols::variable(&parameter.symbol),
             None if self.parameter.chars().count() == 1 => symbols::variable(self.parameter),
             None => symbols::plain(self.parameter),
         }
@@ -44,7 +44,7 @@ impl<'a> Names<'a> {
     /// Symbol of an axis, as markup.
     pub(super) fn axis(&self, axis: usize) -> String {
         match self.model.axes.get(axis) {
-            Some(description) => symbols::variable(description.symbol),
+            Some(description) => symbols::variable(&description.symbol),
             None => symbols::variable(&format!("x_{{{}}}", axis + 1)),
         }
     }
@@ -66,7 +66,7 @@ impl<'a> Names<'a> {
     /// Name of an observable in file names: `x`, `xy`.
     pub(super) fn file(&self, observable: Observable) -> String {
         let name = |&axis: &usize| match self.model.axes.get(axis) {
-            Some(description) => safe(description.name),
+            Some(description) => safe(&description.name),
             None => format!("x{}", axis + 1),
         };
         axes_of(observable).iter().map(name).collect()

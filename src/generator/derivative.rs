@@ -110,7 +110,7 @@ mod tests {
             .map(|&(from, to)| Axis::uniform(from, to, 10).unwrap());
         let space = CellSpace::new(axes.collect()).unwrap();
         let options = GeneratorOptions::default();
-        let derivative = assemble_derivative(model, &values, parameter, &space, &options).unwrap();
+        let derivative = assemble_derivative(&model, &values, parameter, &space, &options).unwrap();
         let value = values.as_slice()[model.parameter_index(parameter).unwrap()];
         let half = 0.1 * value.abs().max(0.01);
         let at = |value: f64| {
@@ -136,7 +136,7 @@ mod tests {
             let values = model
                 .with(&values, parameter, value + half * place)
                 .unwrap();
-            let here = assemble_derivative(model, &values, parameter, &space, &options).unwrap();
+            let here = assemble_derivative(&model, &values, parameter, &space, &options).unwrap();
             add(&mut integral, half * weight, &here);
         }
         let mut difference = at(value + half);
@@ -159,7 +159,8 @@ mod tests {
         let model = registry::find("bistable").unwrap();
         let values = model.values(&[("a", 0.0), ("sigma2", 0.1)]).unwrap();
         let space = CellSpace::new(vec![Axis::uniform(-1.0, 1.0, 10).unwrap()]).unwrap();
-        let result = assemble_derivative(model, &values, "b", &space, &GeneratorOptions::default());
+        let result =
+            assemble_derivative(&model, &values, "b", &space, &GeneratorOptions::default());
         assert!(matches!(result, Err(GeneratorError::System(_))));
     }
 }

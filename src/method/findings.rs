@@ -43,8 +43,11 @@ impl<'a> Findings<'a> {
         self.sentences
     }
 
-    fn axis(&self, axis: usize) -> &'static str {
-        self.model.axes.get(axis).map_or("?", |axis| axis.name)
+    fn axis(&self, axis: usize) -> &'a str {
+        self.model
+            .axes
+            .get(axis)
+            .map_or("?", |axis| axis.name.as_str())
     }
 
     /// Mass in the cells at the ends of each axis that are not walls of the system, with a sentence where it is

@@ -12,7 +12,7 @@ use crate::system::{Model, ParameterValues, System};
 #[derive(Debug, Clone)]
 pub struct Setting<'a> {
     /// The model.
-    pub model: &'static Model,
+    pub model: &'a Arc<Model>,
     /// Its parameters; the swept one is replaced by every value in turn.
     pub values: &'a ParameterValues,
     /// Name of the swept parameter.

@@ -13,10 +13,13 @@ pub struct Naming<'a> {
     pub parameter: &'a str,
 }
 
-impl Naming<'_> {
+impl<'a> Naming<'a> {
     /// Name of an axis, for example `y`.
-    pub fn axis(&self, axis: usize) -> &'static str {
-        self.model.axes.get(axis).map_or("?", |axis| axis.name)
+    pub fn axis(&self, axis: usize) -> &'a str {
+        self.model
+            .axes
+            .get(axis)
+            .map_or("?", |axis| axis.name.as_str())
     }
 
     /// Name of an observable: the names of its axes run together, for example `xy`.
@@ -35,7 +38,7 @@ impl Naming<'_> {
         parameters
             .clone()
             .find(|parameter| parameter.name == self.parameter)
-            .map_or(self.parameter, |parameter| parameter.symbol)
+            .map_or(self.parameter, |parameter| &parameter.symbol)
     }
 
     /// The swept parameter as LaTeX mathematics, for example `f_{c}` or `\alpha`.
@@ -49,7 +52,7 @@ impl Naming<'_> {
             self.model
                 .axes
                 .get(axis)
-                .map_or("?".into(), |axis| mathematics(axis.symbol))
+                .map_or("?".into(), |axis| mathematics(&axis.symbol))
         };
         match observable {
             Observable::Marginal(axis) => symbol(axis),
@@ -66,7 +69,7 @@ mod tests {
     #[test]
     fn names_and_symbols_of_the_coulomb_model() {
         let naming = Naming {
-            model: registry::find("coulomb").unwrap(),
+            model: &registry::find("coulomb").unwrap(),
             parameter: "f_c",
         };
         assert_eq!(naming.observable(Observable::Joint(0, 1)), "xy");
@@ -79,9 +82,9 @@ mod tests {
 
     #[test]
     fn every_symbol_of_every_model_is_mathematics_that_compiles() {
-        for model in registry::MODELS {
-            for parameter in model.parameters {
-                let parameter = parameter.name;
+        for model in registry::models() {
+            for parameter in &model.parameters {
+                let parameter = &parameter.name;
                 let naming = Naming { model, parameter };
                 let text = naming.parameter_latex();
                 assert!(

@@ -10,7 +10,7 @@ const OBSERVABLES: [Observable; 2] = [Observable::Marginal(1), Observable::Joint
 
 fn naming() -> Naming<'static> {
     Naming {
-        model: registry::find("coulomb").unwrap(),
+        model: &registry::models()[0],
         parameter: "f_c",
     }
 }

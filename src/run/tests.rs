@@ -13,7 +13,7 @@ use crate::topology::{Detection, Feature, FeatureKind, Signature, Verdict};
 
 fn naming() -> Naming<'static> {
     Naming {
-        model: registry::find("coulomb").unwrap(),
+        model: &registry::models()[0],
         parameter: "f_c",
     }
 }

@@ -246,7 +246,8 @@ fn automatic() -> Vec<&'static str> {
 }
 
 fn model_names() -> Vec<&'static str> {
-    registry::MODELS.iter().map(|model| model.name).collect()
+    let models = registry::models().iter();
+    models.map(|model| model.name.as_str()).collect()
 }
 
 fn method_names() -> Vec<&'static str> {

@@ -8,24 +8,28 @@ use super::parameters::{GROWTH, SIGMA2, X};
 use super::{Lanes, Model, Symmetry, System};
 
 /// dx = (ax - x³) dt + σ dW.
-pub(super) static MODEL: Model = Model {
-    name: "bistable",
-    title: "Overdamped particle in a quartic potential, exactly solvable",
-    equations: &["dx = (a x - x³) dt + σ dW"],
-    axes: &[X],
-    parameters: &[GROWTH, SIGMA2],
-    source: "textbook pitchfork normal form with additive noise",
-    notes: &[
+pub(super) fn model() -> Model {
+    Model::new(
+        "bistable",
+        "Overdamped particle in a quartic potential, exactly solvable",
+        bind,
+    )
+    .with_equations(["dx = (a x - x³) dt + σ dW"])
+    .with_axes([X])
+    .with_parameters([GROWTH, SIGMA2])
+    .with_source("textbook pitchfork normal form with additive noise")
+    .with_notes([
         "The steady state is p ∝ exp((2/σ²)(a x²/2 - x⁴/4)): one peak for a ≤ 0, two for a > 0.",
-    ],
-    bind: |values| {
-        Arc::new(Bistable {
-            a: values[0],
-            sigma: values[1].sqrt(),
-            sigma2: values[1],
-        })
-    },
-};
+    ])
+}
+
+fn bind(values: &[f64]) -> Arc<dyn System> {
+    Arc::new(Bistable {
+        a: values[0],
+        sigma: values[1].sqrt(),
+        sigma2: values[1],
+    })
+}
 
 struct Bistable {
     a: f64,

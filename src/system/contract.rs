@@ -20,7 +20,7 @@ fn examples(model: &Model) -> Vec<Arc<dyn System>> {
             .map(|index| first + 0.17 * index as f64)
             .collect();
         let named = model.parameters.iter().zip(&values);
-        let given: Vec<(&str, f64)> = named.map(|(p, &value)| (p.name, value)).collect();
+        let given: Vec<(&str, f64)> = named.map(|(p, &value)| (p.name.as_str(), value)).collect();
         model.system_with(&given).unwrap()
     };
     vec![with(0.3), with(1.1)]
@@ -76,8 +76,8 @@ pub(super) fn assert_stationary(system: &dyn System, must_be_known: bool) {
     }
 }
 
-fn each(check: impl Fn(&'static Model, &dyn System)) {
-    for &model in registry::MODELS {
+fn each(check: impl Fn(&Model, &dyn System)) {
+    for model in registry::models() {
         for system in examples(model) {
             check(model, &*system);
         }
@@ -86,17 +86,20 @@ fn each(check: impl Fn(&'static Model, &dyn System)) {
 
 #[test]
 fn names_are_unique_and_defaults_allowed() {
-    let names: HashSet<&str> = registry::MODELS.iter().map(|model| model.name).collect();
-    assert_eq!(names.len(), registry::MODELS.len());
-    for model in registry::MODELS {
-        assert!(std::ptr::eq(registry::find(model.name).unwrap(), *model));
+    let names: HashSet<&str> = registry::models()
+        .iter()
+        .map(|model| model.name.as_str())
+        .collect();
+    assert_eq!(names.len(), registry::models().len());
+    for model in registry::models() {
+        assert!(Arc::ptr_eq(&registry::find(&model.name).unwrap(), model));
         assert!(!model.title.is_empty() && !model.equations.is_empty() && !model.source.is_empty());
-        let axes = model.axes.iter().map(|axis| axis.name);
+        let axes = model.axes.iter().map(|axis| axis.name.as_str());
         let names: HashSet<&str> = axes
-            .chain(model.parameters.iter().map(|p| p.name))
+            .chain(model.parameters.iter().map(|p| p.name.as_str()))
             .collect();
         assert_eq!(names.len(), model.axes.len() + model.parameters.len());
-        for parameter in model.parameters {
+        for parameter in &model.parameters {
             assert!(
                 parameter
                     .default

@@ -5,14 +5,29 @@ use std::sync::Arc;
 use super::System;
 
 /// One axis of a model's state.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AxisDescription {
     /// Name used in files and on the command line, for example `y`.
-    pub name: &'static str,
+    pub name: String,
     /// Symbol for figures; `_{}` and `^{}` set subscripts and superscripts, for example `ẋ`.
-    pub symbol: &'static str,
+    pub symbol: String,
     /// Meaning in words.
-    pub meaning: &'static str,
+    pub meaning: String,
+}
+
+impl AxisDescription {
+    /// An axis with its name, symbol and meaning.
+    pub fn new(
+        name: impl Into<String>,
+        symbol: impl Into<String>,
+        meaning: impl Into<String>,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            symbol: symbol.into(),
+            meaning: meaning.into(),
+        }
+    }
 }
 
 /// Values a parameter may take.
@@ -48,39 +63,119 @@ impl ParameterRange {
 }
 
 /// One parameter of a model.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ParameterDescription {
     /// Name used in files, for example `f_c`.
-    pub name: &'static str,
+    pub name: String,
     /// Symbol for figures, with `_{}` and `^{}`, for example `f_{c}`.
-    pub symbol: &'static str,
+    pub symbol: String,
     /// Meaning in words.
-    pub meaning: &'static str,
+    pub meaning: String,
     /// Value used when a file leaves the parameter out; `None` if it must be given.
     pub default: Option<f64>,
     /// Values it may take.
     pub range: ParameterRange,
 }
 
-/// A family of systems: everything about a model but the values of its parameters.
-#[derive(Debug)]
+impl ParameterDescription {
+    /// A parameter with its name, symbol and meaning; it must be given and may be any number.
+    pub fn new(
+        name: impl Into<String>,
+        symbol: impl Into<String>,
+        meaning: impl Into<String>,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            symbol: symbol.into(),
+            meaning: meaning.into(),
+            default: None,
+            range: ParameterRange::Any,
+        }
+    }
+
+    /// The parameter with a value that is used where none is given.
+    #[must_use]
+    pub fn with_default(self, value: f64) -> Self {
+        Self {
+            default: Some(value),
+            ..self
+        }
+    }
+
+    /// The parameter with the values it may take.
+    #[must_use]
+    pub fn within(self, range: ParameterRange) -> Self {
+        Self { range, ..self }
+    }
+}
+
+/// Binds checked values, given in the order of a model's parameters.
+type Binding = dyn Fn(&[f64]) -> Arc<dyn System> + Send + Sync;
+
+/// Everything about a set of systems but the values of their parameters. It owns all it says, so that it may be compiled
+/// in or come from a file.
+///
+/// ```
+/// use std::sync::Arc;
+/// use pbif::system::{AxisDescription, Lanes, Model, ParameterDescription, ParameterRange, System};
+///
+/// struct OrnsteinUhlenbeck { rate: f64, sigma: f64 }
+///
+/// impl System for OrnsteinUhlenbeck {
+///     fn dimension(&self) -> usize {
+///         1
+///     }
+///     fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
+///         for (slope, x) in drift[0].iter_mut().zip(&states[0]) {
+///             *slope = -self.rate * x;
+///         }
+///     }
+///     fn noise_axes(&self) -> &[usize] {
+///         &[0]
+///     }
+///     fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
+///         Some(self.sigma)
+///     }
+/// }
+///
+/// let model = Model::new("linear", "Linear restoring force", |values| {
+///     Arc::new(OrnsteinUhlenbeck { rate: values[0], sigma: values[1].sqrt() })
+/// })
+/// .with_equations(["dx = -k x dt + σ dW"])
+/// .with_axes([AxisDescription::new("x", "x", "position")])
+/// .with_parameters([
+///     ParameterDescription::new("k", "k", "rate").with_default(1.0),
+///     ParameterDescription::new("sigma2", "σ^{2}", "noise intensity").within(ParameterRange::Positive),
+/// ]);
+/// let system = model.system_with(&[("sigma2", 0.25)]).unwrap();
+/// assert_eq!(system.drift_at(0.0, &[2.0]), vec![-2.0]);
+/// ```
 pub struct Model {
     /// Name used in files, for example `coulomb`.
-    pub name: &'static str,
+    pub name: String,
     /// One line for lists.
-    pub title: &'static str,
+    pub title: String,
     /// The equations, one a line, as a person writes them.
-    pub equations: &'static [&'static str],
+    pub equations: Vec<String>,
     /// The axes of the state, in order.
-    pub axes: &'static [AxisDescription],
+    pub axes: Vec<AxisDescription>,
     /// The parameters, in order.
-    pub parameters: &'static [ParameterDescription],
+    pub parameters: Vec<ParameterDescription>,
     /// Where the model comes from.
-    pub source: &'static str,
+    pub source: String,
     /// Anything a user should know, one paragraph a string.
-    pub notes: &'static [&'static str],
-    /// Binds checked values, given in the order of `parameters`.
-    pub bind: fn(&[f64]) -> Arc<dyn System>,
+    pub notes: Vec<String>,
+    bind: Box<Binding>,
+}
+
+impl std::fmt::Debug for Model {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Model")
+            .field("name", &self.name)
+            .field("axes", &self.axes)
+            .field("parameters", &self.parameters)
+            .finish_non_exhaustive()
+    }
 }
 
 /// Named values, in the order of a model's parameters.
@@ -107,7 +202,7 @@ pub enum SystemError {
     #[error("model `{model}` has no parameter `{parameter}`")]
     UnknownParameter {
         /// The model.
-        model: &'static str,
+        model: String,
         /// The name that was given.
         parameter: String,
     },
@@ -115,19 +210,19 @@ pub enum SystemError {
     #[error("model `{model}` needs parameter `{parameter}` ({meaning})")]
     MissingParameter {
         /// The model.
-        model: &'static str,
+        model: String,
         /// The missing parameter.
-        parameter: &'static str,
+        parameter: String,
         /// Its meaning.
-        meaning: &'static str,
+        meaning: String,
     },
     /// A value outside the parameter's range.
     #[error("parameter `{parameter}` of model `{model}` is {value}; it must be {allowed}")]
     OutOfRange {
         /// The model.
-        model: &'static str,
+        model: String,
         /// The parameter.
-        parameter: &'static str,
+        parameter: String,
         /// The value that was given.
         value: f64,
         /// The range in words.
@@ -135,6 +230,66 @@ pub enum SystemError {
     },
 }
 
+/// How a model is stated.
+impl Model {
+    /// A model without axes or parameters yet. `bind` is given checked values, in the order of the parameters.
+    pub fn new(
+        name: impl Into<String>,
+        title: impl Into<String>,
+        bind: impl Fn(&[f64]) -> Arc<dyn System> + Send + Sync + 'static,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            title: title.into(),
+            equations: Vec::new(),
+            axes: Vec::new(),
+            parameters: Vec::new(),
+            source: String::new(),
+            notes: Vec::new(),
+            bind: Box::new(bind),
+        }
+    }
+
+    /// The model with its equations, one a line, as a person writes them.
+    #[must_use]
+    pub fn with_equations<S: Into<String>>(self, lines: impl IntoIterator<Item = S>) -> Self {
+        let equations = lines.into_iter().map(Into::into).collect();
+        Self { equations, ..self }
+    }
+
+    /// The model with its axes, in the order of the state.
+    #[must_use]
+    pub fn with_axes<A: Into<AxisDescription>>(self, axes: impl IntoIterator<Item = A>) -> Self {
+        let axes = axes.into_iter().map(Into::into).collect();
+        Self { axes, ..self }
+    }
+
+    /// The model with its parameters, in the order in which the binding takes their values.
+    #[must_use]
+    pub fn with_parameters<P: Into<ParameterDescription>>(
+        self,
+        parameters: impl IntoIterator<Item = P>,
+    ) -> Self {
+        let parameters = parameters.into_iter().map(Into::into).collect();
+        Self { parameters, ..self }
+    }
+
+    /// The model with the words that say where it comes from.
+    #[must_use]
+    pub fn with_source(self, source: impl Into<String>) -> Self {
+        let source = source.into();
+        Self { source, ..self }
+    }
+
+    /// The model with what a user should know, one paragraph a string.
+    #[must_use]
+    pub fn with_notes<S: Into<String>>(self, notes: impl IntoIterator<Item = S>) -> Self {
+        let notes = notes.into_iter().map(Into::into).collect();
+        Self { notes, ..self }
+    }
+}
+
+/// How values become systems.
 impl Model {
     /// Position of a parameter in [`Model::parameters`].
     ///
@@ -145,7 +300,7 @@ impl Model {
             .iter()
             .position(|parameter| parameter.name == name)
             .ok_or_else(|| SystemError::UnknownParameter {
-                model: self.name,
+                model: self.name.clone(),
                 parameter: name.to_owned(),
             })
     }
@@ -161,10 +316,10 @@ impl Model {
         let value_of = |parameter: &ParameterDescription| {
             let named = given.iter().rev().find(|(name, _)| *name == parameter.name);
             let value = named.map(|(_, value)| *value).or(parameter.default);
-            let value = value.ok_or(SystemError::MissingParameter {
-                model: self.name,
-                parameter: parameter.name,
-                meaning: parameter.meaning,
+            let value = value.ok_or_else(|| SystemError::MissingParameter {
+                model: self.name.clone(),
+                parameter: parameter.name.clone(),
+                meaning: parameter.meaning.clone(),
             })?;
             self.check(parameter, value)?;
             Ok(value)
@@ -208,8 +363,8 @@ impl Model {
             return Ok(());
         }
         Err(SystemError::OutOfRange {
-            model: self.name,
-            parameter: parameter.name,
+            model: self.name.clone(),
+            parameter: parameter.name.clone(),
             value,
             allowed: parameter.range.words(),
         })

@@ -4,34 +4,34 @@ use std::sync::Arc;
 
 use super::friction::Frictionless;
 use super::parameters::{ALPHA, GROWTH, MU, SATURATION, SIGMA2, X, Y};
-use super::{Damping, Duffing, Model, Oscillator};
+use super::{Damping, Duffing, Model, Oscillator, System};
 
 /// x' = y, y' = -(-a + bH)y - αx - μx³ + ξ, H the energy.
-pub(super) static MODEL: Model = Model {
-    name: "rayleigh",
-    title: "Oscillator with energy-dependent damping, exactly solvable",
-    equations: &[
-        "x' = y",
-        "y' = -(-a + b H) y - α x - μ x³ + ξ(t)",
-        "H = y²/2 + α x²/2 + μ x⁴/4",
-        "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
-    ],
-    axes: &[X, Y],
-    parameters: &[GROWTH, SATURATION, ALPHA, MU, SIGMA2],
-    source: "T. K. Caughey and F. Ma, The exact steady-state solution of a class of non-linear stochastic systems (1982)",
-    notes: &[
-        "The steady state is p ∝ exp(-(2/σ²)(-a H + b H²/2)): with α > 0 and μ ≥ 0 the joint density has one peak for a ≤ 0 and a crater for a > 0.",
-    ],
-    bind: |values| {
-        let (alpha, mu) = (values[2], values[3]);
-        let damping = EnergyDamping {
-            growth: values[0],
-            saturation: values[1],
-        };
-        let spring = Duffing { alpha, mu };
-        Arc::new(Oscillator::new(spring, damping, Frictionless, values[4]))
-    },
-};
+pub(super) fn model() -> Model {
+    Model::new("rayleigh", "Oscillator with energy-dependent damping, exactly solvable", bind)
+        .with_equations([
+            "x' = y",
+            "y' = -(-a + b H) y - α x - μ x³ + ξ(t)",
+            "H = y²/2 + α x²/2 + μ x⁴/4",
+            "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
+        ])
+        .with_axes([X, Y])
+        .with_parameters([GROWTH, SATURATION, ALPHA, MU, SIGMA2])
+        .with_source("T. K. Caughey and F. Ma, The exact steady-state solution of a class of non-linear stochastic systems (1982)")
+        .with_notes([
+            "The steady state is p ∝ exp(-(2/σ²)(-a H + b H²/2)): with α > 0 and μ ≥ 0 the joint density has one peak for a ≤ 0 and a crater for a > 0.",
+        ])
+}
+
+fn bind(values: &[f64]) -> Arc<dyn System> {
+    let (alpha, mu) = (values[2], values[3]);
+    let damping = EnergyDamping {
+        growth: values[0],
+        saturation: values[1],
+    };
+    let spring = Duffing { alpha, mu };
+    Arc::new(Oscillator::new(spring, damping, Frictionless, values[4]))
+}
 
 /// h = -a + bH.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,27 +1,34 @@
 //! The list of built-in models. A new model is one file beside this one and one line here.
 
+use std::sync::{Arc, LazyLock};
+
 use super::friction::{coulomb, dahl};
 use super::{Model, SystemError, bistable, rayleigh};
 
-/// Every built-in model, in the order in which they are listed.
-pub static MODELS: &[&Model] = &[
-    &coulomb::MODEL,
-    &dahl::MODEL,
-    &dahl::MODEL_EQ8,
-    &rayleigh::MODEL,
-    &bistable::MODEL,
-];
+static MODELS: LazyLock<Vec<Arc<Model>>> = LazyLock::new(|| {
+    let models = [
+        coulomb::model(),
+        dahl::model(),
+        dahl::model_eq8(),
+        rayleigh::model(),
+        bistable::model(),
+    ];
+    models.map(Arc::new).into()
+});
 
-/// The model of that name.
+/// Every built-in model, in the order in which they are listed.
+pub fn models() -> &'static [Arc<Model>] {
+    &MODELS
+}
+
+/// The built-in model of that name.
 ///
 /// # Errors
 /// [`SystemError::UnknownModel`].
-pub fn find(name: &str) -> Result<&'static Model, SystemError> {
-    MODELS
-        .iter()
-        .copied()
-        .find(|model| model.name == name)
-        .ok_or_else(|| SystemError::UnknownModel {
-            name: name.to_owned(),
-        })
+pub fn find(name: &str) -> Result<Arc<Model>, SystemError> {
+    let mut models = models().iter();
+    let found = models.find(|model| model.name == name).cloned();
+    found.ok_or_else(|| SystemError::UnknownModel {
+        name: name.to_owned(),
+    })
 }

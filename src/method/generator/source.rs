@@ -39,7 +39,7 @@ const FINER: [f64; 2] = [1.5, 1.25];
 
 /// Densities along one parameter by the generator.
 pub struct GeneratorSource {
-    model: &'static Model,
+    model: Arc<Model>,
     values: ParameterValues,
     parameter: String,
     range: (f64, f64),
@@ -82,7 +82,7 @@ impl GeneratorSource {
             ..RateOptions::default()
         };
         Ok(Self {
-            model: setting.model,
+            model: setting.model.clone(),
             values: setting.values.clone(),
             parameter: setting.parameter.to_owned(),
             range: setting.range,
@@ -156,7 +156,7 @@ impl GeneratorSource {
             time_step_bias: None,
             warnings: Vec::new(),
         };
-        let mut findings = Findings::new(self.model, &self.space);
+        let mut findings = Findings::new(&self.model, &self.space);
         let finite = unknowns.iter().all(|value| value.is_finite());
         if !info.converged || !finite {
             report.status = PointStatus::NotConverged;
@@ -254,7 +254,7 @@ impl GeneratorSource {
         };
         let (values, parameter) = (&solved.values, self.parameter.as_str());
         let derivative =
-            assemble_derivative(self.model, values, parameter, &self.space, &options).ok()?;
+            assemble_derivative(&self.model, values, parameter, &self.space, &options).ok()?;
         let mass = &solved.steady.mass;
         solver
             .sensitivity_within(&derivative.matrix, mass, None, ROUGH)
@@ -319,7 +319,7 @@ impl DensitySource for GeneratorSource {
         let axes = self.space.axes().iter();
         let space = CellSpace::new(axes.map(|axis| axis.refined(factor)).collect()).ok()?;
         let setting = Setting {
-            model: self.model,
+            model: &self.model,
             values: &self.values,
             parameter: &self.parameter,
             range: self.range,

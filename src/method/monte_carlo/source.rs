@@ -36,7 +36,7 @@ const BIAS_SHARE: f64 = 0.5;
 /// Densities along one parameter by free trajectories.
 #[derive(Debug, Clone)]
 pub struct MonteCarloSource {
-    model: &'static Model,
+    model: Arc<Model>,
     values: ParameterValues,
     parameter: String,
     space: CellSpace,
@@ -110,7 +110,7 @@ impl MonteCarloSource {
             .unzip();
         let plan = plan(&planned, setting.space, &relaxed, options);
         Ok(Self {
-            model: setting.model,
+            model: setting.model.clone(),
             values: setting.values.clone(),
             parameter: setting.parameter.to_owned(),
             space: setting.space.clone(),
@@ -218,7 +218,7 @@ impl MonteCarloSource {
             time_step_bias: plan.bias.map(|bias| bias.relative.abs()),
             warnings: Vec::new(),
         };
-        let mut findings = Findings::new(self.model, &self.space);
+        let mut findings = Findings::new(&self.model, &self.space);
         let limit = self.options.escape_limit;
         let escaping = found.runaway_rate * plan.relaxation_time;
         let nothing = found.looks == 0 || found.replicates.len() < 2;

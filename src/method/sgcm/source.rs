@@ -39,7 +39,7 @@ const NO_ESCAPE: f64 = 1e-12;
 /// Densities along one parameter by SGCM.
 #[derive(Debug)]
 pub struct SgcmSource {
-    model: &'static Model,
+    model: Arc<Model>,
     values: ParameterValues,
     parameter: String,
     space: CellSpace,
@@ -78,7 +78,7 @@ impl SgcmSource {
         }
         let steps = choose_steps(setting, options)?;
         Ok(Self {
-            model: setting.model,
+            model: setting.model.clone(),
             values: setting.values.clone(),
             parameter: setting.parameter.to_owned(),
             space: setting.space.clone(),
@@ -99,7 +99,7 @@ impl SgcmSource {
         cells.dedup();
         steps.cells = cells;
         Self {
-            model: self.model,
+            model: self.model.clone(),
             values: self.values.clone(),
             parameter: self.parameter.clone(),
             space: space.clone(),
@@ -216,7 +216,7 @@ impl SgcmSource {
         let mut report = self.report(PointStatus::Solved, info.iterations, info.residual);
         report.escape_rate = escape_rate;
         report.solver_error = info.error_estimate;
-        let mut findings = Findings::new(self.model, &self.space);
+        let mut findings = Findings::new(&self.model, &self.space);
         if escaping_share > self.options.escape_limit {
             findings.no_steady_state(escape_rate, relaxation_time, self.options.escape_limit);
             report.status = PointStatus::NoSteadyState;
@@ -331,7 +331,7 @@ impl SgcmSource {
             }
             Outcome::SeveralClasses { classes, .. } => {
                 let mut report = self.report(PointStatus::SeveralClasses, 0, 0.0);
-                let mut findings = Findings::new(self.model, &self.space);
+                let mut findings = Findings::new(&self.model, &self.space);
                 findings.several_classes(&classes);
                 report.warnings = findings.into_sentences();
                 Ok(without_density(report))
@@ -339,7 +339,7 @@ impl SgcmSource {
             Outcome::NoneInside { escape_per_step } => {
                 let mut report = self.report(PointStatus::NoSteadyState, 0, 0.0);
                 report.escape_rate = escape_rate(escape_per_step, self.steps.map_step);
-                let mut findings = Findings::new(self.model, &self.space);
+                let mut findings = Findings::new(&self.model, &self.space);
                 findings.no_steady_state(report.escape_rate, None, self.options.escape_limit);
                 report.warnings = findings.into_sentences();
                 Ok(without_density(report))

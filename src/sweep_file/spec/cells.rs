@@ -96,7 +96,7 @@ pub(super) fn read(
     swept: Option<&Swept>,
     method: &MethodOptions,
 ) -> Option<(Vec<AxisCells>, CellSpace)> {
-    let names: Vec<&str> = model.axes.iter().map(|axis| axis.name).collect();
+    let names: Vec<&str> = model.axes.iter().map(|axis| axis.name.as_str()).collect();
     for name in reader.names(&["cells"]) {
         if !names.contains(&name.value.as_str()) {
             let title = format!("model `{}` has no axis `{}`", model.name, name.value);

@@ -216,7 +216,7 @@ fn axis_index<T>(reader: &mut Reader, model: &Model, name: &str, at: &Sited<T>) 
     let index = model.axes.iter().position(|axis| axis.name == name);
     if index.is_none() {
         let title = format!("model `{}` has no axis `{name}`", model.name);
-        let names = model.axes.iter().map(|axis| axis.name);
+        let names = model.axes.iter().map(|axis| axis.name.as_str());
         let diagnostic = Diagnostic::new(title).at(&at.place, "unknown axis");
         reader.report(diagnostic.nearest(name, names));
     }

@@ -6,6 +6,7 @@ mod resolved;
 mod swept;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use crate::continuation::{LocateOptions, Plan};
 use crate::density::Observable;
@@ -32,7 +33,7 @@ pub struct SweepSpec {
     /// The file's name without folder and ending; the output folder is named after it.
     pub name: String,
     /// The model.
-    pub model: &'static Model,
+    pub model: Arc<Model>,
     /// Its parameters, the swept one at [`SweepSpec::from`].
     pub parameters: ParameterValues,
     /// Name of the swept parameter.
@@ -101,10 +102,15 @@ impl SweepSpec {
         let mut reader = Reader::new(document);
         let (method, every_method) = choices::read_method(&mut reader);
         let model = swept::read_model(&mut reader);
-        let swept = model.and_then(|model| swept::read(&mut reader, model));
-        let cells =
-            model.and_then(|model| cells::read(&mut reader, model, swept.as_ref(), &method));
-        let observables = model.map(|model| choices::read_observables(&mut reader, model));
+        let swept = model
+            .as_deref()
+            .and_then(|model| swept::read(&mut reader, model));
+        let cells = model
+            .as_deref()
+            .and_then(|model| cells::read(&mut reader, model, swept.as_ref(), &method));
+        let observables = model
+            .as_deref()
+            .map(|model| choices::read_observables(&mut reader, model));
         let figures_at = choices::read_figures_at(&mut reader, swept.as_ref());
         let (detect, locate) = (choices::read_detect(&reader), choices::read_locate(&reader));
         let formats = choices::read_formats(&reader);

@@ -19,7 +19,7 @@ impl SweepSpec {
 
     fn write_toml(&self, text: &mut String) -> std::fmt::Result {
         writeln!(text, "title = {}\n", quoted(&self.title))?;
-        writeln!(text, "[system]\nmodel = {}\n", quoted(self.model.name))?;
+        writeln!(text, "[system]\nmodel = {}\n", quoted(&self.model.name))?;
         writeln!(text, "[system.parameters]")?;
         for (parameter, &value) in self.model.parameters.iter().zip(self.parameters.as_slice()) {
             if parameter.name != self.parameter {
@@ -73,7 +73,7 @@ impl SweepSpec {
     }
 
     fn observables_toml(&self) -> (String, String) {
-        let name = |axis: usize| quoted(self.model.axes.get(axis).map_or("", |axis| axis.name));
+        let name = |axis: usize| quoted(self.model.axes.get(axis).map_or("", |axis| &axis.name));
         let marginals = self
             .observables
             .iter()

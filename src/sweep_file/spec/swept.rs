@@ -19,20 +19,23 @@ pub(super) struct Swept {
 }
 
 /// The model, if it is a known one; an unknown one is reported with the kind of its key.
-pub(super) fn read_model(reader: &mut Reader) -> Option<&'static Model> {
+pub(super) fn read_model(reader: &mut Reader) -> Option<Arc<Model>> {
     let name = reader.text(&["system", "model"])?;
     registry::find(&name.value).ok()
 }
 
 /// Reads `[system.parameters]` and `[sweep]`.
-pub(super) fn read(reader: &mut Reader, model: &'static Model) -> Option<Swept> {
+pub(super) fn read(reader: &mut Reader, model: &Model) -> Option<Swept> {
     let name = reader.text(&["sweep", "parameter"]);
     let swept = name
         .as_ref()
         .and_then(|name| known_parameter(reader, model, name));
     // A misspelt name must not make its parameter look missing.
-    let meant = swept.map(|swept| swept.name).or_else(|| {
-        let names = model.parameters.iter().map(|parameter| parameter.name);
+    let meant = swept.map(|swept| swept.name.as_str()).or_else(|| {
+        let names = model
+            .parameters
+            .iter()
+            .map(|parameter| parameter.name.as_str());
         nearest_name(&name.as_ref()?.value, names)
     });
     let given = read_parameters(reader, model, meant);
@@ -42,15 +45,15 @@ pub(super) fn read(reader: &mut Reader, model: &'static Model) -> Option<Swept> 
     if !check_values(reader, &from, &to, points) {
         return None;
     }
-    given.push((swept.name, from.value));
+    given.push((swept.name.as_str(), from.value));
     let bound = model
         .values(&given)
-        .and_then(|low| Ok((model.with(&low, swept.name, to.value)?, low)));
+        .and_then(|low| Ok((model.with(&low, &swept.name, to.value)?, low)));
     match bound {
         Ok((high, low)) => Some(Swept {
             ends: vec![model.system(&low), model.system(&high)],
             parameters: low,
-            parameter: swept.name.to_owned(),
+            parameter: swept.name.clone(),
             from: from.value,
             to: to.value,
             points,
@@ -62,18 +65,18 @@ pub(super) fn read(reader: &mut Reader, model: &'static Model) -> Option<Swept> 
     }
 }
 
-fn known_parameter(
+fn known_parameter<'a>(
     reader: &mut Reader,
-    model: &'static Model,
+    model: &'a Model,
     name: &Sited<String>,
-) -> Option<&'static ParameterDescription> {
-    let parameters = model.parameters;
+) -> Option<&'a ParameterDescription> {
+    let parameters = &model.parameters;
     let known = parameters
         .iter()
         .find(|parameter| parameter.name == name.value);
     if known.is_none() {
         let title = format!("model `{}` has no parameter `{}`", model.name, name.value);
-        let names = parameters.iter().map(|parameter| parameter.name);
+        let names = parameters.iter().map(|parameter| parameter.name.as_str());
         let diagnostic = Diagnostic::new(title)
             .at(&name.place, "unknown parameter")
             .nearest(&name.value, names);
@@ -83,11 +86,11 @@ fn known_parameter(
 }
 
 /// The values that are given, the swept one left out; `None` if anything is wrong with them.
-fn read_parameters(
+fn read_parameters<'a>(
     reader: &mut Reader,
-    model: &'static Model,
+    model: &'a Model,
     swept: Option<&str>,
-) -> Option<Vec<(&'static str, f64)>> {
+) -> Option<Vec<(&'a str, f64)>> {
     let mut values = Vec::new();
     let mut complete = true;
     for name in reader.names(&["system", "parameters"]) {
@@ -95,16 +98,16 @@ fn read_parameters(
             complete = false;
             continue;
         };
-        if Some(parameter.name) == swept {
+        if Some(parameter.name.as_str()) == swept {
             let title = format!("parameter `{}` is swept and also given", parameter.name);
             let diagnostic = Diagnostic::new(title)
                 .at(&name.place, "given here")
                 .remedy("remove it here, or sweep another parameter with `sweep.parameter`");
             reader.report(diagnostic);
             complete = false;
-        } else if let Some(value) = reader.number(&["system", "parameters", parameter.name]) {
+        } else if let Some(value) = reader.number(&["system", "parameters", &parameter.name]) {
             complete &= check_range(reader, model, parameter, &value, "given here");
-            values.push((parameter.name, value.value));
+            values.push((parameter.name.as_str(), value.value));
         } else {
             complete = false;
         }
@@ -114,11 +117,11 @@ fn read_parameters(
 }
 
 /// Reports parameters without a default that are not given.
-fn report_missing(reader: &mut Reader, model: &'static Model, swept: Option<&str>) -> bool {
+fn report_missing(reader: &mut Reader, model: &Model, swept: Option<&str>) -> bool {
     let mut complete = swept.is_some();
-    for parameter in model.parameters {
-        let path = ["system", "parameters", parameter.name];
-        let given = reader.entry(&path).is_some() || Some(parameter.name) == swept;
+    for parameter in &model.parameters {
+        let path = ["system", "parameters", &parameter.name];
+        let given = reader.entry(&path).is_some() || Some(parameter.name.as_str()) == swept;
         if given || parameter.default.is_some() || swept.is_none() {
             continue;
         }

@@ -8,23 +8,21 @@ use crate::system::parameters::{ALPHA, COULOMB_LEVEL, KAPPA, MU, SIGMA2, X, Y};
 use crate::system::{Model, SwitchingSurface, VELOCITY};
 
 /// x' = y, y' = -κy - αx - μx³ - f_c sgn(y) + ξ.
-pub(in crate::system) static MODEL: Model = Model {
-    name: "coulomb",
-    title: "Duffing oscillator with Coulomb friction",
-    equations: &[
-        "x' = y",
-        "y' = -κ y - α x - μ x³ - f_c sgn(y) + ξ(t),   sgn(0) = 0",
-        "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
-    ],
-    axes: &[X, Y],
-    parameters: &[ALPHA, KAPPA, MU, COULOMB_LEVEL, SIGMA2],
-    source: "the paper, Eqs. (5)-(6), with the letters of Eq. (7)",
-    notes: &[
-        "The paper's Eq. (5) prints α = 1 as damping and κ = 0.01 as stiffness. With that reading the marginal of x has one peak at every f_c, against the paper's Fig. 2(a); with the letters of its Eq. (7), used here, its figures come out.",
-        "The marginal of y has a kink at 0, p'(0+)/p(0) = -2 f_c/σ², so it changes from two peaks to one exactly at f_c = 0.",
-    ],
-    bind: |values| with_friction(values, |own| Coulomb { level: own[0] }),
-};
+pub(in crate::system) fn model() -> Model {
+    Model::new("coulomb", "Duffing oscillator with Coulomb friction", |values| with_friction(values, |own| Coulomb { level: own[0] }))
+        .with_equations([
+            "x' = y",
+            "y' = -κ y - α x - μ x³ - f_c sgn(y) + ξ(t),   sgn(0) = 0",
+            "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
+        ])
+        .with_axes([X, Y])
+        .with_parameters([ALPHA, KAPPA, MU, COULOMB_LEVEL, SIGMA2])
+        .with_source("the paper, Eqs. (5)-(6), with the letters of Eq. (7)")
+        .with_notes([
+            "The paper's Eq. (5) prints α = 1 as damping and κ = 0.01 as stiffness. With that reading the marginal of x has one peak at every f_c, against the paper's Fig. 2(a); with the letters of its Eq. (7), used here, its figures come out.",
+            "The marginal of y has a kink at 0, p'(0+)/p(0) = -2 f_c/σ², so it changes from two peaks to one exactly at f_c = 0.",
+        ])
+}
 
 /// F = f_c sgn(y).
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,50 +5,48 @@
 
 use super::{FrictionLaw, Motion};
 use crate::system::oscillator::with_friction;
-use crate::system::parameters::{ALPHA, DAHL_LEVEL, KAPPA, LAMBDA, MU, SIGMA2, X, Y, Z};
-use crate::system::{AxisDescription, Model, ParameterDescription, SwitchingSurface, VELOCITY};
+use crate::system::parameters::{
+    ALPHA, Axis, DAHL_LEVEL, KAPPA, LAMBDA, MU, Parameter, SIGMA2, X, Y, Z,
+};
+use crate::system::{Model, SwitchingSurface, VELOCITY};
 
-const AXES: &[AxisDescription] = &[X, Y, Z];
-const PARAMETERS: &[ParameterDescription] = &[ALPHA, KAPPA, MU, LAMBDA, DAHL_LEVEL, SIGMA2];
+const AXES: [Axis; 3] = [X, Y, Z];
+const PARAMETERS: [Parameter; 6] = [ALPHA, KAPPA, MU, LAMBDA, DAHL_LEVEL, SIGMA2];
 
 /// x' = y, y' = -κy - αx - μx³ - λz + ξ, z' = y - (λ|y|/f_c) z.
-pub(in crate::system) static MODEL: Model = Model {
-    name: "dahl",
-    title: "Duffing oscillator with Dahl friction",
-    equations: &[
-        "x' = y",
-        "y' = -κ y - α x - μ x³ - λ z + ξ(t)",
-        "z' = y - (λ |y| / f_c) z,   |z| ≤ f_c/λ",
-        "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
-    ],
-    axes: AXES,
-    parameters: PARAMETERS,
-    source: "the paper, Eqs. (7)-(9), with z as last factor of z'; P. R. Dahl, A solid friction model (1968)",
-    notes: &[
-        "The paper's Eqs. (8) and (9) print x as the last factor of z'. Dahl's law has z, and with it the paper's claims hold; the printed equations are the model `dahl_eq8`, which has no steady state.",
-        "The friction force λ z stays within ±f_c. The internal displacement z is an axis of the cell space like x and y.",
-    ],
-    bind: |values| with_friction(values, |own| Dahl(Contact::new(own))),
-};
+pub(in crate::system) fn model() -> Model {
+    Model::new("dahl", "Duffing oscillator with Dahl friction", |values| with_friction(values, |own| Dahl(Contact::new(own))))
+        .with_equations([
+            "x' = y",
+            "y' = -κ y - α x - μ x³ - λ z + ξ(t)",
+            "z' = y - (λ |y| / f_c) z,   |z| ≤ f_c/λ",
+            "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
+        ])
+        .with_axes(AXES)
+        .with_parameters(PARAMETERS)
+        .with_source("the paper, Eqs. (7)-(9), with z as last factor of z'; P. R. Dahl, A solid friction model (1968)")
+        .with_notes([
+            "The paper's Eqs. (8) and (9) print x as the last factor of z'. Dahl's law has z, and with it the paper's claims hold; the printed equations are the model `dahl_eq8`, which has no steady state.",
+            "The friction force λ z stays within ±f_c. The internal displacement z is an axis of the cell space like x and y.",
+        ])
+}
 
 /// x' = y, y' = -κy - αx - μx³ - λz + ξ, z' = y - (λ|y|/f_c) x.
-pub(in crate::system) static MODEL_EQ8: Model = Model {
-    name: "dahl_eq8",
-    title: "Duffing oscillator with Dahl friction as printed (no steady state)",
-    equations: &[
-        "x' = y",
-        "y' = -κ y - α x - μ x³ - λ z + ξ(t)",
-        "z' = y - (λ |y| / f_c) x",
-        "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
-    ],
-    axes: AXES,
-    parameters: PARAMETERS,
-    source: "the paper, Eqs. (8)-(9), as printed",
-    notes: &[
-        "The print has x as the last factor of z', where Dahl's law has z (model `dahl`). Nothing then holds z back: it is not bounded, it runs away, and the system has no steady state.",
-    ],
-    bind: |values| with_friction(values, |own| DahlAsPrinted(Contact::new(own))),
-};
+pub(in crate::system) fn model_eq8() -> Model {
+    Model::new("dahl_eq8", "Duffing oscillator with Dahl friction as printed (no steady state)", |values| with_friction(values, |own| DahlAsPrinted(Contact::new(own))))
+        .with_equations([
+            "x' = y",
+            "y' = -κ y - α x - μ x³ - λ z + ξ(t)",
+            "z' = y - (λ |y| / f_c) x",
+            "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
+        ])
+        .with_axes(AXES)
+        .with_parameters(PARAMETERS)
+        .with_source("the paper, Eqs. (8)-(9), as printed")
+        .with_notes([
+            "The print has x as the last factor of z', where Dahl's law has z (model `dahl`). Nothing then holds z back: it is not bounded, it runs away, and the system has no steady state.",
+        ])
+}
 
 /// What both readings share: F = λz, z' = y - (λ|y|/f_c) times the factor in which they differ.
 #[derive(Debug, Clone, Copy, PartialEq)]
