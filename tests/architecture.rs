@@ -14,7 +14,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("monte_carlo", &["system", "space", "sampling"]),
     ("generator", &["system", "space"]),
     ("stationary", &["space", "sampling"]),
-    ("density", &["space"]),
+    ("density", &["system", "space"]),
     ("topology", &["space", "density"]),
     ("continuation", &["system", "space", "density", "topology"]),
     (

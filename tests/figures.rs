@@ -36,7 +36,7 @@ fn draw_all(
     formats: &[Format],
     folder: &Path,
 ) -> Vec<PathBuf> {
-    let figures = Figures::of_sweep(result, &model, title, at);
+    let figures = Figures::of_sweep(result, model, title, at);
     write_figures(&figures.draw_all().unwrap(), formats, folder).unwrap()
 }
 

@@ -17,6 +17,7 @@ pub use structure::{Kink, Structure, Variants};
 pub use uncertainty::estimate;
 
 use crate::space::Axis;
+use crate::system::Family;
 
 /// A density that is watched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -34,6 +35,20 @@ impl Observable {
             Self::Marginal(axis) => vec![axis],
             Self::Joint(first, second) => vec![first, second],
         }
+    }
+
+    /// Its name in files, for systems of a family: the names of its axes run together, for example `xy`.
+    pub fn name(self, family: &Family) -> String {
+        let axes = self.axes();
+        axes.into_iter().map(|axis| family.axis(axis)).collect()
+    }
+
+    /// Symbols of its axes, with `_{}` and `^{}`, for systems of a family.
+    pub fn symbols(self, family: &Family) -> Vec<&str> {
+        let axes = self.axes();
+        axes.into_iter()
+            .map(|axis| family.axis_symbol(axis))
+            .collect()
     }
 }
 

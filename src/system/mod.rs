@@ -1,25 +1,30 @@
 //! Stochastic differential equations: the trait every model implements, and the built-in models.
 //!
 //! A [`System`] is an Itô equation dX = a(X, t; θ) dt + B(X, t; θ) dW in d = 1…4 dimensions with its
-//! parameters θ already bound. A [`Model`] is the family it comes from: names, equations, parameters
-//! with their meaning, and a function that binds values. [`registry`] lists the models.
+//! parameters θ already bound. A [`Model`] is what it comes from: names, equations, parameters
+//! with their meaning, and a function that binds values. A [`Family`] is a model with fixed values and a [`Path`] through its
+//! parameters: what is swept. [`registry`] lists the built-in models.
 
 mod bistable;
 #[cfg(test)]
 mod contract;
+mod family;
 pub mod friction;
 mod model;
 mod oscillator;
 mod parameters;
+mod path;
 mod rayleigh;
 pub mod registry;
 
+pub use family::Family;
 pub use model::{
     AxisDescription, Model, ParameterDescription, ParameterRange, ParameterValues, SystemError,
 };
 pub use oscillator::{
     DISPLACEMENT, Damping, Duffing, FIRST_INTERNAL_STATE, Oscillator, VELOCITY, Viscous,
 };
+pub use path::Path;
 
 /// Number of states that are advanced together. Kernels work on whole batches, so that a model's
 /// arithmetic fills vector registers and the cost of a virtual call is shared by this many states.

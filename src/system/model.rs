@@ -216,6 +216,12 @@ pub enum SystemError {
         /// Its meaning.
         meaning: String,
     },
+    /// A value that is given, and that a path gives too.
+    #[error("parameter `{parameter}` moves along the path, and a fixed value is given too")]
+    Moved {
+        /// The parameter.
+        parameter: String,
+    },
     /// A value outside the parameter's range.
     #[error("parameter `{parameter}` of model `{model}` is {value}; it must be {allowed}")]
     OutOfRange {

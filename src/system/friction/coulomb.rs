@@ -9,7 +9,8 @@ use crate::system::{Model, SwitchingSurface, VELOCITY};
 
 /// x' = y, y' = -κy - αx - μx³ - f_c sgn(y) + ξ.
 pub(in crate::system) fn model() -> Model {
-    Model::new("coulomb", "Duffing oscillator with Coulomb friction", |values| with_friction(values, |own| Coulomb { level: own[0] }))
+    let bind = |values: &[f64]| with_friction(values, |own| Coulomb { level: own[0] });
+    Model::new("coulomb", "Duffing oscillator with Coulomb friction", bind)
         .with_equations([
             "x' = y",
             "y' = -κ y - α x - μ x³ - f_c sgn(y) + ξ(t),   sgn(0) = 0",

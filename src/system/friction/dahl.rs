@@ -15,7 +15,8 @@ const PARAMETERS: [Parameter; 6] = [ALPHA, KAPPA, MU, LAMBDA, DAHL_LEVEL, SIGMA2
 
 /// x' = y, y' = -κy - αx - μx³ - λz + ξ, z' = y - (λ|y|/f_c) z.
 pub(in crate::system) fn model() -> Model {
-    Model::new("dahl", "Duffing oscillator with Dahl friction", |values| with_friction(values, |own| Dahl(Contact::new(own))))
+    let bind = |values: &[f64]| with_friction(values, |own| Dahl(Contact::new(own)));
+    Model::new("dahl", "Duffing oscillator with Dahl friction", bind)
         .with_equations([
             "x' = y",
             "y' = -κ y - α x - μ x³ - λ z + ξ(t)",
@@ -33,7 +34,8 @@ pub(in crate::system) fn model() -> Model {
 
 /// x' = y, y' = -κy - αx - μx³ - λz + ξ, z' = y - (λ|y|/f_c) x.
 pub(in crate::system) fn model_eq8() -> Model {
-    Model::new("dahl_eq8", "Duffing oscillator with Dahl friction as printed (no steady state)", |values| with_friction(values, |own| DahlAsPrinted(Contact::new(own))))
+    let bind = |values: &[f64]| with_friction(values, |own| DahlAsPrinted(Contact::new(own)));
+    Model::new("dahl_eq8", "Duffing oscillator with Dahl friction as printed (no steady state)", bind)
         .with_equations([
             "x' = y",
             "y' = -κ y - α x - μ x³ - λ z + ξ(t)",

@@ -1,0 +1,197 @@
+//! A family of systems: a model with fixed values, and a path through its parameters. What is swept, said once.
+
+use std::sync::Arc;
+
+use super::{Model, ParameterValues, Path, System, SystemError};
+
+/// Systems along a path: one number in, a bound system out, with names and symbols for tables and figures.
+///
+/// ```
+/// use pbif::system::{Family, Path, registry};
+///
+/// let model = registry::find("coulomb").unwrap();
+/// let fixed = [("kappa", 0.01), ("mu", 0.01), ("sigma2", 0.01)];
+/// let family = Family::new(model, &fixed, Path::parameter("f_c", -0.02, 0.01)).unwrap();
+/// assert_eq!((family.parameter(), family.symbol()), ("f_c", "f_{c}"));
+/// // At x = 0, y = 1: y' = -κ - f_c.
+/// let system = family.at(0.005).unwrap();
+/// assert!((system.drift_at(0.0, &[0.0, 1.0])[1] + 0.015).abs() < 1e-15);
+/// ```
+#[derive(Debug, Clone)]
+pub struct Family {
+    model: Arc<Model>,
+    /// Those of the first end.
+    values: ParameterValues,
+    path: Path,
+}
+
+impl Family {
+    /// Values of the parameters that the path does not move, and the path. Both ends of the path and its middle must be allowed;
+    /// the ends may be equal.
+    ///
+    /// # Errors
+    /// [`SystemError::UnknownParameter`], [`SystemError::MissingParameter`], [`SystemError::OutOfRange`], and
+    /// [`SystemError::Moved`] for a value that the path gives too.
+    pub fn new(model: Arc<Model>, fixed: &[(&str, f64)], path: Path) -> Result<Self, SystemError> {
+        let moves = |name: &str| path.moved().iter().any(|moved| moved == name);
+        if let Some((name, _)) = fixed.iter().find(|(name, _)| moves(name)) {
+            return Err(SystemError::Moved {
+                parameter: (*name).to_owned(),
+            });
+        }
+        let mut given = fixed.to_vec();
+        given.extend(path.values(path.ends().0));
+        let values = model.values(&given)?;
+        let family = Self {
+            model,
+            values,
+            path,
+        };
+        family.along()?;
+        Ok(family)
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Arc<Model> {
+        &self.model
+    }
+
+    /// The path.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Name of the path's coordinate: that of the swept parameter, where it is one.
+    pub fn parameter(&self) -> &str {
+        self.path.name()
+    }
+
+    /// Symbol of the path's coordinate, with `_{}` and `^{}`.
+    pub fn symbol(&self) -> &str {
+        let of_parameter = || {
+            let mut parameters = self.model.parameters.iter();
+            let known = parameters.find(|parameter| parameter.name == self.path.name());
+            known.map_or(self.path.name(), |parameter| parameter.symbol.as_str())
+        };
+        self.path.symbol().unwrap_or_else(of_parameter)
+    }
+
+    /// First and last coordinate; the last may be below the first.
+    pub fn ends(&self) -> (f64, f64) {
+        self.path.ends()
+    }
+
+    /// The ends in ascending order.
+    pub fn range(&self) -> (f64, f64) {
+        let (from, to) = self.ends();
+        (from.min(to), from.max(to))
+    }
+
+    /// Name of an axis of the state, for example `y`; `?` where the model has none.
+    pub fn axis(&self, axis: usize) -> &str {
+        let axis = self.model.axes.get(axis);
+        axis.map_or("?", |axis| axis.name.as_str())
+    }
+
+    /// Symbol of an axis, with `_{}` and `^{}`, for example `ẋ`; `?` where the model has none.
+    pub fn axis_symbol(&self, axis: usize) -> &str {
+        let axis = self.model.axes.get(axis);
+        axis.map_or("?", |axis| axis.symbol.as_str())
+    }
+
+    /// Values of all parameters at a coordinate, which may lie beyond the ends.
+    ///
+    /// # Errors
+    /// [`SystemError::OutOfRange`].
+    pub fn values_at(&self, coordinate: f64) -> Result<ParameterValues, SystemError> {
+        let mut moved = self.path.values(coordinate).into_iter();
+        moved.try_fold(self.values.clone(), |values, (name, value)| {
+            self.model.with(&values, name, value)
+        })
+    }
+
+    /// The system at a coordinate, which may lie beyond the ends.
+    ///
+    /// # Errors
+    /// [`SystemError::OutOfRange`].
+    pub fn at(&self, coordinate: f64) -> Result<Arc<dyn System>, SystemError> {
+        Ok(self.model.system(&self.values_at(coordinate)?))
+    }
+
+    /// The systems at both ends and in the middle: what is chosen once for a whole sweep is chosen for these.
+    ///
+    /// # Errors
+    /// [`SystemError::OutOfRange`].
+    pub fn along(&self) -> Result<Vec<Arc<dyn System>>, SystemError> {
+        let (from, to) = self.ends();
+        let middle = 0.5 * (from + to);
+        let places = [from, middle, to].into_iter();
+        places.map(|coordinate| self.at(coordinate)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::system::registry;
+
+    const FIXED: [(&str, f64); 2] = [("kappa", 0.1), ("sigma2", 0.04)];
+
+    #[test]
+    fn a_parameter_moves_and_the_others_stay() {
+        let model = registry::find("coulomb").unwrap();
+        let path = Path::parameter("f_c", 0.5, -0.5);
+        let family = Family::new(model, &FIXED, path).unwrap();
+        assert_eq!(family.ends(), (0.5, -0.5));
+        assert_eq!(family.range(), (-0.5, 0.5));
+        assert_eq!(
+            family.values_at(0.25).unwrap().as_slice(),
+            [1.0, 0.1, 0.0, 0.25, 0.04]
+        );
+        // α x + κ y + f_c at x = y = 1.
+        let forces = family.along().unwrap();
+        let forces = forces
+            .iter()
+            .map(|system| -system.drift_at(0.0, &[1.0, 1.0])[1]);
+        for (force, expected) in forces.zip([1.6, 1.1, 0.6]) {
+            assert!((force - expected).abs() < 1e-15);
+        }
+        assert_eq!((family.axis(1), family.axis_symbol(1)), ("y", "ẋ"));
+        assert_eq!((family.axis(7), family.axis_symbol(7)), ("?", "?"));
+    }
+
+    #[test]
+    fn a_curve_moves_several_parameters_and_has_a_name_of_its_own() {
+        let model = registry::find("coulomb").unwrap();
+        let path = Path::curve("s", "s", ["f_c", "sigma2"], (0.0, 1.0), |s| {
+            vec![0.1 * s, 0.01 + s * s]
+        });
+        let family = Family::new(model, &[("kappa", 0.1)], path).unwrap();
+        assert_eq!((family.parameter(), family.symbol()), ("s", "s"));
+        assert_eq!(
+            family.values_at(0.5).unwrap().as_slice(),
+            [1.0, 0.1, 0.0, 0.05, 0.26]
+        );
+    }
+
+    #[test]
+    fn what_does_not_fit_together_is_refused() {
+        let new = |fixed: &[(&str, f64)], path: Path| {
+            Family::new(registry::find("coulomb").unwrap(), fixed, path).unwrap_err()
+        };
+        let error = new(&FIXED, Path::parameter("kappa", 0.0, 1.0));
+        assert!(matches!(error, SystemError::Moved { .. }), "{error}");
+        let error = new(&FIXED, Path::parameter("friction", 0.0, 1.0));
+        assert!(matches!(error, SystemError::UnknownParameter { .. }));
+        let error = new(&FIXED[..1], Path::parameter("f_c", 0.0, 1.0));
+        assert!(matches!(error, SystemError::MissingParameter { .. }));
+        let error = new(
+            &[("kappa", 0.1), ("f_c", 0.0)],
+            Path::parameter("sigma2", 1.0, -1.0),
+        );
+        assert!(matches!(error, SystemError::OutOfRange { .. }));
+        let short = Path::curve("s", "s", ["f_c", "sigma2"], (0.0, 1.0), |s| vec![s]);
+        let error = new(&[("kappa", 0.1)], short);
+        assert!(matches!(error, SystemError::OutOfRange { .. }), "{error}");
+    }
+}
