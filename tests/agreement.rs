@@ -113,9 +113,9 @@ impl Example {
         let source = MonteCarloSource::new(&setting, &options, Default::default()).unwrap();
         let (solution, found) = source.estimate(value).unwrap();
         assert!(
-            solution.report.warnings.is_empty(),
+            solution.report.findings.is_empty(),
             "{:?}",
-            solution.report.warnings
+            solution.report.findings
         );
         let marginal =
             |&observable| estimate(&self.space, observable, &found.mass, &found.replicates);

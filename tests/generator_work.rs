@@ -67,7 +67,7 @@ fn work_counters_are_as_they_were() {
     let solutions = with_source(|source| sweep(source, true));
     let reports = solutions.iter().map(|solution| &solution.report);
     let counts: Vec<String> = reports
-        .map(|report| format!("{}+{}", report.factorisations, report.iterations))
+        .map(|report| format!("{}+{}", report.own.factorisations, report.iterations))
         .collect();
     let lines: Vec<String> = counts.chunks(10).map(|chunk| chunk.join(" ")).collect();
     insta::assert_snapshot!(lines.join("\n"), @r"

@@ -9,7 +9,7 @@ use comfy_table::{Table, presets};
 use super::args::CompareArguments;
 use super::output::OutputFolder;
 use super::sweep::progress::Progress;
-use super::{CommandError, Outcome};
+use super::{CommandError, Outcome, warnings};
 use crate::compare::{CompareError, Comparison, Method, Solved, Task, compare};
 use crate::figure::{Figures, write_figures};
 use crate::method::{Setting, cost};
@@ -93,7 +93,7 @@ fn carry_out(
     write_figures(&figures, &spec.figure_formats, &folder.figures())?;
     let files = folder.take_place()?;
     progress.finish();
-    progress.warn(&warnings(spec, &comparison));
+    progress.warn(&warnings::of_comparison(&run.naming, &comparison));
     super::print(&text(&run, &files))?;
     Ok(match comparison.is_complete() && comparison.agrees() {
         true => Outcome::Complete,
@@ -126,33 +126,6 @@ fn memory(spec: &SweepSpec, comparison: &Comparison, solved: &Solved) -> (f64, &
             "estimated from cells and blocks",
         ),
     }
-}
-
-/// What the methods say of themselves, each sentence once a method, at its first value.
-fn warnings(spec: &SweepSpec, comparison: &Comparison) -> Vec<String> {
-    let mut seen: Vec<(Method, String)> = Vec::new();
-    let mut warnings = Vec::new();
-    for value in &comparison.values {
-        if let Some((rate, outside)) = value.leaves() {
-            warnings.push(format!(
-                "{} = {}: generator and Monte Carlo disagree, and mass leaves Ω (at a rate of {rate:.1e}; Monte Carlo is outside for {outside:.1e} of the time); the generator's density is that of what never left, Monte Carlo's of what is inside: wider ranges tell whether that is why",
-                spec.parameter,
-                format_number(value.value)
-            ));
-        }
-        for solved in &value.solved {
-            for sentence in &solved.report.warnings {
-                let shape: String = sentence.chars().filter(|c| !c.is_ascii_digit()).collect();
-                let kind = (solved.method, shape);
-                if !seen.contains(&kind) {
-                    seen.push(kind);
-                    let (name, at) = (solved.method.name(), format_number(value.value));
-                    warnings.push(format!("{name} at {} = {at}: {sentence}", spec.parameter));
-                }
-            }
-        }
-    }
-    warnings
 }
 
 /// The tables, the verdict and the files.

@@ -6,7 +6,7 @@ use super::args::DetectArguments;
 use super::output::OutputFolder;
 use super::stored::{Stored, naming};
 use super::sweep::{draw, outcome, summary};
-use super::{CommandError, Outcome};
+use super::{CommandError, Outcome, warnings};
 use crate::continuation::SweepResult;
 use crate::run::{Ending, Manifest, RunFolder, StagedRun};
 
@@ -66,7 +66,7 @@ fn write(
     manifest.largest_distance = result.largest_distance();
     // A run that was killed has written none.
     manifest.warnings = match run.ending() {
-        Ending::Running => summary::warnings(naming.parameter, &result.points),
+        Ending::Running => warnings::of_points(&naming, &result.points),
         _ => run.warnings().to_vec(),
     };
     manifest.ending = match run.ending() {

@@ -9,6 +9,7 @@ mod plot;
 mod stored;
 mod sweep;
 mod systems;
+mod warnings;
 
 use std::io::{self, IsTerminal as _, Write as _};
 use std::process::ExitCode;

@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use super::args::SweepArguments;
 use super::output::OutputFolder;
-use super::{CommandError, Outcome};
+use super::{CommandError, Outcome, warnings};
 use crate::continuation::{
     BifurcationStatus, Observer, Plan, Point, SweepError, SweepResult, sweep,
 };
@@ -100,7 +100,7 @@ impl<'a> Run<'a> {
         self.manifest.seconds.figures = clock.elapsed().as_secs_f64();
         self.manifest.points = result.points.len();
         self.manifest.largest_distance = result.largest_distance();
-        self.manifest.warnings = summary::warnings(self.naming.parameter, &result.points);
+        self.manifest.warnings = warnings::of_points(&self.naming, &result.points);
         self.manifest.ending = if result.interrupted {
             Ending::Interrupted
         } else {

@@ -119,7 +119,11 @@ fn by_indicator(
     row.upper = bracket.1.max(found.value + error);
     row.parts = Some(found.error);
     // The diffusion that the cells of a sampled map add moves values; without a finer grid nobody knows by how much.
-    let diffused = !points[crossing.left].report.numerical_diffusion.is_empty();
+    let diffused = !points[crossing.left]
+        .report
+        .own
+        .numerical_diffusion
+        .is_empty();
     let depends_on_cells = crossing.kind() != IndicatorKind::KinkSlope;
     row.status = Some(match checked {
         Some(GridCheck::Unconfirmed) => BifurcationStatus::Unconfirmed,

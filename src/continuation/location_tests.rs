@@ -73,21 +73,7 @@ impl<F: Fn(f64, &[f64]) -> f64 + Clone> DensitySource for Exact<F> {
             _ => Observable::Joint(0, 1),
         };
         Ok(Solution {
-            report: SolveReport {
-                status: PointStatus::Solved,
-                method: "exact",
-                iterations: 0,
-                factorisations: 0,
-                residual: 0.0,
-                solver_error: 0.0,
-                escape_rate: 0.0,
-                negative_mass: 0.0,
-                edge_mass: Vec::new(),
-                numerical_diffusion: Vec::new(),
-                map_step: None,
-                time_step_bias: None,
-                warnings: Vec::new(),
-            },
+            report: SolveReport::solved("exact"),
             moments: Vec::new(),
             densities: vec![EstimatedDensity {
                 observable,

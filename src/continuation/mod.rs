@@ -6,22 +6,28 @@
 mod again;
 mod bracket;
 mod change;
+mod finding;
 mod grid;
 mod label;
 mod locate;
 mod observer;
 mod persistence;
+mod report;
 mod root;
 mod source;
 mod sweep;
 mod words;
 
 pub use again::detect_again;
+#[cfg(test)]
+pub(crate) use finding::every_finding;
+pub use finding::{Finding, ShiftedQuantity, SteadyClass};
 pub use grid::FinerIndicator;
 pub use label::{BifurcationStatus, LabelledPoint, PointType};
 pub use observer::Observer;
+pub use report::{MethodPart, PointStatus, SolveReport};
 pub use root::ErrorParts;
-pub use source::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
+pub use source::{DensitySource, Solution, SourceError};
 pub use sweep::{Plan, SweepError, evenly_spaced, sweep};
 
 #[cfg(test)]

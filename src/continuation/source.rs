@@ -1,81 +1,7 @@
 //! The seam of a sweep: whatever can give densities at a parameter value, starting from a neighbour's.
 
+use super::SolveReport;
 use crate::density::{EstimatedDensity, Moments};
-
-/// How a point ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum PointStatus {
-    /// Solved.
-    Solved,
-    /// Solved, but mass leaves Ω: the densities are quasi-stationary, conditioned on staying.
-    Escaping,
-    /// The solver stopped before it reached its tolerance; the densities are its last iterate.
-    NotConverged,
-    /// So much mass leaves that there is no steady state in Ω; no densities.
-    NoSteadyState,
-    /// The cell map has several closed classes: several steady states; no densities.
-    SeveralClasses,
-}
-
-impl PointStatus {
-    /// All of them.
-    pub const ALL: [Self; 5] = [
-        Self::Solved,
-        Self::Escaping,
-        Self::NotConverged,
-        Self::NoSteadyState,
-        Self::SeveralClasses,
-    ];
-
-    /// The word used in tables.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Solved => "solved",
-            Self::Escaping => "escaping",
-            Self::NotConverged => "not-converged",
-            Self::NoSteadyState => "no-steady-state",
-            Self::SeveralClasses => "several-classes",
-        }
-    }
-
-    /// Whether the point has a density that a user may rely on.
-    pub fn is_resolved(self) -> bool {
-        matches!(self, Self::Solved | Self::Escaping)
-    }
-}
-
-/// What a solve says of itself; a row of `points.csv`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SolveReport {
-    /// How it ended.
-    pub status: PointStatus,
-    /// Name of the method, for example `sgcm`.
-    pub method: &'static str,
-    /// Solver iterations (cycles).
-    pub iterations: usize,
-    /// Factorisations made for this point; zero for solvers that make none.
-    pub factorisations: usize,
-    /// What is left of the equation at the result, Σ p = 1: ‖P p - λ p‖₁ for a cell map,
-    /// ‖Q p + r p‖₁ / ‖|Q| |p|‖₁ for a generator.
-    pub residual: f64,
-    /// L1 error of the masses that the solver estimates for itself.
-    pub solver_error: f64,
-    /// Mass that leaves Ω per unit time.
-    pub escape_rate: f64,
-    /// Sum of the magnitudes of negative masses; zero for cell maps.
-    pub negative_mass: f64,
-    /// Mass in cells that touch an end of a range, walls that the model knows not counted: one value an axis.
-    pub edge_mass: Vec<f64>,
-    /// Diffusion that the cells add, one value an axis, in units of the axis squared per unit time.
-    pub numerical_diffusion: Vec<f64>,
-    /// Time one transition spans; `None` for methods without a map step.
-    pub map_step: Option<f64>,
-    /// Relative shift of the variances (or of the mass beside a switching surface) by the time step of trajectories, the
-    /// largest that halving the step makes certain; `None` for methods without trajectories.
-    pub time_step_bias: Option<f64>,
-    /// Anything the user should know of this point, one sentence each.
-    pub warnings: Vec<String>,
-}
 
 /// A solve's result: densities, report, and what warm-starts the neighbour.
 #[derive(Debug, Clone)]
@@ -90,7 +16,20 @@ pub struct Solution<State> {
     pub state: Option<State>,
 }
 
-/// Why a source cannot give a solution at all. A failed solve is data, not an error: see [`PointStatus`].
+impl<State> Solution<State> {
+    /// A solution without densities, for the reason that the report gives.
+    pub fn without_density(report: SolveReport) -> Self {
+        Self {
+            report,
+            moments: Vec::new(),
+            densities: Vec::new(),
+            state: None,
+        }
+    }
+}
+
+/// Why a source cannot give a solution at all. A failed solve is data, not an error: see
+/// [`PointStatus`](super::PointStatus).
 #[derive(Debug, thiserror::Error)]
 pub enum SourceError {
     /// The source was asked to stop.

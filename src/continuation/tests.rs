@@ -34,18 +34,12 @@ impl DensitySource for Ramp {
             } else {
                 PointStatus::Solved
             },
-            method: "exact",
-            iterations: 0,
-            factorisations: 0,
-            residual: 0.0,
-            solver_error: 0.0,
-            escape_rate: 0.0,
-            negative_mass: 0.0,
             edge_mass: vec![0.0],
-            numerical_diffusion: vec![0.0],
-            map_step: None,
-            time_step_bias: None,
-            warnings: Vec::new(),
+            own: MethodPart {
+                numerical_diffusion: vec![0.0],
+                ..MethodPart::default()
+            },
+            ..SolveReport::solved("exact")
         };
         let density = EstimatedDensity {
             observable: Observable::Marginal(0),

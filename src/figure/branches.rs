@@ -109,7 +109,7 @@ pub(super) fn branches(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::continuation::{PointStatus, SolveReport};
+    use crate::continuation::SolveReport;
     use crate::topology::{Detection, Signature};
 
     #[test]
@@ -145,21 +145,7 @@ mod tests {
         };
         Point {
             value,
-            report: SolveReport {
-                status: PointStatus::Solved,
-                method: "exact",
-                iterations: 0,
-                factorisations: 0,
-                residual: 0.0,
-                solver_error: 0.0,
-                escape_rate: 0.0,
-                negative_mass: 0.0,
-                edge_mass: Vec::new(),
-                numerical_diffusion: Vec::new(),
-                map_step: None,
-                time_step_bias: None,
-                warnings: Vec::new(),
-            },
+            report: SolveReport::solved("exact"),
             moments: Vec::new(),
             densities: Vec::new(),
             detections: peaks.into_iter().map(detection).collect(),

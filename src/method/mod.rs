@@ -2,11 +2,11 @@
 
 mod any;
 pub mod cost;
-mod findings;
 mod generator;
 mod monte_carlo;
 mod options;
 mod range;
+mod report;
 mod setting;
 mod sgcm;
 mod structure;

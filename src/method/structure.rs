@@ -39,6 +39,19 @@ pub(super) fn kinked_surfaces(
     surfaces
 }
 
+/// Whether the lower and upper end of each axis is a wall that the system cannot pass, all along the sweep.
+pub(super) fn closed_ends(systems: &[Arc<dyn System>], space: &CellSpace) -> Vec<[bool; 2]> {
+    let axes = space.axes().iter().enumerate();
+    axes.map(|(axis, cells)| {
+        let bounds = || systems.iter().map(move |system| system.bounds(axis));
+        [
+            bounds().all(|b| b.is_some_and(|(lower, _)| cells.from() <= lower)),
+            bounds().all(|b| b.is_some_and(|(_, upper)| cells.to() >= upper)),
+        ]
+    })
+    .collect()
+}
+
 /// Structure of the density of an observable; `masses` are those of all cells, `surfaces` those with a kink.
 pub(super) fn structure(
     system: &dyn System,

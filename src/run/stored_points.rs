@@ -2,14 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
+use super::findings::parse_findings;
 use super::{Naming, RunError};
-use crate::continuation::{Point, PointStatus, SolveReport};
+use crate::continuation::{Finding, MethodPart, Point, PointStatus, SolveReport};
 use crate::density::Moments;
 
 /// The points of a table, in its order. Signatures and distances are left out: they follow from the densities.
 ///
-/// `methods` are the names that a row may give as its method. A table keeps the largest edge mass only, and joins
-/// warnings to one text: a point that was read has one of each. Numbers that are not finite were written as empty cells and
+/// `methods` are the names that a row may give as its method. A table keeps the largest edge mass only: a point that was
+/// read has one. Numbers that are not finite were written as empty cells and
 /// come back as NaN.
 ///
 /// # Errors
@@ -115,14 +116,12 @@ impl Row<'_> {
             );
             numerical_diffusion.extend(self.optional(&format!("numerical_diffusion_{axis}"))?);
         }
-        let warnings = self.text("warnings")?;
         Ok(Point {
             value: self.number(naming.parameter)?,
             report: SolveReport {
                 status: self.choice("status", &PointStatus::ALL, PointStatus::word)?,
                 method: self.choice("method", methods, |name| name)?,
                 iterations: self.count("iterations")?,
-                factorisations: self.count("factorisations")?,
                 residual: self.number_or_nan("residual")?,
                 // Tables of earlier versions do not have it.
                 solver_error: match self.table.find("solver_error") {
@@ -130,25 +129,40 @@ impl Row<'_> {
                     None => 0.0,
                 },
                 escape_rate: self.number_or_nan("escape_rate")?,
-                negative_mass: self.number_or_nan("negative_mass")?,
                 edge_mass: self.optional("edge_mass")?.into_iter().collect(),
-                numerical_diffusion,
-                map_step: self.optional("map_step")?,
-                // Nor this.
-                time_step_bias: match self.table.find("time_step_bias") {
-                    Some(_) => self.optional("time_step_bias")?,
-                    None => None,
+                own: MethodPart {
+                    factorisations: self.count("factorisations")?,
+                    negative_mass: self.number_or_nan("negative_mass")?,
+                    numerical_diffusion,
+                    map_step: self.optional("map_step")?,
+                    // Nor this.
+                    time_step_bias: match self.table.find("time_step_bias") {
+                        Some(_) => self.optional("time_step_bias")?,
+                        None => None,
+                    },
                 },
-                warnings: (!warnings.is_empty())
-                    .then(|| warnings.to_owned())
-                    .into_iter()
-                    .collect(),
+                findings: self.findings(naming)?,
             },
             moments,
             densities: Vec::new(),
             detections: Vec::new(),
             distance: None,
             seconds: self.number("seconds")?,
+        })
+    }
+
+    /// Findings; where there are only sentences, as of earlier versions, these as one.
+    fn findings(&self, naming: &Naming<'_>) -> Result<Vec<Finding>, RunError> {
+        let cell = match self.table.find("findings") {
+            Some(_) => self.text("findings")?,
+            None => "",
+        };
+        let wrong = |word: &str| self.wrong("findings", word, "a finding with its numbers");
+        let findings = parse_findings(naming, cell).map_err(wrong)?;
+        let told = self.text("warnings")?;
+        Ok(match findings.is_empty() && !told.is_empty() {
+            true => vec![Finding::Told(told.to_owned())],
+            false => findings,
         })
     }
 

@@ -1,7 +1,7 @@
 //! A run written and read back: densities bit for bit, whatever they carry, and what is said of broken files.
 
 use super::*;
-use crate::continuation::{Point, PointStatus, SolveReport};
+use crate::continuation::{Finding, MethodPart, Point, PointStatus, SolveReport};
 use crate::density::{Density, EstimatedDensity, Kink, Moments, Observable, Structure, Variants};
 use crate::space::{Axis, CellSpace, Grading};
 use crate::system::registry;
@@ -79,18 +79,23 @@ fn point(value: f64, replicates: Option<usize>, kinks: usize) -> Point {
         value,
         report: SolveReport {
             status: PointStatus::NotConverged,
-            method: "sgcm",
             iterations: 7,
-            factorisations: 2,
             residual: 1.0 / 3e13,
             solver_error: 2.0 / 3e9,
             escape_rate: 0.1 + 0.2,
-            negative_mass: 1e-300,
             edge_mass: vec![1e-5 / 3.0],
-            numerical_diffusion: vec![0.1 / 3.0, 0.2 / 3.0],
-            map_step: Some(6.25 / 3.0),
-            time_step_bias: Some(1e-3 / 7.0),
-            warnings: vec!["one; or two, \"quoted\"".into()],
+            own: MethodPart {
+                factorisations: 2,
+                negative_mass: 1e-300,
+                numerical_diffusion: vec![0.1 / 3.0, 0.2 / 3.0],
+                map_step: Some(6.25 / 3.0),
+                time_step_bias: Some(1e-3 / 7.0),
+            },
+            findings: vec![
+                Finding::NotConverged { error: 1e-3 / 7.0 },
+                Finding::SurfaceOffFaces { axis: 1, at: -0.1 },
+            ],
+            ..SolveReport::solved("sgcm")
         },
         moments: vec![
             Moments {
@@ -110,9 +115,9 @@ fn point(value: f64, replicates: Option<usize>, kinks: usize) -> Point {
 fn without_density(value: f64) -> Point {
     let mut point = point(value, Some(0), 0);
     point.report.status = PointStatus::NoSteadyState;
-    point.report.map_step = None;
+    point.report.own.map_step = None;
     point.report.edge_mass = Vec::new();
-    point.report.numerical_diffusion = Vec::new();
+    point.report.own.numerical_diffusion = Vec::new();
     point.moments = Vec::new();
     point.densities = Vec::new();
     point
@@ -239,6 +244,7 @@ fn runs_of_earlier_versions_load_without_what_they_lack() {
     };
     edit("points.csv", |text| {
         text.replace(",solver_error", ",unknown")
+            .replace(",findings", ",unknown")
     });
     edit("run.json", |text| {
         let mut manifest: serde_json::Map<_, _> = serde_json::from_str(&text).unwrap();
@@ -252,6 +258,12 @@ fn runs_of_earlier_versions_load_without_what_they_lack() {
         run.resolved()
     );
     let found = read(folder.path()).unwrap();
+    // What was told is kept, though its numbers are not known.
+    let Finding::Told(told) = &found[0].report.findings[0] else {
+        panic!("{:?}", found[0].report.findings);
+    };
+    assert!(told.starts_with("the solver stopped before its tolerance"));
+    assert!(told.contains("; no face of y falls on the switching surface at -0.1"));
     assert_eq!(found[0].densities[1].variants, Variants::None);
     assert!(found[0].densities[1].structure.kinks.is_empty());
     assert_eq!(
@@ -307,9 +319,14 @@ fn broken_runs_are_refused_with_their_place() {
         };
         assert_eq!((found.as_str(), given.as_str()), (column, value));
     }
-    let cut = table.rsplit_once(",\"one").unwrap().0.to_owned();
+    let (cut, _) = table.rsplit_once(",not-converged:").unwrap();
     assert!(
-        matches!(with("points.csv", cut), RunError::Row { line: 3, column, .. } if column == "warnings")
+        matches!(with("points.csv", cut.to_owned()), RunError::Row { line: 3, column, .. } if column == "findings")
+    );
+    let error = with("points.csv", format!("{cut},outside:0.1;edge-mass-q:1\n"));
+    assert!(
+        matches!(&error, RunError::Row { line: 3, column, value, .. } if column == "findings" && value == "edge-mass-q:1"),
+        "{error}"
     );
     let error = with("points.csv", table.replace("residual", "remainder"));
     assert!(matches!(error, RunError::Column { column, .. } if column == "residual"));

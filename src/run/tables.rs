@@ -1,5 +1,7 @@
 //! `points.csv` and `features.csv`.
 
+use super::findings::findings_cell;
+use super::sentences::sentences;
 use super::{Naming, RunError, number::format_number};
 use crate::continuation::Point;
 use crate::density::Observable;
@@ -51,7 +53,7 @@ fn points_header(naming: &Naming<'_>, observables: &[Observable]) -> Vec<String>
     }
     header.extend(["distance", "seconds", "map_step", "factorisations"].map(str::to_owned));
     header.extend(axes().map(|axis| format!("numerical_diffusion_{axis}")));
-    header.extend(["solver_error", "time_step_bias", "warnings"].map(str::to_owned));
+    header.extend(["solver_error", "time_step_bias", "warnings", "findings"].map(str::to_owned));
     header
 }
 
@@ -65,7 +67,7 @@ fn points_row(naming: &Naming<'_>, observables: &[Observable], point: &Point) ->
         report.iterations.to_string(),
         format_number(report.residual),
         format_number(report.escape_rate),
-        format_number(report.negative_mass),
+        format_number(report.own.negative_mass),
         optional(edge_mass),
     ];
     for axis in 0..naming.model.axes.len() {
@@ -85,14 +87,15 @@ fn points_row(naming: &Naming<'_>, observables: &[Observable], point: &Point) ->
     }
     row.push(optional(point.distance));
     row.push(format!("{:.3}", point.seconds));
-    row.push(optional(report.map_step));
-    row.push(report.factorisations.to_string());
+    row.push(optional(report.own.map_step));
+    row.push(report.own.factorisations.to_string());
     for axis in 0..naming.model.axes.len() {
-        row.push(optional(report.numerical_diffusion.get(axis).copied()));
+        row.push(optional(report.own.numerical_diffusion.get(axis).copied()));
     }
     row.push(format_number(report.solver_error));
-    row.push(optional(report.time_step_bias));
-    row.push(report.warnings.join("; "));
+    row.push(optional(report.own.time_step_bias));
+    row.push(sentences(naming, &report.findings));
+    row.push(findings_cell(naming, &report.findings));
     row
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use zarrs::array::Array;
 
 use super::*;
-use crate::continuation::{Point, PointStatus, SolveReport, SweepResult};
+use crate::continuation::{Finding, MethodPart, Point, PointStatus, SolveReport, SweepResult};
 use crate::density::{Density, EstimatedDensity, Moments, Observable};
 use crate::space::Axis;
 use crate::system::registry;
@@ -60,18 +60,24 @@ fn point(value: f64, solved: bool) -> Point {
             } else {
                 PointStatus::NoSteadyState
             },
-            method: "sgcm",
             iterations: 7,
-            factorisations: 0,
             residual: 1e-12,
-            solver_error: 0.0,
             escape_rate: if solved { 0.0 } else { f64::NAN },
-            negative_mass: 0.0,
             edge_mass: vec![0.0, 1e-5],
-            numerical_diffusion: vec![1e-4, 2e-4],
-            map_step: Some(6.25),
-            time_step_bias: None,
-            warnings: vec!["first, with a comma".into(), "second".into()],
+            own: MethodPart {
+                numerical_diffusion: vec![1e-4, 2e-4],
+                map_step: Some(6.25),
+                ..MethodPart::default()
+            },
+            findings: vec![
+                Finding::Outside { share: 0.125 },
+                Finding::EdgeMass {
+                    axis: 1,
+                    mass: 0.5,
+                    range: [-8.0, 8.0],
+                },
+            ],
+            ..SolveReport::solved("sgcm")
         },
         moments: vec![
             Moments {
@@ -117,11 +123,15 @@ fn points_have_the_columns_of_the_contract_and_no_nan() {
     assert_eq!(
         lines.next().unwrap(),
         "f_c,status,method,iterations,residual,escape_rate,negative_mass,edge_mass,mean_x,sd_x,mean_y,sd_y,\
-         peaks_x,peaks_xy,craters_xy,distance,seconds,map_step,factorisations,numerical_diffusion_x,numerical_diffusion_y,solver_error,time_step_bias,warnings"
+         peaks_x,peaks_xy,craters_xy,distance,seconds,map_step,factorisations,numerical_diffusion_x,numerical_diffusion_y,solver_error,time_step_bias,warnings,findings"
     );
     let first = lines.next().unwrap();
     assert!(first.starts_with("-0.02,no-steady-state,sgcm,7,1e-12,,0,1e-5,,,,,,,,"));
-    assert!(first.ends_with("\"first, with a comma; second\""));
+    assert!(
+        first.contains(",\"the trajectories spend 12.5 % of their time outside Ω: ")
+            && first.ends_with(" [-8, 8]\",outside:0.125;edge-mass-y:0.5:-8:8"),
+        "{first}"
+    );
     assert!(
         lines
             .next()

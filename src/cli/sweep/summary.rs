@@ -1,10 +1,10 @@
-//! What a finished sweep says: the labelled points on stdout, warnings gathered over the points, the files.
+//! What a finished sweep says: the labelled points on stdout, and the files.
 
 use std::path::Path;
 
 use comfy_table::{Table, presets};
 
-use crate::continuation::{LabelledPoint, Point, PointType, SweepResult};
+use crate::continuation::{LabelledPoint, PointType, SweepResult};
 use crate::run::{Naming, format_number, format_with_error};
 
 /// The labelled points as a table, the signatures at both ends, and where the files are.
@@ -126,47 +126,4 @@ fn files(folder: &Path) -> Vec<String> {
     }
     names.retain(|name| folder.join(name).exists());
     names
-}
-
-/// The warnings of all points: each kind once, with the range of parameter values it concerns. Sentences that
-/// differ only in their numbers are one kind; the first is quoted.
-pub(in crate::cli) fn warnings(parameter: &str, points: &[Point]) -> Vec<String> {
-    struct Kind {
-        shape: String,
-        sentence: String,
-        values: (f64, f64),
-        count: usize,
-    }
-    let mut kinds: Vec<Kind> = Vec::new();
-    for point in points {
-        for sentence in &point.report.warnings {
-            let shape: String = sentence.chars().filter(|c| !c.is_ascii_digit()).collect();
-            match kinds.iter_mut().find(|kind| kind.shape == shape) {
-                Some(kind) => {
-                    kind.values.1 = point.value;
-                    kind.count += 1;
-                }
-                None => kinds.push(Kind {
-                    shape,
-                    sentence: sentence.clone(),
-                    values: (point.value, point.value),
-                    count: 1,
-                }),
-            }
-        }
-    }
-    kinds
-        .into_iter()
-        .map(|kind| {
-            let (first, last) = (format_number(kind.values.0), format_number(kind.values.1));
-            match kind.count {
-                1 => format!("{parameter} = {first}: {}", kind.sentence),
-                count => format!(
-                    "{parameter} = {first}: {} (and the like at {} more values up to {last})",
-                    kind.sentence,
-                    count - 1
-                ),
-            }
-        })
-        .collect()
 }

@@ -12,17 +12,17 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::GeneratorMethodOptions;
 use super::relaxation::Relaxation;
 use super::trail::{self, Trail};
-use crate::continuation::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
+use crate::continuation::{DensitySource, Finding, Solution, SourceError};
 use crate::density::{EstimatedDensity, Moments, Observable, estimate_from_difference};
 use crate::generator::{
     AdvectiveScheme, Generator, GeneratorOptions, assemble, assemble_derivative, cell_masses,
     resolution, unknown_moments,
 };
-use crate::method::findings::{Findings, QUIET_ESCAPE, closed_ends};
-use crate::method::structure::{kinked_surfaces, structure};
+use crate::method::report::{QUIET_ESCAPE, Reporter};
+use crate::method::structure::{closed_ends, kinked_surfaces, structure};
 use crate::method::{MethodError, Setting, State};
 use crate::space::CellSpace;
-use crate::stationary::generator::{RateOptions, RateSolver, RateSteadyState};
+use crate::stationary::generator::{RateInfo, RateOptions, RateSolver, RateSteadyState};
 use crate::system::{Model, ParameterValues, SwitchingSurface, System};
 
 /// Name of the method in tables.
@@ -124,7 +124,7 @@ impl GeneratorSource {
             steady: steady?,
             second: second?,
         };
-        let mut solution = self.report(&mut solver, value, &solved, trail)?;
+        let mut solution = self.solution(&mut solver, value, &solved, trail)?;
         if let (Some(state), None) = (&mut solution.state, start) {
             state.trail.slope = self.slope(&mut solver, &solved).map(Arc::new);
         }
@@ -132,7 +132,7 @@ impl GeneratorSource {
     }
 
     /// Judges a solution and turns it into densities.
-    fn report(
+    fn solution(
         &self,
         solver: &mut RateSolver,
         value: f64,
@@ -141,66 +141,30 @@ impl GeneratorSource {
     ) -> Result<Solution<State>, MethodError> {
         let info = &solved.steady.info;
         let unknowns = &solved.steady.mass;
-        let mut report = SolveReport {
-            status: PointStatus::Solved,
-            method: METHOD,
-            iterations: info.iterations,
-            factorisations: info.factorisations,
-            residual: info.residual,
-            solver_error: info.error_estimate,
-            escape_rate: info.escape_rate.max(0.0),
-            negative_mass: info.negative_mass,
-            edge_mass: Vec::new(),
-            numerical_diffusion: Vec::new(),
-            map_step: None,
-            time_step_bias: None,
-            warnings: Vec::new(),
-        };
-        let mut findings = Findings::new(&self.model, &self.space);
+        let mut reporter = self.reporter(info);
         let finite = unknowns.iter().all(|value| value.is_finite());
         if !info.converged || !finite {
-            report.status = PointStatus::NotConverged;
-            findings.not_converged(info.error_estimate);
+            reporter.not_converged(info.error_estimate);
         }
-        let relaxation = if finite {
-            relaxation(solver, solved, before)
-        } else {
-            None
-        };
-        let time = relaxation.as_ref().map(|known| known.time);
-        let escaping_share = time.map_or(0.0, |time| report.escape_rate * time);
-        let leaves = escaping_share > self.options.escape_limit;
-        if leaves {
-            findings.no_steady_state(report.escape_rate, time, self.options.escape_limit);
-            report.status = PointStatus::NoSteadyState;
+        if !finite {
+            return Ok(Solution::without_density(reporter.report));
         }
-        if leaves || !finite {
-            report.warnings = findings.into_sentences();
-            return Ok(Solution {
-                report,
-                moments: Vec::new(),
-                densities: Vec::new(),
-                state: None,
-            });
-        }
-        if escaping_share > QUIET_ESCAPE {
-            if report.status == PointStatus::Solved {
-                report.status = PointStatus::Escaping;
-            }
-            findings.escaping(report.escape_rate, escaping_share);
+        let relaxation = relaxation(solver, solved, before);
+        if !self.holds_mass(&mut reporter, relaxation.as_ref()) {
+            return Ok(Solution::without_density(reporter.report));
         }
         let masses = cell_masses(solved.system.as_ref(), &self.space, unknowns);
-        report.negative_mass = masses.iter().map(|mass| (-mass).max(0.0)).sum();
-        report.edge_mass = findings.edge_mass(&masses, &self.closed_ends);
+        reporter.edge_mass(&masses, &self.closed_ends);
         for judged in resolution(solved.system.as_ref(), &self.space, &masses) {
-            findings.resolution(&judged);
+            reporter.resolution(&judged);
         }
         let expected = before.and_then(|trail| trail.difference_at(value));
         let (densities, difference) =
             self.densities(solver, solved, &masses, expected.as_deref())?;
-        let watched = densities.iter().map(negative_mass).fold(0.0, f64::max);
-        findings.negative_mass(report.negative_mass, watched);
-        report.warnings = findings.into_sentences();
+        let watched = densities
+            .iter()
+            .map(|one| negative_mass(&one.density.masses()));
+        reporter.negative_mass(negative_mass(&masses), watched.fold(0.0, f64::max));
         let mass = Arc::new(unknowns.clone());
         let point = trail::Solved {
             value,
@@ -211,14 +175,46 @@ impl GeneratorSource {
         let trail = before.filter(|_| info.converged).cloned();
         let trail = trail.unwrap_or_default();
         Ok(Solution {
-            report,
+            report: reporter.report,
             moments: moments_of(&self.space, unknowns),
             densities,
             state: Some(State {
-                mass: mass.clone(),
+                mass,
                 trail: trail.with(point, relaxation.map(Arc::new)),
             }),
         })
+    }
+
+    /// The numbers of a solve.
+    fn reporter(&self, info: &RateInfo) -> Reporter<'_> {
+        let mut reporter = Reporter::new(METHOD, &self.space);
+        let report = &mut reporter.report;
+        report.iterations = info.iterations;
+        report.residual = info.residual;
+        report.solver_error = info.error_estimate;
+        report.escape_rate = info.escape_rate.max(0.0);
+        report.own.factorisations = info.factorisations;
+        report.own.negative_mass = info.negative_mass;
+        reporter
+    }
+
+    /// Whether Ω keeps enough of its mass for a steady state; what leaves is told.
+    fn holds_mass(&self, reporter: &mut Reporter<'_>, relaxation: Option<&Relaxation>) -> bool {
+        let (rate, limit) = (reporter.report.escape_rate, self.options.escape_limit);
+        let Some(relaxation_time) = relaxation.map(|known| known.time) else {
+            return true;
+        };
+        let share = rate * relaxation_time;
+        if share > limit {
+            reporter.no_steady_state(Finding::NoSteadyState {
+                rate,
+                relaxation_time,
+                limit,
+            });
+            return false;
+        }
+        reporter.escaping(rate, share);
+        true
     }
 
     /// Densities with the difference to the second scheme as their error, and that difference of the unknowns.
@@ -278,9 +274,8 @@ fn relaxation(
         .or_else(|| Relaxation::compute(solver, &solved.steady.mass, neighbour))
 }
 
-/// Σ |min(mass, 0)| of a watched density.
-fn negative_mass(estimate: &EstimatedDensity) -> f64 {
-    let masses = estimate.density.masses();
+/// Σ |min(mass, 0)|.
+fn negative_mass(masses: &[f64]) -> f64 {
     masses.iter().map(|mass| (-mass).max(0.0)).sum()
 }
 

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::{Estimator, MonteCarloOptions};
-use crate::continuation::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
+use crate::continuation::{DensitySource, Finding, Solution, SourceError};
 use crate::density::{EstimatedDensity, Moments, Observable, estimate};
-use crate::method::findings::{Findings, QUIET_ESCAPE, closed_ends};
 use crate::method::generator::Trail;
-use crate::method::structure::{kinked_surfaces, structure};
+use crate::method::report::Reporter;
+use crate::method::structure::{closed_ends, kinked_surfaces, structure};
 use crate::method::{MethodError, Setting, State};
 use crate::monte_carlo::{
     EnsembleRun, ErgodicRun, Estimate, MonteCarloError, Relaxation, StepBias, automatic_step,
@@ -26,9 +26,6 @@ const TRAJECTORIES: f64 = 2048.0;
 
 /// Burn-in in autocorrelation times: e⁻¹² = 6e-6 of the start is left.
 const BURN_IN: f64 = 12.0;
-
-/// Burn-in below this many autocorrelation times is warned of.
-const SHORT_BURN_IN: f64 = 5.0;
 
 /// Share of the wanted error that an automatic time step may add as bias.
 const BIAS_SHARE: f64 = 0.5;
@@ -202,54 +199,28 @@ impl MonteCarloSource {
         found: &Estimate,
     ) -> Result<Solution<State>, MethodError> {
         let plan = &self.plan;
-        let mut report = SolveReport {
-            status: PointStatus::Solved,
-            method: METHOD,
-            // Steps of one trajectory: the iterations of the integrator.
-            iterations: ((plan.burn_in + plan.length) / plan.time_step).ceil() as usize,
-            factorisations: 0,
-            residual: 0.0,
-            solver_error: 0.0,
-            escape_rate: found.runaway_rate,
-            negative_mass: 0.0,
-            edge_mass: Vec::new(),
-            numerical_diffusion: Vec::new(),
-            map_step: None,
-            time_step_bias: plan.bias.map(|bias| bias.relative.abs()),
-            warnings: Vec::new(),
-        };
-        let mut findings = Findings::new(&self.model, &self.space);
+        let mut reporter = Reporter::new(METHOD, &self.space);
+        // Steps of one trajectory: the iterations of the integrator.
+        let steps = (plan.burn_in + plan.length) / plan.time_step;
+        reporter.report.iterations = steps.ceil() as usize;
+        reporter.report.escape_rate = found.runaway_rate;
+        reporter.report.own.time_step_bias = plan.bias.map(|bias| bias.relative.abs());
         let limit = self.options.escape_limit;
         let escaping = found.runaway_rate * plan.relaxation_time;
         let nothing = found.looks == 0 || found.replicates.len() < 2;
         if nothing || escaping > limit || found.share_outside > limit {
-            findings.nothing_stays(found.runaways, found.share_outside, limit);
-            report.status = PointStatus::NoSteadyState;
-            report.warnings = findings.into_sentences();
-            return Ok(Solution {
-                report,
-                moments: Vec::new(),
-                densities: Vec::new(),
-                state: None,
+            reporter.no_steady_state(Finding::NothingStays {
+                runaways: found.runaways,
+                outside: found.share_outside,
+                limit,
             });
+            return Ok(Solution::without_density(reporter.report));
         }
-        report.edge_mass = findings.edge_mass(&found.mass, &self.closed_ends);
-        if escaping > QUIET_ESCAPE {
-            report.status = PointStatus::Escaping;
-            findings.escaping(found.runaway_rate, escaping);
-        }
-        if found.share_outside > QUIET_ESCAPE {
-            report.status = PointStatus::Escaping;
-            findings.outside(found.share_outside);
-        }
-        findings.time_step(plan.time_step, plan.bias.as_ref(), plan.error);
-        if !plan.relaxation_resolved {
-            findings.unresolved_relaxation(plan.relaxation_time);
-        }
-        if plan.burn_in < SHORT_BURN_IN * plan.relaxation_time {
-            findings.short_burn_in(plan.burn_in, plan.relaxation_time);
-        }
-        report.warnings = findings.into_sentences();
+        reporter.edge_mass(&found.mass, &self.closed_ends);
+        reporter.escaping(found.runaway_rate, escaping);
+        reporter.outside(found.share_outside);
+        reporter.time_step(plan.time_step, plan.bias.as_ref(), plan.error);
+        reporter.burn_in(plan.burn_in, plan.relaxation_time, plan.relaxation_resolved);
         let density = |&observable: &Observable| {
             let mut estimated = estimate(&self.space, observable, &found.mass, &found.replicates)?;
             estimated.structure =
@@ -260,7 +231,7 @@ impl MonteCarloSource {
             self.observables.iter().map(density).collect();
         let moments = found.mean.iter().zip(&found.variance);
         Ok(Solution {
-            report,
+            report: reporter.report,
             moments: moments
                 .map(|(&mean, variance)| Moments {
                     mean,

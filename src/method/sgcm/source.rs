@@ -10,10 +10,10 @@ use super::slope_correction::{Corrected, solve_by};
 use super::steps::{Steps, choose_steps};
 use super::{Correction, SgcmOptions};
 use crate::MAX_DIMENSION;
-use crate::continuation::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
+use crate::continuation::{DensitySource, Finding, Solution, SourceError};
 use crate::density::{EstimatedDensity, Observable, estimate, moments};
-use crate::method::findings::{Findings, QUIET_ESCAPE};
 use crate::method::generator::Trail;
+use crate::method::report::Reporter;
 use crate::method::structure::structure;
 use crate::method::{MethodError, Setting, State};
 use crate::sampling::{
@@ -213,46 +213,42 @@ impl SgcmSource {
             None
         };
         let escaping_share = relaxation_time.map_or(0.0, |time| escape_rate * time);
-        let mut report = self.report(PointStatus::Solved, info.iterations, info.residual);
-        report.escape_rate = escape_rate;
-        report.solver_error = info.error_estimate;
-        let mut findings = Findings::new(&self.model, &self.space);
-        if escaping_share > self.options.escape_limit {
-            findings.no_steady_state(escape_rate, relaxation_time, self.options.escape_limit);
-            report.status = PointStatus::NoSteadyState;
-            report.warnings = findings.into_sentences();
-            return Ok(without_density(report));
+        let mut reporter = self.reporter();
+        reporter.report.iterations = info.iterations;
+        reporter.report.residual = info.residual;
+        reporter.report.escape_rate = escape_rate;
+        reporter.report.solver_error = info.error_estimate;
+        let limit = self.options.escape_limit;
+        if let Some(relaxation_time) = relaxation_time.filter(|_| escaping_share > limit) {
+            reporter.no_steady_state(Finding::NoSteadyState {
+                rate: escape_rate,
+                relaxation_time,
+                limit,
+            });
+            return Ok(Solution::without_density(reporter.report));
         }
         let moments = moments(&self.space, &steady.mass)?;
-        report.edge_mass = findings.edge_mass(&steady.mass, &self.steps.closed_ends);
+        reporter.edge_mass(&steady.mass, &self.steps.closed_ends);
         let local_mass: Vec<f64> = transitions
             .cells()
             .iter()
             .map(|&c| steady.mass[c])
             .collect();
-        report.numerical_diffusion = match correction {
+        let diffusion = match correction {
             Correction::Slope => transitions.remaining_diffusion(&self.space, &local_mass, slopes),
             Correction::None => transitions.numerical_diffusion(&local_mass),
         };
-        findings.numerical_diffusion(&report.numerical_diffusion, &self.steps.noise, &moments);
-        findings.time_step(
-            self.steps.time_step,
-            self.steps.bias.as_ref(),
-            f64::INFINITY,
-        );
-        if escaping_share > QUIET_ESCAPE {
-            report.status = PointStatus::Escaping;
-            findings.escaping(escape_rate, escaping_share);
-        }
+        reporter.numerical_diffusion(diffusion, &self.steps.noise, &moments);
+        let (time_step, bias) = (self.steps.time_step, self.steps.bias.as_ref());
+        reporter.time_step(time_step, bias, f64::INFINITY);
+        reporter.escaping(escape_rate, escaping_share);
         if !info.converged {
-            report.status = PointStatus::NotConverged;
-            findings.not_converged(info.error_estimate);
+            reporter.not_converged(info.error_estimate);
         }
         let (densities, replicates) = self.densities((system, transitions), correction, &steady)?;
-        findings.replicates(replicates, transitions.groups());
-        report.warnings = findings.into_sentences();
+        reporter.replicates(replicates, transitions.groups());
         Ok(Solution {
-            report,
+            report: reporter.report,
             moments,
             densities,
             state: Some(State {
@@ -262,22 +258,12 @@ impl SgcmSource {
         })
     }
 
-    fn report(&self, status: PointStatus, iterations: usize, residual: f64) -> SolveReport {
-        SolveReport {
-            status,
-            method: METHOD,
-            iterations,
-            factorisations: 0,
-            residual,
-            solver_error: 0.0,
-            escape_rate: 0.0,
-            negative_mass: 0.0,
-            edge_mass: Vec::new(),
-            numerical_diffusion: Vec::new(),
-            map_step: Some(self.steps.map_step),
-            time_step_bias: self.steps.bias.map(|bias| bias.relative.abs()),
-            warnings: Vec::new(),
-        }
+    fn reporter(&self) -> Reporter<'_> {
+        let mut reporter = Reporter::new(METHOD, &self.space);
+        let own = &mut reporter.report.own;
+        own.map_step = Some(self.steps.map_step);
+        own.time_step_bias = self.steps.bias.map(|bias| bias.relative.abs());
+        reporter
     }
 
     /// Samples the cell map at a parameter value, to be solved by [`SgcmSource::solve_sampled`]. Where samples started is
@@ -330,19 +316,16 @@ impl SgcmSource {
                 self.solved(sampled, correction, &matrix, &slopes, steady)
             }
             Outcome::SeveralClasses { classes, .. } => {
-                let mut report = self.report(PointStatus::SeveralClasses, 0, 0.0);
-                let mut findings = Findings::new(&self.model, &self.space);
-                findings.several_classes(&classes);
-                report.warnings = findings.into_sentences();
-                Ok(without_density(report))
+                let mut reporter = self.reporter();
+                reporter.several_classes(&classes);
+                Ok(Solution::without_density(reporter.report))
             }
             Outcome::NoneInside { escape_per_step } => {
-                let mut report = self.report(PointStatus::NoSteadyState, 0, 0.0);
-                report.escape_rate = escape_rate(escape_per_step, self.steps.map_step);
-                let mut findings = Findings::new(&self.model, &self.space);
-                findings.no_steady_state(report.escape_rate, None, self.options.escape_limit);
-                report.warnings = findings.into_sentences();
-                Ok(without_density(report))
+                let mut reporter = self.reporter();
+                let rate = escape_rate(escape_per_step, self.steps.map_step);
+                reporter.report.escape_rate = rate;
+                reporter.no_steady_state(Finding::LeavesAtOnce { rate });
+                Ok(Solution::without_density(reporter.report))
             }
         }
     }
@@ -371,13 +354,4 @@ impl DensitySource for SgcmSource {
 /// rounding unit of it.
 fn escape_rate(escape_per_step: f64, map_step: f64) -> f64 {
     -(1.0 - escape_per_step).max(f64::EPSILON).ln() / map_step
-}
-
-fn without_density(report: SolveReport) -> Solution<State> {
-    Solution {
-        report,
-        moments: Vec::new(),
-        densities: Vec::new(),
-        state: None,
-    }
 }

@@ -4,8 +4,7 @@
 use std::sync::Arc;
 
 use super::SgcmOptions;
-use crate::method::findings::closed_ends;
-use crate::method::structure::kinked_surfaces;
+use crate::method::structure::{closed_ends, kinked_surfaces};
 use crate::method::{MethodError, Setting, StepChoice};
 use crate::monte_carlo::{StepBias, TOLERATED_BIAS, automatic_step, relaxation, step_bias};
 use crate::sampling::{Pilot, pilot};

@@ -63,7 +63,7 @@ fn distance(distance: &Distance) -> String {
 
 fn work(solved: &Solved) -> String {
     match solved.work.steps {
-        0 => format!("{} LU", solved.report.factorisations),
+        0 => format!("{} LU", solved.report.own.factorisations),
         steps => format!("{} steps", count(steps as f64)),
     }
 }

@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use super::{ComparedRun, partner};
 use crate::compare::{Distance, Reference, Solved};
+use crate::run::sentences::sentences;
 use crate::run::tables::Table;
 use crate::run::{RunError, format_number, stored_run::hash};
 
@@ -61,7 +62,10 @@ fn seconds(value: f64) -> String {
 /// Work in the unit of the method.
 fn work(solved: &Solved) -> (String, &'static str) {
     match solved.work.steps {
-        0 => (solved.report.factorisations.to_string(), "factorisations"),
+        0 => (
+            solved.report.own.factorisations.to_string(),
+            "factorisations",
+        ),
         steps => (steps.to_string(), "integrator steps"),
     }
 }
@@ -125,20 +129,20 @@ fn methods(run: &ComparedRun<'_>) -> Rows {
                     0 => String::new(),
                     samples => samples.to_string(),
                 },
-                optional(report.map_step),
+                optional(report.own.map_step),
                 optional(solved.time_step),
-                optional(report.time_step_bias),
+                optional(report.own.time_step_bias),
                 format_number(report.escape_rate),
                 optional(solved.share_outside),
             ];
-            let diffusion = |axis: usize| report.numerical_diffusion.get(axis).copied();
+            let diffusion = |axis: usize| report.own.numerical_diffusion.get(axis).copied();
             row.extend(axes.clone().map(|axis| optional(diffusion(axis))));
             for &observable in observables {
                 let exact = value.pair(solved.method, None, observable);
                 row.push(optional(exact.map(|found| found.total_variation.value)));
                 row.push(optional(exact.map(|found| found.hellinger.value)));
             }
-            row.push(report.warnings.join("; "));
+            row.push(sentences(&run.naming, &report.findings));
             rows.rows.push(row);
         }
     }

@@ -1,0 +1,132 @@
+//! Findings gathered for people: each kind once, with the parameter values it concerns.
+
+use crate::compare::{Comparison, Method};
+use crate::continuation::{Finding, Point};
+use crate::run::{Naming, finding_in_words, format_number};
+
+/// Findings of one kind: the first is quoted, the others are counted.
+struct Gathered<'a> {
+    finding: &'a Finding,
+    /// First and last parameter value.
+    values: (f64, f64),
+    /// Number of parameter values.
+    count: usize,
+}
+
+/// The warnings of all points: each kind of finding once, in the numbers of its first.
+pub(super) fn of_points(naming: &Naming<'_>, points: &[Point]) -> Vec<String> {
+    let mut kinds: Vec<Gathered<'_>> = Vec::new();
+    for point in points {
+        for finding in &point.report.findings {
+            let known = kinds
+                .iter_mut()
+                .find(|one| one.finding.kind() == finding.kind());
+            match known {
+                // Two surfaces at one value are one value.
+                Some(kind) if kind.values.1 == point.value => {}
+                Some(kind) => {
+                    kind.values.1 = point.value;
+                    kind.count += 1;
+                }
+                None => kinds.push(Gathered {
+                    finding,
+                    values: (point.value, point.value),
+                    count: 1,
+                }),
+            }
+        }
+    }
+    kinds.iter().map(|kind| kind.sentence(naming)).collect()
+}
+
+impl Gathered<'_> {
+    fn sentence(&self, naming: &Naming<'_>) -> String {
+        let (first, last) = (format_number(self.values.0), format_number(self.values.1));
+        let words = finding_in_words(naming, self.finding);
+        let parameter = naming.parameter;
+        match self.count {
+            1 => format!("{parameter} = {first}: {words}"),
+            count => format!(
+                "{parameter} = {first}: {words} (and the like at {} more values up to {last})",
+                count - 1
+            ),
+        }
+    }
+}
+
+/// What methods say of themselves and of each other: each kind of finding once a method, at its first value.
+pub(super) fn of_comparison(naming: &Naming<'_>, comparison: &Comparison) -> Vec<String> {
+    let mut seen: Vec<(Method, _)> = Vec::new();
+    let mut warnings = Vec::new();
+    for value in &comparison.values {
+        let at = format!("{} = {}", naming.parameter, format_number(value.value));
+        if let Some((rate, outside)) = value.leaves() {
+            warnings.push(format!(
+                "{at}: generator and Monte Carlo disagree, and mass leaves Ω (at a rate of {rate:.1e}; Monte Carlo is outside for {outside:.1e} of the time); the generator's density is that of what never left, Monte Carlo's of what is inside: wider ranges tell whether that is why"
+            ));
+        }
+        for solved in &value.solved {
+            for finding in &solved.report.findings {
+                let kind = (solved.method, finding.kind());
+                if !seen.contains(&kind) {
+                    seen.push(kind);
+                    let words = finding_in_words(naming, finding);
+                    warnings.push(format!("{} at {at}: {words}", solved.method.name()));
+                }
+            }
+        }
+    }
+    warnings
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::continuation::SolveReport;
+    use crate::system::registry;
+
+    #[test]
+    fn each_kind_is_told_once_whatever_its_numbers() {
+        let naming = Naming {
+            model: &registry::models()[0],
+            parameter: "f_c",
+        };
+        let edge = |axis, mass| Finding::EdgeMass {
+            axis,
+            mass,
+            range: [-8.0, 8.0],
+        };
+        let off = |at| Finding::SurfaceOffFaces { axis: 1, at };
+        let found = [
+            (0.5, vec![edge(0, 0.125), off(-1.0), off(1.0)]),
+            // Numbers of another length, sign and power are the same kind; another axis is not.
+            (0.25, vec![edge(0, 1e7), off(-1e-7)]),
+            (0.0, vec![edge(1, 0.5)]),
+        ];
+        let points = found.map(|(value, findings)| Point {
+            value,
+            report: SolveReport {
+                findings,
+                ..SolveReport::solved("generator")
+            },
+            moments: Vec::new(),
+            densities: Vec::new(),
+            detections: Vec::new(),
+            distance: None,
+            seconds: 0.0,
+        });
+        let told = of_points(&naming, &points);
+        let starts = [
+            "f_c = 0.5: 12.50 % of the mass lies in the outermost cells of x: ",
+            "f_c = 0.5: no face of y falls on the switching surface at -1: ",
+            "f_c = 0: 50.00 % of the mass lies in the outermost cells of y: ",
+        ];
+        assert_eq!(told.len(), starts.len(), "{told:?}");
+        for (told, start) in told.iter().zip(starts) {
+            assert!(told.starts_with(start), "{told}");
+        }
+        assert!(told[0].ends_with("(and the like at 1 more values up to 0.25)"));
+        assert!(told[1].ends_with("(and the like at 1 more values up to 0.25)"));
+        assert!(!told[2].contains("the like"));
+    }
+}

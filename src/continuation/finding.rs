@@ -1,0 +1,420 @@
+//! What a user must know of a point: findings of its solve, each with its numbers.
+//!
+//! A finding is made by a method, stored in `points.csv` as a code with numbers, and put into a sentence where people read it. Its
+//! code and its axis are its kind: findings of one kind at several points are told once.
+
+/// Something that a user must know of a point. Shares are of the whole mass or of the whole time.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Finding {
+    /// Mass leaves Ω: the densities are quasi-stationary, conditioned on staying.
+    Escaping {
+        /// Share of the mass that leaves within one relaxation time.
+        share: f64,
+        /// Share that leaves per unit time.
+        rate: f64,
+    },
+    /// So much mass leaves that Ω holds no steady state.
+    NoSteadyState {
+        /// Share that leaves per unit time.
+        rate: f64,
+        /// The relaxation time.
+        relaxation_time: f64,
+        /// Share within one relaxation time from which there is said to be no steady state.
+        limit: f64,
+    },
+    /// Most of the mass leaves within one map step: Ω holds no steady state.
+    LeavesAtOnce {
+        /// Share that leaves per unit time.
+        rate: f64,
+    },
+    /// Free trajectories run away or stay outside: Ω holds no steady state.
+    NothingStays {
+        /// Share of the trajectories that ran away.
+        runaways: f64,
+        /// Share of the time that the others spent outside Ω.
+        outside: f64,
+        /// Share from which there is said to be no steady state.
+        limit: f64,
+    },
+    /// Free trajectories spend time outside Ω: the densities are conditioned on being inside.
+    Outside {
+        /// Share of the time.
+        share: f64,
+    },
+    /// Several closed classes of cells: which steady state is reached depends on the start.
+    SeveralClasses {
+        /// The classes, longest-lived first.
+        classes: Vec<SteadyClass>,
+    },
+    /// The solver stopped before its tolerance.
+    NotConverged {
+        /// L1 error of the masses that the solver estimates.
+        error: f64,
+    },
+    /// The outermost cells of an axis hold too much mass: its range is too narrow.
+    EdgeMass {
+        /// The axis.
+        axis: usize,
+        /// Mass in the cells at both ends that are not walls.
+        mass: f64,
+        /// The axis' range.
+        range: [f64; 2],
+    },
+    /// A watched density is negative somewhere: it has wiggles that the cells do not resolve.
+    NegativeDensity {
+        /// Σ |min(mass, 0)| of the worst of the watched densities.
+        mass: f64,
+    },
+    /// Single cells have negative mass, which the watched densities, sums over cells, hardly show.
+    NegativeCells {
+        /// Σ |min(mass, 0)| over the cells.
+        mass: f64,
+        /// The same of the worst of the watched densities.
+        watched: f64,
+    },
+    /// The cells along a noisy axis are too wide for its noise.
+    WideCells {
+        /// The axis.
+        axis: usize,
+        /// Largest cell Péclet number of damping and friction.
+        peclet: f64,
+    },
+    /// The cells at a switching surface are wider than the layer that holds the kink of the density.
+    SmearedKink {
+        /// The axis across the surface.
+        axis: usize,
+        /// Cell width over the thickness of the layer.
+        widths: f64,
+    },
+    /// No face of the cells falls on a switching surface.
+    SurfaceOffFaces {
+        /// The axis across the surface.
+        axis: usize,
+        /// Where the surface is.
+        at: f64,
+    },
+    /// The cells diffuse as if there were more noise.
+    NumericalDiffusion {
+        /// Relative increase of the noise, each axis in units of its variance.
+        share: f64,
+    },
+    /// The time step of the trajectories shifts a number of the steady state.
+    StepBias {
+        /// What it shifts.
+        quantity: ShiftedQuantity,
+        /// By how much, relative.
+        relative: f64,
+        /// Standard error of that.
+        standard_error: f64,
+        /// The time step.
+        time_step: f64,
+    },
+    /// Trajectories forget their start too slowly for the time to be measured.
+    UnresolvedRelaxation {
+        /// Autocorrelation time, a lower bound.
+        time: f64,
+    },
+    /// States are counted before the start is forgotten.
+    ShortBurnIn {
+        /// Time before states are counted.
+        burn_in: f64,
+        /// Autocorrelation time.
+        time: f64,
+    },
+    /// The sampling error is unknown: leaving out a group of samples leaves no steady state.
+    NoReplicates,
+    /// The sampling error rests on fewer groups of samples than were asked for.
+    FewReplicates {
+        /// Groups that could be left out.
+        usable: usize,
+        /// Groups there are.
+        wanted: usize,
+    },
+    /// Sentences of a stored run that has no numbers for them.
+    Told(String),
+}
+
+/// A class of cells with a steady state of its own, beside others.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SteadyClass {
+    /// Number of its cells.
+    pub cells: usize,
+    /// Share of the initial mass that ends in it.
+    pub share: f64,
+    /// Centre of the cell in its middle, one coordinate an axis.
+    pub centre: Vec<f64>,
+}
+
+/// A number of the steady state that a time step may shift.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ShiftedQuantity {
+    /// Variance of an axis.
+    Variance(usize),
+    /// Mean energy, as the sum of the variances, each relative to its own.
+    Energy,
+    /// Mass beside a switching surface across an axis.
+    SurfaceMass(usize),
+}
+
+impl Finding {
+    /// What is stored of a finding: its code, the axis it speaks of, and its numbers, the one that matters most first.
+    pub fn parts(&self) -> (&'static str, Option<usize>, Vec<f64>) {
+        let plain = |code, numbers: &[f64]| (code, None, numbers.to_vec());
+        let along = |code, axis, numbers: &[f64]| (code, Some(axis), numbers.to_vec());
+        match *self {
+            Self::Escaping { share, rate } => plain("escaping", &[share, rate]),
+            Self::NoSteadyState {
+                rate,
+                relaxation_time,
+                limit,
+            } => plain("no-steady-state", &[rate, relaxation_time, limit]),
+            Self::LeavesAtOnce { rate } => plain("leaves-at-once", &[rate]),
+            Self::NothingStays {
+                runaways,
+                outside,
+                limit,
+            } => plain("nothing-stays", &[runaways, outside, limit]),
+            Self::Outside { share } => plain("outside", &[share]),
+            Self::SeveralClasses { ref classes } => plain("several-classes", &flat(classes)),
+            Self::NotConverged { error } => plain("not-converged", &[error]),
+            Self::EdgeMass { axis, mass, range } => {
+                along("edge-mass", axis, &[mass, range[0], range[1]])
+            }
+            Self::NegativeDensity { mass } => plain("negative-density", &[mass]),
+            Self::NegativeCells { mass, watched } => plain("negative-cells", &[mass, watched]),
+            Self::WideCells { axis, peclet } => along("wide-cells", axis, &[peclet]),
+            Self::SmearedKink { axis, widths } => along("smeared-kink", axis, &[widths]),
+            Self::SurfaceOffFaces { axis, at } => along("surface-off-faces", axis, &[at]),
+            Self::NumericalDiffusion { share } => plain("numerical-diffusion", &[share]),
+            Self::StepBias {
+                quantity,
+                relative,
+                standard_error,
+                time_step,
+            } => {
+                let (code, axis) = quantity.code();
+                (code, axis, vec![relative, standard_error, time_step])
+            }
+            Self::UnresolvedRelaxation { time } => plain("unresolved-relaxation", &[time]),
+            Self::ShortBurnIn { burn_in, time } => plain("short-burn-in", &[burn_in, time]),
+            Self::NoReplicates => plain("no-replicates", &[]),
+            Self::FewReplicates { usable, wanted } => {
+                plain("few-replicates", &[usable as f64, wanted as f64])
+            }
+            Self::Told(_) => plain("told", &[]),
+        }
+    }
+
+    /// The finding of these [`Finding::parts`]; `None` where there is no such finding. Sentences have no parts that
+    /// would bring them back.
+    pub fn from_parts(code: &str, axis: Option<usize>, numbers: &[f64]) -> Option<Self> {
+        Some(match (code, axis, numbers) {
+            ("escaping", None, &[share, rate]) => Self::Escaping { share, rate },
+            ("no-steady-state", None, &[rate, relaxation_time, limit]) => Self::NoSteadyState {
+                rate,
+                relaxation_time,
+                limit,
+            },
+            ("leaves-at-once", None, &[rate]) => Self::LeavesAtOnce { rate },
+            ("nothing-stays", None, &[runaways, outside, limit]) => Self::NothingStays {
+                runaways,
+                outside,
+                limit,
+            },
+            ("outside", None, &[share]) => Self::Outside { share },
+            ("several-classes", None, numbers) => Self::SeveralClasses {
+                classes: unflat(numbers)?,
+            },
+            ("not-converged", None, &[error]) => Self::NotConverged { error },
+            ("edge-mass", Some(axis), &[mass, from, to]) => Self::EdgeMass {
+                axis,
+                mass,
+                range: [from, to],
+            },
+            ("negative-density", None, &[mass]) => Self::NegativeDensity { mass },
+            ("negative-cells", None, &[mass, watched]) => Self::NegativeCells { mass, watched },
+            ("wide-cells", Some(axis), &[peclet]) => Self::WideCells { axis, peclet },
+            ("smeared-kink", Some(axis), &[widths]) => Self::SmearedKink { axis, widths },
+            ("surface-off-faces", Some(axis), &[at]) => Self::SurfaceOffFaces { axis, at },
+            ("numerical-diffusion", None, &[share]) => Self::NumericalDiffusion { share },
+            ("unresolved-relaxation", None, &[time]) => Self::UnresolvedRelaxation { time },
+            ("short-burn-in", None, &[burn_in, time]) => Self::ShortBurnIn { burn_in, time },
+            ("no-replicates", None, &[]) => Self::NoReplicates,
+            ("few-replicates", None, &[usable, wanted]) => Self::FewReplicates {
+                usable: usable as usize,
+                wanted: wanted as usize,
+            },
+            (code, axis, &[relative, standard_error, time_step]) => Self::StepBias {
+                quantity: ShiftedQuantity::of_code(code, axis)?,
+                relative,
+                standard_error,
+                time_step,
+            },
+            _ => return None,
+        })
+    }
+
+    /// Code and axis. Findings that share them say the same thing with other numbers, and are told once.
+    pub fn kind(&self) -> (&'static str, Option<usize>) {
+        let (code, axis, _) = self.parts();
+        (code, axis)
+    }
+}
+
+impl ShiftedQuantity {
+    fn code(self) -> (&'static str, Option<usize>) {
+        match self {
+            Self::Variance(axis) => ("step-bias-variance", Some(axis)),
+            Self::Energy => ("step-bias-energy", None),
+            Self::SurfaceMass(axis) => ("step-bias-surface", Some(axis)),
+        }
+    }
+
+    fn of_code(code: &str, axis: Option<usize>) -> Option<Self> {
+        let known = [Self::Energy].into_iter().chain(
+            axis.into_iter()
+                .flat_map(|axis| [Self::Variance(axis), Self::SurfaceMass(axis)]),
+        );
+        known
+            .into_iter()
+            .find(|quantity| quantity.code() == (code, axis))
+    }
+}
+
+/// Classes as numbers: how many there are, then cells, share and centre of each.
+fn flat(classes: &[SteadyClass]) -> Vec<f64> {
+    let mut numbers = vec![classes.len() as f64];
+    for class in classes {
+        numbers.extend([class.cells as f64, class.share]);
+        numbers.extend(&class.centre);
+    }
+    numbers
+}
+
+fn unflat(numbers: &[f64]) -> Option<Vec<SteadyClass>> {
+    let (&count, rest) = numbers.split_first()?;
+    let count = count as usize;
+    let each = rest.len().checked_div(count)?;
+    if each < 2 || each * count != rest.len() {
+        return None;
+    }
+    let classes = rest.chunks_exact(each).map(|class| SteadyClass {
+        cells: class[0] as usize,
+        share: class[1],
+        centre: class[2..].to_vec(),
+    });
+    Some(classes.collect())
+}
+
+/// One of every kind, for tests. The match makes a new kind appear here.
+#[cfg(test)]
+pub(crate) fn every_finding() -> Vec<Finding> {
+    use Finding as F;
+    let class = |share| SteadyClass {
+        cells: 7,
+        share,
+        centre: vec![-1.5, 0.25],
+    };
+    let shifted = |quantity| F::StepBias {
+        quantity,
+        relative: -0.1 / 3.0,
+        standard_error: 1e-5,
+        time_step: 0.01,
+    };
+    let after = |finding: &F| match finding {
+        F::Escaping { .. } => Some(F::NoSteadyState {
+            rate: 0.1,
+            relaxation_time: 20.0,
+            limit: 0.5,
+        }),
+        F::NoSteadyState { .. } => Some(F::LeavesAtOnce { rate: 3.0 }),
+        F::LeavesAtOnce { .. } => Some(F::NothingStays {
+            runaways: 0.7,
+            outside: 0.1,
+            limit: 0.5,
+        }),
+        F::NothingStays { .. } => Some(F::Outside { share: 0.02 }),
+        F::Outside { .. } => Some(F::SeveralClasses {
+            classes: vec![class(0.75), class(0.25)],
+        }),
+        F::SeveralClasses { .. } => Some(F::NotConverged {
+            error: f64::INFINITY,
+        }),
+        F::NotConverged { .. } => Some(F::EdgeMass {
+            axis: 1,
+            mass: 0.003,
+            range: [-8.0, 8.0],
+        }),
+        F::EdgeMass { .. } => Some(F::NegativeDensity { mass: 0.004 }),
+        F::NegativeDensity { .. } => Some(F::NegativeCells {
+            mass: 0.08,
+            watched: 3e-8,
+        }),
+        F::NegativeCells { .. } => Some(F::WideCells {
+            axis: 0,
+            peclet: 1.25,
+        }),
+        F::WideCells { .. } => Some(F::SmearedKink {
+            axis: 1,
+            widths: 3.5,
+        }),
+        F::SmearedKink { .. } => Some(F::SurfaceOffFaces { axis: 1, at: 0.1 }),
+        F::SurfaceOffFaces { .. } => Some(F::NumericalDiffusion { share: 0.2 }),
+        F::NumericalDiffusion { .. } => Some(shifted(ShiftedQuantity::Variance(0))),
+        F::StepBias { quantity, .. } => Some(match quantity {
+            ShiftedQuantity::Variance(_) => shifted(ShiftedQuantity::Energy),
+            ShiftedQuantity::Energy => shifted(ShiftedQuantity::SurfaceMass(1)),
+            ShiftedQuantity::SurfaceMass(_) => F::UnresolvedRelaxation { time: 1e4 },
+        }),
+        F::UnresolvedRelaxation { .. } => Some(F::ShortBurnIn {
+            burn_in: 1.0,
+            time: 9.0,
+        }),
+        F::ShortBurnIn { .. } => Some(F::NoReplicates),
+        F::NoReplicates => Some(F::FewReplicates {
+            usable: 6,
+            wanted: 8,
+        }),
+        F::FewReplicates { .. } => Some(F::Told("as it was told; twice".to_owned())),
+        F::Told(_) => None,
+    };
+    let first = F::Escaping {
+        share: 0.012,
+        rate: 1e-4 / 3.0,
+    };
+    std::iter::successors(Some(first), after).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_finding_but_sentences_comes_back_from_its_parts() {
+        let mut kinds = Vec::new();
+        for finding in every_finding() {
+            let (code, axis, numbers) = finding.parts();
+            let back = Finding::from_parts(code, axis, &numbers);
+            match finding {
+                Finding::Told(_) => assert_eq!(back, None),
+                _ => assert_eq!(back, Some(finding)),
+            }
+            assert!(!kinds.contains(&(code, axis)), "{code} is two kinds");
+            kinds.push((code, axis));
+        }
+    }
+
+    #[test]
+    fn parts_of_no_finding_are_refused() {
+        for (code, axis, numbers) in [
+            ("escaping", None, vec![0.1]),
+            ("escaping", Some(0), vec![0.1, 0.2]),
+            ("edge-mass", None, vec![0.1, -1.0, 1.0]),
+            ("several-classes", None, vec![2.0, 1.0, 1.0, 1.0]),
+            ("several-classes", None, vec![f64::NAN]),
+            ("magic", None, vec![1.0, 2.0, 3.0]),
+        ] {
+            assert_eq!(Finding::from_parts(code, axis, &numbers), None, "{code}");
+        }
+    }
+}

@@ -1,0 +1,208 @@
+//! A report in the making: numbers of a solve, and findings by limits that are the same for all methods and stand here once.
+
+use crate::continuation::{Finding, PointStatus, ShiftedQuantity, SolveReport, SteadyClass};
+use crate::density::Moments;
+use crate::generator::Resolution;
+use crate::monte_carlo::{BiasedQuantity, StepBias, TOLERATED_BIAS};
+use crate::space::CellSpace;
+use crate::stationary::ClassShare;
+
+/// Negative mass (a sign of wiggles that the grid does not resolve) above which it is worth a word.
+const NEGATIVE_MASS_LIMIT: f64 = 1e-3;
+
+/// Mass in the cells at an end of a range above which the range is said to be too narrow.
+const EDGE_MASS_LIMIT: f64 = 1e-3;
+
+/// Relative increase of the noise by numerical diffusion above which it is worth a word.
+const NUMERICAL_DIFFUSION_LIMIT: f64 = 0.1;
+
+/// Share of the mass that may leave within one relaxation time without a word.
+pub(super) const QUIET_ESCAPE: f64 = 1e-3;
+
+/// A burn-in below this many autocorrelation times does not forget the start.
+const SHORT_BURN_IN: f64 = 5.0;
+
+/// A report in the making. Findings are told in the order in which they were looked for.
+#[derive(Debug)]
+pub(super) struct Reporter<'a> {
+    space: &'a CellSpace,
+    /// What is known so far.
+    pub(super) report: SolveReport,
+}
+
+impl<'a> Reporter<'a> {
+    /// The report of a solve by a method of this name on these cells, of which nothing is to be said yet.
+    pub(super) fn new(method: &'static str, space: &'a CellSpace) -> Self {
+        Self {
+            space,
+            report: SolveReport::solved(method),
+        }
+    }
+
+    fn tell(&mut self, finding: Finding) {
+        self.report.findings.push(finding);
+    }
+
+    /// Mass in the cells at the ends of each axis that are not walls of the system.
+    pub(super) fn edge_mass(&mut self, mass: &[f64], closed: &[[bool; 2]]) {
+        let mut edges = vec![[0.0; 2]; self.space.dimension()];
+        for (cell, &mass) in mass.iter().enumerate() {
+            for (axis, ends) in edges.iter_mut().enumerate() {
+                let position = self.space.position(cell, axis);
+                let last = self.space.axes()[axis].count() - 1;
+                if position == 0 && !closed[axis][0] {
+                    ends[0] += mass;
+                }
+                if position == last && !closed[axis][1] {
+                    ends[1] += mass;
+                }
+            }
+        }
+        self.report.edge_mass = edges.iter().map(|ends| ends[0] + ends[1]).collect();
+        for axis in 0..edges.len() {
+            let mass = self.report.edge_mass[axis];
+            if mass > EDGE_MASS_LIMIT {
+                let cells = &self.space.axes()[axis];
+                let range = [cells.from(), cells.to()];
+                self.tell(Finding::EdgeMass { axis, mass, range });
+            }
+        }
+    }
+
+    /// Negative mass of the cells, and the largest of the watched densities: wiggles along an axis that is summed
+    /// over do not reach those.
+    pub(super) fn negative_mass(&mut self, cells: f64, watched: f64) {
+        self.report.own.negative_mass = cells;
+        if watched > NEGATIVE_MASS_LIMIT {
+            self.tell(Finding::NegativeDensity { mass: watched });
+        } else if cells > NEGATIVE_MASS_LIMIT {
+            self.tell(Finding::NegativeCells {
+                mass: cells,
+                watched,
+            });
+        }
+    }
+
+    /// Whether the cells along a noisy axis are fine enough.
+    pub(super) fn resolution(&mut self, judged: &Resolution) {
+        let (axis, peclet) = (judged.axis, judged.fitted_peclet);
+        if peclet > 1.0 {
+            self.tell(Finding::WideCells { axis, peclet });
+        }
+        if let Some(widths) = judged.layer.filter(|&layer| layer > 1.0) {
+            self.tell(Finding::SmearedKink { axis, widths });
+        }
+        for &at in &judged.surfaces_off_faces {
+            self.tell(Finding::SurfaceOffFaces { axis, at });
+        }
+    }
+
+    /// The diffusion that the cells add, compared with the noise, each axis in units of its variance.
+    pub(super) fn numerical_diffusion(
+        &mut self,
+        diffusion: Vec<f64>,
+        noise: &[f64],
+        moments: &[Moments],
+    ) {
+        let in_units_of_spread = |values: &[f64]| -> f64 {
+            let pairs = values.iter().zip(moments);
+            pairs
+                .map(|(value, moment)| value / moment.standard_deviation.powi(2))
+                .sum()
+        };
+        let share = in_units_of_spread(&diffusion) / in_units_of_spread(noise);
+        self.report.own.numerical_diffusion = diffusion;
+        if share > NUMERICAL_DIFFUSION_LIMIT {
+            self.tell(Finding::NumericalDiffusion { share });
+        }
+    }
+
+    /// Says so when mass leaves at a rate that is worth a word; a share of it within one relaxation time.
+    pub(super) fn escaping(&mut self, rate: f64, share: f64) {
+        if share > QUIET_ESCAPE {
+            self.leaks();
+            self.tell(Finding::Escaping { share, rate });
+        }
+    }
+
+    /// Says so when trajectories spend a share of their time outside Ω that is worth a word.
+    pub(super) fn outside(&mut self, share: f64) {
+        if share > QUIET_ESCAPE {
+            self.leaks();
+            self.tell(Finding::Outside { share });
+        }
+    }
+
+    fn leaks(&mut self) {
+        // A solve that failed is worse than a leak.
+        if self.report.status == PointStatus::Solved {
+            self.report.status = PointStatus::Escaping;
+        }
+    }
+
+    /// There is no steady state, for the reason that the finding gives.
+    pub(super) fn no_steady_state(&mut self, why: Finding) {
+        self.report.status = PointStatus::NoSteadyState;
+        self.tell(why);
+    }
+
+    /// The solver stopped before its tolerance.
+    pub(super) fn not_converged(&mut self, error: f64) {
+        self.report.status = PointStatus::NotConverged;
+        self.tell(Finding::NotConverged { error });
+    }
+
+    /// Several closed classes of cells.
+    pub(super) fn several_classes(&mut self, classes: &[ClassShare]) {
+        self.report.status = PointStatus::SeveralClasses;
+        let class = |class: &ClassShare| SteadyClass {
+            cells: class.cells,
+            share: class.share,
+            centre: self.space.centre(class.representative),
+        };
+        let classes = classes.iter().map(class).collect();
+        self.tell(Finding::SeveralClasses { classes });
+    }
+
+    /// The bias of a time step. Says so when halving the step shifts what it should not, beyond the sampling error or a
+    /// stated share.
+    pub(super) fn time_step(
+        &mut self,
+        time_step: f64,
+        bias: Option<&StepBias>,
+        sampling_error: f64,
+    ) {
+        if let Some(bias) = bias.filter(|bias| bias.certain() > sampling_error.min(TOLERATED_BIAS))
+        {
+            self.tell(Finding::StepBias {
+                quantity: match bias.quantity {
+                    BiasedQuantity::Variance(axis) => ShiftedQuantity::Variance(axis),
+                    BiasedQuantity::Energy => ShiftedQuantity::Energy,
+                    BiasedQuantity::SurfaceShare(axis) => ShiftedQuantity::SurfaceMass(axis),
+                },
+                relative: bias.relative,
+                standard_error: bias.standard_error,
+                time_step,
+            });
+        }
+    }
+
+    /// How many groups of samples the sampling error rests on.
+    pub(super) fn replicates(&mut self, usable: usize, wanted: usize) {
+        if usable == 0 {
+            self.tell(Finding::NoReplicates);
+        } else if usable < wanted {
+            self.tell(Finding::FewReplicates { usable, wanted });
+        }
+    }
+
+    /// Whether trajectories forget their start in the time they have for it.
+    pub(super) fn burn_in(&mut self, burn_in: f64, time: f64, is_resolved: bool) {
+        if !is_resolved {
+            self.tell(Finding::UnresolvedRelaxation { time });
+        }
+        if burn_in < SHORT_BURN_IN * time {
+            self.tell(Finding::ShortBurnIn { burn_in, time });
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! Findings in sentences, for the columns `warnings`, for `run.json` and for the terminal.
+
+use super::Naming;
+use crate::continuation::{Finding, ShiftedQuantity, SteadyClass};
+
+/// What a finding says, in a sentence without a full stop.
+pub fn finding_in_words(naming: &Naming<'_>, finding: &Finding) -> String {
+    escape_in_words(finding)
+        .or_else(|| cells_in_words(naming, finding))
+        .unwrap_or_else(|| solve_in_words(naming, finding))
+}
+
+/// All findings of a solve as one text.
+pub(super) fn sentences(naming: &Naming<'_>, findings: &[Finding]) -> String {
+    let sentences = findings
+        .iter()
+        .map(|finding| finding_in_words(naming, finding));
+    sentences.collect::<Vec<_>>().join("; ")
+}
+
+/// Whether mass stays in Ω.
+fn escape_in_words(finding: &Finding) -> Option<String> {
+    Some(match *finding {
+        Finding::Escaping { share, rate } => format!(
+            "mass leaves Ω at a rate of {rate:.3e} per unit time ({:.1} % within one relaxation time): the densities \
+             are quasi-stationary, conditioned on staying; widen the ranges",
+            100.0 * share
+        ),
+        Finding::NoSteadyState {
+            rate,
+            relaxation_time,
+            limit,
+        } => format!(
+            "no steady state in Ω: mass leaves at a rate of {rate:.3e} per unit time; {:.0} % of the mass leaves within \
+             one relaxation time ({relaxation_time:.3}), the limit is {:.0} %",
+            100.0 * rate * relaxation_time,
+            100.0 * limit
+        ),
+        Finding::LeavesAtOnce { rate } => format!(
+            "no steady state in Ω: mass leaves at a rate of {rate:.3e} per unit time; most of the mass leaves within one \
+             map step"
+        ),
+        Finding::NothingStays {
+            runaways,
+            outside,
+            limit,
+        } => format!(
+            "no steady state in Ω: {:.0} % of the trajectories ran away, the others spent {:.0} % of their time outside; the \
+             limit is {:.0} %",
+            100.0 * runaways,
+            100.0 * outside,
+            100.0 * limit
+        ),
+        Finding::Outside { share } => format!(
+            "the trajectories spend {:.1} % of their time outside Ω: the densities are conditioned on being inside; widen the \
+             ranges",
+            100.0 * share
+        ),
+        _ => return None,
+    })
+}
+
+/// Whether the cells are wide enough and fine enough.
+fn cells_in_words(naming: &Naming<'_>, finding: &Finding) -> Option<String> {
+    Some(match *finding {
+        Finding::EdgeMass { axis, mass, range } => format!(
+            "{:.2} % of the mass lies in the outermost cells of {}: widen its range beyond [{}, {}]",
+            100.0 * mass,
+            naming.axis(axis),
+            range[0],
+            range[1],
+        ),
+        Finding::NegativeDensity { mass } => format!(
+            "{:.2} % of the mass of a watched density is negative: it has wiggles that the cells do not resolve; use more cells",
+            100.0 * mass
+        ),
+        Finding::NegativeCells { mass, watched } => format!(
+            "{:.1} % of the mass of single cells is negative: wiggles that the cells do not resolve; the watched densities \
+             have less than {watched:.0e} of it",
+            100.0 * mass
+        ),
+        Finding::WideCells { axis, peclet } => format!(
+            "the cells of {} are too wide for the noise (cell Péclet number of damping and friction {peclet:.1}): \
+             use more cells",
+            naming.axis(axis)
+        ),
+        Finding::SmearedKink { axis, widths } => {
+            let axis = naming.axis(axis);
+            format!(
+                "the cells of {axis} at the switching surface are {widths:.0} times as wide as the layer that holds the \
+                 kink of the density, so the kink is smeared: grade = \"auto\" on {axis} resolves it"
+            )
+        }
+        Finding::SurfaceOffFaces { axis, at } => format!(
+            "no face of {} falls on the switching surface at {at}: use an even count or grade the axis toward it",
+            naming.axis(axis)
+        ),
+        Finding::NumericalDiffusion { share } => format!(
+            "the cells add {:.0} % to the noise (numerical diffusion): use more cells or a longer map step",
+            100.0 * share
+        ),
+        _ => return None,
+    })
+}
+
+/// How the solver fared, and the trajectories.
+fn solve_in_words(naming: &Naming<'_>, finding: &Finding) -> String {
+    match *finding {
+        Finding::NotConverged { error } => format!(
+            "the solver stopped before its tolerance, with an estimated error of {error:.1e}"
+        ),
+        Finding::SeveralClasses { ref classes } => {
+            let words: Vec<String> = classes.iter().map(class_in_words).collect();
+            format!(
+                "{} separate steady states, so which one is reached depends on the start: {}",
+                classes.len(),
+                words.join("; ")
+            )
+        }
+        Finding::StepBias {
+            quantity,
+            relative,
+            standard_error,
+            time_step,
+        } => format!(
+            "the time step {time_step:.4} shifts {} by about {:+.1} % (± {:.1} %; found by halving it on a sample): \
+             use a shorter one, `time_step = \"auto\"`, or `integrator = \"heun\"`",
+            quantity_in_words(naming, quantity),
+            100.0 * relative,
+            100.0 * standard_error
+        ),
+        Finding::UnresolvedRelaxation { time } => format!(
+            "the autocorrelation time, {time:.1} or more, is too long to be measured: trajectories may not have found all \
+             states, and errors may be too small"
+        ),
+        Finding::ShortBurnIn { burn_in, time } => format!(
+            "the burn-in of {burn_in:.3} is short against the autocorrelation time of {time:.3}: the start is not forgotten"
+        ),
+        Finding::NoReplicates => {
+            "the sampling error could not be estimated: leaving out a group of samples leaves no steady state"
+                .to_owned()
+        }
+        Finding::FewReplicates { usable, wanted } => {
+            format!("the sampling error rests on {usable} of {wanted} groups of samples")
+        }
+        Finding::Told(ref text) => text.clone(),
+        // The others are worded above.
+        _ => finding.kind().0.to_owned(),
+    }
+}
+
+fn class_in_words(class: &SteadyClass) -> String {
+    let place: Vec<String> = class.centre.iter().map(|x| format!("{x:.3}")).collect();
+    format!(
+        "{} cells around ({}) holding {:.1} %",
+        class.cells,
+        place.join(", "),
+        100.0 * class.share
+    )
+}
+
+fn quantity_in_words(naming: &Naming<'_>, quantity: ShiftedQuantity) -> String {
+    match quantity {
+        ShiftedQuantity::Variance(axis) => format!("the variance of {}", naming.axis(axis)),
+        ShiftedQuantity::Energy => "the mean energy".to_owned(),
+        ShiftedQuantity::SurfaceMass(axis) => {
+            format!(
+                "the mass beside the switching surface of {}",
+                naming.axis(axis)
+            )
+        }
+    }
+}
