@@ -19,7 +19,7 @@ const SECTIONS: [&str; 3] = ["detect", "locate", "figures"];
 /// [`CommandError`] when the run cannot be read or the results not be written; then everything is as it was.
 pub(super) fn run(arguments: &DetectArguments) -> Result<Outcome, CommandError> {
     let clock = Instant::now();
-    let stored = Stored::read(
+    let mut stored = Stored::read(
         &arguments.run,
         &arguments.overrides,
         &SECTIONS,

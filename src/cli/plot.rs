@@ -11,7 +11,7 @@ use super::{CommandError, Outcome};
 /// # Errors
 /// [`CommandError`] when the run cannot be read or a figure not be drawn.
 pub(super) fn run(arguments: &PlotArguments) -> Result<Outcome, CommandError> {
-    let stored = Stored::read(
+    let mut stored = Stored::read(
         &arguments.run,
         &arguments.overrides,
         &["figures"],

@@ -50,10 +50,10 @@ impl Stored {
         Ok(stored)
     }
 
-    /// Detects and locates in all points.
-    pub(super) fn detect(&self) -> SweepResult {
+    /// Detects and locates in all points, which the result then holds.
+    pub(super) fn detect(&mut self) -> SweepResult {
         let spec = &self.spec;
-        let (points, finer) = (self.points.clone(), self.finer.clone());
+        let (points, finer) = (std::mem::take(&mut self.points), self.finer.take());
         let mut result = detect_again(&spec.plan(), &spec.detector(), points, finer, &spec.locate);
         result.interrupted = self.run.ending() != Ending::Complete;
         result

@@ -123,7 +123,6 @@ impl<'a> Run<'a> {
             plan: &plan,
             folder: &mut self.folder,
             progress: &self.progress,
-            points: Vec::new(),
             cancelled: &self.cancelled,
         };
         sweep(
@@ -166,7 +165,6 @@ struct Recorder<'a> {
     plan: &'a Plan,
     folder: &'a mut RunFolder,
     progress: &'a Progress,
-    points: Vec<Point>,
     cancelled: &'a AtomicBool,
 }
 
@@ -177,9 +175,8 @@ impl Observer for Recorder<'_> {
         done: usize,
         remaining: usize,
     ) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-        self.points.push(point.clone());
         self.folder
-            .add_point(&self.naming, &self.plan.observables, &self.points)?;
+            .add_point(&self.naming, &self.plan.observables, point)?;
         self.progress
             .point(&self.naming, self.plan, point, done, remaining);
         Ok(())

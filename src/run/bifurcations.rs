@@ -2,59 +2,49 @@
 //!
 //! The CSV and JSON hold every label, end points (`EP`) included; the tables for people leave those out.
 
-use super::{
-    Naming, RunError,
-    latex::escape,
-    number::{format_number, format_with_error},
-    tables::Table,
-};
+use super::columns::{Columns, number, optional, word};
+use super::{Naming, RunError, latex::escape, number::format_with_error};
 use crate::continuation::{LabelledPoint, PointType};
+use crate::topology::Signature;
 
-/// Columns of the table, in order.
-const COLUMNS: [&str; 15] = [
-    "label",
-    "parameter",
-    "value",
-    "error",
-    "lower",
-    "upper",
-    "observable",
-    "before",
-    "after",
-    "status",
-    "change",
-    "method",
-    "error_solver",
-    "error_grid",
-    "error_sampling",
-];
+/// The table's columns; numbers in full.
+fn columns<'a>(naming: &Naming<'a>) -> Columns<'a, LabelledPoint> {
+    let naming = *naming;
+    type Row = LabelledPoint;
+    Columns(vec![
+        word("label", |row: &Row| row.label.clone()),
+        word("parameter", move |_| naming.parameter.to_owned()),
+        number("value", |row: &Row| row.value),
+        number("error", |row: &Row| row.error),
+        number("lower", |row: &Row| row.lower),
+        number("upper", |row: &Row| row.upper),
+        word("observable", move |row: &Row| observable(&naming, row)),
+        word("before", |row: &Row| words(row.before)),
+        word("after", |row: &Row| words(row.after)),
+        word("status", |row: &Row| status(row).to_owned()),
+        word("change", |row: &Row| row.change.to_owned()),
+        word("method", |row: &Row| row.method.to_owned()),
+        optional("error_solver", |row: &Row| {
+            row.parts.map(|parts| parts.solver)
+        }),
+        optional("error_grid", |row: &Row| row.parts.map(|parts| parts.grid)),
+        optional("error_sampling", |row: &Row| {
+            row.parts.map(|parts| parts.sampling)
+        }),
+    ])
+}
 
-/// Columns that are numbers.
-const NUMBERS: [usize; 7] = [2, 3, 4, 5, 12, 13, 14];
+fn observable(naming: &Naming<'_>, row: &LabelledPoint) -> String {
+    let observable = row.observable;
+    observable.map_or(String::new(), |one| naming.observable(one))
+}
 
-/// One row as words, in the order of [`COLUMNS`]; numbers in full.
-fn words(naming: &Naming<'_>, row: &LabelledPoint) -> [String; 15] {
-    let text = |text: Option<String>| text.unwrap_or_default();
-    [
-        row.label.clone(),
-        naming.parameter.to_owned(),
-        format_number(row.value),
-        format_number(row.error),
-        format_number(row.lower),
-        format_number(row.upper),
-        text(
-            row.observable
-                .map(|observable| naming.observable(observable)),
-        ),
-        text(row.before.map(|signature| signature.to_string())),
-        text(row.after.map(|signature| signature.to_string())),
-        text(row.status.map(|status| status.word().to_owned())),
-        row.change.to_owned(),
-        row.method.to_owned(),
-        text(row.parts.map(|parts| format_number(parts.solver))),
-        text(row.parts.map(|parts| format_number(parts.grid))),
-        text(row.parts.map(|parts| format_number(parts.sampling))),
-    ]
+fn words(signature: Option<Signature>) -> String {
+    signature.map_or(String::new(), |signature| signature.to_string())
+}
+
+fn status(row: &LabelledPoint) -> &'static str {
+    row.status.map_or("", |status| status.word())
 }
 
 /// The CSV, numbers in full.
@@ -62,11 +52,7 @@ fn words(naming: &Naming<'_>, row: &LabelledPoint) -> [String; 15] {
 /// # Errors
 /// [`RunError::Table`].
 pub fn bifurcations_csv(naming: &Naming<'_>, labels: &[LabelledPoint]) -> Result<String, RunError> {
-    let mut table = Table::new(&COLUMNS.map(str::to_owned))?;
-    for row in labels {
-        table.row(&words(naming, row))?;
-    }
-    table.finish()
+    columns(naming).csv(labels)
 }
 
 /// The JSON: a list of objects with the CSV's keys, numbers as numbers, absent entries as null.
@@ -77,24 +63,7 @@ pub fn bifurcations_json(
     naming: &Naming<'_>,
     labels: &[LabelledPoint],
 ) -> Result<String, RunError> {
-    let rows: Vec<serde_json::Value> = labels
-        .iter()
-        .map(|row| {
-            let words = words(naming, row);
-            let entries = COLUMNS.iter().zip(words).enumerate();
-            let object: serde_json::Map<_, _> = entries
-                .map(|(index, (key, word))| {
-                    let value = match word.parse::<f64>() {
-                        _ if word.is_empty() => serde_json::Value::Null,
-                        Ok(number) if NUMBERS.contains(&index) => serde_json::json!(number),
-                        _ => word.into(),
-                    };
-                    ((*key).to_owned(), value)
-                })
-                .collect();
-            object.into()
-        })
-        .collect();
+    let rows = columns(naming).json(labels);
     Ok(serde_json::to_string_pretty(&rows)? + "\n")
 }
 
@@ -108,27 +77,15 @@ pub fn bifurcations_markdown(naming: &Naming<'_>, labels: &[LabelledPoint]) -> S
         let (value, error) = format_with_error(row.value, row.error);
         let (lower, _) = format_with_error(row.lower, row.error);
         let (upper, _) = format_with_error(row.upper, row.error);
-        let [
-            label,
-            _,
-            _,
-            _,
-            _,
-            _,
-            observable,
-            before,
-            after,
-            status,
-            change,
-            ..,
-        ] = words(naming, row);
-        let status = if row.kind == PointType::NoConvergence {
-            "no steady state or not converged".to_owned()
-        } else {
-            status
+        let (observable, before, after) =
+            (observable(naming, row), words(row.before), words(row.after));
+        let status = match row.kind {
+            PointType::NoConvergence => "no steady state or not converged",
+            _ => status(row),
         };
         text += &format!(
-            "| {label} | {value} ± {error} | [{lower}, {upper}] | {observable} | {before} | {after} | {change} | {status} |\n"
+            "| {} | {value} ± {error} | [{lower}, {upper}] | {observable} | {before} | {after} | {} | {status} |\n",
+            row.label, row.change
         );
     }
     text
@@ -149,8 +106,9 @@ pub fn bifurcations_tex(naming: &Naming<'_>, labels: &[LabelledPoint]) -> String
                 naming.observable_latex(observable).trim_matches(['(', ')'])
             )
         });
-        let [label, _, _, _, _, _, _, before, after, status, change, ..] =
-            words(naming, row).map(|word| escape(&word));
+        let (before, after) = (words(row.before), words(row.after));
+        let [label, before, after, change, status] =
+            [&row.label, &before, &after, row.change, status(row)].map(escape);
         text += &format!(
             "{label} & ${value} \\pm {error}$ & {density} & {before} & {after} & {change} & {status} \\\\\n"
         );

@@ -4,11 +4,44 @@
 
 use std::path::Path;
 
-use super::stored_points::read_rows;
-use super::tables::Table;
-use super::{Naming, RunError, number::format_number};
+use super::columns::{Columns, number, optional, word};
+use super::{Naming, RunError};
 use crate::continuation::FinerIndicator;
 use crate::density::Observable;
+
+/// The table's columns. An observable that is not watched has a number beyond all of those that are.
+fn columns<'a>(naming: &Naming<'a>, observables: &'a [Observable]) -> Columns<'a, FinerIndicator> {
+    let naming = *naming;
+    let name = move |number: usize| {
+        let observable = observables.get(number);
+        observable.map_or(String::new(), |&one| naming.observable(one))
+    };
+    let numbered = move |text: &str| {
+        let mut known = observables.iter();
+        let number = known.position(|&one| naming.observable(one) == text);
+        number.unwrap_or(observables.len())
+    };
+    let coordinate = |axis: usize| move |one: &FinerIndicator| one.place.get(axis).copied();
+    Columns(vec![
+        number(naming.parameter, |one: &FinerIndicator| one.value)
+            .read(|cell| cell.number(), |one, value| one.value = value),
+        word("observable", move |one: &FinerIndicator| {
+            name(one.observable)
+        })
+        .read(
+            move |cell| Ok(numbered(cell.text)),
+            |one, number| one.observable = number,
+        ),
+        word("indicator", |one: &FinerIndicator| one.kind.clone())
+            .read(|cell| Ok(cell.text.to_owned()), |one, kind| one.kind = kind),
+        optional("position", coordinate(0))
+            .read(|cell| cell.optional(), |one, value| one.place.extend(value)),
+        optional("position_2", coordinate(1))
+            .read(|cell| cell.optional(), |one, value| one.place.extend(value)),
+        optional("value", |one: &FinerIndicator| one.indicator)
+            .read(|cell| cell.optional(), |one, value| one.indicator = value),
+    ])
+}
 
 /// The table, in the order in which the values were solved.
 ///
@@ -19,30 +52,8 @@ pub(super) fn checks_csv(
     observables: &[Observable],
     seen: &[FinerIndicator],
 ) -> Result<String, RunError> {
-    let header = [
-        naming.parameter,
-        "observable",
-        "indicator",
-        "position",
-        "position_2",
-        "value",
-    ];
-    let mut table = Table::new(&header.map(str::to_owned))?;
-    for one in seen {
-        let Some(&observable) = observables.get(one.observable) else {
-            continue;
-        };
-        let number = |value: Option<f64>| value.map_or(String::new(), format_number);
-        table.row(&[
-            format_number(one.value),
-            naming.observable(observable),
-            one.kind.clone(),
-            number(one.place.first().copied()),
-            number(one.place.get(1).copied()),
-            number(one.indicator),
-        ])?;
-    }
-    table.finish()
+    let watched = seen.iter().filter(|one| one.observable < observables.len());
+    columns(naming, observables).csv(watched)
 }
 
 /// Reads the table back; rows of other observables are left out.
@@ -54,20 +65,14 @@ pub(super) fn read_checks(
     naming: &Naming<'_>,
     observables: &[Observable],
 ) -> Result<Vec<FinerIndicator>, RunError> {
-    let rows = read_rows(path, |row| {
-        let name = row.text("observable")?;
-        let mut known = observables.iter();
-        let Some(observable) = known.position(|&one| naming.observable(one) == name) else {
-            return Ok(None);
-        };
-        let place = [row.optional("position")?, row.optional("position_2")?];
-        Ok(Some(FinerIndicator {
-            value: row.number(naming.parameter)?,
-            observable,
-            kind: row.text("indicator")?.to_owned(),
-            place: place.into_iter().flatten().collect(),
-            indicator: row.optional("value")?,
-        }))
-    })?;
-    Ok(rows.into_iter().flatten().collect())
+    let blank = || FinerIndicator {
+        value: f64::NAN,
+        observable: observables.len(),
+        kind: String::new(),
+        place: Vec::new(),
+        indicator: None,
+    };
+    let mut seen = columns(naming, observables).read(path, blank)?;
+    seen.retain(|one| one.observable < observables.len());
+    Ok(seen)
 }

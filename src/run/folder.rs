@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use super::staging::Staging;
+use super::growing::GrowingTable;
 use super::{
     DensityStore, Manifest, Naming, RunError, atomic::write_atomically, bifurcations, checks,
-    tables,
+    features_table, points_table, staging::Staging,
 };
 use crate::continuation::{Point, SweepResult};
 use crate::density::{EstimatedDensity, Observable};
@@ -29,6 +29,8 @@ pub(super) const ENTRIES: [&str; 10] = [
 pub struct RunFolder {
     path: PathBuf,
     store: DensityStore,
+    points: GrowingTable,
+    features: GrowingTable,
 }
 
 impl RunFolder {
@@ -52,6 +54,8 @@ impl RunFolder {
         Self {
             path: path.to_owned(),
             store: DensityStore::new(&path.join("densities.zarr")),
+            points: GrowingTable::new(&path.join("points.csv")),
+            features: GrowingTable::new(&path.join("features.csv")),
         }
     }
 
@@ -74,7 +78,8 @@ impl RunFolder {
         self.write("run.json", &text)
     }
 
-    /// Stores a point's densities and writes the tables of all points so far.
+    /// Stores a point's densities and adds its rows to the tables. What this costs does not depend on how many points there
+    /// are: until [`RunFolder::finish`], rows stand in the order in which the points came.
     ///
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.
@@ -82,21 +87,19 @@ impl RunFolder {
         &mut self,
         naming: &Naming<'_>,
         observables: &[Observable],
-        points: &[Point],
+        point: &Point,
     ) -> Result<(), RunError> {
-        if let Some(point) = points.last()
-            && !point.densities.is_empty()
-        {
+        if !point.densities.is_empty() {
             self.store.append(naming, point.value, &point.densities)?;
         }
-        self.write(
-            "points.csv",
-            &tables::points_csv(naming, observables, points)?,
-        )?;
-        self.write(
-            "features.csv",
-            &tables::features_csv(naming, observables, points)?,
-        )
+        // The row comes after its density, which a reader of the row may look for.
+        let rows: Vec<_> = features_table::found(observables, point).collect();
+        let columns = features_table::columns(naming);
+        self.features
+            .add(|| columns.header(), &columns.lines(&rows)?)?;
+        let columns = points_table::columns(naming, observables, &[]);
+        self.points
+            .add(|| columns.header(), &columns.lines([point])?)
     }
 
     /// Writes all tables of a finished sweep and puts the stored densities in ascending order.
@@ -104,6 +107,8 @@ impl RunFolder {
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.
     pub fn finish(&mut self, naming: &Naming<'_>, result: &SweepResult) -> Result<(), RunError> {
+        self.points.close();
+        self.features.close();
         self.write_tables(naming, result)?;
         if let Some(finer) = &result.finer {
             let text = checks::checks_csv(naming, &result.observables, finer)?;
@@ -126,11 +131,11 @@ impl RunFolder {
         let (observables, points) = (&result.observables, &result.points);
         self.write(
             "points.csv",
-            &tables::points_csv(naming, observables, points)?,
+            &points_table::points_csv(naming, observables, points)?,
         )?;
         self.write(
             "features.csv",
-            &tables::features_csv(naming, observables, points)?,
+            &features_table::features_csv(naming, observables, points)?,
         )?;
         let labels = &result.labels;
         self.write(

@@ -4,24 +4,27 @@
 mod arrays;
 mod atomic;
 mod bifurcations;
+mod cell;
 mod checks;
+mod columns;
 mod compare;
+mod features_table;
 mod findings;
 mod folder;
+mod growing;
 mod latex;
 mod manifest;
 mod naming;
 mod number;
+mod points_table;
 mod sentences;
 mod staged;
 mod staging;
 mod store;
 mod stored_densities;
-mod stored_points;
 mod stored_run;
 #[cfg(test)]
 mod stored_tests;
-mod tables;
 #[cfg(test)]
 mod tests;
 
@@ -29,15 +32,16 @@ pub use bifurcations::{
     bifurcations_csv, bifurcations_json, bifurcations_markdown, bifurcations_tex,
 };
 pub use compare::{CompareFolder, CompareTable, ComparedRun, compare_tables};
+pub use features_table::features_csv;
 pub use folder::RunFolder;
 pub use manifest::{Ending, Manifest, PhaseSeconds};
 pub use naming::Naming;
 pub use number::{format_number, format_with_error};
+pub use points_table::points_csv;
 pub use sentences::finding_in_words;
 pub use staged::StagedRun;
 pub use store::DensityStore;
 pub use stored_run::StoredRun;
-pub use tables::{features_csv, points_csv};
 
 use std::path::PathBuf;
 

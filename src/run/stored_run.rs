@@ -6,8 +6,8 @@ use serde::Deserialize;
 use sha2::{Digest, Sha256};
 
 use super::checks::read_checks;
+use super::points_table::read_points;
 use super::stored_densities::StoredDensities;
-use super::stored_points::read_points;
 use super::{Ending, Naming, PhaseSeconds, RunError};
 use crate::continuation::{FinerIndicator, Point};
 use crate::density::Observable;

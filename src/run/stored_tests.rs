@@ -127,9 +127,8 @@ const RESOLVED: &str = "title = \"t\"\nfrom = 0.30000000000000004\n";
 
 fn write(folder: &std::path::Path, points: &[Point]) {
     let mut run = RunFolder::create(folder).unwrap();
-    for done in 1..=points.len() {
-        run.add_point(&naming(), &OBSERVABLES, &points[..done])
-            .unwrap();
+    for point in points {
+        run.add_point(&naming(), &OBSERVABLES, point).unwrap();
     }
     let manifest = Manifest::start(RESOLVED, 1, 2).unwrap();
     run.write_manifest(&manifest).unwrap();
@@ -321,7 +320,7 @@ fn broken_runs_are_refused_with_their_place() {
     }
     let (cut, _) = table.rsplit_once(",not-converged:").unwrap();
     assert!(
-        matches!(with("points.csv", cut.to_owned()), RunError::Row { line: 3, column, .. } if column == "findings")
+        matches!(with("points.csv", format!("{cut}\n")), RunError::Row { line: 3, column, .. } if column == "findings")
     );
     let error = with("points.csv", format!("{cut},outside:0.1;edge-mass-q:1\n"));
     assert!(
@@ -351,6 +350,22 @@ fn broken_runs_are_refused_with_their_place() {
     assert!(
         matches!(read(folder.path()), Err(RunError::Read { path, .. }) if path.ends_with("points.csv"))
     );
+}
+
+#[test]
+fn a_row_that_a_kill_left_without_its_end_is_left_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let points = [point(0.5, None, 0), point(-0.5, None, 0)];
+    write(folder.path(), &points);
+    let table = folder.path().join("points.csv");
+    let text = std::fs::read_to_string(&table).unwrap();
+    let last = text.trim_end().rfind('\n').unwrap() + 1;
+    for cut in [last, last + 1, last + 9, text.len() - 1] {
+        std::fs::write(&table, &text[..cut]).unwrap();
+        let found = read(folder.path()).unwrap();
+        assert_eq!(found.len(), 1, "{cut}");
+        assert!(bits(&found[0]) == bits(&points[0]), "{cut}");
+    }
 }
 
 #[test]

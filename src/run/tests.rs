@@ -153,8 +153,9 @@ fn the_store_reads_back_in_ascending_order_with_names() {
     let mut run = RunFolder::create(folder.path()).unwrap();
     let mut points = Vec::new();
     for (value, solved) in [(0.01, true), (0.0, false), (-0.02, true)] {
-        points.push(point(value, solved));
-        run.add_point(&naming(), &observables(), &points).unwrap();
+        let point = point(value, solved);
+        run.add_point(&naming(), &observables(), &point).unwrap();
+        points.push(point);
     }
     let store = folder.path().join("densities.zarr");
     assert_eq!(read_array(&store, "f_c"), (vec![2], vec![0.01, -0.02]));
@@ -172,6 +173,38 @@ fn the_store_reads_back_in_ascending_order_with_names() {
         serde_json::from_slice(&std::fs::read(store.join("zarr.json")).unwrap()).unwrap();
     let names = &root["consolidated_metadata"]["metadata"]["p_xy"]["dimension_names"];
     assert_eq!(names, &serde_json::json!(["f_c", "x", "y"]));
+}
+
+#[test]
+fn tables_grow_by_rows_and_end_in_ascending_order() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut run = RunFolder::create(folder.path()).unwrap();
+    let (mut points, mut before) = (Vec::new(), [String::new(), String::new()]);
+    for value in [0.3, 0.1, 0.2, 0.25] {
+        let point = point(value, value != 0.2);
+        run.add_point(&naming(), &observables(), &point).unwrap();
+        points.push(point);
+        // What was written is never written again: the work of a point does not grow with their number.
+        for (name, before) in ["points.csv", "features.csv"].iter().zip(&mut before) {
+            let now = std::fs::read_to_string(folder.path().join(name)).unwrap();
+            assert!(now.starts_with(before.as_str()), "{name}: {now}");
+            *before = now;
+        }
+    }
+    let rows = |text: &str| text.lines().skip(1).map(str::to_owned).collect::<Vec<_>>();
+    let first = |rows: Vec<String>| -> Vec<String> {
+        let value = |row: String| row.split(',').next().map(str::to_owned);
+        rows.into_iter().filter_map(value).collect()
+    };
+    assert_eq!(first(rows(&before[0])), ["0.3", "0.1", "0.2", "0.25"]);
+    points.sort_by(|a, b| a.value.total_cmp(&b.value));
+    run.finish(&naming(), &result(points)).unwrap();
+    for (name, before) in ["points.csv", "features.csv"].iter().zip(before) {
+        let now = std::fs::read_to_string(folder.path().join(name)).unwrap();
+        let mut wanted = rows(&before);
+        wanted.sort();
+        assert_eq!(rows(&now), wanted, "{name}");
+    }
 }
 
 #[test]

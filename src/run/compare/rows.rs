@@ -1,62 +1,41 @@
 //! Tables for programs: every number in full.
 
-use serde_json::{Value, json};
+use serde_json::json;
 
 use super::{ComparedRun, partner};
-use crate::compare::{Distance, Reference, Solved};
+use crate::compare::{
+    Accuracy, AccuracyPoint, Agreement, ComparedValue, Distance, Distances, Pair, Reference, Solved,
+};
+use crate::density::EstimatedDensity;
+use crate::run::columns::{Column, Columns, count, digits, flag, number, optional, word};
 use crate::run::sentences::sentences;
-use crate::run::tables::Table;
-use crate::run::{RunError, format_number, stored_run::hash};
+use crate::run::{RunError, stored_run::hash};
 
-/// A table: header and rows of words.
-struct Rows {
-    header: Vec<String>,
-    rows: Vec<Vec<String>>,
+/// A record that belongs to a parameter value.
+type At<'r, T> = (&'r ComparedValue, &'r T);
+
+/// The column of the parameter's values.
+fn parameter<'a, T>(run: &ComparedRun<'a>) -> Column<'a, At<'a, T>> {
+    number(run.naming.parameter, |(at, _): &At<'a, T>| at.value)
 }
 
-impl Rows {
-    fn new(header: &[&str]) -> Self {
-        Self {
-            header: header.iter().map(|&name| name.to_owned()).collect(),
-            rows: Vec::new(),
-        }
-    }
-
-    fn csv(&self) -> Result<String, RunError> {
-        let mut table = Table::new(&self.header)?;
-        for row in &self.rows {
-            table.row(row)?;
-        }
-        table.finish()
-    }
-
-    /// Objects with the header's names; numbers as numbers, empty cells as null.
-    fn json(&self) -> Value {
-        let object = |row: &Vec<String>| {
-            let cells = self.header.iter().zip(row);
-            let value = |word: &String| match (word.as_str(), word.parse::<f64>()) {
-                ("", _) => Value::Null,
-                ("true", _) => json!(true),
-                ("false", _) => json!(false),
-                (_, Ok(number)) if number.is_finite() => json!(number),
-                _ => json!(word),
-            };
-            Value::Object(
-                cells
-                    .map(|(key, word)| (key.clone(), value(word)))
-                    .collect(),
-            )
-        };
-        self.rows.iter().map(object).collect()
-    }
-}
-
-fn optional(value: Option<f64>) -> String {
-    value.map_or(String::new(), format_number)
+/// The records that a list of each value holds.
+fn records<'a, T>(run: &ComparedRun<'a>, of: fn(&ComparedValue) -> &[T]) -> Vec<At<'a, T>> {
+    let values = run.comparison.values.iter();
+    let at = |value: &'a ComparedValue| of(value).iter().map(move |one| (value, one));
+    values.flat_map(at).collect()
 }
 
 fn seconds(value: f64) -> String {
     format!("{value:.4}")
+}
+
+/// A count that is left out where there is nothing to count.
+fn unless_zero(count: u64) -> String {
+    match count {
+        0 => String::new(),
+        count => count.to_string(),
+    }
 }
 
 /// Work in the unit of the method.
@@ -70,214 +49,186 @@ fn work(solved: &Solved) -> (String, &'static str) {
     }
 }
 
-fn methods(run: &ComparedRun<'_>) -> Rows {
-    let mut rows = Rows::new(&[
-        run.naming.parameter,
-        "method",
-        "status",
-        "seconds",
-        "sampling_seconds",
-        "solve_seconds",
-        "preparation_seconds",
-        "work",
-        "work_unit",
-        "iterations",
-        "bytes",
-        "bytes_from",
-        "cells",
-        "samples",
-        "map_step",
-        "time_step",
-        "time_step_bias",
-        "escape_rate",
-        "share_outside",
-    ]);
-    let observables = &run.comparison.observables;
-    let axes = 0..run.comparison.common.dimension();
-    let names = axes
-        .clone()
-        .map(|axis| format!("numerical_diffusion_{}", run.naming.axis(axis)));
-    rows.header.extend(names);
-    for &observable in observables {
+/// A row a value and method.
+fn methods<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Solved>> {
+    type Row<'a> = At<'a, Solved>;
+    let (naming, bytes) = (run.naming, run.bytes);
+    let mut columns = vec![
+        parameter(run),
+        word("method", |(_, one): &Row<'a>| one.method.name().to_owned()),
+        word("status", |(_, one): &Row<'a>| one.status.word().to_owned()),
+        digits("seconds", |(_, one): &Row<'a>| seconds(one.work.seconds())),
+        digits("sampling_seconds", |(_, one): &Row<'a>| {
+            seconds(one.work.sampling_seconds)
+        }),
+        digits("solve_seconds", |(_, one): &Row<'a>| {
+            seconds(one.work.solve_seconds)
+        }),
+        digits("preparation_seconds", |(_, one): &Row<'a>| {
+            seconds(one.work.preparation_seconds)
+        }),
+        digits("work", |(_, one): &Row<'a>| work(one).0),
+        word("work_unit", |(_, one): &Row<'a>| work(one).1.to_owned()),
+        count("iterations", |(_, one): &Row<'a>| one.report.iterations),
+        digits("bytes", move |(_, one): &Row<'a>| {
+            format!("{:.0}", bytes(one).0)
+        }),
+        word("bytes_from", move |(_, one): &Row<'a>| {
+            bytes(one).1.to_owned()
+        }),
+        count("cells", |(_, one): &Row<'a>| one.work.cells),
+        digits("samples", |(_, one): &Row<'a>| {
+            unless_zero(one.work.samples as u64)
+        }),
+        optional("map_step", |(_, one): &Row<'a>| one.report.own.map_step),
+        optional("time_step", |(_, one): &Row<'a>| one.time_step),
+        optional("time_step_bias", |(_, one): &Row<'a>| {
+            one.report.own.time_step_bias
+        }),
+        number("escape_rate", |(_, one): &Row<'a>| one.report.escape_rate),
+        optional("share_outside", |(_, one): &Row<'a>| one.share_outside),
+    ];
+    for axis in 0..run.comparison.common.dimension() {
+        let name = format!("numerical_diffusion_{}", run.naming.axis(axis));
+        columns.push(optional(name, move |(_, one): &Row<'a>| {
+            one.report.own.numerical_diffusion.get(axis).copied()
+        }));
+    }
+    for &observable in &run.comparison.observables {
+        let exact = move |(at, one): &Row<'a>| at.pair(one.method, None, observable).copied();
         let name = run.naming.observable(observable);
-        rows.header.extend([
-            format!("tv_exact_{name}"),
-            format!("hellinger_exact_{name}"),
+        columns.push(optional(format!("tv_exact_{name}"), move |row| {
+            exact(row).map(|found| found.total_variation.value)
+        }));
+        columns.push(optional(format!("hellinger_exact_{name}"), move |row| {
+            exact(row).map(|found| found.hellinger.value)
+        }));
+    }
+    columns.push(word("warnings", move |(_, one): &Row<'a>| {
+        sentences(&naming, &one.report.findings)
+    }));
+    Columns(columns)
+}
+
+/// A row a value, pair (two methods, or a method and the exact density) and observable.
+fn distances<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Pair>> {
+    type Row<'a> = At<'a, Pair>;
+    let naming = run.naming;
+    let mut columns = vec![
+        parameter(run),
+        word("first", |(_, one): &Row<'a>| one.first.name().to_owned()),
+        word("second", |(_, one): &Row<'a>| {
+            partner(one.second).to_owned()
+        }),
+        word("observable", move |(_, one): &Row<'a>| {
+            naming.observable(one.observable)
+        }),
+    ];
+    let total_variation = |one: &Distances| one.total_variation;
+    let hellinger = |one: &Distances| one.hellinger;
+    for (name, of) in [
+        ("tv", total_variation as fn(&Distances) -> Distance),
+        ("hellinger", hellinger),
+    ] {
+        let of = move |row: &Row<'a>| of(&row.1.distances);
+        columns.extend([
+            number(name, move |row: &Row<'a>| of(row).value),
+            number(format!("{name}_error"), move |row| of(row).error),
+            number(format!("{name}_systematic"), move |row| of(row).systematic),
+            number(format!("{name}_noise"), move |row| of(row).noise),
+            flag(format!("{name}_significant"), move |row| {
+                of(row).is_significant()
+            }),
         ]);
     }
-    rows.header.push("warnings".to_owned());
-    for value in &run.comparison.values {
-        for solved in &value.solved {
-            let (report, cost) = (&solved.report, &solved.work);
-            let (bytes, from) = (run.bytes)(solved);
-            let (work, unit) = work(solved);
-            let mut row = vec![
-                format_number(value.value),
-                solved.method.name().to_owned(),
-                solved.status.word().to_owned(),
-                seconds(cost.seconds()),
-                seconds(cost.sampling_seconds),
-                seconds(cost.solve_seconds),
-                seconds(cost.preparation_seconds),
-                work,
-                unit.to_owned(),
-                report.iterations.to_string(),
-                format!("{bytes:.0}"),
-                from.to_owned(),
-                cost.cells.to_string(),
-                match cost.samples {
-                    0 => String::new(),
-                    samples => samples.to_string(),
-                },
-                optional(report.own.map_step),
-                optional(solved.time_step),
-                optional(report.own.time_step_bias),
-                format_number(report.escape_rate),
-                optional(solved.share_outside),
-            ];
-            let diffusion = |axis: usize| report.own.numerical_diffusion.get(axis).copied();
-            row.extend(axes.clone().map(|axis| optional(diffusion(axis))));
-            for &observable in observables {
-                let exact = value.pair(solved.method, None, observable);
-                row.push(optional(exact.map(|found| found.total_variation.value)));
-                row.push(optional(exact.map(|found| found.hellinger.value)));
-            }
-            row.push(sentences(&run.naming, &report.findings));
-            rows.rows.push(row);
-        }
-    }
-    rows
+    Columns(columns)
 }
 
-fn distance_words(distance: &Distance) -> [String; 5] {
-    [
-        format_number(distance.value),
-        format_number(distance.error),
-        format_number(distance.systematic),
-        format_number(distance.noise),
-        distance.is_significant().to_string(),
-    ]
+/// Generator and Monte Carlo bin by bin, a row a value and marginal.
+fn agreement<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Agreement>> {
+    type Row<'a> = At<'a, Agreement>;
+    let naming = run.naming;
+    Columns(vec![
+        parameter(run),
+        word("observable", move |(_, one): &Row<'a>| {
+            naming.observable(one.observable)
+        }),
+        count("bins", |(_, one): &Row<'a>| one.bins),
+        count("within_3_errors", |(_, one): &Row<'a>| one.within),
+        number("share", |(_, one): &Row<'a>| one.share()),
+        count("beyond_all_errors", |(_, one): &Row<'a>| one.beyond),
+        number("worst", |(_, one): &Row<'a>| one.worst),
+    ])
 }
 
-fn distances(run: &ComparedRun<'_>) -> Rows {
-    let mut rows = Rows::new(&[run.naming.parameter, "first", "second", "observable"]);
-    for name in ["tv", "hellinger"] {
-        let columns = ["", "_error", "_systematic", "_noise", "_significant"];
-        rows.header
-            .extend(columns.map(|column| format!("{name}{column}")));
-    }
-    for value in &run.comparison.values {
-        for pair in &value.pairs {
-            let mut row = vec![
-                format_number(value.value),
-                pair.first.name().to_owned(),
-                partner(pair.second).to_owned(),
-                run.naming.observable(pair.observable),
-            ];
-            row.extend(distance_words(&pair.distances.total_variation));
-            row.extend(distance_words(&pair.distances.hellinger));
-            rows.rows.push(row);
-        }
-    }
-    rows
-}
-
-fn agreement(run: &ComparedRun<'_>) -> Rows {
-    let mut rows = Rows::new(&[
-        run.naming.parameter,
-        "observable",
-        "bins",
-        "within_3_errors",
-        "share",
-        "beyond_all_errors",
-        "worst",
-    ]);
-    for value in &run.comparison.values {
-        for one in &value.agreement {
-            rows.rows.push(vec![
-                format_number(value.value),
-                run.naming.observable(one.observable),
-                one.bins.to_string(),
-                one.within.to_string(),
-                format_number(one.share()),
-                one.beyond.to_string(),
-                format_number(one.worst),
-            ]);
-        }
-    }
-    rows
-}
-
-fn accuracy(run: &ComparedRun<'_>) -> Rows {
-    let mut rows = Rows::new(&[
-        run.naming.parameter,
-        "observable",
-        "reference",
-        "method",
-        "cells",
-        "samples",
-        "seconds",
-        "tv",
-        "tv_error",
-        "tv_noise",
-    ]);
-    if let Some(accuracy) = &run.comparison.accuracy {
-        let reference = match accuracy.reference {
+/// Error against time, a row a method and grid or number of samples.
+fn accuracy<'a>(run: &ComparedRun<'a>) -> Columns<'a, (&'a Accuracy, &'a AccuracyPoint)> {
+    type Row<'a> = (&'a Accuracy, &'a AccuracyPoint);
+    let naming = run.naming;
+    Columns(vec![
+        number(naming.parameter, |(all, _): &Row<'a>| all.value),
+        word("observable", move |(all, _): &Row<'a>| {
+            naming.observable(all.observable)
+        }),
+        word("reference", |(all, _): &Row<'a>| match all.reference {
             Reference::Exact => "exact".to_owned(),
             Reference::Generator(cells) => format!("generator on {cells} cells"),
-        };
-        for point in &accuracy.points {
-            rows.rows.push(vec![
-                format_number(accuracy.value),
-                run.naming.observable(accuracy.observable),
-                reference.clone(),
-                point.method.name().to_owned(),
-                point.cells.to_string(),
-                match point.samples {
-                    0 => String::new(),
-                    samples => samples.to_string(),
-                },
-                seconds(point.seconds),
-                format_number(point.error.value),
-                format_number(point.error.error),
-                format_number(point.error.noise),
-            ]);
-        }
-    }
-    rows
+        }),
+        word("method", |(_, one): &Row<'a>| one.method.name().to_owned()),
+        count("cells", |(_, one): &Row<'a>| one.cells),
+        digits("samples", |(_, one): &Row<'a>| unless_zero(one.samples)),
+        digits("seconds", |(_, one): &Row<'a>| seconds(one.seconds)),
+        number("tv", |(_, one): &Row<'a>| one.error.value),
+        number("tv_error", |(_, one): &Row<'a>| one.error.error),
+        number("tv_noise", |(_, one): &Row<'a>| one.error.noise),
+    ])
 }
 
-fn densities(run: &ComparedRun<'_>) -> Rows {
-    let mut rows = Rows::new(&[
-        run.naming.parameter,
-        "method",
-        "observable",
-        "position",
-        "position_2",
-        "density",
-        "standard_error",
-    ]);
-    for value in &run.comparison.values {
-        for solved in &value.solved {
-            for estimated in &solved.densities {
-                let axes = &estimated.density.axes;
-                let second = axes.get(1).map_or(1, |axis| axis.count());
-                let cells = estimated.density.values.iter();
-                for (cell, (p, error)) in cells.zip(&estimated.standard_error).enumerate() {
-                    rows.rows.push(vec![
-                        format_number(value.value),
-                        solved.method.name().to_owned(),
-                        run.naming.observable(estimated.observable),
-                        format_number(axes[0].centre(cell / second)),
-                        optional(axes.get(1).map(|axis| axis.centre(cell % second))),
-                        format_number(*p),
-                        format_number(*error),
-                    ]);
-                }
-            }
-        }
+/// What was measured of error against time.
+fn measured<'a>(run: &ComparedRun<'a>) -> Vec<(&'a Accuracy, &'a AccuracyPoint)> {
+    let all = run.comparison.accuracy.iter();
+    all.flat_map(|all| all.points.iter().map(move |one| (all, one)))
+        .collect()
+}
+
+/// A density at a cell.
+struct AtCell<'a> {
+    solved: At<'a, Solved>,
+    estimated: &'a EstimatedDensity,
+    cell: usize,
+}
+
+impl AtCell<'_> {
+    /// Centre of the cell along an axis of the density.
+    fn centre(&self, axis: usize) -> Option<f64> {
+        let axes = &self.estimated.density.axes;
+        let second = axes.get(1).map_or(1, |axis| axis.count());
+        let number = [self.cell / second, self.cell % second];
+        Some(axes.get(axis)?.centre(number[axis]))
     }
-    rows
+}
+
+/// The densities on the common cells.
+fn densities<'a>(run: &ComparedRun<'a>) -> Columns<'a, AtCell<'a>> {
+    type Row<'a> = AtCell<'a>;
+    let naming = run.naming;
+    Columns(vec![
+        number(naming.parameter, |row: &Row<'a>| row.solved.0.value),
+        word("method", |row: &Row<'a>| {
+            row.solved.1.method.name().to_owned()
+        }),
+        word("observable", move |row: &Row<'a>| {
+            naming.observable(row.estimated.observable)
+        }),
+        optional("position", |row: &Row<'a>| row.centre(0)),
+        optional("position_2", |row: &Row<'a>| row.centre(1)),
+        number("density", |row: &Row<'a>| {
+            row.estimated.density.values[row.cell]
+        }),
+        number("standard_error", |row: &Row<'a>| {
+            row.estimated.standard_error[row.cell]
+        }),
+    ])
 }
 
 /// `compare.csv`: a row a value and method.
@@ -285,7 +236,7 @@ fn densities(run: &ComparedRun<'_>) -> Rows {
 /// # Errors
 /// [`RunError::Table`].
 pub(super) fn compare_csv(run: &ComparedRun<'_>) -> Result<String, RunError> {
-    methods(run).csv()
+    methods(run).csv(&records(run, |value| &value.solved))
 }
 
 /// `distances.csv`: a row a value, pair (two methods, or a method and the exact density) and observable.
@@ -293,7 +244,7 @@ pub(super) fn compare_csv(run: &ComparedRun<'_>) -> Result<String, RunError> {
 /// # Errors
 /// [`RunError::Table`].
 pub(super) fn distances_csv(run: &ComparedRun<'_>) -> Result<String, RunError> {
-    distances(run).csv()
+    distances(run).csv(&records(run, |value| &value.pairs))
 }
 
 /// `agreement.csv`: generator and Monte Carlo bin by bin, a row a value and marginal.
@@ -301,7 +252,7 @@ pub(super) fn distances_csv(run: &ComparedRun<'_>) -> Result<String, RunError> {
 /// # Errors
 /// [`RunError::Table`].
 pub(super) fn agreement_csv(run: &ComparedRun<'_>) -> Result<String, RunError> {
-    agreement(run).csv()
+    agreement(run).csv(&records(run, |value| &value.agreement))
 }
 
 /// `accuracy.csv`: error against time, a row a method and grid or number of samples.
@@ -309,7 +260,7 @@ pub(super) fn agreement_csv(run: &ComparedRun<'_>) -> Result<String, RunError> {
 /// # Errors
 /// [`RunError::Table`].
 pub(super) fn accuracy_csv(run: &ComparedRun<'_>) -> Result<String, RunError> {
-    accuracy(run).csv()
+    accuracy(run).csv(&measured(run))
 }
 
 /// `densities.csv`: the densities on the common cells.
@@ -317,7 +268,18 @@ pub(super) fn accuracy_csv(run: &ComparedRun<'_>) -> Result<String, RunError> {
 /// # Errors
 /// [`RunError::Table`].
 pub(super) fn densities_csv(run: &ComparedRun<'_>) -> Result<String, RunError> {
-    densities(run).csv()
+    let mut rows = Vec::new();
+    for solved in records(run, |value| &value.solved) {
+        for estimated in &solved.1.densities {
+            let cells = 0..estimated.density.values.len();
+            rows.extend(cells.map(|cell| AtCell {
+                solved,
+                estimated,
+                cell,
+            }));
+        }
+    }
+    densities(run).csv(&rows)
 }
 
 /// `compare.json`: program, sweep, and all tables but the densities.
@@ -333,10 +295,10 @@ pub(super) fn compare_json(run: &ComparedRun<'_>) -> Result<String, RunError> {
         "threads": run.threads,
         "common_cells": run.comparison.common.shape(),
         "agrees": run.comparison.agrees(),
-        "methods": methods(run).json(),
-        "distances": distances(run).json(),
-        "agreement": agreement(run).json(),
-        "accuracy": accuracy(run).json(),
+        "methods": methods(run).json(&records(run, |value| &value.solved)),
+        "distances": distances(run).json(&records(run, |value| &value.pairs)),
+        "agreement": agreement(run).json(&records(run, |value| &value.agreement)),
+        "accuracy": accuracy(run).json(&measured(run)),
     });
     Ok(serde_json::to_string_pretty(&object)? + "\n")
 }

@@ -1,0 +1,88 @@
+//! `features.csv`: a row a peak, valley or crater. It is not read back: features follow from the densities.
+
+use super::columns::{Columns, number, optional, word};
+use super::points_table::ascending;
+use super::{Naming, RunError};
+use crate::continuation::Point;
+use crate::density::Observable;
+use crate::topology::{Feature, FeatureKind, Verdict};
+
+/// A feature with where it was found.
+pub(super) struct Found<'p> {
+    value: f64,
+    observable: Observable,
+    feature: &'p Feature,
+}
+
+/// The table's columns.
+pub(super) fn columns<'a>(naming: &Naming<'a>) -> Columns<'a, Found<'a>> {
+    let naming = *naming;
+    let coordinate = |axis: usize| move |row: &Found<'_>| row.feature.position.get(axis).copied();
+    Columns(vec![
+        number(naming.parameter, |row: &Found<'_>| row.value),
+        word("observable", move |row: &Found<'_>| {
+            naming.observable(row.observable)
+        }),
+        word("kind", |row: &Found<'_>| {
+            kind_word(row.feature.kind).to_owned()
+        }),
+        optional("position", coordinate(0)),
+        number("density", |row: &Found<'_>| row.feature.density),
+        number("persistence", |row: &Found<'_>| row.feature.persistence),
+        number("significance", |row: &Found<'_>| row.feature.significance),
+        optional("position_2", coordinate(1)),
+        number("standard_error", |row: &Found<'_>| {
+            row.feature.standard_error
+        }),
+        word("verdict", |row: &Found<'_>| {
+            verdict_word(row.feature.verdict).to_owned()
+        }),
+    ])
+}
+
+/// The features of a point that are present or unresolved, by observable.
+pub(super) fn found<'p>(
+    observables: &[Observable],
+    point: &'p Point,
+) -> impl Iterator<Item = Found<'p>> {
+    let detections = observables.iter().zip(&point.detections);
+    detections.flat_map(move |(&observable, detection)| {
+        let features = detection.features.iter();
+        let listed = features.filter(|feature| feature.verdict != Verdict::Absent);
+        listed.map(move |feature| Found {
+            value: point.value,
+            observable,
+            feature,
+        })
+    })
+}
+
+/// The table: a row a feature that is present or unresolved, by parameter and observable.
+///
+/// # Errors
+/// [`RunError::Table`].
+pub fn features_csv(
+    naming: &Naming<'_>,
+    observables: &[Observable],
+    points: &[Point],
+) -> Result<String, RunError> {
+    let points = ascending(points).into_iter();
+    let rows: Vec<Found<'_>> = points.flat_map(|point| found(observables, point)).collect();
+    columns(naming).csv(&rows)
+}
+
+fn kind_word(kind: FeatureKind) -> &'static str {
+    match kind {
+        FeatureKind::Peak => "peak",
+        FeatureKind::Valley => "valley",
+        FeatureKind::Crater => "crater",
+    }
+}
+
+fn verdict_word(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Present => "present",
+        Verdict::Unresolved => "unresolved",
+        Verdict::Absent => "absent",
+    }
+}

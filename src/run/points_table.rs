@@ -1,0 +1,245 @@
+//! `points.csv`: a row a parameter value, written and read back.
+
+use std::path::Path;
+
+use super::cell::Cell;
+use super::columns::{Column, Columns, count, digits, number, optional, word};
+use super::findings::{findings_cell, parse_findings};
+use super::sentences::sentences;
+use super::{Naming, RunError};
+use crate::continuation::{Finding, Point, PointStatus, SolveReport};
+use crate::density::{Moments, Observable};
+use crate::topology::Detection;
+
+/// The table's columns. `methods` are the names that a row may give as its method where the table is read.
+///
+/// A point without a density has empty cells. `edge_mass` is the largest over the axes of the mass in cells at an end of that
+/// axis' range. Signatures and distances are not read back: they follow from the densities.
+pub(super) fn columns<'a>(
+    naming: &Naming<'a>,
+    observables: &[Observable],
+    methods: &'a [&'static str],
+) -> Columns<'a, Point> {
+    let axes: Vec<&str> = (0..naming.model.axes.len())
+        .map(|axis| naming.axis(axis))
+        .collect();
+    let mut columns = Vec::from(of_solve(naming, methods));
+    for (axis, name) in axes.iter().enumerate() {
+        columns.extend(of_moments(axis, name));
+    }
+    columns.extend(of_detections(naming, observables));
+    columns.push(optional("distance", |point: &Point| point.distance));
+    columns.push(
+        digits("seconds", |point: &Point| format!("{:.3}", point.seconds))
+            .read(|cell| cell.number(), |point, value| point.seconds = value),
+    );
+    columns.push(
+        optional("map_step", |point: &Point| point.report.own.map_step).read(
+            |cell| cell.optional(),
+            |point, value| point.report.own.map_step = value,
+        ),
+    );
+    columns.push(
+        count("factorisations", |point: &Point| {
+            point.report.own.factorisations
+        })
+        .read(
+            |cell| cell.count(),
+            |point, value| point.report.own.factorisations = value,
+        ),
+    );
+    for (axis, name) in axes.iter().enumerate() {
+        let of = move |point: &Point| point.report.own.numerical_diffusion.get(axis).copied();
+        columns.push(optional(format!("numerical_diffusion_{name}"), of).read(
+            |cell| cell.optional(),
+            |point, value| point.report.own.numerical_diffusion.extend(value),
+        ));
+    }
+    columns.extend(of_doubts(naming));
+    Columns(columns)
+}
+
+/// What was solved, and how.
+fn of_solve<'a>(naming: &Naming<'a>, methods: &'a [&'static str]) -> [Column<'a, Point>; 8] {
+    let edge_mass = |point: &Point| point.report.edge_mass.iter().copied().reduce(f64::max);
+    [
+        number(naming.parameter, |point: &Point| point.value)
+            .read(|cell| cell.number(), |point, value| point.value = value),
+        word("status", |point: &Point| {
+            point.report.status.word().to_owned()
+        })
+        .read(
+            |cell| cell.choice(&PointStatus::ALL, PointStatus::word),
+            |point, status| point.report.status = status,
+        ),
+        word("method", |point: &Point| point.report.method.to_owned()).read(
+            |cell| cell.choice(methods, |name| name),
+            |point, method| point.report.method = method,
+        ),
+        count("iterations", |point: &Point| point.report.iterations).read(
+            |cell| cell.count(),
+            |point, value| point.report.iterations = value,
+        ),
+        number("residual", |point: &Point| point.report.residual).read(
+            |cell| cell.number_or_nan(),
+            |point, value| point.report.residual = value,
+        ),
+        number("escape_rate", |point: &Point| point.report.escape_rate).read(
+            |cell| cell.number_or_nan(),
+            |point, value| point.report.escape_rate = value,
+        ),
+        number("negative_mass", |point: &Point| {
+            point.report.own.negative_mass
+        })
+        .read(
+            |cell| cell.number_or_nan(),
+            |point, value| point.report.own.negative_mass = value,
+        ),
+        optional("edge_mass", edge_mass).read(
+            |cell| cell.optional(),
+            |point, value| point.report.edge_mass.extend(value),
+        ),
+    ]
+}
+
+/// Mean and standard deviation of an axis.
+fn of_moments<'a>(axis: usize, name: &str) -> [Column<'a, Point>; 2] {
+    let of = move |point: &Point| point.moments.get(axis).copied();
+    // An axis has both or neither.
+    let set_mean = |point: &mut Point, mean: Option<f64>| {
+        point.moments.extend(mean.map(|mean| Moments {
+            mean,
+            standard_deviation: f64::NAN,
+        }));
+    };
+    let set_deviation = move |point: &mut Point, deviation: Option<f64>| match deviation {
+        Some(deviation) => {
+            if let Some(moments) = point.moments.get_mut(axis) {
+                moments.standard_deviation = deviation;
+            }
+        }
+        None => point.moments.truncate(axis),
+    };
+    [
+        optional(format!("mean_{name}"), move |point| {
+            of(point).map(|one| one.mean)
+        })
+        .read(|cell| cell.optional(), set_mean),
+        optional(format!("sd_{name}"), move |point| {
+            of(point).map(|one| one.standard_deviation)
+        })
+        .read(|cell| cell.optional(), set_deviation),
+    ]
+}
+
+/// Counts of peaks and craters.
+fn of_detections<'a>(naming: &Naming<'_>, observables: &[Observable]) -> Vec<Column<'a, Point>> {
+    let column = |kind: &str, number: usize, count: fn(&Detection) -> usize| {
+        let of = move |point: &Point| point.detections.get(number).map(count);
+        let name = format!("{kind}_{}", naming.observable(observables[number]));
+        digits(name, move |point| {
+            of(point).map_or(String::new(), |count| count.to_string())
+        })
+    };
+    let all = 0..observables.len();
+    let joint = |number: &usize| matches!(observables[*number], Observable::Joint(..));
+    let peaks = |number| column("peaks", number, |one| one.signature.peaks);
+    let craters = |number| column("craters", number, |one| one.signature.craters);
+    let peaks = all.clone().map(peaks);
+    peaks.chain(all.filter(joint).map(craters)).collect()
+}
+
+/// What the solve says of its own errors, and what else it found.
+fn of_doubts<'a>(naming: &Naming<'a>) -> [Column<'a, Point>; 4] {
+    let naming = *naming;
+    // Tables of earlier versions have sentences alone, which are then kept as one.
+    let set_told = |point: &mut Point, text: String| {
+        let told = Some(text).filter(|text| !text.is_empty());
+        point.report.findings = told.into_iter().map(Finding::Told).collect();
+    };
+    let set_findings = |point: &mut Point, findings: Vec<Finding>| {
+        if !findings.is_empty() {
+            point.report.findings = findings;
+        }
+    };
+    [
+        number("solver_error", |point: &Point| point.report.solver_error)
+            .read(
+                |cell| cell.number_or_nan(),
+                |point, value| point.report.solver_error = value,
+            )
+            .newer(),
+        optional("time_step_bias", |point: &Point| {
+            point.report.own.time_step_bias
+        })
+        .read(
+            |cell| cell.optional(),
+            |point, value| point.report.own.time_step_bias = value,
+        )
+        .newer(),
+        word("warnings", move |point: &Point| {
+            sentences(&naming, &point.report.findings)
+        })
+        .read(|cell| Ok(cell.text.to_owned()), set_told),
+        word("findings", move |point: &Point| {
+            findings_cell(&naming, &point.report.findings)
+        })
+        .read(move |cell| findings(&naming, cell), set_findings)
+        .newer(),
+    ]
+}
+
+/// The findings that a cell tells.
+fn findings(naming: &Naming<'_>, cell: &Cell<'_>) -> Result<Vec<Finding>, RunError> {
+    parse_findings(naming, cell.text).map_err(|word| {
+        let wrong = Cell {
+            text: word,
+            ..*cell
+        };
+        wrong.wrong("a finding with its numbers")
+    })
+}
+
+/// The table, ascending in the parameter.
+///
+/// # Errors
+/// [`RunError::Table`].
+pub fn points_csv(
+    naming: &Naming<'_>,
+    observables: &[Observable],
+    points: &[Point],
+) -> Result<String, RunError> {
+    columns(naming, observables, &[]).csv(ascending(points))
+}
+
+/// Reads the table back: everything of its points but densities and what follows from them, in the order of the table.
+///
+/// # Errors
+/// [`RunError::Read`]; [`RunError::Column`] and [`RunError::Row`] when the table is not one of this sweep.
+pub(super) fn read_points(
+    path: &Path,
+    naming: &Naming<'_>,
+    methods: &[&'static str],
+) -> Result<Vec<Point>, RunError> {
+    columns(naming, &[], methods).read(path, blank)
+}
+
+/// Points in the order of tables.
+pub(super) fn ascending(points: &[Point]) -> Vec<&Point> {
+    let mut sorted: Vec<&Point> = points.iter().collect();
+    sorted.sort_by(|a, b| a.value.total_cmp(&b.value));
+    sorted
+}
+
+/// A point of which nothing is known.
+fn blank() -> Point {
+    Point {
+        value: f64::NAN,
+        report: SolveReport::solved(""),
+        moments: Vec::new(),
+        densities: Vec::new(),
+        detections: Vec::new(),
+        distance: None,
+        seconds: f64::NAN,
+    }
+}
