@@ -7,6 +7,7 @@ use crate::method::{
     GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions, StepChoice,
 };
 
+use crate::continuation::evenly_spaced;
 use crate::method::cost;
 use crate::stationary::generator::Estimate;
 use crate::sweep_file::SweepSpec;
@@ -39,8 +40,14 @@ pub(super) fn text(spec: &SweepSpec) -> io::Result<String> {
 }
 
 fn costs(spec: &SweepSpec) -> Vec<String> {
-    let shape: Vec<String> = spec.space.shape().iter().map(usize::to_string).collect();
-    let cells = spec.space.n_cells();
+    let shape: Vec<String> = spec
+        .problem
+        .space()
+        .shape()
+        .iter()
+        .map(usize::to_string)
+        .collect();
+    let cells = spec.problem.space().n_cells();
     let mut lines = vec![
         format!("cells: {} = {cells}", shape.join(" x ")),
         points(spec),
@@ -62,15 +69,19 @@ fn factorisation_seconds(factors: &Estimate) -> f64 {
 fn generator_costs(spec: &SweepSpec, options: &GeneratorMethodOptions) -> Vec<String> {
     let unknowns = format!(
         "unknowns: {}, scheme {}",
-        spec.space.n_cells(),
+        spec.problem.space().n_cells(),
         options.scheme.name()
     );
-    match cost::factorisation(&spec.space, options) {
+    match cost::factorisation(spec.problem.space(), options) {
         Ok(factors) => vec![
             unknowns,
             format!(
                 "memory: {}, {} of it for factors ({})",
-                cost::bytes_in_words(cost::generator_bytes(&spec.space, options, &factors)),
+                cost::bytes_in_words(cost::generator_bytes(
+                    spec.problem.space(),
+                    options,
+                    &factors
+                )),
                 cost::bytes_in_words(factors.factor_bytes as f64),
                 factors.method.name()
             ),
@@ -85,10 +96,10 @@ fn generator_costs(spec: &SweepSpec, options: &GeneratorMethodOptions) -> Vec<St
 }
 
 fn sgcm_costs(spec: &SweepSpec, options: &SgcmOptions) -> Vec<String> {
-    let cells = spec.space.n_cells();
+    let cells = spec.problem.space().n_cells();
     let trajectories = cells as f64 * options.samples as f64;
-    let most = cost::estimated_bytes(cells as f64, spec.space.dimension(), options);
-    let least = cost::least_bytes(cells as f64, spec.space.dimension(), &spec.method);
+    let most = cost::estimated_bytes(cells as f64, spec.problem.space().dimension(), options);
+    let least = cost::least_bytes(cells as f64, spec.problem.space().dimension(), &spec.method);
     let steps = match (options.map_step, options.time_step) {
         (StepChoice::Fixed(map_step), StepChoice::Fixed(time_step)) => {
             let steps = (map_step / time_step).ceil();
@@ -118,7 +129,7 @@ fn sgcm_costs(spec: &SweepSpec, options: &SgcmOptions) -> Vec<String> {
 const STEPS_A_SECOND: f64 = 3e8;
 
 fn monte_carlo_costs(spec: &SweepSpec, options: &MonteCarloOptions) -> Vec<String> {
-    let memory = cost::monte_carlo_bytes(spec.space.n_cells() as f64);
+    let memory = cost::monte_carlo_bytes(spec.problem.space().n_cells() as f64);
     let steps = match cost::monte_carlo_steps(options) {
         Some(steps) => format!(
             "time steps: {steps:.3e} a point, about {:.1} s on two cores",
@@ -134,12 +145,12 @@ fn monte_carlo_costs(spec: &SweepSpec, options: &MonteCarloOptions) -> Vec<Strin
 
 /// How many points, and where the first lie.
 fn points(spec: &SweepSpec) -> String {
-    let values = spec.plan().values();
+    let values = evenly_spaced(spec.problem.family().ends(), spec.points);
     let first: Vec<String> = values.iter().take(3).map(f64::to_string).collect();
     format!(
         "points: {} ({} = {}, ...), and a few more for each change that is located",
         spec.points,
-        spec.parameter,
+        spec.problem.family().parameter(),
         first.join(", ")
     )
 }
@@ -156,10 +167,12 @@ fn notes(spec: &SweepSpec) -> Vec<String> {
     let most = match &spec.method {
         MethodOptions::Generator(_) => 0.0,
         MethodOptions::Sgcm(options) => {
-            let cells = spec.space.n_cells() as f64;
-            cost::estimated_bytes(cells, spec.space.dimension(), options)
+            let cells = spec.problem.space().n_cells() as f64;
+            cost::estimated_bytes(cells, spec.problem.space().dimension(), options)
         }
-        MethodOptions::MonteCarlo(_) => cost::monte_carlo_bytes(spec.space.n_cells() as f64),
+        MethodOptions::MonteCarlo(_) => {
+            cost::monte_carlo_bytes(spec.problem.space().n_cells() as f64)
+        }
     };
     if let Some(memory) = cost::machine_memory().filter(|&memory| most > memory) {
         let memory = cost::bytes_in_words(memory);
@@ -172,7 +185,11 @@ fn notes(spec: &SweepSpec) -> Vec<String> {
 
 /// Surfaces and centres of symmetry that lie inside a cell.
 fn misplaced_faces(spec: &SweepSpec) -> Vec<String> {
-    let system = spec.model.system(&spec.parameters);
+    let family = spec.problem.family();
+    // A path's ends are allowed; without a system there would be nothing to say.
+    let Ok(system) = family.at(family.ends().0) else {
+        return Vec::new();
+    };
     let mut wanted: Vec<(usize, f64, &str)> = Vec::new();
     for surface in system.switching_surfaces() {
         wanted.push((surface.axis, surface.at, "the switching surface"));
@@ -190,8 +207,10 @@ fn misplaced_faces(spec: &SweepSpec) -> Vec<String> {
     }
     let mut notes = Vec::new();
     for (index, at, what) in wanted {
-        let (Some(axis), Some(named)) = (spec.space.axes().get(index), spec.model.axes.get(index))
-        else {
+        let (Some(axis), Some(named)) = (
+            spec.problem.space().axes().get(index),
+            family.model().axes.get(index),
+        ) else {
             continue;
         };
         if axis.find(at).is_some() && !axis.has_face_at(at) {

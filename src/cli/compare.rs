@@ -12,8 +12,8 @@ use super::sweep::progress::Progress;
 use super::{CommandError, Outcome, warnings};
 use crate::compare::{CompareError, Comparison, Method, Solved, Task, compare};
 use crate::figure::{Figures, write_figures};
-use crate::method::{Setting, cost};
-use crate::run::{CompareFolder, ComparedRun, Naming, compare_tables, format_number};
+use crate::method::cost;
+use crate::run::{CompareFolder, ComparedRun, compare_tables, format_number};
 use crate::sweep_file::{Diagnostic, SweepSpec};
 
 /// Compares, writes, draws and prints.
@@ -47,14 +47,7 @@ fn carry_out(
         }
     }
     let task = Task {
-        setting: Setting {
-            model: &spec.model,
-            values: &spec.parameters,
-            parameter: &spec.parameter,
-            range: (spec.from, spec.to),
-            space: &spec.space,
-            observables: &spec.observables,
-        },
+        problem: &spec.problem,
         at: &at,
         generator: spec.every_method.generator.clone(),
         sgcm: spec.every_method.sgcm.clone(),
@@ -76,10 +69,6 @@ fn carry_out(
     let bytes = |solved: &Solved| memory(spec, &comparison, solved);
     let resolved = spec.to_toml();
     let run = ComparedRun {
-        naming: Naming {
-            model: &spec.model,
-            parameter: &spec.parameter,
-        },
         comparison: &comparison,
         bytes: &bytes,
         sweep: &resolved,
@@ -88,12 +77,11 @@ fn carry_out(
     let folder = CompareFolder::new(path)?;
     folder.write(&run)?;
     progress.say("drawing");
-    let names = (spec.model.as_ref(), spec.parameter.as_str());
-    let figures = Figures::of_comparison(&comparison, names, &spec.title).draw_all()?;
+    let figures = Figures::of_comparison(&comparison, &spec.title).draw_all()?;
     write_figures(&figures, &spec.figure_formats, &folder.figures())?;
     let files = folder.take_place()?;
     progress.finish();
-    progress.warn(&warnings::of_comparison(&run.naming, &comparison));
+    progress.warn(&warnings::of_comparison(run.family(), &comparison));
     super::print(&text(&run, &files))?;
     Ok(match comparison.is_complete() && comparison.agrees() {
         true => Outcome::Complete,
@@ -103,11 +91,11 @@ fn carry_out(
 
 /// Bytes at work at one point, and what the number rests on.
 fn memory(spec: &SweepSpec, comparison: &Comparison, solved: &Solved) -> (f64, &'static str) {
-    let (every, dimension) = (&spec.every_method, spec.space.dimension());
+    let (every, dimension) = (&spec.every_method, spec.problem.space().dimension());
     match solved.method {
-        Method::Generator => match cost::factorisation(&spec.space, &every.generator) {
+        Method::Generator => match cost::factorisation(spec.problem.space(), &every.generator) {
             Ok(factors) => (
-                cost::generator_bytes(&spec.space, &every.generator, &factors),
+                cost::generator_bytes(spec.problem.space(), &every.generator, &factors),
                 "estimated from the elimination order",
             ),
             Err(_) => (f64::NAN, "unknown"),
@@ -152,9 +140,9 @@ fn text(run: &ComparedRun<'_>, files: &[PathBuf]) -> String {
     text += &format!("{verdict}: {beyond} of {bins} marginal bins are beyond all errors\n");
     for value in &run.comparison.values {
         for observable in value.disagreements() {
-            let name = run.naming.observable(observable);
+            let name = observable.name(run.family());
             let at = format_number(value.value);
-            text += &format!("  {} = {at}: {name}\n", run.naming.parameter);
+            text += &format!("  {} = {at}: {name}\n", run.family().parameter());
         }
     }
     text += "\nfiles\n";

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::args::DetectArguments;
 use super::output::OutputFolder;
-use super::stored::{Stored, naming};
+use super::stored::Stored;
 use super::sweep::{draw, outcome, summary};
 use super::{CommandError, Outcome, warnings};
 use crate::continuation::SweepResult;
@@ -32,11 +32,7 @@ pub(super) fn run(arguments: &DetectArguments) -> Result<Outcome, CommandError> 
     let staged = StagedRun::new(output.path(), &arguments.run)?;
     write(&stored, &result, seconds, staged.folder())?;
     staged.take_place()?;
-    super::print(&summary::text(
-        &naming(&stored.spec),
-        &result,
-        output.path(),
-    ))?;
+    super::print(&summary::text(&result, output.path()))?;
     Ok(match outcome(&result) {
         // It was the run that was interrupted, not this command.
         Outcome::Interrupted => Outcome::Partial,
@@ -52,12 +48,11 @@ fn write(
     folder: &RunFolder,
 ) -> Result<(), CommandError> {
     let (run, spec) = (&stored.run, &stored.spec);
-    let naming = naming(spec);
     let mut manifest = Manifest::start(&spec.to_toml(), run.seed(), run.threads())?;
     manifest.seconds = run.seconds();
     manifest.seconds.detect = Some(detect_seconds);
     let clock = Instant::now();
-    folder.write_tables(&naming, result)?;
+    folder.write_tables(result)?;
     manifest.seconds.tables = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
     draw(spec, result, &folder.figures())?;
@@ -66,7 +61,7 @@ fn write(
     manifest.largest_distance = result.largest_distance();
     // A run that was killed has written none.
     manifest.warnings = match run.ending() {
-        Ending::Running => warnings::of_points(&naming, &result.points),
+        Ending::Running => warnings::of_points(spec.problem.family(), &result.points),
         _ => run.warnings().to_vec(),
     };
     manifest.ending = match run.ending() {

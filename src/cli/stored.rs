@@ -6,7 +6,7 @@ use std::path::Path;
 use super::CommandError;
 use crate::continuation::{FinerIndicator, Point, SweepResult, detect_again};
 use crate::method::MethodOptions;
-use crate::run::{Ending, Naming, RunError, StoredRun};
+use crate::run::{Ending, RunError, StoredRun};
 use crate::sweep_file::{Diagnostic, Report, SweepSpec, list};
 
 /// A run that was read.
@@ -32,12 +32,11 @@ impl Stored {
         check_overrides(overrides, sections)?;
         let spec = SweepSpec::stored(&path.join("run.json"), run.resolved(), overrides)?;
         let points = run.points(
-            &naming(&spec),
+            spec.problem.subject(),
+            spec.problem.space(),
             &MethodOptions::KINDS,
-            &spec.space,
-            &spec.observables,
         )?;
-        let finer = run.finer(&naming(&spec), &spec.observables)?;
+        let finer = run.finer(spec.problem.subject())?;
         let stored = Self {
             run,
             spec,
@@ -54,7 +53,8 @@ impl Stored {
     pub(super) fn detect(&mut self) -> SweepResult {
         let spec = &self.spec;
         let (points, finer) = (std::mem::take(&mut self.points), self.finer.take());
-        let mut result = detect_again(&spec.plan(), &spec.detector(), points, finer, &spec.locate);
+        let swept = (spec.problem.subject().clone(), spec.points);
+        let mut result = detect_again(swept, &spec.detector(), points, finer, &spec.locate);
         result.interrupted = self.run.ending() != Ending::Complete;
         result
     }
@@ -72,14 +72,6 @@ impl Stored {
         }
         // Without a reader of stderr there is nobody to tell.
         let _ = std::io::stderr().lock().write_all(text.as_bytes());
-    }
-}
-
-/// The names of a sweep.
-pub(super) fn naming(spec: &SweepSpec) -> Naming<'_> {
-    Naming {
-        model: &spec.model,
-        parameter: &spec.parameter,
     }
 }
 

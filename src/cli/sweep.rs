@@ -12,11 +12,11 @@ use super::args::SweepArguments;
 use super::output::OutputFolder;
 use super::{CommandError, Outcome, warnings};
 use crate::continuation::{
-    BifurcationStatus, Observer, Plan, Point, SweepError, SweepResult, sweep,
+    BifurcationStatus, Observer, Point, Subject, SweepError, SweepResult, sweep,
 };
 use crate::figure::{Figures, write_figures};
-use crate::method::{MethodSource, Setting};
-use crate::run::{Ending, Manifest, Naming, RunError, RunFolder};
+use crate::method::MethodSource;
+use crate::run::{Ending, Manifest, RunError, RunFolder};
 use crate::sweep_file::SweepSpec;
 use progress::Progress;
 
@@ -38,7 +38,6 @@ fn output_path(spec: &SweepSpec, out: Option<&Path>) -> PathBuf {
 
 struct Run<'a> {
     spec: &'a SweepSpec,
-    naming: Naming<'a>,
     source: MethodSource,
     folder: RunFolder,
     manifest: Manifest,
@@ -55,29 +54,16 @@ impl<'a> Run<'a> {
         cancelled: Arc<AtomicBool>,
     ) -> Result<Self, CommandError> {
         let progress = Progress::new(spec.points, quiet);
-        let setting = Setting {
-            model: &spec.model,
-            values: &spec.parameters,
-            parameter: &spec.parameter,
-            range: (spec.from, spec.to),
-            space: &spec.space,
-            observables: &spec.observables,
-        };
-        let source = MethodSource::new(&setting, &spec.method, cancelled.clone())?;
-        let cells = spec.space.n_cells();
+        let source = MethodSource::new(&spec.problem, &spec.method, cancelled.clone())?;
+        let cells = spec.problem.space().n_cells();
         progress.say(&format!("{}, {cells} cells", source.describe()));
         let resolved = spec.to_toml();
         let threads = rayon::current_num_threads();
         let manifest = Manifest::start(&resolved, spec.method.seed(), threads)?;
         let folder = RunFolder::create(path)?;
         folder.write_manifest(&manifest)?;
-        let naming = Naming {
-            model: &spec.model,
-            parameter: &spec.parameter,
-        };
         Ok(Self {
             spec,
-            naming,
             source,
             folder,
             manifest,
@@ -92,7 +78,7 @@ impl<'a> Run<'a> {
         let result = self.sweep()?;
         self.manifest.seconds.sweep = clock.elapsed().as_secs_f64();
         let clock = Instant::now();
-        self.folder.finish(&self.naming, &result)?;
+        self.folder.finish(&result)?;
         self.manifest.seconds.tables = clock.elapsed().as_secs_f64();
         let clock = Instant::now();
         self.progress.say("drawing");
@@ -100,7 +86,7 @@ impl<'a> Run<'a> {
         self.manifest.seconds.figures = clock.elapsed().as_secs_f64();
         self.manifest.points = result.points.len();
         self.manifest.largest_distance = result.largest_distance();
-        self.manifest.warnings = warnings::of_points(&self.naming, &result.points);
+        self.manifest.warnings = warnings::of_points(self.spec.problem.family(), &result.points);
         self.manifest.ending = if result.interrupted {
             Ending::Interrupted
         } else {
@@ -111,16 +97,14 @@ impl<'a> Run<'a> {
         if !self.quiet {
             self.progress.warn(&self.manifest.warnings);
         }
-        super::print(&summary::text(&self.naming, &result, self.folder.path()))?;
+        super::print(&summary::text(&result, self.folder.path()))?;
         Ok(outcome(&result))
     }
 
     fn sweep(&mut self) -> Result<SweepResult, CommandError> {
-        let plan = self.spec.plan();
         let detector = self.spec.detector();
         let mut recorder = Recorder {
-            naming: self.naming,
-            plan: &plan,
+            subject: self.spec.problem.subject(),
             folder: &mut self.folder,
             progress: &self.progress,
             cancelled: &self.cancelled,
@@ -128,7 +112,7 @@ impl<'a> Run<'a> {
         sweep(
             &self.source,
             &detector,
-            &plan,
+            self.spec.points,
             &self.spec.locate,
             &mut recorder,
         )
@@ -151,7 +135,7 @@ pub(super) fn draw(
     result: &SweepResult,
     folder: &Path,
 ) -> Result<Vec<PathBuf>, CommandError> {
-    let figures = Figures::of_sweep(result, &spec.model, &spec.title, &spec.figures_at);
+    let figures = Figures::of_sweep(result, &spec.title, &spec.figures_at);
     Ok(write_figures(
         &figures.draw_all()?,
         &spec.figure_formats,
@@ -161,8 +145,7 @@ pub(super) fn draw(
 
 /// Writes every point as soon as it is done, and shows how far the sweep is.
 struct Recorder<'a> {
-    naming: Naming<'a>,
-    plan: &'a Plan,
+    subject: &'a Subject,
     folder: &'a mut RunFolder,
     progress: &'a Progress,
     cancelled: &'a AtomicBool,
@@ -175,10 +158,8 @@ impl Observer for Recorder<'_> {
         done: usize,
         remaining: usize,
     ) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-        self.folder
-            .add_point(&self.naming, &self.plan.observables, point)?;
-        self.progress
-            .point(&self.naming, self.plan, point, done, remaining);
+        self.folder.add_point(self.subject, point)?;
+        self.progress.point(self.subject, point, done, remaining);
         Ok(())
     }
 

@@ -2,7 +2,8 @@
 
 use crate::compare::{Comparison, Method};
 use crate::continuation::{Finding, Point};
-use crate::run::{Naming, finding_in_words, format_number};
+use crate::run::{finding_in_words, format_number};
+use crate::system::Family;
 
 /// Findings of one kind: the first is quoted, the others are counted.
 struct Gathered<'a> {
@@ -14,7 +15,7 @@ struct Gathered<'a> {
 }
 
 /// The warnings of all points: each kind of finding once, in the numbers of its first.
-pub(super) fn of_points(naming: &Naming<'_>, points: &[Point]) -> Vec<String> {
+pub(super) fn of_points(family: &Family, points: &[Point]) -> Vec<String> {
     let mut kinds: Vec<Gathered<'_>> = Vec::new();
     for point in points {
         for finding in &point.report.findings {
@@ -36,14 +37,14 @@ pub(super) fn of_points(naming: &Naming<'_>, points: &[Point]) -> Vec<String> {
             }
         }
     }
-    kinds.iter().map(|kind| kind.sentence(naming)).collect()
+    kinds.iter().map(|kind| kind.sentence(family)).collect()
 }
 
 impl Gathered<'_> {
-    fn sentence(&self, naming: &Naming<'_>) -> String {
+    fn sentence(&self, family: &Family) -> String {
         let (first, last) = (format_number(self.values.0), format_number(self.values.1));
-        let words = finding_in_words(naming, self.finding);
-        let parameter = naming.parameter;
+        let words = finding_in_words(family, self.finding);
+        let parameter = family.parameter();
         match self.count {
             1 => format!("{parameter} = {first}: {words}"),
             count => format!(
@@ -55,11 +56,11 @@ impl Gathered<'_> {
 }
 
 /// What methods say of themselves and of each other: each kind of finding once a method, at its first value.
-pub(super) fn of_comparison(naming: &Naming<'_>, comparison: &Comparison) -> Vec<String> {
+pub(super) fn of_comparison(family: &Family, comparison: &Comparison) -> Vec<String> {
     let mut seen: Vec<(Method, _)> = Vec::new();
     let mut warnings = Vec::new();
     for value in &comparison.values {
-        let at = format!("{} = {}", naming.parameter, format_number(value.value));
+        let at = format!("{} = {}", family.parameter(), format_number(value.value));
         if let Some((rate, outside)) = value.leaves() {
             warnings.push(format!(
                 "{at}: generator and Monte Carlo disagree, and mass leaves Ω (at a rate of {rate:.1e}; Monte Carlo is outside for {outside:.1e} of the time); the generator's density is that of what never left, Monte Carlo's of what is inside: wider ranges tell whether that is why"
@@ -70,7 +71,7 @@ pub(super) fn of_comparison(naming: &Naming<'_>, comparison: &Comparison) -> Vec
                 let kind = (solved.method, finding.kind());
                 if !seen.contains(&kind) {
                     seen.push(kind);
-                    let words = finding_in_words(naming, finding);
+                    let words = finding_in_words(family, finding);
                     warnings.push(format!("{} at {at}: {words}", solved.method.name()));
                 }
             }
@@ -87,7 +88,7 @@ mod tests {
 
     #[test]
     fn each_kind_is_told_once_whatever_its_numbers() {
-        let naming = Naming {
+        let family = Naming {
             model: &registry::models()[0],
             parameter: "f_c",
         };
@@ -115,7 +116,7 @@ mod tests {
             distance: None,
             seconds: 0.0,
         });
-        let told = of_points(&naming, &points);
+        let told = of_points(&family, &points);
         let starts = [
             "f_c = 0.5: 12.50 % of the mass lies in the outermost cells of x: ",
             "f_c = 0.5: no face of y falls on the switching surface at -1: ",

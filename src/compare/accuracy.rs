@@ -79,7 +79,7 @@ pub(super) fn measure(
         return Ok(None);
     };
     let joint = |observable: &&Observable| matches!(observable, Observable::Joint(..));
-    let watched = task.setting.observables;
+    let watched = task.problem.observables();
     let Some(&observable) = watched.iter().find(joint).or(watched.first()) else {
         return Ok(None);
     };
@@ -122,7 +122,7 @@ impl Gauge<'_> {
         }
         for solved in &self.compared.solved {
             let space = match solved.method {
-                Method::Generator => self.task.setting.space,
+                Method::Generator => self.task.problem.space(),
                 _ => self.common,
             };
             runs.push((space.clone(), solved.clone()));
@@ -151,7 +151,7 @@ impl Gauge<'_> {
 
     /// The generator on cells finer or coarser by a factor.
     fn generator(&self, factor: f64) -> Result<(CellSpace, Solved), CompareError> {
-        let axes = self.task.setting.space.axes().iter();
+        let axes = self.task.problem.space().axes().iter();
         let space = CellSpace::new(axes.map(|axis| axis.refined(factor)).collect())?;
         let value = self.compared.value;
         let solved = generator_on(self.task, &space, self.common, value, self.cancelled)?;
@@ -176,7 +176,7 @@ impl Gauge<'_> {
             .compared
             .density(Method::Generator, self.observable)
             .cloned();
-        let cells = self.task.setting.space.n_cells();
+        let cells = self.task.problem.space().n_cells();
         Ok((Reference::Generator(cells), own))
     }
 
@@ -198,7 +198,7 @@ impl Gauge<'_> {
         let exact = match finest {
             Some(_) => None,
             None => exact_density(
-                &self.task.setting,
+                self.task.problem.family(),
                 self.compared.value,
                 space,
                 self.common,

@@ -2,9 +2,9 @@
 
 use super::{CompareError, overlap::rebin_density};
 use crate::density::{DensityError, EstimatedDensity, Observable, estimate};
-use crate::method::{MethodError, Setting};
+use crate::method::MethodError;
 use crate::space::CellSpace;
-use crate::system::System;
+use crate::system::{Family, System};
 
 /// Nodes and weights of Gauss-Legendre quadrature with four points on [-½, ½], exact to degree seven.
 fn quadrature() -> [(f64, f64); 4] {
@@ -58,17 +58,13 @@ pub fn exact_masses(system: &dyn System, space: &CellSpace) -> Option<Vec<f64>> 
 /// # Errors
 /// [`CompareError`] when the value is not allowed, or the observable names no axis.
 pub fn exact_density(
-    setting: &Setting<'_>,
+    family: &Family,
     value: f64,
     space: &CellSpace,
     common: &CellSpace,
     observable: Observable,
 ) -> Result<Option<EstimatedDensity>, CompareError> {
-    let values = setting
-        .model
-        .with(setting.values, setting.parameter, value)
-        .map_err(MethodError::from)?;
-    let system = setting.model.system(&values);
+    let system = family.at(value).map_err(MethodError::from)?;
     let Some(masses) = exact_masses(system.as_ref(), space) else {
         return Ok(None);
     };

@@ -21,8 +21,9 @@ pub use solve::{Solved, Work};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::continuation::Subject;
 use crate::density::{EstimatedDensity, Observable};
-use crate::method::{GeneratorMethodOptions, MonteCarloOptions, Setting, SgcmOptions};
+use crate::method::{GeneratorMethodOptions, MonteCarloOptions, Problem, SgcmOptions};
 use crate::space::{Axis, CellSpace};
 use solve::Sources;
 
@@ -84,8 +85,8 @@ impl Method {
 /// What is compared.
 #[derive(Debug, Clone)]
 pub struct Task<'a> {
-    /// The sweep: its model, parameter and range, the cells of the generator, and what is watched.
-    pub setting: Setting<'a>,
+    /// The systems, the cells of the generator, and what is watched.
+    pub problem: &'a Problem,
     /// Parameter values to compare at, inside the range.
     pub at: &'a [f64],
     /// Settings of the generator.
@@ -173,8 +174,8 @@ impl ComparedValue {
 pub struct Comparison {
     /// The common cells.
     pub common: CellSpace,
-    /// What was watched.
-    pub observables: Vec<Observable>,
+    /// What was compared.
+    pub subject: Subject,
     /// The values, in the order that was given.
     pub values: Vec<ComparedValue>,
     /// Error against time at one of the values; `None` where there was nothing to measure it by.
@@ -266,7 +267,7 @@ pub fn compare(
     cancelled: &Arc<AtomicBool>,
     observe: &mut dyn FnMut(&Progress),
 ) -> Result<Comparison, CompareError> {
-    let common = common_cells(task.setting.space)?;
+    let common = common_cells(task.problem.space())?;
     // Preparation, the generator, SGCM by both corrections, Monte Carlo; and the error against time.
     let total = 2 + 3 * task.at.len();
     let mut done = 0;
@@ -280,9 +281,10 @@ pub fn compare(
     };
     tell("choosing steps".to_owned())?;
     let sources = Sources::new(task, &common, cancelled)?;
+    let family = task.problem.family();
     let mut values = Vec::new();
     for &value in task.at {
-        let at = |method: &str| format!("{} = {value}: {method}", task.setting.parameter);
+        let at = |method: &str| format!("{} = {value}: {method}", family.parameter());
         tell(at("generator"))?;
         let mut solved = vec![sources.generator(value)?];
         tell(at("SGCM"))?;
@@ -302,7 +304,7 @@ pub fn compare(
     let accuracy = accuracy::measure(task, &common, &sources, &values, cancelled)?;
     Ok(Comparison {
         common,
-        observables: task.setting.observables.to_vec(),
+        subject: task.problem.subject().clone(),
         values,
         accuracy,
     })
@@ -331,10 +333,16 @@ fn pairs(
         for density in &one.densities {
             // The truth is taken through the same cells, so that what rebinning does to it does not count as an error.
             let space = match one.method {
-                Method::Generator => task.setting.space,
+                Method::Generator => task.problem.space(),
                 _ => common,
             };
-            let exact = exact_density(&task.setting, value, space, common, density.observable)?;
+            let exact = exact_density(
+                task.problem.family(),
+                value,
+                space,
+                common,
+                density.observable,
+            )?;
             if let Some(exact) = exact {
                 pairs.push(Pair {
                     first: one.method,

@@ -9,8 +9,8 @@ use super::{CompareError, Method, PAPER_MAP_STEP, Task, overlap::rebin_density};
 use crate::continuation::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
 use crate::density::EstimatedDensity;
 use crate::method::{
-    Correction, GeneratorSource, MethodError, MonteCarloSource, Setting, SgcmOptions, SgcmSource,
-    State, StepChoice,
+    Correction, GeneratorSource, MethodError, MonteCarloSource, SgcmOptions, SgcmSource, State,
+    StepChoice,
 };
 use crate::monte_carlo::MonteCarloError;
 use crate::sampling::SamplingError;
@@ -82,8 +82,8 @@ impl<'a> Sources<'a> {
         let sgcm = sgcm_on(task, common, cancelled)?;
         let sgcm_seconds = clock.elapsed().as_secs_f64();
         let clock = Instant::now();
-        let setting = setting_on(task, common);
-        let monte_carlo = MonteCarloSource::new(&setting, &task.monte_carlo, cancelled.clone())?;
+        let problem = task.problem.on(common.clone())?;
+        let monte_carlo = MonteCarloSource::new(&problem, &task.monte_carlo, cancelled.clone())?;
         Ok(Self {
             task,
             common,
@@ -98,7 +98,7 @@ impl<'a> Sources<'a> {
     pub(super) fn generator(&self, value: f64) -> Result<Solved, CompareError> {
         generator_on(
             self.task,
-            self.task.setting.space,
+            self.task.problem.space(),
             self.common,
             value,
             self.cancelled,
@@ -125,20 +125,12 @@ impl<'a> Sources<'a> {
         space: &CellSpace,
         value: f64,
     ) -> Result<Vec<Solved>, CompareError> {
-        sgcm_both(&self.sgcm.on(space), &self.task.sgcm, self.common, value)
+        sgcm_both(&self.sgcm.on(space)?, &self.task.sgcm, self.common, value)
     }
 
     /// Monte Carlo for a share of its time.
     pub(super) fn monte_carlo_for(&self, share: f64, value: f64) -> Result<Solved, CompareError> {
         monte_carlo_by(&self.monte_carlo.shortened(share), self.common, value)
-    }
-}
-
-/// The setting on other cells.
-fn setting_on<'a>(task: &'a Task<'a>, space: &'a CellSpace) -> Setting<'a> {
-    Setting {
-        space,
-        ..task.setting.clone()
     }
 }
 
@@ -148,13 +140,14 @@ fn sgcm_on(
     space: &CellSpace,
     cancelled: &Arc<AtomicBool>,
 ) -> Result<SgcmSource, CompareError> {
+    let problem = task.problem.on(space.clone())?;
     let source = |map_step: f64| {
         let options = SgcmOptions {
             map_step: StepChoice::Fixed(map_step),
             correction: Correction::Slope,
             ..task.sgcm.clone()
         };
-        SgcmSource::new(&setting_on(task, space), &options, cancelled.clone())
+        SgcmSource::new(&problem, &options, cancelled.clone())
     };
     let paper = source(PAPER_MAP_STEP)?;
     Ok(match paper.time_step() > PAPER_MAP_STEP {
@@ -172,8 +165,8 @@ pub(super) fn generator_on(
     cancelled: &Arc<AtomicBool>,
 ) -> Result<Solved, CompareError> {
     let clock = Instant::now();
-    let setting = setting_on(task, space);
-    let source = GeneratorSource::new(&setting, &task.generator, cancelled.clone())?;
+    let problem = task.problem.on(space.clone())?;
+    let source = GeneratorSource::new(&problem, &task.generator, cancelled.clone())?;
     let solution = source.solve(value, None).map_err(|error| match error {
         SourceError::Interrupted => CompareError::Interrupted,
         SourceError::Method(error) => CompareError::Source(error),

@@ -1,18 +1,19 @@
 //! Detection and location repeated on the points of a finished sweep, without solving.
 
 use super::grid::{Checked, FinerIndicator, GridCheck, check, known};
+use super::span::Span;
 use super::sweep::fill_distances;
-use super::{LocateOptions, Plan, Point, SweepResult, locate::label_points};
+use super::{LocateOptions, Point, Subject, SweepResult, locate::label_points};
 use crate::topology::Detector;
 
-/// Detects and locates again on all points there are, those that once refined brackets included. What the points
-/// held of detections and distances is replaced; points without a density stay as they are.
+/// Detects and locates again on all points there are, those that once refined brackets included, of a sweep with `given` given
+/// values. What the points held of detections and distances is replaced; points without a density stay as they are.
 ///
 /// Located values are checked against `finer`, what a sweep saw on its finer grid ([`SweepResult::finer`]). With unchanged
 /// settings that is the same check. Other settings may ask for values that were not solved: the zero then comes from those that were,
 /// and a change near which there are none is unconfirmed.
 pub fn detect_again(
-    plan: &Plan,
+    (subject, given): (Subject, usize),
     detector: &dyn Detector,
     mut points: Vec<Point>,
     finer: Option<Vec<FinerIndicator>>,
@@ -27,14 +28,19 @@ pub fn detect_again(
     for place in 0..points.len() {
         fill_distances(&mut points, place);
     }
+    let span = Span::new(&subject, given);
     let seen = finer.as_deref().filter(|_| options.grid_check);
     let mut on_finer =
-        |checked: &Checked<'_>| seen.and_then(|seen| repeat(seen, checked, plan, options));
-    let observables = &plan.observables;
-    let labels = label_points(&points, observables, detector, options, &mut on_finer);
+        |checked: &Checked<'_>| seen.and_then(|seen| repeat(seen, checked, span, options));
+    let labels = label_points(
+        &points,
+        &subject.observables,
+        detector,
+        options,
+        &mut on_finer,
+    );
     SweepResult {
-        parameter: plan.parameter.clone(),
-        observables: plan.observables.clone(),
+        subject,
         points,
         labels,
         finer,
@@ -46,16 +52,16 @@ pub fn detect_again(
 fn repeat(
     seen: &[FinerIndicator],
     checked: &Checked<'_>,
-    plan: &Plan,
+    span: Span,
     options: &LocateOptions,
 ) -> Option<GridCheck> {
     let mut evaluate = |value: f64| known(seen, checked, value);
-    let same = check(&mut evaluate, checked, plan.range(), options.tolerance);
-    same.or_else(|| Some(nearest_zero(seen, checked, plan)))
+    let same = check(&mut evaluate, checked, span, options.tolerance);
+    same.or_else(|| Some(nearest_zero(seen, checked, span)))
 }
 
 /// The zero nearest to the one sought, of those that earlier checks went to; none farther than a step of the sweep.
-fn nearest_zero(seen: &[FinerIndicator], checked: &Checked<'_>, plan: &Plan) -> GridCheck {
+fn nearest_zero(seen: &[FinerIndicator], checked: &Checked<'_>, span: Span) -> GridCheck {
     let alike = seen
         .iter()
         .filter(|one| one.observable == checked.observable && one.kind == checked.kind.name());
@@ -66,7 +72,7 @@ fn nearest_zero(seen: &[FinerIndicator], checked: &Checked<'_>, plan: &Plan) -> 
         let zero = value - indicator / checked.root.slope;
         ((zero - value).abs(), zero)
     });
-    let near = zeros.filter(|(_, zero)| (zero - sought).abs() <= plan.step());
+    let near = zeros.filter(|(_, zero)| (zero - sought).abs() <= span.step);
     let best = near.min_by(|a, b| a.0.total_cmp(&b.0));
     best.map_or(GridCheck::Unconfirmed, |(_, zero)| {
         GridCheck::Confirmed(zero)

@@ -5,6 +5,7 @@
 //! distance between both; a bound for all r from 1.25 and p from 2 on is stated.
 
 use super::root::Root;
+use super::span::Span;
 use super::{DensitySource, SourceError};
 use crate::topology::{Detector, IndicatorKind};
 
@@ -58,7 +59,7 @@ impl Seen {
 pub struct FinerIndicator {
     /// The parameter's value.
     pub value: f64,
-    /// Place of the observable in [`super::SweepResult::observables`].
+    /// Place of the observable in [`super::Subject::observables`].
     pub observable: usize,
     /// Name of the indicator.
     pub kind: String,
@@ -115,7 +116,7 @@ pub(super) fn solve<S: DensitySource>(
 pub(super) fn check(
     evaluate: &mut dyn FnMut(f64) -> Seen,
     checked: &Checked<'_>,
-    range: (f64, f64),
+    span: Span,
     tolerance: f64,
 ) -> Option<GridCheck> {
     let mut value = checked.root.value;
@@ -132,7 +133,7 @@ pub(super) fn check(
         }
         let step = -indicator / slope;
         let next = value + step;
-        if !next.is_finite() || next < range.0 || next > range.1 {
+        if !span.contains(next) {
             return Some(GridCheck::Unconfirmed);
         }
         if step.abs() <= SMALL * tolerance {

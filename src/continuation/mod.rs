@@ -15,6 +15,7 @@ mod persistence;
 mod report;
 mod root;
 mod source;
+mod span;
 mod sweep;
 mod words;
 
@@ -27,15 +28,15 @@ pub use label::{BifurcationStatus, LabelledPoint, PointType};
 pub use observer::Observer;
 pub use report::{MethodPart, PointStatus, SolveReport};
 pub use root::ErrorParts;
-pub use source::{DensitySource, Solution, SourceError};
-pub use sweep::{Plan, SweepError, evenly_spaced, sweep};
+pub use source::{DensitySource, Solution, SourceError, Subject};
+pub use sweep::{SweepError, evenly_spaced, sweep};
 
 #[cfg(test)]
 mod location_tests;
 #[cfg(test)]
 mod tests;
 
-use crate::density::{EstimatedDensity, Moments, Observable};
+use crate::density::{EstimatedDensity, Moments};
 use crate::topology::Detection;
 
 /// Settings of location.
@@ -68,7 +69,7 @@ pub struct Point {
     pub report: SolveReport,
     /// Mean and standard deviation of every axis; empty when there is no density.
     pub moments: Vec<Moments>,
-    /// The watched densities, in the order of [`SweepResult::observables`]; empty when there is no density.
+    /// The watched densities, in the order of [`Subject::observables`]; empty when there is no density.
     pub densities: Vec<EstimatedDensity>,
     /// What the detector says of each; same order.
     pub detections: Vec<Detection>,
@@ -81,10 +82,8 @@ pub struct Point {
 /// A finished (or interrupted) sweep.
 #[derive(Debug, Clone)]
 pub struct SweepResult {
-    /// Name of the swept parameter.
-    pub parameter: String,
-    /// The observables watched, marginals first.
-    pub observables: Vec<Observable>,
+    /// What was swept, and what was watched.
+    pub subject: Subject,
     /// All points in ascending parameter.
     pub points: Vec<Point>,
     /// Labelled points in ascending parameter: end points `EP`, changes `PB`, failures `MX`.

@@ -1,7 +1,8 @@
 //! The seam of a sweep: whatever can give densities at a parameter value, starting from a neighbour's.
 
 use super::SolveReport;
-use crate::density::{EstimatedDensity, Moments};
+use crate::density::{EstimatedDensity, Moments, Observable};
+use crate::system::Family;
 
 /// A solve's result: densities, report, and what warm-starts the neighbour.
 #[derive(Debug, Clone)]
@@ -40,10 +41,22 @@ pub enum SourceError {
     Method(#[from] Box<dyn std::error::Error + Send + Sync>),
 }
 
-/// A source of densities along one parameter.
+/// What a source gives densities of.
+#[derive(Debug, Clone)]
+pub struct Subject {
+    /// Systems along a path; the ends of the path are those of a sweep.
+    pub family: Family,
+    /// The densities that are watched, in the order in which a source gives them.
+    pub observables: Vec<Observable>,
+}
+
+/// A source of densities along a path through the parameters of a model.
 pub trait DensitySource {
     /// What a solution leaves for its neighbour (a mass vector, a factorisation).
     type State;
+
+    /// What it gives densities of.
+    fn subject(&self) -> &Subject;
 
     /// Densities at a parameter value, warm-started from a neighbour's state where one is given.
     ///

@@ -8,47 +8,16 @@ use super::change::{changes, crossings_at_centre, dip};
 use super::grid::{Checked, FinerIndicator, Seen, check, known, solve};
 use super::locate::label_points;
 use super::root::{next_value, root};
+use super::span::Span;
 use super::{
     DensitySource, LabelledPoint, LocateOptions, Observer, Point, SourceError, SweepResult,
 };
-use crate::density::{Observable, hellinger};
+use crate::density::hellinger;
 use crate::topology::Detector;
-
-/// What to sweep.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Plan {
-    /// Name of the parameter.
-    pub parameter: String,
-    /// First value.
-    pub from: f64,
-    /// Last value; may be below the first.
-    pub to: f64,
-    /// Number of values, both ends included; at least 2.
-    pub points: usize,
-    /// The observables that the source gives, in its order.
-    pub observables: Vec<Observable>,
-}
-
-impl Plan {
-    /// The given values, in the order in which they are solved.
-    pub fn values(&self) -> Vec<f64> {
-        evenly_spaced(self.from, self.to, self.points)
-    }
-
-    /// The ends in ascending order.
-    pub(super) fn range(&self) -> (f64, f64) {
-        (self.from.min(self.to), self.from.max(self.to))
-    }
-
-    /// Distance between neighbouring given values.
-    pub fn step(&self) -> f64 {
-        (self.to - self.from).abs() / (self.points.max(2) - 1) as f64
-    }
-}
 
 /// Evenly spaced values (at least 2), both ends exact. Weights are whole numbers and values are rounded to 15 digits,
 /// so that round values between (0, or -0.01, between -0.02 and 0.01) come out as people write them.
-pub fn evenly_spaced(from: f64, to: f64, points: usize) -> Vec<f64> {
+pub fn evenly_spaced((from, to): (f64, f64), points: usize) -> Vec<f64> {
     let steps = points.max(2) - 1;
     let value = |index: usize| match index {
         0 => from,
@@ -79,7 +48,7 @@ pub enum SweepError {
     Observer(Box<dyn std::error::Error + Send + Sync>),
 }
 
-/// Sweeps a source along its parameter.
+/// Sweeps a source along its path from end to end, with `points` evenly spaced values (at least 2).
 ///
 /// An interruption (by the observer or the source) ends the sweep early with the points so far and
 /// [`SweepResult::interrupted`] set; failed points are kept as data and labelled `MX`.
@@ -89,16 +58,17 @@ pub enum SweepError {
 pub fn sweep<S: DensitySource>(
     source: &S,
     detector: &dyn Detector,
-    plan: &Plan,
+    points: usize,
     options: &LocateOptions,
     observer: &mut dyn Observer,
 ) -> Result<SweepResult, SweepError> {
-    let values = plan.values();
+    let subject = source.subject();
+    let values = evenly_spaced(subject.family.ends(), points);
     observer.begin(values.len());
     let mut run = Run {
         source,
         detector,
-        plan,
+        span: Span::new(subject, points),
         options,
         observer,
         remaining: values.len(),
@@ -121,8 +91,7 @@ pub fn sweep<S: DensitySource>(
     run.narrow()?;
     let (labels, finer) = run.labels();
     Ok(SweepResult {
-        parameter: plan.parameter.clone(),
-        observables: plan.observables.clone(),
+        subject: subject.clone(),
         points: run.points,
         labels,
         finer,
@@ -140,7 +109,7 @@ const KEPT_BYTES: usize = 1 << 30;
 struct Run<'a, S: DensitySource> {
     source: &'a S,
     detector: &'a dyn Detector,
-    plan: &'a Plan,
+    span: Span,
     options: &'a LocateOptions,
     observer: &'a mut dyn Observer,
     remaining: usize,
@@ -170,7 +139,7 @@ impl<S: DensitySource> Run<'_, S> {
             }
             Err(source) => {
                 return Err(SweepError::Source {
-                    parameter: self.plan.parameter.clone(),
+                    parameter: self.source.subject().family.parameter().to_owned(),
                     value,
                     source,
                 });
@@ -264,7 +233,7 @@ impl<S: DensitySource> Run<'_, S> {
             None => {
                 let (a, b) = (solved[change.left], solved[change.left + 1]);
                 let middle = 0.5 * (a.value + b.value);
-                let settled = is_settled(a, b, self.plan.step(), self.options);
+                let settled = is_settled(a, b, self.span.step, self.options);
                 (!settled && middle > a.value && middle < b.value).then_some(middle)
             }
         })
@@ -296,7 +265,7 @@ impl<S: DensitySource> Run<'_, S> {
         let wanted = self.options.grid_check && !self.interrupted;
         let mut finer: Option<Option<S>> = (!wanted).then_some(None);
         let mut seen = Vec::new();
-        let range = self.plan.range();
+        let span = self.span;
         let mut on_finer = |checked: &Checked<'_>| {
             let finer = finer.get_or_insert_with(|| self.source.finer()).as_ref()?;
             let mut state = None;
@@ -309,9 +278,9 @@ impl<S: DensitySource> Run<'_, S> {
                 seen.extend(found.record(checked, value));
                 found
             };
-            check(&mut evaluate, checked, range, self.options.tolerance)
+            check(&mut evaluate, checked, span, self.options.tolerance)
         };
-        let observables = &self.plan.observables;
+        let observables = &self.source.subject().observables;
         let labels = label_points(
             &self.points,
             observables,

@@ -2,6 +2,7 @@
 
 use crate::compare::{ComparedValue, Method};
 use crate::density::Observable;
+use crate::system::Family;
 
 use super::canvas::DrawError;
 use super::canvas::colour_bar::ColourBar;
@@ -9,8 +10,8 @@ use super::canvas::frame::Scale;
 use super::canvas::page::{Heading, Page, Rectangle};
 use super::canvas::style::{MARGIN, TEXT};
 use super::joint::{Found, draw_map, windows, write_above};
-use super::select::{self, Names};
 use super::sketch::{ComparisonScene, Sketch};
+use super::{names, select};
 
 /// Side of a map, in pixels.
 const SIDE: f64 = 165.0;
@@ -35,11 +36,11 @@ fn row(value: &ComparedValue, observable: Observable) -> Vec<(Method, Found<'_>)
 
 /// A figure a pair of axes.
 pub(super) fn sketches<'a>(scene: &'a ComparisonScene<'a>) -> Vec<Sketch<'a>> {
-    let observables = scene.comparison.observables.iter();
+    let observables = scene.comparison.subject.observables.iter();
     observables
         .filter(|observable| matches!(observable, Observable::Joint(..)))
         .map(|&observable| {
-            let name = format!("joint_{}", scene.names.file(observable));
+            let name = format!("joint_{}", names::file(scene.family(), observable));
             Sketch::new(name, move || draw(scene, observable))
         })
         .collect()
@@ -47,7 +48,7 @@ pub(super) fn sketches<'a>(scene: &'a ComparisonScene<'a>) -> Vec<Sketch<'a>> {
 
 /// The figure; `None` if there is nothing to draw. Maps of a row share their colours, all share their windows.
 fn draw(scene: &ComparisonScene<'_>, observable: Observable) -> Result<Option<Page>, DrawError> {
-    let (names, title) = (scene.names, scene.title);
+    let (family, title) = (scene.family(), scene.title);
     let rows: Vec<Vec<(Method, Found<'_>)>> = scene
         .comparison
         .values
@@ -70,14 +71,14 @@ fn draw(scene: &ComparisonScene<'_>, observable: Observable) -> Result<Option<Pa
     let Some((x, y)) = window else {
         return Ok(None);
     };
-    let across = Scale::horizontal(x, SIDE, &names.axis(first))?;
-    let up = Scale::vertical(y, SIDE, &names.axis(second))?;
+    let across = Scale::horizontal(x, SIDE, &names::axis(family, first))?;
+    let up = Scale::vertical(y, SIDE, &names::axis(family, second))?;
     let mut bars = Vec::new();
     for row in &rows {
         let largest = select::largest(row.iter().map(|(_, found)| found.density()));
         bars.push((
             largest,
-            ColourBar::new(largest, SIDE, &names.density(observable))?,
+            ColourBar::new(largest, SIDE, &names::density(family, observable))?,
         ));
     }
     let widest = bars.iter().map(|(_, bar)| bar.width()).fold(0.0, f64::max);
@@ -97,7 +98,7 @@ fn draw(scene: &ComparisonScene<'_>, observable: Observable) -> Result<Option<Pa
                 width: SIDE,
                 height: SIDE,
             };
-            write_above(&page, map, above(*method, found.value, column, names))?;
+            write_above(&page, map, above(*method, found.value, column, family))?;
             draw_map(&page, map, found, (x, y), *largest)?;
             across.draw_below(&page, map, number + 1 == rows.len())?;
             up.draw_left(&page, map, column == 0)?;
@@ -110,13 +111,13 @@ fn draw(scene: &ComparisonScene<'_>, observable: Observable) -> Result<Option<Pa
 }
 
 /// The line above a map: the value at the head of a row, and the method.
-fn above(method: Method, value: f64, column: usize, names: Names<'_>) -> String {
+fn above(method: Method, value: f64, column: usize, family: &Family) -> String {
     let title = match method {
         Method::SgcmSlope => "SGCM, corrected",
         method => method.title(),
     };
     match column {
-        0 => format!("{}: {title}", names.at(value)),
+        0 => format!("{}: {title}", names::at(family, value)),
         _ => title.to_owned(),
     }
 }

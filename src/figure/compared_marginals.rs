@@ -5,6 +5,7 @@ use plotters_backend::text_anchor::HPos;
 
 use crate::compare::{ComparedValue, Comparison, Method};
 use crate::density::{Density, EstimatedDensity, Observable};
+use crate::system::Family;
 
 use super::canvas::DrawError;
 use super::canvas::frame::{self, Scale};
@@ -12,8 +13,8 @@ use super::canvas::legend::{self, Legend, Sample};
 use super::canvas::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
 use super::canvas::style::{BLACK, ERROR_LINE, MARGIN, Stroke, TEXT};
 use super::marginals::{cells, curve};
-use super::select::{self, Names};
 use super::sketch::{ComparisonScene, Sketch};
+use super::{names, select};
 
 /// Size of a panel, in pixels.
 const PANEL: (f64, f64) = (270.0, 165.0);
@@ -45,9 +46,10 @@ pub(super) fn sketches<'a>(scene: &'a ComparisonScene<'a>) -> Vec<Sketch<'a>> {
 
 /// The figure; `None` if there is nothing to draw.
 fn draw(scene: &ComparisonScene<'_>) -> Result<Option<Page>, DrawError> {
-    let (comparison, names, title) = (scene.comparison, scene.names, scene.title);
+    let (comparison, family, title) = (scene.comparison, scene.family(), scene.title);
     let is_marginal = |one: &Observable| matches!(one, Observable::Marginal(_));
     let watched: Vec<Observable> = comparison
+        .subject
         .observables
         .iter()
         .copied()
@@ -59,7 +61,7 @@ fn draw(scene: &ComparisonScene<'_>) -> Result<Option<Page>, DrawError> {
     for &value in &values {
         let mut row = Vec::new();
         for &observable in &watched {
-            row.extend(lay_out(comparison, value, observable, names)?);
+            row.extend(lay_out(comparison, value, observable, family)?);
         }
         rows.push(row);
     }
@@ -86,7 +88,7 @@ fn draw(scene: &ComparisonScene<'_>) -> Result<Option<Page>, DrawError> {
                 height: PANEL.1,
             };
             let letter = char::from(b'a' + ((number * row.len() + column) % 26) as u8);
-            let above = format!("({letter})  {}", names.at(laid.value.value));
+            let above = format!("({letter})  {}", names::at(family, laid.value.value));
             let place = (rect.left, rect.top - 0.7 * TEXT);
             page.text(place, lettering(above, HPos::Left))?;
             draw_panel(&page, laid, rect, number + 1 == rows.len())?;
@@ -115,7 +117,7 @@ fn lay_out<'a>(
     comparison: &Comparison,
     value: &'a ComparedValue,
     observable: Observable,
-    names: Names<'_>,
+    family: &Family,
 ) -> Result<Option<Laid<'a>>, DrawError> {
     let Observable::Marginal(axis) = observable else {
         return Ok(None);
@@ -137,8 +139,12 @@ fn lay_out<'a>(
     Ok(Some(Laid {
         value,
         observable,
-        across: Scale::horizontal(window, PANEL.0, &names.axis(axis))?,
-        up: Scale::vertical((0.0, 1.08 * highest), PANEL.1, &names.density(observable))?,
+        across: Scale::horizontal(window, PANEL.0, &names::axis(family, axis))?,
+        up: Scale::vertical(
+            (0.0, 1.08 * highest),
+            PANEL.1,
+            &names::density(family, observable),
+        )?,
     }))
 }
 

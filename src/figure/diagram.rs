@@ -15,19 +15,19 @@ use super::canvas::legend::{self, Legend, Sample};
 use super::canvas::page::{Heading, Page, Panel, Rectangle, Shape};
 use super::canvas::style::{MARGIN, PNG_SCALE};
 use super::canvas::{DrawError, hatch};
-use super::select;
 use super::sketch::{Sketch, SweepScene};
+use super::{names, select};
 
 /// Size of the map, in pixels.
 const MAP: (f64, f64) = (380.0, 250.0);
 
 /// A diagram an observed marginal.
 pub(super) fn sketches<'a>(scene: &'a SweepScene<'a>) -> Vec<Sketch<'a>> {
-    let observables = scene.result.observables.iter().enumerate();
+    let observables = scene.result.subject.observables.iter().enumerate();
     observables
         .filter(|(_, observable)| matches!(observable, Observable::Marginal(_)))
         .map(|(number, &observable)| {
-            let name = format!("diagram_{}", scene.names.file(observable));
+            let name = format!("diagram_{}", names::file(scene.family(), observable));
             Sketch::new(name, move || draw(scene, number))
         })
         .collect()
@@ -35,8 +35,9 @@ pub(super) fn sketches<'a>(scene: &'a SweepScene<'a>) -> Vec<Sketch<'a>> {
 
 /// The diagram of the marginal with the given number among the observables; `None` without any density.
 fn draw(scene: &SweepScene<'_>, observable: usize) -> Result<Option<Page>, DrawError> {
-    let (result, names, title) = (scene.result, scene.names, scene.title);
-    let Some(&watched @ Observable::Marginal(axis)) = result.observables.get(observable) else {
+    let (result, family, title) = (scene.result, scene.family(), scene.title);
+    let Some(&watched @ Observable::Marginal(axis)) = result.subject.observables.get(observable)
+    else {
         return Ok(None);
     };
     let densities: Vec<&Density> = densities(result, observable)
@@ -48,9 +49,9 @@ fn draw(scene: &SweepScene<'_>, observable: usize) -> Result<Option<Page>, DrawE
     };
     let largest = select::largest(densities.iter().copied());
     let range = parameter_range(&result.points);
-    let across = Scale::horizontal(range, MAP.0, &names.parameter())?;
-    let up = Scale::vertical(window, MAP.1, &names.axis(axis))?;
-    let bar = ColourBar::new(largest, MAP.1, &names.density(watched))?;
+    let across = Scale::horizontal(range, MAP.0, &names::parameter(family))?;
+    let up = Scale::vertical(window, MAP.1, &names::axis(family, axis))?;
+    let bar = ColourBar::new(largest, MAP.1, &names::density(family, watched))?;
     let width = MARGIN + up.left() + MAP.0 + bar.width() + MARGIN;
     let heading = Heading::new(title, width)?;
     let left = MARGIN + up.left();

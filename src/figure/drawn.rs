@@ -1,14 +1,13 @@
 //! The figures of a sweep or a comparison as values: listed by name, drawn one by one or all.
 
 use super::canvas::{DrawError, render};
-use super::select::{self, Names};
+use super::select;
 use super::sketch::{ComparisonScene, Sketch, SweepScene};
 use super::{
     FigureError, compared_joint, compared_marginals, diagram, joint, marginals, time_to_accuracy,
 };
 use crate::compare::Comparison;
 use crate::continuation::SweepResult;
-use crate::system::Model;
 
 /// The kinds of figures of a sweep, in the order in which they are drawn: a new kind is one line here.
 const OF_SWEEPS: [for<'a> fn(&'a SweepScene<'a>) -> Vec<Sketch<'a>>; 3] =
@@ -60,27 +59,18 @@ impl<'a> Figures<'a> {
     ///
     /// For each value in `at` the nearest computed point is taken; points without densities are not drawn. `title` (plain text,
     /// may be empty) stands above each figure.
-    pub fn of_sweep(result: &'a SweepResult, model: &'a Model, title: &'a str, at: &[f64]) -> Self {
+    pub fn of_sweep(result: &'a SweepResult, title: &'a str, at: &[f64]) -> Self {
         Self(Scene::Sweep(SweepScene {
             result,
-            names: Names::of(model, &result.parameter),
             title,
             chosen: select::nearest(result, at),
         }))
     }
 
     /// The figures of a comparison of methods: marginals by every method (`marginals`), joint densities side by side (`joint_xy`), and
-    /// the error against time (`time_to_accuracy`). The model and the name of the swept parameter give the symbols.
-    pub fn of_comparison(
-        comparison: &'a Comparison,
-        (model, parameter): (&'a Model, &'a str),
-        title: &'a str,
-    ) -> Self {
-        Self(Scene::Comparison(ComparisonScene {
-            comparison,
-            names: Names::of(model, parameter),
-            title,
-        }))
+    /// the error against time (`time_to_accuracy`).
+    pub fn of_comparison(comparison: &'a Comparison, title: &'a str) -> Self {
+        Self(Scene::Comparison(ComparisonScene { comparison, title }))
     }
 
     /// Names of all figures, in their order. Some may turn out to have nothing to show.

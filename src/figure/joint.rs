@@ -14,8 +14,8 @@ use super::canvas::legend::{self, Legend, Sample};
 use super::canvas::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
 use super::canvas::style::{self, MARGIN, Stroke, TEXT};
 use super::canvas::{DrawError, symbols};
-use super::select;
 use super::sketch::{Sketch, SweepScene};
+use super::{names, select};
 
 /// Contours are drawn at these shares of the largest density.
 const LEVELS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
@@ -96,9 +96,9 @@ fn open_page(
 /// A sheet an observed pair of axes, then its maps one by one.
 pub(super) fn sketches<'a>(scene: &'a SweepScene<'a>) -> Vec<Sketch<'a>> {
     let mut sketches = Vec::new();
-    for (number, &observable) in scene.result.observables.iter().enumerate() {
+    for (number, &observable) in scene.result.subject.observables.iter().enumerate() {
         if matches!(observable, Observable::Joint(..)) {
-            let name = format!("joint_{}", scene.names.file(observable));
+            let name = format!("joint_{}", names::file(scene.family(), observable));
             let single = |&point: &&'a Point| {
                 let value = select::safe(&symbols::rounded(point.value).to_string());
                 Sketch::new(format!("{name}_{value}"), move || {
@@ -119,8 +119,8 @@ fn draw_single(
     observable: usize,
     point: &Point,
 ) -> Result<Option<Page>, DrawError> {
-    let names = scene.names;
-    let watched = scene.result.observables[observable];
+    let family = scene.family();
+    let watched = scene.result.subject.observables[observable];
     let (Observable::Joint(first, second), Some(found)) = (watched, Found::new(point, observable))
     else {
         return Ok(None);
@@ -130,13 +130,13 @@ fn draw_single(
         return Ok(None);
     };
     let largest = select::largest([found[0].density()]);
-    let across = Scale::horizontal(x, SINGLE, &names.axis(first))?;
-    let up = Scale::vertical(y, SINGLE, &names.axis(second))?;
-    let bar = ColourBar::new(largest, SINGLE, &names.density(watched))?;
+    let across = Scale::horizontal(x, SINGLE, &names::axis(family, first))?;
+    let up = Scale::vertical(y, SINGLE, &names::axis(family, second))?;
+    let bar = ColourBar::new(largest, SINGLE, &names::density(family, watched))?;
     let left = MARGIN + up.left();
     let width = left + SINGLE + bar.width() + MARGIN;
     let (page, map) = open_page(&found, scene.title, (left, width), (SINGLE, SINGLE))?;
-    write_above(&page, map, names.at(point.value))?;
+    write_above(&page, map, names::at(family, point.value))?;
     draw_map(&page, map, &found[0], (x, y), largest)?;
     across.draw_below(&page, map, true)?;
     up.draw_left(&page, map, true)?;
@@ -209,8 +209,8 @@ impl Sheet {
 
 /// All maps of a pair on one sheet, with the same windows; `None` for fewer than two densities.
 fn draw_sheet(scene: &SweepScene<'_>, observable: usize) -> Result<Option<Page>, DrawError> {
-    let names = scene.names;
-    let watched = scene.result.observables[observable];
+    let family = scene.family();
+    let watched = scene.result.subject.observables[observable];
     let found: Vec<Found<'_>> = scene
         .chosen
         .iter()
@@ -223,16 +223,20 @@ fn draw_sheet(scene: &SweepScene<'_>, observable: usize) -> Result<Option<Page>,
         return Ok(None);
     }
     let sheet = Sheet::new(&found);
-    let across = Scale::horizontal(x, SMALL, &names.axis(first))?;
-    let up = Scale::vertical(y, SMALL, &names.axis(second))?;
-    let bar = sheet.bar(&names.density(watched))?;
+    let across = Scale::horizontal(x, SMALL, &names::axis(family, first))?;
+    let up = Scale::vertical(y, SMALL, &names::axis(family, second))?;
+    let bar = sheet.bar(&names::density(family, watched))?;
     let left = MARGIN + up.left();
     let width = left + sheet.whole.0 + bar.width() + MARGIN;
     let (page, all) = open_page(&found, scene.title, (left, width), sheet.whole)?;
     for (number, (found, &top)) in found.iter().zip(&sheet.tops).enumerate() {
         let map = sheet.map(all, number);
         let letter = char::from(b'a' + (number % 26) as u8);
-        write_above(&page, map, format!("({letter})  {}", names.at(found.value)))?;
+        write_above(
+            &page,
+            map,
+            format!("({letter})  {}", names::at(family, found.value)),
+        )?;
         draw_map(&page, map, found, (x, y), top)?;
         // A map with none below it carries the labels of its column.
         across.draw_below(&page, map, number + sheet.columns >= sheet.tops.len())?;

@@ -4,14 +4,15 @@ use plotters_backend::BackendColor;
 
 use crate::continuation::{Point, SweepResult};
 use crate::density::{Density, EstimatedDensity, Observable};
+use crate::system::Family;
 
 use super::canvas::DrawError;
 use super::canvas::frame::{self, Scale};
 use super::canvas::legend::{Legend, Sample};
 use super::canvas::page::{Heading, Page, Rectangle, Shape};
 use super::canvas::style::{MARGIN, Stroke};
-use super::select::{self, Names};
 use super::sketch::{Sketch, SweepScene};
+use super::{names, select};
 
 /// Height of a panel, in pixels.
 const HEIGHT: f64 = 210.0;
@@ -35,11 +36,12 @@ pub(super) fn sketches<'a>(scene: &'a SweepScene<'a>) -> Vec<Sketch<'a>> {
 
 /// The figure of all observed marginals at the chosen points; `None` if there is nothing to draw.
 fn draw(scene: &SweepScene<'_>) -> Result<Option<Page>, DrawError> {
-    let (result, names, title) = (scene.result, scene.names, scene.title);
+    let (result, family, title) = (scene.result, scene.family(), scene.title);
     let chosen = scene.chosen.as_slice();
     let is_marginal =
         |(_, observable): &(usize, &Observable)| matches!(observable, Observable::Marginal(_));
     let watched: Vec<usize> = result
+        .subject
         .observables
         .iter()
         .enumerate()
@@ -54,7 +56,7 @@ fn draw(scene: &SweepScene<'_>) -> Result<Option<Page>, DrawError> {
     let mut panels = Vec::new();
     let mut left = MARGIN;
     for observable in watched {
-        if let Some(panel) = lay_out(result, observable, chosen, names, (left, width))? {
+        if let Some(panel) = lay_out(result, observable, chosen, family, (left, width))? {
             left = panel.left + width + BETWEEN;
             panels.push(panel);
         }
@@ -65,7 +67,10 @@ fn draw(scene: &SweepScene<'_>) -> Result<Option<Page>, DrawError> {
     let page_width = left - BETWEEN + 10.0 + MARGIN;
     let heading = Heading::new(title, page_width)?;
     let entry = |(number, point): (usize, &&Point)| {
-        (Sample::Curve(Stroke::curve(number)), names.at(point.value))
+        (
+            Sample::Curve(Stroke::curve(number)),
+            names::at(family, point.value),
+        )
     };
     let legend = Legend::new(
         chosen.iter().enumerate().map(entry).collect(),
@@ -92,10 +97,10 @@ fn lay_out<'a>(
     result: &SweepResult,
     observable: usize,
     chosen: &[&'a Point],
-    names: Names<'_>,
+    family: &Family,
     (from, width): (f64, f64),
 ) -> Result<Option<Laid<'a>>, DrawError> {
-    let watched = result.observables[observable];
+    let watched = result.subject.observables[observable];
     let Observable::Marginal(axis) = watched else {
         return Ok(None);
     };
@@ -111,10 +116,14 @@ fn lay_out<'a>(
         return Ok(None);
     };
     let highest = select::largest(bare.iter().copied());
-    let up = Scale::vertical((0.0, 1.06 * highest), HEIGHT, &names.density(watched))?;
+    let up = Scale::vertical(
+        (0.0, 1.06 * highest),
+        HEIGHT,
+        &names::density(family, watched),
+    )?;
     Ok(Some(Laid {
         densities,
-        across: Scale::horizontal(window, width, &names.axis(axis))?,
+        across: Scale::horizontal(window, width, &names::axis(family, axis))?,
         left: from + up.left(),
         up,
     }))

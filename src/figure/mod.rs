@@ -6,10 +6,8 @@
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! # let result: pbif::continuation::SweepResult = unimplemented!();
 //! use pbif::figure::{Figures, Format, write_figures};
-//! use pbif::system::registry;
 //!
-//! let model = registry::find("coulomb")?;
-//! let figures = Figures::of_sweep(&result, model, "Coulomb friction", &[-0.02, 0.01]);
+//! let figures = Figures::of_sweep(&result, "Coulomb friction", &[-0.02, 0.01]);
 //! if let Some(diagram) = figures.draw("diagram_x")? {
 //!     println!("{}", diagram.svg());
 //! }
@@ -32,6 +30,7 @@ mod error;
 mod files;
 mod joint;
 mod marginals;
+mod names;
 mod select;
 mod sketch;
 mod time_to_accuracy;

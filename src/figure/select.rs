@@ -1,77 +1,15 @@
-//! What of a sweep is drawn and what it is called: symbols, file names, points nearest to wanted values,
-//! and the part of an axis where there is something to see.
+//! What of a sweep is drawn: points nearest to wanted values, and the part of an axis where there is something to see.
 
 use crate::continuation::{Point, SweepResult};
-use crate::density::{Density, EstimatedDensity, Observable};
+use crate::density::{Density, EstimatedDensity};
 use crate::space::Axis;
-use crate::system::Model;
 
 use super::canvas::style::PNG_SCALE;
-use super::canvas::symbols;
 
 /// Share of the largest density below which a cell counts as empty.
 const EMPTY: f64 = 1e-3;
 /// Share of a window that is added at either end.
 const BORDER: f64 = 0.04;
-
-/// Symbols and names of a sweep.
-#[derive(Clone, Copy)]
-pub(super) struct Names<'a> {
-    model: &'a Model,
-    parameter: &'a str,
-}
-
-impl<'a> Names<'a> {
-    pub(super) fn of(model: &'a Model, parameter: &'a str) -> Self {
-        Self { model, parameter }
-    }
-
-    /// Symbol of the swept parameter, as markup; its name where the model does not know it.
-    pub(super) fn parameter(&self) -> String {
-        let mut parameters = self.model.parameters.iter();
-        match parameters.find(|parameter| parameter.name == self.parameter) {
-            Some(parameter) => symbols::variable(&parameter.symbol),
-            None if self.parameter.chars().count() == 1 => symbols::variable(self.parameter),
-            None => symbols::plain(self.parameter),
-        }
-    }
-
-    /// Name of the swept parameter as plain text.
-    pub(super) fn plain(&self) -> &'a str {
-        self.parameter
-    }
-
-    /// Symbol of an axis, as markup.
-    pub(super) fn axis(&self, axis: usize) -> String {
-        match self.model.axes.get(axis) {
-            Some(description) => symbols::variable(&description.symbol),
-            None => symbols::variable(&format!("x_{{{}}}", axis + 1)),
-        }
-    }
-
-    /// `p(x)` or `p(x, ẋ)`, as markup.
-    pub(super) fn density(&self, observable: Observable) -> String {
-        let symbols: Vec<String> = axes_of(observable)
-            .iter()
-            .map(|&axis| self.axis(axis))
-            .collect();
-        symbols::density_of(&symbols)
-    }
-
-    /// `α = −0.5`, as markup.
-    pub(super) fn at(&self, value: f64) -> String {
-        format!("{} = {}", self.parameter(), symbols::value(value))
-    }
-
-    /// Name of an observable in file names: `x`, `xy`.
-    pub(super) fn file(&self, observable: Observable) -> String {
-        let name = |&axis: &usize| match self.model.axes.get(axis) {
-            Some(description) => safe(&description.name),
-            None => format!("x{}", axis + 1),
-        };
-        axes_of(observable).iter().map(name).collect()
-    }
-}
 
 /// Letters, digits, `.`, `-` and `_`; everything else becomes `_`.
 pub(super) fn safe(name: &str) -> String {
@@ -80,13 +18,6 @@ pub(super) fn safe(name: &str) -> String {
         _ => '_',
     };
     name.chars().map(letter).collect()
-}
-
-fn axes_of(observable: Observable) -> Vec<usize> {
-    match observable {
-        Observable::Marginal(axis) => vec![axis],
-        Observable::Joint(first, second) => vec![first, second],
-    }
 }
 
 /// The density of an observable at a point, if it has one that can be drawn.

@@ -2,30 +2,40 @@
 
 use super::canvas::DrawError;
 use super::canvas::page::Page;
-use super::select::Names;
 use crate::compare::Comparison;
 use crate::continuation::{Point, SweepResult};
+use crate::system::Family;
 
 /// What the figures of a sweep are drawn from.
 pub(super) struct SweepScene<'a> {
     /// The points with what was found in them.
     pub(super) result: &'a SweepResult,
-    /// Symbols and file names.
-    pub(super) names: Names<'a>,
     /// Stands above each figure; plain text, may be empty.
     pub(super) title: &'a str,
     /// The points at which marginals and joint densities are drawn.
     pub(super) chosen: Vec<&'a Point>,
 }
 
+impl<'a> SweepScene<'a> {
+    /// The systems that were swept.
+    pub(super) fn family(&self) -> &'a Family {
+        &self.result.subject.family
+    }
+}
+
 /// What the figures of a comparison of methods are drawn from.
 pub(super) struct ComparisonScene<'a> {
     /// What was found.
     pub(super) comparison: &'a Comparison,
-    /// Symbols and file names.
-    pub(super) names: Names<'a>,
     /// Stands above each figure; plain text, may be empty.
     pub(super) title: &'a str,
+}
+
+impl<'a> ComparisonScene<'a> {
+    /// The systems of which some were compared.
+    pub(super) fn family(&self) -> &'a Family {
+        &self.comparison.subject.family
+    }
 }
 
 /// Draws a figure; gives `None` where there is nothing to see.

@@ -8,6 +8,7 @@ use super::canvas::page::{Heading, Page, Rectangle, Shape};
 use super::canvas::style::{BLACK, ERROR_LINE, MARGIN, Stroke};
 use super::canvas::{DrawError, symbols};
 use super::compared_marginals::stroke;
+use super::names;
 use super::sketch::{ComparisonScene, Sketch};
 
 /// Size of the panel, in pixels.
@@ -39,7 +40,7 @@ pub(super) fn sketches<'a>(scene: &'a ComparisonScene<'a>) -> Vec<Sketch<'a>> {
 
 /// The figure; `None` if nothing was measured.
 fn draw(scene: &ComparisonScene<'_>) -> Result<Option<Page>, DrawError> {
-    let (names, title) = (scene.names, scene.title);
+    let (family, title) = (scene.family(), scene.title);
     let Some(accuracy) = &scene.comparison.accuracy else {
         return Ok(None);
     };
@@ -49,7 +50,7 @@ fn draw(scene: &ComparisonScene<'_>) -> Result<Option<Page>, DrawError> {
     let place = |point: &AccuracyPoint| (exponent(point.seconds), exponent(point.error.value));
     let x = range(accuracy.points.iter().map(|point| place(point).0));
     let y = range(accuracy.points.iter().map(|point| place(point).1));
-    let density = names.density(accuracy.observable);
+    let density = names::density(family, accuracy.observable);
     let across = Scale::logarithmic(x, "seconds")?;
     let up = Scale::logarithmic(y, &format!("total variation to {} {density}", by(accuracy)))?;
     let left = MARGIN + up.left();
@@ -59,7 +60,10 @@ fn draw(scene: &ComparisonScene<'_>) -> Result<Option<Page>, DrawError> {
         title => format!("{title}; "),
     };
     let value = symbols::rounded(accuracy.value);
-    let heading = Heading::new(&format!("{title}at {} = {value}", names.plain()), width)?;
+    let heading = Heading::new(
+        &format!("{title}at {} = {value}", family.parameter()),
+        width,
+    )?;
     let shown = |method: &Method| accuracy.points.iter().any(|one| one.method == *method);
     let methods: Vec<(usize, Method)> = Method::ALL.into_iter().enumerate().collect();
     let methods = methods.into_iter().filter(|(_, method)| shown(method));

@@ -1,9 +1,11 @@
-//! Derivative of the generator by a parameter.
+//! Derivative of the generator by a parameter, or by the coordinate of a path.
 
 use super::assemble::assemble_within;
 use super::{Generator, GeneratorError, GeneratorOptions};
 use crate::space::CellSpace;
-use crate::system::{Model, ParameterValues};
+use std::sync::Arc;
+
+use crate::system::{System, SystemError};
 
 /// First step, relative to the parameter (to `LEAST` where that is smaller).
 const FIRST_STEP: f64 = 0.05;
@@ -15,26 +17,22 @@ const STEPS: usize = 8;
 /// Change between two steps, relative in the 1-norm, at which the derivative is accepted.
 const ACCEPTED: f64 = 1e-11;
 
-/// dQ/dθ and the derivative of the escape rates, with the pattern of Q, Ω and its walls held.
+/// dQ/dθ at `value` and the derivative of the escape rates, for systems that depend on one number, with the pattern of Q, Ω and its
+/// walls held.
 ///
 /// Q is linear in some parameters and analytic in the rest, so a fourth-order central difference with a step
 /// that shrinks until two steps agree reaches nine digits or more; it is exact to rounding where Q is linear.
 ///
 /// # Errors
-/// Any [`GeneratorError`]; [`GeneratorError::System`] for an unknown parameter or one at the end of its range.
+/// Any [`GeneratorError`]; [`GeneratorError::System`] where there are no systems on both sides of the value.
 pub fn assemble_derivative(
-    model: &Model,
-    values: &ParameterValues,
-    parameter: &str,
+    system_at: impl Fn(f64) -> Result<Arc<dyn System>, SystemError>,
+    value: f64,
     space: &CellSpace,
     options: &GeneratorOptions,
 ) -> Result<Generator, GeneratorError> {
-    let value = values.as_slice()[model.parameter_index(parameter)?];
-    let walls = model.system(values);
-    let at = |value: f64| {
-        let system = model.system(&model.with(values, parameter, value)?);
-        assemble_within(&*walls, &*system, space, options)
-    };
+    let walls = system_at(value)?;
+    let at = |value: f64| assemble_within(&*walls, &*system_at(value)?, space, options);
     let difference = |step: f64| -> Result<Generator, GeneratorError> {
         let mut sum = at(value + step)?;
         scale(&mut sum, 8.0 / (12.0 * step));

@@ -4,9 +4,9 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use super::{
-    GeneratorSource, MethodError, MethodOptions, MonteCarloSource, Setting, SgcmSource, State,
+    GeneratorSource, MethodError, MethodOptions, MonteCarloSource, Problem, SgcmSource, State,
 };
-use crate::continuation::{DensitySource, Solution, SourceError};
+use crate::continuation::{DensitySource, Solution, SourceError, Subject};
 
 /// A source of densities by one of the methods.
 pub enum MethodSource {
@@ -24,19 +24,19 @@ impl MethodSource {
     /// # Errors
     /// [`MethodError`].
     pub fn new(
-        setting: &Setting<'_>,
+        problem: &Problem,
         options: &MethodOptions,
         cancelled: Arc<AtomicBool>,
     ) -> Result<Self, MethodError> {
         Ok(match options {
             MethodOptions::Generator(options) => {
-                Self::Generator(Box::new(GeneratorSource::new(setting, options, cancelled)?))
+                Self::Generator(Box::new(GeneratorSource::new(problem, options, cancelled)?))
             }
             MethodOptions::Sgcm(options) => {
-                Self::Sgcm(Box::new(SgcmSource::new(setting, options, cancelled)?))
+                Self::Sgcm(Box::new(SgcmSource::new(problem, options, cancelled)?))
             }
             MethodOptions::MonteCarlo(options) => Self::MonteCarlo(Box::new(
-                MonteCarloSource::new(setting, options, cancelled)?,
+                MonteCarloSource::new(problem, options, cancelled)?,
             )),
         })
     }
@@ -57,6 +57,14 @@ impl MethodSource {
 
 impl DensitySource for MethodSource {
     type State = State;
+
+    fn subject(&self) -> &Subject {
+        match self {
+            Self::Generator(source) => source.subject(),
+            Self::Sgcm(source) => source.subject(),
+            Self::MonteCarlo(source) => source.subject(),
+        }
+    }
 
     fn solve(&self, value: f64, start: Option<&State>) -> Result<Solution<State>, SourceError> {
         match self {

@@ -5,24 +5,34 @@ pub mod cost;
 mod generator;
 mod monte_carlo;
 mod options;
+mod problem;
 mod range;
 mod report;
-mod setting;
 mod sgcm;
+mod state;
 mod structure;
 
 pub use any::MethodSource;
 pub use generator::{GeneratorMethodOptions, GeneratorSource};
 pub use monte_carlo::{Estimator, MonteCarloOptions, MonteCarloPlan, MonteCarloSource};
 pub use options::{MethodOptions, StepChoice};
+pub use problem::Problem;
 pub use range::automatic_ranges;
-pub use setting::{Setting, State};
 pub use sgcm::{Corrected, Correction, SampledPoint, SgcmOptions, SgcmSource, solve_corrected};
+pub use state::State;
 
 /// Why a method cannot give a solution at all. Failed solves are data, see
 /// [`PointStatus`](crate::continuation::PointStatus).
 #[derive(Debug, thiserror::Error)]
 pub enum MethodError {
+    /// The cells have another number of axes than the model.
+    #[error("the model has {axes} axes, the cells have {cells}")]
+    Dimension {
+        /// Axes of the model.
+        axes: usize,
+        /// Axes of the cells.
+        cells: usize,
+    },
     /// A parameter value is not allowed.
     #[error(transparent)]
     System(#[from] crate::system::SystemError),

@@ -15,9 +15,9 @@
 
 use serde_json::{Map, Value, json};
 
-use super::Naming;
 use crate::density::{EstimatedDensity, Kink, Observable};
 use crate::space::Axis;
+use crate::system::Family;
 
 /// Values a chunk of the parameter's coordinate holds.
 pub(super) const PARAMETER_CHUNK: u64 = 1024;
@@ -67,8 +67,8 @@ impl Layout {
     }
 
     /// The swept parameter with `count` values.
-    pub(super) fn parameter(naming: &Naming<'_>, count: u64) -> Self {
-        let name = naming.parameter.to_owned();
+    pub(super) fn parameter(family: &Family, count: u64) -> Self {
+        let name = family.parameter().to_owned();
         let dimensions = vec![(name.clone(), count)];
         Self::new(
             name,
@@ -96,12 +96,12 @@ impl Layout {
     }
 
     /// The density itself.
-    pub(super) fn density(naming: &Naming<'_>, estimate: &EstimatedDensity) -> Self {
-        let words = words(naming, estimate.observable);
+    pub(super) fn density(family: &Family, estimate: &EstimatedDensity) -> Self {
+        let words = words(family, estimate.observable);
         let layout = Self::of_cells(
-            naming,
+            family,
             estimate,
-            density(naming, estimate.observable),
+            density(family, estimate.observable),
             words,
         );
         match &estimate.structure.centre {
@@ -111,45 +111,41 @@ impl Layout {
     }
 
     /// Its standard error.
-    pub(super) fn error(naming: &Naming<'_>, estimate: &EstimatedDensity) -> Self {
+    pub(super) fn error(family: &Family, estimate: &EstimatedDensity) -> Self {
         let long_name = format!(
             "standard error of the {}",
-            words(naming, estimate.observable)
+            words(family, estimate.observable)
         );
         Self::of_cells(
-            naming,
+            family,
             estimate,
-            error(naming, estimate.observable),
+            error(family, estimate.observable),
             long_name,
         )
     }
 
     /// The density by a second discretisation.
-    pub(super) fn second(naming: &Naming<'_>, estimate: &EstimatedDensity) -> Self {
+    pub(super) fn second(family: &Family, estimate: &EstimatedDensity) -> Self {
         let long_name = format!(
             "{} by a second discretisation",
-            words(naming, estimate.observable)
+            words(family, estimate.observable)
         );
         Self::of_cells(
-            naming,
+            family,
             estimate,
-            second(naming, estimate.observable),
+            second(family, estimate.observable),
             long_name,
         )
     }
 
     /// The densities without one group of samples each.
-    pub(super) fn replicates(
-        naming: &Naming<'_>,
-        estimate: &EstimatedDensity,
-        count: usize,
-    ) -> Self {
+    pub(super) fn replicates(family: &Family, estimate: &EstimatedDensity, count: usize) -> Self {
         let long_name = format!(
             "{} without one group of samples each",
-            words(naming, estimate.observable)
+            words(family, estimate.observable)
         );
-        let name = replicates(naming, estimate.observable);
-        let mut layout = Self::of_cells(naming, estimate, name, long_name);
+        let name = replicates(family, estimate.observable);
+        let mut layout = Self::of_cells(family, estimate, name, long_name);
         layout
             .dimensions
             .insert(1, ("replicate".to_owned(), count as u64));
@@ -159,19 +155,19 @@ impl Layout {
 
     /// The kink of the given number.
     pub(super) fn kink(
-        naming: &Naming<'_>,
+        family: &Family,
         estimate: &EstimatedDensity,
         kink: &Kink,
         number: usize,
     ) -> Self {
-        let name = format!("{}{number}", kink_prefix(naming, estimate.observable));
+        let name = format!("{}{number}", kink_prefix(family, estimate.observable));
         let axes = estimate.observable.axes();
-        let axis = axes.get(kink.axis).map_or("?", |&axis| naming.axis(axis));
-        let density = words(naming, estimate.observable);
+        let axis = axes.get(kink.axis).map_or("?", |&axis| family.axis(axis));
+        let density = words(family, estimate.observable);
         let at = kink.at;
         let long_name =
             format!("jump of the slope along {axis} of the logarithm of the {density} at {at}");
-        let mut layout = Self::of_cells(naming, estimate, name, long_name);
+        let mut layout = Self::of_cells(family, estimate, name, long_name);
         // The plane leaves the other axis, if there is one.
         layout.dimensions.remove(1 + kink.axis);
         layout.chunk.remove(1 + kink.axis);
@@ -182,15 +178,15 @@ impl Layout {
 
     /// An array with one value a cell and parameter value; the number of parameter values is set when it is stored.
     fn of_cells(
-        naming: &Naming<'_>,
+        family: &Family,
         estimate: &EstimatedDensity,
         name: String,
         long_name: String,
     ) -> Self {
-        let mut dimensions = vec![(naming.parameter.to_owned(), 1)];
+        let mut dimensions = vec![(family.parameter().to_owned(), 1)];
         let axes = estimate.observable.axes();
         for (&axis, cells) in axes.iter().zip(&estimate.density.axes) {
-            dimensions.push((naming.axis(axis).to_owned(), cells.count() as u64));
+            dimensions.push((family.axis(axis).to_owned(), cells.count() as u64));
         }
         let chunk = dimensions.iter().map(|dimension| dimension.1).collect();
         Self::new(name, dimensions, chunk, long_name)
@@ -219,35 +215,35 @@ pub(super) fn edges(axis: &str) -> String {
 }
 
 /// Name of a density.
-pub(super) fn density(naming: &Naming<'_>, observable: Observable) -> String {
-    format!("p_{}", naming.observable(observable))
+pub(super) fn density(family: &Family, observable: Observable) -> String {
+    format!("p_{}", observable.name(family))
 }
 
 /// Name of its standard error.
-pub(super) fn error(naming: &Naming<'_>, observable: Observable) -> String {
-    density(naming, observable) + "_error"
+pub(super) fn error(family: &Family, observable: Observable) -> String {
+    density(family, observable) + "_error"
 }
 
 /// Name of its second discretisation.
-pub(super) fn second(naming: &Naming<'_>, observable: Observable) -> String {
-    density(naming, observable) + "_second"
+pub(super) fn second(family: &Family, observable: Observable) -> String {
+    density(family, observable) + "_second"
 }
 
 /// Name of its replicates.
-pub(super) fn replicates(naming: &Naming<'_>, observable: Observable) -> String {
-    density(naming, observable) + "_replicate"
+pub(super) fn replicates(family: &Family, observable: Observable) -> String {
+    density(family, observable) + "_replicate"
 }
 
 /// Names of its kinks without their numbers.
-pub(super) fn kink_prefix(naming: &Naming<'_>, observable: Observable) -> String {
-    density(naming, observable) + "_kink_"
+pub(super) fn kink_prefix(family: &Family, observable: Observable) -> String {
+    density(family, observable) + "_kink_"
 }
 
-fn words(naming: &Naming<'_>, observable: Observable) -> String {
+fn words(family: &Family, observable: Observable) -> String {
     match observable {
-        Observable::Marginal(axis) => format!("marginal density of {}", naming.axis(axis)),
+        Observable::Marginal(axis) => format!("marginal density of {}", family.axis(axis)),
         Observable::Joint(first, second) => {
-            let (first, second) = (naming.axis(first), naming.axis(second));
+            let (first, second) = (family.axis(first), family.axis(second));
             format!("joint density of {first} and {second}")
         }
     }

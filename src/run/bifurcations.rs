@@ -3,22 +3,26 @@
 //! The CSV and JSON hold every label, end points (`EP`) included; the tables for people leave those out.
 
 use super::columns::{Columns, number, optional, word};
-use super::{Naming, RunError, latex::escape, number::format_with_error};
+use super::{
+    RunError,
+    latex::{self, escape},
+    number::format_with_error,
+};
 use crate::continuation::{LabelledPoint, PointType};
+use crate::system::Family;
 use crate::topology::Signature;
 
 /// The table's columns; numbers in full.
-fn columns<'a>(naming: &Naming<'a>) -> Columns<'a, LabelledPoint> {
-    let naming = *naming;
+fn columns<'a>(family: &'a Family) -> Columns<'a, LabelledPoint> {
     type Row = LabelledPoint;
     Columns(vec![
         word("label", |row: &Row| row.label.clone()),
-        word("parameter", move |_| naming.parameter.to_owned()),
+        word("parameter", move |_| family.parameter().to_owned()),
         number("value", |row: &Row| row.value),
         number("error", |row: &Row| row.error),
         number("lower", |row: &Row| row.lower),
         number("upper", |row: &Row| row.upper),
-        word("observable", move |row: &Row| observable(&naming, row)),
+        word("observable", move |row: &Row| observable(family, row)),
         word("before", |row: &Row| words(row.before)),
         word("after", |row: &Row| words(row.after)),
         word("status", |row: &Row| status(row).to_owned()),
@@ -34,9 +38,9 @@ fn columns<'a>(naming: &Naming<'a>) -> Columns<'a, LabelledPoint> {
     ])
 }
 
-fn observable(naming: &Naming<'_>, row: &LabelledPoint) -> String {
+fn observable(family: &Family, row: &LabelledPoint) -> String {
     let observable = row.observable;
-    observable.map_or(String::new(), |one| naming.observable(one))
+    observable.map_or(String::new(), |one| one.name(family))
 }
 
 fn words(signature: Option<Signature>) -> String {
@@ -51,34 +55,31 @@ fn status(row: &LabelledPoint) -> &'static str {
 ///
 /// # Errors
 /// [`RunError::Table`].
-pub fn bifurcations_csv(naming: &Naming<'_>, labels: &[LabelledPoint]) -> Result<String, RunError> {
-    columns(naming).csv(labels)
+pub fn bifurcations_csv(family: &Family, labels: &[LabelledPoint]) -> Result<String, RunError> {
+    columns(family).csv(labels)
 }
 
 /// The JSON: a list of objects with the CSV's keys, numbers as numbers, absent entries as null.
 ///
 /// # Errors
 /// [`RunError::Json`].
-pub fn bifurcations_json(
-    naming: &Naming<'_>,
-    labels: &[LabelledPoint],
-) -> Result<String, RunError> {
-    let rows = columns(naming).json(labels);
+pub fn bifurcations_json(family: &Family, labels: &[LabelledPoint]) -> Result<String, RunError> {
+    let rows = columns(family).json(labels);
     Ok(serde_json::to_string_pretty(&rows)? + "\n")
 }
 
 /// The Markdown table, values rounded to their errors.
-pub fn bifurcations_markdown(naming: &Naming<'_>, labels: &[LabelledPoint]) -> String {
+pub fn bifurcations_markdown(family: &Family, labels: &[LabelledPoint]) -> String {
     let mut text = format!(
         "| label | {} | bracket | observable | before | after | change | status |\n| --- | --- | --- | --- | --- | --- | --- | --- |\n",
-        naming.parameter
+        family.parameter()
     );
     for row in labels.iter().filter(|row| row.kind != PointType::EndPoint) {
         let (value, error) = format_with_error(row.value, row.error);
         let (lower, _) = format_with_error(row.lower, row.error);
         let (upper, _) = format_with_error(row.upper, row.error);
         let (observable, before, after) =
-            (observable(naming, row), words(row.before), words(row.after));
+            (observable(family, row), words(row.before), words(row.after));
         let status = match row.kind {
             PointType::NoConvergence => "no steady state or not converged",
             _ => status(row),
@@ -92,19 +93,16 @@ pub fn bifurcations_markdown(naming: &Naming<'_>, labels: &[LabelledPoint]) -> S
 }
 
 /// A LaTeX table with booktabs rules, values rounded to their errors.
-pub fn bifurcations_tex(naming: &Naming<'_>, labels: &[LabelledPoint]) -> String {
+pub fn bifurcations_tex(family: &Family, labels: &[LabelledPoint]) -> String {
     let mut text = String::from(
         "% needs \\usepackage{booktabs}\n\\begin{tabular}{lllllll}\n\\toprule\nlabel & $",
     );
-    text += &naming.parameter_latex();
+    text += &latex::parameter(family);
     text += "$ & density & below & above & change & status \\\\\n\\midrule\n";
     for row in labels.iter().filter(|row| row.kind != PointType::EndPoint) {
         let (value, error) = format_with_error(row.value, row.error);
         let density = row.observable.map_or(String::new(), |observable| {
-            format!(
-                "$p({})$",
-                naming.observable_latex(observable).trim_matches(['(', ')'])
-            )
+            format!("$p({})$", latex::observable(family, observable))
         });
         let (before, after) = (words(row.before), words(row.after));
         let [label, before, after, change, status] =

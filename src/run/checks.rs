@@ -4,26 +4,26 @@
 
 use std::path::Path;
 
+use super::RunError;
 use super::columns::{Columns, number, optional, word};
-use super::{Naming, RunError};
-use crate::continuation::FinerIndicator;
+use crate::continuation::{FinerIndicator, Subject};
 use crate::density::Observable;
+use crate::system::Family;
 
 /// The table's columns. An observable that is not watched has a number beyond all of those that are.
-fn columns<'a>(naming: &Naming<'a>, observables: &'a [Observable]) -> Columns<'a, FinerIndicator> {
-    let naming = *naming;
+fn columns<'a>(family: &'a Family, observables: &'a [Observable]) -> Columns<'a, FinerIndicator> {
     let name = move |number: usize| {
         let observable = observables.get(number);
-        observable.map_or(String::new(), |&one| naming.observable(one))
+        observable.map_or(String::new(), |&one| one.name(family))
     };
     let numbered = move |text: &str| {
         let mut known = observables.iter();
-        let number = known.position(|&one| naming.observable(one) == text);
+        let number = known.position(|&one| one.name(family) == text);
         number.unwrap_or(observables.len())
     };
     let coordinate = |axis: usize| move |one: &FinerIndicator| one.place.get(axis).copied();
     Columns(vec![
-        number(naming.parameter, |one: &FinerIndicator| one.value)
+        number(family.parameter(), |one: &FinerIndicator| one.value)
             .read(|cell| cell.number(), |one, value| one.value = value),
         word("observable", move |one: &FinerIndicator| {
             name(one.observable)
@@ -47,24 +47,24 @@ fn columns<'a>(naming: &Naming<'a>, observables: &'a [Observable]) -> Columns<'a
 ///
 /// # Errors
 /// [`RunError::Table`].
-pub(super) fn checks_csv(
-    naming: &Naming<'_>,
-    observables: &[Observable],
-    seen: &[FinerIndicator],
-) -> Result<String, RunError> {
+pub(super) fn checks_csv(subject: &Subject, seen: &[FinerIndicator]) -> Result<String, RunError> {
+    let Subject {
+        family,
+        observables,
+    } = subject;
     let watched = seen.iter().filter(|one| one.observable < observables.len());
-    columns(naming, observables).csv(watched)
+    columns(family, observables).csv(watched)
 }
 
 /// Reads the table back; rows of other observables are left out.
 ///
 /// # Errors
 /// [`RunError::Read`], [`RunError::Column`], [`RunError::Row`].
-pub(super) fn read_checks(
-    path: &Path,
-    naming: &Naming<'_>,
-    observables: &[Observable],
-) -> Result<Vec<FinerIndicator>, RunError> {
+pub(super) fn read_checks(path: &Path, subject: &Subject) -> Result<Vec<FinerIndicator>, RunError> {
+    let Subject {
+        family,
+        observables,
+    } = subject;
     let blank = || FinerIndicator {
         value: f64::NAN,
         observable: observables.len(),
@@ -72,7 +72,7 @@ pub(super) fn read_checks(
         place: Vec::new(),
         indicator: None,
     };
-    let mut seen = columns(naming, observables).read(path, blank)?;
+    let mut seen = columns(family, observables).read(path, blank)?;
     seen.retain(|one| one.observable < observables.len());
     Ok(seen)
 }

@@ -1,10 +1,11 @@
 //! `features.csv`: a row a peak, valley or crater. It is not read back: features follow from the densities.
 
+use super::RunError;
 use super::columns::{Columns, number, optional, word};
 use super::points_table::ascending;
-use super::{Naming, RunError};
-use crate::continuation::Point;
+use crate::continuation::{Point, Subject};
 use crate::density::Observable;
+use crate::system::Family;
 use crate::topology::{Feature, FeatureKind, Verdict};
 
 /// A feature with where it was found.
@@ -15,13 +16,12 @@ pub(super) struct Found<'p> {
 }
 
 /// The table's columns.
-pub(super) fn columns<'a>(naming: &Naming<'a>) -> Columns<'a, Found<'a>> {
-    let naming = *naming;
+pub(super) fn columns<'a>(family: &'a Family) -> Columns<'a, Found<'a>> {
     let coordinate = |axis: usize| move |row: &Found<'_>| row.feature.position.get(axis).copied();
     Columns(vec![
-        number(naming.parameter, |row: &Found<'_>| row.value),
+        number(family.parameter(), |row: &Found<'_>| row.value),
         word("observable", move |row: &Found<'_>| {
-            naming.observable(row.observable)
+            row.observable.name(family)
         }),
         word("kind", |row: &Found<'_>| {
             kind_word(row.feature.kind).to_owned()
@@ -61,14 +61,11 @@ pub(super) fn found<'p>(
 ///
 /// # Errors
 /// [`RunError::Table`].
-pub fn features_csv(
-    naming: &Naming<'_>,
-    observables: &[Observable],
-    points: &[Point],
-) -> Result<String, RunError> {
+pub fn features_csv(subject: &Subject, points: &[Point]) -> Result<String, RunError> {
     let points = ascending(points).into_iter();
+    let observables = &subject.observables;
     let rows: Vec<Found<'_>> = points.flat_map(|point| found(observables, point)).collect();
-    columns(naming).csv(&rows)
+    columns(&subject.family).csv(&rows)
 }
 
 fn kind_word(kind: FeatureKind) -> &'static str {

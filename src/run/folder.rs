@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use super::growing::GrowingTable;
 use super::{
-    DensityStore, Manifest, Naming, RunError, atomic::write_atomically, bifurcations, checks,
+    DensityStore, Manifest, RunError, atomic::write_atomically, bifurcations, checks,
     features_table, points_table, staging::Staging,
 };
-use crate::continuation::{Point, SweepResult};
-use crate::density::{EstimatedDensity, Observable};
+use crate::continuation::{Point, Subject, SweepResult};
+use crate::density::EstimatedDensity;
 
 /// Everything a run may leave in its folder.
 pub(super) const ENTRIES: [&str; 10] = [
@@ -83,21 +83,20 @@ impl RunFolder {
     ///
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.
-    pub fn add_point(
-        &mut self,
-        naming: &Naming<'_>,
-        observables: &[Observable],
-        point: &Point,
-    ) -> Result<(), RunError> {
+    pub fn add_point(&mut self, subject: &Subject, point: &Point) -> Result<(), RunError> {
+        let Subject {
+            family,
+            observables,
+        } = subject;
         if !point.densities.is_empty() {
-            self.store.append(naming, point.value, &point.densities)?;
+            self.store.append(family, point.value, &point.densities)?;
         }
         // The row comes after its density, which a reader of the row may look for.
         let rows: Vec<_> = features_table::found(observables, point).collect();
-        let columns = features_table::columns(naming);
+        let columns = features_table::columns(family);
         self.features
             .add(|| columns.header(), &columns.lines(&rows)?)?;
-        let columns = points_table::columns(naming, observables, &[]);
+        let columns = points_table::columns(family, observables, &[]);
         self.points
             .add(|| columns.header(), &columns.lines([point])?)
     }
@@ -106,12 +105,12 @@ impl RunFolder {
     ///
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.
-    pub fn finish(&mut self, naming: &Naming<'_>, result: &SweepResult) -> Result<(), RunError> {
+    pub fn finish(&mut self, result: &SweepResult) -> Result<(), RunError> {
         self.points.close();
         self.features.close();
-        self.write_tables(naming, result)?;
+        self.write_tables(result)?;
         if let Some(finer) = &result.finer {
-            let text = checks::checks_csv(naming, &result.observables, finer)?;
+            let text = checks::checks_csv(&result.subject, finer)?;
             self.write("checks.csv", &text)?;
         }
         let densities: Vec<(f64, &[EstimatedDensity])> = result
@@ -120,39 +119,37 @@ impl RunFolder {
             .filter(|point| !point.densities.is_empty())
             .map(|point| (point.value, point.densities.as_slice()))
             .collect();
-        self.store.replace(naming, &densities)
+        self.store.replace(&result.subject.family, &densities)
     }
 
     /// Writes all tables that detection and location make.
     ///
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.
-    pub fn write_tables(&self, naming: &Naming<'_>, result: &SweepResult) -> Result<(), RunError> {
-        let (observables, points) = (&result.observables, &result.points);
-        self.write(
-            "points.csv",
-            &points_table::points_csv(naming, observables, points)?,
-        )?;
+    pub fn write_tables(&self, result: &SweepResult) -> Result<(), RunError> {
+        let (subject, points) = (&result.subject, &result.points);
+        let family = &subject.family;
+        self.write("points.csv", &points_table::points_csv(subject, points)?)?;
         self.write(
             "features.csv",
-            &features_table::features_csv(naming, observables, points)?,
+            &features_table::features_csv(subject, points)?,
         )?;
         let labels = &result.labels;
         self.write(
             "bifurcations.csv",
-            &bifurcations::bifurcations_csv(naming, labels)?,
+            &bifurcations::bifurcations_csv(family, labels)?,
         )?;
         self.write(
             "bifurcations.json",
-            &bifurcations::bifurcations_json(naming, labels)?,
+            &bifurcations::bifurcations_json(family, labels)?,
         )?;
         self.write(
             "bifurcations.md",
-            &bifurcations::bifurcations_markdown(naming, labels),
+            &bifurcations::bifurcations_markdown(family, labels),
         )?;
         self.write(
             "bifurcations.tex",
-            &bifurcations::bifurcations_tex(naming, labels),
+            &bifurcations::bifurcations_tex(family, labels),
         )
     }
 

@@ -1,5 +1,8 @@
 //! Text as LaTeX, so that pdflatex compiles whatever a table holds.
 
+use crate::density::Observable;
+use crate::system::Family;
+
 /// Letters and signs that LaTeX writes in mathematics.
 const MATHEMATICS: &[(char, &str)] = &[
     ('α', "\\alpha"),
@@ -55,6 +58,17 @@ const MATHEMATICS: &[(char, &str)] = &[
 
 /// Letters from À to ž that LaTeX's default encoding of fonts (OT1) cannot make.
 const NOT_IN_FONTS: &str = "ÐÞðþĄąĐđĘęĦħĮįĸĿŀŉŊŋŦŧŲų";
+
+/// The swept parameter as LaTeX mathematics, for example `f_{c}` or `\alpha`.
+pub(super) fn parameter(family: &Family) -> String {
+    mathematics(family.symbol())
+}
+
+/// An observable as LaTeX mathematics, for example `x, \dot{x}`.
+pub(super) fn observable(family: &Family, observable: Observable) -> String {
+    let symbols = observable.symbols(family).into_iter().map(mathematics);
+    symbols.collect::<Vec<_>>().join(", ")
+}
 
 /// A symbol with `_{}` and `^{}` as LaTeX mathematics: its Greek and dotted letters and signs as commands.
 pub(super) fn mathematics(symbol: &str) -> String {

@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
+use super::RunError;
 use super::cell::Cell;
 use super::columns::{Column, Columns, count, digits, number, optional, word};
 use super::findings::{findings_cell, parse_findings};
 use super::sentences::sentences;
-use super::{Naming, RunError};
-use crate::continuation::{Finding, Point, PointStatus, SolveReport};
+use crate::continuation::{Finding, Point, PointStatus, SolveReport, Subject};
 use crate::density::{Moments, Observable};
+use crate::system::Family;
 use crate::topology::Detection;
 
 /// The table's columns. `methods` are the names that a row may give as its method where the table is read.
@@ -16,18 +17,18 @@ use crate::topology::Detection;
 /// A point without a density has empty cells. `edge_mass` is the largest over the axes of the mass in cells at an end of that
 /// axis' range. Signatures and distances are not read back: they follow from the densities.
 pub(super) fn columns<'a>(
-    naming: &Naming<'a>,
+    family: &'a Family,
     observables: &[Observable],
     methods: &'a [&'static str],
 ) -> Columns<'a, Point> {
-    let axes: Vec<&str> = (0..naming.model.axes.len())
-        .map(|axis| naming.axis(axis))
+    let axes: Vec<&str> = (0..family.model().axes.len())
+        .map(|axis| family.axis(axis))
         .collect();
-    let mut columns = Vec::from(of_solve(naming, methods));
+    let mut columns = Vec::from(of_solve(family, methods));
     for (axis, name) in axes.iter().enumerate() {
         columns.extend(of_moments(axis, name));
     }
-    columns.extend(of_detections(naming, observables));
+    columns.extend(of_detections(family, observables));
     columns.push(optional("distance", |point: &Point| point.distance));
     columns.push(
         digits("seconds", |point: &Point| format!("{:.3}", point.seconds))
@@ -55,15 +56,15 @@ pub(super) fn columns<'a>(
             |point, value| point.report.own.numerical_diffusion.extend(value),
         ));
     }
-    columns.extend(of_doubts(naming));
+    columns.extend(of_doubts(family));
     Columns(columns)
 }
 
 /// What was solved, and how.
-fn of_solve<'a>(naming: &Naming<'a>, methods: &'a [&'static str]) -> [Column<'a, Point>; 8] {
+fn of_solve<'a>(family: &'a Family, methods: &'a [&'static str]) -> [Column<'a, Point>; 8] {
     let edge_mass = |point: &Point| point.report.edge_mass.iter().copied().reduce(f64::max);
     [
-        number(naming.parameter, |point: &Point| point.value)
+        number(family.parameter(), |point: &Point| point.value)
             .read(|cell| cell.number(), |point, value| point.value = value),
         word("status", |point: &Point| {
             point.report.status.word().to_owned()
@@ -133,10 +134,10 @@ fn of_moments<'a>(axis: usize, name: &str) -> [Column<'a, Point>; 2] {
 }
 
 /// Counts of peaks and craters.
-fn of_detections<'a>(naming: &Naming<'_>, observables: &[Observable]) -> Vec<Column<'a, Point>> {
+fn of_detections<'a>(family: &Family, observables: &[Observable]) -> Vec<Column<'a, Point>> {
     let column = |kind: &str, number: usize, count: fn(&Detection) -> usize| {
         let of = move |point: &Point| point.detections.get(number).map(count);
-        let name = format!("{kind}_{}", naming.observable(observables[number]));
+        let name = format!("{kind}_{}", observables[number].name(family));
         digits(name, move |point| {
             of(point).map_or(String::new(), |count| count.to_string())
         })
@@ -150,8 +151,7 @@ fn of_detections<'a>(naming: &Naming<'_>, observables: &[Observable]) -> Vec<Col
 }
 
 /// What the solve says of its own errors, and what else it found.
-fn of_doubts<'a>(naming: &Naming<'a>) -> [Column<'a, Point>; 4] {
-    let naming = *naming;
+fn of_doubts<'a>(family: &'a Family) -> [Column<'a, Point>; 4] {
     // Tables of earlier versions have sentences alone, which are then kept as one.
     let set_told = |point: &mut Point, text: String| {
         let told = Some(text).filter(|text| !text.is_empty());
@@ -178,20 +178,20 @@ fn of_doubts<'a>(naming: &Naming<'a>) -> [Column<'a, Point>; 4] {
         )
         .newer(),
         word("warnings", move |point: &Point| {
-            sentences(&naming, &point.report.findings)
+            sentences(family, &point.report.findings)
         })
         .read(|cell| Ok(cell.text.to_owned()), set_told),
         word("findings", move |point: &Point| {
-            findings_cell(&naming, &point.report.findings)
+            findings_cell(family, &point.report.findings)
         })
-        .read(move |cell| findings(&naming, cell), set_findings)
+        .read(move |cell| findings(family, cell), set_findings)
         .newer(),
     ]
 }
 
 /// The findings that a cell tells.
-fn findings(naming: &Naming<'_>, cell: &Cell<'_>) -> Result<Vec<Finding>, RunError> {
-    parse_findings(naming, cell.text).map_err(|word| {
+fn findings(family: &Family, cell: &Cell<'_>) -> Result<Vec<Finding>, RunError> {
+    parse_findings(family, cell.text).map_err(|word| {
         let wrong = Cell {
             text: word,
             ..*cell
@@ -204,12 +204,8 @@ fn findings(naming: &Naming<'_>, cell: &Cell<'_>) -> Result<Vec<Finding>, RunErr
 ///
 /// # Errors
 /// [`RunError::Table`].
-pub fn points_csv(
-    naming: &Naming<'_>,
-    observables: &[Observable],
-    points: &[Point],
-) -> Result<String, RunError> {
-    columns(naming, observables, &[]).csv(ascending(points))
+pub fn points_csv(subject: &Subject, points: &[Point]) -> Result<String, RunError> {
+    columns(&subject.family, &subject.observables, &[]).csv(ascending(points))
 }
 
 /// Reads the table back: everything of its points but densities and what follows from them, in the order of the table.
@@ -218,10 +214,10 @@ pub fn points_csv(
 /// [`RunError::Read`]; [`RunError::Column`] and [`RunError::Row`] when the table is not one of this sweep.
 pub(super) fn read_points(
     path: &Path,
-    naming: &Naming<'_>,
+    family: &Family,
     methods: &[&'static str],
 ) -> Result<Vec<Point>, RunError> {
-    columns(naming, &[], methods).read(path, blank)
+    columns(family, &[], methods).read(path, blank)
 }
 
 /// Points in the order of tables.

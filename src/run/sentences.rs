@@ -1,20 +1,20 @@
 //! Findings in sentences, for the columns `warnings`, for `run.json` and for the terminal.
 
-use super::Naming;
 use crate::continuation::{Finding, ShiftedQuantity, SteadyClass};
+use crate::system::Family;
 
 /// What a finding says, in a sentence without a full stop.
-pub fn finding_in_words(naming: &Naming<'_>, finding: &Finding) -> String {
+pub fn finding_in_words(family: &Family, finding: &Finding) -> String {
     escape_in_words(finding)
-        .or_else(|| cells_in_words(naming, finding))
-        .unwrap_or_else(|| solve_in_words(naming, finding))
+        .or_else(|| cells_in_words(family, finding))
+        .unwrap_or_else(|| solve_in_words(family, finding))
 }
 
 /// All findings of a solve as one text.
-pub(super) fn sentences(naming: &Naming<'_>, findings: &[Finding]) -> String {
+pub(super) fn sentences(family: &Family, findings: &[Finding]) -> String {
     let sentences = findings
         .iter()
-        .map(|finding| finding_in_words(naming, finding));
+        .map(|finding| finding_in_words(family, finding));
     sentences.collect::<Vec<_>>().join("; ")
 }
 
@@ -61,12 +61,12 @@ fn escape_in_words(finding: &Finding) -> Option<String> {
 }
 
 /// Whether the cells are wide enough and fine enough.
-fn cells_in_words(naming: &Naming<'_>, finding: &Finding) -> Option<String> {
+fn cells_in_words(family: &Family, finding: &Finding) -> Option<String> {
     Some(match *finding {
         Finding::EdgeMass { axis, mass, range } => format!(
             "{:.2} % of the mass lies in the outermost cells of {}: widen its range beyond [{}, {}]",
             100.0 * mass,
-            naming.axis(axis),
+            family.axis(axis),
             range[0],
             range[1],
         ),
@@ -82,10 +82,10 @@ fn cells_in_words(naming: &Naming<'_>, finding: &Finding) -> Option<String> {
         Finding::WideCells { axis, peclet } => format!(
             "the cells of {} are too wide for the noise (cell Péclet number of damping and friction {peclet:.1}): \
              use more cells",
-            naming.axis(axis)
+            family.axis(axis)
         ),
         Finding::SmearedKink { axis, widths } => {
-            let axis = naming.axis(axis);
+            let axis = family.axis(axis);
             format!(
                 "the cells of {axis} at the switching surface are {widths:.0} times as wide as the layer that holds the \
                  kink of the density, so the kink is smeared: grade = \"auto\" on {axis} resolves it"
@@ -93,7 +93,7 @@ fn cells_in_words(naming: &Naming<'_>, finding: &Finding) -> Option<String> {
         }
         Finding::SurfaceOffFaces { axis, at } => format!(
             "no face of {} falls on the switching surface at {at}: use an even count or grade the axis toward it",
-            naming.axis(axis)
+            family.axis(axis)
         ),
         Finding::NumericalDiffusion { share } => format!(
             "the cells add {:.0} % to the noise (numerical diffusion): use more cells or a longer map step",
@@ -104,7 +104,7 @@ fn cells_in_words(naming: &Naming<'_>, finding: &Finding) -> Option<String> {
 }
 
 /// How the solver fared, and the trajectories.
-fn solve_in_words(naming: &Naming<'_>, finding: &Finding) -> String {
+fn solve_in_words(family: &Family, finding: &Finding) -> String {
     match *finding {
         Finding::NotConverged { error } => format!(
             "the solver stopped before its tolerance, with an estimated error of {error:.1e}"
@@ -125,7 +125,7 @@ fn solve_in_words(naming: &Naming<'_>, finding: &Finding) -> String {
         } => format!(
             "the time step {time_step:.4} shifts {} by about {:+.1} % (± {:.1} %; found by halving it on a sample): \
              use a shorter one, `time_step = \"auto\"`, or `integrator = \"heun\"`",
-            quantity_in_words(naming, quantity),
+            quantity_in_words(family, quantity),
             100.0 * relative,
             100.0 * standard_error
         ),
@@ -159,14 +159,14 @@ fn class_in_words(class: &SteadyClass) -> String {
     )
 }
 
-fn quantity_in_words(naming: &Naming<'_>, quantity: ShiftedQuantity) -> String {
+fn quantity_in_words(family: &Family, quantity: ShiftedQuantity) -> String {
     match quantity {
-        ShiftedQuantity::Variance(axis) => format!("the variance of {}", naming.axis(axis)),
+        ShiftedQuantity::Variance(axis) => format!("the variance of {}", family.axis(axis)),
         ShiftedQuantity::Energy => "the mean energy".to_owned(),
         ShiftedQuantity::SurfaceMass(axis) => {
             format!(
                 "the mass beside the switching surface of {}",
-                naming.axis(axis)
+                family.axis(axis)
             )
         }
     }

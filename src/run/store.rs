@@ -14,9 +14,10 @@ use zarrs::storage::store::MemoryStore;
 use zarrs::storage::{ListableStorageTraits, ReadableStorageTraits};
 
 use super::arrays::{Layout, PARAMETER_CHUNK, REPLICATE_CHUNK};
-use super::{Naming, RunError, atomic::write_atomically};
+use super::{RunError, atomic::write_atomically};
 use crate::density::{EstimatedDensity, Variants};
 use crate::space::Axis;
+use crate::system::Family;
 
 /// The store of a run's densities.
 #[derive(Debug)]
@@ -46,12 +47,12 @@ impl DensityStore {
     /// [`RunError::Store`] or [`RunError::Write`].
     pub fn append(
         &mut self,
-        naming: &Naming<'_>,
+        family: &Family,
         value: f64,
         densities: &[EstimatedDensity],
     ) -> Result<(), RunError> {
-        self.add(naming, value, densities)?;
-        self.write_all_metadata(naming)
+        self.add(family, value, densities)?;
+        self.write_all_metadata(family)
     }
 
     /// Replaces the whole store by the given densities, in their order; the old one stays until the new one is
@@ -61,7 +62,7 @@ impl DensityStore {
     /// As [`DensityStore::append`].
     pub fn replace(
         &mut self,
-        naming: &Naming<'_>,
+        family: &Family,
         densities: &[(f64, &[EstimatedDensity])],
     ) -> Result<(), RunError> {
         if densities.is_empty() {
@@ -80,9 +81,9 @@ impl DensityStore {
         }
         let mut store = Self::new(&fresh);
         for (value, densities) in densities {
-            store.add(naming, *value, densities)?;
+            store.add(family, *value, densities)?;
         }
-        store.write_all_metadata(naming)?;
+        store.write_all_metadata(family)?;
         if self.path.exists() {
             std::fs::rename(&self.path, &old).map_err(failed)?;
         }
@@ -98,12 +99,12 @@ impl DensityStore {
     /// Writes the chunks of one parameter value, and with the first those of the axes.
     fn add(
         &mut self,
-        naming: &Naming<'_>,
+        family: &Family,
         value: f64,
         densities: &[EstimatedDensity],
     ) -> Result<(), RunError> {
         self.values.push(value);
-        for (name, axis) in axes_of(naming, densities) {
+        for (name, axis) in axes_of(family, densities) {
             if self.axes.iter().all(|known| known.name != name) {
                 let [centres, edges] = Layout::axis(&name, &axis);
                 self.write_chunk(&centres, &[0], &axis.centres())?;
@@ -112,50 +113,50 @@ impl DensityStore {
             }
         }
         for estimate in densities {
-            self.write_estimate(naming, estimate)?;
+            self.write_estimate(family, estimate)?;
         }
-        self.write_parameter(naming)
+        self.write_parameter(family)
     }
 
     /// Writes the metadata of every array at the present number of parameter values, and last that of the store.
-    fn write_all_metadata(&self, naming: &Naming<'_>) -> Result<(), RunError> {
-        let parameter = Layout::parameter(naming, self.values.len() as u64);
+    fn write_all_metadata(&self, family: &Family) -> Result<(), RunError> {
+        let parameter = Layout::parameter(family, self.values.len() as u64);
         let mut metadata = Map::new();
         for layout in self.axes.iter().chain([&parameter]).chain(&self.arrays) {
             self.write_metadata(layout, &mut metadata)?;
         }
-        self.write_root(naming, metadata)
+        self.write_root(family, metadata)
     }
 
     /// Writes the chunks of one density at the last parameter value.
     fn write_estimate(
         &mut self,
-        naming: &Naming<'_>,
+        family: &Family,
         estimate: &EstimatedDensity,
     ) -> Result<(), RunError> {
         let values = &estimate.density.values;
-        self.write_values(Layout::density(naming, estimate), values)?;
-        self.write_values(Layout::error(naming, estimate), &estimate.standard_error)?;
+        self.write_values(Layout::density(family, estimate), values)?;
+        self.write_values(Layout::error(family, estimate), &estimate.standard_error)?;
         match &estimate.variants {
             Variants::None => {}
             Variants::Scheme(second) => {
-                self.write_values(Layout::second(naming, estimate), second)?;
+                self.write_values(Layout::second(family, estimate), second)?;
             }
             Variants::Jackknife(replicates) => {
-                let layout = Layout::replicates(naming, estimate, replicates.len());
+                let layout = Layout::replicates(family, estimate, replicates.len());
                 self.write_replicates(layout, replicates)?;
             }
         }
         let mut number = 0;
         for kink in &estimate.structure.kinks {
             // A kink keeps its number although another may be missing at some parameter value.
-            let mut layout = Layout::kink(naming, estimate, kink, number);
+            let mut layout = Layout::kink(family, estimate, kink, number);
             match self.arrays.iter().find(|known| known.is_kink(&layout)) {
                 Some(known) => layout.name.clone_from(&known.name),
                 None => {
                     while self.arrays.iter().any(|known| known.name == layout.name) {
                         number += 1;
-                        layout = Layout::kink(naming, estimate, kink, number);
+                        layout = Layout::kink(family, estimate, kink, number);
                     }
                 }
             }
@@ -210,9 +211,9 @@ impl DensityStore {
     }
 
     /// Writes the chunk of parameter values that holds the last one.
-    fn write_parameter(&self, naming: &Naming<'_>) -> Result<(), RunError> {
+    fn write_parameter(&self, family: &Family) -> Result<(), RunError> {
         let count = self.values.len() as u64;
-        let layout = Layout::parameter(naming, count);
+        let layout = Layout::parameter(family, count);
         let index = (count - 1) / PARAMETER_CHUNK;
         let mut chunk = self.values[(index * PARAMETER_CHUNK) as usize..].to_vec();
         chunk.resize(PARAMETER_CHUNK as usize, 0.0);
@@ -274,15 +275,11 @@ impl DensityStore {
     }
 
     /// Writes the group's metadata with that of all arrays, so that readers need not list the folder.
-    fn write_root(
-        &self,
-        naming: &Naming<'_>,
-        metadata: Map<String, Value>,
-    ) -> Result<(), RunError> {
+    fn write_root(&self, family: &Family, metadata: Map<String, Value>) -> Result<(), RunError> {
         let root = json!({
             "zarr_format": 3,
             "node_type": "group",
-            "attributes": { "title": naming.model.title, "model": naming.model.name },
+            "attributes": { "title": family.model().title, "model": family.model().name },
             "consolidated_metadata": {
                 "kind": "inline",
                 "must_understand": false,
@@ -295,12 +292,12 @@ impl DensityStore {
 }
 
 /// Every axis that occurs in the densities, by name, each once.
-fn axes_of(naming: &Naming<'_>, densities: &[EstimatedDensity]) -> Vec<(String, Axis)> {
+fn axes_of(family: &Family, densities: &[EstimatedDensity]) -> Vec<(String, Axis)> {
     let mut axes: Vec<(String, Axis)> = Vec::new();
     for estimate in densities {
         let numbers = estimate.observable.axes();
         for (number, axis) in numbers.iter().zip(&estimate.density.axes) {
-            let name = naming.axis(*number);
+            let name = family.axis(*number);
             if axes.iter().all(|(known, _)| known != name) {
                 axes.push((name.to_owned(), axis.clone()));
             }

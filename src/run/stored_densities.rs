@@ -7,9 +7,11 @@ use serde_json::Value;
 use zarrs::array::{Array, ArraySubset};
 use zarrs::filesystem::FilesystemStore;
 
-use super::{Naming, RunError, arrays};
+use super::{RunError, arrays};
+use crate::continuation::Subject;
 use crate::density::{Density, EstimatedDensity, Kink, Observable, Structure, Variants};
 use crate::space::{Axis, CellSpace};
+use crate::system::Family;
 
 type StoredArray = Array<FilesystemStore>;
 
@@ -47,15 +49,16 @@ impl StoredDensities {
     /// [`RunError::Cells`] when its cells are not those of `space`.
     pub(super) fn open(
         path: &Path,
-        naming: &Naming<'_>,
+        subject: &Subject,
         space: &CellSpace,
-        observables: &[Observable],
     ) -> Result<Self, RunError> {
         let opened = Opened::new(path)?;
-        let values = opened.whole(naming.parameter)?;
-        let observed = observables
+        let family = &subject.family;
+        let values = opened.whole(family.parameter())?;
+        let observed = subject
+            .observables
             .iter()
-            .map(|&observable| opened.observed(naming, space, observable))
+            .map(|&observable| opened.observed(family, space, observable))
             .collect::<Result<_, _>>()?;
         Ok(Self {
             path: path.to_owned(),
@@ -211,14 +214,14 @@ impl Opened {
 
     fn observed(
         &self,
-        naming: &Naming<'_>,
+        family: &Family,
         space: &CellSpace,
         observable: Observable,
     ) -> Result<Observed, RunError> {
-        let name = arrays::density(naming, observable);
+        let name = arrays::density(family, observable);
         if !self.has(&name) {
             return Err(RunError::NotStored {
-                observable: naming.observable(observable),
+                observable: observable.name(family),
                 stored: self.stored(),
             });
         }
@@ -228,10 +231,10 @@ impl Opened {
             .filter_map(|&axis| space.axes().get(axis).cloned())
             .collect();
         for (&number, axis) in numbers.iter().zip(&axes) {
-            if self.whole(&arrays::edges(naming.axis(number)))? != axis.edges() {
+            if self.whole(&arrays::edges(family.axis(number)))? != axis.edges() {
                 return Err(RunError::Cells {
                     path: self.path.clone(),
-                    axis: naming.axis(number).to_owned(),
+                    axis: family.axis(number).to_owned(),
                 });
             }
         }
@@ -244,11 +247,11 @@ impl Opened {
         });
         Ok(Observed {
             observable,
-            error: self.shaped(&arrays::error(naming, observable), &shape)?,
-            second: self.optional(&arrays::second(naming, observable), &shape)?,
-            replicates: self.optional(&arrays::replicates(naming, observable), &shape)?,
+            error: self.shaped(&arrays::error(family, observable), &shape)?,
+            second: self.optional(&arrays::second(family, observable), &shape)?,
+            replicates: self.optional(&arrays::replicates(family, observable), &shape)?,
             centre: centre.filter(|centre| centre.len() == axes.len()),
-            kinks: self.kinks(naming, observable, &shape)?,
+            kinks: self.kinks(family, observable, &shape)?,
             axes,
             density,
         })
@@ -257,11 +260,11 @@ impl Opened {
     /// The kinks of a density in the order of their numbers.
     fn kinks(
         &self,
-        naming: &Naming<'_>,
+        family: &Family,
         observable: Observable,
         shape: &[u64],
     ) -> Result<Vec<StoredKink>, RunError> {
-        let prefix = arrays::kink_prefix(naming, observable);
+        let prefix = arrays::kink_prefix(family, observable);
         let names = self.names.iter().filter(|name| name.starts_with(&prefix));
         names
             .map(|name| {
@@ -269,7 +272,7 @@ impl Opened {
                 let attributes = array.attributes();
                 let axis = attributes.get(arrays::KINK_AXIS).and_then(Value::as_str);
                 let axes = observable.axes();
-                let axis = axes.iter().position(|&a| Some(naming.axis(a)) == axis);
+                let axis = axes.iter().position(|&a| Some(family.axis(a)) == axis);
                 let at = attributes.get(arrays::KINK_AT).and_then(Value::as_f64);
                 let (Some(axis), Some(at)) = (axis, at) else {
                     let words = format!("array `{name}` does not say on which plane it stands");

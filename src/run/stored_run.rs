@@ -8,9 +8,8 @@ use sha2::{Digest, Sha256};
 use super::checks::read_checks;
 use super::points_table::read_points;
 use super::stored_densities::StoredDensities;
-use super::{Ending, Naming, PhaseSeconds, RunError};
-use crate::continuation::{FinerIndicator, Point};
-use crate::density::Observable;
+use super::{Ending, PhaseSeconds, RunError};
+use crate::continuation::{FinerIndicator, Point, Subject};
 use crate::space::CellSpace;
 
 /// The folder of a run that is read.
@@ -110,23 +109,17 @@ impl StoredRun {
         &self.manifest.warnings
     }
 
-    /// What the sweep saw on its finer grid, of `observables`; `None` where it made no checks.
+    /// What the sweep saw on its finer grid, of the observables of `subject`; `None` where it made no checks.
     ///
     /// # Errors
     /// [`RunError::Read`], [`RunError::Column`] and [`RunError::Row`].
-    pub fn finer(
-        &self,
-        naming: &Naming<'_>,
-        observables: &[Observable],
-    ) -> Result<Option<Vec<FinerIndicator>>, RunError> {
+    pub fn finer(&self, subject: &Subject) -> Result<Option<Vec<FinerIndicator>>, RunError> {
         let path = self.path.join("checks.csv");
         let there = path.is_file();
-        there
-            .then(|| read_checks(&path, naming, observables))
-            .transpose()
+        there.then(|| read_checks(&path, subject)).transpose()
     }
 
-    /// All points in the order of the table, with the densities of `observables`, bit for bit as they were solved; detections
+    /// All points in the order of the table, with the densities of the observables of `subject`, bit for bit as they were solved; detections
     /// are empty. A run that was killed may hold a density whose row was not written: it is left out.
     ///
     /// # Errors
@@ -134,23 +127,23 @@ impl StoredRun {
     /// [`RunError::NotStored`], [`RunError::Cells`] and [`RunError::NoDensity`] for the densities.
     pub fn points(
         &self,
-        naming: &Naming<'_>,
-        methods: &[&'static str],
+        subject: &Subject,
         space: &CellSpace,
-        observables: &[Observable],
+        methods: &[&'static str],
     ) -> Result<Vec<Point>, RunError> {
         let table = self.path.join("points.csv");
-        let mut points = read_points(&table, naming, methods)?;
+        let family = &subject.family;
+        let mut points = read_points(&table, family, methods)?;
         // Only points with a density have moments.
         if points.iter().all(|point| point.moments.is_empty()) {
             return Ok(points);
         }
         let path = self.path.join("densities.zarr");
-        let stored = StoredDensities::open(&path, naming, space, observables)?;
+        let stored = StoredDensities::open(&path, subject, space)?;
         for point in points.iter_mut().filter(|point| !point.moments.is_empty()) {
             point.densities = stored.at(point.value)?.ok_or_else(|| RunError::NoDensity {
                 path: path.clone(),
-                parameter: naming.parameter.to_owned(),
+                parameter: family.parameter().to_owned(),
                 value: point.value,
             })?;
         }

@@ -1,17 +1,17 @@
 //! A run written and read back: densities bit for bit, whatever they carry, and what is said of broken files.
 
 use super::*;
-use crate::continuation::{Finding, MethodPart, Point, PointStatus, SolveReport};
+use crate::continuation::{Finding, MethodPart, Point, PointStatus, SolveReport, Subject};
 use crate::density::{Density, EstimatedDensity, Kink, Moments, Observable, Structure, Variants};
 use crate::space::{Axis, CellSpace, Grading};
-use crate::system::registry;
+use crate::system::examples::coulomb;
 
 const OBSERVABLES: [Observable; 2] = [Observable::Marginal(1), Observable::Joint(0, 1)];
 
-fn naming() -> Naming<'static> {
-    Naming {
-        model: &registry::models()[0],
-        parameter: "f_c",
+fn subject(observables: &[Observable]) -> Subject {
+    Subject {
+        family: coulomb(),
+        observables: observables.to_vec(),
     }
 }
 
@@ -128,7 +128,7 @@ const RESOLVED: &str = "title = \"t\"\nfrom = 0.30000000000000004\n";
 fn write(folder: &std::path::Path, points: &[Point]) {
     let mut run = RunFolder::create(folder).unwrap();
     for point in points {
-        run.add_point(&naming(), &OBSERVABLES, point).unwrap();
+        run.add_point(&subject(&OBSERVABLES), point).unwrap();
     }
     let manifest = Manifest::start(RESOLVED, 1, 2).unwrap();
     run.write_manifest(&manifest).unwrap();
@@ -136,7 +136,7 @@ fn write(folder: &std::path::Path, points: &[Point]) {
 
 fn read(folder: &std::path::Path) -> Result<Vec<Point>, RunError> {
     let run = StoredRun::open(folder)?;
-    run.points(&naming(), &["generator", "sgcm"], &space(), &OBSERVABLES)
+    run.points(&subject(&OBSERVABLES), &space(), &["generator", "sgcm"])
 }
 
 /// Equality of bits: `==` would take -0.0 for 0.0.
@@ -206,7 +206,7 @@ fn a_store_in_its_final_order_holds_the_same() {
         .iter()
         .map(|(value, d)| (*value, d.as_slice()))
         .collect();
-    store.replace(&naming(), &borrowed).unwrap();
+    store.replace(&coulomb(), &borrowed).unwrap();
     let found = read(folder.path()).unwrap();
     for (found, wanted) in found.iter().zip(&points) {
         assert!(bits(found) == bits(wanted), "{}", wanted.value);
@@ -374,7 +374,7 @@ fn other_cells_and_other_observables_are_refused() {
     write(folder.path(), &[point(0.5, None, 0)]);
     let run = StoredRun::open(folder.path()).unwrap();
     let points = |space: &CellSpace, observables: &[Observable]| {
-        run.points(&naming(), &["sgcm"], space, observables)
+        run.points(&subject(observables), space, &["sgcm"])
             .unwrap_err()
     };
     let error = points(&space(), &[Observable::Marginal(0)]);

@@ -5,21 +5,19 @@ use std::sync::Arc;
 use zarrs::array::Array;
 
 use super::*;
-use crate::continuation::{Finding, MethodPart, Point, PointStatus, SolveReport, SweepResult};
+use crate::continuation::{
+    Finding, MethodPart, Point, PointStatus, SolveReport, Subject, SweepResult,
+};
 use crate::density::{Density, EstimatedDensity, Moments, Observable};
 use crate::space::Axis;
-use crate::system::registry;
+use crate::system::examples::coulomb;
 use crate::topology::{Detection, Feature, FeatureKind, Signature, Verdict};
 
-fn naming() -> Naming<'static> {
-    Naming {
-        model: &registry::models()[0],
-        parameter: "f_c",
+fn subject() -> Subject {
+    Subject {
+        family: coulomb(),
+        observables: vec![Observable::Marginal(0), Observable::Joint(0, 1)],
     }
-}
-
-fn observables() -> Vec<Observable> {
-    vec![Observable::Marginal(0), Observable::Joint(0, 1)]
 }
 
 fn point(value: f64, solved: bool) -> Point {
@@ -99,8 +97,7 @@ fn point(value: f64, solved: bool) -> Point {
 
 fn result(points: Vec<Point>) -> SweepResult {
     SweepResult {
-        parameter: "f_c".into(),
-        observables: observables(),
+        subject: subject(),
         points,
         labels: Vec::new(),
         finer: None,
@@ -118,7 +115,7 @@ fn read_array(store: &std::path::Path, name: &str) -> (Vec<u64>, Vec<f64>) {
 #[test]
 fn points_have_the_columns_of_the_contract_and_no_nan() {
     let points = [point(0.01, true), point(-0.02, false)];
-    let text = points_csv(&naming(), &observables(), &points).unwrap();
+    let text = points_csv(&subject(), &points).unwrap();
     let mut lines = text.lines();
     assert_eq!(
         lines.next().unwrap(),
@@ -143,7 +140,7 @@ fn points_have_the_columns_of_the_contract_and_no_nan() {
 
 #[test]
 fn features_carry_both_coordinates() {
-    let text = features_csv(&naming(), &observables(), &[point(0.01, true)]).unwrap();
+    let text = features_csv(&subject(), &[point(0.01, true)]).unwrap();
     assert!(text.contains("0.01,xy,peak,0.25,2,1,3,1.5,0.1,present\n"));
 }
 
@@ -154,13 +151,13 @@ fn the_store_reads_back_in_ascending_order_with_names() {
     let mut points = Vec::new();
     for (value, solved) in [(0.01, true), (0.0, false), (-0.02, true)] {
         let point = point(value, solved);
-        run.add_point(&naming(), &observables(), &point).unwrap();
+        run.add_point(&subject(), &point).unwrap();
         points.push(point);
     }
     let store = folder.path().join("densities.zarr");
     assert_eq!(read_array(&store, "f_c"), (vec![2], vec![0.01, -0.02]));
     points.sort_by(|a, b| a.value.total_cmp(&b.value));
-    run.finish(&naming(), &result(points)).unwrap();
+    run.finish(&result(points)).unwrap();
     assert_eq!(read_array(&store, "f_c"), (vec![2], vec![-0.02, 0.01]));
     let (shape, values) = read_array(&store, "p_xy");
     assert_eq!(shape, [2, 2, 3]);
@@ -182,7 +179,7 @@ fn tables_grow_by_rows_and_end_in_ascending_order() {
     let (mut points, mut before) = (Vec::new(), [String::new(), String::new()]);
     for value in [0.3, 0.1, 0.2, 0.25] {
         let point = point(value, value != 0.2);
-        run.add_point(&naming(), &observables(), &point).unwrap();
+        run.add_point(&subject(), &point).unwrap();
         points.push(point);
         // What was written is never written again: the work of a point does not grow with their number.
         for (name, before) in ["points.csv", "features.csv"].iter().zip(&mut before) {
@@ -198,7 +195,7 @@ fn tables_grow_by_rows_and_end_in_ascending_order() {
     };
     assert_eq!(first(rows(&before[0])), ["0.3", "0.1", "0.2", "0.25"]);
     points.sort_by(|a, b| a.value.total_cmp(&b.value));
-    run.finish(&naming(), &result(points)).unwrap();
+    run.finish(&result(points)).unwrap();
     for (name, before) in ["points.csv", "features.csv"].iter().zip(before) {
         let now = std::fs::read_to_string(folder.path().join(name)).unwrap();
         let mut wanted = rows(&before);
@@ -251,12 +248,12 @@ fn tables_for_people_round_to_the_error() {
         ..row.clone()
     };
     let rows = [end, row];
-    insta::assert_snapshot!(bifurcations_markdown(&naming(), &rows), @r"
+    insta::assert_snapshot!(bifurcations_markdown(&coulomb(), &rows), @r"
     | label | f_c | bracket | observable | before | after | change | status |
     | --- | --- | --- | --- | --- | --- | --- | --- |
     | PB1 | -0.01235 ± 0.00045 | [-0.01270, -0.01190] | y | 2 peaks | 1 peak | symmetric split | unresolved |
     ");
-    insta::assert_snapshot!(bifurcations_tex(&naming(), &rows), @r"
+    insta::assert_snapshot!(bifurcations_tex(&coulomb(), &rows), @r"
     % needs \usepackage{booktabs}
     \begin{tabular}{lllllll}
     \toprule
@@ -266,7 +263,7 @@ fn tables_for_people_round_to_the_error() {
     \bottomrule
     \end{tabular}
     ");
-    let csv = bifurcations_csv(&naming(), &rows).unwrap();
+    let csv = bifurcations_csv(&coulomb(), &rows).unwrap();
     assert_eq!(
         csv.lines().next().unwrap(),
         "label,parameter,value,error,lower,upper,observable,before,after,status,change,method,error_solver,error_grid,error_sampling"
@@ -275,7 +272,7 @@ fn tables_for_people_round_to_the_error() {
         csv.contains("PB1,f_c,-0.012345678,0.00045,-0.0127,-0.0119,y,2 peaks,1 peak,unresolved")
     );
     let json: serde_json::Value =
-        serde_json::from_str(&bifurcations_json(&naming(), &rows).unwrap()).unwrap();
+        serde_json::from_str(&bifurcations_json(&coulomb(), &rows).unwrap()).unwrap();
     assert_eq!(json[1]["value"], -0.012345678);
     assert!(json[0]["observable"].is_null());
 }

@@ -61,6 +61,14 @@ impl Family {
         &self.path
     }
 
+    /// The values that the path does not move, in the model's order of parameters.
+    pub fn fixed(&self) -> impl Iterator<Item = (&str, f64)> {
+        let parameters = self.model.parameters.iter().zip(self.values.as_slice());
+        let moves = |name: &String| self.path.moved().contains(name);
+        let fixed = parameters.filter(move |(parameter, _)| !moves(&parameter.name));
+        fixed.map(|(parameter, &value)| (parameter.name.as_str(), value))
+    }
+
     /// Name of the path's coordinate: that of the swept parameter, where it is one.
     pub fn parameter(&self) -> &str {
         self.path.name()

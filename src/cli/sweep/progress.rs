@@ -5,8 +5,7 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::continuation::{Plan, Point};
-use crate::run::Naming;
+use crate::continuation::{Point, Subject};
 
 /// Shows how far a sweep is.
 pub(in crate::cli) struct Progress {
@@ -39,18 +38,18 @@ impl Progress {
     /// A point is done.
     pub(in crate::cli) fn point(
         &self,
-        naming: &Naming<'_>,
-        plan: &Plan,
+        subject: &Subject,
         point: &Point,
         done: usize,
         remaining: usize,
     ) {
-        let mut text = format!("{} = {:.6}", naming.parameter, point.value);
+        let family = &subject.family;
+        let mut text = format!("{} = {:.6}", family.parameter(), point.value);
         if point.detections.is_empty() {
             text += &format!(": {}", point.report.status.word());
         }
-        for (&observable, detection) in plan.observables.iter().zip(&point.detections) {
-            let name = naming.observable(observable);
+        for (&observable, detection) in subject.observables.iter().zip(&point.detections) {
+            let name = observable.name(family);
             text += &format!("  {name}: {}", detection.signature);
         }
         match &self.bar {

@@ -5,10 +5,12 @@ use std::path::Path;
 use comfy_table::{Table, presets};
 
 use crate::continuation::{LabelledPoint, PointType, SweepResult};
-use crate::run::{Naming, format_number, format_with_error};
+use crate::run::{format_number, format_with_error};
+use crate::system::Family;
 
 /// The labelled points as a table, the signatures at both ends, and where the files are.
-pub(in crate::cli) fn text(naming: &Naming<'_>, result: &SweepResult, folder: &Path) -> String {
+pub(in crate::cli) fn text(result: &SweepResult, folder: &Path) -> String {
+    let family = &result.subject.family;
     let rows: Vec<&LabelledPoint> = result
         .labels
         .iter()
@@ -16,14 +18,14 @@ pub(in crate::cli) fn text(naming: &Naming<'_>, result: &SweepResult, folder: &P
         .collect();
     let mut text = String::new();
     if rows.is_empty() {
-        text += &format!("no change of topology along {}\n", naming.parameter);
+        text += &format!("no change of topology along {}\n", family.parameter());
     } else {
-        text += &table(naming, &rows);
+        text += &table(family, &rows);
     }
     if result.points.iter().all(|point| point.densities.is_empty()) {
         text += "no steady state in Ω at any value: nothing to draw\n";
     }
-    text += &ends(naming, result);
+    text += &ends(result);
     if let Some(distance) = result.largest_distance() {
         text += &format!("largest Hellinger distance between neighbours: {distance:.2}\n");
     }
@@ -37,11 +39,11 @@ pub(in crate::cli) fn text(naming: &Naming<'_>, result: &SweepResult, folder: &P
     text
 }
 
-fn table(naming: &Naming<'_>, rows: &[&LabelledPoint]) -> String {
+fn table(family: &Family, rows: &[&LabelledPoint]) -> String {
     let mut table = Table::new();
     table.load_style(presets::NOTHING).set_header([
         "label",
-        naming.parameter,
+        family.parameter(),
         "bracket",
         "observable",
         "before → after, what happens",
@@ -55,9 +57,7 @@ fn table(naming: &Naming<'_>, rows: &[&LabelledPoint]) -> String {
             (Some(before), Some(after)) => format!("{before} → {after}, {}", row.change),
             _ => String::new(),
         };
-        let observable = row
-            .observable
-            .map(|observable| naming.observable(observable));
+        let observable = row.observable.map(|observable| observable.name(family));
         table.add_row([
             row.label.clone(),
             format!("{value} ± {error}"),
@@ -75,7 +75,8 @@ fn table(naming: &Naming<'_>, rows: &[&LabelledPoint]) -> String {
 }
 
 /// The signatures at both ends of the sweep.
-fn ends(naming: &Naming<'_>, result: &SweepResult) -> String {
+fn ends(result: &SweepResult) -> String {
+    let family = &result.subject.family;
     let mut text = String::new();
     let solved = || {
         result
@@ -88,15 +89,20 @@ fn ends(naming: &Naming<'_>, result: &SweepResult) -> String {
         .flatten()
     {
         let words: Vec<String> = result
+            .subject
             .observables
             .iter()
             .zip(&point.detections)
             .map(|(&observable, detection)| {
-                format!("{} {}", naming.observable(observable), detection.signature)
+                format!("{} {}", observable.name(family), detection.signature)
             })
             .collect();
         let value = format_number(point.value);
-        text += &format!("at {} = {value}: {}\n", naming.parameter, words.join(", "));
+        text += &format!(
+            "at {} = {value}: {}\n",
+            family.parameter(),
+            words.join(", ")
+        );
     }
     text
 }

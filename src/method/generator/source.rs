@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::GeneratorMethodOptions;
 use super::relaxation::Relaxation;
 use super::trail::{self, Trail};
-use crate::continuation::{DensitySource, Finding, Solution, SourceError};
+use crate::continuation::{DensitySource, Finding, Solution, SourceError, Subject};
 use crate::density::{EstimatedDensity, Moments, Observable, estimate_from_difference};
 use crate::generator::{
     AdvectiveScheme, Generator, GeneratorOptions, assemble, assemble_derivative, cell_masses,
@@ -20,10 +20,10 @@ use crate::generator::{
 };
 use crate::method::report::{QUIET_ESCAPE, Reporter};
 use crate::method::structure::{closed_ends, kinked_surfaces, structure};
-use crate::method::{MethodError, Setting, State};
+use crate::method::{MethodError, Problem, State};
 use crate::space::CellSpace;
 use crate::stationary::generator::{RateInfo, RateOptions, RateSolver, RateSteadyState};
-use crate::system::{Model, ParameterValues, SwitchingSurface, System};
+use crate::system::{SwitchingSurface, System};
 
 /// Name of the method in tables.
 const METHOD: &str = "generator";
@@ -39,12 +39,7 @@ const FINER: [f64; 2] = [1.5, 1.25];
 
 /// Densities along one parameter by the generator.
 pub struct GeneratorSource {
-    model: Arc<Model>,
-    values: ParameterValues,
-    parameter: String,
-    range: (f64, f64),
-    space: CellSpace,
-    observables: Vec<Observable>,
+    problem: Problem,
     options: GeneratorMethodOptions,
     closed_ends: Vec<[bool; 2]>,
     kinked: Vec<SwitchingSurface>,
@@ -54,7 +49,7 @@ pub struct GeneratorSource {
 
 /// What was solved at one point.
 struct Solved {
-    values: ParameterValues,
+    value: f64,
     system: Arc<dyn System>,
     steady: RateSteadyState,
     /// The generator by the second scheme.
@@ -65,33 +60,24 @@ impl GeneratorSource {
     /// Prepares a source. Setting `cancelled` makes the next solve return [`SourceError::Interrupted`].
     ///
     /// # Errors
-    /// [`MethodError`] when the ends of the range are not allowed or an observable names an axis that does not
-    /// exist.
+    /// [`MethodError`].
     pub fn new(
-        setting: &Setting<'_>,
+        problem: &Problem,
         options: &GeneratorMethodOptions,
         cancelled: Arc<AtomicBool>,
     ) -> Result<Self, MethodError> {
-        for &observable in setting.observables {
-            crate::density::Projection::new(setting.space, observable)?;
-        }
-        let systems = setting.systems_along()?;
+        let (systems, space) = (problem.family().along()?, problem.space());
         let rates = RateOptions {
             tolerance: options.solver_tolerance,
             memory_limit_bytes: (options.memory_limit * 1e9) as u64,
             ..RateOptions::default()
         };
         Ok(Self {
-            model: setting.model.clone(),
-            values: setting.values.clone(),
-            parameter: setting.parameter.to_owned(),
-            range: setting.range,
-            space: setting.space.clone(),
-            observables: setting.observables.to_vec(),
+            problem: problem.clone(),
             options: options.clone(),
-            closed_ends: closed_ends(&systems, setting.space),
-            kinked: kinked_surfaces(&systems, setting.space),
-            solver: Mutex::new(RateSolver::new(setting.space.clone(), rates)),
+            closed_ends: closed_ends(&systems, space),
+            kinked: kinked_surfaces(&systems, space),
+            solver: Mutex::new(RateSolver::new(space.clone(), rates)),
             cancelled,
         })
     }
@@ -101,12 +87,12 @@ impl GeneratorSource {
         system: &dyn System,
         scheme: AdvectiveScheme,
     ) -> Result<Generator, MethodError> {
-        Ok(assemble(system, &self.space, &GeneratorOptions { scheme })?)
+        let options = GeneratorOptions { scheme };
+        Ok(assemble(system, self.problem.space(), &options)?)
     }
 
     fn try_solve(&self, value: f64, start: Option<&State>) -> Result<Solution<State>, MethodError> {
-        let values = self.model.with(&self.values, &self.parameter, value)?;
-        let system = self.model.system(&values);
+        let system = self.problem.family().at(value)?;
         let generator = self.assemble(system.as_ref(), self.options.scheme)?;
         let trail = start.map(|state| &state.trail);
         let guess = trail.and_then(|trail| trail.mass_at(value));
@@ -119,12 +105,12 @@ impl GeneratorSource {
             || self.assemble(system.as_ref(), companion(self.options.scheme)),
         );
         let solved = Solved {
-            values,
+            value,
             system,
             steady: steady?,
             second: second?,
         };
-        let mut solution = self.solution(&mut solver, value, &solved, trail)?;
+        let mut solution = self.solution(&mut solver, &solved, trail)?;
         if let (Some(state), None) = (&mut solution.state, start) {
             state.trail.slope = self.slope(&mut solver, &solved).map(Arc::new);
         }
@@ -135,10 +121,10 @@ impl GeneratorSource {
     fn solution(
         &self,
         solver: &mut RateSolver,
-        value: f64,
         solved: &Solved,
         before: Option<&Trail>,
     ) -> Result<Solution<State>, MethodError> {
+        let (space, value) = (self.problem.space(), solved.value);
         let info = &solved.steady.info;
         let unknowns = &solved.steady.mass;
         let mut reporter = self.reporter(info);
@@ -153,9 +139,9 @@ impl GeneratorSource {
         if !self.holds_mass(&mut reporter, relaxation.as_ref()) {
             return Ok(Solution::without_density(reporter.report));
         }
-        let masses = cell_masses(solved.system.as_ref(), &self.space, unknowns);
+        let masses = cell_masses(solved.system.as_ref(), space, unknowns);
         reporter.edge_mass(&masses, &self.closed_ends);
-        for judged in resolution(solved.system.as_ref(), &self.space, &masses) {
+        for judged in resolution(solved.system.as_ref(), space, &masses) {
             reporter.resolution(&judged);
         }
         let expected = before.and_then(|trail| trail.difference_at(value));
@@ -176,7 +162,7 @@ impl GeneratorSource {
         let trail = trail.unwrap_or_default();
         Ok(Solution {
             report: reporter.report,
-            moments: moments_of(&self.space, unknowns),
+            moments: moments_of(space, unknowns),
             densities,
             state: Some(State {
                 mass,
@@ -187,7 +173,7 @@ impl GeneratorSource {
 
     /// The numbers of a solve.
     fn reporter(&self, info: &RateInfo) -> Reporter<'_> {
-        let mut reporter = Reporter::new(METHOD, &self.space);
+        let mut reporter = Reporter::new(METHOD, self.problem.space());
         let report = &mut reporter.report;
         report.iterations = info.iterations;
         report.residual = info.residual;
@@ -225,20 +211,19 @@ impl GeneratorSource {
         masses: &[f64],
         expected: Option<&[f64]>,
     ) -> Result<(Vec<EstimatedDensity>, Vec<f64>), MethodError> {
-        let system = solved.system.as_ref();
+        let (system, space) = (solved.system.as_ref(), self.problem.space());
         let unknowns = &solved.steady.mass;
         let change = solver.sensitivity_within(&solved.second.matrix, unknowns, expected, ROUGH)?;
         let changed: Vec<f64> = unknowns.iter().zip(&change).map(|(u, du)| u + du).collect();
-        let changed = cell_masses(system, &self.space, &changed);
+        let changed = cell_masses(system, space, &changed);
         let difference: Vec<f64> = changed.iter().zip(masses).map(|(b, a)| b - a).collect();
         let estimate = |&observable: &Observable| {
-            let mut estimated =
-                estimate_from_difference(&self.space, observable, masses, &difference)?;
-            estimated.structure = structure(system, &self.space, masses, observable, &self.kinked);
+            let mut estimated = estimate_from_difference(space, observable, masses, &difference)?;
+            estimated.structure = structure(system, space, masses, observable, &self.kinked);
             Ok::<_, MethodError>(estimated)
         };
         let densities: Result<Vec<_>, MethodError> =
-            self.observables.iter().map(estimate).collect();
+            self.problem.observables().iter().map(estimate).collect();
         Ok((densities?, change))
     }
 
@@ -248,9 +233,9 @@ impl GeneratorSource {
         let options = GeneratorOptions {
             scheme: self.options.scheme,
         };
-        let (values, parameter) = (&solved.values, self.parameter.as_str());
+        let (family, space) = (self.problem.family(), self.problem.space());
         let derivative =
-            assemble_derivative(&self.model, values, parameter, &self.space, &options).ok()?;
+            assemble_derivative(|value| family.at(value), solved.value, space, &options).ok()?;
         let mass = &solved.steady.mass;
         solver
             .sensitivity_within(&derivative.matrix, mass, None, ROUGH)
@@ -301,6 +286,10 @@ fn companion(scheme: AdvectiveScheme) -> AdvectiveScheme {
 impl DensitySource for GeneratorSource {
     type State = State;
 
+    fn subject(&self) -> &Subject {
+        self.problem.subject()
+    }
+
     fn solve(&self, value: f64, start: Option<&State>) -> Result<Solution<State>, SourceError> {
         if self.cancelled.load(Ordering::Relaxed) {
             return Err(SourceError::Interrupted);
@@ -310,18 +299,12 @@ impl DensitySource for GeneratorSource {
     }
 
     fn finer(&self) -> Option<Self> {
-        let factor = FINER[usize::from(self.space.dimension() > 2)];
-        let axes = self.space.axes().iter();
-        let space = CellSpace::new(axes.map(|axis| axis.refined(factor)).collect()).ok()?;
-        let setting = Setting {
-            model: &self.model,
-            values: &self.values,
-            parameter: &self.parameter,
-            range: self.range,
-            space: &space,
-            observables: &self.observables,
-        };
-        Self::new(&setting, &self.options, self.cancelled.clone()).ok()
+        let space = self.problem.space();
+        let factor = FINER[usize::from(space.dimension() > 2)];
+        let axes = space.axes().iter();
+        let finer = CellSpace::new(axes.map(|axis| axis.refined(factor)).collect()).ok()?;
+        let problem = self.problem.on(finer).ok()?;
+        Self::new(&problem, &self.options, self.cancelled.clone()).ok()
     }
 
     fn state_bytes(&self, state: &State) -> usize {

@@ -5,18 +5,18 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::{Estimator, MonteCarloOptions};
-use crate::continuation::{DensitySource, Finding, Solution, SourceError};
+use crate::continuation::{DensitySource, Finding, Solution, SourceError, Subject};
 use crate::density::{EstimatedDensity, Moments, Observable, estimate};
 use crate::method::generator::Trail;
 use crate::method::report::Reporter;
 use crate::method::structure::{closed_ends, kinked_surfaces, structure};
-use crate::method::{MethodError, Setting, State};
+use crate::method::{MethodError, Problem, State};
 use crate::monte_carlo::{
     EnsembleRun, ErgodicRun, Estimate, MonteCarloError, Relaxation, StepBias, automatic_step,
     ensemble, ergodic, relaxation, step_bias,
 };
 use crate::space::CellSpace;
-use crate::system::{LANES, Model, ParameterValues, SwitchingSurface, System};
+use crate::system::{LANES, SwitchingSurface, System};
 
 /// Name of the method in tables.
 const METHOD: &str = "monte-carlo";
@@ -33,11 +33,7 @@ const BIAS_SHARE: f64 = 0.5;
 /// Densities along one parameter by free trajectories.
 #[derive(Debug, Clone)]
 pub struct MonteCarloSource {
-    model: Arc<Model>,
-    values: ParameterValues,
-    parameter: String,
-    space: CellSpace,
-    observables: Vec<Observable>,
+    problem: Problem,
     options: MonteCarloOptions,
     plan: MonteCarloPlan,
     starts: Vec<Vec<f64>>,
@@ -82,19 +78,16 @@ impl MonteCarloSource {
     /// [`SourceError::Interrupted`].
     ///
     /// # Errors
-    /// [`MethodError`] when the ends of the range are not allowed or an observable names an axis that does not exist.
+    /// [`MethodError`].
     pub fn new(
-        setting: &Setting<'_>,
+        problem: &Problem,
         options: &MonteCarloOptions,
         cancelled: Arc<AtomicBool>,
     ) -> Result<Self, MethodError> {
-        for &observable in setting.observables {
-            crate::density::Projection::new(setting.space, observable)?;
-        }
-        let systems = setting.systems_along()?;
+        let (systems, space) = (problem.family().along()?, problem.space());
         let relaxed: Vec<Relaxation> = systems
             .iter()
-            .map(|system| relaxation(system.as_ref(), setting.space, options.seed))
+            .map(|system| relaxation(system.as_ref(), space, options.seed))
             .collect();
         // Where everything runs away there is nothing to be planned for, unless it does so all along the sweep.
         let stays = |relaxed: &Relaxation| !relaxed.settled().is_empty();
@@ -105,21 +98,17 @@ impl MonteCarloSource {
             .zip(relaxed)
             .filter(|(_, relaxed)| stays(relaxed) || !somewhere)
             .unzip();
-        let plan = plan(&planned, setting.space, &relaxed, options);
+        let plan = plan(&planned, space, &relaxed, options);
         Ok(Self {
-            model: setting.model.clone(),
-            values: setting.values.clone(),
-            parameter: setting.parameter.to_owned(),
-            space: setting.space.clone(),
-            observables: setting.observables.to_vec(),
+            problem: problem.clone(),
             options: options.clone(),
             plan,
             starts: relaxed
                 .iter()
                 .flat_map(|relaxed| relaxed.settled().to_vec())
                 .collect(),
-            closed_ends: closed_ends(&systems, setting.space),
-            kinked: kinked_surfaces(&systems, setting.space),
+            closed_ends: closed_ends(&systems, space),
+            kinked: kinked_surfaces(&systems, space),
             cancelled,
         })
     }
@@ -166,7 +155,7 @@ impl MonteCarloSource {
                     length: plan.length,
                     stride: plan.stride,
                 };
-                ergodic(system, &self.space, &self.starts, &run, &cancelled)
+                ergodic(system, self.problem.space(), &self.starts, &run, &cancelled)
             }
             Estimator::Ensemble => {
                 let run = EnsembleRun {
@@ -177,7 +166,7 @@ impl MonteCarloSource {
                     time: plan.burn_in,
                     start: Vec::new(),
                 };
-                ensemble(system, &self.space, &run, &cancelled)
+                ensemble(system, self.problem.space(), &run, &cancelled)
             }
         }
     }
@@ -187,8 +176,7 @@ impl MonteCarloSource {
     /// # Errors
     /// [`MethodError`] when the value is not allowed or the run was cancelled.
     pub fn estimate(&self, value: f64) -> Result<(Solution<State>, Estimate), MethodError> {
-        let values = self.model.with(&self.values, &self.parameter, value)?;
-        let system = self.model.system(&values);
+        let system = self.problem.family().at(value)?;
         let found = self.run(system.as_ref())?;
         Ok((self.solution(system.as_ref(), &found)?, found))
     }
@@ -199,7 +187,7 @@ impl MonteCarloSource {
         found: &Estimate,
     ) -> Result<Solution<State>, MethodError> {
         let plan = &self.plan;
-        let mut reporter = Reporter::new(METHOD, &self.space);
+        let mut reporter = Reporter::new(METHOD, self.problem.space());
         // Steps of one trajectory: the iterations of the integrator.
         let steps = (plan.burn_in + plan.length) / plan.time_step;
         reporter.report.iterations = steps.ceil() as usize;
@@ -222,13 +210,23 @@ impl MonteCarloSource {
         reporter.time_step(plan.time_step, plan.bias.as_ref(), plan.error);
         reporter.burn_in(plan.burn_in, plan.relaxation_time, plan.relaxation_resolved);
         let density = |&observable: &Observable| {
-            let mut estimated = estimate(&self.space, observable, &found.mass, &found.replicates)?;
-            estimated.structure =
-                structure(system, &self.space, &found.mass, observable, &self.kinked);
+            let mut estimated = estimate(
+                self.problem.space(),
+                observable,
+                &found.mass,
+                &found.replicates,
+            )?;
+            estimated.structure = structure(
+                system,
+                self.problem.space(),
+                &found.mass,
+                observable,
+                &self.kinked,
+            );
             Ok::<_, MethodError>(estimated)
         };
         let densities: Result<Vec<EstimatedDensity>, _> =
-            self.observables.iter().map(density).collect();
+            self.problem.observables().iter().map(density).collect();
         let moments = found.mean.iter().zip(&found.variance);
         Ok(Solution {
             report: reporter.report,
@@ -320,6 +318,10 @@ fn whole_batches(trajectories: f64) -> f64 {
 
 impl DensitySource for MonteCarloSource {
     type State = State;
+
+    fn subject(&self) -> &Subject {
+        self.problem.subject()
+    }
 
     fn solve(&self, value: f64, _start: Option<&State>) -> Result<Solution<State>, SourceError> {
         match self.estimate(value) {

@@ -10,18 +10,18 @@ use super::slope_correction::{Corrected, solve_by};
 use super::steps::{Steps, choose_steps};
 use super::{Correction, SgcmOptions};
 use crate::MAX_DIMENSION;
-use crate::continuation::{DensitySource, Finding, Solution, SourceError};
-use crate::density::{EstimatedDensity, Observable, estimate, moments};
+use crate::continuation::{DensitySource, Finding, Solution, SourceError, Subject};
+use crate::density::{EstimatedDensity, estimate, moments};
 use crate::method::generator::Trail;
 use crate::method::report::Reporter;
 use crate::method::structure::structure;
-use crate::method::{MethodError, Setting, State};
+use crate::method::{MethodError, Problem, State};
 use crate::sampling::{
     SampledTransitions, SamplingError, SamplingOptions, TransitionMatrix, sample_transitions,
 };
 use crate::space::CellSpace;
 use crate::stationary::{Options, Outcome, SteadyState, second_eigenvalue};
-use crate::system::{Model, ParameterValues, System};
+use crate::system::System;
 
 /// Name of the method in tables.
 const METHOD: &str = "sgcm";
@@ -39,11 +39,7 @@ const NO_ESCAPE: f64 = 1e-12;
 /// Densities along one parameter by SGCM.
 #[derive(Debug)]
 pub struct SgcmSource {
-    model: Arc<Model>,
-    values: ParameterValues,
-    parameter: String,
-    space: CellSpace,
-    observables: Vec<Observable>,
+    problem: Problem,
     options: SgcmOptions,
     steps: Steps,
     cancelled: Arc<AtomicBool>,
@@ -67,22 +63,15 @@ impl SgcmSource {
     /// smoothly along the sweep. Setting `cancelled` makes a running solve return [`SourceError::Interrupted`].
     ///
     /// # Errors
-    /// [`MethodError`] when the ends of the range are not allowed or an observable names an axis that does not exist.
+    /// [`MethodError`].
     pub fn new(
-        setting: &Setting<'_>,
+        problem: &Problem,
         options: &SgcmOptions,
         cancelled: Arc<AtomicBool>,
     ) -> Result<Self, MethodError> {
-        for &observable in setting.observables {
-            crate::density::Projection::new(setting.space, observable)?;
-        }
-        let steps = choose_steps(setting, options)?;
+        let steps = choose_steps(problem, options)?;
         Ok(Self {
-            model: setting.model.clone(),
-            values: setting.values.clone(),
-            parameter: setting.parameter.to_owned(),
-            space: setting.space.clone(),
-            observables: setting.observables.to_vec(),
+            problem: problem.clone(),
             options: options.clone(),
             steps,
             cancelled,
@@ -90,24 +79,27 @@ impl SgcmSource {
     }
 
     /// The same source on other cells over the same ranges, with the steps that were chosen.
-    pub fn on(&self, space: &CellSpace) -> Self {
+    ///
+    /// # Errors
+    /// [`MethodError`] when the cells have another number of axes.
+    pub fn on(&self, space: &CellSpace) -> Result<Self, MethodError> {
+        let problem = self.problem.on(space.clone())?;
         let mut steps = self.steps.clone();
         // Cells to grow from; all others that hold mass are reached from them.
-        let centres = steps.cells.iter().map(|&cell| self.space.centre(cell));
+        let centres = steps
+            .cells
+            .iter()
+            .map(|&cell| self.problem.space().centre(cell));
         let mut cells: Vec<usize> = centres.filter_map(|centre| space.find(&centre)).collect();
         cells.sort_unstable();
         cells.dedup();
         steps.cells = cells;
-        Self {
-            model: self.model.clone(),
-            values: self.values.clone(),
-            parameter: self.parameter.clone(),
-            space: space.clone(),
-            observables: self.observables.clone(),
+        Ok(Self {
+            problem,
             options: self.options.clone(),
             steps,
             cancelled: self.cancelled.clone(),
-        }
+        })
     }
 
     /// Time one transition spans.
@@ -140,7 +132,7 @@ impl SgcmSource {
             seeds.extend((0..mass.len()).filter(|&cell| mass[cell] > 0.0));
         }
         let cancelled = || self.cancelled.load(Ordering::Relaxed);
-        sample_transitions(system, &self.space, &seeds, &options, &cancelled)
+        sample_transitions(system, self.problem.space(), &seeds, &options, &cancelled)
     }
 
     /// Steady states without one group of samples each; fewer than asked for when one of them has none.
@@ -156,7 +148,7 @@ impl SgcmSource {
             let solved = solve_by(
                 correction,
                 transitions,
-                &self.space,
+                self.problem.space(),
                 start,
                 Some(group),
                 (&options, REPLICATE_CHANGE),
@@ -185,12 +177,15 @@ impl SgcmSource {
             &replicates
         };
         let densities: Result<Vec<_>, _> = self
-            .observables
+            .problem
+            .observables()
             .iter()
             .map(|&observable| {
-                let mut estimated = estimate(&self.space, observable, &steady.mass, usable)?;
+                let mut estimated =
+                    estimate(self.problem.space(), observable, &steady.mass, usable)?;
                 let (mass, surfaces) = (&steady.mass, &self.steps.kinked);
-                estimated.structure = structure(system, &self.space, mass, observable, surfaces);
+                estimated.structure =
+                    structure(system, self.problem.space(), mass, observable, surfaces);
                 Ok::<_, MethodError>(estimated)
             })
             .collect();
@@ -227,7 +222,7 @@ impl SgcmSource {
             });
             return Ok(Solution::without_density(reporter.report));
         }
-        let moments = moments(&self.space, &steady.mass)?;
+        let moments = moments(self.problem.space(), &steady.mass)?;
         reporter.edge_mass(&steady.mass, &self.steps.closed_ends);
         let local_mass: Vec<f64> = transitions
             .cells()
@@ -235,7 +230,9 @@ impl SgcmSource {
             .map(|&c| steady.mass[c])
             .collect();
         let diffusion = match correction {
-            Correction::Slope => transitions.remaining_diffusion(&self.space, &local_mass, slopes),
+            Correction::Slope => {
+                transitions.remaining_diffusion(self.problem.space(), &local_mass, slopes)
+            }
             Correction::None => transitions.numerical_diffusion(&local_mass),
         };
         reporter.numerical_diffusion(diffusion, &self.steps.noise, &moments);
@@ -259,7 +256,7 @@ impl SgcmSource {
     }
 
     fn reporter(&self) -> Reporter<'_> {
-        let mut reporter = Reporter::new(METHOD, &self.space);
+        let mut reporter = Reporter::new(METHOD, self.problem.space());
         let own = &mut reporter.report.own;
         own.map_step = Some(self.steps.map_step);
         own.time_step_bias = self.steps.bias.map(|bias| bias.relative.abs());
@@ -276,8 +273,7 @@ impl SgcmSource {
         value: f64,
         start: Option<&[f64]>,
     ) -> Result<SampledPoint, MethodError> {
-        let values = self.model.with(&self.values, &self.parameter, value)?;
-        let system = self.model.system(&values);
+        let system = self.problem.family().at(value)?;
         let transitions = self.sample(system.as_ref(), start)?;
         Ok(SampledPoint {
             system,
@@ -305,7 +301,7 @@ impl SgcmSource {
         } = solve_by(
             correction,
             transitions,
-            &self.space,
+            self.problem.space(),
             start,
             None,
             (&options, CHANGE),
@@ -333,6 +329,10 @@ impl SgcmSource {
 
 impl DensitySource for SgcmSource {
     type State = State;
+
+    fn subject(&self) -> &Subject {
+        self.problem.subject()
+    }
 
     fn solve(&self, value: f64, start: Option<&State>) -> Result<Solution<State>, SourceError> {
         let start = start.map(|state| state.mass.as_slice());

@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use super::SgcmOptions;
 use crate::method::structure::{closed_ends, kinked_surfaces};
-use crate::method::{MethodError, Setting, StepChoice};
+use crate::method::{MethodError, Problem, StepChoice};
 use crate::monte_carlo::{StepBias, TOLERATED_BIAS, automatic_step, relaxation, step_bias};
 use crate::sampling::{Pilot, pilot};
+use crate::space::CellSpace;
 use crate::system::{SwitchingSurface, System};
 
 /// Steps, and what else the pilots showed.
@@ -29,16 +30,13 @@ pub(super) struct Steps {
     pub(super) kinked: Vec<SwitchingSurface>,
 }
 
-pub(super) fn choose_steps(
-    setting: &Setting<'_>,
-    options: &SgcmOptions,
-) -> Result<Steps, MethodError> {
-    let systems = setting.systems_along()?;
+pub(super) fn choose_steps(problem: &Problem, options: &SgcmOptions) -> Result<Steps, MethodError> {
+    let (systems, space) = (problem.family().along()?, problem.space());
     let pilots: Vec<Pilot> = systems
         .iter()
-        .map(|system| pilot(system.as_ref(), setting.space, options.seed))
+        .map(|system| pilot(system.as_ref(), space, options.seed))
         .collect();
-    let (time_step, bias) = time_step(setting, options, &systems);
+    let (time_step, bias) = time_step(space, options, &systems);
     let map_step = match options.map_step {
         StepChoice::Fixed(step) => step,
         StepChoice::Auto => -smallest(&pilots, |pilot| -pilot.automatic_map_step(time_step)),
@@ -49,7 +47,7 @@ pub(super) fn choose_steps(
         .collect();
     cells.sort_unstable();
     cells.dedup();
-    let noise = (0..setting.space.dimension())
+    let noise = (0..space.dimension())
         .map(|axis| -smallest(&pilots, |pilot| -pilot.noise_intensity[axis]))
         .collect();
     Ok(Steps {
@@ -58,18 +56,18 @@ pub(super) fn choose_steps(
         bias,
         cells,
         noise,
-        closed_ends: closed_ends(&systems, setting.space),
-        kinked: kinked_surfaces(&systems, setting.space),
+        closed_ends: closed_ends(&systems, space),
+        kinked: kinked_surfaces(&systems, space),
     })
 }
 
 /// The time step, given or chosen, and its bias, by halving it on a sample of settled trajectories.
 fn time_step(
-    setting: &Setting<'_>,
+    space: &CellSpace,
     options: &SgcmOptions,
     systems: &[Arc<dyn System>],
 ) -> (f64, Option<StepBias>) {
-    let (space, seed, integrator) = (setting.space, options.seed, options.integrator);
+    let (seed, integrator) = (options.seed, options.integrator);
     let relaxed: Vec<_> = systems
         .iter()
         .map(|system| relaxation(system.as_ref(), space, seed))

@@ -10,14 +10,12 @@ pub use people::{CompareTable, compare_tables};
 use people::{compare_markdown, compare_tex};
 use rows::{accuracy_csv, agreement_csv, compare_csv, compare_json, densities_csv, distances_csv};
 
-use super::Naming;
 use crate::compare::{Comparison, Method, Solved};
+use crate::system::Family;
 
 /// A comparison with what the tables need beside it.
 #[derive(Clone, Copy)]
 pub struct ComparedRun<'a> {
-    /// Names of axes, observables and the parameter.
-    pub naming: Naming<'a>,
     /// What was found.
     pub comparison: &'a Comparison,
     /// Bytes at work at one point, and what the number rests on.
@@ -26,6 +24,13 @@ pub struct ComparedRun<'a> {
     pub sweep: &'a str,
     /// Threads that were used: times depend on them.
     pub threads: usize,
+}
+
+impl<'a> ComparedRun<'a> {
+    /// The systems of which some were compared.
+    pub fn family(&self) -> &'a Family {
+        &self.comparison.subject.family
+    }
 }
 
 /// Name of a partner in a pair.

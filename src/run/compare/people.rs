@@ -69,11 +69,11 @@ fn work(solved: &Solved) -> String {
 }
 
 fn methods(run: &ComparedRun<'_>) -> CompareTable {
-    let observables = &run.comparison.observables;
+    let observables = &run.comparison.subject.observables;
     let known = |value: &ComparedValue| value.pairs.iter().any(|pair| pair.second.is_none());
     let exact = run.comparison.values.iter().any(known);
     let words = [
-        run.naming.parameter,
+        run.family().parameter(),
         "method",
         "status",
         "seconds",
@@ -84,7 +84,7 @@ fn methods(run: &ComparedRun<'_>) -> CompareTable {
     ];
     let mut header: Vec<String> = words.iter().map(|&word| word.to_owned()).collect();
     if exact {
-        let names = observables.iter().map(|&one| run.naming.observable(one));
+        let names = observables.iter().map(|&one| one.name(run.family()));
         header.extend(names.map(|name| format!("TV to exact {name}")));
     }
     let mut rows = Vec::new();
@@ -124,9 +124,9 @@ fn pairs(
     caption: &str,
     choose: impl Fn(&Pair) -> &Distance,
 ) -> CompareTable {
-    let observables = &run.comparison.observables;
-    let mut header = vec![run.naming.parameter.to_owned(), "pair".to_owned()];
-    header.extend(observables.iter().map(|&one| run.naming.observable(one)));
+    let observables = &run.comparison.subject.observables;
+    let mut header = vec![run.family().parameter().to_owned(), "pair".to_owned()];
+    header.extend(observables.iter().map(|&one| one.name(run.family())));
     let mut rows = Vec::new();
     for value in &run.comparison.values {
         let mut order: Vec<(Method, Option<Method>)> = Vec::new();
@@ -161,7 +161,7 @@ fn pairs(
 
 fn agreement(run: &ComparedRun<'_>) -> CompareTable {
     let header = [
-        run.naming.parameter,
+        run.family().parameter(),
         "marginal",
         "bins",
         "within 3 errors",
@@ -173,7 +173,7 @@ fn agreement(run: &ComparedRun<'_>) -> CompareTable {
         for one in &value.agreement {
             rows.push(vec![
                 format_number(value.value),
-                run.naming.observable(one.observable),
+                one.observable.name(run.family()),
                 one.bins.to_string(),
                 format!("{:.1} %", 100.0 * one.share()),
                 one.beyond.to_string(),

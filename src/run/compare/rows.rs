@@ -16,7 +16,7 @@ type At<'r, T> = (&'r ComparedValue, &'r T);
 
 /// The column of the parameter's values.
 fn parameter<'a, T>(run: &ComparedRun<'a>) -> Column<'a, At<'a, T>> {
-    number(run.naming.parameter, |(at, _): &At<'a, T>| at.value)
+    number(run.family().parameter(), |(at, _): &At<'a, T>| at.value)
 }
 
 /// The records that a list of each value holds.
@@ -52,7 +52,7 @@ fn work(solved: &Solved) -> (String, &'static str) {
 /// A row a value and method.
 fn methods<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Solved>> {
     type Row<'a> = At<'a, Solved>;
-    let (naming, bytes) = (run.naming, run.bytes);
+    let (family, bytes) = (run.family(), run.bytes);
     let mut columns = vec![
         parameter(run),
         word("method", |(_, one): &Row<'a>| one.method.name().to_owned()),
@@ -89,14 +89,14 @@ fn methods<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Solved>> {
         optional("share_outside", |(_, one): &Row<'a>| one.share_outside),
     ];
     for axis in 0..run.comparison.common.dimension() {
-        let name = format!("numerical_diffusion_{}", run.naming.axis(axis));
+        let name = format!("numerical_diffusion_{}", run.family().axis(axis));
         columns.push(optional(name, move |(_, one): &Row<'a>| {
             one.report.own.numerical_diffusion.get(axis).copied()
         }));
     }
-    for &observable in &run.comparison.observables {
+    for &observable in &run.comparison.subject.observables {
         let exact = move |(at, one): &Row<'a>| at.pair(one.method, None, observable).copied();
-        let name = run.naming.observable(observable);
+        let name = observable.name(run.family());
         columns.push(optional(format!("tv_exact_{name}"), move |row| {
             exact(row).map(|found| found.total_variation.value)
         }));
@@ -105,7 +105,7 @@ fn methods<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Solved>> {
         }));
     }
     columns.push(word("warnings", move |(_, one): &Row<'a>| {
-        sentences(&naming, &one.report.findings)
+        sentences(family, &one.report.findings)
     }));
     Columns(columns)
 }
@@ -113,7 +113,7 @@ fn methods<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Solved>> {
 /// A row a value, pair (two methods, or a method and the exact density) and observable.
 fn distances<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Pair>> {
     type Row<'a> = At<'a, Pair>;
-    let naming = run.naming;
+    let family = run.family();
     let mut columns = vec![
         parameter(run),
         word("first", |(_, one): &Row<'a>| one.first.name().to_owned()),
@@ -121,7 +121,7 @@ fn distances<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Pair>> {
             partner(one.second).to_owned()
         }),
         word("observable", move |(_, one): &Row<'a>| {
-            naming.observable(one.observable)
+            one.observable.name(family)
         }),
     ];
     let total_variation = |one: &Distances| one.total_variation;
@@ -147,11 +147,11 @@ fn distances<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Pair>> {
 /// Generator and Monte Carlo bin by bin, a row a value and marginal.
 fn agreement<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Agreement>> {
     type Row<'a> = At<'a, Agreement>;
-    let naming = run.naming;
+    let family = run.family();
     Columns(vec![
         parameter(run),
         word("observable", move |(_, one): &Row<'a>| {
-            naming.observable(one.observable)
+            one.observable.name(family)
         }),
         count("bins", |(_, one): &Row<'a>| one.bins),
         count("within_3_errors", |(_, one): &Row<'a>| one.within),
@@ -164,11 +164,11 @@ fn agreement<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Agreement>> {
 /// Error against time, a row a method and grid or number of samples.
 fn accuracy<'a>(run: &ComparedRun<'a>) -> Columns<'a, (&'a Accuracy, &'a AccuracyPoint)> {
     type Row<'a> = (&'a Accuracy, &'a AccuracyPoint);
-    let naming = run.naming;
+    let family = run.family();
     Columns(vec![
-        number(naming.parameter, |(all, _): &Row<'a>| all.value),
+        number(family.parameter(), |(all, _): &Row<'a>| all.value),
         word("observable", move |(all, _): &Row<'a>| {
-            naming.observable(all.observable)
+            all.observable.name(family)
         }),
         word("reference", |(all, _): &Row<'a>| match all.reference {
             Reference::Exact => "exact".to_owned(),
@@ -211,14 +211,14 @@ impl AtCell<'_> {
 /// The densities on the common cells.
 fn densities<'a>(run: &ComparedRun<'a>) -> Columns<'a, AtCell<'a>> {
     type Row<'a> = AtCell<'a>;
-    let naming = run.naming;
+    let family = run.family();
     Columns(vec![
-        number(naming.parameter, |row: &Row<'a>| row.solved.0.value),
+        number(family.parameter(), |row: &Row<'a>| row.solved.0.value),
         word("method", |row: &Row<'a>| {
             row.solved.1.method.name().to_owned()
         }),
         word("observable", move |row: &Row<'a>| {
-            naming.observable(row.estimated.observable)
+            row.estimated.observable.name(family)
         }),
         optional("position", |row: &Row<'a>| row.centre(0)),
         optional("position_2", |row: &Row<'a>| row.centre(1)),

@@ -271,20 +271,20 @@ pub(super) fn read_figures_at(reader: &mut Reader, swept: Option<&Swept>) -> Vec
         return Vec::new();
     };
     let Some(values) = reader.numbers(&["figures", "at"]) else {
-        let values = evenly_spaced(swept.from, swept.to, swept.points);
+        let values = evenly_spaced(swept.family.ends(), swept.points);
         let steps = values.len() - 1;
         let mut chosen = vec![0, (steps + 1) / 3, (2 * steps + 1) / 3, steps];
         chosen.dedup();
         return chosen.into_iter().map(|index| values[index]).collect();
     };
-    let (low, high) = (swept.from.min(swept.to), swept.from.max(swept.to));
+    let (low, high) = swept.family.range();
     for value in &values {
         if !(low..=high).contains(&value.value) {
             let title = format!("`figures.at` has {}, outside the sweep", value.value);
             let diagnostic = Diagnostic::new(title)
                 .at(
                     &value.place,
-                    format!("`{}` never takes this value", swept.parameter),
+                    format!("`{}` never takes this value", swept.family.parameter()),
                 )
                 .allowed(format!("numbers from {low} to {high}"));
             reader.report(diagnostic);

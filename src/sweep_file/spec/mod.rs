@@ -6,20 +6,16 @@ mod resolved;
 mod swept;
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-use crate::continuation::{LocateOptions, Plan};
-use crate::density::Observable;
+use crate::continuation::LocateOptions;
 use crate::figure::Format;
-use crate::method::MethodOptions;
-use crate::space::CellSpace;
-use crate::system::{Model, ParameterValues};
+use crate::method::{MethodOptions, Problem};
 use crate::topology::{DetectOptions, PersistenceDetector};
 
 pub use cells::AxisCells;
 pub use choices::EveryMethod;
 
-use super::diagnostic::Report;
+use super::diagnostic::{Diagnostic, Report};
 use super::document::Document;
 use super::reader::Reader;
 
@@ -32,30 +28,19 @@ pub struct SweepSpec {
     pub file: PathBuf,
     /// The file's name without folder and ending; the output folder is named after it.
     pub name: String,
-    /// The model.
-    pub model: Arc<Model>,
-    /// Its parameters, the swept one at [`SweepSpec::from`].
-    pub parameters: ParameterValues,
-    /// Name of the swept parameter.
-    pub parameter: String,
-    /// First value of the swept parameter.
-    pub from: f64,
-    /// Last value; above or below the first, never equal.
-    pub to: f64,
+    /// The systems along the path from the first value of the swept parameter to the last, the cells, and what is watched, marginals
+    /// first.
+    pub problem: Problem,
     /// Number of values, at least 2.
     pub points: usize,
     /// How each axis is cut into cells, in the model's order of axes.
     pub cells: Vec<AxisCells>,
-    /// The cell space that `cells` makes.
-    pub space: CellSpace,
     /// Settings of the method.
     pub method: MethodOptions,
     /// Settings of all methods, the chosen one among them.
     pub every_method: EveryMethod,
     /// Settings of detection.
     pub detect: DetectOptions,
-    /// What is watched, marginals first.
-    pub observables: Vec<Observable>,
     /// Settings of location.
     pub locate: LocateOptions,
     /// Parameter values at which densities are drawn.
@@ -84,18 +69,10 @@ impl SweepSpec {
 
     /// The detector: its confidence holds for all densities of the sweep together.
     pub fn detector(&self) -> PersistenceDetector {
-        PersistenceDetector::new(self.detect.clone(), self.points * self.observables.len())
-    }
-
-    /// What to sweep.
-    pub fn plan(&self) -> Plan {
-        Plan {
-            parameter: self.parameter.clone(),
-            from: self.from,
-            to: self.to,
-            points: self.points,
-            observables: self.observables.clone(),
-        }
+        PersistenceDetector::new(
+            self.detect.clone(),
+            self.points * self.problem.observables().len(),
+        )
     }
 
     fn build(file: &Path, document: Document) -> Result<Self, Report> {
@@ -103,7 +80,7 @@ impl SweepSpec {
         let (method, every_method) = choices::read_method(&mut reader);
         let model = swept::read_model(&mut reader);
         let swept = model
-            .as_deref()
+            .as_ref()
             .and_then(|model| swept::read(&mut reader, model));
         let cells = model
             .as_deref()
@@ -114,32 +91,36 @@ impl SweepSpec {
         let figures_at = choices::read_figures_at(&mut reader, swept.as_ref());
         let (detect, locate) = (choices::read_detect(&reader), choices::read_locate(&reader));
         let formats = choices::read_formats(&reader);
-        let (Some(model), Some(swept), Some((cells, space)), Some(observables), true) =
-            (model, swept, cells, observables, reader.is_clean())
+        let (Some(swept), Some((cells, space)), Some(observables), true) =
+            (swept, cells, observables, reader.is_clean())
         else {
             return Err(reader.into_report());
         };
+        let problem = Problem::new(swept.family, space, observables);
+        let problem = match problem {
+            Ok(problem) => problem,
+            Err(error) => {
+                reader.report(Diagnostic::new(error.to_string()));
+                return Err(reader.into_report());
+            }
+        };
+        let family = problem.family();
         let title = reader.text(&["title"]).map(|title| title.value);
         let stem = file
             .file_stem()
             .map(|stem| stem.to_string_lossy().into_owned());
         Ok(Self {
-            title: title
-                .unwrap_or_else(|| format!("{}, sweep of {}", model.title, swept.parameter)),
+            title: title.unwrap_or_else(|| {
+                format!("{}, sweep of {}", family.model().title, family.parameter())
+            }),
             file: file.to_owned(),
             name: stem.unwrap_or_else(|| "sweep".to_owned()),
-            model,
-            parameters: swept.parameters,
-            parameter: swept.parameter,
-            from: swept.from,
-            to: swept.to,
             points: swept.points,
+            problem,
             cells,
-            space,
             method,
             every_method,
             detect,
-            observables,
             locate,
             figures_at,
             figure_formats: formats,

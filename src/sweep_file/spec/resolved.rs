@@ -18,23 +18,22 @@ impl SweepSpec {
     }
 
     fn write_toml(&self, text: &mut String) -> std::fmt::Result {
+        let family = self.problem.family();
+        let (from, to) = family.ends();
         writeln!(text, "title = {}\n", quoted(&self.title))?;
-        writeln!(text, "[system]\nmodel = {}\n", quoted(&self.model.name))?;
+        writeln!(text, "[system]\nmodel = {}\n", quoted(&family.model().name))?;
         writeln!(text, "[system.parameters]")?;
-        for (parameter, &value) in self.model.parameters.iter().zip(self.parameters.as_slice()) {
-            if parameter.name != self.parameter {
-                writeln!(text, "{} = {}", parameter.name, number(value))?;
-            }
+        for (name, value) in family.fixed() {
+            writeln!(text, "{name} = {}", number(value))?;
         }
-        writeln!(text, "\n[sweep]\nparameter = {}", quoted(&self.parameter))?;
         writeln!(
             text,
-            "from = {}\nto = {}",
-            number(self.from),
-            number(self.to)
+            "\n[sweep]\nparameter = {}",
+            quoted(family.parameter())
         )?;
+        writeln!(text, "from = {}\nto = {}", number(from), number(to))?;
         writeln!(text, "points = {}\n\n[cells]", self.points)?;
-        for (axis, cells) in self.model.axes.iter().zip(&self.cells) {
+        for (axis, cells) in family.model().axes.iter().zip(&self.cells) {
             writeln!(text, "{} = {}", axis.name, axis_toml(cells))?;
         }
         self.write_choices(text)
@@ -73,16 +72,18 @@ impl SweepSpec {
     }
 
     fn observables_toml(&self) -> (String, String) {
-        let name = |axis: usize| quoted(self.model.axes.get(axis).map_or("", |axis| &axis.name));
-        let marginals = self
-            .observables
-            .iter()
-            .filter_map(|observable| match *observable {
-                Observable::Marginal(axis) => Some(name(axis)),
-                Observable::Joint(..) => None,
-            });
+        let name = |axis: usize| quoted(self.problem.family().axis(axis));
+        let marginals =
+            self.problem
+                .observables()
+                .iter()
+                .filter_map(|observable| match *observable {
+                    Observable::Marginal(axis) => Some(name(axis)),
+                    Observable::Joint(..) => None,
+                });
         let joint = self
-            .observables
+            .problem
+            .observables()
             .iter()
             .filter_map(|observable| match *observable {
                 Observable::Marginal(_) => None,

@@ -5,14 +5,11 @@ use std::sync::Arc;
 use crate::continuation::evenly_spaced;
 use crate::sweep_file::diagnostic::{Diagnostic, Place, nearest_name};
 use crate::sweep_file::reader::{Reader, Sited};
-use crate::system::{Model, ParameterDescription, ParameterValues, System, registry};
+use crate::system::{Family, Model, ParameterDescription, Path, System, registry};
 
 /// The part of a specification that says what is swept.
 pub(super) struct Swept {
-    pub(super) parameters: ParameterValues,
-    pub(super) parameter: String,
-    pub(super) from: f64,
-    pub(super) to: f64,
+    pub(super) family: Family,
     pub(super) points: usize,
     /// The system at both ends of the sweep.
     pub(super) ends: Vec<Arc<dyn System>>,
@@ -25,7 +22,7 @@ pub(super) fn read_model(reader: &mut Reader) -> Option<Arc<Model>> {
 }
 
 /// Reads `[system.parameters]` and `[sweep]`.
-pub(super) fn read(reader: &mut Reader, model: &Model) -> Option<Swept> {
+pub(super) fn read(reader: &mut Reader, model: &Arc<Model>) -> Option<Swept> {
     let name = reader.text(&["sweep", "parameter"]);
     let swept = name
         .as_ref()
@@ -41,23 +38,22 @@ pub(super) fn read(reader: &mut Reader, model: &Model) -> Option<Swept> {
     let given = read_parameters(reader, model, meant);
     let (from, to) = read_ends(reader, model, swept);
     let points = reader.integer::<usize>(&["sweep", "points"])?.value;
-    let (swept, mut given, from, to) = (swept?, given?, from?, to?);
+    let (swept, fixed, from, to) = (swept?, given?, from?, to?);
     if !check_values(reader, &from, &to, points) {
         return None;
     }
-    given.push((swept.name.as_str(), from.value));
-    let bound = model
-        .values(&given)
-        .and_then(|low| Ok((model.with(&low, &swept.name, to.value)?, low)));
-    match bound {
-        Ok((high, low)) => Some(Swept {
-            ends: vec![model.system(&low), model.system(&high)],
-            parameters: low,
-            parameter: swept.name.clone(),
-            from: from.value,
-            to: to.value,
+    let path = Path::parameter(swept.name.as_str(), from.value, to.value);
+    let family = Family::new(model.clone(), &fixed, path);
+    let bound = family.and_then(|family| {
+        let ends = vec![family.at(from.value)?, family.at(to.value)?];
+        Ok(Swept {
+            family,
             points,
-        }),
+            ends,
+        })
+    });
+    match bound {
+        Ok(swept) => Some(swept),
         Err(error) => {
             reader.report(Diagnostic::new(error.to_string()));
             None
@@ -195,7 +191,7 @@ fn check_values(reader: &mut Reader, from: &Sited<f64>, to: &Sited<f64>, points:
         let title = format!("the sweep goes from {} to {}", from.value, to.value);
         return refuse(title, &to.place, "the same as `sweep.from`");
     }
-    let values = evenly_spaced(from.value, to.value, points);
+    let values = evenly_spaced((from.value, to.value), points);
     let rising = to.value > from.value;
     let apart = values
         .windows(2)

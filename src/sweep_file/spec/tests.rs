@@ -42,10 +42,13 @@ fn defaults_are_those_of_the_options() {
         Observable::Marginal(1),
         Observable::Joint(0, 1),
     );
-    assert_eq!(spec.observables, [x, y, xy]);
+    assert_eq!(spec.problem.observables(), [x, y, xy]);
     // alpha and mu by the model's default, the swept f_c at `from`.
-    assert_eq!(spec.parameters.as_slice(), [1.0, 0.01, 0.0, -0.02, 0.01]);
-    assert!(spec.space.axes()[1].has_face_at(0.0) && !spec.space.axes()[1].is_uniform());
+    let (from, _) = spec.problem.family().ends();
+    let first = spec.problem.family().values_at(from).unwrap();
+    assert_eq!(first.as_slice(), [1.0, 0.01, 0.0, -0.02, 0.01]);
+    let y = &spec.problem.space().axes()[1];
+    assert!(y.has_face_at(0.0) && !y.is_uniform());
     assert_eq!(spec.figures_at, [-0.02, -0.01, 0.0, 0.01]);
 }
 
@@ -122,7 +125,7 @@ fn the_resolved_file_holds_every_key() {
 #[test]
 fn values_are_even_and_hit_zero() {
     let spec = parse(FILE, &[]).unwrap();
-    let values = spec.plan().values();
+    let values = evenly_spaced(spec.problem.family().ends(), spec.points);
     assert_eq!(
         (values.len(), values[0], values[20], values[30]),
         (31, -0.02, 0.0, 0.01)

@@ -1,0 +1,29 @@
+//! The part of a path that a sweep goes along, and how finely.
+
+use super::Subject;
+
+/// Between the ends of a path, in steps of one length.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Span {
+    lower: f64,
+    upper: f64,
+    /// Distance between neighbouring given values.
+    pub(super) step: f64,
+}
+
+impl Span {
+    /// Of a sweep with that many given values.
+    pub(super) fn new(subject: &Subject, points: usize) -> Self {
+        let (lower, upper) = subject.family.range();
+        Self {
+            lower,
+            upper,
+            step: (upper - lower) / (points.max(2) - 1) as f64,
+        }
+    }
+
+    /// Whether a value lies between the ends or is one of them.
+    pub(super) fn contains(&self, value: f64) -> bool {
+        (self.lower..=self.upper).contains(&value)
+    }
+}
