@@ -4,39 +4,25 @@
 
 #![allow(clippy::print_stdout)] // An example talks to its reader.
 
-use pbif::continuation::{LocateOptions, Plan, sweep};
+use pbif::continuation::{LocateOptions, sweep};
 use pbif::density::Observable;
-use pbif::method::{Setting, SgcmOptions, SgcmSource};
+use pbif::method::{Problem, SgcmOptions, SgcmSource};
 use pbif::space::{Axis, CellSpace};
-use pbif::system::registry;
+use pbif::system::{Family, Path, registry};
 use pbif::topology::{DetectOptions, PersistenceDetector};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let model = registry::find("bistable")?;
-    let values = model.values(&[("a", -1.0), ("sigma2", 0.25)])?;
+    let path = Path::parameter("a", -1.0, 1.0);
+    let family = Family::new(registry::find("bistable")?, &[("sigma2", 0.25)], path)?;
     let space = CellSpace::new(vec![Axis::uniform(-2.2, 2.2, 100)?])?;
-    let observables = [Observable::Marginal(0)];
-    let setting = Setting {
-        model: &model,
-        values: &values,
-        parameter: "a",
-        range: (-1.0, 1.0),
-        space: &space,
-        observables: &observables,
-    };
-    let source = SgcmSource::new(&setting, &SgcmOptions::default(), Default::default())?;
-    let plan = Plan {
-        parameter: "a".to_owned(),
-        from: -1.0,
-        to: 1.0,
-        points: 41,
-        observables: observables.to_vec(),
-    };
-    let detector = PersistenceDetector::new(DetectOptions::default(), plan.points);
+    let problem = Problem::new(family, space, vec![Observable::Marginal(0)])?;
+    let source = SgcmSource::new(&problem, &SgcmOptions::default(), Default::default())?;
+    let points = 41;
+    let detector = PersistenceDetector::new(DetectOptions::default(), points);
     let found = sweep(
         &source,
         &detector,
-        &plan,
+        points,
         &LocateOptions::default(),
         &mut (),
     )?;

@@ -8,12 +8,13 @@
 
 use std::sync::Arc;
 
-use pbif::continuation::{LocateOptions, Plan, sweep};
+use pbif::continuation::{LocateOptions, sweep};
 use pbif::density::Observable;
-use pbif::method::{Setting, SgcmOptions, SgcmSource};
+use pbif::method::{Problem, SgcmOptions, SgcmSource};
 use pbif::space::{Axis, CellSpace};
 use pbif::system::{
-    AxisDescription, Lanes, Model, ParameterDescription, ParameterRange, SwitchingSurface, System,
+    AxisDescription, Family, Lanes, Model, ParameterDescription, ParameterRange, Path,
+    SwitchingSurface, System,
 };
 use pbif::topology::{DetectOptions, PersistenceDetector};
 
@@ -104,34 +105,20 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Axis::uniform(-2.5, 2.5, 40)?,
     ])?;
     let observables = [Observable::Marginal(0), Observable::Joint(0, 1)];
-    let model = Arc::new(belt());
-    let values = model.values(&[])?;
-    let setting = Setting {
-        model: &model,
-        values: &values,
-        parameter: "v",
-        range: (0.2, 1.6),
-        space: &space,
-        observables: &observables,
-    };
+    let family = Family::new(Arc::new(belt()), &[], Path::parameter("v", 0.2, 1.6))?;
+    let problem = Problem::new(family, space, observables.to_vec())?;
     let options = SgcmOptions {
         samples: 400,
         ..SgcmOptions::default()
     };
-    let source = SgcmSource::new(&setting, &options, Arc::default())?;
-    let plan = Plan {
-        parameter: "v".to_owned(),
-        from: 0.2,
-        to: 1.6,
-        points: 8,
-        observables: observables.to_vec(),
-    };
-    let detector = PersistenceDetector::new(DetectOptions::default(), plan.points);
+    let source = SgcmSource::new(&problem, &options, Arc::default())?;
+    let points = 8;
+    let detector = PersistenceDetector::new(DetectOptions::default(), points);
     let locate = LocateOptions {
         tolerance: 0.1,
         ..LocateOptions::default()
     };
-    let result = sweep(&source, &detector, &plan, &locate, &mut ())?;
+    let result = sweep(&source, &detector, points, &locate, &mut ())?;
     for point in &result.points {
         let signatures: Vec<String> = point
             .detections

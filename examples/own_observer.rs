@@ -6,11 +6,11 @@
 
 use std::sync::Arc;
 
-use pbif::continuation::{LocateOptions, Observer, Plan, Point, sweep};
+use pbif::continuation::{LocateOptions, Observer, Point, sweep};
 use pbif::density::Observable;
-use pbif::method::{Setting, SgcmOptions, SgcmSource};
+use pbif::method::{Problem, SgcmOptions, SgcmSource};
 use pbif::space::{Axis, CellSpace};
-use pbif::system::registry;
+use pbif::system::{Family, Path, registry};
 use pbif::topology::{DetectOptions, PersistenceDetector};
 
 /// Stops once the density has had two peaks at three points.
@@ -41,38 +41,24 @@ impl Observer for UntilTwoPeaks {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // dx = (a x - x³) dt + σ dW: one peak for a ≤ 0, two for a > 0.
-    let model = registry::find("bistable")?;
-    let values = model.values(&[("a", -1.0), ("sigma2", 0.5)])?;
+    let path = Path::parameter("a", -1.0, 1.0);
+    let family = Family::new(registry::find("bistable")?, &[("sigma2", 0.5)], path)?;
     let space = CellSpace::new(vec![Axis::uniform(-2.5, 2.5, 100)?])?;
-    let observables = [Observable::Marginal(0)];
-    let setting = Setting {
-        model: &model,
-        values: &values,
-        parameter: "a",
-        range: (-1.0, 1.0),
-        space: &space,
-        observables: &observables,
-    };
+    let problem = Problem::new(family, space, vec![Observable::Marginal(0)])?;
     let options = SgcmOptions {
         samples: 5000,
         ..SgcmOptions::default()
     };
-    let source = SgcmSource::new(&setting, &options, Arc::default())?;
-    let plan = Plan {
-        parameter: "a".to_owned(),
-        from: -1.0,
-        to: 1.0,
-        points: 21,
-        observables: observables.to_vec(),
-    };
-    let detector = PersistenceDetector::new(DetectOptions::default(), plan.points);
+    let source = SgcmSource::new(&problem, &options, Arc::default())?;
+    let points = 21;
+    let detector = PersistenceDetector::new(DetectOptions::default(), points);
     let locate = LocateOptions {
         tolerance: 0.1,
         ..LocateOptions::default()
     };
     let mut observer = UntilTwoPeaks::default();
-    let result = sweep(&source, &detector, &plan, &locate, &mut observer)?;
-    let points = result.points.len();
-    println!("{points} points, interrupted: {}", result.interrupted);
+    let result = sweep(&source, &detector, points, &locate, &mut observer)?;
+    let solved = result.points.len();
+    println!("{solved} points, interrupted: {}", result.interrupted);
     Ok(())
 }

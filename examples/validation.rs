@@ -5,15 +5,15 @@
 
 #![allow(clippy::print_stdout)] // An example talks to its reader.
 
-use pbif::continuation::{DensitySource, LocateOptions, Plan, PointType, sweep};
+use pbif::continuation::{DensitySource, LocateOptions, PointType, sweep};
 use pbif::density::{EstimatedDensity, Observable, hellinger_of_masses, total_variation_of_masses};
 use pbif::generator::{AdvectiveScheme, automatic_grading};
 use pbif::method::{
-    Correction, GeneratorMethodOptions, MethodOptions, MethodSource, MonteCarloOptions, Setting,
+    Correction, GeneratorMethodOptions, MethodOptions, MethodSource, MonteCarloOptions, Problem,
     SgcmOptions, StepChoice,
 };
 use pbif::space::{Axis, CellSpace};
-use pbif::system::registry;
+use pbif::system::{Family, Path, registry};
 use pbif::topology::{DetectOptions, PersistenceDetector};
 
 type AnyError = Box<dyn std::error::Error>;
@@ -112,6 +112,18 @@ impl Case {
         Ok(CellSpace::new(vec![axis; self.dimension()?])?)
     }
 
+    /// Along its parameter.
+    fn problem(
+        &self,
+        (from, to): (f64, f64),
+        space: &CellSpace,
+        observable: Observable,
+    ) -> Result<Problem, AnyError> {
+        let path = Path::parameter(self.parameter.0, from, to);
+        let family = Family::new(registry::find(self.model)?, self.parameters, path)?;
+        Ok(Problem::new(family, space.clone(), vec![observable])?)
+    }
+
     /// The density of the whole state.
     fn solve(
         &self,
@@ -119,19 +131,9 @@ impl Case {
         method: &MethodOptions,
         observable: Observable,
     ) -> Result<EstimatedDensity, AnyError> {
-        let model = registry::find(self.model)?;
-        let mut given = self.parameters.to_vec();
-        given.push(self.parameter);
-        let (parameter, value) = self.parameter;
-        let setting = Setting {
-            model: &model,
-            values: &model.values(&given)?,
-            parameter,
-            range: (value, value),
-            space,
-            observables: &[observable],
-        };
-        let source = MethodSource::new(&setting, method, Default::default())?;
+        let value = self.parameter.1;
+        let problem = self.problem((value, value), space, observable)?;
+        let source = MethodSource::new(&problem, method, Default::default())?;
         let found = source.solve(value, None)?;
         found
             .densities
@@ -310,7 +312,7 @@ pub(crate) fn monte_carlo_rows(cases: &[usize], errors: &[f64]) -> Result<Vec<St
 }
 
 /// A family with a bifurcation at a known value.
-struct Family {
+struct Sweep {
     case: Case,
     range: (f64, f64),
     points: usize,
@@ -319,7 +321,7 @@ struct Family {
     truth: f64,
 }
 
-impl Family {
+impl Sweep {
     /// x of `bistable` at a = 0.
     fn wells(points: usize) -> Result<Self, AnyError> {
         let case = Case {
@@ -378,32 +380,16 @@ impl Family {
 
     /// The located value with its error; the range of the family must hold one bifurcation.
     fn locate(&self, method: &MethodOptions) -> Result<(f64, f64), AnyError> {
-        let model = registry::find(self.case.model)?;
-        let parameter = self.case.parameter.0;
-        let mut given = self.case.parameters.to_vec();
-        given.push((parameter, self.range.0));
-        let setting = Setting {
-            model: &model,
-            values: &model.values(&given)?,
-            parameter,
-            range: self.range,
-            space: &self.space,
-            observables: &[self.observable],
-        };
-        let source = MethodSource::new(&setting, method, Default::default())?;
-        let plan = Plan {
-            parameter: parameter.to_owned(),
-            from: self.range.0,
-            to: self.range.1,
-            points: self.points,
-            observables: vec![self.observable],
-        };
+        let problem = self
+            .case
+            .problem(self.range, &self.space, self.observable)?;
+        let source = MethodSource::new(&problem, method, Default::default())?;
         let detector = PersistenceDetector::new(DetectOptions::default(), self.points);
         let options = LocateOptions {
             tolerance: 5e-4 * (self.range.1 - self.range.0),
             ..LocateOptions::default()
         };
-        let found = sweep(&source, &detector, &plan, &options, &mut ())?;
+        let found = sweep(&source, &detector, self.points, &options, &mut ())?;
         let mut rows = found
             .labels
             .iter()
@@ -441,20 +427,20 @@ pub(crate) fn location_rows(with_sampling: bool) -> Result<Vec<String>, AnyError
     let (x, joint) = (Observable::Marginal(0), Observable::Joint(0, 1));
     let direct = || generator(AdvectiveScheme::default());
     let mut runs = vec![
-        (Family::wells(41)?, "generator", direct()),
-        (Family::crater(joint, 100)?, "generator", direct()),
-        (Family::crater(x, 100)?, "generator", direct()),
-        (Family::notch()?, "generator", direct()),
+        (Sweep::wells(41)?, "generator", direct()),
+        (Sweep::crater(joint, 100)?, "generator", direct()),
+        (Sweep::crater(x, 100)?, "generator", direct()),
+        (Sweep::notch()?, "generator", direct()),
     ];
     if with_sampling {
         let sampled = |samples, map_step| sgcm(samples, map_step, Correction::Slope);
         runs.push((
-            Family::wells(11)?,
+            Sweep::wells(11)?,
             "sgcm, 10⁴ samples, Δt = 5",
             sampled(10_000, 5.0),
         ));
         runs.push((
-            Family::crater(joint, 50)?,
+            Sweep::crater(joint, 50)?,
             "sgcm, 400 samples, Δt = 30",
             sampled(400, 30.0),
         ));

@@ -17,15 +17,16 @@ use pbif::continuation::DensitySource as _;
 use pbif::density::{EstimatedDensity, Observable, Variants, estimate};
 use pbif::generator::AdvectiveScheme;
 use pbif::method::{
-    GeneratorMethodOptions, GeneratorSource, MonteCarloOptions, MonteCarloSource, Setting,
+    GeneratorMethodOptions, GeneratorSource, MonteCarloOptions, MonteCarloSource, Problem,
 };
 use pbif::space::{Axis, CellSpace, Grading};
-use pbif::system::{Model, ParameterValues, registry};
+use pbif::system::{self, Family, Model, registry};
 
 /// A shipped sweep.
 struct Example {
     model: Arc<Model>,
-    values: ParameterValues,
+    /// Values of the parameters that are not swept.
+    fixed: Vec<(String, f64)>,
     parameter: String,
     space: CellSpace,
     scheme: AdvectiveScheme,
@@ -49,11 +50,8 @@ impl Example {
         let parameter = file["sweep"]["parameter"].as_str().unwrap().to_owned();
         let at: Vec<f64> = numbers(&file["figures"]["at"]);
         let parameters = file["system"]["parameters"].as_table().unwrap().iter();
-        let mut given: Vec<(&str, f64)> = parameters
-            .map(|(name, value)| (name.as_str(), value.as_float().unwrap()))
-            .collect();
-        given.push((&parameter, at[0]));
-        let values = model.values(&given).unwrap();
+        let fixed = parameters.map(|(name, value)| (name.clone(), value.as_float().unwrap()));
+        let fixed = fixed.collect();
         let axes = model.axes.iter();
         let space = CellSpace::new(
             axes.map(|a| axis(&file["cells"][a.name.as_str()]))
@@ -64,7 +62,7 @@ impl Example {
         let named = |one: &AdvectiveScheme| one.name() == scheme;
         Self {
             model,
-            values,
+            fixed,
             parameter,
             space,
             scheme: AdvectiveScheme::ALL.into_iter().find(named).unwrap(),
@@ -79,25 +77,24 @@ impl Example {
             .collect()
     }
 
-    fn setting<'a>(&'a self, value: f64, observables: &'a [Observable]) -> Setting<'a> {
-        Setting {
-            model: &self.model,
-            values: &self.values,
-            parameter: &self.parameter,
-            range: (value, value),
-            space: &self.space,
-            observables,
-        }
+    /// Of one value alone.
+    fn problem(&self, value: f64) -> Problem {
+        let fixed = self
+            .fixed
+            .iter()
+            .map(|(name, value)| (name.as_str(), *value));
+        let path = system::Path::parameter(self.parameter.as_str(), value, value);
+        let family = Family::new(self.model.clone(), &fixed.collect::<Vec<_>>(), path).unwrap();
+        Problem::new(family, self.space.clone(), self.observables()).unwrap()
     }
 
     fn generator(&self, value: f64, scheme: AdvectiveScheme) -> Vec<EstimatedDensity> {
-        let observables = self.observables();
         let options = GeneratorMethodOptions {
             scheme,
             ..GeneratorMethodOptions::default()
         };
-        let setting = self.setting(value, &observables);
-        let source = GeneratorSource::new(&setting, &options, Default::default()).unwrap();
+        let problem = self.problem(value);
+        let source = GeneratorSource::new(&problem, &options, Default::default()).unwrap();
         source.solve(value, None).unwrap().densities
     }
 
@@ -109,8 +106,8 @@ impl Example {
             seed,
             ..MonteCarloOptions::default()
         };
-        let setting = self.setting(value, &observables);
-        let source = MonteCarloSource::new(&setting, &options, Default::default()).unwrap();
+        let problem = self.problem(value);
+        let source = MonteCarloSource::new(&problem, &options, Default::default()).unwrap();
         let (solution, found) = source.estimate(value).unwrap();
         assert!(
             solution.report.findings.is_empty(),

@@ -10,8 +10,6 @@ use std::path::{Path, PathBuf};
 use pbif::continuation::SweepResult;
 use pbif::figure::{FigureError, Figures, Format, write_figures};
 use pbif::space::Axis;
-use pbif::system::Model;
-use pbif::system::registry;
 
 use closed_forms::{bistable, rayleigh, uniform};
 
@@ -30,13 +28,12 @@ fn folder(name: &str) -> (Option<tempfile::TempDir>, PathBuf) {
 /// Draws every figure of a sweep into a folder; returns the files.
 fn draw_all(
     result: &SweepResult,
-    model: &Model,
     title: &str,
     at: &[f64],
     formats: &[Format],
     folder: &Path,
 ) -> Vec<PathBuf> {
-    let figures = Figures::of_sweep(result, model, title, at);
+    let figures = Figures::of_sweep(result, title, at);
     write_figures(&figures.draw_all().unwrap(), formats, folder).unwrap()
 }
 
@@ -79,16 +76,8 @@ fn pixels(path: &Path) -> (u32, u32, Vec<u8>) {
 #[test]
 fn a_bistable_sweep_gives_its_diagram_and_marginals() {
     let (_kept, folder) = folder("bistable");
-    let model = registry::find("bistable").unwrap();
     let at = [-0.5, 0.0, 0.5, 1.0];
-    let files = draw_all(
-        &bistable(),
-        &model,
-        "Bistable, a title",
-        &at,
-        &Format::ALL,
-        &folder,
-    );
+    let files = draw_all(&bistable(), "Bistable, a title", &at, &Format::ALL, &folder);
     assert_eq!(
         names(&files),
         [
@@ -125,10 +114,9 @@ fn a_bistable_sweep_gives_its_diagram_and_marginals() {
 #[test]
 fn every_svg_parses_and_every_png_has_its_size_three_times() {
     let (_kept, folder) = folder("rayleigh");
-    let model = registry::find("rayleigh").unwrap();
-    let result = rayleigh("a", 1.0, &uniform());
+    let result = rayleigh(("rayleigh", "a"), 1.0, &uniform());
     let at = [-1.0, -0.5, 0.25, 1.0];
-    let files = draw_all(&result, &model, "", &at, &Format::ALL, &folder);
+    let files = draw_all(&result, "", &at, &Format::ALL, &folder);
     assert!(
         names(&files).contains(&"joint_xy_-0.5.png".to_owned()),
         "{files:?}"
@@ -164,22 +152,14 @@ fn every_svg_parses_and_every_png_has_its_size_three_times() {
 #[test]
 fn symbols_and_values_are_those_of_the_model() {
     let (_kept, folder) = folder("coulomb");
-    let model = registry::find("coulomb").unwrap();
     let grading = pbif::space::Grading {
         at: vec![0.0],
         smallest: 0.02,
     };
     let graded = Axis::graded(-3.0, 3.0, 60, &grading).unwrap();
-    let result = rayleigh("f_c", 0.02, &graded);
+    let result = rayleigh(("coulomb", "f_c"), 0.02, &graded);
     let title = "Duffing oscillator with Coulomb friction: a title too long for one line of a figure & <more>";
-    let files = draw_all(
-        &result,
-        &model,
-        title,
-        &[-0.02, 0.0, 0.02],
-        &Format::ALL,
-        &folder,
-    );
+    let files = draw_all(&result, title, &[-0.02, 0.0, 0.02], &Format::ALL, &folder);
     let svg = std::fs::read_to_string(&files[0]).unwrap();
     let lowered =
         "<tspan font-style=\"oblique\">f</tspan><tspan dy=\"61\" font-size=\"202\">c</tspan>";
@@ -199,11 +179,10 @@ fn symbols_and_values_are_those_of_the_model() {
 
 #[test]
 fn equal_results_give_equal_bytes() {
-    let model = registry::find("rayleigh").unwrap();
     let draw = || {
         let folder = tempfile::tempdir().unwrap();
-        let result = rayleigh("a", 1.0, &uniform());
-        let files = draw_all(&result, &model, "t", &[0.5], &Format::ALL, folder.path());
+        let result = rayleigh(("rayleigh", "a"), 1.0, &uniform());
+        let files = draw_all(&result, "t", &[0.5], &Format::ALL, folder.path());
         let bytes = files.iter().map(|file| std::fs::read(file).unwrap());
         bytes.collect::<Vec<_>>()
     };
@@ -213,17 +192,9 @@ fn equal_results_give_equal_bytes() {
 #[test]
 fn without_densities_there_are_no_figures() {
     let folder = tempfile::tempdir().unwrap();
-    let model = registry::find("bistable").unwrap();
     let mut result = bistable();
     let drawn = |result: &SweepResult, at: f64| {
-        names(&draw_all(
-            result,
-            &model,
-            "",
-            &[at],
-            &[Format::Svg],
-            folder.path(),
-        ))
+        names(&draw_all(result, "", &[at], &[Format::Svg], folder.path()))
     };
     // The point nearest to the wanted value has no density: no marginals, but a diagram of the others.
     assert_eq!(drawn(&result, -0.85), ["diagram_x.svg"]);
@@ -242,16 +213,14 @@ fn a_single_point_is_drawn_too() {
     let mut result = bistable();
     result.points.drain(..30);
     result.points.truncate(1);
-    let model = registry::find("bistable").unwrap();
-    let files = draw_all(&result, &model, "", &[0.0], &[Format::Svg], folder.path());
+    let files = draw_all(&result, "", &[0.0], &[Format::Svg], folder.path());
     assert_eq!(names(&files), ["diagram_x.svg", "marginals.svg"]);
 }
 
 #[test]
 fn a_figure_is_drawn_by_its_name() {
-    let model = registry::find("rayleigh").unwrap();
-    let result = rayleigh("a", 1.0, &uniform());
-    let figures = Figures::of_sweep(&result, &model, "t", &[-0.5, 0.5]);
+    let result = rayleigh(("rayleigh", "a"), 1.0, &uniform());
+    let figures = Figures::of_sweep(&result, "t", &[-0.5, 0.5]);
     let names = figures.names();
     assert_eq!(
         names,
@@ -278,6 +247,6 @@ fn a_figure_is_drawn_by_its_name() {
         points: Vec::new(),
         ..result
     };
-    let figures = Figures::of_sweep(&empty, &model, "t", &[0.5]);
+    let figures = Figures::of_sweep(&empty, "t", &[0.5]);
     assert_eq!(figures.draw("diagram_x").unwrap(), None);
 }

@@ -8,7 +8,7 @@
 use pbif::generator::{GeneratorOptions, assemble, assemble_derivative};
 use pbif::space::{Axis, CellSpace};
 use pbif::stationary::generator::{RateMethod, RateOptions, RateSolver};
-use pbif::system::registry;
+use pbif::system::{Family, Path, registry};
 
 /// Relative L1 difference between the sensitivity and a fourth-order central difference of step `step`.
 ///
@@ -20,8 +20,11 @@ fn mismatch(
     space: &CellSpace,
     step: f64,
 ) -> f64 {
-    let model = registry::find(model).unwrap();
-    let values = model.values(given).unwrap();
+    let named = |one: &&(&str, f64)| one.0 == parameter;
+    let value = given.iter().find(named).unwrap().1;
+    let fixed: Vec<_> = given.iter().filter(|one| !named(one)).copied().collect();
+    let path = Path::parameter(parameter, value - 2.0 * step, value + 2.0 * step);
+    let family = Family::new(registry::find(model).unwrap(), &fixed, path).unwrap();
     let options = GeneratorOptions::default();
     let mut solver = RateSolver::new(
         space.clone(),
@@ -31,9 +34,8 @@ fn mismatch(
             ..RateOptions::default()
         },
     );
-    let value = values.as_slice()[model.parameter_index(parameter).unwrap()];
     let mut steady = |value: f64| {
-        let system = model.system(&model.with(&values, parameter, value).unwrap());
+        let system = family.at(value).unwrap();
         let generator = assemble(&*system, space, &options).unwrap();
         let state = solver
             .solve(&generator.matrix, &generator.escape, None)
@@ -49,7 +51,7 @@ fn mismatch(
         }
     }
     let mass = steady(value);
-    let derivative = assemble_derivative(&model, &values, parameter, space, &options).unwrap();
+    let derivative = assemble_derivative(|at| family.at(at), value, space, &options).unwrap();
     let change = solver.sensitivity(&derivative.matrix, &mass).unwrap();
     let gap = change.iter().zip(&difference).map(|(a, b)| (a - b).abs());
     gap.sum::<f64>() / difference.iter().map(|value| value.abs()).sum::<f64>()

@@ -10,22 +10,17 @@ use std::sync::atomic::AtomicBool;
 
 use pbif::continuation::{DensitySource, PointStatus, Solution};
 use pbif::density::Observable;
-use pbif::method::{GeneratorMethodOptions, GeneratorSource, Setting, State};
+use pbif::method::{GeneratorMethodOptions, GeneratorSource, Problem, State};
 use pbif::space::{Axis, CellSpace, Grading};
-use pbif::system::registry;
+use pbif::system::{Family, Path, registry};
 
 const OBSERVABLES: [Observable; 2] = [Observable::Marginal(0), Observable::Marginal(1)];
 
 /// Runs `task` on a source for the oscillator with Coulomb friction, 40 × 40 cells, the kink resolved.
 fn with_source<T>(task: impl FnOnce(&GeneratorSource) -> T) -> T {
     let model = registry::find("coulomb").unwrap();
-    let given = [
-        ("mu", 0.05),
-        ("kappa", 0.05),
-        ("sigma2", 0.05),
-        ("f_c", 0.0),
-    ];
-    let values = model.values(&given).unwrap();
+    let given = [("mu", 0.05), ("kappa", 0.05), ("sigma2", 0.05)];
+    let family = Family::new(model, &given, Path::parameter("f_c", -0.01, 0.01)).unwrap();
     let grading = Grading {
         at: vec![0.0],
         smallest: 0.02,
@@ -33,17 +28,10 @@ fn with_source<T>(task: impl FnOnce(&GeneratorSource) -> T) -> T {
     let x = Axis::uniform(-4.0, 4.0, 40).unwrap();
     let y = Axis::graded(-4.0, 4.0, 40, &grading).unwrap();
     let space = CellSpace::new(vec![x, y]).unwrap();
-    let setting = Setting {
-        model: &model,
-        values: &values,
-        parameter: "f_c",
-        range: (-0.01, 0.01),
-        space: &space,
-        observables: &OBSERVABLES,
-    };
+    let problem = Problem::new(family, space, OBSERVABLES.to_vec()).unwrap();
     let options = GeneratorMethodOptions::default();
     let interrupt = Arc::new(AtomicBool::new(false));
-    task(&GeneratorSource::new(&setting, &options, interrupt).unwrap())
+    task(&GeneratorSource::new(&problem, &options, interrupt).unwrap())
 }
 
 fn value(index: usize) -> f64 {

@@ -6,13 +6,13 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use pbif::continuation::{LabelledPoint, LocateOptions, Plan, PointType, SweepResult, sweep};
+use pbif::continuation::{LabelledPoint, LocateOptions, PointType, SweepResult, sweep};
 use pbif::density::Observable;
 use pbif::method::{
-    GeneratorMethodOptions, MethodOptions, MethodSource, Setting, SgcmOptions, StepChoice,
+    GeneratorMethodOptions, MethodOptions, MethodSource, Problem, SgcmOptions, StepChoice,
 };
 use pbif::space::{Axis, CellSpace};
-use pbif::system::registry;
+use pbif::system::{Family, Path, registry};
 use pbif::topology::{DetectOptions, PersistenceDetector};
 
 /// One sweep.
@@ -30,33 +30,18 @@ struct Case<'a> {
 impl Case<'_> {
     fn run(&self, method: &MethodOptions) -> SweepResult {
         let model = registry::find(self.model).unwrap();
-        let mut given = self.parameters.to_vec();
-        given.push((self.parameter, self.range.0));
-        let values = model.values(&given).unwrap();
+        let path = Path::parameter(self.parameter, self.range.0, self.range.1);
+        let family = Family::new(model, self.parameters, path).unwrap();
         let space = CellSpace::new(self.axes.clone()).unwrap();
-        let setting = Setting {
-            model: &model,
-            values: &values,
-            parameter: self.parameter,
-            range: self.range,
-            space: &space,
-            observables: &self.observables,
-        };
-        let source = MethodSource::new(&setting, method, Arc::new(AtomicBool::new(false))).unwrap();
-        let plan = Plan {
-            parameter: self.parameter.to_owned(),
-            from: self.range.0,
-            to: self.range.1,
-            points: self.points,
-            observables: self.observables.clone(),
-        };
+        let problem = Problem::new(family, space, self.observables.clone()).unwrap();
+        let source = MethodSource::new(&problem, method, Arc::new(AtomicBool::new(false))).unwrap();
         let looks = self.points * self.observables.len();
         let detector = PersistenceDetector::new(DetectOptions::default(), looks);
         let options = LocateOptions {
             tolerance: self.tolerance,
             ..LocateOptions::default()
         };
-        sweep(&source, &detector, &plan, &options, &mut ()).unwrap()
+        sweep(&source, &detector, self.points, &options, &mut ()).unwrap()
     }
 }
 

@@ -84,14 +84,11 @@ pub(super) fn of_comparison(family: &Family, comparison: &Comparison) -> Vec<Str
 mod tests {
     use super::*;
     use crate::continuation::SolveReport;
-    use crate::system::registry;
+    use crate::system::examples::coulomb;
 
     #[test]
     fn each_kind_is_told_once_whatever_its_numbers() {
-        let family = Naming {
-            model: &registry::models()[0],
-            parameter: "f_c",
-        };
+        let family = coulomb();
         let edge = |axis, mass| Finding::EdgeMass {
             axis,
             mass,

@@ -1,12 +1,15 @@
 //! Location with the real detector on closed-form densities, whose bifurcations are known exactly.
 
 use super::*;
-use crate::density::{Density, EstimatedDensity, Kink, Structure, Variants};
+use crate::density::{Density, EstimatedDensity, Kink, Observable, Structure, Variants};
 use crate::space::Axis;
+use crate::system::examples::bistable;
 use crate::topology::{DetectOptions, PersistenceDetector};
 
 /// A density p(x; θ) of one or two axes, by Gauss quadrature over cells; counts its solves.
+#[derive(Clone)]
 struct Exact<F> {
+    subject: Subject,
     axes: Vec<Axis>,
     structure: fn(f64) -> Structure,
     density: F,
@@ -22,7 +25,15 @@ const GAUSS: [(f64, f64); 3] = [
 
 impl<F: Fn(f64, &[f64]) -> f64 + Clone> Exact<F> {
     fn new(axes: usize, count: usize, structure: fn(f64) -> Structure, density: F) -> Self {
+        let subject = Subject {
+            family: bistable(-1.0, 1.0),
+            observables: vec![match axes {
+                1 => Observable::Marginal(0),
+                _ => Observable::Joint(0, 1),
+            }],
+        };
         Self {
+            subject,
             axes: vec![Axis::uniform(-2.0, 2.0, count).unwrap(); axes],
             structure,
             density,
@@ -55,6 +66,10 @@ impl<F: Fn(f64, &[f64]) -> f64 + Clone> Exact<F> {
 impl<F: Fn(f64, &[f64]) -> f64 + Clone> DensitySource for Exact<F> {
     type State = ();
 
+    fn subject(&self) -> &Subject {
+        &self.subject
+    }
+
     fn solve(&self, value: f64, _: Option<&()>) -> Result<Solution<()>, SourceError> {
         self.solves.set(self.solves.get() + 1);
         let cells = self.axes[0].count().pow(self.axes.len() as u32);
@@ -68,10 +83,7 @@ impl<F: Fn(f64, &[f64]) -> f64 + Clone> DensitySource for Exact<F> {
             .values
             .iter_mut()
             .for_each(|p| *p *= self.scale / total);
-        let observable = match self.axes.len() {
-            1 => Observable::Marginal(0),
-            _ => Observable::Joint(0, 1),
-        };
+        let observable = self.subject.observables[0];
         Ok(Solution {
             report: SolveReport::solved("exact"),
             moments: Vec::new(),
@@ -90,10 +102,7 @@ impl<F: Fn(f64, &[f64]) -> f64 + Clone> DensitySource for Exact<F> {
         let axes = self.axes.iter().map(|axis| axis.refined(1.5)).collect();
         Some(Self {
             axes,
-            structure: self.structure,
-            density: self.density.clone(),
-            scale: self.scale,
-            solves: std::cell::Cell::new(0),
+            ..self.clone()
         })
     }
 }
@@ -110,22 +119,14 @@ fn run<F: Fn(f64, &[f64]) -> f64 + Clone>(
     (from, to, points): (f64, f64, usize),
     tolerance: f64,
 ) -> SweepResult {
-    let plan = Plan {
-        parameter: "a".to_owned(),
-        from,
-        to,
-        points,
-        observables: vec![match source.axes.len() {
-            1 => Observable::Marginal(0),
-            _ => Observable::Joint(0, 1),
-        }],
-    };
+    let mut source = source.clone();
+    source.subject.family = bistable(from, to);
     let detector = PersistenceDetector::new(DetectOptions::default(), points);
     let options = LocateOptions {
         tolerance,
         ..LocateOptions::default()
     };
-    sweep(source, &detector, &plan, &options, &mut ()).unwrap()
+    sweep(&source, &detector, points, &options, &mut ()).unwrap()
 }
 
 fn rows(result: &SweepResult) -> Vec<&LabelledPoint> {

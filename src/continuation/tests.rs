@@ -1,19 +1,26 @@
 //! The sweep driver on sources whose answers are known in closed form.
 
 use super::*;
-use crate::density::{Density, EstimatedDensity, Moments};
+use crate::density::{Density, EstimatedDensity, Moments, Observable};
 use crate::space::Axis;
+use crate::system::examples::bistable;
 use crate::topology::{Detection, Detector, Feature, FeatureKind, Signature, Verdict};
 
 /// A source that hands the parameter to the detector, fails where asked, and counts cold starts.
 struct Ramp {
+    subject: Subject,
     failing: Option<(f64, f64)>,
     cold: std::cell::Cell<usize>,
 }
 
 impl Ramp {
-    fn new() -> Self {
+    fn new(from: f64, to: f64) -> Self {
+        let subject = Subject {
+            family: bistable(from, to),
+            observables: vec![Observable::Marginal(0)],
+        };
         Self {
+            subject,
             failing: None,
             cold: std::cell::Cell::new(0),
         }
@@ -22,6 +29,10 @@ impl Ramp {
 
 impl DensitySource for Ramp {
     type State = f64;
+
+    fn subject(&self) -> &Subject {
+        &self.subject
+    }
 
     fn solve(&self, value: f64, start: Option<&f64>) -> Result<Solution<f64>, SourceError> {
         if start.is_none() {
@@ -108,21 +119,11 @@ impl Detector for SquareLaw {
     }
 }
 
-fn plan(from: f64, to: f64, points: usize) -> Plan {
-    Plan {
-        parameter: "a".to_owned(),
-        from,
-        to,
-        points,
-        observables: vec![Observable::Marginal(0)],
-    }
-}
-
-fn run(source: &Ramp, detector: &SquareLaw, plan: &Plan, tolerance: f64) -> SweepResult {
+fn run(source: &Ramp, detector: &SquareLaw, points: usize, tolerance: f64) -> SweepResult {
     sweep(
         source,
         detector,
-        plan,
+        points,
         &LocateOptions {
             tolerance,
             ..LocateOptions::default()
@@ -145,7 +146,7 @@ fn a_birth_hidden_by_noise_lies_in_the_stated_band() {
         birth: 0.1,
         noise: 1e-3,
     };
-    let result = run(&Ramp::new(), &detector, &plan(-1.0, 1.0, 41), 1e-4);
+    let result = run(&Ramp::new(-1.0, 1.0), &detector, 41, 1e-4);
     let rows = bifurcations(&result);
     assert_eq!(rows.len(), 1);
     let row = rows[0];
@@ -165,7 +166,7 @@ fn without_noise_the_bracket_reaches_the_tolerance() {
         birth: 0.1,
         noise: 1e-12,
     };
-    let result = run(&Ramp::new(), &detector, &plan(-1.0, 1.0, 41), 1e-4);
+    let result = run(&Ramp::new(-1.0, 1.0), &detector, 41, 1e-4);
     let rows = bifurcations(&result);
     assert_eq!(rows[0].status, Some(BifurcationStatus::Located));
     assert!(rows[0].upper - rows[0].lower <= 1e-4);
@@ -180,8 +181,8 @@ fn the_direction_of_the_sweep_changes_no_row() {
         birth: 0.1,
         noise: 1e-3,
     };
-    let up = run(&Ramp::new(), &detector, &plan(-1.0, 1.0, 41), 1e-3);
-    let down = run(&Ramp::new(), &detector, &plan(1.0, -1.0, 41), 1e-3);
+    let up = run(&Ramp::new(-1.0, 1.0), &detector, 41, 1e-3);
+    let down = run(&Ramp::new(1.0, -1.0), &detector, 41, 1e-3);
     let (a, b) = (bifurcations(&up), bifurcations(&down));
     assert_eq!(a.len(), b.len());
     for (a, b) in a.iter().zip(&b) {
@@ -196,13 +197,13 @@ fn the_direction_of_the_sweep_changes_no_row() {
 fn failures_are_rows_and_do_not_stop_the_sweep() {
     let source = Ramp {
         failing: Some((-0.35, 0.05)),
-        ..Ramp::new()
+        ..Ramp::new(-1.0, 1.0)
     };
     let detector = SquareLaw {
         birth: 0.5,
         noise: 1e-6,
     };
-    let result = run(&source, &detector, &plan(-1.0, 1.0, 21), 1e-3);
+    let result = run(&source, &detector, 21, 1e-3);
     let failures: Vec<_> = result
         .labels
         .iter()
@@ -238,17 +239,16 @@ fn an_interruption_keeps_the_points_so_far() {
         birth: 0.1,
         noise: 1e-6,
     };
-    let plan = plan(-1.0, 1.0, 41);
     let options = LocateOptions::default();
-    let source = Ramp::new();
-    let result = sweep(&source, &detector, &plan, &options, &mut StopAfter(7, 0)).unwrap();
+    let source = Ramp::new(-1.0, 1.0);
+    let result = sweep(&source, &detector, 41, &options, &mut StopAfter(7, 0)).unwrap();
     assert!(result.interrupted);
     assert_eq!(result.points.len(), 7);
 }
 
 #[test]
 fn given_values_hit_both_ends_and_zero_exactly() {
-    let values = plan(-0.02, 0.01, 31).values();
+    let values = evenly_spaced((-0.02, 0.01), 31);
     assert_eq!((values[0], values[30]), (-0.02, 0.01));
     assert_eq!((values[10], values[20]), (-0.01, 0.0));
 }

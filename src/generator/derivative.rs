@@ -97,29 +97,22 @@ fn distance(a: &Generator, b: &Generator) -> f64 {
 mod tests {
     use super::*;
     use crate::space::Axis;
-    use crate::system::registry;
+    use crate::system::{Family, Path, registry};
 
     /// How far the integral of dQ/dθ over an interval is from the difference of Q between its ends.
-    fn mismatch(model: &str, given: &[(&str, f64)], parameter: &str, ranges: &[(f64, f64)]) -> f64 {
-        let model = registry::find(model).unwrap();
-        let values = model.values(given).unwrap();
+    fn mismatch(family: &Family, ranges: &[(f64, f64)]) -> f64 {
         let axes = ranges
             .iter()
             .map(|&(from, to)| Axis::uniform(from, to, 10).unwrap());
         let space = CellSpace::new(axes.collect()).unwrap();
         let options = GeneratorOptions::default();
-        let derivative = assemble_derivative(&model, &values, parameter, &space, &options).unwrap();
-        let value = values.as_slice()[model.parameter_index(parameter).unwrap()];
-        let half = 0.1 * value.abs().max(0.01);
+        let derivative =
+            |value| assemble_derivative(|at| family.at(at), value, &space, &options).unwrap();
+        let (from, to) = family.ends();
+        let (value, half) = (0.5 * (from + to), 0.5 * (to - from));
         let at = |value: f64| {
-            let values = model.with(&values, parameter, value).unwrap();
-            assemble_within(
-                &*model.system(&values),
-                &*model.system(&values),
-                &space,
-                &options,
-            )
-            .unwrap()
+            let system = family.at(value).unwrap();
+            assemble_within(&*system, &*system, &space, &options).unwrap()
         };
         let gauss = [
             (-0.906_179_845_938_664, 0.236_926_885_056_189),
@@ -128,37 +121,59 @@ mod tests {
             (0.538_469_310_105_683, 0.478_628_670_499_366),
             (0.906_179_845_938_664, 0.236_926_885_056_189),
         ];
-        let mut integral = derivative.clone();
+        let mut integral = derivative(value);
         scale(&mut integral, 0.0);
         for (place, weight) in gauss {
-            let values = model
-                .with(&values, parameter, value + half * place)
-                .unwrap();
-            let here = assemble_derivative(&model, &values, parameter, &space, &options).unwrap();
-            add(&mut integral, half * weight, &here);
+            add(
+                &mut integral,
+                half * weight,
+                &derivative(value + half * place),
+            );
         }
-        let mut difference = at(value + half);
-        add(&mut difference, -1.0, &at(value - half));
+        let mut difference = at(to);
+        add(&mut difference, -1.0, &at(from));
         distance(&difference, &integral)
     }
 
     #[test]
     fn the_derivative_integrates_to_the_difference() {
-        let coulomb = [("kappa", 0.1), ("f_c", 0.02), ("mu", 0.1), ("sigma2", 0.3)];
+        let coulomb = [
+            ("kappa", 0.1),
+            ("f_c", 0.02),
+            ("mu", 0.1),
+            ("sigma2", 0.3),
+            ("alpha", 1.0),
+        ];
         let ranges = [(-2.0, 2.0), (-2.0, 2.0)];
-        for parameter in ["kappa", "f_c", "alpha", "sigma2"] {
-            let error = mismatch("coulomb", &coulomb, parameter, &ranges);
+        for (parameter, value) in coulomb {
+            let fixed: Vec<_> = coulomb
+                .into_iter()
+                .filter(|one| one.0 != parameter)
+                .collect();
+            let path = Path::parameter(parameter, 0.9 * value, 1.1 * value);
+            let model = registry::find("coulomb").unwrap();
+            let family = Family::new(model, &fixed, path).unwrap();
+            let error = mismatch(&family, &ranges);
             assert!(error < 1e-9, "{parameter}: {error:e}");
         }
+        // Along a curve on which two parameters move at once.
+        let path = Path::curve("s", "s", ["f_c", "sigma2"], (0.1, 0.3), |s: f64| {
+            vec![s * s, 0.1 + s]
+        });
+        let model = registry::find("coulomb").unwrap();
+        let family = Family::new(model, &[("kappa", 0.1)], path).unwrap();
+        let error = mismatch(&family, &ranges);
+        assert!(error < 1e-9, "{error:e}");
     }
 
     #[test]
-    fn an_unknown_parameter_is_an_error() {
+    fn without_systems_beside_the_value_there_is_no_derivative() {
+        let path = Path::parameter("sigma2", 0.1, 0.2);
         let model = registry::find("bistable").unwrap();
-        let values = model.values(&[("a", 0.0), ("sigma2", 0.1)]).unwrap();
+        let family = Family::new(model, &[("a", 0.0)], path).unwrap();
         let space = CellSpace::new(vec![Axis::uniform(-1.0, 1.0, 10).unwrap()]).unwrap();
-        let result =
-            assemble_derivative(&model, &values, "b", &space, &GeneratorOptions::default());
+        let options = GeneratorOptions::default();
+        let result = assemble_derivative(|at| family.at(at), 0.0, &space, &options);
         assert!(matches!(result, Err(GeneratorError::System(_))));
     }
 }

@@ -8,6 +8,8 @@
 mod bistable;
 #[cfg(test)]
 mod contract;
+#[cfg(test)]
+pub(crate) mod examples;
 mod family;
 pub mod friction;
 mod model;

@@ -1,10 +1,12 @@
 //! Sweeps with closed-form densities, for tests that need a result but no solver.
 
 use pbif::continuation::{
-    BifurcationStatus, LabelledPoint, Point, PointStatus, PointType, SolveReport, SweepResult,
+    BifurcationStatus, LabelledPoint, Point, PointStatus, PointType, SolveReport, Subject,
+    SweepResult,
 };
 use pbif::density::{Density, EstimatedDensity, Observable};
 use pbif::space::Axis;
+use pbif::system::{Family, Path, registry};
 use pbif::topology::{Detection, Feature, FeatureKind, Signature, Verdict};
 
 fn feature(kind: FeatureKind, position: Vec<f64>, density: f64) -> Feature {
@@ -136,8 +138,10 @@ pub(crate) fn bistable() -> SweepResult {
     };
     let unresolved = BifurcationStatus::Unresolved;
     SweepResult {
-        parameter: "a".to_owned(),
-        observables: vec![Observable::Marginal(0)],
+        subject: Subject {
+            family: along("bistable", "a", (-1.0, 1.0)),
+            observables: vec![Observable::Marginal(0)],
+        },
         points: values.into_iter().map(at).collect(),
         labels: vec![bifurcation(
             "PB1",
@@ -151,8 +155,8 @@ pub(crate) fn bistable() -> SweepResult {
 }
 
 /// Caughey and Ma: p ∝ exp(-(2/σ²)(-aH + H²/2)), H = (x² + y²)/2, σ² = 0.4: peak, for a > 0 crater.
-/// The parameter is `scale` a. Peaks of the marginals are not exact, they are there to be drawn.
-pub(crate) fn rayleigh(parameter: &str, scale: f64, y: &Axis) -> SweepResult {
+/// Said to be of `model`, whose parameter is `scale` a. Peaks of the marginals are not exact, they are there to be drawn.
+pub(crate) fn rayleigh((model, parameter): (&str, &str), scale: f64, y: &Axis) -> SweepResult {
     let x = Axis::uniform(-3.0, 3.0, 60).unwrap();
     let observables = vec![
         Observable::Marginal(0),
@@ -207,13 +211,25 @@ pub(crate) fn rayleigh(parameter: &str, scale: f64, y: &Axis) -> SweepResult {
         located("PB3", 0.36, observables[1]),
     ];
     SweepResult {
-        parameter: parameter.to_owned(),
-        observables: observables.clone(),
+        subject: Subject {
+            family: along(model, parameter, (-scale, scale)),
+            observables,
+        },
         points,
         labels,
         finer: None,
         interrupted: false,
     }
+}
+
+/// A family of a model along one of its parameters, all others one half.
+fn along(model: &str, parameter: &str, (from, to): (f64, f64)) -> Family {
+    let model = registry::find(model).unwrap();
+    let others = model.parameters.clone().into_iter();
+    let others = others.filter(|other| other.name != parameter);
+    let others: Vec<String> = others.map(|other| other.name).collect();
+    let fixed: Vec<(&str, f64)> = others.iter().map(|name| (name.as_str(), 0.5)).collect();
+    Family::new(model, &fixed, Path::parameter(parameter, from, to)).unwrap()
 }
 
 pub(crate) fn uniform() -> Axis {

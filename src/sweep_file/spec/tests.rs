@@ -1,6 +1,8 @@
 //! A specification from a text: defaults, the resolved file, conditions between keys.
 
 use super::*;
+use crate::continuation::evenly_spaced;
+use crate::density::Observable;
 
 const FILE: &str = r#"
 [system]
