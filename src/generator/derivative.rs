@@ -157,7 +157,7 @@ mod tests {
             assert!(error < 1e-9, "{parameter}: {error:e}");
         }
         // Along a curve on which two parameters move at once.
-        let path = Path::curve("s", "s", ["f_c", "sigma2"], (0.1, 0.3), |s: f64| {
+        let path = Path::curve("s", "s", ["f_c", "sigma2"], (0.18, 0.22), |s: f64| {
             vec![s * s, 0.1 + s]
         });
         let model = registry::find("coulomb").unwrap();
