@@ -1,4 +1,4 @@
-//! Accuracy of the generator's steady states against exact densities, and the tables of docs/accuracy.md.
+//! Accuracy of the generator's steady states against exact densities.
 
 use std::sync::Arc;
 
@@ -25,12 +25,11 @@ fn square(half: f64, count: usize) -> CellSpace {
     CellSpace::new(vec![Axis::uniform(-half, half, count).unwrap(); 2]).unwrap()
 }
 
-/// Graded toward the surface on y: the automatic grading of 100 cells, refined for more of them.
-fn graded(system: &dyn System, half: f64, x_cells: usize, refinement: usize) -> CellSpace {
-    let mut grading = automatic_grading(system, &[(-half, half); 2], 1, 100).unwrap();
-    grading.smallest /= refinement as f64;
-    let x = Axis::uniform(-half, half, x_cells * refinement).unwrap();
-    let y = Axis::graded(-half, half, 100 * refinement, &grading).unwrap();
+/// 50 cells on x, 100 on y graded toward the surface as the automatic grading says.
+fn graded(system: &dyn System, half: f64) -> CellSpace {
+    let grading = automatic_grading(system, &[(-half, half); 2], 1, 100).unwrap();
+    let x = Axis::uniform(-half, half, 50).unwrap();
+    let y = Axis::graded(-half, half, 100, &grading).unwrap();
     CellSpace::new(vec![x, y]).unwrap()
 }
 
@@ -137,7 +136,7 @@ fn every_scheme_is_of_fourth_order_or_better() {
 fn the_slope_law_holds_at_the_switching_surface() {
     for (f_c, half) in [(0.01, 3.0), (0.001, 3.6), (-0.01, 4.2), (-0.001, 3.8)] {
         let system = coulomb(f_c);
-        let space = graded(&*system, half, 50, 1);
+        let space = graded(&*system, half);
         let masses = steady_masses(&*system, &space, AdvectiveScheme::default());
         let ratio = slope_law_ratio(&space, &masses, f_c);
         assert!((ratio - 1.0).abs() < 0.02, "f_c = {f_c}: {ratio}");
@@ -235,58 +234,4 @@ fn a_hysteretic_oscillator_keeps_its_mass_within_the_walls() {
         negative[0] < 0.02 && negative[1] < 0.8 * negative[0],
         "{negative:?}"
     );
-}
-
-/// Prints the tables of docs/accuracy.md: `cargo test --release --lib generator::accuracy -- --ignored --nocapture`.
-#[test]
-#[ignore = "minutes: prints the tables of docs/accuracy.md"]
-#[allow(clippy::print_stdout, reason = "the tables are its purpose")]
-fn tables() {
-    println!("f_c = 0, against the exact masses: cells, half range, TV of each scheme");
-    for (count, half) in [
-        (50, 3.6),
-        (100, 3.8),
-        (100, 4.0),
-        (50, 4.2),
-        (100, 4.2),
-        (150, 4.2),
-    ] {
-        let errors =
-            AdvectiveScheme::ALL.map(|scheme| error(&*coulomb(0.0), &square(half, count), scheme));
-        let [upwind, central4, central6] = errors;
-        println!("{count} | {half} | {upwind:.1e} | {central4:.1e} | {central6:.1e}");
-    }
-    println!(
-        "f_c, half range, grid, scheme: slope over the law, TV against 2 times the cells, negative mass"
-    );
-    for (f_c, half) in [(0.01, 3.0), (0.001, 3.6), (-0.001, 3.8), (-0.01, 4.2)] {
-        let system = coulomb(f_c);
-        let spaces = |refinement| {
-            [
-                square(half, 100 * refinement),
-                graded(&*system, half, 100, refinement),
-            ]
-        };
-        for (name, (space, fine)) in ["uniform", "graded"]
-            .iter()
-            .zip(spaces(1).iter().zip(&spaces(2)))
-        {
-            let reference = steady_masses(&*system, fine, AdvectiveScheme::Central6);
-            let mut restricted = vec![0.0; space.n_cells()];
-            for (cell, mass) in reference.iter().enumerate() {
-                let parent = [fine.position(cell, 0) / 2, fine.position(cell, 1) / 2];
-                restricted[space.number(&parent)] += mass;
-            }
-            for scheme in AdvectiveScheme::ALL {
-                let masses = steady_masses(&*system, space, scheme);
-                println!(
-                    "{f_c} | {half} | {name} | {} | {:.4} | {:.1e} | {:.1e}",
-                    scheme.name(),
-                    slope_law_ratio(space, &masses, f_c),
-                    total_variation(&masses, &restricted),
-                    negative_mass(&masses)
-                );
-            }
-        }
-    }
 }

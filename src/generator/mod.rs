@@ -14,7 +14,6 @@
 //! | fluxes along a grid line: fitted and advected drift | `line.rs` |
 //! | the matrix | `assemble.rs`, `columns.rs` |
 //! | masses of cells and moments from the unknowns | `masses.rs` |
-//! | negative masses filled, moments kept | `positivity.rs` |
 //! | dQ/dθ | `derivative.rs` |
 //! | axes graded toward switching surfaces | `grading.rs` |
 //! | is the grid fine enough for the noise | `resolution.rs` |
@@ -30,7 +29,6 @@ mod geometry;
 mod grading;
 mod line;
 mod masses;
-mod positivity;
 mod resolution;
 mod sampler;
 mod scheme;
@@ -39,7 +37,6 @@ pub use assemble::assemble;
 pub use derivative::assemble_derivative;
 pub use grading::automatic_grading;
 pub use masses::{cell_masses, unknown_moments};
-pub use positivity::{Repair, repair_negative};
 pub use resolution::{Resolution, resolution};
 pub use scheme::AdvectiveScheme;
 

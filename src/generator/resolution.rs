@@ -1,7 +1,5 @@
 //! Whether the grid is fine enough for the noise, judged where the mass is.
 
-use std::fmt;
-
 use super::geometry::surface_faces;
 use crate::space::CellSpace;
 use crate::system::System;
@@ -29,48 +27,6 @@ pub struct Resolution {
     pub layer: Option<f64>,
     /// Switching surfaces inside the range that no face falls on.
     pub surfaces_off_faces: Vec<f64>,
-}
-
-impl Resolution {
-    /// Whether nothing needs to be said.
-    pub fn is_fine(&self) -> bool {
-        self.fitted_peclet <= 1.0
-            && self.layer.is_none_or(|layer| layer <= 1.0)
-            && self.surfaces_off_faces.is_empty()
-    }
-}
-
-impl fmt::Display for Resolution {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let axis = self.axis + 1;
-        if self.is_fine() {
-            return write!(
-                formatter,
-                "axis {axis}: the cells resolve drift against noise"
-            );
-        }
-        write!(formatter, "axis {axis}:")?;
-        if self.fitted_peclet > 1.0 {
-            let value = self.fitted_peclet;
-            write!(
-                formatter,
-                " cells too wide for the noise (damping or friction has cell Péclet number {value:.2}; it should stay below 1);"
-            )?;
-        }
-        if let Some(layer) = self.layer.filter(|layer| *layer > 1.0) {
-            write!(
-                formatter,
-                " cells beside a switching surface are {layer:.1} times as wide as the layer that holds the kink, which is smeared (grade the axis toward the surface);"
-            )?;
-        }
-        for at in &self.surfaces_off_faces {
-            write!(
-                formatter,
-                " no face falls on the switching surface at {at} (use an even count or grade the axis toward it);"
-            )?;
-        }
-        Ok(())
-    }
 }
 
 /// Judges every noisy axis of a cell space, given the masses of its cells (length `n_cells`).
@@ -197,7 +153,6 @@ mod tests {
             (uniform.layer.unwrap() - expected).abs() < 1e-12,
             "{uniform:?}"
         );
-        assert!(!uniform.is_fine() && uniform.to_string().contains("kink"));
     }
 
     #[test]
@@ -225,7 +180,9 @@ mod tests {
             at: vec![0.0],
             smallest: 0.02,
         };
-        assert!(judged(Axis::graded(-2.0, 2.0, 40, &grading).unwrap()).is_fine());
+        let graded = judged(Axis::graded(-2.0, 2.0, 40, &grading).unwrap());
+        assert!(graded.fitted_peclet <= 1.0 && graded.layer.unwrap() <= 1.0);
+        assert!(graded.surfaces_off_faces.is_empty());
         let odd = judged(Axis::uniform(-2.0, 2.0, 21).unwrap());
         assert_eq!(odd.surfaces_off_faces, vec![0.0]);
         assert_eq!(odd.layer, None);

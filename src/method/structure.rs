@@ -1,7 +1,7 @@
 //! What a system's equations imply for a density that is watched: its centre of symmetry, and its kinks.
 //!
 //! On a plane where the drift across it jumps by Δa, flux and density are continuous, so the derivative of log p
-//! across the plane jumps by (2/b²) Δa (DESIGN section 3, the jump law). Where axes are summed over, Δa is the mean over
+//! across the plane jumps by (2/b²) Δa: the jump law. Where axes are summed over, Δa is the mean over
 //! the mass beside the plane.
 
 use std::sync::Arc;

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::column::{Column, ColumnSampler, EndMoments, SINK};
+use super::column::{Column, ColumnSampler, SINK};
 use super::{Integrator, SampledTransitions, SamplingError};
 use crate::space::CellSpace;
 use crate::system::System;
@@ -114,29 +114,6 @@ fn unknown_of(cells: impl Iterator<Item = usize>, known: &mut [bool]) -> Vec<usi
         .collect();
     unknown.sort_unstable();
     unknown
-}
-
-/// Upper bound in bytes of what sampled transitions and one matrix made of them hold, if every cell of `n_cells`
-/// is reached and every sample ends in a different one. Usually ten times less is used.
-pub fn estimated_bytes(n_cells: usize, options: &SamplingOptions, dimension: usize) -> u64 {
-    let samples = options.samples;
-    let entries = samples.min(n_cells.saturating_add(1));
-    // Starts are summed over the samples of each end cell and group; moments of end points go with them.
-    let starts = match options.keep_starts {
-        true => {
-            let sums = samples.min(entries.saturating_mul(options.groups));
-            4 * dimension * sums + size_of::<EndMoments>() * dimension
-        }
-        false => 0,
-    } as u64;
-    let (entries, samples) = (entries as u64, samples as u64);
-    // Groups are stored a byte a sample, whatever their number.
-    let column = size_of::<(usize, Column)>() as u64 + 8 * entries + samples + starts;
-    // A row entry is an index and a value; row ends are kept twice while rows are filled.
-    let matrix = 16 * entries + 8 * 4;
-    // The list of cells, their positions, the marks.
-    let cell = 8 * 2 + 4 + 1;
-    (n_cells as u64).saturating_mul(column + matrix + cell)
 }
 
 #[cfg(test)]

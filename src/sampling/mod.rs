@@ -17,7 +17,7 @@ mod slopes;
 mod starts;
 mod transition;
 
-pub use growth::{SamplingOptions, estimated_bytes, sample_transitions};
+pub use growth::{SamplingOptions, sample_transitions};
 pub use integrator::Integrator;
 pub(crate) use integrator::Stepper;
 pub use pilot::{Pilot, pilot};
