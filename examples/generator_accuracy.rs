@@ -184,7 +184,7 @@ fn slope_over_law(space: &CellSpace, masses: &[f64], f_c: f64) -> f64 {
     let first = axis.count() / 2;
     // Newton's divided differences of the integral of the density, which vanishes at the surface.
     let edges: Vec<f64> = (0..5).map(|edge| axis.edges()[first + edge]).collect();
-    let mut differences = vec![0.0; 5];
+    let mut differences = [0.0; 5];
     for edge in 1..5 {
         differences[edge] = differences[edge - 1] + marginal[first + edge - 1];
     }
