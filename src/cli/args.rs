@@ -68,7 +68,7 @@ pub(super) enum Command {
     Sweep {
         /// What to run.
         #[command(flatten)]
-        input: SweepFile,
+        input: SweepInput,
         /// How to run it.
         #[command(flatten)]
         run: SweepArguments,
@@ -78,14 +78,14 @@ pub(super) enum Command {
     Check {
         /// What to check.
         #[command(flatten)]
-        input: SweepFile,
+        input: SweepInput,
     },
     /// Solve by every method and compare: times, distances with their uncertainties, figures
     #[command(after_help = COMPARE_EXAMPLES)]
     Compare {
         /// What to compare.
         #[command(flatten)]
-        input: SweepFile,
+        input: SweepInput,
         /// How to run it.
         #[command(flatten)]
         run: CompareArguments,
@@ -114,12 +114,23 @@ pub(super) enum Command {
 
 /// A sweep file with its overrides.
 #[derive(Debug, Args)]
-pub(super) struct SweepFile {
+pub(super) struct SweepInput {
     /// Sweep file (TOML)
     pub(super) file: PathBuf,
     /// Override a key of the file, such as sweep.points=301 (repeatable; the last one counts)
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(super) overrides: Vec<String>,
+}
+
+impl SweepInput {
+    /// What results are named after: the file's name without folder and ending.
+    pub(super) fn name(&self) -> String {
+        let stem = self.file.file_stem();
+        let stem = stem.map(|stem| stem.to_string_lossy().into_owned());
+        // Dots alone are no name: the folder `..` holds other things.
+        stem.filter(|stem| !stem.chars().all(|c| c == '.'))
+            .unwrap_or_else(|| "sweep".to_owned())
+    }
 }
 
 /// How a sweep is run.

@@ -1,7 +1,7 @@
 //! `pbif check`: the resolved sweep and what it will cost. Runs nothing.
 
-use std::fmt::Write as _;
 use std::io;
+use std::path::Path;
 
 use crate::method::{
     GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions, StepChoice,
@@ -10,7 +10,7 @@ use crate::method::{
 use crate::continuation::evenly_spaced;
 use crate::method::cost;
 use crate::stationary::generator::Estimate;
-use crate::sweep_file::SweepSpec;
+use crate::sweep_file::{MethodKind, Sweep};
 
 /// Points beyond which a sweep is said to be long.
 const MANY_POINTS: usize = 1000;
@@ -19,11 +19,8 @@ const MANY_POINTS: usize = 1000;
 ///
 /// # Errors
 /// None in practice: writing to memory does not fail.
-pub(super) fn text(spec: &SweepSpec) -> io::Result<String> {
-    let mut text = format!(
-        "# {}: no errors. Complete, it reads\n\n",
-        spec.file.display()
-    );
+pub(super) fn text(file: &Path, spec: &Sweep) -> io::Result<String> {
+    let mut text = format!("# {}: no errors. Complete, it reads\n\n", file.display());
     text += &spec.to_toml();
     text += "\n# Cost\n";
     for line in costs(spec) {
@@ -39,7 +36,7 @@ pub(super) fn text(spec: &SweepSpec) -> io::Result<String> {
     Ok(text)
 }
 
-fn costs(spec: &SweepSpec) -> Vec<String> {
+fn costs(spec: &Sweep) -> Vec<String> {
     let shape: Vec<String> = spec
         .problem
         .space()
@@ -52,10 +49,10 @@ fn costs(spec: &SweepSpec) -> Vec<String> {
         format!("cells: {} = {cells}", shape.join(" x ")),
         points(spec),
     ];
-    match &spec.method {
-        MethodOptions::Generator(options) => lines.extend(generator_costs(spec, options)),
-        MethodOptions::Sgcm(options) => lines.extend(sgcm_costs(spec, options)),
-        MethodOptions::MonteCarlo(options) => lines.extend(monte_carlo_costs(spec, options)),
+    match spec.settings.method.chosen() {
+        MethodOptions::Generator(options) => lines.extend(generator_costs(spec, &options)),
+        MethodOptions::Sgcm(options) => lines.extend(sgcm_costs(spec, &options)),
+        MethodOptions::MonteCarlo(options) => lines.extend(monte_carlo_costs(spec, &options)),
     }
     lines
 }
@@ -66,7 +63,7 @@ fn factorisation_seconds(factors: &Estimate) -> f64 {
     factors.operations / 5e10 + factors.factor_bytes as f64 / 4e8
 }
 
-fn generator_costs(spec: &SweepSpec, options: &GeneratorMethodOptions) -> Vec<String> {
+fn generator_costs(spec: &Sweep, options: &GeneratorMethodOptions) -> Vec<String> {
     let unknowns = format!(
         "unknowns: {}, scheme {}",
         spec.problem.space().n_cells(),
@@ -95,11 +92,15 @@ fn generator_costs(spec: &SweepSpec, options: &GeneratorMethodOptions) -> Vec<St
     }
 }
 
-fn sgcm_costs(spec: &SweepSpec, options: &SgcmOptions) -> Vec<String> {
+fn sgcm_costs(spec: &Sweep, options: &SgcmOptions) -> Vec<String> {
     let cells = spec.problem.space().n_cells();
     let trajectories = cells as f64 * options.samples as f64;
     let most = cost::estimated_bytes(cells as f64, spec.problem.space().dimension(), options);
-    let least = cost::least_bytes(cells as f64, spec.problem.space().dimension(), &spec.method);
+    let least = cost::least_bytes(
+        cells as f64,
+        spec.problem.space().dimension(),
+        &spec.settings.method.chosen(),
+    );
     let steps = match (options.map_step, options.time_step) {
         (StepChoice::Fixed(map_step), StepChoice::Fixed(time_step)) => {
             let steps = (map_step / time_step).ceil();
@@ -128,7 +129,7 @@ fn sgcm_costs(spec: &SweepSpec, options: &SgcmOptions) -> Vec<String> {
 /// two.
 const STEPS_A_SECOND: f64 = 3e8;
 
-fn monte_carlo_costs(spec: &SweepSpec, options: &MonteCarloOptions) -> Vec<String> {
+fn monte_carlo_costs(spec: &Sweep, options: &MonteCarloOptions) -> Vec<String> {
     let memory = cost::monte_carlo_bytes(spec.problem.space().n_cells() as f64);
     let steps = match cost::monte_carlo_steps(options) {
         Some(steps) => format!(
@@ -144,31 +145,36 @@ fn monte_carlo_costs(spec: &SweepSpec, options: &MonteCarloOptions) -> Vec<Strin
 }
 
 /// How many points, and where the first lie.
-fn points(spec: &SweepSpec) -> String {
-    let values = evenly_spaced(spec.problem.family().ends(), spec.points);
+fn points(spec: &Sweep) -> String {
+    let values = evenly_spaced(spec.problem.family().ends(), spec.settings.points);
     let first: Vec<String> = values.iter().take(3).map(f64::to_string).collect();
     format!(
         "points: {} ({} = {}, ...), and a few more for each change that is located",
-        spec.points,
+        spec.settings.points,
         spec.problem.family().parameter(),
         first.join(", ")
     )
 }
 
 /// What a user should know before the run.
-fn notes(spec: &SweepSpec) -> Vec<String> {
+fn notes(spec: &Sweep) -> Vec<String> {
     let mut notes = misplaced_faces(spec);
-    if spec.points > MANY_POINTS {
+    if spec.settings.points > MANY_POINTS {
         notes.push(format!(
             "{} points is a long sweep; changes are located between points, so fewer will do",
-            spec.points
+            spec.settings.points
         ));
     }
-    let most = match &spec.method {
-        MethodOptions::Generator(_) => 0.0,
+    let most = match spec.settings.method.chosen() {
+        MethodOptions::Generator(options) => {
+            let space = spec.problem.space();
+            cost::factorisation(space, &options).map_or(0.0, |factors| {
+                cost::generator_bytes(space, &options, &factors)
+            })
+        }
         MethodOptions::Sgcm(options) => {
             let cells = spec.problem.space().n_cells() as f64;
-            cost::estimated_bytes(cells, spec.problem.space().dimension(), options)
+            cost::estimated_bytes(cells, spec.problem.space().dimension(), &options)
         }
         MethodOptions::MonteCarlo(_) => {
             cost::monte_carlo_bytes(spec.problem.space().n_cells() as f64)
@@ -176,15 +182,19 @@ fn notes(spec: &SweepSpec) -> Vec<String> {
     };
     if let Some(memory) = cost::machine_memory().filter(|&memory| most > memory) {
         let memory = cost::bytes_in_words(memory);
+        let remedy = match spec.settings.method.kind {
+            MethodKind::Sgcm => "; a shorter map step spreads less",
+            MethodKind::Generator | MethodKind::MonteCarlo => "; fewer cells take less",
+        };
         notes.push(format!(
-            "this machine has {memory} of memory, which may not be enough; a shorter map step spreads less"
+            "this machine has {memory} of memory, which may not be enough{remedy}"
         ));
     }
     notes
 }
 
 /// Surfaces and centres of symmetry that lie inside a cell.
-fn misplaced_faces(spec: &SweepSpec) -> Vec<String> {
+fn misplaced_faces(spec: &Sweep) -> Vec<String> {
     let family = spec.problem.family();
     // A path's ends are allowed; without a system there would be nothing to say.
     let Ok(system) = family.at(family.ends().0) else {
@@ -207,23 +217,15 @@ fn misplaced_faces(spec: &SweepSpec) -> Vec<String> {
     }
     let mut notes = Vec::new();
     for (index, at, what) in wanted {
-        let (Some(axis), Some(named)) = (
-            spec.problem.space().axes().get(index),
-            family.model().axes.get(index),
-        ) else {
+        let Some(axis) = spec.problem.space().axes().get(index) else {
             continue;
         };
         if axis.find(at).is_some() && !axis.has_face_at(at) {
-            let mut note = String::new();
-            let _ = write!(
-                note,
-                "{what} {} = {at} lies inside a cell: give a range with {at} in its middle and an even \
-                 `cells.{}.count` (now {}), or grade the axis toward it",
-                named.name,
-                named.name,
-                axis.count()
-            );
-            notes.push(note);
+            let (name, count) = (family.axis(index), axis.count());
+            notes.push(format!(
+                "{what} {name} = {at} lies inside a cell: give a range with {at} in its middle and an even \
+                 `cells.{name}.count` (now {count}), or grade the axis toward it",
+            ));
         }
     }
     notes

@@ -14,19 +14,23 @@ use crate::compare::{CompareError, Comparison, Method, Solved, Task, compare};
 use crate::figure::{Figures, write_figures};
 use crate::method::cost;
 use crate::run::{CompareFolder, ComparedRun, compare_tables, format_number};
-use crate::sweep_file::{Diagnostic, SweepSpec};
+use crate::sweep_file::{Diagnostic, Sweep};
 
 /// Compares, writes, draws and prints.
 ///
 /// # Errors
 /// [`CommandError`] when the results cannot be written or a method refuses; failed solves are data.
-pub(super) fn run(spec: &SweepSpec, arguments: &CompareArguments) -> Result<Outcome, CommandError> {
-    if spec.figures_at.is_empty() {
+pub(super) fn run(
+    spec: &Sweep,
+    name: &str,
+    arguments: &CompareArguments,
+) -> Result<Outcome, CommandError> {
+    if spec.settings.figures_at.is_empty() {
         let diagnostic = Diagnostic::new("`figures.at` is empty: there is no value to compare at")
             .remedy("leave `figures.at` out, or give values of the swept parameter");
         return Err(CommandError::Input(diagnostic.into()));
     }
-    let default = || Path::new("output").join(format!("{}-compare", spec.name));
+    let default = || Path::new("output").join(format!("{name}-compare"));
     let path = arguments.out.clone().unwrap_or_else(default);
     let output = OutputFolder::prepare(&path)?;
     let (threads, cancelled) = super::interruptible(arguments.threads)?;
@@ -35,13 +39,13 @@ pub(super) fn run(spec: &SweepSpec, arguments: &CompareArguments) -> Result<Outc
 }
 
 fn carry_out(
-    spec: &SweepSpec,
+    spec: &Sweep,
     path: &Path,
     quiet: bool,
     cancelled: &Arc<AtomicBool>,
 ) -> Result<Outcome, CommandError> {
     let mut at: Vec<f64> = Vec::new();
-    for &value in &spec.figures_at {
+    for &value in &spec.settings.figures_at {
         if !at.contains(&value) {
             at.push(value);
         }
@@ -49,9 +53,9 @@ fn carry_out(
     let task = Task {
         problem: &spec.problem,
         at: &at,
-        generator: spec.every_method.generator.clone(),
-        sgcm: spec.every_method.sgcm.clone(),
-        monte_carlo: spec.every_method.monte_carlo.clone(),
+        generator: spec.settings.method.generator.clone(),
+        sgcm: spec.settings.method.sgcm.clone(),
+        monte_carlo: spec.settings.method.monte_carlo.clone(),
     };
     let progress = Progress::new(2 + 3 * at.len(), quiet);
     let compared = compare(&task, cancelled, &mut |step| {
@@ -77,8 +81,8 @@ fn carry_out(
     let folder = CompareFolder::new(path)?;
     folder.write(&run)?;
     progress.say("drawing");
-    let figures = Figures::of_comparison(&comparison, &spec.title).draw_all()?;
-    write_figures(&figures, &spec.figure_formats, &folder.figures())?;
+    let figures = Figures::of_comparison(&comparison, &spec.settings.title).draw_all()?;
+    write_figures(&figures, &spec.settings.figure_formats, &folder.figures())?;
     let files = folder.take_place()?;
     progress.finish();
     progress.warn(&warnings::of_comparison(run.family(), &comparison));
@@ -90,8 +94,8 @@ fn carry_out(
 }
 
 /// Bytes at work at one point, and what the number rests on.
-fn memory(spec: &SweepSpec, comparison: &Comparison, solved: &Solved) -> (f64, &'static str) {
-    let (every, dimension) = (&spec.every_method, spec.problem.space().dimension());
+fn memory(spec: &Sweep, comparison: &Comparison, solved: &Solved) -> (f64, &'static str) {
+    let (every, dimension) = (&spec.settings.method, spec.problem.space().dimension());
     match solved.method {
         Method::Generator => match cost::factorisation(spec.problem.space(), &every.generator) {
             Ok(factors) => (

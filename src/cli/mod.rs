@@ -18,7 +18,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Parser as _;
 
-use crate::sweep_file::{Diagnostic, Report, SweepSpec};
+use crate::sweep_file::{Diagnostic, Report, Settings, SweepFile};
 use args::{Arguments, Command};
 use output::OutputError;
 
@@ -103,8 +103,7 @@ pub fn run() -> ExitCode {
             ExitCode::SUCCESS
         }
         Err(error) => {
-            let styled = io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
-            let text = render(error, styled);
+            let text = render(error, is_styled());
             let _ = io::stderr().lock().write_all(text.as_bytes());
             ExitCode::from(2)
         }
@@ -114,22 +113,38 @@ pub fn run() -> ExitCode {
 fn dispatch(command: &Command) -> Result<Outcome, CommandError> {
     match command {
         Command::Sweep { input, run } => {
-            let spec = SweepSpec::load(&input.file, &input.overrides)?;
-            sweep::run(&spec, run)
+            let spec = load(input, run.quiet)?.prepare()?;
+            sweep::run(&spec, &input.name(), run)
         }
         Command::Check { input } => {
-            let spec = SweepSpec::load(&input.file, &input.overrides)?;
-            print(&check::text(&spec)?)
+            let spec = load(input, false)?.prepare()?;
+            print(&check::text(&input.file, &spec)?)
         }
         Command::Compare { input, run } => {
-            let spec = SweepSpec::load(&input.file, &input.overrides)?;
-            compare::run(&spec, run)
+            let spec = load(input, run.quiet)?.prepare()?;
+            compare::run(&spec, &input.name(), run)
         }
         Command::Detect { run } => detect::run(run),
         Command::Plot { run } => plot::run(run),
         Command::Systems { name: None } => print(&systems::list()),
         Command::Systems { name: Some(name) } => print(&systems::describe(name)?),
     }
+}
+
+/// Reads and checks a sweep file; says on stderr what a user should know, unless it is to be quiet.
+fn load(input: &args::SweepInput, quiet: bool) -> Result<Settings, Report> {
+    let mut file = SweepFile::read(&input.file)?;
+    let settings = file.set_all("--set", &input.overrides).validate()?;
+    if !quiet && !settings.warnings.is_empty() {
+        let text = settings.warnings.render(is_styled());
+        let _ = io::stderr().lock().write_all(text.as_bytes());
+    }
+    Ok(settings)
+}
+
+/// Whether stderr takes colours.
+fn is_styled() -> bool {
+    io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none()
 }
 
 fn print(text: &str) -> Result<Outcome, CommandError> {
@@ -148,7 +163,8 @@ fn render(error: CommandError, styled: bool) -> String {
         CommandError::Run(error) => stored::diagnostic(&error).into(),
         error => Diagnostic::new(error.to_string()).into(),
     };
-    report.render(styled)
+    let (findings, count) = (report.render(styled), report.count());
+    format!("{findings}{count}; nothing was run or written\n")
 }
 
 /// The threads that a command runs on (`None`: one a core), and a flag that the first interrupt sets. The second ends

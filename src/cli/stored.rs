@@ -7,12 +7,12 @@ use super::CommandError;
 use crate::continuation::{FinerIndicator, Point, SweepResult, detect_again};
 use crate::method::MethodOptions;
 use crate::run::{Ending, RunError, StoredRun};
-use crate::sweep_file::{Diagnostic, Report, SweepSpec, list};
+use crate::sweep_file::{Diagnostic, Report, Sweep, SweepFile, list};
 
 /// A run that was read.
 pub(super) struct Stored {
     pub(super) run: StoredRun,
-    pub(super) spec: SweepSpec,
+    pub(super) spec: Sweep,
     points: Vec<Point>,
     finer: Option<Vec<FinerIndicator>>,
 }
@@ -30,7 +30,9 @@ impl Stored {
     ) -> Result<Self, CommandError> {
         let run = StoredRun::open(path)?;
         check_overrides(overrides, sections)?;
-        let spec = SweepSpec::stored(&path.join("run.json"), run.resolved(), overrides)?;
+        let manifest = path.join("run.json").display().to_string();
+        let mut file = SweepFile::parse(&manifest, run.resolved());
+        let spec = file.set_all("--set", overrides).validate()?.fixed()?;
         let points = run.points(
             spec.problem.subject(),
             spec.problem.space(),
@@ -53,8 +55,14 @@ impl Stored {
     pub(super) fn detect(&mut self) -> SweepResult {
         let spec = &self.spec;
         let (points, finer) = (std::mem::take(&mut self.points), self.finer.take());
-        let swept = (spec.problem.subject().clone(), spec.points);
-        let mut result = detect_again(swept, &spec.detector(), points, finer, &spec.locate);
+        let swept = (spec.problem.subject().clone(), spec.settings.points);
+        let mut result = detect_again(
+            swept,
+            &spec.detector(),
+            points,
+            finer,
+            &spec.settings.locate,
+        );
         result.interrupted = self.run.ending() != Ending::Complete;
         result
     }
@@ -65,7 +73,7 @@ impl Stored {
         let (points, densities) = (self.points.len(), with_density.count());
         let mut text = format!("{points} points read, {densities} of them with densities\n");
         if self.run.ending() != Ending::Complete {
-            let given = self.spec.points;
+            let given = self.spec.settings.points;
             text += &format!(
                 "the run was interrupted: of its {given} given values, and those that refine brackets, there are {points} points\n"
             );

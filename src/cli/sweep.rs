@@ -17,27 +17,31 @@ use crate::continuation::{
 use crate::figure::{Figures, write_figures};
 use crate::method::MethodSource;
 use crate::run::{Ending, Manifest, RunError, RunFolder};
-use crate::sweep_file::SweepSpec;
+use crate::sweep_file::Sweep;
 use progress::Progress;
 
 /// Runs a sweep and prints what it found.
 ///
 /// # Errors
 /// [`CommandError`] when the results cannot be written or the threads not be made; failed points are data.
-pub(super) fn run(spec: &SweepSpec, arguments: &SweepArguments) -> Result<Outcome, CommandError> {
-    let output = OutputFolder::prepare(&output_path(spec, arguments.out.as_deref()))?;
+pub(super) fn run(
+    spec: &Sweep,
+    name: &str,
+    arguments: &SweepArguments,
+) -> Result<Outcome, CommandError> {
+    let output = OutputFolder::prepare(&output_path(name, arguments.out.as_deref()))?;
     let (threads, cancelled) = super::interruptible(arguments.threads)?;
     let path = output.path().to_owned();
     threads.install(|| Run::new(spec, &path, arguments.quiet, cancelled)?.carry_out())
 }
 
 /// The folder the results go to: as asked for, or `output/` and the name of the sweep file.
-fn output_path(spec: &SweepSpec, out: Option<&Path>) -> PathBuf {
-    out.map_or_else(|| Path::new("output").join(&spec.name), Path::to_owned)
+fn output_path(name: &str, out: Option<&Path>) -> PathBuf {
+    out.map_or_else(|| Path::new("output").join(name), Path::to_owned)
 }
 
 struct Run<'a> {
-    spec: &'a SweepSpec,
+    spec: &'a Sweep,
     source: MethodSource,
     folder: RunFolder,
     manifest: Manifest,
@@ -48,18 +52,18 @@ struct Run<'a> {
 
 impl<'a> Run<'a> {
     fn new(
-        spec: &'a SweepSpec,
+        spec: &'a Sweep,
         path: &Path,
         quiet: bool,
         cancelled: Arc<AtomicBool>,
     ) -> Result<Self, CommandError> {
-        let progress = Progress::new(spec.points, quiet);
-        let source = MethodSource::new(&spec.problem, &spec.method, cancelled.clone())?;
+        let progress = Progress::new(spec.settings.points, quiet);
+        let source = spec.source(cancelled.clone())?;
         let cells = spec.problem.space().n_cells();
         progress.say(&format!("{}, {cells} cells", source.describe()));
         let resolved = spec.to_toml();
         let threads = rayon::current_num_threads();
-        let manifest = Manifest::start(&resolved, spec.method.seed(), threads)?;
+        let manifest = Manifest::start(&resolved, spec.settings.method.chosen().seed(), threads)?;
         let folder = RunFolder::create(path)?;
         folder.write_manifest(&manifest)?;
         Ok(Self {
@@ -112,8 +116,8 @@ impl<'a> Run<'a> {
         sweep(
             &self.source,
             &detector,
-            self.spec.points,
-            &self.spec.locate,
+            self.spec.settings.points,
+            &self.spec.settings.locate,
             &mut recorder,
         )
         .map_err(|error| match error {
@@ -131,14 +135,14 @@ impl<'a> Run<'a> {
 /// # Errors
 /// [`CommandError::Figure`].
 pub(super) fn draw(
-    spec: &SweepSpec,
+    spec: &Sweep,
     result: &SweepResult,
     folder: &Path,
 ) -> Result<Vec<PathBuf>, CommandError> {
-    let figures = Figures::of_sweep(result, &spec.title, &spec.figures_at);
+    let figures = Figures::of_sweep(result, &spec.settings.title, &spec.settings.figures_at);
     Ok(write_figures(
         &figures.draw_all()?,
-        &spec.figure_formats,
+        &spec.settings.figure_formats,
         folder,
     )?)
 }

@@ -1,11 +1,13 @@
-//! What the program says of bad input: where it stands, what is allowed, the nearest valid name, the remedy.
+//! What is said of bad input: where it stands, what is allowed, the nearest valid name, the remedy.
 //!
-//! A text that a value can come from (the sweep file, or one `--set` argument) is a *source*; a [`Place`] is a
-//! span of one of them. All findings are collected and drawn together.
+//! A text that a value can come from (the sweep file, or one value that was set on top of it) is a *source*; a [`Place`]
+//! is a span of one of them. All findings are collected and drawn together, see [`Report`](super::Report).
 
 use std::ops::Range;
 
-use annotate_snippets::{AnnotationKind, Element, Group, Level, Origin, Renderer, Snippet};
+use annotate_snippets::{AnnotationKind, Element, Group, Level, Origin, Snippet};
+
+use super::names::{list, nearest_name};
 
 /// A span of bytes in one of the [`Sources`].
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -16,16 +18,34 @@ pub struct Place {
     pub span: Range<usize>,
 }
 
-/// The texts that were read: source 0 is the file, the others are `--set` arguments in their order.
+impl Place {
+    /// Whether it is of a value that was set on top of the file.
+    pub fn is_set(&self) -> bool {
+        self.source > 0
+    }
+}
+
+/// The texts that were read: source 0 is the file, the others are values that were set, in their order.
 #[derive(Debug, Clone, Default)]
 pub struct Sources {
     names: Vec<String>,
     texts: Vec<String>,
 }
 
+/// Where something begins, as people count.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Location {
+    /// The file, or how the value was set.
+    pub source: String,
+    /// Line, counted from 1.
+    pub line: usize,
+    /// Character of the line, counted from 1.
+    pub column: usize,
+}
+
 impl Sources {
     /// Adds a text and returns its number.
-    pub fn add(&mut self, name: &str, text: &str) -> usize {
+    pub(super) fn add(&mut self, name: &str, text: &str) -> usize {
         self.names.push(name.to_owned());
         self.texts.push(text.to_owned());
         self.names.len() - 1
@@ -33,6 +53,18 @@ impl Sources {
 
     fn get(&self, source: usize) -> Option<(&str, &str)> {
         Some((self.names.get(source)?, self.texts.get(source)?))
+    }
+
+    /// File, line and column of a place's beginning; `None` for a place of other sources.
+    pub fn locate(&self, place: &Place) -> Option<Location> {
+        let (name, text) = self.get(place.source)?;
+        let before = text.get(..place.span.start)?;
+        let line = before.rfind('\n').map_or(0, |end| end + 1);
+        Some(Location {
+            source: name.to_owned(),
+            line: before.matches('\n').count() + 1,
+            column: before[line..].chars().count() + 1,
+        })
     }
 }
 
@@ -44,10 +76,11 @@ pub struct Diagnostic {
     label: String,
     allowed: Option<String>,
     remedy: Option<String>,
+    is_warning: bool,
 }
 
 impl Diagnostic {
-    /// A finding about the input as a whole.
+    /// An error in the input as a whole.
     pub fn new(title: impl Into<String>) -> Self {
         Self {
             title: title.into(),
@@ -55,6 +88,15 @@ impl Diagnostic {
             label: String::new(),
             allowed: None,
             remedy: None,
+            is_warning: false,
+        }
+    }
+
+    /// Something that is worth knowing but no error.
+    pub fn warning(title: impl Into<String>) -> Self {
+        Self {
+            is_warning: true,
+            ..Self::new(title)
         }
     }
 
@@ -87,7 +129,18 @@ impl Diagnostic {
         self
     }
 
-    fn group<'a>(&'a self, sources: &'a Sources) -> Group<'a> {
+    /// What was found, in one sentence.
+    pub fn title(&self) -> &str {
+        &self.title
+    }
+
+    /// Where it stands; `None` where it concerns the whole.
+    pub fn place(&self) -> Option<&Place> {
+        self.place.as_ref()
+    }
+
+    /// How the finding is drawn.
+    pub(super) fn group<'a>(&'a self, sources: &'a Sources) -> Group<'a> {
         let mut elements: Vec<Element<'a>> = Vec::new();
         let place = self.place.as_ref();
         if let Some((place, (name, text))) =
@@ -110,137 +163,10 @@ impl Diagnostic {
         if let Some(remedy) = &self.remedy {
             elements.push(Level::HELP.message(remedy.as_str()).into());
         }
-        Group::with_title(Level::ERROR.primary_title(self.title.as_str())).elements(elements)
-    }
-}
-
-/// Everything found wrong, with the texts it was found in. Never empty when it is an error.
-#[derive(Debug, Clone, Default)]
-pub struct Report {
-    /// The texts.
-    pub sources: Sources,
-    /// The findings.
-    pub diagnostics: Vec<Diagnostic>,
-}
-
-impl From<Diagnostic> for Report {
-    fn from(diagnostic: Diagnostic) -> Self {
-        Self {
-            sources: Sources::default(),
-            diagnostics: vec![diagnostic],
-        }
-    }
-}
-
-impl Report {
-    /// The report as text, in the order of the places; escape codes only when `styled`.
-    pub fn render(&self, styled: bool) -> String {
-        let mut ordered: Vec<&Diagnostic> = self.diagnostics.iter().collect();
-        ordered.sort_by_key(|diagnostic| {
-            let place = diagnostic.place.as_ref();
-            place.map_or((0, 0), |place| (place.source, place.span.start))
-        });
-        let renderer = if styled {
-            Renderer::styled()
-        } else {
-            Renderer::plain()
+        let level = match self.is_warning {
+            true => Level::WARNING,
+            false => Level::ERROR,
         };
-        let mut text = String::new();
-        for diagnostic in ordered {
-            text += &renderer.render(&[diagnostic.group(&self.sources)]);
-            text += "\n\n";
-        }
-        let errors = match self.diagnostics.len() {
-            1 => "1 error".to_owned(),
-            errors => format!("{errors} errors"),
-        };
-        text + &format!("{errors}; nothing was run or written\n")
-    }
-}
-
-/// The name nearest to `given`, if one is near enough to be a slip of the pen.
-pub(super) fn nearest_name<'n>(
-    given: &str,
-    names: impl IntoIterator<Item = &'n str>,
-) -> Option<&'n str> {
-    let given = given.to_lowercase().replace('-', "_");
-    let scored = names.into_iter().map(|name| {
-        let plain = name.to_lowercase().replace('-', "_");
-        (strsim::normalized_damerau_levenshtein(&given, &plain), name)
-    });
-    let best = scored.max_by(|one, other| one.0.total_cmp(&other.0))?;
-    (best.0 >= 0.5).then_some(best.1)
-}
-
-/// Names in backquotes, separated by commas.
-pub fn list<S: AsRef<str>>(names: &[S]) -> String {
-    let quoted: Vec<String> = names
-        .iter()
-        .map(|name| format!("`{}`", name.as_ref()))
-        .collect();
-    quoted.join(", ")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn report_shows_line_column_allowed_and_remedy_without_escapes() {
-        let mut sources = Sources::default();
-        let source = sources.add("a.toml", "title = \"t\"\npionts = 3\n");
-        let place = Place {
-            source,
-            span: 12..18,
-        };
-        let diagnostic = Diagnostic::new("unknown key `pionts`")
-            .at(&place, "not a key")
-            .nearest("pionts", ["points", "from"]);
-        let report = Report {
-            sources,
-            diagnostics: vec![diagnostic],
-        };
-        let text = report.render(false);
-        for words in [
-            "a.toml:2:1",
-            "not a key",
-            "`points`, `from`",
-            "did you mean `points`?",
-        ] {
-            assert!(text.contains(words), "{words} not in\n{text}");
-        }
-        assert!(!text.contains('\u{1b}'));
-        assert!(report.render(true).contains('\u{1b}'));
-    }
-
-    #[test]
-    fn only_near_names_are_offered() {
-        assert_eq!(
-            nearest_name("kapa", ["alpha", "kappa", "mu"]),
-            Some("kappa")
-        );
-        assert_eq!(
-            nearest_name("map-step", ["map_step", "samples"]),
-            Some("map_step")
-        );
-        assert_eq!(nearest_name("zzzz", ["alpha", "kappa"]), None);
-    }
-
-    #[test]
-    fn findings_come_in_the_order_of_the_text() {
-        let mut report = Report::default();
-        let source = report.sources.add("a.toml", "one = 1\ntwo = 2\n");
-        for (title, start) in [("second", 8), ("first", 0)] {
-            let place = Place {
-                source,
-                span: start..start + 3,
-            };
-            report
-                .diagnostics
-                .push(Diagnostic::new(title).at(&place, ""));
-        }
-        let text = report.render(false);
-        assert!(text.find("first") < text.find("second"));
-        assert!(text.contains("2 errors"));
+        Group::with_title(level.primary_title(self.title.as_str())).elements(elements)
     }
 }

@@ -1,142 +1,101 @@
-//! The sweep file and the `--set` arguments as one tree whose keys and values know where they stand.
+//! The sweep file, and what was set on top of it, as one tree whose keys and values know where they stand.
 
 use std::ops::Range;
-use std::path::Path;
 
 use toml::de::{DeTable, DeValue};
 
-use super::diagnostic::{Diagnostic, Place, Report, Sources};
+use super::diagnostic::{Diagnostic, Place, Sources};
+use super::names::quotable;
+use super::report::Report;
+use super::syntax;
+use super::text::{Text, too_large};
+use super::value::{Entry, Node, Value};
 
-/// A value of TOML.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Value {
-    /// A string.
-    Text(String),
-    /// An integer; wider than TOML's, so that too large ones can be named.
-    Integer(i128),
-    /// A float, possibly not finite.
-    Float(f64),
-    /// An array.
-    Array(Vec<Node>),
-    /// A table.
-    Table(Vec<Entry>),
-    /// Booleans, dates, and numbers too large for a number: nothing in a sweep file is one.
-    Other(&'static str),
+/// Most parts of a key that is set; no key has as many.
+const MOST_PARTS: usize = 16;
+
+/// A file with what was set on top of it.
+#[derive(Debug, Clone)]
+pub(super) struct Document {
+    /// The texts; the file is number 0.
+    pub(super) sources: Sources,
+    /// The table at the top.
+    pub(super) root: Node,
+    /// That the text is too long and was cut; its beginning can still be examined.
+    pub(super) cut: Option<Diagnostic>,
+    /// What cannot be read at all.
+    broken: Vec<Diagnostic>,
+    /// What cannot be read beyond that.
+    further: usize,
 }
 
-impl Value {
-    /// What kind of value it is, in words.
-    pub(super) fn kind(&self) -> &'static str {
-        match self {
-            Self::Text(_) => "a string",
-            Self::Integer(_) => "an integer",
-            Self::Float(_) => "a number",
-            Self::Array(_) => "a list",
-            Self::Table(_) => "a table",
-            Self::Other(kind) => kind,
-        }
-    }
-}
-
-/// A value and its place.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Node {
-    /// The value.
-    pub(super) value: Value,
-    /// Where it stands.
-    pub(super) place: Place,
-}
-
-/// A key of a table with its value.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Entry {
-    /// The key.
-    pub(super) key: String,
-    /// Where the key stands.
-    pub(super) key_place: Place,
-    /// The value.
-    pub(super) node: Node,
-}
-
-impl Node {
-    /// The entries of a table; none for anything else.
-    pub(super) fn entries(&self) -> &[Entry] {
-        match &self.value {
-            Value::Table(entries) => entries,
-            _ => &[],
-        }
-    }
-
-    /// The node at a path of keys, with the place of its last key.
-    pub(super) fn find(&self, path: &[&str]) -> Option<&Entry> {
-        let (first, rest) = path.split_first()?;
-        let entry = self.entries().iter().find(|entry| entry.key == *first)?;
-        if rest.is_empty() {
-            Some(entry)
-        } else {
-            entry.node.find(rest)
-        }
-    }
-
-    /// Copies a parsed value; `offset` moves its spans (a `--set` value stands behind its key).
-    fn convert(value: &DeValue<'_>, span: Range<usize>, source: usize, offset: usize) -> Self {
-        let child = |node: &toml::Spanned<DeValue<'_>>| {
-            Self::convert(node.get_ref(), node.span(), source, offset)
-        };
-        let converted = match value {
-            DeValue::String(text) => Value::Text(text.to_string()),
-            DeValue::Integer(integer) => i128::from_str_radix(integer.as_str(), integer.radix())
-                .map_or(
-                    Value::Other("an integer too large to be read"),
-                    Value::Integer,
-                ),
-            DeValue::Float(float) => float
-                .as_str()
-                .parse()
-                .map_or(Value::Other("a number that cannot be read"), Value::Float),
-            DeValue::Boolean(_) => Value::Other("a boolean"),
-            DeValue::Datetime(_) => Value::Other("a date"),
-            DeValue::Array(items) => Value::Array(items.iter().map(child).collect()),
-            DeValue::Table(table) => Value::Table(convert_table(table, source, offset)),
+impl Document {
+    /// Reads a text.
+    pub(super) fn parse(name: &str, text: &Text) -> Self {
+        let mut sources = Sources::default();
+        let source = sources.add(name, &text.text);
+        let (table, errors) = DeTable::parse_recoverable(&text.text);
+        let (broken, further) = syntax::findings(&text.text, &errors, source, 0);
+        let root = Node {
+            value: Value::Table(convert_table(table.get_ref(), source, 0)),
+            place: Place { source, span: 0..0 },
         };
         Self {
-            value: converted,
-            place: Place {
-                source,
-                span: span.start + offset..span.end + offset,
-            },
+            sources,
+            root,
+            cut: text.is_cut.then(|| too_large(name)),
+            broken,
+            further,
         }
     }
 
-    /// Puts a value at a path, making tables on the way; what stood there is replaced.
-    fn put(&mut self, path: &[(String, Place)], node: Node) {
-        let Some(((key, key_place), rest)) = path.split_first() else {
-            *self = node;
-            return;
-        };
-        if !matches!(self.value, Value::Table(_)) {
-            self.value = Value::Table(Vec::new());
-            self.place = key_place.clone();
+    /// Applies `key.path=value`, written like this where `name` says; the value is TOML, or a bare word.
+    pub(super) fn set(&mut self, name: &str, argument: &str) {
+        let source = self.sources.add(name, argument);
+        match parse_setting(name, argument, source) {
+            Ok((path, node)) => put(&mut self.root, &path, node),
+            Err(mut diagnostics) => self.broken.append(&mut diagnostics),
         }
-        let Value::Table(entries) = &mut self.value else {
-            return;
-        };
-        let known = entries.iter().position(|entry| entry.key == *key);
-        let index = known.unwrap_or(entries.len());
-        if known.is_none() {
-            entries.push(Entry {
-                key: key.clone(),
-                key_place: key_place.clone(),
-                node: Node {
-                    value: Value::Table(Vec::new()),
-                    place: key_place.clone(),
-                },
-            });
+    }
+
+    /// Everything that cannot be read; `None` where all can.
+    pub(super) fn broken(&self) -> Option<Report> {
+        let mut diagnostics = self.broken.clone();
+        if diagnostics.is_empty() {
+            return None;
         }
-        if rest.is_empty() {
-            entries[index].key_place = key_place.clone();
-        }
-        entries[index].node.put(rest, node);
+        diagnostics.extend(self.cut.clone());
+        Some(Report::new(self.sources.clone(), diagnostics, self.further))
+    }
+}
+
+/// Copies a parsed value; `offset` moves its spans (a value that is set stands behind its key).
+fn convert(value: &DeValue<'_>, span: Range<usize>, source: usize, offset: usize) -> Node {
+    let child =
+        |node: &toml::Spanned<DeValue<'_>>| convert(node.get_ref(), node.span(), source, offset);
+    let converted = match value {
+        DeValue::String(text) => Value::Text(text.to_string()),
+        DeValue::Integer(integer) => i128::from_str_radix(integer.as_str(), integer.radix())
+            .map_or(
+                Value::Other("an integer too large to be read"),
+                Value::Integer,
+            ),
+        DeValue::Float(float) => float
+            .as_str()
+            .parse()
+            .map_or(Value::Other("a number that cannot be read"), Value::Float),
+        DeValue::Boolean(_) => Value::Other("a boolean"),
+        DeValue::Datetime(_) => Value::Other("a date"),
+        DeValue::Array(items) => Value::Array(items.iter().map(child).collect()),
+        DeValue::Table(table) => Value::Table(convert_table(table, source, offset)),
+    };
+    let place = Place {
+        source,
+        span: span.start + offset..span.end + offset,
+    };
+    Node {
+        value: converted,
+        place,
     }
 }
 
@@ -147,164 +106,140 @@ fn convert_table(table: &DeTable<'_>, source: usize, offset: usize) -> Vec<Entry
             source,
             span: key.span().start + offset..key.span().end + offset,
         },
-        node: Node::convert(value.get_ref(), value.span(), source, offset),
+        node: convert(value.get_ref(), value.span(), source, offset),
     });
     let mut entries: Vec<Entry> = entries.collect();
     entries.sort_by_key(|entry| entry.key_place.span.start);
     entries
 }
 
-/// A file with its overrides applied.
-#[derive(Debug, Clone)]
-pub(super) struct Document {
-    /// The texts.
-    pub(super) sources: Sources,
-    /// The table at the top.
-    pub(super) root: Node,
-}
-
-impl Document {
-    /// Reads a file and applies `KEY=VALUE` arguments in their order.
-    ///
-    /// # Errors
-    /// A report of everything that cannot be read.
-    pub(super) fn read(file: &Path, overrides: &[String]) -> Result<Self, Report> {
-        let name = file.display().to_string();
-        let bytes = std::fs::read(file).map_err(|error| {
-            let finding = Diagnostic::new(format!("cannot read the sweep file `{name}`: {error}"));
-            finding.remedy("check the path; `sweeps/` holds examples")
-        })?;
-        let text = String::from_utf8(bytes)
-            .map_err(|_| Diagnostic::new(format!("the sweep file `{name}` is not UTF-8 text")))?;
-        Self::parse(&name, &text, overrides)
-    }
-
-    /// As [`Document::read`], of a text.
-    pub(super) fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Self, Report> {
-        let mut sources = Sources::default();
-        let source = sources.add(name, text);
-        let (table, errors) = DeTable::parse_recoverable(text);
-        let mut diagnostics: Vec<Diagnostic> = errors
-            .iter()
-            .map(|error| syntax_error(error.message(), error.span(), source, 0))
-            .collect();
-        let mut root = Node {
-            value: Value::Table(convert_table(table.get_ref(), source, 0)),
-            place: Place { source, span: 0..0 },
-        };
-        for argument in overrides {
-            let source = sources.add("--set", argument);
-            match parse_override(argument, source) {
-                Ok((path, node)) => root.put(&path, node),
-                Err(diagnostic) => diagnostics.push(*diagnostic),
-            }
-        }
-        if diagnostics.is_empty() {
-            return Ok(Self { sources, root });
-        }
-        Err(Report {
-            sources,
-            diagnostics,
-        })
-    }
-}
-
-fn syntax_error(
-    message: &str,
-    span: Option<Range<usize>>,
-    source: usize,
-    offset: usize,
-) -> Diagnostic {
-    let span = span.unwrap_or(0..0);
-    let place = Place {
-        source,
-        span: span.start + offset..span.end + offset,
+/// Puts a value at a path, making tables on the way; what stood there is replaced.
+fn put(node: &mut Node, path: &[(String, Place)], value: Node) {
+    let Some(((key, key_place), rest)) = path.split_first() else {
+        *node = value;
+        return;
     };
-    Diagnostic::new(format!("not valid TOML: {message}")).at(&place, message)
+    if !matches!(node.value, Value::Table(_)) {
+        node.value = Value::Table(Vec::new());
+        node.place = key_place.clone();
+    }
+    let Value::Table(entries) = &mut node.value else {
+        return;
+    };
+    let known = entries.iter().position(|entry| entry.key == *key);
+    let index = known.unwrap_or(entries.len());
+    if known.is_none() {
+        entries.push(Entry {
+            key: key.clone(),
+            key_place: key_place.clone(),
+            node: Node {
+                value: Value::Table(Vec::new()),
+                place: key_place.clone(),
+            },
+        });
+    }
+    if rest.is_empty() {
+        entries[index].key_place = key_place.clone();
+    }
+    put(&mut entries[index].node, rest, value);
 }
 
 /// The keys of a path, each with its place.
 type KeyPath = Vec<(String, Place)>;
 
-/// Splits `key.path=value`; the value is TOML, or a bare word.
-fn parse_override(argument: &str, source: usize) -> Result<(KeyPath, Node), Box<Diagnostic>> {
+/// Splits `key.path=value`.
+fn parse_setting(
+    name: &str,
+    argument: &str,
+    source: usize,
+) -> Result<(KeyPath, Node), Vec<Diagnostic>> {
     let whole = Place {
         source,
         span: 0..argument.len(),
     };
     let broken = |label: &str| {
-        let diagnostic = Diagnostic::new(format!("`--set {argument}` does not parse"))
+        let shown = quotable(argument);
+        let diagnostic = Diagnostic::new(format!("`{name} {shown}` does not parse"))
             .at(&whole, label)
             .allowed("KEY=VALUE with a key of the sweep file, such as `sweep.points=301`");
-        Box::new(diagnostic)
+        vec![diagnostic]
     };
     let (keys, text) = argument
         .split_once('=')
         .ok_or_else(|| broken("no `=` here"))?;
+    let path = parse_path(keys, source).map_err(broken)?;
+    if text.trim().is_empty() {
+        return Err(broken("no value behind `=`"));
+    }
+    let offset = argument.len() - text.trim_start().len();
+    let text = text.trim();
+    let (value, errors) = DeValue::parse_recoverable(text);
+    if errors.is_empty() {
+        let node = convert(value.get_ref(), value.span(), source, offset);
+        return Ok((path, node));
+    }
+    // A word without TOML's punctuation saves the user a second layer of quotes.
+    if text.contains(['[', ']', '{', '}', '"', '\'', ',', '=', '#']) {
+        return Err(syntax::findings(text, &errors, source, offset).0);
+    }
+    let place = Place {
+        source,
+        span: offset..offset + text.len(),
+    };
+    let value = Value::Text(text.to_owned());
+    Ok((path, Node { value, place }))
+}
+
+/// Splits `key.path`, or says what is wrong with it.
+fn parse_path(keys: &str, source: usize) -> Result<KeyPath, &'static str> {
     let mut path = Vec::new();
     let mut start = 0;
     for key in keys.split('.') {
         let span = start..start + key.len();
         start += key.len() + 1;
         if key.trim().is_empty() {
-            return Err(broken("an empty key"));
+            return Err("an empty key");
+        }
+        if path.len() == MOST_PARTS {
+            return Err("no key has as many parts");
         }
         path.push((key.trim().to_owned(), Place { source, span }));
     }
-    if text.trim().is_empty() {
-        return Err(broken("no value behind `=`"));
-    }
-    let offset = argument.len() - text.trim_start().len();
-    let text = text.trim();
-    match DeValue::parse(text) {
-        Ok(value) => Ok((
-            path,
-            Node::convert(value.get_ref(), value.span(), source, offset),
-        )),
-        // A word without TOML's punctuation saves the user a second layer of quotes.
-        Err(_) if !text.contains(['[', ']', '{', '}', '"', '\'', ',', '=', '#']) => {
-            let place = Place {
-                source,
-                span: offset..offset + text.len(),
-            };
-            let value = Value::Text(text.to_owned());
-            Ok((path, Node { value, place }))
-        }
-        Err(error) => {
-            let diagnostic = syntax_error(error.message(), error.span(), source, offset);
-            Err(Box::new(diagnostic))
-        }
-    }
+    Ok(path)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn parse(text: &str, overrides: &[&str]) -> Result<Document, Report> {
-        let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
-        Document::parse("a.toml", text, &overrides)
+    fn parse(text: &str, settings: &[&str]) -> Document {
+        let mut document = Document::parse("a.toml", &Text::beginning(text));
+        for setting in settings {
+            document.set("--set", setting);
+        }
+        document
     }
 
     #[test]
     fn places_are_those_of_the_text() {
         let text = "[cells]\nx = { from = -1, to = 0x10 }\n";
-        let document = parse(text, &[]).unwrap();
+        let document = parse(text, &[]);
         let to = document.root.find(&["cells", "x", "to"]).unwrap();
         assert_eq!(to.node.value, Value::Integer(16));
         assert_eq!(&text[to.node.place.span.clone()], "0x10");
         assert_eq!(&text[to.key_place.span.clone()], "to");
+        assert!(document.broken().is_none());
     }
 
     #[test]
-    fn overrides_replace_and_add() {
+    fn what_is_set_replaces_and_adds() {
         let text = "[sweep]\npoints = 3\n";
-        let overrides = [
+        let settings = [
             "sweep.points=7",
             "method.map_step=auto",
             "sweep.from = -1.5",
         ];
-        let document = parse(text, &overrides).unwrap();
+        let document = parse(text, &settings);
         let value = |path: &[&str]| document.root.find(path).unwrap().node.clone();
         assert_eq!(value(&["sweep", "points"]).value, Value::Integer(7));
         assert_eq!(
@@ -313,18 +248,20 @@ mod tests {
         );
         let from = value(&["sweep", "from"]);
         assert_eq!(from.value, Value::Float(-1.5));
-        assert_eq!(&overrides[2][from.place.span], "-1.5");
+        assert_eq!(&settings[2][from.place.span], "-1.5");
     }
 
     #[test]
-    fn broken_overrides_and_syntax_are_all_reported() {
-        let overrides = ["points", ".a=1", "a=[1", "a="];
-        let report = parse("title = \n", &overrides).unwrap_err();
-        assert_eq!(report.diagnostics.len(), 5);
-        let text = report.render(false);
+    fn broken_settings_and_syntax_are_all_reported() {
+        let many_parts = format!("a{}=1", ".a".repeat(100_000));
+        let settings = ["points", ".a=1", "a=[1", "a=", &many_parts];
+        let report = parse("title = \n", &settings).broken().unwrap();
+        assert_eq!(report.diagnostics().len(), 6);
+        let text = report.to_string();
         assert!(
             text.contains("a.toml:1") && text.contains("--set:1"),
             "{text}"
         );
+        assert!(text.len() < 5000, "{text}");
     }
 }

@@ -1,12 +1,52 @@
-//! The sweep file: text, a document whose values know their places, checked values, and a validated sweep, which can be
-//! written as TOML again. What is wrong comes as a [`Report`] that shows file, line and column.
+//! Sweep files: from a text to a sweep that is ready to run, and back.
+//!
+//! 1. [`SweepFile`]: a text as a document whose keys and values know where they stand; values can be set on top.
+//! 2. [`Settings`]: everything it says, checked, with every default filled in. Nothing is run for that.
+//! 3. [`Sweep`]: ranges and gradings that were left to the program are found, by free trajectories. It can be run, and written as
+//!    a complete sweep file.
+//!
+//! What is wrong comes as a [`Report`] of all that was found, with file, line, column and remedy. Every key is declared once, see
+//! [`keys`].
+//!
+//! ```
+//! use pbif::sweep_file::SweepFile;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let mut file = SweepFile::parse("bistable.toml", include_str!("../../sweeps/bistable.toml"));
+//! file.set("sweep.points", "11").set("cells.x.count", "100");
+//! let sweep = file.validate()?.prepare()?;
+//! let found = sweep.run(Default::default(), &mut ())?;
+//! let change = found.labels.iter().find(|row| row.label == "PB1").unwrap();
+//! assert!(change.value.abs() < 1e-3);
+//!
+//! // Written and read again it is the same sweep.
+//! let again = SweepFile::parse("again.toml", &sweep.to_toml());
+//! assert_eq!(again.validate()?.fixed()?.to_toml(), sweep.to_toml());
+//! # Ok(())
+//! # }
+//! ```
 
 mod diagnostic;
 mod document;
+mod draft;
+mod file;
 mod keys;
+mod names;
+mod prepare;
 mod reader;
-mod spec;
+mod report;
+mod settings;
+mod sweep;
+mod syntax;
+mod text;
+mod value;
+mod write;
 
-pub use diagnostic::{Diagnostic, Place, Report, Sources, list};
-pub use keys::help;
-pub use spec::{AxisCells, EveryMethod, SweepSpec};
+pub use diagnostic::{Diagnostic, Location, Place, Sources};
+pub use draft::{MethodKind, MethodSettings};
+pub use file::SweepFile;
+pub use keys::{Key, help, keys};
+pub use names::list;
+pub use report::Report;
+pub use settings::{AxisSettings, Grade, Settings};
+pub use sweep::{SolveError, Sweep};

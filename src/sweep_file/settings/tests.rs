@@ -1,8 +1,9 @@
-//! A specification from a text: defaults, the resolved file, conditions between keys.
+//! Settings from a text: defaults, the resolved file, conditions between keys.
 
 use super::*;
 use crate::continuation::evenly_spaced;
-use crate::density::Observable;
+use crate::method::MethodOptions;
+use crate::sweep_file::{SweepFile, keys};
 
 const FILE: &str = r#"
 [system]
@@ -18,25 +19,25 @@ x = { from = -5, to = 5, count = 20 }
 y = { from = -5, to = 5, count = 20, grade = { at = [0], smallest = 0.1 } }
 "#;
 
-fn parse(text: &str, overrides: &[&str]) -> Result<SweepSpec, Report> {
+fn parse(text: &str, overrides: &[&str]) -> Result<Settings, Report> {
     let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
-    let document = Document::parse("runs/a.toml", text, &overrides)?;
-    SweepSpec::build(Path::new("runs/a.toml"), document)
+    SweepFile::parse("runs/a.toml", text)
+        .set_all("--set", &overrides)
+        .validate()
 }
 
 fn refusal(overrides: &[&str]) -> String {
-    parse(FILE, overrides).unwrap_err().render(false)
+    parse(FILE, overrides).unwrap_err().to_string()
 }
 
 #[test]
 fn defaults_are_those_of_the_options() {
     let spec = parse(FILE, &[]).unwrap();
-    assert_eq!(spec.name, "a");
     assert_eq!(
         spec.title,
         "Duffing oscillator with Coulomb friction, sweep of f_c"
     );
-    assert_eq!(spec.method, MethodOptions::default());
+    assert_eq!(spec.method, MethodSettings::default());
     assert_eq!(spec.detect, DetectOptions::default());
     assert_eq!(spec.locate, LocateOptions::default());
     let (x, y, xy) = (
@@ -44,14 +45,14 @@ fn defaults_are_those_of_the_options() {
         Observable::Marginal(1),
         Observable::Joint(0, 1),
     );
-    assert_eq!(spec.problem.observables(), [x, y, xy]);
+    assert_eq!(spec.observables, [x, y, xy]);
     // alpha and mu by the model's default, the swept f_c at `from`.
-    let (from, _) = spec.problem.family().ends();
-    let first = spec.problem.family().values_at(from).unwrap();
-    assert_eq!(first.as_slice(), [1.0, 0.01, 0.0, -0.02, 0.01]);
-    let y = &spec.problem.space().axes()[1];
-    assert!(y.has_face_at(0.0) && !y.is_uniform());
+    let values = spec.family.values_at(spec.family.ends().0).unwrap();
+    assert_eq!(values.as_slice(), [1.0, 0.01, 0.0, -0.02, 0.01]);
+    assert!(spec.warnings.is_empty());
     assert_eq!(spec.figures_at, [-0.02, -0.01, 0.0, 0.01]);
+    let sweep = spec.fixed().unwrap();
+    assert!(sweep.problem.space().axes()[1].has_face_at(0.0));
 }
 
 #[test]
@@ -91,7 +92,9 @@ fn the_resolved_file_gives_the_same_sweep() {
         let mut again = parse(&spec.to_toml(), &[]).unwrap();
         assert_eq!(spec.to_toml(), again.to_toml());
         // Settings of the methods that the sweep does not use are for `compare`, which reads the file itself.
-        again.every_method = spec.every_method.clone();
+        again.method = spec.method.clone();
+        // They stand in other texts.
+        again.document = spec.document.clone();
         // Debug output of numbers has every digit.
         assert_eq!(format!("{spec:?}"), format!("{again:?}"));
     }
@@ -106,10 +109,10 @@ fn the_resolved_file_holds_every_key() {
     });
     let text = texts.join("\n# next\n");
     let tables = texts.map(|text| text.parse::<toml::Table>().unwrap());
-    let keys = super::super::keys::KEYS.iter();
-    for key in keys.filter(|key| !key.path.ends_with(".range")) {
+    let keys = keys::keys().iter();
+    for key in keys.filter(|key| !key.path().ends_with(".range")) {
         let named = key
-            .path
+            .path()
             .replace("<parameter>", "kappa")
             .replace("<axis>", "y");
         let (first, rest) = named.split_once('.').unwrap_or((&named, ""));
@@ -127,7 +130,7 @@ fn the_resolved_file_holds_every_key() {
 #[test]
 fn values_are_even_and_hit_zero() {
     let spec = parse(FILE, &[]).unwrap();
-    let values = evenly_spaced(spec.problem.family().ends(), spec.points);
+    let values = evenly_spaced(spec.family.ends(), spec.points);
     assert_eq!(
         (values.len(), values[0], values[20], values[30]),
         (31, -0.02, 0.0, 0.01)
@@ -163,10 +166,63 @@ fn conditions_between_keys_hold() {
     ] {
         let text = refusal(&[set]);
         assert!(text.contains(words), "{set}: {words} not in\n{text}");
-        assert!(text.contains("1 error;"), "{set}:\n{text}");
+        assert!(text.ends_with("1 error"), "{set}:\n{text}");
     }
     let text = refusal(&["method.time_step=2", "method.map_step=1"]);
     assert!(text.contains("time step 2 is longer"), "{text}");
     let text = refusal(&["detect.marginals=[]", "detect.joint=[]"]);
     assert!(text.contains("nothing is watched"), "{text}");
+}
+
+#[test]
+fn figures_of_the_file_outside_a_sweep_that_was_set_are_left_out() {
+    let text = format!("{FILE}[figures]\nat = [-0.02, -0.01, 0.0, 0.01]\n");
+    let settings = parse(&text, &["sweep.from=-0.005"]).unwrap();
+    assert_eq!(settings.figures_at, [0.0, 0.01]);
+    let said = settings.warnings.to_string();
+    for words in [
+        "warning",
+        "`-0.02`, `-0.01`",
+        "from -0.005 to 0.01",
+        "a.toml:14:7",
+    ] {
+        assert!(said.contains(words), "{words} not in\n{said}");
+    }
+    // Nothing is left: the default holds.
+    let settings = parse(&text, &["sweep.from=1", "sweep.to=2"]).unwrap();
+    assert_eq!(settings.figures_at.len(), 4);
+    assert!(settings.warnings.to_string().contains("drawn instead"));
+    // What was set in the same breath, and what the file says of itself, is refused.
+    let both = ["sweep.from=-0.005", "figures.at=[-0.01]"];
+    let said = parse(&text, &both).unwrap_err().to_string();
+    assert!(said.contains("has -0.01, outside the sweep"), "{said}");
+    let said = parse(&text, &["figures.at=[7]"]).unwrap_err().to_string();
+    assert!(said.contains("has 7, outside the sweep"), "{said}");
+    let outside = text.replace("0.0, 0.01]", "0.0, 0.02]");
+    assert!(parse(&outside, &[]).is_err());
+    assert!(parse(&outside, &["sweep.points=7"]).is_err());
+}
+
+#[test]
+fn what_is_left_to_the_program_stays_open_and_is_written_so() {
+    let open = ["cells.x={range=auto, count=20}", "cells.y.grade=auto"];
+    // Inside a table a word needs its quotation marks.
+    let open = [open[0].replace("auto", "\"auto\""), open[1].to_owned()];
+    let open: Vec<&str> = open.iter().map(String::as_str).collect();
+    let settings = parse(FILE, &open).unwrap();
+    assert_eq!(settings.axes[0].range, None);
+    assert_eq!(settings.axes[1].grade, Grade::Auto);
+    let text = settings.to_toml();
+    assert!(
+        text.contains("x = { range = \"auto\", count = 20 }\n"),
+        "{text}"
+    );
+    assert_eq!(parse(&text, &[]).unwrap().axes, settings.axes);
+    let said = settings.clone().fixed().unwrap_err().to_string();
+    assert!(said.contains("axis `x` is left to the program"), "{said}");
+    let sweep = settings.prepare().unwrap();
+    assert!(sweep.settings.axes.iter().all(|axis| axis.range.is_some()));
+    assert!(matches!(sweep.settings.axes[1].grade, Grade::Toward(_)));
+    let again = parse(&sweep.to_toml(), &[]).unwrap().fixed().unwrap();
+    assert_eq!(again.problem.space(), sweep.problem.space());
 }

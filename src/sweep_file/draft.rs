@@ -1,0 +1,158 @@
+//! What a sweep file says, in the program's types, one field a key. What has a default has it from the start; what is ruled by other
+//! keys, or must be given, is `None`.
+
+use std::sync::Arc;
+
+use crate::continuation::LocateOptions;
+use crate::figure::Format;
+use crate::method::{GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions};
+use crate::system::Model;
+use crate::topology::DetectOptions;
+
+/// The chosen method, and the settings of all, so that a file can hold them all and one word switches.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MethodSettings {
+    /// The chosen method.
+    pub kind: MethodKind,
+    /// The generator's settings.
+    pub generator: GeneratorMethodOptions,
+    /// SGCM's settings.
+    pub sgcm: SgcmOptions,
+    /// Monte Carlo's settings.
+    pub monte_carlo: MonteCarloOptions,
+}
+
+impl Default for MethodSettings {
+    fn default() -> Self {
+        let kind = match MethodOptions::default() {
+            MethodOptions::Generator(_) => MethodKind::Generator,
+            MethodOptions::Sgcm(_) => MethodKind::Sgcm,
+            MethodOptions::MonteCarlo(_) => MethodKind::MonteCarlo,
+        };
+        Self {
+            kind,
+            generator: GeneratorMethodOptions::default(),
+            sgcm: SgcmOptions::default(),
+            monte_carlo: MonteCarloOptions::default(),
+        }
+    }
+}
+
+impl MethodSettings {
+    /// The chosen method with its settings.
+    pub fn chosen(&self) -> MethodOptions {
+        match self.kind {
+            MethodKind::Generator => MethodOptions::Generator(self.generator.clone()),
+            MethodKind::Sgcm => MethodOptions::Sgcm(self.sgcm.clone()),
+            MethodKind::MonteCarlo => MethodOptions::MonteCarlo(self.monte_carlo.clone()),
+        }
+    }
+}
+
+/// A method without its settings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MethodKind {
+    /// The generator, solved directly.
+    Generator,
+    /// Stochastic generalized cell mapping.
+    Sgcm,
+    /// Free trajectories.
+    MonteCarlo,
+}
+
+impl MethodKind {
+    /// All methods, in the order of [`MethodOptions::KINDS`].
+    pub const ALL: [Self; 3] = [Self::Generator, Self::Sgcm, Self::MonteCarlo];
+
+    /// Name used in files.
+    pub fn name(self) -> &'static str {
+        MethodOptions::KINDS[self as usize]
+    }
+}
+
+/// The word that leaves a choice to the program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Auto;
+
+/// What the file says of one axis.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct AxisDraft {
+    pub(super) name: String,
+    pub(super) range: Option<Auto>,
+    pub(super) from: Option<f64>,
+    pub(super) to: Option<f64>,
+    pub(super) count: Option<usize>,
+    pub(super) grade: Option<Auto>,
+    pub(super) grade_at: Option<Vec<f64>>,
+    pub(super) grade_smallest: Option<f64>,
+}
+
+/// What the file says.
+#[derive(Debug, Clone)]
+pub(super) struct Draft {
+    pub(super) title: Option<String>,
+    pub(super) model: Option<Arc<Model>>,
+    /// Values of parameters by their names, in the order given.
+    pub(super) parameters: Vec<(String, f64)>,
+    pub(super) parameter: Option<String>,
+    pub(super) from: Option<f64>,
+    pub(super) to: Option<f64>,
+    pub(super) points: Option<usize>,
+    /// The axes in the order given.
+    pub(super) axes: Vec<AxisDraft>,
+    pub(super) method: MethodSettings,
+    pub(super) marginals: Option<Vec<String>>,
+    pub(super) joint: Option<Vec<[String; 2]>>,
+    pub(super) detect: DetectOptions,
+    pub(super) locate: LocateOptions,
+    pub(super) figures_at: Option<Vec<f64>>,
+    pub(super) figure_formats: Vec<Format>,
+}
+
+impl Default for Draft {
+    fn default() -> Self {
+        Self {
+            title: None,
+            model: None,
+            parameters: Vec::new(),
+            parameter: None,
+            from: None,
+            to: None,
+            points: None,
+            axes: Vec::new(),
+            method: MethodSettings::default(),
+            marginals: None,
+            joint: None,
+            detect: DetectOptions::default(),
+            locate: LocateOptions::default(),
+            figures_at: None,
+            figure_formats: Format::ALL.to_vec(),
+        }
+    }
+}
+
+impl Draft {
+    /// What is said of an axis.
+    pub(super) fn axis(&self, name: &str) -> Option<&AxisDraft> {
+        self.axes.iter().find(|axis| axis.name == name)
+    }
+
+    /// What is said of an axis, made where nothing was.
+    pub(super) fn axis_mut(&mut self, name: &str) -> &mut AxisDraft {
+        let known = self.axes.iter().position(|axis| axis.name == name);
+        let index = known.unwrap_or(self.axes.len());
+        if known.is_none() {
+            self.axes.push(AxisDraft {
+                name: name.to_owned(),
+                ..AxisDraft::default()
+            });
+        }
+        &mut self.axes[index]
+    }
+
+    /// Gives a parameter its value.
+    pub(super) fn set_parameter(&mut self, name: &str, value: f64) {
+        self.parameters.retain(|(known, _)| known != name);
+        self.parameters.push((name.to_owned(), value));
+    }
+}

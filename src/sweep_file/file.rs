@@ -1,0 +1,63 @@
+//! The sweep file itself: read, set, checked.
+
+use std::path::Path;
+
+use super::document::Document;
+use super::report::Report;
+use super::settings::Settings;
+use super::text::{self, Text};
+
+/// A sweep file, and what was set on top of it. What is wrong with either is told by [`SweepFile::validate`], all at once.
+#[derive(Debug, Clone)]
+pub struct SweepFile {
+    document: Document,
+}
+
+impl SweepFile {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// A report when it cannot be read, or is not text in UTF-8.
+    pub fn read(file: &Path) -> Result<Self, Report> {
+        let text = text::read(file)?;
+        Ok(Self {
+            document: Document::parse(&file.display().to_string(), &text),
+        })
+    }
+
+    /// Takes a text; messages name it `name`.
+    pub fn parse(name: &str, text: &str) -> Self {
+        Self {
+            document: Document::parse(name, &Text::beginning(text)),
+        }
+    }
+
+    /// Sets a key, such as `sweep.points`, on top of the file. The value is TOML, or a bare word.
+    pub fn set(&mut self, key: &str, value: &str) -> &mut Self {
+        self.document.set("set", &format!("{key} = {value}"));
+        self
+    }
+
+    /// Sets keys written as `KEY=VALUE`, in this order; messages call them `name`.
+    pub fn set_all(&mut self, name: &str, settings: &[String]) -> &mut Self {
+        for setting in settings {
+            self.document.set(name, setting);
+        }
+        self
+    }
+
+    /// What the file, or what was set on top of it, says of a key, as TOML; `None` where it says nothing.
+    pub fn get(&self, key: &str) -> Option<String> {
+        let path: Vec<&str> = key.split('.').collect();
+        let plain = self.document.root.find(&path)?.node.plain()?;
+        Some(plain.to_toml())
+    }
+
+    /// Checks everything and fills in the defaults. Nothing is run for that.
+    ///
+    /// # Errors
+    /// A report of everything that is wrong.
+    pub fn validate(&self) -> Result<Settings, Report> {
+        Settings::read(&self.document)
+    }
+}

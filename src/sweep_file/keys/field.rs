@@ -1,0 +1,240 @@
+//! How a key's value gets into a [`Draft`] and out of it.
+
+use std::sync::Arc;
+
+use super::super::draft::{Auto, Draft, MethodKind};
+use super::super::value::Plain;
+use crate::figure::Format;
+use crate::generator::AdvectiveScheme;
+use crate::method::{Correction, Estimator, StepChoice};
+use crate::sampling::Integrator;
+use crate::stationary::Solver;
+use crate::system::{Model, registry};
+
+/// Getter and setter of a key. The second argument is the name that `<…>` stands for in the key's path.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::sweep_file) struct Field {
+    /// The value; `None` where there is none, or the chosen method has none.
+    pub(in crate::sweep_file) get: fn(&Draft, &str) -> Option<Plain>,
+    /// Takes a value of the key's kind.
+    pub(in crate::sweep_file) set: fn(&mut Draft, &str, &Plain),
+}
+
+/// A type of the program as the file has it.
+pub(super) trait InFile: Sized {
+    /// The value of the file.
+    fn to_plain(&self) -> Plain;
+
+    /// From a value of the right kind; `None` for any other.
+    fn from_plain(plain: &Plain) -> Option<Self>;
+}
+
+impl InFile for String {
+    fn to_plain(&self) -> Plain {
+        Plain::Text(self.clone())
+    }
+
+    fn from_plain(plain: &Plain) -> Option<Self> {
+        plain.text().map(str::to_owned)
+    }
+}
+
+impl InFile for f64 {
+    fn to_plain(&self) -> Plain {
+        Plain::Number(*self)
+    }
+
+    fn from_plain(plain: &Plain) -> Option<Self> {
+        plain.number()
+    }
+}
+
+macro_rules! integers {
+    ($($integer:ty),+) => {$(
+        impl InFile for $integer {
+            fn to_plain(&self) -> Plain {
+                Plain::Integer(*self as i128)
+            }
+
+            fn from_plain(plain: &Plain) -> Option<Self> {
+                match plain {
+                    Plain::Integer(integer) => Self::try_from(*integer).ok(),
+                    _ => None,
+                }
+            }
+        }
+    )+};
+}
+integers!(usize, u64);
+
+/// Booleans are words.
+pub(super) const SWITCH: [&str; 2] = ["on", "off"];
+
+impl InFile for bool {
+    fn to_plain(&self) -> Plain {
+        Plain::Text(SWITCH[usize::from(!self)].to_owned())
+    }
+
+    fn from_plain(plain: &Plain) -> Option<Self> {
+        plain.text().map(|word| word == SWITCH[0])
+    }
+}
+
+/// The word for what is left to the program.
+pub(super) const AUTO: &str = "auto";
+
+impl InFile for Auto {
+    fn to_plain(&self) -> Plain {
+        Plain::Text(AUTO.to_owned())
+    }
+
+    fn from_plain(plain: &Plain) -> Option<Self> {
+        (plain.text() == Some(AUTO)).then_some(Self)
+    }
+}
+
+impl InFile for StepChoice {
+    fn to_plain(&self) -> Plain {
+        match self {
+            Self::Auto => Auto.to_plain(),
+            Self::Fixed(value) => value.to_plain(),
+        }
+    }
+
+    fn from_plain(plain: &Plain) -> Option<Self> {
+        match plain.number() {
+            Some(value) => Some(Self::Fixed(value)),
+            None => Auto::from_plain(plain).map(|Auto| Self::Auto),
+        }
+    }
+}
+
+impl<T: InFile> InFile for Vec<T> {
+    fn to_plain(&self) -> Plain {
+        Plain::List(self.iter().map(T::to_plain).collect())
+    }
+
+    fn from_plain(plain: &Plain) -> Option<Self> {
+        plain.items()?.iter().map(T::from_plain).collect()
+    }
+}
+
+impl InFile for [String; 2] {
+    fn to_plain(&self) -> Plain {
+        Plain::List(self.iter().map(String::to_plain).collect())
+    }
+
+    fn from_plain(plain: &Plain) -> Option<Self> {
+        Vec::from_plain(plain)?.try_into().ok()
+    }
+}
+
+impl InFile for Arc<Model> {
+    fn to_plain(&self) -> Plain {
+        Plain::Text(self.name.clone())
+    }
+
+    fn from_plain(plain: &Plain) -> Option<Self> {
+        registry::find(plain.text()?).ok()
+    }
+}
+
+/// What is chosen by name.
+pub(super) trait Named: Copy + 'static {
+    /// All choices.
+    const CHOICES: &'static [Self];
+
+    /// Name used in files.
+    fn word(self) -> &'static str;
+
+    /// The names of all choices.
+    fn words() -> Vec<&'static str> {
+        Self::CHOICES.iter().map(|choice| choice.word()).collect()
+    }
+}
+
+macro_rules! named {
+    ($($choice:ty),+) => {$(
+        impl Named for $choice {
+            const CHOICES: &'static [Self] = &Self::ALL;
+
+            fn word(self) -> &'static str {
+                self.name()
+            }
+        }
+
+        impl InFile for $choice {
+            fn to_plain(&self) -> Plain {
+                Plain::Text(self.word().to_owned())
+            }
+
+            fn from_plain(plain: &Plain) -> Option<Self> {
+                let word = plain.text()?;
+                Self::CHOICES.iter().copied().find(|choice| choice.word() == word)
+            }
+        }
+    )+};
+}
+named!(
+    AdvectiveScheme,
+    Correction,
+    Estimator,
+    Format,
+    Integrator,
+    MethodKind,
+    Solver
+);
+
+/// A field of the draft that may be missing.
+macro_rules! optional {
+    ($($field:ident).+) => {
+        Field {
+            get: |draft, _| draft.$($field).+.as_ref().map(InFile::to_plain),
+            set: |draft, _, plain| draft.$($field).+ = InFile::from_plain(plain),
+        }
+    };
+}
+
+/// A field of the draft that has a default.
+macro_rules! always {
+    ($($field:ident).+) => {
+        Field {
+            get: |draft, _| Some(InFile::to_plain(&draft.$($field).+)),
+            set: |draft, _, plain| {
+                if let Some(value) = InFile::from_plain(plain) {
+                    draft.$($field).+ = value;
+                }
+            },
+        }
+    };
+}
+
+/// A field of an axis.
+macro_rules! of_axis {
+    ($field:ident) => {
+        Field {
+            get: |draft, name| draft.axis(name)?.$field.as_ref().map(InFile::to_plain),
+            set: |draft, name, plain| draft.axis_mut(name).$field = InFile::from_plain(plain),
+        }
+    };
+}
+
+/// A field of the settings of some methods: set for all of them, got from the chosen one.
+macro_rules! of_methods {
+    ($field:ident: $($kind:ident $method:ident),+) => {
+        Field {
+            get: |draft, _| match draft.method.kind {
+                $(MethodKind::$kind => Some(InFile::to_plain(&draft.method.$method.$field)),)+
+                #[allow(unreachable_patterns)]
+                _ => None,
+            },
+            set: |draft, _, plain| {
+                $(if let Some(value) = InFile::from_plain(plain) {
+                    draft.method.$method.$field = value;
+                })+
+            },
+        }
+    };
+}
+
+pub(super) use {always, of_axis, of_methods, optional};

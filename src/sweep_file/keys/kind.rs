@@ -1,0 +1,102 @@
+//! Kinds of values: what a key takes, in words and as a test.
+
+use super::super::names::list;
+use super::super::value::Plain;
+use super::field::AUTO;
+
+/// Condition on a number, in words and as a test. Numbers are always finite.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::sweep_file) struct Condition {
+    /// Words that complete "a finite number".
+    words: &'static str,
+    /// The test.
+    holds: fn(f64) -> bool,
+}
+
+pub(super) const ANY: Condition = Condition {
+    words: "",
+    holds: |_| true,
+};
+pub(super) const POSITIVE: Condition = Condition {
+    words: " greater than zero",
+    holds: |value| value > 0.0,
+};
+pub(super) const OPEN_UNIT: Condition = Condition {
+    words: " between 0 and 1, both excluded",
+    holds: |value| value > 0.0 && value < 1.0,
+};
+pub(super) const SHARE: Condition = Condition {
+    words: " from 0 to below 1",
+    holds: |value| (0.0..1.0).contains(&value),
+};
+pub(super) const UP_TO_ONE: Condition = Condition {
+    words: " above 0, at most 1",
+    holds: |value| value > 0.0 && value <= 1.0,
+};
+
+/// Kind of value a key takes.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::sweep_file) enum Kind {
+    /// A string.
+    Text,
+    /// A finite number.
+    Number(Condition),
+    /// An integer from the first to the second value.
+    Integer(i128, i128),
+    /// A number greater than zero, or "auto".
+    Step,
+    /// One of some strings.
+    Choice(fn() -> Vec<&'static str>),
+    /// Two strings.
+    Pair,
+    /// A list of values of one kind.
+    List(&'static Self),
+}
+
+impl Kind {
+    /// What is allowed, in words.
+    pub(in crate::sweep_file) fn words(self) -> String {
+        match self {
+            Self::Text => "a string".to_owned(),
+            Self::Number(condition) => format!("a finite number{}", condition.words),
+            Self::Integer(least, most) if most == i128::from(i64::MAX) => {
+                format!("an integer, {least} or more, at most {most}")
+            }
+            Self::Integer(least, most) => format!("an integer from {least} to {most}"),
+            Self::Step => "a finite number greater than zero, or `\"auto\"`".to_owned(),
+            Self::Choice(names) => format!("a string: {}", list(&names())),
+            Self::Pair => "a pair of strings, such as `[\"x\", \"y\"]`".to_owned(),
+            Self::List(Self::Number(_)) => {
+                "a list of finite numbers, such as `[0.5, 1.0]`".to_owned()
+            }
+            Self::List(Self::Text) => "a list of strings, such as `[\"x\", \"y\"]`".to_owned(),
+            Self::List(Self::Pair) => {
+                "a list of pairs of strings, such as `[[\"x\", \"y\"]]`".to_owned()
+            }
+            Self::List(Self::Choice(names)) => format!("a list of strings: {}", list(&names())),
+            Self::List(_) => "a list".to_owned(),
+        }
+    }
+
+    /// Whether a value is of this kind.
+    pub(in crate::sweep_file) fn holds(self, plain: &Plain) -> bool {
+        match self {
+            Self::Text => plain.text().is_some(),
+            Self::Number(condition) => plain.number().is_some_and(condition.holds),
+            Self::Integer(least, most) => {
+                matches!(plain, Plain::Integer(value) if (least..=most).contains(value))
+            }
+            Self::Step => match plain.number() {
+                Some(value) => value > 0.0,
+                None => plain.text() == Some(AUTO),
+            },
+            Self::Choice(names) => plain.text().is_some_and(|text| names().contains(&text)),
+            Self::Pair => plain.items().is_some_and(|items| {
+                items.len() == 2 && items.iter().all(|item| item.text().is_some())
+            }),
+            Self::List(kind) => plain
+                .items()
+                .is_some_and(|items| items.iter().all(|item| kind.holds(item))),
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! Every key of a sweep file, declared once: path, kind of value, default, meaning, and where the value lives.
+
+use super::field::{Field, InFile, Named, SWITCH, always, of_axis, of_methods, optional};
+use super::kind::{ANY, Kind, OPEN_UNIT, POSITIVE, SHARE, UP_TO_ONE};
+use super::{Key, KeyDefault};
+use crate::figure::Format;
+use crate::generator::AdvectiveScheme;
+use crate::method::{Correction, Estimator};
+use crate::sampling::Integrator;
+use crate::stationary::Solver;
+use crate::sweep_file::draft::MethodKind;
+use crate::system::registry;
+
+/// Most cells an axis may have: edges are stored, so a slip of the pen must not fill the memory.
+const MOST_CELLS: i128 = 1_000_000;
+
+/// Shorthand for a row of the table.
+const fn key(
+    path: &'static str,
+    kind: Kind,
+    default: KeyDefault,
+    field: Field,
+    meaning: &'static str,
+) -> Key {
+    Key {
+        path,
+        kind,
+        default,
+        field,
+        meaning,
+    }
+}
+
+use KeyDefault::{OfOptions, Required, Rule};
+
+/// The order is the one in which a file is best read, and in which it is written.
+#[rustfmt::skip]
+pub(in crate::sweep_file) static KEYS: &[Key] = &[
+    key("title", Kind::Text, Rule("the model's title and the swept parameter"), optional!(title),
+        "Title of the run, used in tables and figures."),
+    key("system.model", Kind::Choice(models), Required, optional!(model),
+        "The model; `pbif systems` lists them, `pbif systems NAME` shows one."),
+    key("system.parameters.<parameter>", Kind::Number(ANY), Rule("the model's default, where it has one"),
+        Field {
+            get: |draft, name| draft.parameters.iter().find(|(known, _)| known == name).map(|(_, value)| value.to_plain()),
+            set: |draft, name, plain| if let Some(value) = plain.number() { draft.set_parameter(name, value); },
+        },
+        "Value of a parameter of the model. The swept parameter is left out."),
+    key("sweep.parameter", Kind::Text, Required, optional!(parameter),
+        "Name of the parameter that is swept."),
+    key("sweep.from", Kind::Number(ANY), Required, optional!(from),
+        "First value of the swept parameter."),
+    key("sweep.to", Kind::Number(ANY), Required, optional!(to),
+        "Last value; it may lie below the first."),
+    key("sweep.points", Kind::Integer(2, 1_000_000), Required, optional!(points),
+        "Number of parameter values, both ends included, evenly spaced."),
+    key("cells.<axis>.range", Kind::Choice(automatic), Rule("`from` and `to`"), of_axis!(range),
+        "`auto` finds a range that holds the density all along the sweep by a few free trajectories; `from` and `to` are then left out."),
+    key("cells.<axis>.from", Kind::Number(ANY), Rule("the model's bound, where it knows one"), of_axis!(from),
+        "Lower end of the domain along an axis."),
+    key("cells.<axis>.to", Kind::Number(ANY), Rule("the model's bound, where it knows one"), of_axis!(to),
+        "Upper end of the domain along an axis."),
+    key("cells.<axis>.count", Kind::Integer(2, MOST_CELLS), Required, of_axis!(count),
+        "Number of cells along an axis. An even number puts a face in the middle."),
+    key("cells.<axis>.grade", Kind::Choice(automatic), Rule("cells of equal width"), of_axis!(grade),
+        "`auto` narrows the cells toward the model's switching surfaces, to a quarter of the layer that holds the kink of the density; or a table with `at` and `smallest`."),
+    key("cells.<axis>.grade.at", Kind::List(&Kind::Number(ANY)), Rule("cells of equal width"), of_axis!(grade_at),
+        "Points toward which the cells get narrower, inside the range; a face falls on each."),
+    key("cells.<axis>.grade.smallest", Kind::Number(POSITIVE), Rule("cells of equal width"), of_axis!(grade_smallest),
+        "Width of the cells at these points; below the width without grading."),
+    key("method.kind", Kind::Choice(MethodKind::words), OfOptions, always!(method.kind),
+        "How the steady-state density is computed: by the generator of the cell map, solved directly, by `sgcm`, stochastic generalized cell mapping, or by `monte-carlo`, counting free trajectories."),
+    key("method.scheme", Kind::Choice(AdvectiveScheme::words), OfOptions, of_methods!(scheme: Generator generator),
+        "how advective fluxes are reconstructed. The central schemes are more accurate on fine grids and less robust on coarse ones."),
+    key("method.memory_limit", Kind::Number(POSITIVE), OfOptions, of_methods!(memory_limit: Generator generator),
+        "gigabytes that factors may take; beyond, a smaller factorisation preconditions."),
+    key("method.map_step", Kind::Step, OfOptions, of_methods!(map_step: Sgcm sgcm),
+        "time that one transition of the cell map spans. Longer steps mean less numerical diffusion."),
+    key("method.time_step", Kind::Step, OfOptions, of_methods!(time_step: Sgcm sgcm, MonteCarlo monte_carlo),
+        "step of the trajectory integrator; by sgcm it must not exceed `map_step`. Its bias is found by halving it, and stated."),
+    key("method.samples", Kind::Integer(2, u32::MAX as i128), OfOptions, of_methods!(samples: Sgcm sgcm),
+        "trajectories started in each cell."),
+    key("method.seed", Kind::Integer(0, i64::MAX as i128), OfOptions, of_methods!(seed: Sgcm sgcm, MonteCarlo monte_carlo),
+        "seed of the random streams; the same seed gives the same numbers bit for bit."),
+    key("method.integrator", Kind::Choice(Integrator::words), OfOptions, of_methods!(integrator: Sgcm sgcm, MonteCarlo monte_carlo),
+        "integrator of the trajectories. `euler-maruyama` takes ω²·time_step away from the damping."),
+    key("method.replicates", Kind::Integer(2, 256), OfOptions, of_methods!(replicates: Sgcm sgcm),
+        "groups the samples are split into to estimate the sampling error; at most `samples`."),
+    key("method.correction", Kind::Choice(Correction::words), OfOptions, of_methods!(correction: Sgcm sgcm),
+        "`slope` lets the density vary linearly inside cells, which removes nearly all numerical diffusion; `none` is the method of the paper."),
+    key("method.solver", Kind::Choice(Solver::words), OfOptions, of_methods!(solver: Sgcm sgcm),
+        "solver of the steady state: multilevel aggregation, or power iteration."),
+    key("method.estimator", Kind::Choice(Estimator::words), OfOptions, of_methods!(estimator: MonteCarlo monte_carlo),
+        "`ergodic` averages long trajectories over time, `ensemble` counts many trajectories, started all over the domain, at one time."),
+    key("method.error", Kind::Number(OPEN_UNIT), OfOptions, of_methods!(error: MonteCarlo monte_carlo),
+        "wanted relative standard error of the variance of every axis; what is `\"auto\"` is chosen for it."),
+    key("method.burn_in", Kind::Step, OfOptions, of_methods!(burn_in: MonteCarlo monte_carlo),
+        "time before states are counted (ensemble: at which they are counted); twelve autocorrelation times by itself."),
+    key("method.length", Kind::Step, OfOptions, of_methods!(length: MonteCarlo monte_carlo),
+        "time during which `ergodic` counts the states of one trajectory; chosen for `error` by itself."),
+    key("method.trajectories", Kind::Step, OfOptions, of_methods!(trajectories: MonteCarlo monte_carlo),
+        "trajectories, rounded up to a multiple of 64; 2048 by themselves, in an ensemble as many as `error` takes."),
+    key("method.solver_tolerance", Kind::Number(OPEN_UNIT), OfOptions, of_methods!(solver_tolerance: Generator generator, Sgcm sgcm),
+        "L1 error of the cell masses at which the solver stops."),
+    key("method.escape_limit", Kind::Number(UP_TO_ONE), OfOptions, of_methods!(escape_limit: Generator generator, Sgcm sgcm, MonteCarlo monte_carlo),
+        "Largest share of the mass that may leave the domain within one relaxation time before there is said to be no steady state."),
+    key("detect.marginals", Kind::List(&Kind::Text), Rule("every axis"), optional!(marginals),
+        "Axes whose marginal densities are watched for changes."),
+    key("detect.joint", Kind::List(&Kind::Pair), Rule("the first two axes"), optional!(joint),
+        "Pairs of axes whose joint densities are watched for changes."),
+    key("detect.confidence", Kind::Number(OPEN_UNIT), OfOptions, always!(detect.confidence),
+        "Probability that no peak or crater of the whole sweep is sampling noise."),
+    key("detect.floor", Kind::Number(SHARE), OfOptions, always!(detect.floor),
+        "Smallest persistence that counts, as a share of the density's maximum."),
+    key("locate.tolerance", Kind::Number(POSITIVE), OfOptions, always!(locate.tolerance),
+        "Wanted width of a P-bifurcation's bracket, in units of the swept parameter."),
+    key("locate.largest_distance", Kind::Number(SHARE), OfOptions, always!(locate.largest_distance),
+        "Hellinger distance between neighbouring densities above which a value between them is solved too."),
+    key("locate.grid_check", Kind::Choice(switch), OfOptions, always!(locate.grid_check),
+        "Whether located values are checked on a finer grid (by methods without sampling)."),
+    key("figures.at", Kind::List(&Kind::Number(ANY)), Rule("both ends of the sweep and two points between"), optional!(figures_at),
+        "Parameter values at which joint densities and marginals are drawn, inside the sweep."),
+    key("figures.formats", Kind::List(&Kind::Choice(Format::words)), OfOptions, always!(figure_formats),
+        "File formats of the figures."),
+];
+
+fn switch() -> Vec<&'static str> {
+    SWITCH.to_vec()
+}
+
+fn automatic() -> Vec<&'static str> {
+    vec![super::field::AUTO]
+}
+
+fn models() -> Vec<&'static str> {
+    let models = registry::models().iter();
+    models.map(|model| model.name.as_str()).collect()
+}

@@ -1,0 +1,134 @@
+//! The stage between checked settings and a sweep: what takes work. It asks whether the cells fit into the machine, and finds by free
+//! trajectories what is left to the program.
+
+use std::sync::Arc;
+
+use super::diagnostic::Diagnostic;
+use super::names::list;
+use super::report::Report;
+use super::settings::{Grade, Settings, at_cells, cell_space};
+use super::sweep::Sweep;
+use crate::generator::automatic_grading;
+use crate::method::cost::{bytes_in_words, factorisation, least_bytes, machine_memory};
+use crate::method::{MethodOptions, Problem, SgcmOptions, automatic_ranges};
+use crate::space::Grading;
+use crate::system::System;
+
+impl Settings {
+    /// Finds the ranges and gradings that are left to the program, by free trajectories at both ends of the sweep, and asks whether
+    /// a point fits into this machine's memory.
+    ///
+    /// # Errors
+    /// A report where it does not fit, or where no range holds the density.
+    pub fn prepare(mut self) -> Result<Sweep, Report> {
+        self.check_memory()?;
+        self.find_cells()?;
+        let sweep = self.fixed()?;
+        sweep.settings.check_factors(&sweep)?;
+        Ok(sweep)
+    }
+
+    /// The sweep whose cells are all given: for one that was prepared before, such as that of a stored run.
+    ///
+    /// # Errors
+    /// A report where something is left to the program.
+    pub fn fixed(self) -> Result<Sweep, Report> {
+        let space = cell_space(&self.document, &self.family, &self.axes)
+            .map_err(|diagnostic| self.refuse(*diagnostic))?;
+        let problem = Problem::new(self.family.clone(), space, self.observables.clone())
+            .map_err(|error| self.refuse(Diagnostic::new(error.to_string())))?;
+        Ok(Sweep {
+            settings: self,
+            problem,
+        })
+    }
+
+    fn refuse(&self, diagnostic: Diagnostic) -> Report {
+        Report::new(self.document.sources.clone(), vec![diagnostic], 0)
+    }
+
+    fn refuse_cells(&self, diagnostic: Diagnostic) -> Report {
+        self.refuse(at_cells(&self.document, diagnostic))
+    }
+
+    /// Replaces what is left to the program by numbers.
+    fn find_cells(&mut self) -> Result<(), Report> {
+        let is_open = |grade: &Grade| *grade == Grade::Auto;
+        let open = |axis: &super::AxisSettings| axis.range.is_none() || is_open(&axis.grade);
+        if !self.axes.iter().any(open) {
+            return Ok(());
+        }
+        let (from, to) = self.family.ends();
+        let ends: Result<Vec<Arc<dyn System>>, _> =
+            [from, to].iter().map(|&end| self.family.at(end)).collect();
+        let ends = ends.map_err(|error| self.refuse(Diagnostic::new(error.to_string())))?;
+        let ranges = self.find_ranges(&ends)?;
+        for (index, axis) in self.axes.iter_mut().enumerate() {
+            axis.range = Some(ranges[index]);
+            if is_open(&axis.grade) {
+                let finest = |system: &Arc<dyn System>| {
+                    automatic_grading(system.as_ref(), &ranges, index, axis.count)
+                };
+                let gradings = ends.iter().filter_map(finest);
+                let narrowest =
+                    gradings.min_by(|a: &Grading, b: &Grading| a.smallest.total_cmp(&b.smallest));
+                axis.grade = narrowest.map_or(Grade::Even, Grade::Toward);
+            }
+        }
+        Ok(())
+    }
+
+    fn find_ranges(&self, ends: &[Arc<dyn System>]) -> Result<Vec<(f64, f64)>, Report> {
+        let known: Vec<Option<(f64, f64)>> = self.axes.iter().map(|axis| axis.range).collect();
+        if let Some(given) = known.iter().copied().collect() {
+            return Ok(given);
+        }
+        automatic_ranges(ends, &known, SgcmOptions::default().seed).ok_or_else(|| {
+            let diagnostic = Diagnostic::new(
+                "no range holds the density: free trajectories run away somewhere along the sweep",
+            )
+            .remedy("give `from` and `to` instead of `range = \"auto\"`");
+            self.refuse_cells(diagnostic)
+        })
+    }
+
+    /// Refuses cells whose least need exceeds the machine's memory; runs before anything is laid out.
+    fn check_memory(&self) -> Result<(), Report> {
+        let n_cells: f64 = self.axes.iter().map(|axis| axis.count as f64).product();
+        let least = least_bytes(n_cells, self.axes.len(), &self.method.chosen());
+        let Some(memory) = machine_memory().filter(|&memory| least > memory) else {
+            return Ok(());
+        };
+        let counts: Vec<String> = self
+            .axes
+            .iter()
+            .map(|axis| axis.count.to_string())
+            .collect();
+        let title = format!(
+            "{} cells need at least {} of memory; this machine has {}",
+            counts.join(" × "),
+            bytes_in_words(least),
+            bytes_in_words(memory)
+        );
+        let axes =
+            (0..self.axes.len()).map(|axis| format!("cells.{}.count", self.family.axis(axis)));
+        let keys: Vec<String> = axes.collect();
+        let diagnostic = Diagnostic::new(title).remedy(format!("lower one of {}", list(&keys)));
+        Err(self.refuse_cells(diagnostic))
+    }
+
+    /// Refuses cells whose factors exceed the memory that they may take.
+    fn check_factors(&self, sweep: &Sweep) -> Result<(), Report> {
+        let MethodOptions::Generator(options) = self.method.chosen() else {
+            return Ok(());
+        };
+        let Err(error) = factorisation(sweep.problem.space(), &options) else {
+            return Ok(());
+        };
+        let mut remedy = "use fewer cells, or raise `method.memory_limit` (gigabytes)".to_owned();
+        if let Some(memory) = machine_memory() {
+            remedy += &format!("; this machine has {}", bytes_in_words(memory));
+        }
+        Err(self.refuse_cells(Diagnostic::new(error.to_string()).remedy(remedy)))
+    }
+}

@@ -1,0 +1,239 @@
+//! The cells of each axis: range, count, grading. What is given is checked here; what is left to the program is found later.
+
+use crate::space::{Axis, CellSpace, Grading, SpaceError};
+use crate::sweep_file::diagnostic::Diagnostic;
+use crate::sweep_file::document::Document;
+use crate::sweep_file::draft::{AxisDraft, Draft};
+use crate::sweep_file::names::quotable;
+use crate::sweep_file::reader::Reader;
+use crate::sweep_file::value::Value;
+use crate::system::{Family, Model};
+
+/// How one axis is cut into cells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AxisSettings {
+    /// Lower and upper end; `None` where they are left to the program.
+    pub range: Option<(f64, f64)>,
+    /// Number of cells, at least 2.
+    pub count: usize,
+    /// Where the cells get narrower.
+    pub grade: Grade,
+}
+
+/// Where the cells of an axis get narrower.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Grade {
+    /// Nowhere: they have equal widths.
+    Even,
+    /// Toward the model's switching surfaces, to a width that is left to the program.
+    Auto,
+    /// Toward some points.
+    Toward(Grading),
+}
+
+impl AxisSettings {
+    /// The axis; `None` where something is left to the program.
+    fn axis(&self) -> Option<Result<Axis, SpaceError>> {
+        let (from, to) = self.range?;
+        match &self.grade {
+            Grade::Even => Some(Axis::uniform(from, to, self.count)),
+            Grade::Toward(grading) => Some(Axis::graded(from, to, self.count, grading)),
+            Grade::Auto => None,
+        }
+    }
+}
+
+/// Checks `[cells]`; `None` if anything is wrong with it. Without a family there is no telling what bounds the model knows.
+pub(super) fn read(
+    reader: &mut Reader<'_>,
+    draft: &Draft,
+    model: &Model,
+    family: Option<&Family>,
+) -> Option<Vec<AxisSettings>> {
+    let names: Vec<&str> = model.axes.iter().map(|axis| axis.name.as_str()).collect();
+    for entry in reader.entries(&["cells"]) {
+        if !names.contains(&entry.key.as_str()) {
+            let axis = quotable(&entry.key);
+            let diagnostic =
+                Diagnostic::new(format!("model `{}` has no axis `{axis}`", model.name))
+                    .at(&entry.key_place, "unknown axis")
+                    .nearest(&entry.key, names.iter().copied());
+            reader.report(diagnostic);
+        }
+    }
+    // Every axis is read, so that all that is wrong is reported at once.
+    let read: Vec<Option<AxisSettings>> = names
+        .iter()
+        .enumerate()
+        .map(|(index, name)| read_axis(reader, draft, name, family, index))
+        .collect();
+    read.into_iter().collect()
+}
+
+/// A finding about the table `[cells]`.
+pub(in crate::sweep_file) fn at_cells(document: &Document, diagnostic: Diagnostic) -> Diagnostic {
+    match document.root.find(&["cells"]) {
+        Some(entry) => diagnostic.at(&entry.key_place, "these cells"),
+        None => diagnostic,
+    }
+}
+
+fn read_axis(
+    reader: &mut Reader<'_>,
+    draft: &Draft,
+    name: &str,
+    family: Option<&Family>,
+    index: usize,
+) -> Option<AxisSettings> {
+    let Some(entry) = reader.entry(&["cells", name]) else {
+        if reader.document().cut.is_none() {
+            let diagnostic = Diagnostic::new(format!("no cells for axis `{name}`")).remedy(
+                format!("add `{name} = {{ from = …, to = …, count = 50 }}` to [cells]"),
+            );
+            reader.report(at_cells(reader.document(), diagnostic));
+        }
+        return None;
+    };
+    if !matches!(entry.node.value, Value::Table(_)) {
+        return None;
+    }
+    reader.require(&["cells", name, "count"]);
+    let empty = AxisDraft::default();
+    let axis = draft.axis(name).unwrap_or(&empty);
+    let grade = read_grade(reader, axis, name);
+    let bounds = family.map(|family| bounds(family, index));
+    let range = match axis.range {
+        Some(_) => Some(bounds.flatten()),
+        None => read_range(reader, axis, name, bounds).map(Some),
+    };
+    let settings = AxisSettings {
+        range: range?,
+        count: axis.count?,
+        grade: grade?,
+    };
+    match build_axis(reader.document(), name, &settings) {
+        Ok(_) => Some(settings),
+        Err(diagnostic) => {
+            reader.report(*diagnostic);
+            None
+        }
+    }
+}
+
+/// The widest range that the model's bounds of an axis take at the ends of the sweep.
+fn bounds(family: &Family, axis: usize) -> Option<(f64, f64)> {
+    let (from, to) = family.ends();
+    let at = |value: f64| family.at(value).ok()?.bounds(axis);
+    let (one, other) = (at(from)?, at(to)?);
+    Some((one.0.min(other.0), one.1.max(other.1)))
+}
+
+/// The range that is given; what is left out is the model's bound, where it knows one (`None`: there is no telling).
+fn read_range(
+    reader: &mut Reader<'_>,
+    axis: &AxisDraft,
+    name: &str,
+    bounds: Option<Option<(f64, f64)>>,
+) -> Option<(f64, f64)> {
+    let mut end = |key: &str, value: Option<f64>, bound: Option<f64>| {
+        let path = ["cells", name, key];
+        if reader.entry(&path).is_some() {
+            return value;
+        }
+        if bounds == Some(None) {
+            reader.require(&path);
+        }
+        bound
+    };
+    let known = bounds.flatten();
+    let from = end("from", axis.from, known.map(|bounds| bounds.0));
+    let to = end("to", axis.to, known.map(|bounds| bounds.1));
+    let (from, to) = (from?, to?);
+    if from < to && (to - from).is_finite() {
+        return Some((from, to));
+    }
+    let title = format!("the range of axis `{name}`, from {from} to {to}, is empty or reversed");
+    let diagnostic = Diagnostic::new(title).allowed("finite numbers with `from` below `to`");
+    let places = ["to", "from"].map(|key| reader.place(&["cells", name, key]));
+    reader.report(match places.into_iter().flatten().next() {
+        Some(place) => diagnostic.at(place, format!("the range is {from} to {to}")),
+        None => at_cells(reader.document(), diagnostic),
+    });
+    None
+}
+
+/// What the file says of grading; `None` if something is wrong with it.
+fn read_grade(reader: &mut Reader<'_>, axis: &AxisDraft, name: &str) -> Option<Grade> {
+    let Some(entry) = reader.entry(&["cells", name, "grade"]) else {
+        return Some(Grade::Even);
+    };
+    if !matches!(entry.node.value, Value::Table(_)) {
+        return axis.grade.map(|_| Grade::Auto);
+    }
+    reader.require(&["cells", name, "grade", "at"]);
+    reader.require(&["cells", name, "grade", "smallest"]);
+    let at = axis.grade_at.clone()?;
+    let smallest = axis.grade_smallest?;
+    Some(match at.is_empty() {
+        true => Grade::Even,
+        false => Grade::Toward(Grading { at, smallest }),
+    })
+}
+
+/// Builds an axis, `None` where something is left to the program; what the space refuses is shown at the key that it concerns.
+fn build_axis(
+    document: &Document,
+    name: &str,
+    settings: &AxisSettings,
+) -> Result<Option<Axis>, Box<Diagnostic>> {
+    let error = match settings.axis().transpose() {
+        Ok(axis) => return Ok(axis),
+        Err(error) => error,
+    };
+    let entry = |key: &[&str]| document.root.find(&[&["cells", name], key].concat());
+    let place = match &error {
+        SpaceError::GradingPoint { at, .. } => entry(&["grade", "at"]).and_then(|entry| {
+            let items = entry.node.items().iter();
+            // A repeated point is shown where it comes for the second time.
+            items
+                .rev()
+                .find(|item| item.plain().and_then(|plain| plain.number()) == Some(*at))
+                .map(|item| &item.place)
+        }),
+        SpaceError::GradingWidth { .. } => {
+            entry(&["grade", "smallest"]).map(|entry| &entry.node.place)
+        }
+        _ => None,
+    };
+    let place = place.or_else(|| entry(&["count"]).map(|entry| &entry.node.place));
+    let diagnostic = Diagnostic::new(format!("axis `{name}`: {error}"));
+    Err(Box::new(match place {
+        Some(place) => diagnostic.at(place, "refused"),
+        None => diagnostic,
+    }))
+}
+
+/// The cell space of axes of which nothing is left to the program.
+///
+/// # Errors
+/// The finding where the space refuses them, or something is left to the program.
+pub(in crate::sweep_file) fn cell_space(
+    document: &Document,
+    family: &Family,
+    axes: &[AxisSettings],
+) -> Result<CellSpace, Box<Diagnostic>> {
+    let mut built = Vec::new();
+    for (index, settings) in axes.iter().enumerate() {
+        let name = family.axis(index);
+        let Some(axis) = build_axis(document, name, settings)? else {
+            let title = format!("range or grading of axis `{name}` is left to the program");
+            let diagnostic = Diagnostic::new(title).remedy("give numbers, or prepare the sweep");
+            return Err(Box::new(at_cells(document, diagnostic)));
+        };
+        built.push(axis);
+    }
+    CellSpace::new(built).map_err(|error| {
+        let diagnostic = Diagnostic::new(error.to_string());
+        Box::new(at_cells(document, diagnostic))
+    })
+}

@@ -1,0 +1,106 @@
+//! Everything a sweep file says, checked, with every default filled in.
+
+mod axes;
+mod draft_of;
+mod figures;
+mod method;
+mod system;
+#[cfg(test)]
+mod tests;
+mod watched;
+
+use crate::continuation::LocateOptions;
+use crate::density::Observable;
+use crate::figure::Format;
+use crate::system::Family;
+use crate::topology::DetectOptions;
+
+pub use axes::{AxisSettings, Grade};
+pub(super) use axes::{at_cells, cell_space};
+
+use super::document::Document;
+use super::draft::MethodSettings;
+use super::reader::Reader;
+use super::report::Report;
+use super::write;
+
+/// What is swept and how: every number is checked, every default filled in. What takes work is still open: ranges and gradings that
+/// are left to the program, see [`Settings::prepare`].
+#[derive(Debug, Clone)]
+pub struct Settings {
+    /// Title of the run.
+    pub title: String,
+    /// What is swept: model, fixed values, parameter and its two ends, which differ.
+    pub family: Family,
+    /// Number of values, at least 2.
+    pub points: usize,
+    /// How each axis is cut into cells, in the model's order of axes.
+    pub axes: Vec<AxisSettings>,
+    /// The method, and the settings of all methods.
+    pub method: MethodSettings,
+    /// Settings of detection.
+    pub detect: DetectOptions,
+    /// What is watched, marginals first.
+    pub observables: Vec<Observable>,
+    /// Settings of location.
+    pub locate: LocateOptions,
+    /// Parameter values at which densities are drawn.
+    pub figures_at: Vec<f64>,
+    /// Formats of the figures.
+    pub figure_formats: Vec<Format>,
+    /// What a user should know.
+    pub warnings: Report,
+    /// Where it was read: findings of later stages point there.
+    pub(super) document: Document,
+}
+
+impl Settings {
+    /// Checks a document.
+    ///
+    /// # Errors
+    /// A report of everything that is wrong with it.
+    pub(super) fn read(document: &Document) -> Result<Self, Report> {
+        if let Some(broken) = document.broken() {
+            return Err(broken);
+        }
+        let (mut reader, draft) = Reader::new(document);
+        method::check(&mut reader, &draft.method);
+        let model = draft.model.as_deref();
+        let swept = draft
+            .model
+            .as_ref()
+            .and_then(|model| system::read(&mut reader, &draft, model));
+        let family = swept.as_ref().map(|swept| &swept.family);
+        let axes = model.and_then(|model| axes::read(&mut reader, &draft, model, family));
+        let observables = model.map(|model| watched::read(&mut reader, &draft, model));
+        let figures_at = swept
+            .as_ref()
+            .map(|swept| figures::read_at(&mut reader, &draft, swept));
+        let (Some(swept), Some(axes), Some(observables), Some(figures_at), true) =
+            (swept, axes, observables, figures_at, reader.is_clean())
+        else {
+            return Err(reader.into_report());
+        };
+        let (model, parameter) = (swept.family.model(), swept.family.parameter());
+        let title = || format!("{}, sweep of {parameter}", model.title);
+        Ok(Self {
+            title: draft.title.clone().unwrap_or_else(title),
+            points: swept.points,
+            family: swept.family,
+            axes,
+            method: draft.method,
+            detect: draft.detect,
+            observables,
+            locate: draft.locate,
+            figures_at,
+            figure_formats: figures::each_once(&draft.figure_formats),
+            warnings: reader.into_warnings(),
+            document: document.clone(),
+        })
+    }
+
+    /// The settings as a complete sweep file: every key that concerns the chosen method. Read again it gives the same settings.
+    pub fn to_toml(&self) -> String {
+        write::to_toml(&self.draft())
+    }
+}

@@ -1,0 +1,204 @@
+//! The model, its parameters, and the values of the swept one.
+
+use std::sync::Arc;
+
+use crate::continuation::evenly_spaced;
+use crate::sweep_file::diagnostic::{Diagnostic, Place};
+use crate::sweep_file::draft::Draft;
+use crate::sweep_file::names::{nearest_name, quotable};
+use crate::sweep_file::reader::Reader;
+use crate::system::{Family, Model, ParameterDescription, Path};
+
+/// What is swept, at how many values.
+pub(super) struct Swept {
+    pub(super) family: Family,
+    pub(super) points: usize,
+}
+
+const PARAMETERS: [&str; 2] = ["system", "parameters"];
+const PARAMETER: [&str; 2] = ["sweep", "parameter"];
+
+/// Checks `[system.parameters]` and `[sweep]`; `None` if anything is wrong with them.
+pub(super) fn read(reader: &mut Reader<'_>, draft: &Draft, model: &Arc<Model>) -> Option<Swept> {
+    let name = draft.parameter.as_deref();
+    let swept = name.and_then(|name| {
+        let place = reader.place(&PARAMETER);
+        known_parameter(reader, model, name, place)
+    });
+    // A misspelt name must not make its parameter look missing.
+    let meant = swept.map(|swept| swept.name.as_str()).or_else(|| {
+        let names = model.parameters.iter();
+        nearest_name(name?, names.map(|parameter| parameter.name.as_str()))
+    });
+    let fixed = read_parameters(reader, draft, model, meant);
+    let (from, to) = (
+        read_end(reader, model, swept, "from", draft.from),
+        read_end(reader, model, swept, "to", draft.to),
+    );
+    let points = draft.points?;
+    let (swept, fixed, from, to) = (swept?, fixed?, from?, to?);
+    if !check_values(reader, from, to, points) {
+        return None;
+    }
+    let path = Path::parameter(swept.name.as_str(), from, to);
+    match Family::new(model.clone(), &fixed, path) {
+        Ok(family) => Some(Swept { family, points }),
+        Err(error) => {
+            reader.report(Diagnostic::new(error.to_string()));
+            None
+        }
+    }
+}
+
+fn known_parameter<'m>(
+    reader: &mut Reader<'_>,
+    model: &'m Model,
+    name: &str,
+    place: Option<&Place>,
+) -> Option<&'m ParameterDescription> {
+    let parameters = &model.parameters;
+    let known = parameters.iter().find(|parameter| parameter.name == name);
+    if known.is_none() {
+        let title = format!(
+            "model `{}` has no parameter `{}`",
+            model.name,
+            quotable(name)
+        );
+        let names = parameters.iter().map(|parameter| parameter.name.as_str());
+        let diagnostic = Diagnostic::new(title).nearest(name, names);
+        reader.report(match place {
+            Some(place) => diagnostic.at(place, "unknown parameter"),
+            None => diagnostic,
+        });
+    }
+    known
+}
+
+/// The values that are given, the swept one left out; `None` if anything is wrong with them.
+fn read_parameters<'m>(
+    reader: &mut Reader<'_>,
+    draft: &Draft,
+    model: &'m Model,
+    swept: Option<&str>,
+) -> Option<Vec<(&'m str, f64)>> {
+    let mut values = Vec::new();
+    let mut complete = true;
+    for entry in reader.entries(&PARAMETERS) {
+        let known = known_parameter(reader, model, &entry.key, Some(&entry.key_place));
+        let Some(parameter) = known else {
+            complete = false;
+            continue;
+        };
+        let mut given = draft.parameters.iter();
+        if Some(parameter.name.as_str()) == swept {
+            let title = format!("parameter `{}` is swept and also given", parameter.name);
+            let diagnostic = Diagnostic::new(title)
+                .at(&entry.key_place, "given here")
+                .remedy("remove it here, or sweep another parameter with `sweep.parameter`");
+            reader.report(diagnostic);
+            complete = false;
+        } else if let Some((_, value)) = given.find(|(name, _)| *name == parameter.name) {
+            let place = &entry.node.place;
+            complete &= check_range(reader, model, parameter, *value, place, "given here");
+            values.push((parameter.name.as_str(), *value));
+        } else {
+            complete = false;
+        }
+    }
+    complete &= report_missing(reader, model, swept);
+    complete.then_some(values)
+}
+
+/// Reports parameters without a default that are not given.
+fn report_missing(reader: &mut Reader<'_>, model: &Model, swept: Option<&str>) -> bool {
+    let mut complete = swept.is_some();
+    for parameter in &model.parameters {
+        let path = [PARAMETERS[0], PARAMETERS[1], &parameter.name];
+        let given = reader.entry(&path).is_some() || Some(parameter.name.as_str()) == swept;
+        if given || parameter.default.is_some() || swept.is_none() {
+            continue;
+        }
+        complete = false;
+        let title = format!(
+            "model `{}` needs parameter `{}`",
+            model.name, parameter.name
+        );
+        let mut diagnostic = Diagnostic::new(title)
+            .allowed(parameter.range.words())
+            .remedy(format!(
+                "add `{} = …` to [system.parameters]: {}",
+                parameter.name, parameter.meaning
+            ));
+        let tables = [&path[..2], &path[..1]];
+        if let Some(table) = tables.iter().find_map(|path| reader.entry(path)) {
+            let label = format!("`{}` is missing here", parameter.name);
+            diagnostic = diagnostic.at(&table.key_place, label);
+        }
+        reader.report(diagnostic);
+    }
+    complete
+}
+
+fn check_range(
+    reader: &mut Reader<'_>,
+    model: &Model,
+    parameter: &ParameterDescription,
+    value: f64,
+    place: &Place,
+    label: &str,
+) -> bool {
+    if parameter.range.contains(value) {
+        return true;
+    }
+    let title = format!(
+        "parameter `{}` of model `{}` cannot be {value}",
+        parameter.name, model.name
+    );
+    let diagnostic = Diagnostic::new(title)
+        .at(place, label)
+        .allowed(parameter.range.words());
+    reader.report(diagnostic);
+    false
+}
+
+/// One end of the sweep. Ranges of parameters are intervals, so that what lies between is allowed too.
+fn read_end(
+    reader: &mut Reader<'_>,
+    model: &Model,
+    swept: Option<&ParameterDescription>,
+    key: &str,
+    value: Option<f64>,
+) -> Option<f64> {
+    let value = value?;
+    let (Some(swept), Some(place)) = (swept, reader.place(&["sweep", key])) else {
+        return Some(value);
+    };
+    let allowed = check_range(reader, model, swept, value, place, "the sweep goes here");
+    allowed.then_some(value)
+}
+
+/// Whether the values of the sweep differ from each other.
+fn check_values(reader: &mut Reader<'_>, from: f64, to: f64, points: usize) -> bool {
+    let (title, label) = if from == to {
+        let title = format!("the sweep goes from {from} to {to}");
+        (title, "the same as `sweep.from`")
+    } else {
+        let values = evenly_spaced((from, to), points);
+        let rising = to > from;
+        let apart = values
+            .windows(2)
+            .all(|pair| pair[1].is_finite() && pair[0] != pair[1] && (pair[1] > pair[0]) == rising);
+        if apart {
+            return true;
+        }
+        let title = format!("no {points} different numbers lie between {from} and {to}");
+        (title, "too near to, or too far from, `sweep.from`")
+    };
+    let diagnostic = Diagnostic::new(title)
+        .allowed("two different ends, in either order, far enough apart for the points");
+    reader.report(match reader.place(&["sweep", "to"]) {
+        Some(place) => diagnostic.at(place, label),
+        None => diagnostic,
+    });
+    false
+}

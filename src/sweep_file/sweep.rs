@@ -1,0 +1,66 @@
+//! A sweep that is ready to run: settings with their cells.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use super::settings::Settings;
+use crate::continuation::{Observer, SweepError, SweepResult, sweep};
+use crate::method::{MethodError, MethodSource, Problem};
+use crate::topology::PersistenceDetector;
+
+/// Everything a sweep needs.
+#[derive(Debug, Clone)]
+pub struct Sweep {
+    /// What is swept and how; nothing is left to the program.
+    pub settings: Settings,
+    /// What is solved: the systems, the cells that the axes of the settings make, and what is watched.
+    pub problem: Problem,
+}
+
+/// Why a sweep gave no result.
+#[derive(Debug, thiserror::Error)]
+pub enum SolveError {
+    /// The method refuses.
+    #[error(transparent)]
+    Method(#[from] MethodError),
+    /// The sweep ended early.
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
+}
+
+impl Sweep {
+    /// The detector: its confidence holds for all densities of the sweep together.
+    pub fn detector(&self) -> PersistenceDetector {
+        let settings = &self.settings;
+        let looks = settings.points * settings.observables.len();
+        PersistenceDetector::new(settings.detect.clone(), looks)
+    }
+
+    /// The source of densities by the chosen method; it stops soon after `cancelled` is set.
+    ///
+    /// # Errors
+    /// [`MethodError`] where the method refuses.
+    pub fn source(&self, cancelled: Arc<AtomicBool>) -> Result<MethodSource, MethodError> {
+        MethodSource::new(&self.problem, &self.settings.method.chosen(), cancelled)
+    }
+
+    /// Solves along the parameter and locates the changes; `observer` sees every point as it is done, `()` looks away.
+    ///
+    /// # Errors
+    /// [`SolveError`]; failed points are data.
+    pub fn run(
+        &self,
+        cancelled: Arc<AtomicBool>,
+        observer: &mut dyn Observer,
+    ) -> Result<SweepResult, SolveError> {
+        let source = self.source(cancelled)?;
+        let (detector, settings) = (self.detector(), &self.settings);
+        let (points, locate) = (settings.points, &settings.locate);
+        Ok(sweep(&source, &detector, points, locate, observer)?)
+    }
+
+    /// The sweep as a complete sweep file. Read again it gives the same sweep.
+    pub fn to_toml(&self) -> String {
+        self.settings.to_toml()
+    }
+}

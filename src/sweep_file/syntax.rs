@@ -1,0 +1,341 @@
+//! What is wrong with a text that is not TOML, in the words of somebody who writes a sweep file: the parser knows what it expected,
+//! here it is said what was typed.
+
+use std::ops::Range;
+
+use toml::de::Error;
+
+use super::diagnostic::{Diagnostic, Place};
+use super::names::{ascii_name, is_invisible, quotable};
+use super::report::MOST_SHOWN;
+
+/// A slip: what stands there, and what to write.
+type Slip = (String, String);
+
+/// What is said of syntax errors, of the first one in a line (the others mostly follow from it) and at most [`MOST_SHOWN`];
+/// and how many more there are. `offset` moves the places: the text may stand behind a key.
+pub(super) fn findings(
+    text: &str,
+    errors: &[Error],
+    source: usize,
+    offset: usize,
+) -> (Vec<Diagnostic>, usize) {
+    let mut found = Vec::new();
+    // The end of the last line that has been spoken of.
+    let mut spoken = None;
+    for (index, error) in errors.iter().enumerate() {
+        let span = error.span().unwrap_or(0..0);
+        if spoken.is_some_and(|end| span.start <= end) {
+            continue;
+        }
+        if found.len() == MOST_SHOWN {
+            return (found, errors.len() - index);
+        }
+        let spot = Spot::new(text, span);
+        spoken = Some(spot.span.start + spot.rest.len());
+        found.push(spot.diagnostic(error.message(), source, offset));
+    }
+    (found, 0)
+}
+
+/// Where the parser stopped.
+struct Spot<'t> {
+    /// The bytes that it blames.
+    span: Range<usize>,
+    /// The line up to the span.
+    before: &'t str,
+    /// What it blames, to the end of the line at most.
+    blamed: &'t str,
+    /// The line from the span on.
+    rest: &'t str,
+}
+
+impl<'t> Spot<'t> {
+    fn new(text: &'t str, span: Range<usize>) -> Self {
+        let start = floor(text, span.start);
+        let end = floor(text, span.end).max(start);
+        let line_start = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
+        let line_end = text[start..]
+            .find('\n')
+            .map_or(text.len(), |newline| start + newline);
+        Self {
+            span: start..end,
+            before: &text[line_start..start],
+            blamed: &text[start..end.min(line_end)],
+            rest: &text[start..line_end],
+        }
+    }
+
+    fn diagnostic(&self, message: &str, source: usize, offset: usize) -> Diagnostic {
+        let place = Place {
+            source,
+            span: self.span.start + offset..self.span.end + offset,
+        };
+        let slips = [
+            Self::character,
+            Self::comma_in_number,
+            Self::punctuation,
+            Self::backslash,
+            Self::structure,
+            Self::computation,
+            Self::word,
+        ];
+        match slips.iter().find_map(|slip| slip(self, message)) {
+            Some((words, remedy)) => Diagnostic::new(format!("not valid TOML: {words}"))
+                .at(&place, "")
+                .remedy(remedy),
+            None => Diagnostic::new(format!("not valid TOML: {message}")).at(&place, message),
+        }
+    }
+
+    /// A character that looks like one of the keyboard, or stands for a name.
+    fn character(&self, _: &str) -> Option<Slip> {
+        // The blame may begin in front of it, or be empty.
+        let looked_at = match self.blamed {
+            "" => self.rest.chars().take(1).collect::<String>(),
+            blamed => blamed.chars().take(80).collect(),
+        };
+        let c = looked_at.chars().find(|c| !c.is_ascii())?;
+        let code = format!("U+{:04X}", c as u32);
+        Some(match c {
+            '“' | '”' | '„' | '‟' | '‘' | '’' | '‚' | '‛' | '«' | '»' | '´' | '＂' => {
+                (
+                    format!("`{c}` is a quotation mark of print"),
+                    "write the straight one of the keyboard: `\"`".to_owned(),
+                )
+            }
+            '−' | '–' | '—' | '‐' | '‑' | '‒' | '―' | '－' | '﹣' => (
+                format!("`{c}` ({code}) is not the minus sign of the keyboard"),
+                "write `-`".to_owned(),
+            ),
+            c if c.is_whitespace() || is_invisible(c) => (
+                format!("an invisible character ({code}) stands here"),
+                "delete it, or write a plain space".to_owned(),
+            ),
+            c if ascii_name(c).is_some() && self.is_key() => {
+                let word = self.rest.split(['=', '.', ' ', '\t', ']']).next();
+                let word = word.unwrap_or_default();
+                let spelt: String = word
+                    .chars()
+                    .map(|c| ascii_name(c).map_or(c.to_string(), str::to_owned))
+                    .collect();
+                let before = self.before.rsplit(['{', '[', ',', '.', ' ', '\t']).next();
+                let before = before.unwrap_or_default();
+                (
+                    format!("`{c}` cannot stand in a key"),
+                    format!("names are in ASCII: did you mean `{before}{spelt}`?"),
+                )
+            }
+            c => (
+                format!("`{c}` ({code}) can stand in a string only"),
+                "write names and numbers with the letters and digits of ASCII".to_owned(),
+            ),
+        })
+    }
+
+    /// Whether what is blamed stands where a key should.
+    fn is_key(&self) -> bool {
+        !self.before.contains('=') || self.before.trim_end().ends_with(['{', ','])
+    }
+
+    /// `0,5` or `1,000`: the parser stops at the comma, or behind the digits that follow.
+    fn comma_in_number(&self, _: &str) -> Option<Slip> {
+        let is_digit = |c: char| c.is_ascii_digit();
+        let here = self
+            .rest
+            .strip_prefix(',')
+            .map(|after| (self.before, after));
+        let shortly_before = self.before.rsplit_once(',').map(|(before, after)| {
+            let after = if after.is_empty() { self.rest } else { after };
+            (before, after)
+        });
+        let mut parts = [here, shortly_before].into_iter().flatten();
+        let is_number = |(before, after): (&str, &str)| {
+            let digits = after.trim_start_matches(is_digit);
+            before.ends_with(is_digit)
+                && after.starts_with(is_digit)
+                && !digits.starts_with(|c: char| c.is_alphabetic() || c == '_')
+        };
+        parts.any(is_number).then(|| {
+            (
+                "a comma stands inside a number".to_owned(),
+                "numbers have a point before their decimals, `0.5`, and no commas between thousands, `1000`".to_owned(),
+            )
+        })
+    }
+
+    /// `;` behind a value, `:` behind a key.
+    fn punctuation(&self, _: &str) -> Option<Slip> {
+        if self.blamed.contains(';') || self.rest.starts_with(';') {
+            return Some((
+                "`;` stands behind a value".to_owned(),
+                "delete it: a value ends with its line".to_owned(),
+            ));
+        }
+        if self.is_key() && (self.rest.starts_with(':') || self.before.trim_end().ends_with(':')) {
+            return Some((
+                "`:` stands behind a key".to_owned(),
+                "write `=` between key and value".to_owned(),
+            ));
+        }
+        None
+    }
+
+    /// LaTeX or a path of Windows between double quotation marks.
+    fn backslash(&self, message: &str) -> Option<Slip> {
+        message.starts_with("missing escaped value").then(|| {
+            (
+                "a backslash between `\"` begins a code".to_owned(),
+                "write `\\\\` for a backslash, or put the text between `'`, where it is itself: `'$\\alpha$'`"
+                    .to_owned(),
+            )
+        })
+    }
+
+    /// What stands where a value should, around the place where the parser stopped.
+    fn value(&self) -> Option<String> {
+        let behind_key = self.before.find('=')? + 1;
+        let start = self.before.rfind(['=', '[', ','])?.max(behind_key - 1) + 1;
+        let end = self.rest.find(['#', ',', '}', ']']);
+        let end = end.unwrap_or(self.rest.len());
+        let value = format!("{}{}", &self.before[start..], &self.rest[..end]);
+        let value = value.trim();
+        (!value.contains('=')).then(|| value.to_owned())
+    }
+
+    /// `1/3` or `2*pi`.
+    fn computation(&self, _: &str) -> Option<Slip> {
+        let value = self.value()?;
+        let is_computation = value.starts_with(|c: char| c.is_ascii_digit() || "+-.(".contains(c))
+            && value.contains(['/', '*', '^', '(']);
+        is_computation.then(|| {
+            (
+                format!("`{}` is a computation", quotable(&value)),
+                "write the number: a sweep file does not compute".to_owned(),
+            )
+        })
+    }
+
+    /// A string without its quotation marks.
+    fn word(&self, _: &str) -> Option<Slip> {
+        let value = self.value()?;
+        let is_word = value.starts_with(char::is_alphabetic) && !value.contains(['"', '\'']);
+        is_word.then(|| {
+            let value = quotable(&value);
+            (
+                format!("`{value}` is a string and must be quoted"),
+                format!("write `\"{value}\"`"),
+            )
+        })
+    }
+
+    /// Sound lines that do not fit together.
+    fn structure(&self, message: &str) -> Option<Slip> {
+        let remedy = match message {
+            "duplicate key" => "a key or table stands once: join the two, or delete one",
+            message if message.starts_with("cannot extend value of type inline table") => {
+                "write the key between the braces of its table"
+            }
+            message if message.contains("recurs") => {
+                "tables and lists stand at most four deep in a sweep file"
+            }
+            _ => return None,
+        };
+        let words = match message {
+            "recursion limit" => "a key has too many parts (recursion limit)",
+            message => message,
+        };
+        Some((words.to_owned(), remedy.to_owned()))
+    }
+}
+
+/// The last boundary of characters at or before a byte.
+fn floor(text: &str, byte: usize) -> usize {
+    let mut byte = byte.min(text.len());
+    while !text.is_char_boundary(byte) {
+        byte -= 1;
+    }
+    byte
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use toml::de::DeTable;
+
+    fn said(text: &str) -> String {
+        let (_, errors) = DeTable::parse_recoverable(text);
+        let (found, _) = findings(text, &errors, 0, 0);
+        let report = super::super::Report::new(Default::default(), found, 0);
+        report.to_string()
+    }
+
+    #[test]
+    fn slips_are_named() {
+        for (text, words) in [
+            (
+                "model = coulomb",
+                "`coulomb` is a string and must be quoted",
+            ),
+            ("title = trial", "`trial` is a string and must be quoted"),
+            ("title = infinite well", "`infinite well` is a string"),
+            ("a = [x, \"y\"]", "`x` is a string"),
+            ("model = “coulomb”", "quotation mark of print"),
+            ("model = ‘coulomb’", "quotation mark of print"),
+            ("from = −0.02", "`−` (U+2212) is not the minus sign"),
+            ("from = –0.02", "is not the minus sign"),
+            ("a = [−1, 2]", "is not the minus sign"),
+            ("to = 0,01", "a comma stands inside a number"),
+            ("points = 1,000", "a comma stands inside a number"),
+            (
+                "x = { from = -5,5, to = 5 }",
+                "a comma stands inside a number",
+            ),
+            ("points = 7;", "`;` stands behind a value"),
+            ("points: 7", "`:` stands behind a key"),
+            ("to = 1/100", "`1/100` is a computation"),
+            ("to = 2*3.14", "`2*3.14` is a computation"),
+            ("points\u{a0}= 7", "an invisible character (U+00A0)"),
+            ("\u{200b}points = 7", "an invisible character (U+200B)"),
+            ("α = 1", "did you mean `alpha`?"),
+            ("sigma² = 1", "did you mean `sigma2`?"),
+            ("p = { µ = 1 }", "did you mean `mu`?"),
+            ("points = １１", "can stand in a string only"),
+            ("title = \"$\\alpha$\"", "a backslash between `\"`"),
+            ("a = 1\na = 2", "a key or table stands once"),
+            ("[a]\n[a]", "a key or table stands once"),
+            ("[a\nb = 1", "unclosed table"),
+            ("x = { a = 1 }\nx.b = 2", "between the braces"),
+        ] {
+            let text = said(text);
+            assert!(text.contains(words), "{words} not in\n{text}");
+            assert!(
+                text.contains("not valid TOML") && text.contains("1 error"),
+                "{text}"
+            );
+        }
+    }
+
+    #[test]
+    fn nesting_is_bounded() {
+        for text in [
+            format!("a = {}", "[".repeat(100_000)),
+            format!("a = {}", "{ a = ".repeat(50_000)),
+            format!("a{} = 1", ".a".repeat(100_000)),
+        ] {
+            let text = said(&text);
+            assert!(text.contains("recurs") && text.len() < 2000, "{text}");
+        }
+    }
+
+    #[test]
+    fn errors_are_named_once_a_line_and_counted_beyond_the_first() {
+        let text = said("= = =\n= = =\n");
+        assert!(text.contains("2 errors"), "{text}");
+        let many = "= = =\n".repeat(1000);
+        let (_, errors) = DeTable::parse_recoverable(&many);
+        let (found, further) = findings(&many, &errors, 0, 0);
+        assert_eq!(found.len(), MOST_SHOWN);
+        assert!(further > 900);
+    }
+}
