@@ -220,7 +220,7 @@ fn misplaced_faces(spec: &Sweep) -> Vec<String> {
         let Some(axis) = spec.problem.space().axes().get(index) else {
             continue;
         };
-        if axis.find(at).is_some() && !axis.has_face_at(at) {
+        if axis.is_inside_cell(at) {
             let (name, count) = (family.axis(index), axis.count());
             notes.push(format!(
                 "{what} {name} = {at} lies inside a cell: give a range with {at} in its middle and an even \

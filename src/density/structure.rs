@@ -22,6 +22,9 @@ pub struct Kink {
 }
 
 impl Kink {
+    /// Jump of the slope of log p, times the range of the axis across, that is rounding.
+    pub const ROUNDING: f64 = 1e-7;
+
     /// The jump at a cell of the other axis (0 for a marginal).
     pub fn jump_at(&self, cell: usize) -> f64 {
         let last = self.jump.len().saturating_sub(1);

@@ -52,9 +52,7 @@ fn check(system: &dyn System, space: &CellSpace) -> Result<(), GeneratorError> {
     if axes != dimension {
         return Err(GeneratorError::Dimension { axes, dimension });
     }
-    if let Some(period) = system.period() {
-        return Err(GeneratorError::Periodic { period });
-    }
+    system.autonomous()?;
     let channels = system.noise_axes().iter().enumerate();
     for (channel, &axis) in channels {
         if axis >= dimension {

@@ -55,17 +55,13 @@ impl AxisGeometry {
     ) -> Self {
         let count = axis.count();
         let noisy = system.noise_axes().contains(&index);
-        let tolerance = 1e-9 * (axis.to() - axis.from());
-        let bounds = system.bounds(index);
-        let end = |closed: bool| if closed { End::Wall } else { End::Open };
-        let lower = bounds.is_some_and(|(low, _)| axis.from() <= low + tolerance);
-        let upper = bounds.is_some_and(|(_, high)| axis.to() >= high - tolerance);
+        let end = |wall: bool| if wall { End::Wall } else { End::Open };
         Self {
             nodes: axis.nodes().to_vec(),
             widths: (0..count).map(|cell| axis.node_stretch(cell)).collect(),
             edges: axis.edges().to_vec(),
             face_widths: (0..=count).map(|face| axis.edge_stretch(face)).collect(),
-            ends: [end(lower), end(upper)],
+            ends: system.walls(index, (axis.from(), axis.to())).map(end),
             stencils: (0..=count)
                 .map(|face| stencil(scheme, face, count - face))
                 .collect(),
@@ -83,13 +79,9 @@ impl AxisGeometry {
 pub(super) fn surface_faces(system: &dyn System, index: usize, axis: &Axis) -> Vec<usize> {
     let surfaces = system.switching_surfaces();
     let here = surfaces.iter().filter(|surface| surface.axis == index);
-    let face_at = |at: f64| {
-        let cell = axis.find(at)?;
-        let below = at - axis.edges()[cell] < axis.edges()[cell + 1] - at;
-        let face = if below { cell } else { cell + 1 };
-        (axis.has_face_at(at) && face > 0 && face < axis.count()).then_some(face)
-    };
-    here.filter_map(|surface| face_at(surface.at)).collect()
+    here.filter_map(|surface| axis.face_at(surface.at))
+        .filter(|&face| face > 0 && face < axis.count())
+        .collect()
 }
 
 /// The stencil of a face with that many cells below and above it.

@@ -55,15 +55,10 @@ fn toward_walls(
     (from, to): (f64, f64),
     count: usize,
 ) -> Option<Grading> {
-    let (low, high) = system.bounds(axis)?;
-    let tolerance = 1e-9 * (to - from);
-    let mut at = Vec::new();
-    if from <= low + tolerance {
-        at.push(from);
-    }
-    if to >= high - tolerance {
-        at.push(to);
-    }
+    let walls = system.walls(axis, (from, to)).into_iter().zip([from, to]);
+    let at: Vec<f64> = walls
+        .filter_map(|(wall, end)| wall.then_some(end))
+        .collect();
     let smallest = WALL_SHARE * (to - from) / count as f64;
     (!at.is_empty() && smallest > 0.0).then_some(Grading { at, smallest })
 }

@@ -42,7 +42,7 @@ pub use scheme::AdvectiveScheme;
 
 use sprs::CsMat;
 
-use crate::system::SystemError;
+use crate::system::{PeriodicDrift, SystemError};
 
 /// Settings of the discretisation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -76,13 +76,8 @@ pub enum GeneratorError {
         dimension: usize,
     },
     /// The drift depends on time.
-    #[error(
-        "the drift depends on time with period {period}; a generator needs an autonomous system"
-    )]
-    Periodic {
-        /// The period.
-        period: f64,
-    },
+    #[error(transparent)]
+    Periodic(#[from] PeriodicDrift),
     /// A Wiener process drives an axis that the system does not have.
     #[error("Wiener process {channel} drives axis {axis} of a system with {dimension} axes")]
     NoiseAxis {

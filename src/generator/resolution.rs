@@ -2,13 +2,16 @@
 
 use super::geometry::surface_faces;
 use crate::space::CellSpace;
-use crate::system::System;
+use crate::system::{SwitchingSurface, System};
 
 /// Share of the heaviest mass density below which a cell does not count.
 const WEIGHT: f64 = 1e-4;
 
 /// Distance from a surface, as a share of a cell, at which the drift on its two sides is taken.
-const JUST_BESIDE: f64 = 1e-6;
+const BESIDE: f64 = 1e-6;
+
+/// Jump of the drift across a surface, as a share of the drift, below which no layer is looked for.
+const NO_JUMP: f64 = 1e-3;
 
 /// How well the cells along one noisy axis resolve drift against diffusion.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,15 +76,20 @@ fn judge(system: &dyn System, space: &CellSpace, masses: &[f64], index: usize) -
             peclet = peclet.max(0.5 * drift.abs() * scale);
             fitted_peclet = fitted_peclet.max(0.5 * (drift - mean).abs() * scale);
             let beside = |face: &&usize| position == **face || position + 1 == **face;
-            if let Some(&face) = faces.iter().find(beside)
-                && jumps(system, &space.centre(cell), index, axis.edges()[face])
-            {
+            // Dahl's friction bends other components with the sign of the velocity: no jump across, no layer.
+            let jumps = |face: &usize| {
+                let at = axis.edges()[*face];
+                let surface = SwitchingSurface { axis: index, at };
+                let distance = BESIDE * axis.width(position);
+                let jump = surface.drift_jump(system, &space.centre(cell), distance)[index];
+                jump.abs() > NO_JUMP * drift.abs()
+            };
+            if faces.iter().find(beside).is_some_and(jumps) {
                 layer += masses[cell] * (drift * scale).powi(2);
                 weight += masses[cell];
             }
         }
     }
-    let inside = |at: &f64| *at > axis.from() && *at < axis.to() && !axis.has_face_at(*at);
     let surfaces = system.switching_surfaces();
     let here = surfaces.iter().filter(|surface| surface.axis == index);
     Resolution {
@@ -89,21 +97,11 @@ fn judge(system: &dyn System, space: &CellSpace, masses: &[f64], index: usize) -
         peclet,
         fitted_peclet,
         layer: (weight > 0.0).then(|| (layer / weight).sqrt()),
-        surfaces_off_faces: here.map(|surface| surface.at).filter(inside).collect(),
+        surfaces_off_faces: here
+            .map(|surface| surface.at)
+            .filter(|&at| axis.is_inside_cell(at))
+            .collect(),
     }
-}
-
-/// Whether the drift across a surface jumps on it, or only other components do: Dahl's friction bends with the sign of
-/// the velocity, and the density has no kink.
-fn jumps(system: &dyn System, beside: &[f64], axis: usize, at: f64) -> bool {
-    let mut state = beside.to_vec();
-    let distance = JUST_BESIDE * (beside[axis] - at).abs();
-    let [below, above] = [-distance, distance].map(|offset| {
-        state[axis] = at + offset;
-        system.drift_at(0.0, &state)[axis]
-    });
-    // A continuous drift changes by as little as the distance.
-    (above - below).abs() > 1e3 * JUST_BESIDE * (above.abs() + below.abs())
 }
 
 /// D = Σ b²/2 over the processes that drive the axis.

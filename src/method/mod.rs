@@ -21,6 +21,8 @@ pub use range::automatic_ranges;
 pub use sgcm::{Corrected, Correction, SampledPoint, SgcmOptions, SgcmSource, solve_corrected};
 pub use state::State;
 
+use crate::system::System;
+
 /// Why a method cannot give a solution at all. Failed solves are data, see
 /// [`PointStatus`](crate::continuation::PointStatus).
 #[derive(Debug, thiserror::Error)]
@@ -36,6 +38,9 @@ pub enum MethodError {
     /// A parameter value is not allowed.
     #[error(transparent)]
     System(#[from] crate::system::SystemError),
+    /// The drift depends on time.
+    #[error(transparent)]
+    Periodic(#[from] crate::system::PeriodicDrift),
     /// Transitions could not be sampled.
     #[error(transparent)]
     Sampling(#[from] crate::sampling::SamplingError),
@@ -55,3 +60,14 @@ pub enum MethodError {
     #[error(transparent)]
     Density(#[from] crate::density::DensityError),
 }
+
+/// Nothing, if no system depends on time: densities that follow a period are not computed yet.
+fn autonomous(systems: &[std::sync::Arc<dyn System>]) -> Result<(), MethodError> {
+    for system in systems {
+        system.autonomous()?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests;

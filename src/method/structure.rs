@@ -13,9 +13,6 @@ use crate::system::{SwitchingSurface, System};
 /// Distance from the plane, in widths of the cell beside it, at which the drift on either side is taken.
 const BESIDE: f64 = 1e-6;
 
-/// Jump of log p over the whole axis that is rounding.
-const ROUNDING: f64 = 1e-7;
-
 /// The switching surfaces with a kink of the density somewhere along a sweep, given systems along it. Where the drift
 /// across a surface is continuous (as Dahl's is), the density is smooth there.
 pub(super) fn kinked_surfaces(
@@ -34,7 +31,7 @@ pub(super) fn kinked_surfaces(
     surfaces.retain(|&surface| {
         let width = space.axes()[surface.axis].to() - space.axes()[surface.axis].from();
         let largest = systems.iter().map(|system| jumps(system, surface));
-        largest.fold(0.0, f64::max) * width > ROUNDING
+        largest.fold(0.0, f64::max) * width > Kink::ROUNDING
     });
     surfaces
 }
@@ -43,11 +40,11 @@ pub(super) fn kinked_surfaces(
 pub(super) fn closed_ends(systems: &[Arc<dyn System>], space: &CellSpace) -> Vec<[bool; 2]> {
     let axes = space.axes().iter().enumerate();
     axes.map(|(axis, cells)| {
-        let bounds = || systems.iter().map(move |system| system.bounds(axis));
-        [
-            bounds().all(|b| b.is_some_and(|(lower, _)| cells.from() <= lower)),
-            bounds().all(|b| b.is_some_and(|(_, upper)| cells.to() >= upper)),
-        ]
+        let range = (cells.from(), cells.to());
+        let walls = systems.iter().map(|system| system.walls(axis, range));
+        walls
+            .reduce(|one, other| [one[0] && other[0], one[1] && other[1]])
+            .unwrap_or_default()
     })
     .collect()
 }
@@ -98,14 +95,7 @@ fn kink(
     let (mut sums, mut weights) = (vec![0.0; bins], vec![0.0; bins]);
     for index in beside(space, surface) {
         let mut state = space.centre(index);
-        let mut across = |step: f64| {
-            state[surface.axis] = surface.at + step;
-            let above = system.drift_at(0.0, &state)[surface.axis];
-            state[surface.axis] = surface.at - step;
-            above - system.drift_at(0.0, &state)[surface.axis]
-        };
-        // The part of the difference that is proportional to the step is no jump.
-        let drop = 2.0 * across(step) - across(2.0 * step);
+        let drop = surface.drift_jump(system, &state, step)[surface.axis];
         state[surface.axis] = surface.at;
         let square = |&channel: &usize| system.amplitude_at(channel, 0.0, &state).powi(2);
         let intensity: f64 = noise.iter().map(square).sum();
@@ -128,21 +118,11 @@ fn kink(
 
 /// Cells of the space on both sides of a surface (those that hold it, where it falls into cells).
 fn beside(space: &CellSpace, surface: SwitchingSurface) -> Vec<usize> {
-    let axis = &space.axes()[surface.axis];
-    let Some(above) = axis.find(surface.at) else {
+    let Some(beside) = space.axes()[surface.axis].cells_beside(surface.at) else {
         return Vec::new();
     };
-    let on_face = (surface.at - axis.edges()[above]).abs() <= 1e-6 * axis.width(above);
-    let below = if on_face {
-        above.saturating_sub(1)
-    } else {
-        above
-    };
     (0..space.n_cells())
-        .filter(|&index| {
-            let at = space.position(index, surface.axis);
-            at == above || at == below
-        })
+        .filter(|&index| beside.contains(&space.position(index, surface.axis)))
         .collect()
 }
 

@@ -71,7 +71,7 @@ impl ErgodicRun {
         if self.stride == 0 {
             return Err(MonteCarloError::Stride);
         }
-        MonteCarloError::dimensions(system, space)
+        MonteCarloError::check(system, space)
     }
 }
 

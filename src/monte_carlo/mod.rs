@@ -21,7 +21,7 @@ pub use halving::{BiasedQuantity, StepBias, TOLERATED_BIAS, automatic_step, step
 pub use relaxation::{Relaxation, relaxation};
 
 use crate::space::CellSpace;
-use crate::system::System;
+use crate::system::{PeriodicDrift, System};
 
 /// Why a run of trajectories could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -48,13 +48,18 @@ pub enum MonteCarloError {
         /// Axes of the cell space.
         space: usize,
     },
+    /// The drift depends on time.
+    #[error(transparent)]
+    Periodic(#[from] PeriodicDrift),
     /// The caller asked to stop.
     #[error("the run was cancelled")]
     Cancelled,
 }
 
 impl MonteCarloError {
-    fn dimensions(system: &dyn System, space: &CellSpace) -> Result<(), Self> {
+    /// Whether the long-run density of the system can be counted on the cells of the space.
+    fn check(system: &dyn System, space: &CellSpace) -> Result<(), Self> {
+        system.autonomous()?;
         let (system, space) = (system.dimension(), space.dimension());
         match system == space {
             true => Ok(()),

@@ -81,7 +81,8 @@ struct Watched {
 }
 
 /// Watches free trajectories until they have settled, in windows that double in length until one of them holds thirty
-/// autocorrelation times. Keyed by `seed`; does not depend on the number of threads.
+/// autocorrelation times. Keyed by `seed`; does not depend on the number of threads. What it finds is meant for systems
+/// whose drift does not depend on time.
 pub fn relaxation(system: &dyn System, space: &CellSpace, seed: u64) -> Relaxation {
     let pilot = pilot(system, space, seed);
     let step = pilot.automatic_time_step(Integrator::StochasticHeun);

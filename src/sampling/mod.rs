@@ -54,6 +54,9 @@ pub enum SamplingError {
         /// Axes of the cell space.
         space: usize,
     },
+    /// The drift depends on time.
+    #[error(transparent)]
+    Periodic(#[from] crate::system::PeriodicDrift),
     /// A cell to start from that does not exist.
     #[error("there is no cell {cell} to start from; the cell space has {n_cells}")]
     Seed {

@@ -8,6 +8,9 @@
 use super::SpaceError;
 use super::grading::{BULK_SHARE, Grading, Piece, grading_terms};
 
+/// Distance, in widths of a cell, within which two coordinates are one place.
+const SAME_PLACE: f64 = 1e-6;
+
 /// The cells of one axis. Cell `i` is `[edges[i], edges[i + 1])`; the last one includes its upper edge.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
@@ -219,12 +222,36 @@ impl Axis {
         Some(cell)
     }
 
-    /// Whether one of the edges is `at`, to a millionth of the cell's width.
+    /// Whether two coordinates are one place on this axis: to a millionth of the width of the cell that holds `at`.
+    pub fn is_same_place(&self, at: f64, other: f64) -> bool {
+        self.find(at)
+            .is_some_and(|cell| (other - at).abs() <= SAME_PLACE * self.width(cell))
+    }
+
+    /// The face (number of the edge, the two ends included) that lies at `at`; see [`Axis::is_same_place`].
+    pub fn face_at(&self, at: f64) -> Option<usize> {
+        let cell = self.find(at)?;
+        [cell, cell + 1]
+            .into_iter()
+            .find(|&face| self.is_same_place(at, self.edges[face]))
+    }
+
+    /// Whether a face lies at `at`.
     pub fn has_face_at(&self, at: f64) -> bool {
-        self.find(at).is_some_and(|cell| {
-            let tolerance = 1e-6 * self.width(cell);
-            (at - self.edges[cell]).abs() <= tolerance
-                || (self.edges[cell + 1] - at).abs() <= tolerance
+        self.face_at(at).is_some()
+    }
+
+    /// Whether `at` lies in the range, but inside a cell instead of on a face.
+    pub fn is_inside_cell(&self, at: f64) -> bool {
+        self.find(at).is_some() && !self.has_face_at(at)
+    }
+
+    /// The cells below and above `at`: both the same where it lies inside a cell or on an end, `None` outside the range.
+    pub fn cells_beside(&self, at: f64) -> Option<[usize; 2]> {
+        let cell = self.find(at)?;
+        Some(match self.face_at(at) {
+            Some(face) => [face.saturating_sub(1), face.min(self.count() - 1)],
+            None => [cell, cell],
         })
     }
 }

@@ -10,6 +10,7 @@ mod bistable;
 mod contract;
 #[cfg(test)]
 pub(crate) mod examples;
+mod facts;
 mod family;
 pub mod friction;
 mod model;
@@ -19,6 +20,7 @@ mod path;
 mod rayleigh;
 pub mod registry;
 
+pub use facts::{PeriodicDrift, SwitchingSurface, Symmetry};
 pub use family::Family;
 pub use model::{
     AxisDescription, Model, ParameterDescription, ParameterRange, ParameterValues, SystemError,
@@ -34,25 +36,6 @@ pub const LANES: usize = 64;
 
 /// One coordinate of a batch of [`LANES`] states.
 pub type Lanes = [f64; LANES];
-
-/// A plane `state[axis] = at` on which the drift jumps or has a kink.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SwitchingSurface {
-    /// Axis whose coordinate is constant on the surface.
-    pub axis: usize,
-    /// Value of that coordinate.
-    pub at: f64,
-}
-
-/// A reflection that maps the law of the process onto itself: coordinates marked in `reflected`
-/// change sign about `centre`, the others stay.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Symmetry {
-    /// Centre of the reflection, one value an axis.
-    pub centre: Vec<f64>,
-    /// Which axes are reflected.
-    pub reflected: Vec<bool>,
-}
 
 /// An Itô equation dX = a(X, t) dt + Σ_k b_k(X, t) e_{axis(k)} dW_k with bound parameters.
 ///

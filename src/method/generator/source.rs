@@ -20,7 +20,7 @@ use crate::generator::{
 };
 use crate::method::report::{QUIET_ESCAPE, Reporter};
 use crate::method::structure::{closed_ends, kinked_surfaces, structure};
-use crate::method::{MethodError, Problem, State};
+use crate::method::{MethodError, Problem, State, autonomous};
 use crate::space::CellSpace;
 use crate::stationary::generator::{RateInfo, RateOptions, RateSolver, RateSteadyState};
 use crate::system::{SwitchingSurface, System};
@@ -67,6 +67,7 @@ impl GeneratorSource {
         cancelled: Arc<AtomicBool>,
     ) -> Result<Self, MethodError> {
         let (systems, space) = (problem.family().along()?, problem.space());
+        autonomous(&systems)?;
         let rates = RateOptions {
             tolerance: options.solver_tolerance,
             memory_limit_bytes: (options.memory_limit * 1e9) as u64,

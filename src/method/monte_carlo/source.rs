@@ -10,7 +10,7 @@ use crate::density::{EstimatedDensity, Moments, Observable, estimate};
 use crate::method::generator::Trail;
 use crate::method::report::Reporter;
 use crate::method::structure::{closed_ends, kinked_surfaces, structure};
-use crate::method::{MethodError, Problem, State};
+use crate::method::{MethodError, Problem, State, autonomous};
 use crate::monte_carlo::{
     EnsembleRun, ErgodicRun, Estimate, MonteCarloError, Relaxation, StepBias, automatic_step,
     ensemble, ergodic, relaxation, step_bias,
@@ -85,6 +85,7 @@ impl MonteCarloSource {
         cancelled: Arc<AtomicBool>,
     ) -> Result<Self, MethodError> {
         let (systems, space) = (problem.family().along()?, problem.space());
+        autonomous(&systems)?;
         let relaxed: Vec<Relaxation> = systems
             .iter()
             .map(|system| relaxation(system.as_ref(), space, options.seed))

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::SgcmOptions;
 use crate::method::structure::{closed_ends, kinked_surfaces};
-use crate::method::{MethodError, Problem, StepChoice};
+use crate::method::{MethodError, Problem, StepChoice, autonomous};
 use crate::monte_carlo::{StepBias, TOLERATED_BIAS, automatic_step, relaxation, step_bias};
 use crate::sampling::{Pilot, pilot};
 use crate::space::CellSpace;
@@ -32,6 +32,7 @@ pub(super) struct Steps {
 
 pub(super) fn choose_steps(problem: &Problem, options: &SgcmOptions) -> Result<Steps, MethodError> {
     let (systems, space) = (problem.family().along()?, problem.space());
+    autonomous(&systems)?;
     let pilots: Vec<Pilot> = systems
         .iter()
         .map(|system| pilot(system.as_ref(), space, options.seed))

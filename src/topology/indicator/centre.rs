@@ -16,9 +16,6 @@ use crate::topology::reconstruction::Line;
 /// Distance from the centre, in cells, within which a peak is the one at the centre.
 const NEAR: f64 = 3.0;
 
-/// Change of log p over the whole range that is rounding in a jump of its slope.
-const ROUNDING: f64 = 1e-7;
-
 /// The indicators at the centre of symmetry: one of a marginal, two of a joint density; none where the system
 /// declares no symmetry or the cells about the centre are too few.
 pub(crate) fn at_centre(estimated: &EstimatedDensity) -> Vec<Indicator> {
@@ -40,11 +37,8 @@ pub(crate) fn at_centre(estimated: &EstimatedDensity) -> Vec<Indicator> {
 
 fn kink_at(estimated: &EstimatedDensity, k: usize, at: f64) -> Option<&Kink> {
     let axis = &estimated.density.axes[k];
-    let width = axis.width(axis.find(at)?);
-    let kinks = estimated.structure.kinks.iter();
-    kinks
-        .filter(|kink| kink.axis == k)
-        .find(|kink| (kink.at - at).abs() <= 1e-6 * width)
+    let mut kinks = estimated.structure.kinks.iter();
+    kinks.find(|kink| kink.axis == k && axis.is_same_place(at, kink.at))
 }
 
 /// p''/p of a marginal.
@@ -79,7 +73,7 @@ fn slope(estimated: &EstimatedDensity, kink: &Kink, centre: &[f64]) -> Option<In
     };
     let half = 0.5 * kink.jump_at(cell);
     let range = &estimated.density.axes[kink.axis];
-    let rounding = ROUNDING / (range.to() - range.from());
+    let rounding = Kink::ROUNDING / (range.to() - range.from());
     let (value, rougher) = (|_: &[f64]| half, |_: &[f64]| half + rounding);
     Indicator::derive(
         estimated,

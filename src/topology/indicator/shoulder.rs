@@ -4,7 +4,7 @@
 //! comes nearest to zero; after it, the slope between the two has an extremum of the other sign. Followed as one
 //! extremum of p', signed so that it is positive when both are there, its value passes zero linearly.
 
-use super::window::{around, face_at};
+use super::window::around;
 use super::{Indicator, IndicatorKind};
 use crate::density::{EstimatedDensity, Variants};
 use crate::topology::reconstruction::{Line, interpolating, smoothing};
@@ -68,7 +68,7 @@ fn lines(estimated: &EstimatedDensity, at: f64, level: usize) -> Option<Vec<Line
     };
     let cells = around(axis, at, reach)?;
     let inside = |kink: f64| {
-        let face = face_at(axis, kink).unwrap_or_else(|| axis.find(kink).unwrap_or(0));
+        let face = axis.face_at(kink).or(axis.find(kink)).unwrap_or(0);
         cells.start < face && face < cells.end
     };
     if estimated.structure.kinks.iter().any(|kink| inside(kink.at)) {

@@ -10,7 +10,6 @@ use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::window::face_at;
 use crate::density::{EstimatedDensity, Variants};
 
 /// Share of the largest value of a profile down to which the stretch goes.
@@ -289,7 +288,7 @@ fn stretch(
 ) -> Option<Range<usize>> {
     let axis = &estimated.density.axes[k];
     let profile = profile(estimated, centre, k);
-    let (below, above) = match face_at(axis, centre[k]) {
+    let (below, above) = match axis.face_at(centre[k]) {
         Some(face) => (face, face),
         None => (axis.find(centre[k])?, axis.find(centre[k])? + 1),
     };

@@ -39,7 +39,7 @@ pub(super) fn about(estimated: &EstimatedDensity, k: usize, at: f64) -> Option<L
 /// Lines for the value of the density on a plane where its derivative jumps: the mean of both sides.
 pub(super) fn on_kink(estimated: &EstimatedDensity, k: usize, at: f64) -> Option<Lines> {
     let axis = &estimated.density.axes[k];
-    let face = face_at(axis, at)?;
+    let face = axis.face_at(at)?;
     let sides = |below: Range<usize>,
                  above: Range<usize>,
                  line: &dyn Fn(Range<usize>) -> Option<Vec<Line>>| {
@@ -58,7 +58,7 @@ pub(super) fn on_kink(estimated: &EstimatedDensity, k: usize, at: f64) -> Option
 
 /// `reach` cells on either side of a face, or one less beside the cell that holds the point.
 pub(super) fn around(axis: &Axis, at: f64, reach: usize) -> Option<Range<usize>> {
-    let cells = match face_at(axis, at) {
+    let cells = match axis.face_at(at) {
         Some(face) => face.checked_sub(reach)?..face + reach,
         None => {
             let cell = axis.find(at)?;
@@ -66,11 +66,4 @@ pub(super) fn around(axis: &Axis, at: f64, reach: usize) -> Option<Range<usize>>
         }
     };
     (cells.end <= axis.count()).then_some(cells)
-}
-
-/// The edge that lies at `at`, to a millionth of a cell.
-pub(super) fn face_at(axis: &Axis, at: f64) -> Option<usize> {
-    let cell = axis.find(at)?;
-    let near = |edge: usize| (axis.edges()[edge] - at).abs() <= 1e-6 * axis.width(cell);
-    [cell, cell + 1].into_iter().find(|&edge| near(edge))
 }

@@ -1,0 +1,121 @@
+//! What every method refuses.
+
+use std::sync::Arc;
+
+use super::*;
+use crate::density::Observable;
+use crate::generator::{GeneratorError, GeneratorOptions, assemble};
+use crate::monte_carlo::{EnsembleRun, ErgodicRun, MonteCarloError, ensemble, ergodic};
+use crate::sampling::{Integrator, SamplingError, SamplingOptions, sample_transitions};
+use crate::space::{Axis, CellSpace};
+use crate::system::{
+    AxisDescription, Family, Lanes, Model, ParameterDescription, Path, PeriodicDrift, System,
+};
+
+/// dx = (a cos t - x) dt + dW/2.
+fn forced() -> Arc<Model> {
+    let bind = |values: &[f64]| -> Arc<dyn System> {
+        Arc::new(Forced {
+            amplitude: values[0],
+        })
+    };
+    let model = Model::new("forced", "Linear system under periodic forcing", bind);
+    let amplitude = ParameterDescription::new("a", "a", "amplitude of the forcing");
+    Arc::new(
+        model
+            .with_axes([AxisDescription::new("x", "x", "state")])
+            .with_parameters([amplitude]),
+    )
+}
+
+struct Forced {
+    amplitude: f64,
+}
+
+impl System for Forced {
+    fn dimension(&self) -> usize {
+        1
+    }
+    fn drift(&self, time: f64, states: &[Lanes], drift: &mut [Lanes]) {
+        for (slope, x) in drift[0].iter_mut().zip(&states[0]) {
+            *slope = self.amplitude * time.cos() - x;
+        }
+    }
+    fn noise_axes(&self) -> &[usize] {
+        &[0]
+    }
+    fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
+        Some(0.5)
+    }
+    fn period(&self) -> Option<f64> {
+        Some(std::f64::consts::TAU)
+    }
+}
+
+fn cells() -> CellSpace {
+    CellSpace::new(vec![Axis::uniform(-2.0, 2.0, 20).unwrap()]).unwrap()
+}
+
+const PERIODIC: PeriodicDrift = PeriodicDrift {
+    period: std::f64::consts::TAU,
+};
+
+#[test]
+fn no_method_takes_a_periodic_system_for_an_autonomous_one() {
+    let family = Family::new(forced(), &[], Path::parameter("a", 0.5, 1.5)).unwrap();
+    let problem = Problem::new(family, cells(), vec![Observable::Marginal(0)]).unwrap();
+    for method in [
+        MethodOptions::Generator(GeneratorMethodOptions::default()),
+        MethodOptions::Sgcm(SgcmOptions::default()),
+        MethodOptions::MonteCarlo(MonteCarloOptions::default()),
+    ] {
+        let Err(refused) = MethodSource::new(&problem, &method, Arc::default()) else {
+            panic!("{method:?} takes it");
+        };
+        assert!(matches!(refused, MethodError::Periodic(PERIODIC)));
+        let sentence = refused.to_string();
+        assert!(
+            sentence.contains("depends on time with period 6.28"),
+            "{sentence}"
+        );
+    }
+}
+
+#[test]
+fn nor_does_what_the_methods_are_made_of() {
+    let (system, space) = (Forced { amplitude: 1.0 }, cells());
+    let assembled = assemble(&system, &space, &GeneratorOptions::default());
+    assert_eq!(assembled.err(), Some(GeneratorError::Periodic(PERIODIC)));
+    let options = SamplingOptions {
+        map_step: 0.1,
+        time_step: 0.1,
+        samples: 4,
+        groups: 1,
+        seed: 1,
+        integrator: Integrator::StochasticHeun,
+        keep_starts: false,
+    };
+    let sampled = sample_transitions(&system, &space, &[10], &options, &|| false);
+    assert_eq!(sampled.err(), Some(SamplingError::Periodic(PERIODIC)));
+    let run = ErgodicRun {
+        time_step: 0.1,
+        integrator: Integrator::StochasticHeun,
+        seed: 1,
+        trajectories: 64,
+        burn_in: 1.0,
+        length: 1.0,
+        stride: 2,
+    };
+    let counted = ergodic(&system, &space, &[], &run, &|| false);
+    assert_eq!(counted.err(), Some(MonteCarloError::Periodic(PERIODIC)));
+    let run = EnsembleRun {
+        time_step: 0.1,
+        integrator: Integrator::StochasticHeun,
+        seed: 1,
+        trajectories: 64,
+        time: 1.0,
+        start: Vec::new(),
+    };
+    let counted = ensemble(&system, &space, &run, &|| false);
+    assert_eq!(counted.err(), Some(MonteCarloError::Periodic(PERIODIC)));
+}
