@@ -12,9 +12,10 @@ use pbif::continuation::{LocateOptions, sweep};
 use pbif::density::Observable;
 use pbif::method::{Problem, SgcmOptions, SgcmSource};
 use pbif::space::{Axis, CellSpace};
+use pbif::system::friction::{FrictionLaw, Motion};
 use pbif::system::{
-    AxisDescription, Family, Lanes, Model, ParameterDescription, ParameterRange, Path,
-    SwitchingSurface, System,
+    AxisDescription, Duffing, Family, Model, Oscillator, ParameterDescription, ParameterRange,
+    Path, SwitchingSurface, VELOCITY, Viscous, contract,
 };
 use pbif::topology::{DetectOptions, PersistenceDetector};
 
@@ -28,14 +29,18 @@ fn belt() -> Model {
         "belt",
         "Oscillator on a moving belt with Stribeck friction",
         |values| {
-            Arc::new(Belt {
-                kappa: values[0],
+            let spring = Duffing {
+                alpha: 1.0,
+                mu: 0.0,
+            };
+            let damping = Viscous { kappa: values[0] };
+            let friction = StribeckOnBelt {
                 f_s: values[1],
                 f_c: values[2],
                 v_s: values[3],
                 speed: values[4],
-                sigma: values[5].sqrt(),
-            })
+            };
+            Arc::new(Oscillator::new(spring, damping, friction, values[5]))
         },
     )
     .with_equations(["x' = y", "y' = -κ y - x - F(y - v) + ξ(t)"])
@@ -54,46 +59,34 @@ fn belt() -> Model {
     .with_source("this example")
 }
 
-struct Belt {
-    kappa: f64,
+/// The law, for one state; spring, damping, noise and the loop over a batch of states are the oscillator's.
+struct StribeckOnBelt {
     f_s: f64,
     f_c: f64,
     v_s: f64,
     speed: f64,
-    sigma: f64,
 }
 
-impl System for Belt {
-    fn dimension(&self) -> usize {
-        2
+impl FrictionLaw<0> for StribeckOnBelt {
+    #[inline(always)]
+    fn rates(&self, _motion: Motion, _state: &[f64; 0]) -> [f64; 0] {
+        []
     }
 
-    fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
-        for lane in 0..states[0].len() {
-            let (x, y) = (states[0][lane], states[1][lane]);
-            let slip = y - self.speed;
-            let level = self.f_c + (self.f_s - self.f_c) * (-slip.abs() / self.v_s).exp();
-            let friction = if slip == 0.0 {
-                0.0
-            } else {
-                slip.signum() * level
-            };
-            drift[0][lane] = y;
-            drift[1][lane] = -self.kappa * y - x - friction;
+    #[inline(always)]
+    fn force(&self, motion: Motion, _state: &[f64; 0], _rates: &[f64; 0]) -> f64 {
+        let slip = motion.velocity - self.speed;
+        let level = self.f_c + (self.f_s - self.f_c) * (-slip.abs() / self.v_s).exp();
+        if slip == 0.0 {
+            0.0
+        } else {
+            slip.signum() * level
         }
-    }
-
-    fn noise_axes(&self) -> &[usize] {
-        &[1]
-    }
-
-    fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
-        Some(self.sigma)
     }
 
     fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
         vec![SwitchingSurface {
-            axis: 1,
+            axis: VELOCITY,
             at: self.speed,
         }]
     }
@@ -106,6 +99,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     ])?;
     let observables = [Observable::Marginal(0), Observable::Joint(0, 1)];
     let family = Family::new(Arc::new(belt()), &[], Path::parameter("v", 0.2, 1.6))?;
+    // What the law declares holds: here its surface, at a velocity that moves with the belt.
+    contract::verify_model(family.model(), &family.values_at(0.2)?, &[(-2.5, 2.5); 2])?;
     let problem = Problem::new(family, space, observables.to_vec())?;
     let options = SgcmOptions {
         samples: 400,

@@ -167,10 +167,7 @@ fn dependencies() -> BTreeMap<String, BTreeMap<String, PathBuf>> {
             .as_os_str()
             .to_string_lossy()
             .into_owned();
-        let is_test = relative.file_stem().is_some_and(|stem| {
-            let stem = stem.to_string_lossy();
-            stem == "tests" || stem == "contract"
-        });
+        let is_test = relative.file_stem().is_some_and(|stem| stem == "tests");
         if parts.next().is_none() || is_test {
             continue;
         }

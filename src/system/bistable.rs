@@ -82,7 +82,7 @@ impl System for Bistable {
 
 #[cfg(test)]
 mod tests {
-    use super::super::contract::{assert_stationary, bound};
+    use super::super::contract::tests::{assert_stationary, bound};
 
     #[test]
     fn the_drift_is_the_equation() {
@@ -95,7 +95,7 @@ mod tests {
     fn the_density_solves_fokker_planck_on_both_sides_of_the_bifurcation() {
         for a in [-0.7, 0.9] {
             let system = bound("bistable", &[("a", a), ("sigma2", 0.5)]);
-            assert_stationary(&*system, true);
+            assert_stationary(&*system);
         }
     }
 }

@@ -6,8 +6,7 @@
 //! parameters: what is swept. [`registry`] lists the built-in models.
 
 mod bistable;
-#[cfg(test)]
-mod contract;
+pub mod contract;
 #[cfg(test)]
 pub(crate) mod examples;
 mod facts;
@@ -45,7 +44,7 @@ pub type Lanes = [f64; LANES];
 /// # A minimal implementation
 ///
 /// ```
-/// use pbif::system::{Lanes, System};
+/// use pbif::system::{Lanes, System, contract};
 ///
 /// /// dx = -x dt + 0.5 dW.
 /// struct OrnsteinUhlenbeck;
@@ -65,8 +64,16 @@ pub type Lanes = [f64; LANES];
 ///     fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
 ///         Some(0.5)
 ///     }
+///     /// Normal with variance 0.5²/2.
+///     fn exact_log_density(&self, state: &[f64]) -> Option<f64> {
+///         Some(-state[0] * state[0] / (0.5 * 0.5))
+///     }
 /// }
+///
 /// assert_eq!(OrnsteinUhlenbeck.drift_at(0.0, &[2.0]), vec![-2.0]);
+/// // What is declared is tried at random states of Ω, the density against the Fokker-Planck equation.
+/// contract::verify(&OrnsteinUhlenbeck, &[(-2.0, 2.0)])?;
+/// # Ok::<(), contract::ContractViolation>(())
 /// ```
 pub trait System: Send + Sync {
     /// Number of axes d, 1 to [`crate::MAX_DIMENSION`].

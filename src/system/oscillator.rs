@@ -5,6 +5,7 @@ use std::sync::Arc;
 use multiversion::multiversion;
 
 use super::friction::{FrictionLaw, Motion};
+use super::parameters::{ALPHA, Axis, KAPPA, MU, Parameter, SIGMA2, X, Y};
 use super::{LANES, Lanes, SwitchingSurface, Symmetry, System};
 
 /// Axis of the displacement of an oscillator.
@@ -98,7 +99,18 @@ impl<D: Damping, F: FrictionLaw<N>, const N: usize> Oscillator<D, F, N> {
     }
 }
 
-/// Binds α, κ, μ, the values of a friction law, σ²: the parameters of built-in oscillators with friction, in that order.
+/// Axes of a built-in oscillator with friction: x, y, and the internal states of its law.
+pub(super) fn axes(internal: impl IntoIterator<Item = Axis>) -> Vec<Axis> {
+    [X, Y].into_iter().chain(internal).collect()
+}
+
+/// Parameters of a built-in oscillator with friction: α, κ, μ, those of its law, σ².
+pub(super) fn parameters(law: impl IntoIterator<Item = Parameter>) -> Vec<Parameter> {
+    let oscillator = [ALPHA, KAPPA, MU].into_iter();
+    oscillator.chain(law).chain([SIGMA2]).collect()
+}
+
+/// Binds the values of [`parameters`]; `law` is given those of the law.
 pub(super) fn with_friction<F: FrictionLaw<N> + 'static, const N: usize>(
     values: &[f64],
     law: impl FnOnce(&[f64]) -> F,

@@ -53,7 +53,7 @@ impl Damping for EnergyDamping {
 
 #[cfg(test)]
 mod tests {
-    use super::super::contract::{assert_stationary, bound};
+    use super::super::contract::tests::{assert_stationary, bound};
 
     #[test]
     fn the_drift_is_the_equation() {
@@ -68,7 +68,7 @@ mod tests {
     fn the_density_solves_fokker_planck_on_both_sides_of_the_bifurcation() {
         for a in [-0.4, 0.6] {
             let values = [("a", a), ("b", 0.3), ("mu", 0.2), ("sigma2", 0.5)];
-            assert_stationary(&*bound("rayleigh", &values), true);
+            assert_stationary(&*bound("rayleigh", &values));
         }
     }
 }

@@ -3,8 +3,8 @@
 //! Convention of the paper's Eq. (7): κ is the viscous damping, α the linear stiffness.
 
 use super::{FrictionLaw, Motion};
-use crate::system::oscillator::with_friction;
-use crate::system::parameters::{ALPHA, COULOMB_LEVEL, KAPPA, MU, SIGMA2, X, Y};
+use crate::system::oscillator::{axes, parameters, with_friction};
+use crate::system::parameters::COULOMB_LEVEL;
 use crate::system::{Model, SwitchingSurface, VELOCITY};
 
 /// x' = y, y' = -κy - αx - μx³ - f_c sgn(y) + ξ.
@@ -16,8 +16,8 @@ pub(in crate::system) fn model() -> Model {
             "y' = -κ y - α x - μ x³ - f_c sgn(y) + ξ(t),   sgn(0) = 0",
             "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
         ])
-        .with_axes([X, Y])
-        .with_parameters([ALPHA, KAPPA, MU, COULOMB_LEVEL, SIGMA2])
+        .with_axes(axes([]))
+        .with_parameters(parameters([COULOMB_LEVEL]))
         .with_source("the paper, Eqs. (5)-(6), with the letters of Eq. (7)")
         .with_notes([
             "The paper's Eq. (5) prints α = 1 as damping and κ = 0.01 as stiffness. With that reading the marginal of x has one peak at every f_c, against the paper's Fig. 2(a); with the letters of its Eq. (7), used here, its figures come out.",
@@ -68,7 +68,7 @@ impl FrictionLaw<0> for Coulomb {
 
 #[cfg(test)]
 mod tests {
-    use crate::system::contract::bound;
+    use crate::system::contract::tests::{assert_stationary, bound};
 
     #[test]
     fn the_drift_is_the_equation() {
@@ -98,8 +98,7 @@ mod tests {
     #[test]
     fn the_density_is_known_only_without_friction() {
         let values = |f_c| [("kappa", 0.3), ("mu", 0.2), ("f_c", f_c), ("sigma2", 0.5)];
-        let free = bound("coulomb", &values(0.0));
-        assert!(free.exact_log_density(&[0.5, 0.5]).is_some());
+        assert_stationary(&*bound("coulomb", &values(0.0)));
         let rubbing = bound("coulomb", &values(0.1));
         assert_eq!(rubbing.exact_log_density(&[0.5, 0.5]), None);
     }

@@ -4,14 +4,9 @@
 //! saturates at ±f_c/λ under steady sliding. The print has x where the law has z, and then nothing saturates.
 
 use super::{FrictionLaw, Motion};
-use crate::system::oscillator::with_friction;
-use crate::system::parameters::{
-    ALPHA, Axis, DAHL_LEVEL, KAPPA, LAMBDA, MU, Parameter, SIGMA2, X, Y, Z,
-};
+use crate::system::oscillator::{axes, parameters, with_friction};
+use crate::system::parameters::{DAHL_LEVEL, LAMBDA, Z};
 use crate::system::{Model, SwitchingSurface, VELOCITY};
-
-const AXES: [Axis; 3] = [X, Y, Z];
-const PARAMETERS: [Parameter; 6] = [ALPHA, KAPPA, MU, LAMBDA, DAHL_LEVEL, SIGMA2];
 
 /// x' = y, y' = -κy - αx - μx³ - λz + ξ, z' = y - (λ|y|/f_c) z.
 pub(in crate::system) fn model() -> Model {
@@ -23,8 +18,8 @@ pub(in crate::system) fn model() -> Model {
             "z' = y - (λ |y| / f_c) z,   |z| ≤ f_c/λ",
             "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
         ])
-        .with_axes(AXES)
-        .with_parameters(PARAMETERS)
+        .with_axes(axes([Z]))
+        .with_parameters(parameters([LAMBDA, DAHL_LEVEL]))
         .with_source("the paper, Eqs. (7)-(9), with z as last factor of z'; P. R. Dahl, A solid friction model (1968)")
         .with_notes([
             "The paper's Eqs. (8) and (9) print x as the last factor of z'. Dahl's law has z, and with it the paper's claims hold; the printed equations are the model `dahl_eq8`, which has no steady state.",
@@ -42,8 +37,8 @@ pub(in crate::system) fn model_eq8() -> Model {
             "z' = y - (λ |y| / f_c) x",
             "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
         ])
-        .with_axes(AXES)
-        .with_parameters(PARAMETERS)
+        .with_axes(axes([Z]))
+        .with_parameters(parameters([LAMBDA, DAHL_LEVEL]))
         .with_source("the paper, Eqs. (8)-(9), as printed")
         .with_notes([
             "The print has x as the last factor of z', where Dahl's law has z (model `dahl`). Nothing then holds z back: it is not bounded, it runs away, and the system has no steady state.",
@@ -140,7 +135,7 @@ impl FrictionLaw<1> for DahlAsPrinted {
 
 #[cfg(test)]
 mod tests {
-    use crate::system::contract::bound;
+    use crate::system::contract::tests::bound;
 
     const VALUES: [(&str, f64); 6] = [
         ("alpha", -1.0),

@@ -27,7 +27,7 @@ pub struct Motion {
 ///
 /// ```
 /// use pbif::system::friction::{FrictionLaw, Motion};
-/// use pbif::system::{Duffing, Oscillator, SwitchingSurface, System, VELOCITY, Viscous};
+/// use pbif::system::{Duffing, Oscillator, SwitchingSurface, System, VELOCITY, Viscous, contract};
 ///
 /// struct Bristles {
 ///     stiffness: f64,
@@ -63,6 +63,8 @@ pub struct Motion {
 /// assert_eq!(system.dimension(), 3);
 /// // At y = 1, z = 0.25 the bristles are at their limit: z' = 0, F = σ₀z = f_c.
 /// assert_eq!(system.drift_at(0.0, &[0.0, 1.0, 0.25]), vec![1.0, -0.1 - 0.5, 0.0]);
+/// contract::verify(&system, &[(-2.0, 2.0); 3])?;
+/// # Ok::<(), contract::ContractViolation>(())
 /// ```
 pub trait FrictionLaw<const N: usize>: Send + Sync {
     /// Rates z' of the internal states.

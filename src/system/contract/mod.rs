@@ -1,0 +1,115 @@
+//! The contract of a [`System`]: whether what it declares holds for its drift and its noise.
+//!
+//! Methods trust declarations: walls carry no flux, a centre of symmetry decides signatures, grids have faces on switching surfaces. A
+//! declaration that does not hold gives a wrong density without a word. [`verify`] tries all of them at random states:
+//!
+//! | declared | tried |
+//! | --- | --- |
+//! | dimension, noise axes, bounds, surfaces, symmetry, period | they fit each other |
+//! | drift and noise | finite; a batch gives each lane what the state gives alone; constant amplitudes are constant |
+//! | [`System::period`] | drift and noise repeat after it; without one they do not change with time |
+//! | [`System::symmetry`] | the image of a state has the image of its drift, its noise intensity and its exact density |
+//! | [`System::bounds`] | at a bound the drift points inward or along, and noise does not act across |
+//! | [`System::exact_log_density`] | solves the stationary Fokker-Planck equation (central differences) |
+//! | [`System::switching_surfaces`] | drift or its slope jumps there |
+//!
+//! States are the same at every call; two calls give the same answer.
+
+mod declarations;
+mod density;
+mod surfaces;
+#[cfg(test)]
+pub(super) mod tests;
+mod trial;
+mod violation;
+
+pub use violation::{ContractViolation, Quantity};
+
+use std::collections::HashSet;
+
+use super::{Model, ParameterValues, System};
+use trial::Trial;
+
+/// Whether what a system declares holds at random states of the box `ranges` (one range an axis, those of the domain Ω for
+/// example; within the system's own bounds).
+///
+/// A surface across which the drift is smooth is found last, and does no harm: a friction law declares its surface at a
+/// friction level of zero too. Who allows that passes over [`ContractViolation::SmoothSurface`].
+///
+/// ```
+/// use pbif::system::{Lanes, Symmetry, System, contract};
+///
+/// /// dx = (0.1 + x - x³) dt + 0.5 dW, with a symmetry that it does not have.
+/// struct Tilted;
+///
+/// impl System for Tilted {
+///     fn dimension(&self) -> usize {
+///         1
+///     }
+///     fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
+///         for (slope, x) in drift[0].iter_mut().zip(&states[0]) {
+///             *slope = 0.1 + x * (1.0 - x * x);
+///         }
+///     }
+///     fn noise_axes(&self) -> &[usize] {
+///         &[0]
+///     }
+///     fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
+///         Some(0.5)
+///     }
+///     fn symmetry(&self) -> Option<Symmetry> {
+///         Some(Symmetry { centre: vec![0.0], reflected: vec![true] })
+///     }
+/// }
+///
+/// let refused = contract::verify(&Tilted, &[(-2.0, 2.0)]);
+/// assert!(matches!(refused, Err(contract::ContractViolation::Asymmetric { .. })));
+/// ```
+///
+/// # Errors
+/// The first [`ContractViolation`] that is found, with a state at which it shows.
+pub fn verify(system: &dyn System, ranges: &[(f64, f64)]) -> Result<(), ContractViolation> {
+    let ranges = declarations::check(system, ranges)?;
+    let trial = Trial::new(system, ranges)?;
+    trial.check_time()?;
+    trial.check_symmetry()?;
+    trial.check_bounds()?;
+    density::check(&trial)?;
+    surfaces::check(&trial)
+}
+
+/// As [`verify`] for a model with these parameter values; also that the model describes every axis, names
+/// nothing twice, and allows its own defaults.
+///
+/// # Errors
+/// The first [`ContractViolation`] that is found.
+pub fn verify_model(
+    model: &Model,
+    values: &ParameterValues,
+    ranges: &[(f64, f64)],
+) -> Result<(), ContractViolation> {
+    let axes = model.axes.iter().map(|axis| &axis.name);
+    let parameters = model.parameters.iter().map(|one| &one.name);
+    let mut names = HashSet::new();
+    for name in axes.chain(parameters) {
+        if !names.insert(name) {
+            let name = name.clone();
+            return Err(ContractViolation::NameTwice { name });
+        }
+    }
+    for parameter in &model.parameters {
+        if let Some(value) = parameter.default.filter(|&v| !parameter.range.contains(v)) {
+            let parameter = parameter.name.clone();
+            return Err(ContractViolation::Default { parameter, value });
+        }
+    }
+    let system = model.system(values);
+    let (described, dimension) = (model.axes.len(), system.dimension());
+    if described != dimension {
+        return Err(ContractViolation::AxesDescribed {
+            described,
+            dimension,
+        });
+    }
+    verify(system.as_ref(), ranges)
+}
