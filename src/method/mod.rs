@@ -11,6 +11,7 @@ mod report;
 mod sgcm;
 mod state;
 mod structure;
+mod time_step;
 
 pub use any::MethodSource;
 pub use generator::{GeneratorMethodOptions, GeneratorSource};

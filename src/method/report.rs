@@ -117,10 +117,11 @@ impl<'a> Reporter<'a> {
         }
     }
 
-    /// Says so when mass leaves at a rate that is worth a word; a share of it within one relaxation time.
-    pub(super) fn escaping(&mut self, rate: f64, share: f64) {
+    /// Says so when a share of the mass that is worth a word leaves within one relaxation time.
+    pub(super) fn escaping(&mut self, share: f64) {
         if share > QUIET_ESCAPE {
             self.leaks();
+            let rate = self.report.escape_rate;
             self.tell(Finding::Escaping { share, rate });
         }
     }
@@ -138,6 +139,29 @@ impl<'a> Reporter<'a> {
         if self.report.status == PointStatus::Solved {
             self.report.status = PointStatus::Escaping;
         }
+    }
+
+    /// The share of the mass that leaves within one relaxation time (none where that time is not known); `None` where it
+    /// is more than `limit`, and there is no steady state.
+    pub(super) fn escaping_share(
+        &mut self,
+        relaxation_time: Option<f64>,
+        limit: f64,
+    ) -> Option<f64> {
+        let rate = self.report.escape_rate;
+        let Some(relaxation_time) = relaxation_time else {
+            return Some(0.0);
+        };
+        let share = rate * relaxation_time;
+        if share > limit {
+            self.no_steady_state(Finding::NoSteadyState {
+                rate,
+                relaxation_time,
+                limit,
+            });
+            return None;
+        }
+        Some(share)
     }
 
     /// There is no steady state, for the reason that the finding gives.

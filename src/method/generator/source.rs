@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::GeneratorMethodOptions;
 use super::relaxation::Relaxation;
 use super::trail::{self, Trail};
-use crate::continuation::{DensitySource, Finding, Solution, SourceError, Subject};
+use crate::continuation::{DensitySource, Solution, SourceError, Subject};
 use crate::density::{EstimatedDensity, Moments, Observable, estimate_from_difference};
 use crate::generator::{
     AdvectiveScheme, Generator, GeneratorOptions, assemble, assemble_derivative, cell_masses,
@@ -125,7 +125,7 @@ impl GeneratorSource {
         solved: &Solved,
         before: Option<&Trail>,
     ) -> Result<Solution<State>, MethodError> {
-        let (space, value) = (self.problem.space(), solved.value);
+        let space = self.problem.space();
         let info = &solved.steady.info;
         let unknowns = &solved.steady.mass;
         let mut reporter = self.reporter(info);
@@ -137,38 +137,28 @@ impl GeneratorSource {
             return Ok(Solution::without_density(reporter.report));
         }
         let relaxation = relaxation(solver, solved, before);
-        if !self.holds_mass(&mut reporter, relaxation.as_ref()) {
+        let time = relaxation.as_ref().map(|known| known.time);
+        let Some(share) = reporter.escaping_share(time, self.options.escape_limit) else {
             return Ok(Solution::without_density(reporter.report));
-        }
+        };
+        reporter.escaping(share);
         let masses = cell_masses(solved.system.as_ref(), space, unknowns);
         reporter.edge_mass(&masses, &self.closed_ends);
         for judged in resolution(solved.system.as_ref(), space, &masses) {
             reporter.resolution(&judged);
         }
-        let expected = before.and_then(|trail| trail.difference_at(value));
+        let expected = before.and_then(|trail| trail.difference_at(solved.value));
         let (densities, difference) =
             self.densities(solver, solved, &masses, expected.as_deref())?;
         let watched = densities
             .iter()
             .map(|one| negative_mass(&one.density.masses()));
         reporter.negative_mass(negative_mass(&masses), watched.fold(0.0, f64::max));
-        let mass = Arc::new(unknowns.clone());
-        let point = trail::Solved {
-            value,
-            mass: mass.clone(),
-            difference,
-        };
-        // What has not converged is no start for an extrapolation.
-        let trail = before.filter(|_| info.converged).cloned();
-        let trail = trail.unwrap_or_default();
         Ok(Solution {
             report: reporter.report,
             moments: moments_of(space, unknowns),
             densities,
-            state: Some(State {
-                mass,
-                trail: trail.with(point, relaxation.map(Arc::new)),
-            }),
+            state: Some(state(solved, difference, relaxation, before)),
         })
     }
 
@@ -183,25 +173,6 @@ impl GeneratorSource {
         report.own.factorisations = info.factorisations;
         report.own.negative_mass = info.negative_mass;
         reporter
-    }
-
-    /// Whether Ω keeps enough of its mass for a steady state; what leaves is told.
-    fn holds_mass(&self, reporter: &mut Reporter<'_>, relaxation: Option<&Relaxation>) -> bool {
-        let (rate, limit) = (reporter.report.escape_rate, self.options.escape_limit);
-        let Some(relaxation_time) = relaxation.map(|known| known.time) else {
-            return true;
-        };
-        let share = rate * relaxation_time;
-        if share > limit {
-            reporter.no_steady_state(Finding::NoSteadyState {
-                rate,
-                relaxation_time,
-                limit,
-            });
-            return false;
-        }
-        reporter.escaping(rate, share);
-        true
     }
 
     /// Densities with the difference to the second scheme as their error, and that difference of the unknowns.
@@ -258,6 +229,29 @@ fn relaxation(
     neighbour
         .and_then(|known| Relaxation::carried(known, rate, QUIET_ESCAPE))
         .or_else(|| Relaxation::compute(solver, &solved.steady.mass, neighbour))
+}
+
+/// What a point leaves for its neighbour, with the points before.
+fn state(
+    solved: &Solved,
+    difference: Vec<f64>,
+    relaxation: Option<Relaxation>,
+    before: Option<&Trail>,
+) -> State {
+    let mass = Arc::new(solved.steady.mass.clone());
+    let point = trail::Solved {
+        value: solved.value,
+        mass: mass.clone(),
+        difference,
+    };
+    // What has not converged is no start for an extrapolation.
+    let trail = before.filter(|_| solved.steady.info.converged).cloned();
+    State {
+        mass,
+        trail: trail
+            .unwrap_or_default()
+            .with(point, relaxation.map(Arc::new)),
+    }
 }
 
 /// Σ |min(mass, 0)|.

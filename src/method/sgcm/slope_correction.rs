@@ -60,34 +60,29 @@ pub fn solve_corrected(
         let mut outcome = solve(&matrix, space, start, options)?;
         rounds += 1;
         let mut change = 0.0;
-        let mut next = None;
         if let Outcome::Steady(steady) = &mut outcome {
             work.0 += steady.info.iterations;
             work.1 += steady.info.matrix_passes;
             (steady.info.iterations, steady.info.matrix_passes) = work;
-            let before = start.unwrap_or(&[]);
-            change = l1(before, &steady.mass);
+            change = l1(start.unwrap_or(&[]), &steady.mass);
             let settled = last.is_some() && change < largest_change;
             if transitions.keeps_starts() && !settled {
                 if rounds < MOST_ROUNDS {
-                    next = Some(steady.clone());
-                } else {
-                    steady.info.converged = false;
-                    steady.info.error_estimate = steady.info.error_estimate.max(change);
+                    slopes = slopes_of(&steady.mass);
+                    last = Some(steady.clone());
+                    continue;
                 }
+                steady.info.converged = false;
+                steady.info.error_estimate = steady.info.error_estimate.max(change);
             }
         }
-        let Some(steady) = next else {
-            return Ok(Corrected {
-                outcome,
-                matrix,
-                slopes,
-                rounds,
-                change,
-            });
-        };
-        slopes = slopes_of(&steady.mass);
-        last = Some(steady);
+        return Ok(Corrected {
+            outcome,
+            matrix,
+            slopes,
+            rounds,
+            change,
+        });
     }
 }
 

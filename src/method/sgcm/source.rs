@@ -207,38 +207,22 @@ impl SgcmSource {
         } else {
             None
         };
-        let escaping_share = relaxation_time.map_or(0.0, |time| escape_rate * time);
         let mut reporter = self.reporter();
         reporter.report.iterations = info.iterations;
         reporter.report.residual = info.residual;
         reporter.report.escape_rate = escape_rate;
         reporter.report.solver_error = info.error_estimate;
         let limit = self.options.escape_limit;
-        if let Some(relaxation_time) = relaxation_time.filter(|_| escaping_share > limit) {
-            reporter.no_steady_state(Finding::NoSteadyState {
-                rate: escape_rate,
-                relaxation_time,
-                limit,
-            });
+        let Some(share) = reporter.escaping_share(relaxation_time, limit) else {
             return Ok(Solution::without_density(reporter.report));
-        }
+        };
         let moments = moments(self.problem.space(), &steady.mass)?;
         reporter.edge_mass(&steady.mass, &self.steps.closed_ends);
-        let local_mass: Vec<f64> = transitions
-            .cells()
-            .iter()
-            .map(|&c| steady.mass[c])
-            .collect();
-        let diffusion = match correction {
-            Correction::Slope => {
-                transitions.remaining_diffusion(self.problem.space(), &local_mass, slopes)
-            }
-            Correction::None => transitions.numerical_diffusion(&local_mass),
-        };
+        let diffusion = self.diffusion(transitions, correction, slopes, &steady.mass);
         reporter.numerical_diffusion(diffusion, &self.steps.noise, &moments);
         let (time_step, bias) = (self.steps.time_step, self.steps.bias.as_ref());
         reporter.time_step(time_step, bias, f64::INFINITY);
-        reporter.escaping(escape_rate, escaping_share);
+        reporter.escaping(share);
         if !info.converged {
             reporter.not_converged(info.error_estimate);
         }
@@ -253,6 +237,24 @@ impl SgcmSource {
                 trail: Trail::default(),
             }),
         })
+    }
+
+    /// Diffusion that the cells add, one value an axis.
+    fn diffusion(
+        &self,
+        transitions: &SampledTransitions,
+        correction: Correction,
+        slopes: &[[f64; MAX_DIMENSION]],
+        mass: &[f64],
+    ) -> Vec<f64> {
+        let cells = transitions.cells().iter();
+        let mass: Vec<f64> = cells.map(|&cell| mass[cell]).collect();
+        match correction {
+            Correction::Slope => {
+                transitions.remaining_diffusion(self.problem.space(), &mass, slopes)
+            }
+            Correction::None => transitions.numerical_diffusion(&mass),
+        }
     }
 
     fn reporter(&self) -> Reporter<'_> {

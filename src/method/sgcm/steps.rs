@@ -1,15 +1,13 @@
 //! Steps of a sweep by SGCM: given, or chosen from a pilot at both ends and in the middle of the sweep. One choice
 //! serves the whole sweep, so that the transition matrix varies smoothly with the parameter.
 
-use std::sync::Arc;
-
 use super::SgcmOptions;
 use crate::method::structure::{closed_ends, kinked_surfaces};
-use crate::method::{MethodError, Problem, StepChoice, autonomous};
-use crate::monte_carlo::{StepBias, TOLERATED_BIAS, automatic_step, relaxation, step_bias};
+use crate::method::time_step::time_step;
+use crate::method::{MethodError, Problem, autonomous};
+use crate::monte_carlo::{Relaxation, StepBias, TOLERATED_BIAS, relaxation};
 use crate::sampling::{Pilot, pilot};
-use crate::space::CellSpace;
-use crate::system::{SwitchingSurface, System};
+use crate::system::SwitchingSurface;
 
 /// Steps, and what else the pilots showed.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,11 +35,19 @@ pub(super) fn choose_steps(problem: &Problem, options: &SgcmOptions) -> Result<S
         .iter()
         .map(|system| pilot(system.as_ref(), space, options.seed))
         .collect();
-    let (time_step, bias) = time_step(space, options, &systems);
-    let map_step = match options.map_step {
-        StepChoice::Fixed(step) => step,
-        StepChoice::Auto => -smallest(&pilots, |pilot| -pilot.automatic_map_step(time_step)),
-    };
+    let relaxed: Vec<Relaxation> = systems
+        .iter()
+        .map(|system| relaxation(system.as_ref(), space, options.seed))
+        .collect();
+    let (time_step, bias) = time_step(
+        (&systems, &relaxed),
+        space,
+        options.time_step,
+        TOLERATED_BIAS,
+        (options.integrator, options.seed),
+    );
+    let longest = || largest(&pilots, |pilot| pilot.automatic_map_step(time_step));
+    let map_step = options.map_step.or(longest);
     let mut cells: Vec<usize> = pilots
         .iter()
         .flat_map(|pilot| pilot.cells.clone())
@@ -49,7 +55,7 @@ pub(super) fn choose_steps(problem: &Problem, options: &SgcmOptions) -> Result<S
     cells.sort_unstable();
     cells.dedup();
     let noise = (0..space.dimension())
-        .map(|axis| -smallest(&pilots, |pilot| -pilot.noise_intensity[axis]))
+        .map(|axis| largest(&pilots, |pilot| pilot.noise_intensity[axis]))
         .collect();
     Ok(Steps {
         map_step,
@@ -62,39 +68,6 @@ pub(super) fn choose_steps(problem: &Problem, options: &SgcmOptions) -> Result<S
     })
 }
 
-/// The time step, given or chosen, and its bias, by halving it on a sample of settled trajectories.
-fn time_step(
-    space: &CellSpace,
-    options: &SgcmOptions,
-    systems: &[Arc<dyn System>],
-) -> (f64, Option<StepBias>) {
-    let (seed, integrator) = (options.seed, options.integrator);
-    let relaxed: Vec<_> = systems
-        .iter()
-        .map(|system| relaxation(system.as_ref(), space, seed))
-        .collect();
-    let ends = || systems.iter().zip(&relaxed);
-    let step = options.time_step.or(|| {
-        let steps = ends().map(|(system, relaxed)| {
-            automatic_step(
-                system.as_ref(),
-                space,
-                relaxed,
-                integrator,
-                TOLERATED_BIAS,
-                seed,
-            )
-            .0
-        });
-        steps.fold(f64::INFINITY, f64::min)
-    });
-    let biases = ends().filter_map(|(system, relaxed)| {
-        step_bias(system.as_ref(), space, relaxed, (integrator, step), seed)
-    });
-    let bias = biases.reduce(StepBias::worse);
-    (step, bias)
-}
-
-fn smallest(pilots: &[Pilot], value: impl Fn(&Pilot) -> f64) -> f64 {
-    pilots.iter().map(value).fold(f64::INFINITY, f64::min)
+fn largest(pilots: &[Pilot], value: impl Fn(&Pilot) -> f64) -> f64 {
+    pilots.iter().map(value).fold(f64::NEG_INFINITY, f64::max)
 }

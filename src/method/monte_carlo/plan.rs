@@ -1,0 +1,137 @@
+//! What Monte Carlo does at every parameter value of a sweep, chosen once from trajectories at both ends and in the middle.
+
+use std::sync::Arc;
+
+use super::{Estimator, MonteCarloOptions};
+use crate::method::time_step::time_step;
+use crate::monte_carlo::{ErgodicRun, Relaxation, StepBias};
+use crate::space::CellSpace;
+use crate::system::{LANES, System};
+
+/// Trajectories of a time average: every core has several batches, and burn-in stays a small part.
+const TRAJECTORIES: f64 = 2048.0;
+
+/// Burn-in in autocorrelation times: e⁻¹² = 6e-6 of the start is left.
+const BURN_IN: f64 = 12.0;
+
+/// Share of the wanted error that an automatic time step may add as bias.
+const BIAS_SHARE: f64 = 0.5;
+
+/// What is done at every parameter value: one plan serves a sweep, so that densities vary smoothly along it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MonteCarloPlan {
+    /// Step of the integrator.
+    pub time_step: f64,
+    /// Its bias, the largest at both ends and in the middle of the sweep; `None` where nothing settles there.
+    pub bias: Option<StepBias>,
+    /// Longest autocorrelation time found there.
+    pub relaxation_time: f64,
+    /// Whether these times could be measured.
+    pub relaxation_resolved: bool,
+    /// Number of trajectories.
+    pub trajectories: usize,
+    /// Time before states are counted.
+    pub burn_in: f64,
+    /// Time during which the states of a trajectory are counted; zero for an ensemble.
+    pub length: f64,
+    /// Steps between two looks at a trajectory.
+    pub stride: usize,
+    /// Relative standard error of the variances to be expected.
+    pub error: f64,
+}
+
+impl MonteCarloPlan {
+    /// Integrator steps of all trajectories at one parameter value.
+    pub fn steps(&self) -> f64 {
+        self.trajectories as f64 * (self.burn_in + self.length) / self.time_step
+    }
+
+    /// Chooses what is left to the program, for some systems along a sweep and how they relax.
+    pub(super) fn choose(
+        systems: &[Arc<dyn System>],
+        space: &CellSpace,
+        relaxed: &[Relaxation],
+        options: &MonteCarloOptions,
+    ) -> Self {
+        let (time_step, bias) = time_step(
+            (systems, relaxed),
+            space,
+            options.time_step,
+            BIAS_SHARE * options.error,
+            (options.integrator, options.seed),
+        );
+        let relaxation_time = relaxed.iter().map(|one| one.time).fold(0.0, f64::max);
+        let strides = relaxed.iter().map(|one| ErgodicRun::stride(one, time_step));
+        let stride = strides.min().unwrap_or(2);
+        let amount = match options.estimator {
+            Estimator::Ergodic => ergodic(options, relaxed, stride as f64 * time_step),
+            Estimator::Ensemble => ensemble(options, relaxed),
+        };
+        Self {
+            time_step,
+            bias,
+            relaxation_time,
+            relaxation_resolved: relaxed.iter().all(|one| one.resolved),
+            trajectories: amount.trajectories as usize,
+            burn_in: options.burn_in.or(|| BURN_IN * relaxation_time),
+            length: amount.length,
+            stride,
+            error: amount.error,
+        }
+    }
+
+    /// The plan in words.
+    pub(super) fn describe(&self, estimator: Estimator) -> String {
+        format!(
+            "monte-carlo ({}), {} trajectories of {:.0} after {:.0}, time step {:.4}, a look every {} steps: {:.1e} steps a point",
+            estimator.name(),
+            self.trajectories,
+            self.length,
+            self.burn_in,
+            self.time_step,
+            self.stride,
+            self.steps()
+        )
+    }
+}
+
+/// How much is run, and the relative standard error of the variances that it gives.
+struct Amount {
+    trajectories: f64,
+    length: f64,
+    error: f64,
+}
+
+/// Long trajectories: the wanted error needs a total time. Each is looked at once at least.
+fn ergodic(options: &MonteCarloOptions, relaxed: &[Relaxation], shortest: f64) -> Amount {
+    // Total time that makes the relative error of every variance one.
+    let times = relaxed.iter().map(|one| one.time);
+    let averaging = relaxed.iter().flat_map(|one| &one.averaging_time).copied();
+    let averaging = times.chain(averaging).fold(0.0, f64::max);
+    let trajectories = whole_batches(options.trajectories.or(|| TRAJECTORIES));
+    let wanted = averaging / (options.error * options.error);
+    let length = options.length.or(|| (wanted / trajectories).max(shortest));
+    Amount {
+        trajectories,
+        length,
+        error: (averaging / (trajectories * length)).sqrt(),
+    }
+}
+
+/// Many trajectories looked at once: the wanted error needs a number of them.
+fn ensemble(options: &MonteCarloOptions, relaxed: &[Relaxation]) -> Amount {
+    let kurtosis = relaxed.iter().map(Relaxation::relative_square);
+    let kurtosis = kurtosis.fold(1.0, f64::max);
+    let wanted = || kurtosis / (options.error * options.error);
+    let trajectories = whole_batches(options.trajectories.or(wanted));
+    Amount {
+        trajectories,
+        length: 0.0,
+        error: (kurtosis / trajectories).sqrt(),
+    }
+}
+
+fn whole_batches(trajectories: f64) -> f64 {
+    let lanes = LANES as f64;
+    (trajectories / lanes).ceil().clamp(1.0, 1e9) * lanes
+}
