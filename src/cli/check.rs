@@ -3,14 +3,10 @@
 use std::io;
 use std::path::Path;
 
-use crate::method::{
-    GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions, StepChoice,
-};
-
 use crate::continuation::evenly_spaced;
-use crate::method::cost;
-use crate::stationary::generator::Estimate;
-use crate::sweep_file::{MethodKind, Sweep};
+use crate::method::{Cost, GeneratorCost, MonteCarloCost, SgcmCost};
+use crate::stationary::generator::RateError;
+use crate::sweep_file::{MethodKind, Sweep, bytes_in_words, machine_memory};
 
 /// Points beyond which a sweep is said to be long.
 const MANY_POINTS: usize = 1000;
@@ -49,99 +45,77 @@ fn costs(spec: &Sweep) -> Vec<String> {
         format!("cells: {} = {cells}", shape.join(" x ")),
         points(spec),
     ];
-    match spec.settings.method.chosen() {
-        MethodOptions::Generator(options) => lines.extend(generator_costs(spec, &options)),
-        MethodOptions::Sgcm(options) => lines.extend(sgcm_costs(spec, &options)),
-        MethodOptions::MonteCarlo(options) => lines.extend(monte_carlo_costs(spec, &options)),
-    }
+    lines.extend(match costs_of_a_point(spec) {
+        Ok(Cost::Generator(cost)) => generator_costs(spec, &cost),
+        Ok(Cost::Sgcm(cost)) => sgcm_costs(spec, &cost),
+        Ok(Cost::MonteCarlo(cost)) => monte_carlo_costs(spec, &cost),
+        Err(error) => vec![unknowns(spec), error.to_string()],
+    });
     lines
 }
 
-/// Seconds of a factorisation on two ordinary cores: large fronts run at 5e10 operations a second, small ones are
-/// bound by memory, 4e8 bytes of factors a second. Measured (`docs/accuracy.md`), good to a factor of two.
-fn factorisation_seconds(factors: &Estimate) -> f64 {
-    factors.operations / 5e10 + factors.factor_bytes as f64 / 4e8
+fn costs_of_a_point(spec: &Sweep) -> Result<Cost, RateError> {
+    spec.settings.method.chosen().cost(spec.problem.space())
 }
 
-fn generator_costs(spec: &Sweep, options: &GeneratorMethodOptions) -> Vec<String> {
-    let unknowns = format!(
-        "unknowns: {}, scheme {}",
-        spec.problem.space().n_cells(),
-        options.scheme.name()
-    );
-    match cost::factorisation(spec.problem.space(), options) {
-        Ok(factors) => vec![
-            unknowns,
-            format!(
-                "memory: {}, {} of it for factors ({})",
-                cost::bytes_in_words(cost::generator_bytes(
-                    spec.problem.space(),
-                    options,
-                    &factors
-                )),
-                cost::bytes_in_words(factors.factor_bytes as f64),
-                factors.method.name()
-            ),
-            format!(
-                "time: a factorisation takes {:.1e} operations, about {:.2} s on two cores; most points reuse a neighbour's",
-                factors.operations,
-                factorisation_seconds(&factors)
-            ),
-        ],
-        Err(error) => vec![unknowns, error.to_string()],
-    }
+fn unknowns(spec: &Sweep) -> String {
+    let scheme = spec.settings.method.generator.scheme.name();
+    format!(
+        "unknowns: {}, scheme {scheme}",
+        spec.problem.space().n_cells()
+    )
 }
 
-fn sgcm_costs(spec: &Sweep, options: &SgcmOptions) -> Vec<String> {
-    let cells = spec.problem.space().n_cells();
-    let trajectories = cells as f64 * options.samples as f64;
-    let most = cost::estimated_bytes(cells as f64, spec.problem.space().dimension(), options);
-    let least = cost::least_bytes(
-        cells as f64,
-        spec.problem.space().dimension(),
-        &spec.settings.method.chosen(),
-    );
-    let steps = match (options.map_step, options.time_step) {
-        (StepChoice::Fixed(map_step), StepChoice::Fixed(time_step)) => {
-            let steps = (map_step / time_step).ceil();
-            format!(
-                "time steps: {steps} a trajectory, at most {:.3e} a point",
-                steps * trajectories
-            )
-        }
-        _ => "time steps: chosen when the sweep runs (a step is \"auto\")".to_owned(),
+fn generator_costs(spec: &Sweep, cost: &GeneratorCost) -> Vec<String> {
+    vec![
+        unknowns(spec),
+        format!(
+            "memory: {}, {} of it for factors ({})",
+            bytes_in_words(cost.bytes),
+            bytes_in_words(cost.factors.factor_bytes as f64),
+            cost.factors.method.name()
+        ),
+        format!(
+            "time: a factorisation takes {:.1e} operations, about {:.2} s on two cores; most points reuse a neighbour's",
+            cost.factors.operations,
+            cost.factorisation_seconds()
+        ),
+    ]
+}
+
+fn sgcm_costs(spec: &Sweep, cost: &SgcmCost) -> Vec<String> {
+    let steps = match cost.steps {
+        Some(steps) => format!(
+            "time steps: {steps} a trajectory, at most {:.3e} a point",
+            steps * cost.trajectories
+        ),
+        None => "time steps: chosen when the sweep runs (a step is \"auto\")".to_owned(),
     };
     vec![
         format!(
             "memory: {} to {} (every cell reaches 2^d others; every sample ends in a cell of its own)",
-            cost::bytes_in_words(least),
-            cost::bytes_in_words(most)
+            bytes_in_words(cost.least_bytes),
+            bytes_in_words(cost.most_bytes)
         ),
         format!(
-            "trajectories: at most {trajectories:.3e} a point ({} a cell)",
-            options.samples
+            "trajectories: at most {:.3e} a point ({} a cell)",
+            cost.trajectories, spec.settings.method.sgcm.samples
         ),
         steps,
     ]
 }
 
-/// Steps a second by Heun's integrator with looks, on two ordinary cores. Measured (`docs/monte-carlo.md`), good to a factor of
-/// two.
-const STEPS_A_SECOND: f64 = 3e8;
-
-fn monte_carlo_costs(spec: &Sweep, options: &MonteCarloOptions) -> Vec<String> {
-    let memory = cost::monte_carlo_bytes(spec.problem.space().n_cells() as f64);
-    let steps = match cost::monte_carlo_steps(options) {
-        Some(steps) => format!(
-            "time steps: {steps:.3e} a point, about {:.1} s on two cores",
-            steps / STEPS_A_SECOND
-        ),
-        None => format!(
+fn monte_carlo_costs(spec: &Sweep, cost: &MonteCarloCost) -> Vec<String> {
+    let steps = match (cost.steps, cost.seconds()) {
+        (Some(steps), Some(seconds)) => {
+            format!("time steps: {steps:.3e} a point, about {seconds:.1} s on two cores")
+        }
+        _ => format!(
             "time steps: chosen when the sweep runs, for a relative error of {} of the variances; they grow with 1/error²",
-            options.error
+            spec.settings.method.monte_carlo.error
         ),
     };
-    vec![format!("memory: {}", cost::bytes_in_words(memory)), steps]
+    vec![format!("memory: {}", bytes_in_words(cost.bytes)), steps]
 }
 
 /// How many points, and where the first lie.
@@ -165,23 +139,9 @@ fn notes(spec: &Sweep) -> Vec<String> {
             spec.settings.points
         ));
     }
-    let most = match spec.settings.method.chosen() {
-        MethodOptions::Generator(options) => {
-            let space = spec.problem.space();
-            cost::factorisation(space, &options).map_or(0.0, |factors| {
-                cost::generator_bytes(space, &options, &factors)
-            })
-        }
-        MethodOptions::Sgcm(options) => {
-            let cells = spec.problem.space().n_cells() as f64;
-            cost::estimated_bytes(cells, spec.problem.space().dimension(), &options)
-        }
-        MethodOptions::MonteCarlo(_) => {
-            cost::monte_carlo_bytes(spec.problem.space().n_cells() as f64)
-        }
-    };
-    if let Some(memory) = cost::machine_memory().filter(|&memory| most > memory) {
-        let memory = cost::bytes_in_words(memory);
+    let most = costs_of_a_point(spec).map_or(0.0, |cost| cost.most_bytes());
+    if let Some(memory) = machine_memory().filter(|&memory| most > memory) {
+        let memory = bytes_in_words(memory);
         let remedy = match spec.settings.method.kind {
             MethodKind::Sgcm => "; a shorter map step spreads less",
             MethodKind::Generator | MethodKind::MonteCarlo => "; fewer cells take less",

@@ -10,9 +10,8 @@ use super::args::CompareArguments;
 use super::output::OutputFolder;
 use super::sweep::progress::Progress;
 use super::{CommandError, Outcome, warnings};
-use crate::compare::{CompareError, Comparison, Method, Solved, Task, compare};
+use crate::compare::{CompareError, Task, compare};
 use crate::figure::{Figures, write_figures};
-use crate::method::cost;
 use crate::run::{CompareFolder, ComparedRun, compare_tables, format_number};
 use crate::sweep_file::{Diagnostic, Sweep};
 
@@ -70,11 +69,9 @@ fn carry_out(
         }
         Err(error) => return Err(error.into()),
     };
-    let bytes = |solved: &Solved| memory(spec, &comparison, solved);
     let resolved = spec.to_toml();
     let run = ComparedRun {
         comparison: &comparison,
-        bytes: &bytes,
         sweep: &resolved,
         threads: rayon::current_num_threads(),
     };
@@ -91,33 +88,6 @@ fn carry_out(
         true => Outcome::Complete,
         false => Outcome::Partial,
     })
-}
-
-/// Bytes at work at one point, and what the number rests on.
-fn memory(spec: &Sweep, comparison: &Comparison, solved: &Solved) -> (f64, &'static str) {
-    let (every, dimension) = (&spec.settings.method, spec.problem.space().dimension());
-    match solved.method {
-        Method::Generator => match cost::factorisation(spec.problem.space(), &every.generator) {
-            Ok(factors) => (
-                cost::generator_bytes(spec.problem.space(), &every.generator, &factors),
-                "estimated from the elimination order",
-            ),
-            Err(_) => (f64::NAN, "unknown"),
-        },
-        Method::Sgcm | Method::SgcmSlope => {
-            let (transitions, cells) = (solved.work.transitions, solved.work.cells);
-            let mut options = every.sgcm.clone();
-            options.correction = crate::method::Correction::Slope;
-            (
-                cost::sgcm_bytes(transitions, cells, dimension, &options),
-                "estimated from the transitions that were counted",
-            )
-        }
-        Method::MonteCarlo => (
-            cost::monte_carlo_bytes(comparison.common.n_cells() as f64),
-            "estimated from cells and blocks",
-        ),
-    }
 }
 
 /// The tables, the verdict and the files.

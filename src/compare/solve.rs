@@ -9,8 +9,8 @@ use super::{CompareError, Method, PAPER_MAP_STEP, Task, overlap::rebin_density};
 use crate::continuation::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
 use crate::density::EstimatedDensity;
 use crate::method::{
-    Correction, GeneratorSource, MethodError, MonteCarloSource, SgcmOptions, SgcmSource, State,
-    StepChoice,
+    Correction, GeneratorSource, MethodError, MonteCarloOptions, MonteCarloSource, SgcmOptions,
+    SgcmSource, State, StepChoice,
 };
 use crate::monte_carlo::MonteCarloError;
 use crate::sampling::SamplingError;
@@ -29,8 +29,9 @@ pub struct Work {
     pub steps: u64,
     /// Samples a cell (SGCM), or trajectories (Monte Carlo).
     pub samples: usize,
-    /// Entries of the transition matrix (SGCM).
-    pub transitions: usize,
+    /// Bytes at work as the method predicts them, SGCM from the transitions that were counted; `None` where they exceed
+    /// the method's limit.
+    pub bytes: Option<f64>,
     /// Cells that were worked on.
     pub cells: usize,
 }
@@ -114,7 +115,12 @@ impl<'a> Sources<'a> {
     }
 
     pub(super) fn monte_carlo(&self, value: f64) -> Result<Solved, CompareError> {
-        let mut solved = monte_carlo_by(&self.monte_carlo, self.common, value)?;
+        let mut solved = monte_carlo_by(
+            &self.monte_carlo,
+            &self.task.monte_carlo,
+            self.common,
+            value,
+        )?;
         solved.work.preparation_seconds = self.monte_carlo_seconds;
         Ok(solved)
     }
@@ -130,7 +136,12 @@ impl<'a> Sources<'a> {
 
     /// Monte Carlo for a share of its time.
     pub(super) fn monte_carlo_for(&self, share: f64, value: f64) -> Result<Solved, CompareError> {
-        monte_carlo_by(&self.monte_carlo.shortened(share), self.common, value)
+        monte_carlo_by(
+            &self.monte_carlo.shortened(share),
+            &self.task.monte_carlo,
+            self.common,
+            value,
+        )
     }
 }
 
@@ -173,6 +184,7 @@ pub(super) fn generator_on(
     })?;
     let work = Work {
         solve_seconds: clock.elapsed().as_secs_f64(),
+        bytes: task.generator.cost(space).ok().map(|cost| cost.bytes),
         cells: space.n_cells(),
         ..Work::default()
     };
@@ -190,12 +202,19 @@ fn sgcm_both(
     let point = source.sample_at(value, None).map_err(stopped)?;
     let sampling_seconds = clock.elapsed().as_secs_f64();
     let transitions = point.transitions();
+    // Both corrections work on samples that keep their starts.
+    let sampled = SgcmOptions {
+        correction: Correction::Slope,
+        ..options.clone()
+    };
+    let (entries, cells) = (transitions.matrix().matrix.nnz(), transitions.cells().len());
+    let bytes = sampled.bytes(entries as f64, cells as f64, common.dimension());
     let work = Work {
         sampling_seconds,
         steps: transitions.n_steps(),
         samples: options.samples,
-        transitions: transitions.matrix().matrix.nnz(),
-        cells: transitions.cells().len(),
+        bytes: Some(bytes),
+        cells,
         ..Work::default()
     };
     [
@@ -218,6 +237,7 @@ fn sgcm_both(
 
 fn monte_carlo_by(
     source: &MonteCarloSource,
+    options: &MonteCarloOptions,
     common: &CellSpace,
     value: f64,
 ) -> Result<Solved, CompareError> {
@@ -227,6 +247,7 @@ fn monte_carlo_by(
         sampling_seconds: clock.elapsed().as_secs_f64(),
         steps: estimate.steps,
         samples: source.plan().trajectories,
+        bytes: Some(options.cost(common.n_cells() as f64).bytes),
         cells: common.n_cells(),
         ..Work::default()
     };

@@ -1,7 +1,7 @@
 //! Methods: sources of densities for a sweep, each made of the modules before it and each in a wing of its own.
 
 mod any;
-pub mod cost;
+mod cost;
 mod generator;
 mod monte_carlo;
 mod options;
@@ -14,12 +14,17 @@ mod structure;
 mod time_step;
 
 pub use any::MethodSource;
-pub use generator::{GeneratorMethodOptions, GeneratorSource};
-pub use monte_carlo::{Estimator, MonteCarloOptions, MonteCarloPlan, MonteCarloSource};
+pub use cost::Cost;
+pub use generator::{GeneratorCost, GeneratorMethodOptions, GeneratorSource};
+pub use monte_carlo::{
+    Estimator, MonteCarloCost, MonteCarloOptions, MonteCarloPlan, MonteCarloSource,
+};
 pub use options::{MethodOptions, StepChoice};
 pub use problem::Problem;
 pub use range::automatic_ranges;
-pub use sgcm::{Corrected, Correction, SampledPoint, SgcmOptions, SgcmSource, solve_corrected};
+pub use sgcm::{
+    Corrected, Correction, SampledPoint, SgcmCost, SgcmOptions, SgcmSource, solve_corrected,
+};
 pub use state::State;
 
 use crate::system::System;

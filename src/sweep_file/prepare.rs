@@ -4,13 +4,13 @@
 use std::sync::Arc;
 
 use super::diagnostic::Diagnostic;
+use super::memory::{bytes_in_words, machine_memory};
 use super::names::list;
 use super::report::Report;
 use super::settings::{Grade, Settings, at_cells, cell_space};
 use super::sweep::Sweep;
 use crate::generator::automatic_grading;
-use crate::method::cost::{bytes_in_words, factorisation, least_bytes, machine_memory};
-use crate::method::{MethodOptions, Problem, SgcmOptions, automatic_ranges};
+use crate::method::{Problem, SgcmOptions, automatic_ranges};
 use crate::space::Grading;
 use crate::system::System;
 
@@ -95,7 +95,7 @@ impl Settings {
     /// Refuses cells whose least need exceeds the machine's memory; runs before anything is laid out.
     fn check_memory(&self) -> Result<(), Report> {
         let n_cells: f64 = self.axes.iter().map(|axis| axis.count as f64).product();
-        let least = least_bytes(n_cells, self.axes.len(), &self.method.chosen());
+        let least = self.method.chosen().least_bytes(n_cells, self.axes.len());
         let Some(memory) = machine_memory().filter(|&memory| least > memory) else {
             return Ok(());
         };
@@ -119,10 +119,7 @@ impl Settings {
 
     /// Refuses cells whose factors exceed the memory that they may take.
     fn check_factors(&self, sweep: &Sweep) -> Result<(), Report> {
-        let MethodOptions::Generator(options) = self.method.chosen() else {
-            return Ok(());
-        };
-        let Err(error) = factorisation(sweep.problem.space(), &options) else {
+        let Err(error) = self.method.chosen().cost(sweep.problem.space()) else {
             return Ok(());
         };
         let mut remedy = "use fewer cells, or raise `method.memory_limit` (gigabytes)".to_owned();

@@ -1,9 +1,11 @@
-//! Free trajectories: their settings, the plan of a sweep, the source.
+//! Free trajectories: their settings, what a point costs, the plan of a sweep, the source.
 
+mod cost;
 mod options;
 mod plan;
 mod source;
 
+pub use cost::MonteCarloCost;
 pub use options::{Estimator, MonteCarloOptions};
 pub use plan::MonteCarloPlan;
 pub use source::MonteCarloSource;

@@ -1,10 +1,12 @@
-//! Stochastic generalized cell mapping: its settings, the choice of its steps, the slope correction, the source.
+//! Stochastic generalized cell mapping: its settings, what a point costs, the choice of its steps, the slope correction, the source.
 
+mod cost;
 mod options;
 mod slope_correction;
 mod source;
 mod steps;
 
+pub use cost::SgcmCost;
 pub use options::{Correction, SgcmOptions};
 pub use slope_correction::{Corrected, solve_corrected};
 pub use source::{SampledPoint, SgcmSource};

@@ -10,7 +10,7 @@ pub use people::{CompareTable, compare_tables};
 use people::{compare_markdown, compare_tex};
 use rows::{accuracy_csv, agreement_csv, compare_csv, compare_json, densities_csv, distances_csv};
 
-use crate::compare::{Comparison, Method, Solved};
+use crate::compare::{Comparison, Method};
 use crate::system::Family;
 
 /// A comparison with what the tables need beside it.
@@ -18,8 +18,6 @@ use crate::system::Family;
 pub struct ComparedRun<'a> {
     /// What was found.
     pub comparison: &'a Comparison,
-    /// Bytes at work at one point, and what the number rests on.
-    pub bytes: &'a dyn Fn(&Solved) -> (f64, &'static str),
     /// The resolved sweep, as TOML.
     pub sweep: &'a str,
     /// Threads that were used: times depend on them.

@@ -96,7 +96,7 @@ fn methods(run: &ComparedRun<'_>) -> CompareTable {
                 solved.status.word().to_owned(),
                 short(solved.work.seconds()),
                 work(solved),
-                megabytes((run.bytes)(solved).0),
+                solved.work.bytes.map_or_else(String::new, megabytes),
                 solved.work.cells.to_string(),
                 match solved.work.samples {
                     0 => String::new(),

@@ -4,7 +4,8 @@ use serde_json::json;
 
 use super::{ComparedRun, partner};
 use crate::compare::{
-    Accuracy, AccuracyPoint, Agreement, ComparedValue, Distance, Distances, Pair, Reference, Solved,
+    Accuracy, AccuracyPoint, Agreement, ComparedValue, Distance, Distances, Method, Pair,
+    Reference, Solved,
 };
 use crate::density::EstimatedDensity;
 use crate::run::columns::{Column, Columns, count, digits, flag, number, optional, word};
@@ -49,10 +50,20 @@ fn work(solved: &Solved) -> (String, &'static str) {
     }
 }
 
+/// What the bytes rest on.
+fn bytes_from(solved: &Solved) -> &'static str {
+    match solved.method {
+        _ if solved.work.bytes.is_none() => "unknown",
+        Method::Generator => "estimated from the elimination order",
+        Method::Sgcm | Method::SgcmSlope => "estimated from the transitions that were counted",
+        Method::MonteCarlo => "estimated from cells and blocks",
+    }
+}
+
 /// A row a value and method.
 fn methods<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Solved>> {
     type Row<'a> = At<'a, Solved>;
-    let (family, bytes) = (run.family(), run.bytes);
+    let family = run.family();
     let mut columns = vec![
         parameter(run),
         word("method", |(_, one): &Row<'a>| one.method.name().to_owned()),
@@ -70,11 +81,12 @@ fn methods<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Solved>> {
         digits("work", |(_, one): &Row<'a>| work(one).0),
         word("work_unit", |(_, one): &Row<'a>| work(one).1.to_owned()),
         count("iterations", |(_, one): &Row<'a>| one.report.iterations),
-        digits("bytes", move |(_, one): &Row<'a>| {
-            format!("{:.0}", bytes(one).0)
+        digits("bytes", |(_, one): &Row<'a>| {
+            let bytes = one.work.bytes;
+            bytes.map_or_else(String::new, |bytes| format!("{bytes:.0}"))
         }),
-        word("bytes_from", move |(_, one): &Row<'a>| {
-            bytes(one).1.to_owned()
+        word("bytes_from", |(_, one): &Row<'a>| {
+            bytes_from(one).to_owned()
         }),
         count("cells", |(_, one): &Row<'a>| one.work.cells),
         digits("samples", |(_, one): &Row<'a>| {

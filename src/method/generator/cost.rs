@@ -1,0 +1,56 @@
+//! What a point costs by the generator: the matrices, and factors that the elimination order predicts.
+//!
+//! A stencil holds 2 reach + 1 rates along each axis, 16 bytes each, in up to four matrices: Q, dQ/dθ, that of the second
+//! scheme, and the one kept for sensitivities.
+
+use super::GeneratorMethodOptions;
+use crate::space::CellSpace;
+use crate::stationary::generator::{Estimate, RateError, estimate};
+
+/// Bytes of a rate in a sparse matrix, and matrices that are held.
+const RATE_BYTES: f64 = 16.0;
+const MATRICES: f64 = 4.0;
+
+/// Speed of factorisations on two ordinary cores: operations a second of large fronts, and bytes of factors a second of
+/// small ones, which are bound by memory. Measured (`docs/accuracy.md`), good to a factor of two.
+const OPERATIONS_A_SECOND: f64 = 5e10;
+const BYTES_A_SECOND: f64 = 4e8;
+
+/// What a point costs by the generator.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GeneratorCost {
+    /// Bytes at work: the matrices, and factors and fronts at their peak.
+    pub bytes: f64,
+    /// The factorisation that will be used, its memory and work. Most points of a sweep reuse a neighbour's.
+    pub factors: Estimate,
+}
+
+impl GeneratorCost {
+    /// Seconds of a factorisation on two ordinary cores, good to a factor of two.
+    pub fn factorisation_seconds(&self) -> f64 {
+        self.factors.operations / OPERATIONS_A_SECOND
+            + self.factors.factor_bytes as f64 / BYTES_A_SECOND
+    }
+}
+
+impl GeneratorMethodOptions {
+    /// Bytes of the sparse matrices on so many cells.
+    pub(in crate::method) fn matrix_bytes(&self, n_cells: f64, dimension: usize) -> f64 {
+        let rates = dimension * 2 * self.scheme.reach() + 1;
+        MATRICES * RATE_BYTES * n_cells * rates as f64
+    }
+
+    /// What a point costs on these cells.
+    ///
+    /// # Errors
+    /// [`RateError::Memory`] when not even the smallest factorisation fits the limit.
+    pub fn cost(&self, space: &CellSpace) -> Result<GeneratorCost, RateError> {
+        let reach = vec![self.scheme.reach(); space.dimension()];
+        let factors = estimate(space, &reach, (self.memory_limit * 1e9) as u64, None)?;
+        let matrices = self.matrix_bytes(space.n_cells() as f64, space.dimension());
+        Ok(GeneratorCost {
+            bytes: matrices + factors.peak_bytes as f64,
+            factors,
+        })
+    }
+}

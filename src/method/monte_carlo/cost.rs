@@ -1,0 +1,48 @@
+//! What a point costs by Monte Carlo: a count and a replicate's mass for each cell and block, and integrator steps.
+
+use super::{Estimator, MonteCarloOptions};
+use crate::method::StepChoice;
+use crate::monte_carlo::BLOCKS;
+
+/// Steps a second by Heun's integrator with looks, on two ordinary cores. Measured (`docs/monte-carlo.md`), good to a factor of
+/// two.
+const STEPS_A_SECOND: f64 = 3e8;
+
+/// What a point costs by Monte Carlo.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MonteCarloCost {
+    /// Bytes at work.
+    pub bytes: f64,
+    /// Integrator steps of all trajectories; `None` where they depend on what is chosen when the sweep runs.
+    pub steps: Option<f64>,
+}
+
+impl MonteCarloCost {
+    /// Seconds on two ordinary cores, good to a factor of two, where the steps are known.
+    pub fn seconds(&self) -> Option<f64> {
+        self.steps.map(|steps| steps / STEPS_A_SECOND)
+    }
+}
+
+impl MonteCarloOptions {
+    /// What a point costs on so many cells.
+    pub fn cost(&self, n_cells: f64) -> MonteCarloCost {
+        MonteCarloCost {
+            bytes: n_cells * 16.0 * BLOCKS as f64,
+            steps: self.steps(),
+        }
+    }
+
+    fn steps(&self) -> Option<f64> {
+        let given = |choice: StepChoice| match choice {
+            StepChoice::Fixed(value) => Some(value),
+            StepChoice::Auto => None,
+        };
+        let length = match self.estimator {
+            Estimator::Ergodic => given(self.length)?,
+            Estimator::Ensemble => 0.0,
+        };
+        let time = given(self.burn_in)? + length;
+        Some(given(self.trajectories)? * time / given(self.time_step)?)
+    }
+}
