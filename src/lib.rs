@@ -14,9 +14,9 @@
 //! | sweep a parameter and locate changes of topology | [`continuation`] |
 //! | join the above into a source of densities | [`method`] |
 //! | set the methods side by side: distances with uncertainties, times | [`compare`] |
-//! | write tables and arrays | [`run`] |
 //! | draw | [`figure`] |
-//! | read, check and write a sweep file | [`sweep_file`] |
+//! | read, check and write sweep files | [`sweep_file`] |
+//! | write tables and arrays, and read them back | [`run`] |
 //! | the program `pbif` | [`cli`] |
 //!
 //! Modules depend on those above them in this table, never the other way.

@@ -12,15 +12,15 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-use assert_cmd::Command;
 use pbif::continuation::DensitySource as _;
 use pbif::density::{EstimatedDensity, Observable, Variants, estimate};
 use pbif::generator::AdvectiveScheme;
 use pbif::method::{
     GeneratorMethodOptions, GeneratorSource, MonteCarloOptions, MonteCarloSource, Problem,
 };
-use pbif::space::{Axis, CellSpace, Grading};
-use pbif::system::{self, Family, Model, registry};
+use pbif::space::{Axis, CellSpace};
+use pbif::sweep_file::SweepFile;
+use pbif::system::{self, Family, Model};
 
 /// A shipped sweep.
 struct Example {
@@ -35,38 +35,22 @@ struct Example {
 }
 
 impl Example {
-    /// From what `pbif check` prints: automatic gradings are then numbers.
+    /// With automatic gradings found.
     fn read(name: &str, overrides: &[&str]) -> Self {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-        let file = root.join("sweeps").join(format!("{name}.toml"));
-        let mut check = Command::cargo_bin("pbif").unwrap();
-        check.arg("check").arg(file);
-        for setting in overrides {
-            check.args(["--set", setting]);
-        }
-        let text = String::from_utf8(check.output().unwrap().stdout).unwrap();
-        let file: toml::Table = text.parse().unwrap();
-        let model = registry::find(file["system"]["model"].as_str().unwrap()).unwrap();
-        let parameter = file["sweep"]["parameter"].as_str().unwrap().to_owned();
-        let at: Vec<f64> = numbers(&file["figures"]["at"]);
-        let parameters = file["system"]["parameters"].as_table().unwrap().iter();
-        let fixed = parameters.map(|(name, value)| (name.clone(), value.as_float().unwrap()));
-        let fixed = fixed.collect();
-        let axes = model.axes.iter();
-        let space = CellSpace::new(
-            axes.map(|a| axis(&file["cells"][a.name.as_str()]))
-                .collect(),
-        )
-        .unwrap();
-        let scheme = file["method"]["scheme"].as_str().unwrap();
-        let named = |one: &AdvectiveScheme| one.name() == scheme;
+        let path = root.join("sweeps").join(format!("{name}.toml"));
+        let mut file = SweepFile::read(&path).unwrap();
+        let settings = file.set_all("test", overrides).validate().unwrap();
+        let sweep = settings.prepare().unwrap();
+        let family = sweep.problem.family();
+        let fixed = family.fixed().map(|(name, value)| (name.to_owned(), value));
         Self {
-            model,
-            fixed,
-            parameter,
-            space,
-            scheme: AdvectiveScheme::ALL.into_iter().find(named).unwrap(),
-            at,
+            model: family.model().clone(),
+            fixed: fixed.collect(),
+            parameter: family.parameter().to_owned(),
+            space: sweep.problem.space().clone(),
+            scheme: sweep.settings.method.generator.scheme,
+            at: sweep.settings.figures_at.clone(),
         }
     }
 
@@ -118,27 +102,6 @@ impl Example {
             |&observable| estimate(&self.space, observable, &found.mass, &found.replicates);
         let densities: Result<Vec<_>, _> = observables.iter().map(marginal).collect();
         (densities.unwrap(), found.steps)
-    }
-}
-
-fn numbers(value: &toml::Value) -> Vec<f64> {
-    let numbers = value.as_array().unwrap().iter();
-    numbers.map(|number| number.as_float().unwrap()).collect()
-}
-
-fn axis(text: &toml::Value) -> Axis {
-    let number = |key: &str| text[key].as_float().unwrap();
-    let count = usize::try_from(text["count"].as_integer().unwrap()).unwrap();
-    let (from, to) = (number("from"), number("to"));
-    match text.get("grade") {
-        Some(grade) => {
-            let grading = Grading {
-                at: numbers(&grade["at"]),
-                smallest: grade["smallest"].as_float().unwrap(),
-            };
-            Axis::graded(from, to, count, &grading).unwrap()
-        }
-        None => Axis::uniform(from, to, count).unwrap(),
     }
 }
 

@@ -43,17 +43,6 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
     (
-        "run",
-        &[
-            "system",
-            "space",
-            "density",
-            "topology",
-            "continuation",
-            "compare",
-        ],
-    ),
-    (
         "figure",
         &[
             "system",
@@ -77,6 +66,18 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "continuation",
             "method",
             "figure",
+        ],
+    ),
+    (
+        "run",
+        &[
+            "system",
+            "space",
+            "density",
+            "topology",
+            "continuation",
+            "compare",
+            "sweep_file",
         ],
     ),
     (

@@ -79,6 +79,54 @@ fn missing_files_and_files_that_are_no_text() {
 }
 
 #[test]
+fn files_that_no_sweep_file_is_like() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.toml");
+    // Too long: what its beginning shows is told too, and no more than fits a screen or two.
+    let many = |line: &str, count: usize| format!("{GOOD}{}", line.repeat(count));
+    std::fs::write(&file, many("stranger = 1\n[zzz]\n", 100_000)).unwrap();
+    let message = refused_in(folder.path(), &["a.toml"]);
+    assert_says(&message, &["larger than 1 MB", "not valid TOML"]);
+    std::fs::write(&file, many("= = =\n", 100_000)).unwrap();
+    let message = refused_in(folder.path(), &["a.toml"]);
+    assert_says(
+        &message,
+        &["not valid TOML", "and 99980 more", "100000 errors;"],
+    );
+    assert!(message.len() < 20_000, "{}", message.len());
+    std::fs::write(&file, b"title = \"caf\xe9\"\n").unwrap();
+    let message = refused_in(folder.path(), &["a.toml"]);
+    assert_says(&message, &["not UTF-8", "a.toml:1:13", "Latin-1"]);
+    let utf16: Vec<u8> = GOOD.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    std::fs::write(&file, utf16).unwrap();
+    let message = refused_in(folder.path(), &["a.toml"]);
+    assert_says(&message, &["UTF-16, not UTF-8", "save it as UTF-8"]);
+}
+
+#[test]
+fn characters_that_only_look_right() {
+    #[rustfmt::skip]
+    let cases = [
+        ("\"coulomb\"", "“coulomb”", "quotation mark of print"),
+        ("from = -0.02", "from = −0.02", "not the minus sign of the keyboard"),
+        ("to = 0.01", "to = 0,01", "a comma stands inside a number"),
+        ("kappa = 0.01", "κ = 0.01", "did you mean `kappa`?"),
+        ("kappa = 0.01", "\"κ\" = 0.01", "did you mean `kappa`?"),
+        ("kappa = 0.01", "kappa = 0.01\n\"\u{b5}\" = 0.01", "did you mean `mu`?"),
+        ("sigma2 = 0.01", "\"σ²\" = 0.01", "did you mean `sigma2`?"),
+        ("parameter = \"f_c\"", "parameter = \"μ\"", "did you mean `mu`?"),
+        ("points = 3", "points = 3;", "`;` stands behind a value"),
+        ("points = 3", "points: 3", "write `=` between key and value"),
+        ("to = 0.01", "to = 1/100", "`1/100` is a computation"),
+        ("\"coulomb\"", "coulomb", "must be quoted"),
+    ];
+    for (old, new, words) in cases {
+        let message = refused(&GOOD.replacen(old, new, 1), &["a.toml"]);
+        assert_says(&message, &[words, "a.toml:"]);
+    }
+}
+
+#[test]
 fn syntax() {
     assert_refused("points = 3", "points = ", &["not valid TOML", "a.toml:11:"]);
     assert_refused(

@@ -131,3 +131,32 @@ fn the_range_of_z_is_the_widest_of_the_sweep() {
     ];
     assert!(check(&copy, &sets).contains("z = { from = -1.0, to = 1.0, count = 16,"));
 }
+
+#[test]
+fn figures_outside_a_part_of_the_sweep_are_left_out_with_one_warning() {
+    let part = |more: &[&str]| {
+        let mut command = Command::cargo_bin("pbif").unwrap();
+        let file = sweeps().join("dahl_alpha.toml");
+        let part = ["--set", "sweep.from=0", "--set", "sweep.to=-0.6"];
+        command.arg("check").arg(file).args(part).args(more);
+        let output = command.output().unwrap();
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+        (
+            output.status.code(),
+            text(output.stdout),
+            text(output.stderr),
+        )
+    };
+    let (code, out, err) = part(&[]);
+    assert_eq!(code, Some(0), "{err}");
+    assert!(out.contains("at = [0.0, -0.5]"), "{out}");
+    assert_eq!(err.matches("warning").count(), 1, "{err}");
+    assert!(err.contains("`0.5`, `-1`, outside the sweep"), "{err}");
+    // What was set in the same breath is refused.
+    let (code, _, err) = part(&["--set", "figures.at=[0.5]"]);
+    assert_eq!(code, Some(2));
+    assert!(
+        err.contains("`figures.at` has 0.5, outside the sweep"),
+        "{err}"
+    );
+}

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Output;
 
 use assert_cmd::Command;
+use pbif::sweep_file::{Grade, SweepFile};
 use tempfile::TempDir;
 
 fn sweep_file(name: &str) -> PathBuf {
@@ -408,30 +409,18 @@ fn dahl_as_printed_has_no_steady_state_by_the_generator_either() {
 
 #[test]
 fn ranges_and_gradings_are_found() {
-    let file = TempDir::new().unwrap();
-    let path = file.path().join("auto.toml");
-    let text = std::fs::read_to_string(sweep_file("coulomb_fc")).unwrap();
     let axis = "{ range = \"auto\", count = 40, grade = \"auto\" }";
-    let text: String = text
-        .lines()
-        .map(|line| match line.get(..3) {
-            Some("x =" | "y =") => format!("{} {axis}\n", &line[..3]),
-            _ => format!("{line}\n"),
-        })
-        .collect();
-    std::fs::write(&path, text).unwrap();
-    let mut command = Command::cargo_bin("pbif").unwrap();
-    let output = command.arg("check").arg(&path).output().unwrap();
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
-    let resolved: toml::Table = toml::from_str(&String::from_utf8(output.stdout).unwrap()).unwrap();
-    let cells = &resolved["cells"];
-    for name in ["x", "y"] {
+    let mut file = SweepFile::read(&sweep_file("coulomb_fc")).unwrap();
+    file.set("cells.x", axis).set("cells.y", axis);
+    let sweep = file.validate().unwrap().prepare().unwrap();
+    for axis in &sweep.settings.axes {
         // At f_c = -0.02 the ring has radius 2.5 and noise around it: 5.5 holds all but 1e-5.
-        let to = cells[name]["to"].as_float().unwrap();
-        assert!((4.0..8.0).contains(&to), "{name}: {to}");
-        assert_eq!(cells[name]["from"].as_float(), Some(-to));
+        let (from, to) = axis.range.unwrap();
+        assert!((4.0..8.0).contains(&to), "{to}");
+        assert_eq!(from, -to);
     }
-    assert!(cells["y"].get("grade").is_some() && cells["x"].get("grade").is_none());
+    let grades: Vec<&Grade> = sweep.settings.axes.iter().map(|axis| &axis.grade).collect();
+    assert!(matches!(grades[..], [Grade::Even, Grade::Toward(_)]));
 }
 
 #[cfg(unix)]

@@ -7,7 +7,6 @@ use super::output::OutputFolder;
 use super::stored::Stored;
 use super::sweep::{draw, outcome, summary};
 use super::{CommandError, Outcome, warnings};
-use crate::continuation::SweepResult;
 use crate::run::{Ending, Manifest, RunFolder, StagedRun};
 
 /// Sections of a sweep file that do not concern the densities.
@@ -19,21 +18,20 @@ const SECTIONS: [&str; 3] = ["detect", "locate", "figures"];
 /// [`CommandError`] when the run cannot be read or the results not be written; then everything is as it was.
 pub(super) fn run(arguments: &DetectArguments) -> Result<Outcome, CommandError> {
     let clock = Instant::now();
-    let mut stored = Stored::read(
+    let stored = Stored::read(
         &arguments.run,
         &arguments.overrides,
         &SECTIONS,
         arguments.quiet,
     )?;
-    let result = stored.detect();
     let seconds = clock.elapsed().as_secs_f64();
     let out = arguments.out.as_deref().unwrap_or(&arguments.run);
     let output = OutputFolder::prepare(out)?;
     let staged = StagedRun::new(output.path(), &arguments.run)?;
-    write(&stored, &result, seconds, staged.folder())?;
+    write(&stored, seconds, staged.folder())?;
     staged.take_place()?;
-    super::print(&summary::text(&result, output.path()))?;
-    Ok(match outcome(&result) {
+    super::print(&summary::text(&stored.result, output.path()))?;
+    Ok(match outcome(&stored.result) {
         // It was the run that was interrupted, not this command.
         Outcome::Interrupted => Outcome::Partial,
         outcome => outcome,
@@ -41,13 +39,8 @@ pub(super) fn run(arguments: &DetectArguments) -> Result<Outcome, CommandError> 
 }
 
 /// Writes tables, figures, and last the manifest.
-fn write(
-    stored: &Stored,
-    result: &SweepResult,
-    detect_seconds: f64,
-    folder: &RunFolder,
-) -> Result<(), CommandError> {
-    let (run, spec) = (&stored.run, &stored.spec);
+fn write(stored: &Stored, detect_seconds: f64, folder: &RunFolder) -> Result<(), CommandError> {
+    let Stored { run, spec, result } = stored;
     let mut manifest = Manifest::start(&spec.to_toml(), run.seed(), run.threads())?;
     manifest.seconds = run.seconds();
     manifest.seconds.detect = Some(detect_seconds);

@@ -11,16 +11,15 @@ use super::{CommandError, Outcome};
 /// # Errors
 /// [`CommandError`] when the run cannot be read or a figure not be drawn.
 pub(super) fn run(arguments: &PlotArguments) -> Result<Outcome, CommandError> {
-    let mut stored = Stored::read(
+    let stored = Stored::read(
         &arguments.run,
         &arguments.overrides,
         &["figures"],
         arguments.quiet,
     )?;
-    let result = stored.detect();
     let figures = arguments.run.join("figures");
     let output = OutputFolder::prepare(arguments.out.as_deref().unwrap_or(&figures))?;
-    let files = draw(&stored.spec, &result, output.path())?;
+    let files = draw(&stored.spec, &stored.result, output.path())?;
     if files.is_empty() {
         return super::print("no steady state in Ω at any value: nothing to draw\n");
     }

@@ -4,21 +4,19 @@ use std::io::Write as _;
 use std::path::Path;
 
 use super::CommandError;
-use crate::continuation::{FinerIndicator, Point, SweepResult, detect_again};
-use crate::method::MethodOptions;
-use crate::run::{Ending, RunError, StoredRun};
-use crate::sweep_file::{Diagnostic, Report, Sweep, SweepFile, list};
+use crate::continuation::SweepResult;
+use crate::run::{RunError, StoredRun};
+use crate::sweep_file::{Diagnostic, Report, Sweep, list};
 
-/// A run that was read.
+/// A run that was read, and what is found in it.
 pub(super) struct Stored {
     pub(super) run: StoredRun,
     pub(super) spec: Sweep,
-    points: Vec<Point>,
-    finer: Option<Vec<FinerIndicator>>,
+    pub(super) result: SweepResult,
 }
 
 impl Stored {
-    /// Reads a run, with overrides of the keys under `sections`.
+    /// Reads a run, with overrides of the keys under `sections`, and detects and locates in all its points.
     ///
     /// # Errors
     /// [`CommandError::Input`] for overrides, [`CommandError::Run`] for the run's files.
@@ -30,49 +28,23 @@ impl Stored {
     ) -> Result<Self, CommandError> {
         let run = StoredRun::open(path)?;
         check_overrides(overrides, sections)?;
-        let manifest = path.join("run.json").display().to_string();
-        let mut file = SweepFile::parse(&manifest, run.resolved());
+        let mut file = run.sweep_file();
         let spec = file.set_all("--set", overrides).validate()?.fixed()?;
-        let points = run.points(
-            spec.problem.subject(),
-            spec.problem.space(),
-            &MethodOptions::KINDS,
-        )?;
-        let finer = run.finer(spec.problem.subject())?;
-        let stored = Self {
-            run,
-            spec,
-            points,
-            finer,
-        };
+        let result = run.detect(&spec)?;
+        let stored = Self { run, spec, result };
         if !quiet {
             stored.say();
         }
         Ok(stored)
     }
 
-    /// Detects and locates in all points, which the result then holds.
-    pub(super) fn detect(&mut self) -> SweepResult {
-        let spec = &self.spec;
-        let (points, finer) = (std::mem::take(&mut self.points), self.finer.take());
-        let swept = (spec.problem.subject().clone(), spec.settings.points);
-        let mut result = detect_again(
-            swept,
-            &spec.detector(),
-            points,
-            finer,
-            &spec.settings.locate,
-        );
-        result.interrupted = self.run.ending() != Ending::Complete;
-        result
-    }
-
     /// Says what was read, and what is missing of it.
     fn say(&self) {
-        let with_density = self.points.iter().filter(|p| !p.densities.is_empty());
-        let (points, densities) = (self.points.len(), with_density.count());
+        let points = &self.result.points;
+        let with_density = points.iter().filter(|p| !p.densities.is_empty());
+        let (points, densities) = (points.len(), with_density.count());
         let mut text = format!("{points} points read, {densities} of them with densities\n");
-        if self.run.ending() != Ending::Complete {
+        if self.result.interrupted {
             let given = self.spec.settings.points;
             text += &format!(
                 "the run was interrupted: of its {given} given values, and those that refine brackets, there are {points} points\n"

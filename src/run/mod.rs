@@ -16,6 +16,7 @@ mod latex;
 mod manifest;
 mod number;
 mod points_table;
+mod reopen;
 mod sentences;
 mod staged;
 mod staging;

@@ -39,9 +39,13 @@ impl SweepFile {
     }
 
     /// Sets keys written as `KEY=VALUE`, in this order; messages call them `name`.
-    pub fn set_all(&mut self, name: &str, settings: &[String]) -> &mut Self {
+    pub fn set_all<S: AsRef<str>>(
+        &mut self,
+        name: &str,
+        settings: impl IntoIterator<Item = S>,
+    ) -> &mut Self {
         for setting in settings {
-            self.document.set(name, setting);
+            self.document.set(name, setting.as_ref());
         }
         self
     }

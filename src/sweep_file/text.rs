@@ -74,6 +74,12 @@ pub(super) fn read(file: &Path) -> Result<Text, Report> {
     if bytes.is_empty() && is_cut {
         return Err(too_large(&name).into());
     }
+    if is_utf16(&bytes) {
+        let title = format!("the sweep file `{name}` is text in UTF-16, not UTF-8");
+        return Err(Diagnostic::new(title)
+            .remedy("save it as UTF-8: most editors offer the encoding under \"Save as\"")
+            .into());
+    }
     match String::from_utf8(bytes) {
         Ok(text) => Ok(Text { text, is_cut }),
         Err(error) => Err(not_utf8(
@@ -84,19 +90,18 @@ pub(super) fn read(file: &Path) -> Result<Text, Report> {
     }
 }
 
+/// Whether bytes begin with the mark of UTF-16, or every other one is zero, as of ASCII in UTF-16.
+fn is_utf16(bytes: &[u8]) -> bool {
+    let beginning = &bytes[..bytes.len().min(512)];
+    let zeros = beginning.iter().filter(|&&byte| byte == 0).count();
+    bytes.starts_with(&[0xff, 0xfe])
+        || bytes.starts_with(&[0xfe, 0xff])
+        || 4 * zeros > beginning.len()
+}
+
 /// What is said of bytes of which the one at `start` begins no character.
 fn not_utf8(name: &str, bytes: &[u8], start: usize) -> Report {
     let beginning = &bytes[..bytes.len().min(512)];
-    let nuls = beginning.iter().filter(|&&byte| byte == 0).count();
-    if beginning.starts_with(&[0xff, 0xfe])
-        || beginning.starts_with(&[0xfe, 0xff])
-        || 4 * nuls > beginning.len()
-    {
-        let title = format!("the sweep file `{name}` is text in UTF-16, not UTF-8");
-        return Diagnostic::new(title)
-            .remedy("save it as UTF-8: most editors offer the encoding under \"Save as\"")
-            .into();
-    }
     let is_control = |byte: &u8| *byte < 32 && !b"\t\n\r\x0c".contains(byte);
     if beginning.iter().any(is_control) {
         let title = format!("the sweep file `{name}` is not UTF-8, nor any other text");
@@ -137,7 +142,9 @@ mod tests {
             .flat_map(u16::to_le_bytes)
             .collect();
         let with_mark = [&[0xff, 0xfe], utf16.as_slice()].concat();
-        assert!(refusal(&with_mark).contains("UTF-16, not UTF-8"));
+        for utf16 in [&with_mark, &utf16] {
+            assert!(refusal(utf16).contains("UTF-16, not UTF-8"));
+        }
         let text = refusal(b"a = 1\ntitle = \"caf\xe9\"\n");
         assert!(
             text.contains("a.toml:2:13") && text.contains("0xe9"),

@@ -1,0 +1,30 @@
+//! A stored run and its sweep, joined again: the sweep file that was run, and what is found in its densities.
+
+use super::{Ending, RunError, StoredRun};
+use crate::continuation::{SweepResult, detect_again};
+use crate::sweep_file::{MethodKind, Sweep, SweepFile};
+
+impl StoredRun {
+    /// The complete sweep file that was run. Keys of `detect`, `locate` and `figures` can be set anew; its cells are
+    /// [`fixed`](crate::sweep_file::Settings::fixed).
+    pub fn sweep_file(&self) -> SweepFile {
+        let manifest = self.path().join("run.json");
+        SweepFile::parse(&manifest.display().to_string(), self.resolved())
+    }
+
+    /// Detects and locates in the stored densities, by the settings of a sweep that is this run's but for them. With unchanged settings
+    /// it is the result of the run.
+    ///
+    /// # Errors
+    /// As [`StoredRun::points`].
+    pub fn detect(&self, sweep: &Sweep) -> Result<SweepResult, RunError> {
+        let (subject, space) = (sweep.problem.subject(), sweep.problem.space());
+        let points = self.points(subject, space, &MethodKind::ALL.map(MethodKind::name))?;
+        let finer = self.finer(subject)?;
+        let swept = (subject.clone(), sweep.settings.points);
+        let (detector, locate) = (sweep.detector(), &sweep.settings.locate);
+        let mut result = detect_again(swept, &detector, points, finer, locate);
+        result.interrupted = self.ending() != Ending::Complete;
+        Ok(result)
+    }
+}
