@@ -119,34 +119,72 @@ fn at_shoulder(
     observable: usize,
     left: usize,
 ) -> Option<Crossing> {
-    let detections = [left, left + 1].map(|index| &points[index].detections[observable]);
-    let counts = detections.map(|one| count(one, FeatureKind::Peak));
-    if counts[0] == counts[1]
-        || COUNTED.iter().any(|&kind| {
-            kind != FeatureKind::Peak && count(detections[0], kind) != count(detections[1], kind)
-        })
-    {
-        return None;
-    }
-    let below = counts[0] > counts[1];
+    let below = sole_peak_is_below(points, observable, left)?;
     let present = if below { left } else { left + 1 };
+    let (kind, near) = shoulder(points, observable, left, present)?;
+    let path: Vec<usize> = match below {
+        true => (present..points.len()).collect(),
+        false => (0..=present).rev().collect(),
+    };
+    let (index, [previous, found]) = followed(points, detector, observable, &path, kind, near)?;
+    Some(match below {
+        true => Crossing {
+            observable,
+            left: index - 1,
+            ends: [previous, found],
+        },
+        false => Crossing {
+            observable,
+            left: index,
+            ends: [found, previous],
+        },
+    })
+}
+
+/// Whether it is the point below that has more peaks than its neighbour; `None` where peaks are not all that changes.
+fn sole_peak_is_below(points: &[&Point], observable: usize, left: usize) -> Option<bool> {
+    let detections = [left, left + 1].map(|index| &points[index].detections[observable]);
+    let counts = |kind: FeatureKind| detections.map(|one| count(one, kind));
+    let differs = |kind: FeatureKind| counts(kind)[0] != counts(kind)[1];
+    let others = COUNTED.iter().filter(|&&kind| kind != FeatureKind::Peak);
+    let [a, b] = counts(FeatureKind::Peak);
+    (a != b && !others.copied().any(differs)).then_some(a > b)
+}
+
+/// The slope between the deciding peak and the valley it was born with, at the point where they are present, and the place
+/// half way between them.
+fn shoulder(
+    points: &[&Point],
+    observable: usize,
+    left: usize,
+    present: usize,
+) -> Option<(IndicatorKind, Vec<f64>)> {
+    let peaks = |index: usize| count(&points[index].detections[observable], FeatureKind::Peak);
     let detection = &points[present].detections[observable];
-    let peak = deciding_feature(detection, FeatureKind::Peak, counts[0].min(counts[1]))?;
+    let fewer = peaks(left).min(peaks(left + 1));
+    let peak = deciding_feature(detection, FeatureKind::Peak, fewer)?;
     let valley = detection
         .features
         .iter()
         .find(|one| one.kind == FeatureKind::Valley && one.persistence == peak.persistence)?;
     let rising = valley.position.first()? < peak.position.first()?;
-    let kind = IndicatorKind::Shoulder { rising };
-    let mut near: Vec<f64> = (valley.position.iter().zip(&peak.position))
-        .map(|(a, b)| 0.5 * (a + b))
-        .collect();
-    let path: Vec<usize> = match below {
-        true => (present..points.len()).collect(),
-        false => (0..=present).rev().collect(),
-    };
+    let pairs = valley.position.iter().zip(&peak.position);
+    let half_way = pairs.map(|(a, b)| 0.5 * (a + b)).collect();
+    Some((IndicatorKind::Shoulder { rising }, half_way))
+}
+
+/// Follows an indicator from place to place along points, to the first where it is not positive any more: that point,
+/// and the indicator before and there.
+fn followed(
+    points: &[&Point],
+    detector: &dyn Detector,
+    observable: usize,
+    path: &[usize],
+    kind: IndicatorKind,
+    mut near: Vec<f64>,
+) -> Option<(usize, [Indicator; 2])> {
     let mut last: Option<Indicator> = None;
-    for index in path {
+    for &index in path {
         let density = &points[index].densities[observable];
         let found = detector.indicator(density, kind, &near)?;
         near.clone_from(&found.place);
@@ -155,18 +193,7 @@ fn at_shoulder(
                 return None;
             }
             if found.value <= 0.0 {
-                return Some(match below {
-                    true => Crossing {
-                        observable,
-                        left: index - 1,
-                        ends: [previous, found],
-                    },
-                    false => Crossing {
-                        observable,
-                        left: index,
-                        ends: [found, previous],
-                    },
-                });
+                return Some((index, [previous, found]));
             }
         }
         last = Some(found);

@@ -48,59 +48,97 @@ pub fn resolution(system: &dyn System, space: &CellSpace, masses: &[f64]) -> Vec
 
 fn judge(system: &dyn System, space: &CellSpace, masses: &[f64], index: usize) -> Resolution {
     let axis = &space.axes()[index];
-    let heaviest = (0..masses.len())
-        .map(|cell| masses[cell] / space.volume(cell))
-        .fold(0.0, f64::max);
-    let faces = surface_faces(system, index, axis);
-    let drift_at = |cell: usize| system.drift_at(0.0, &space.centre(cell))[index];
+    let densities = (0..masses.len()).map(|cell| masses[cell] / space.volume(cell));
+    let lightest = WEIGHT * densities.fold(0.0, f64::max);
     let stride: usize = space.shape()[index + 1..].iter().product();
-    let (mut peclet, mut fitted_peclet, mut layer, mut weight) = (0.0_f64, 0.0_f64, 0.0, 0.0);
+    let mut seen = Seen {
+        system,
+        space,
+        index,
+        faces: surface_faces(system, index, axis),
+        peclet: 0.0,
+        fitted_peclet: 0.0,
+        layer: 0.0,
+        weight: 0.0,
+    };
     for first in (0..masses.len()).filter(|&cell| space.position(cell, index) == 0) {
         let line = (0..axis.count()).map(|position| first + position * stride);
-        let counts = |cell: &usize| masses[*cell] / space.volume(*cell) > WEIGHT * heaviest;
-        if !line.clone().any(|cell| counts(&cell)) {
-            continue;
-        }
-        let length = axis.to() - axis.from();
-        let drifts: Vec<f64> = line.clone().map(drift_at).collect();
-        let mean: f64 = drifts
-            .iter()
-            .enumerate()
-            .map(|(position, drift)| drift * axis.width(position))
-            .sum::<f64>()
-            / length;
-        for cell in line.filter(counts) {
-            let position = space.position(cell, index);
-            let scale = axis.width(position) / diffusion_at(system, space, index, cell);
-            let drift = drifts[position];
-            peclet = peclet.max(0.5 * drift.abs() * scale);
-            fitted_peclet = fitted_peclet.max(0.5 * (drift - mean).abs() * scale);
-            let beside = |face: &&usize| position == **face || position + 1 == **face;
-            // Dahl's friction bends other components with the sign of the velocity: no jump across, no layer.
-            let jumps = |face: &usize| {
-                let at = axis.edges()[*face];
-                let surface = SwitchingSurface { axis: index, at };
-                let distance = BESIDE * axis.width(position);
-                let jump = surface.drift_jump(system, &space.centre(cell), distance)[index];
-                jump.abs() > NO_JUMP * drift.abs()
-            };
-            if faces.iter().find(beside).is_some_and(jumps) {
-                layer += masses[cell] * (drift * scale).powi(2);
-                weight += masses[cell];
-            }
+        let counts = |cell: usize| masses[cell] / space.volume(cell) > lightest;
+        if line.clone().any(counts) {
+            let cells: Vec<usize> = line.collect();
+            let masses: Vec<Option<f64>> = cells
+                .iter()
+                .map(|&cell| counts(cell).then_some(masses[cell]))
+                .collect();
+            seen.look_at(&cells, &masses);
         }
     }
     let surfaces = system.switching_surfaces();
     let here = surfaces.iter().filter(|surface| surface.axis == index);
     Resolution {
         axis: index,
-        peclet,
-        fitted_peclet,
-        layer: (weight > 0.0).then(|| (layer / weight).sqrt()),
+        peclet: seen.peclet,
+        fitted_peclet: seen.fitted_peclet,
+        layer: (seen.weight > 0.0).then(|| (seen.layer / seen.weight).sqrt()),
         surfaces_off_faces: here
             .map(|surface| surface.at)
             .filter(|&at| axis.is_inside_cell(at))
             .collect(),
+    }
+}
+
+/// What the grid lines along an axis have shown.
+struct Seen<'a> {
+    system: &'a dyn System,
+    space: &'a CellSpace,
+    index: usize,
+    /// Faces of the axis on switching surfaces.
+    faces: Vec<usize>,
+    peclet: f64,
+    fitted_peclet: f64,
+    /// Σ of mass × (|a| h/D)² and of mass in the cells beside jumps.
+    layer: f64,
+    weight: f64,
+}
+
+impl Seen<'_> {
+    /// Adds a grid line: its cells, and the masses of those that count.
+    fn look_at(&mut self, cells: &[usize], masses: &[Option<f64>]) {
+        let axis = &self.space.axes()[self.index];
+        let drift_at =
+            |&cell: &usize| self.system.drift_at(0.0, &self.space.centre(cell))[self.index];
+        let drifts: Vec<f64> = cells.iter().map(drift_at).collect();
+        let weighted = drifts.iter().enumerate();
+        let weighted = weighted.map(|(position, drift)| drift * axis.width(position));
+        let mean = weighted.sum::<f64>() / (axis.to() - axis.from());
+        for (position, (&cell, mass)) in cells.iter().zip(masses).enumerate() {
+            let Some(mass) = mass else { continue };
+            let diffusion = diffusion_at(self.system, self.space, self.index, cell);
+            let (drift, scale) = (drifts[position], axis.width(position) / diffusion);
+            self.peclet = self.peclet.max(0.5 * drift.abs() * scale);
+            self.fitted_peclet = self.fitted_peclet.max(0.5 * (drift - mean).abs() * scale);
+            if self.is_beside_jump(cell, position, drift) {
+                self.layer += mass * (drift * scale).powi(2);
+                self.weight += mass;
+            }
+        }
+    }
+
+    /// Whether the drift jumps across a face of the cell. Dahl's friction bends other components with the sign of the velocity:
+    /// no jump across, no layer.
+    fn is_beside_jump(&self, cell: usize, position: usize, drift: f64) -> bool {
+        let axis = &self.space.axes()[self.index];
+        let beside = |face: &&usize| position == **face || position + 1 == **face;
+        let jumps = |&face: &usize| {
+            let surface = SwitchingSurface {
+                axis: self.index,
+                at: axis.edges()[face],
+            };
+            let distance = BESIDE * axis.width(position);
+            let jump = surface.drift_jump(self.system, &self.space.centre(cell), distance);
+            jump[self.index].abs() > NO_JUMP * drift.abs()
+        };
+        self.faces.iter().find(beside).is_some_and(jumps)
     }
 }
 

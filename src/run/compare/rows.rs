@@ -60,14 +60,10 @@ fn bytes_from(solved: &Solved) -> &'static str {
     }
 }
 
-/// A row a value and method.
-fn methods<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Solved>> {
+/// What a method took.
+fn costs<'a>() -> Vec<Column<'a, At<'a, Solved>>> {
     type Row<'a> = At<'a, Solved>;
-    let family = run.family();
-    let mut columns = vec![
-        parameter(run),
-        word("method", |(_, one): &Row<'a>| one.method.name().to_owned()),
-        word("status", |(_, one): &Row<'a>| one.status.word().to_owned()),
+    vec![
         digits("seconds", |(_, one): &Row<'a>| seconds(one.work.seconds())),
         digits("sampling_seconds", |(_, one): &Row<'a>| {
             seconds(one.work.sampling_seconds)
@@ -92,6 +88,20 @@ fn methods<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Solved>> {
         digits("samples", |(_, one): &Row<'a>| {
             unless_zero(one.work.samples as u64)
         }),
+    ]
+}
+
+/// A row a value and method.
+fn methods<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Solved>> {
+    type Row<'a> = At<'a, Solved>;
+    let family = run.family();
+    let mut columns = vec![
+        parameter(run),
+        word("method", |(_, one): &Row<'a>| one.method.name().to_owned()),
+        word("status", |(_, one): &Row<'a>| one.status.word().to_owned()),
+    ];
+    columns.extend(costs());
+    columns.extend([
         optional("map_step", |(_, one): &Row<'a>| one.report.own.map_step),
         optional("time_step", |(_, one): &Row<'a>| one.time_step),
         optional("time_step_bias", |(_, one): &Row<'a>| {
@@ -99,7 +109,7 @@ fn methods<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Solved>> {
         }),
         number("escape_rate", |(_, one): &Row<'a>| one.report.escape_rate),
         optional("share_outside", |(_, one): &Row<'a>| one.share_outside),
-    ];
+    ]);
     for axis in 0..run.comparison.common.dimension() {
         let name = format!("numerical_diffusion_{}", run.family().axis(axis));
         columns.push(optional(name, move |(_, one): &Row<'a>| {

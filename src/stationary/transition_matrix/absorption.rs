@@ -10,6 +10,9 @@ const REMAINDER: f64 = 1e-6;
 /// Steps after which the remainder is shared out anyway: its slowest mode then sets the proportions.
 const MOST_STEPS: usize = 5_000;
 
+/// A row of no class.
+const TRANSIENT: usize = usize::MAX;
+
 /// Pushes `initial` (mass of each row, Σ = 1) until it is absorbed by the classes or the sink. Returns the
 /// classes with their shares, and the share of the sink.
 pub(super) fn shares(
@@ -18,7 +21,7 @@ pub(super) fn shares(
     classes: &[(f64, Vec<usize>)],
     initial: &[f64],
 ) -> (Vec<ClassShare>, f64) {
-    let mut class_of = vec![usize::MAX; matrix.len()];
+    let mut class_of = vec![TRANSIENT; matrix.len()];
     for (class, (_, rows)) in classes.iter().enumerate() {
         rows.iter().for_each(|&row| class_of[row] = class);
     }
@@ -27,7 +30,7 @@ pub(super) fn shares(
     let mut flow = vec![0.0; sink + 1];
     let mut transient = initial.to_vec();
     for (mass, &class) in transient.iter_mut().zip(&class_of) {
-        if class != usize::MAX {
+        if class != TRANSIENT {
             absorbed[class] += std::mem::take(mass);
         }
     }
@@ -36,29 +39,10 @@ pub(super) fn shares(
         if left < REMAINDER {
             break;
         }
-        flow.fill(0.0);
-        flow[sink] = matrix
-            .escape
-            .iter()
-            .zip(&transient)
-            .map(|(e, p)| e * p)
-            .sum();
-        let mut next = vec![0.0; matrix.len()];
-        for (row, (value, &class)) in next.iter_mut().zip(&class_of).enumerate() {
-            let inflow: f64 = matrix
-                .row(row)
-                .map(|(from, share)| share * transient[from])
-                .sum();
-            if class == usize::MAX {
-                *value = inflow;
-            } else {
-                flow[class] += inflow;
-            }
-        }
+        transient = step(matrix, &class_of, &transient, &mut flow);
         for (total, inflow) in absorbed.iter_mut().zip(&flow) {
             *total += inflow;
         }
-        transient = next;
         left = transient.iter().sum();
     }
     share_out(left, &flow, &mut absorbed);
@@ -67,6 +51,26 @@ pub(super) fn shares(
     };
     let found = classes.iter().enumerate().map(describe).collect();
     (found, absorbed[sink])
+}
+
+/// One map step: the transient mass that is left, and in `flow` what the classes and, last, the sink absorb.
+fn step(matrix: &Checked<'_>, class_of: &[usize], transient: &[f64], flow: &mut [f64]) -> Vec<f64> {
+    flow.fill(0.0);
+    if let Some(sink) = flow.last_mut() {
+        let leaving = matrix.escape.iter().zip(transient);
+        *sink = leaving.map(|(escape, mass)| escape * mass).sum();
+    }
+    let mut next = vec![0.0; matrix.len()];
+    for (row, (value, &class)) in next.iter_mut().zip(class_of).enumerate() {
+        let entries = matrix.row(row);
+        let inflow: f64 = entries.map(|(from, share)| share * transient[from]).sum();
+        if class == TRANSIENT {
+            *value = inflow;
+        } else {
+            flow[class] += inflow;
+        }
+    }
+    next
 }
 
 /// Shares out what is left in the proportions of the latest flows.
