@@ -215,3 +215,119 @@ impl<D: Damping, F: FrictionLaw<N>, const N: usize> System for Oscillator<D, F, 
         (self.friction.is_absent() && self.sigma2 > 0.0).then(|| -2.0 / self.sigma2 * dissipated)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::system::contract;
+    use crate::system::friction::Frictionless;
+
+    /// Two bristles of different stiffness that slip at their own levels, each damped: F = Σ (k z + c z').
+    struct TwoBristles {
+        stiffness: [f64; 2],
+        level: [f64; 2],
+        damping: f64,
+    }
+
+    impl FrictionLaw<2> for TwoBristles {
+        #[inline(always)]
+        fn rates(&self, motion: Motion, state: &[f64; 2]) -> [f64; 2] {
+            let mut rates = [motion.velocity; 2];
+            for index in 0..2 {
+                let slip = self.stiffness[index] / self.level[index] * motion.velocity.abs();
+                rates[index] -= slip * state[index];
+            }
+            rates
+        }
+
+        #[inline(always)]
+        fn force(&self, _motion: Motion, state: &[f64; 2], rates: &[f64; 2]) -> f64 {
+            let mut force = 0.0;
+            for index in 0..2 {
+                force += self.stiffness[index] * state[index] + self.damping * rates[index];
+            }
+            force
+        }
+
+        fn bounds(&self, state: usize) -> Option<(f64, f64)> {
+            let limit = self.level[state] / self.stiffness[state];
+            Some((-limit, limit))
+        }
+
+        fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
+            vec![SwitchingSurface {
+                axis: VELOCITY,
+                at: 0.0,
+            }]
+        }
+
+        fn is_odd(&self) -> bool {
+            true
+        }
+    }
+
+    #[test]
+    fn a_law_may_have_several_states_and_a_force_that_depends_on_their_rates() {
+        let law = TwoBristles {
+            stiffness: [2.0, 1.0],
+            level: [1.0, 0.25],
+            damping: 0.5,
+        };
+        let spring = Duffing {
+            alpha: 1.0,
+            mu: 1.0,
+        };
+        let system = Oscillator::new(spring, Viscous { kappa: 0.1 }, law, 0.04);
+        // z₁' = -2 - 2·2·0.25 = -3, z₂' = -2 + 4·2·0.125 = -1; F = 0.5 - 0.125 + 0.5·(-4) = -1.625;
+        // y' = 0.2 - 1 - 1 + 1.625 = -0.175.
+        let drift = system.drift_at(0.0, &[1.0, -2.0, 0.25, -0.125]);
+        assert_eq!((drift[0], drift[2], drift[3]), (-2.0, -3.0, -1.0));
+        assert!((drift[1] + 0.175).abs() < 1e-15, "{drift:?}");
+        assert_eq!(system.dimension(), 4);
+        assert_eq!(system.bounds(3), Some((-0.25, 0.25)));
+        assert_eq!((system.bounds(1), system.bounds(4)), (None, None));
+        assert_eq!(contract::verify(&system, &[(-2.0, 2.0); 4]), Ok(()));
+    }
+
+    #[test]
+    fn a_law_that_is_odd_in_name_only_is_found_out() {
+        struct OneSided;
+        impl FrictionLaw<0> for OneSided {
+            fn rates(&self, _motion: Motion, _state: &[f64; 0]) -> [f64; 0] {
+                []
+            }
+            fn force(&self, motion: Motion, _state: &[f64; 0], _rates: &[f64; 0]) -> f64 {
+                0.1 * motion.velocity.abs()
+            }
+            fn is_odd(&self) -> bool {
+                true
+            }
+        }
+        let spring = Duffing {
+            alpha: 1.0,
+            mu: 0.0,
+        };
+        let system = Oscillator::new(spring, Viscous { kappa: 0.1 }, OneSided, 0.04);
+        let verified = contract::verify(&system, &[(-2.0, 2.0); 2]);
+        let asymmetric = matches!(
+            verified,
+            Err(contract::ContractViolation::Asymmetric { .. })
+        );
+        assert!(asymmetric, "{verified:?}");
+    }
+
+    #[test]
+    fn without_friction_the_density_follows_from_the_damping() {
+        let spring = Duffing {
+            alpha: 1.0,
+            mu: 0.5,
+        };
+        let system = Oscillator::new(spring, Viscous { kappa: 0.2 }, Frictionless, 0.5);
+        // H = 0.5·(4 + 1 + 0.25) = 2.625; -(2/σ²) κ H = -2.1.
+        let found = system.exact_log_density(&[1.0, 2.0]).unwrap();
+        assert!((found + 2.1).abs() < 1e-14, "{found}");
+        assert_eq!(contract::verify(&system, &[(-2.0, 2.0); 2]), Ok(()));
+        let still = Oscillator::new(spring, Viscous { kappa: 0.2 }, Frictionless, 0.0);
+        assert_eq!(still.exact_log_density(&[1.0, 2.0]), None);
+    }
+}
