@@ -64,7 +64,7 @@ fn help_has_examples_and_every_key() {
     assert_eq!(code, 0);
     for words in [
         "method.solver_tolerance",
-        "default: 1e-8 by the generator, 1e-10 by sgcm",
+        "default: 1e-8 by generator, 1e-10 by sgcm",
         "cells.<axis>.grade.at",
         "--set",
     ] {
