@@ -106,10 +106,7 @@ impl Detector for SquareLaw {
         };
         let present = verdict == Verdict::Present;
         Detection {
-            signature: Signature {
-                peaks: 1 + usize::from(present),
-                craters: 0,
-            },
+            signature: Signature::of_peaks(1 + usize::from(present)),
             indicators: Vec::new(),
             features: vec![
                 feature(1.0, f64::MAX, Verdict::Present),

@@ -104,6 +104,17 @@ pub struct EstimatedDensity {
     pub structure: Structure,
 }
 
+impl EstimatedDensity {
+    /// Whether its values carry noise, as those of sampled methods do; else its errors are those of a grid.
+    pub fn is_noisy(&self) -> bool {
+        match self.variants {
+            Variants::Jackknife(_) => true,
+            Variants::Scheme(_) => false,
+            Variants::None => self.standard_error.iter().any(|&error| error > 0.0),
+        }
+    }
+}
+
 /// Mean and standard deviation of one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moments {

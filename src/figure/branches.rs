@@ -137,10 +137,7 @@ mod tests {
         };
         let detection = |places: &[f64]| Detection {
             indicators: Vec::new(),
-            signature: Signature {
-                peaks: places.len(),
-                craters: 0,
-            },
+            signature: Signature::of_peaks(places.len()),
             features: places.iter().map(feature).collect(),
         };
         Point {

@@ -222,7 +222,7 @@ fn an_earlier_run_is_kept_and_other_files_are_left_alone() {
 #[test]
 fn tables_for_people_round_to_the_error() {
     use crate::continuation::{BifurcationStatus, LabelledPoint, PointType};
-    let signature = |peaks| Some(Signature { peaks, craters: 0 });
+    let signature = |peaks| Some(Signature::of_peaks(peaks));
     let row = LabelledPoint {
         label: "PB1".into(),
         kind: PointType::Bifurcation,

@@ -65,7 +65,19 @@ pub(super) fn detect(estimated: &EstimatedDensity) -> Detection {
 }
 
 fn signature(peaks: usize, craters: usize) -> Signature {
-    Signature { peaks, craters }
+    Signature {
+        peaks,
+        craters,
+        ..Signature::default()
+    }
+}
+
+fn bare_ring() -> Signature {
+    Signature {
+        craters: 1,
+        rings: 1,
+        ..Signature::default()
+    }
 }
 
 fn uniform(half: f64, count: usize) -> Axis {
@@ -137,7 +149,11 @@ fn rayleigh_density_is_a_crater_exactly_for_positive_a() {
             let detection = detect(&estimated);
             assert_eq!(
                 detection.signature,
-                signature(1, usize::from(a > 0.0)),
+                if a > 0.0 {
+                    bare_ring()
+                } else {
+                    signature(1, 0)
+                },
                 "{a} {count}"
             );
             if a <= 0.0 {
@@ -177,7 +193,7 @@ fn the_grid_makes_no_peaks_on_rings_of_any_width_radius_and_centre() {
             let detection = detect(&joint(&axis, &axis, ring));
             assert_eq!(
                 detection.signature,
-                signature(1, 1),
+                bare_ring(),
                 "{width} {radius} {stretch}"
             );
         }
@@ -291,4 +307,100 @@ fn gaussian_mixtures_in_the_plane_have_their_peaks_where_they_are() {
             "{position:?}"
         );
     }
+}
+
+#[test]
+fn a_peak_inside_a_ring_is_told_from_a_bare_ring_and_both_from_a_peak() {
+    // p = f(H) with ln f' ∝ -(c - H + H²): the centre turns from bottom to peak at c = 0, the ring ends at c = 1/4.
+    let axis = uniform(3.0, 60);
+    let peak_in_a_ring = Signature {
+        peaks: 1,
+        enclosed_peaks: 1,
+        ..bare_ring()
+    };
+    for (c, expected) in [
+        (-0.2, bare_ring()),
+        (-0.01, bare_ring()),
+        (0.05, peak_in_a_ring),
+        (0.2, peak_in_a_ring),
+        (0.245, peak_in_a_ring),
+        (0.255, signature(1, 0)),
+        (0.3, signature(1, 0)),
+    ] {
+        let density = joint(&axis, &axis, |x, y| {
+            let energy = 0.5 * (x * x + y * y);
+            (-10.0 * (c * energy - 0.5 * energy.powi(2) + energy.powi(3) / 3.0)).exp()
+        });
+        assert_eq!(detect(&density).signature, expected, "{c}");
+    }
+}
+
+#[test]
+fn two_rings_merge_into_one_around_two_craters() {
+    // p = f(H), H = y²/2 - x²/2 + x⁴/4, f highest at H = e: around each well for e < 0, around both for e > 0.
+    let (x, y) = (uniform(2.6, 100), uniform(2.6, 100));
+    for (e, rings) in [(-0.12, 2), (0.12, 1)] {
+        let density = joint(&x, &y, |x, y| {
+            let energy = 0.5 * y * y - 0.5 * x * x + 0.25 * x.powi(4);
+            (-30.0 * (energy - e).powi(2)).exp()
+        });
+        let expected = Signature {
+            craters: 2,
+            rings,
+            ..Signature::default()
+        };
+        assert_eq!(detect(&density).signature, expected, "{e}");
+    }
+}
+
+#[test]
+fn the_birth_of_a_ring_is_where_its_slope_passes_zero() {
+    let axis = uniform(3.0, 60);
+    let slope = |c: f64| {
+        let density = joint(&axis, &axis, |x, y| {
+            let energy = 0.5 * (x * x + y * y);
+            (-10.0 * (c * energy - 0.5 * energy.powi(2) + energy.powi(3) / 3.0)).exp()
+        });
+        let detector = PersistenceDetector::new(DetectOptions::default(), 60);
+        let found = detector
+            .indicator(&density, IndicatorKind::Ring, &[0.0, 0.0])
+            .unwrap();
+        (found.value, found.systematic_error)
+    };
+    let ((low, low_error), (high, high_error)) = (slope(0.248), slope(0.252));
+    assert!(low > 0.0 && high < 0.0, "there below 1/4, gone above");
+    let zero = 0.248 + 0.004 * low / (low - high);
+    let error = 0.004 * low_error.max(high_error) / (low - high);
+    assert!(
+        (zero - 0.25).abs() < error && error < 2e-4,
+        "{zero} {error}"
+    );
+}
+
+#[test]
+fn the_birth_of_a_peak_beside_another_is_where_the_slope_between_passes_zero() {
+    // p = exp(-6 (y²/2 - h x - x²/2 + x⁴/4)) turned by an angle: the fold of 27 h² = 4.
+    let (x, y) = (uniform(2.4, 90), uniform(2.4, 100));
+    let (cos, sin) = (0.8, 0.6);
+    let slope = |h: f64| {
+        let density = joint(&x, &y, |u, v| {
+            let (x, y) = (cos * u + sin * v, cos * v - sin * u);
+            (-6.0 * (0.5 * y * y - h * x - 0.5 * x * x + 0.25 * x.powi(4))).exp()
+        });
+        let detector = PersistenceDetector::new(DetectOptions::default(), 60);
+        let found = detector
+            .indicator(&density, IndicatorKind::Fold, &[-0.5, -0.3])
+            .unwrap();
+        let along = cos * found.place[0] + sin * found.place[1];
+        assert!((along + 0.5774).abs() < 1e-2, "{along}");
+        (found.value, found.systematic_error)
+    };
+    let ((low, low_error), (high, high_error)) = (slope(0.383), slope(0.387));
+    assert!(low > 0.0 && high < 0.0, "there below, gone above");
+    let zero = 0.383 + 0.004 * low / (low - high);
+    let error = 0.004 * low_error.max(high_error) / (low - high);
+    assert!(
+        (zero - (4.0f64 / 27.0).sqrt()).abs() < error + 1e-6 && error < 1e-5,
+        "{zero} {error}"
+    );
 }

@@ -51,7 +51,9 @@ fn noise_rate(truth: &EstimatedDensity, expected: (usize, usize), samples: f64) 
     let (mut wrong, mut unresolved) = (0, 0);
     for seed in 0..200 {
         let detection = detector.detect(&sampled(truth, samples, seed));
-        let found = (detection.signature.peaks, detection.signature.craters);
+        // A rim of constant height counts as its top.
+        let signature = detection.signature;
+        let found = (signature.peaks + signature.rings, signature.craters);
         assert!(
             found.0 >= expected.0 && found.1 >= expected.1,
             "missed: {found:?} seed {seed}"
@@ -176,7 +178,7 @@ fn clear_features_are_found_in_every_sample_at_the_confidence_of_a_long_sweep() 
     });
     let line = Axis::uniform(-3.0, 3.0, 100).unwrap();
     let notch = marginal(&line, |y| (-0.5 * y * y + 0.6 * y.abs()).exp());
-    for (truth, expected) in [(pair, (2, 0)), (crater, (1, 1)), (notch, (2, 0))] {
+    for (truth, expected) in [(pair, (2, 0)), (crater, (0, 1)), (notch, (2, 0))] {
         for seed in 0..50 {
             let signature = detector.detect(&sampled(&truth, 1e6, seed)).signature;
             assert_eq!(

@@ -1,6 +1,9 @@
 //! The detector by persistence: components of the superlevel and sublevel sets, judged and refined.
 
-use super::indicator::{at_centre, corrected, put_right, shoulder};
+use super::critical::{Critical, height_above};
+use super::enclosure::Enclosure;
+use super::field::Field;
+use super::indicator::{Found, at_centre, corrected, fold, put_right, ring_slope, shoulder};
 use super::persistence::{Component, Grid, components};
 use super::refine::refine;
 use super::ridge;
@@ -13,6 +16,9 @@ use crate::density::EstimatedDensity;
 
 /// How many absent features of each kind are listed, so that a birth can be followed.
 const ABSENT_LISTED: usize = 4;
+
+/// How many components of each kind are looked at between the cells at most.
+const MOST_LOOKED: usize = 48;
 
 /// Peaks, valleys and craters of densities over one or two axes by persistence.
 ///
@@ -57,40 +63,96 @@ impl PersistenceDetector {
         estimated: &EstimatedDensity,
         limits: &Limits,
     ) -> Vec<Candidate> {
-        let errors = &estimated.standard_error;
         found.sort_by(|a, b| {
             b.persistence
                 .total_cmp(&a.persistence)
                 .then(a.birth.cmp(&b.birth))
         });
+        let field = Field::new(estimated).filter(|_| !estimated.is_noisy());
         let mut absent = 0;
+        let mut looked = 0;
         let mut candidates: Vec<Candidate> = found
             .into_iter()
             .filter_map(|component| {
-                let death_error = component.death.map_or(0.0, |cell| errors[cell]);
-                let standard_error = errors[component.birth].hypot(death_error);
                 // Few stand out of the noise by their cell values: only those are worth a closer look.
-                let by_cells = limits.judge(component.persistence, standard_error).verdict;
-                if by_cells == Verdict::Absent && absent >= ABSENT_LISTED {
+                let by_cells =
+                    limits.judge(component.persistence, self.noise(estimated, &component));
+                let worth = match &field {
+                    Some(_) => looked < MOST_LOOKED && by_cells.significance > 0.0,
+                    None => by_cells.verdict != Verdict::Absent,
+                };
+                if !worth && absent >= ABSENT_LISTED {
                     return None;
                 }
-                let persistence = ridge::persistence(estimated, &component, is_crater).max(0.0);
-                let mut judgement = limits.judge(persistence, standard_error);
+                looked += 1;
+                let refined = field
+                    .as_ref()
+                    .and_then(|field| height(field, estimated, &component, is_crater));
+                let (persistence, standard_error, mut judgement) = match refined {
+                    Some((height, error)) => {
+                        (height.max(0.0), error, limits.judge_exact(height, error))
+                    }
+                    None => {
+                        let error = self.noise(estimated, &component);
+                        let persistence =
+                            ridge::persistence(estimated, &component, is_crater).max(0.0);
+                        (persistence, error, limits.judge(persistence, error))
+                    }
+                };
                 if component.death.is_none() {
                     judgement.verdict = Verdict::Present;
                 }
                 absent += usize::from(judgement.verdict == Verdict::Absent);
-                Some(Candidate {
-                    component,
-                    persistence,
-                    standard_error,
-                    judgement,
-                })
+                (judgement.verdict != Verdict::Absent || absent <= ABSENT_LISTED).then_some(
+                    Candidate {
+                        component,
+                        persistence,
+                        standard_error,
+                        judgement,
+                    },
+                )
             })
             .collect();
         candidates.sort_by(|a, b| b.persistence.total_cmp(&a.persistence));
         candidates
     }
+
+    /// Standard error of the difference between a component's cells of birth and death.
+    fn noise(&self, estimated: &EstimatedDensity, component: &Component) -> f64 {
+        let errors = &estimated.standard_error;
+        let death_error = component.death.map_or(0.0, |cell| errors[cell]);
+        errors[component.birth].hypot(death_error)
+    }
+}
+
+/// Height of a component's critical point over the saddle where it dies (of a crater its depth below), between the cells, with
+/// its error; `None` for the one that never dies.
+fn height(
+    field: &Field<'_>,
+    estimated: &EstimatedDensity,
+    component: &Component,
+    is_crater: bool,
+) -> Option<(f64, f64)> {
+    let death = component.death?;
+    let values = &estimated.density.values;
+    let kind = if is_crater {
+        FeatureKind::Crater
+    } else {
+        FeatureKind::Peak
+    };
+    let extremum = Critical::near(field, &field.centre(component.birth), kind, values)?;
+    let saddle = Critical::near(field, &field.centre(death), FeatureKind::Valley, values)?;
+    // Where features are no wider than cells, what joins two of them may be no saddle: the way around is not seen.
+    if saddle.is_extremum() {
+        return None;
+    }
+    let (height, error) = match is_crater {
+        true => height_above(&saddle, &extremum, estimated),
+        false => height_above(&extremum, &saddle, estimated),
+    };
+    // Else a cell that is the highest around it only because of how the cells lie.
+    let is_of_kind = extremum.is_of_kind(kind, height);
+    Some((if is_of_kind { height } else { 0.0 }, error))
 }
 
 impl Candidate {
@@ -107,6 +169,86 @@ impl Candidate {
             verdict: self.judgement.verdict,
         }
     }
+}
+
+/// A crater's rim.
+struct Rim {
+    rim: Enclosure,
+    /// Whether it is of constant height within the errors.
+    is_ring: bool,
+}
+
+impl Rim {
+    /// Whether it runs around the centre of symmetry.
+    fn holds(&self, estimated: &EstimatedDensity) -> bool {
+        let axes = &estimated.density.axes;
+        let Some(&[x, y]) = estimated.structure.centre.as_deref() else {
+            return false;
+        };
+        let cell = axes[0].find(x).zip(axes[1].find(y));
+        cell.is_some_and(|(row, column)| self.rim.holds(row * axes[1].count() + column))
+    }
+}
+
+/// The rims of the craters that are present.
+fn enclosures(
+    grid: Grid<'_>,
+    estimated: &EstimatedDensity,
+    craters: &[Candidate],
+    limits: &Limits,
+) -> Vec<Rim> {
+    let present = craters
+        .iter()
+        .filter(|one| one.judgement.verdict == Verdict::Present);
+    let rim = |crater: &Candidate| {
+        let saddle = crater.component.death?;
+        let rim = Enclosure::at(grid, saddle);
+        let is_ring = is_level(estimated, rim.top, saddle, limits);
+        Some(Rim { rim, is_ring })
+    };
+    present.filter_map(rim).collect()
+}
+
+/// Whether the highest and the lowest point of a rim are of one height within their errors.
+fn is_level(estimated: &EstimatedDensity, top: usize, saddle: usize, limits: &Limits) -> bool {
+    let values = &estimated.density.values;
+    let rise = values[top] - values[saddle];
+    let field = Field::new(estimated).filter(|_| !estimated.is_noisy());
+    let Some(field) = field else {
+        let noise = estimated.standard_error[top].hypot(estimated.standard_error[saddle]);
+        return limits.judge(rise, noise).verdict != Verdict::Present;
+    };
+    let near = |cell, kind| Critical::near(&field, &field.centre(cell), kind, values);
+    let (Some(top), Some(low)) = (
+        near(top, FeatureKind::Peak),
+        near(saddle, FeatureKind::Valley),
+    ) else {
+        return false;
+    };
+    let (height, error) = height_above(&top, &low, estimated);
+    limits.judge_exact(height, error).verdict != Verdict::Present
+}
+
+/// What there is, and what lies within what.
+fn contents(peaks: &[Candidate], craters: &[Candidate], rims: &[Rim]) -> Signature {
+    let is_present = |one: &&Candidate| one.judgement.verdict == Verdict::Present;
+    let mut signature = Signature {
+        craters: craters.iter().filter(is_present).count(),
+        ..Signature::default()
+    };
+    // Basins of one moat spill over into each other before they spill over the ring: they do not share it.
+    let rings: Vec<&Rim> = rims.iter().filter(|rim| rim.is_ring).collect();
+    signature.rings = rings.len();
+    let within = |ring: &&&Rim| rims.iter().any(|other| other.rim.holds(ring.rim.top));
+    signature.enclosed_rings = rings.iter().filter(within).count();
+    for peak in peaks.iter().filter(is_present) {
+        let cell = peak.component.birth;
+        if !rings.iter().any(|ring| ring.rim.is_rim(cell)) {
+            signature.peaks += 1;
+            signature.enclosed_peaks += usize::from(rims.iter().any(|rim| rim.rim.holds(cell)));
+        }
+    }
+    signature
 }
 
 /// The grid of a density, unless it cannot have features.
@@ -135,10 +277,7 @@ impl Detector for PersistenceDetector {
     fn detect(&self, density: &EstimatedDensity) -> Detection {
         let Some(grid) = grid(density) else {
             return Detection {
-                signature: Signature {
-                    peaks: 0,
-                    craters: 0,
-                },
+                signature: Signature::default(),
                 indicators: Vec::new(),
                 features: Vec::new(),
             };
@@ -153,9 +292,22 @@ impl Detector for PersistenceDetector {
         let (peaks, craters) = components(grid);
         let peaks = self.judged(peaks, false, density, &limits);
         let craters = self.judged(craters, true, density, &limits);
+        let enclosures = enclosures(grid, density, &craters, &limits);
+        let counted = contents(&peaks, &craters, &enclosures);
         let at_birth =
             |kind| move |one: &Candidate| one.feature(density, kind, one.component.birth);
-        let mut features: Vec<Feature> = peaks.iter().map(at_birth(FeatureKind::Peak)).collect();
+        let top = |peak: &Candidate| {
+            let on_ring = enclosures
+                .iter()
+                .any(|one| one.is_ring && one.rim.is_rim(peak.component.birth));
+            let kind = if on_ring {
+                FeatureKind::Ring
+            } else {
+                FeatureKind::Peak
+            };
+            peak.feature(density, kind, peak.component.birth)
+        };
+        let mut features: Vec<Feature> = peaks.iter().map(top).collect();
         features.extend(peaks.iter().filter_map(|peak| {
             let saddle = peak.component.death?;
             Some(peak.feature(density, FeatureKind::Valley, saddle))
@@ -171,7 +323,14 @@ impl Detector for PersistenceDetector {
                 .collect::<Vec<_>>()
         };
         let (peaks, craters) = (places(FeatureKind::Peak), places(FeatureKind::Crater));
-        let signature = corrected(density, &indicators, self.doubt(), &peaks, &craters);
+        let around_centre = enclosures.iter().filter(|one| one.holds(density));
+        let found = Found {
+            signature: counted,
+            peaks: &peaks,
+            craters: &craters,
+            rings_around_centre: around_centre.filter(|one| one.is_ring).count(),
+        };
+        let signature = corrected(density, &indicators, self.doubt(), &found);
         put_right(density, &indicators, self.doubt(), &mut features);
         Detection {
             signature,
@@ -188,6 +347,8 @@ impl Detector for PersistenceDetector {
     ) -> Option<Indicator> {
         match kind {
             IndicatorKind::Shoulder { rising } => shoulder(density, *near.first()?, rising),
+            IndicatorKind::Fold => fold(density, near),
+            IndicatorKind::Ring => ring_slope(density, near),
             kind => at_centre(density).into_iter().find(|one| one.kind == kind),
         }
     }

@@ -1,12 +1,16 @@
 //! What a density looks like: its significant peaks and craters, and the signature they make.
 
+mod critical;
 mod detector;
+mod enclosure;
+mod field;
 mod indicator;
 mod persistence;
 mod quadratic;
 mod reconstruction;
 mod refine;
 mod ridge;
+mod signature;
 mod significance;
 
 #[cfg(test)]
@@ -19,6 +23,7 @@ mod invariance_tests;
 pub use detector::PersistenceDetector;
 pub(crate) use indicator::two_sided_limit;
 pub use indicator::{Indicator, IndicatorKind};
+pub use signature::Signature;
 
 use crate::density::EstimatedDensity;
 
@@ -50,6 +55,9 @@ pub enum FeatureKind {
     Valley,
     /// A local minimum enclosed by a ridge (two dimensions only).
     Crater,
+    /// A maximum along a closed curve, of constant height within the density's error (two dimensions only); its place is one
+    /// point of the curve.
+    Ring,
 }
 
 /// Whether a feature is there.
@@ -83,38 +91,11 @@ pub struct Feature {
     pub verdict: Verdict,
 }
 
-/// What is compared along a sweep: numbers of significant peaks and craters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Signature {
-    /// Number of significant peaks.
-    pub peaks: usize,
-    /// Number of significant craters (always 0 for a marginal).
-    pub craters: usize,
-}
-
-impl std::fmt::Display for Signature {
-    /// `1 peak`, `2 peaks`, `crater` (its rim has no significant second peak), `crater with 2 peaks`.
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let peaks = match self.peaks {
-            1 => "1 peak".to_owned(),
-            peaks => format!("{peaks} peaks"),
-        };
-        let craters = match self.craters {
-            1 => "crater".to_owned(),
-            craters => format!("{craters} craters"),
-        };
-        match (self.craters, self.peaks) {
-            (0, _) => f.write_str(&peaks),
-            (_, 0 | 1) => f.write_str(&craters),
-            _ => write!(f, "{craters} with {peaks}"),
-        }
-    }
-}
-
 /// The detector's findings on one density.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Detection {
-    /// Counts of the features whose verdict is `Present`, corrected by the indicators at a centre of symmetry.
+    /// Counts of the features whose verdict is `Present`, corrected by the indicators at a centre of symmetry, and what lies
+    /// within what.
     pub signature: Signature,
     /// Indicators at the centre of symmetry; empty without one.
     pub indicators: Vec<Indicator>,

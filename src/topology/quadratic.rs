@@ -140,7 +140,7 @@ impl Principal {
     /// saddle being a maximum along one and a minimum along the other.
     pub(super) fn suits(&self, kind: FeatureKind) -> bool {
         match kind {
-            FeatureKind::Peak => self.curvature < 0.0,
+            FeatureKind::Peak | FeatureKind::Ring => self.curvature < 0.0,
             FeatureKind::Crater => self.curvature > 0.0,
             FeatureKind::Valley => self.curvature != 0.0,
         }

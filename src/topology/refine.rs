@@ -124,7 +124,7 @@ fn stationary_point(
 /// Vertex of a parabola that opens the right way.
 fn vertex(slope: f64, curvature: f64, kind: FeatureKind) -> Option<f64> {
     let opens = match kind {
-        FeatureKind::Peak => curvature < 0.0,
+        FeatureKind::Peak | FeatureKind::Ring => curvature < 0.0,
         FeatureKind::Valley | FeatureKind::Crater => curvature > 0.0,
     };
     opens.then(|| -0.5 * slope / curvature)

@@ -28,6 +28,12 @@ const SHARE_OF_PAIR: [f64; 2] = [1.0, 0.8];
 /// Persistences below this share of the maximum are rounding.
 const ROUNDING: f64 = 1e-12;
 
+/// Heights below this share of the maximum are what the solver leaves.
+const NEGLIGIBLE: f64 = 1e-7;
+
+/// A height of a density without noise counts from so many times its estimated error.
+const SAFETY: f64 = 3.0;
+
 /// Limits on persistence for one density.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Limits {
@@ -37,6 +43,8 @@ pub(super) struct Limits {
     typical: f64,
     /// Least persistence that counts.
     floor: f64,
+    /// Least height that counts in a density without noise.
+    negligible: f64,
 }
 
 /// What is said of a persistence.
@@ -65,6 +73,24 @@ impl Limits {
             certain: of_pair * student_limit(share(doubt) / looks.max(1) as f64, freedom),
             typical: of_pair * student_limit(share(0.5), freedom),
             floor: options.floor.max(ROUNDING) * maximum,
+            negligible: NEGLIGIBLE * maximum,
+        }
+    }
+
+    /// Judges the height of one critical point over another of a density without noise; `error` bounds what cells and
+    /// reconstruction make of it.
+    pub(super) fn judge_exact(&self, height: f64, error: f64) -> Judgement {
+        let limit = SAFETY * error + self.negligible;
+        let verdict = if height > limit {
+            Verdict::Present
+        } else if height > error + self.negligible {
+            Verdict::Unresolved
+        } else {
+            Verdict::Absent
+        };
+        Judgement {
+            significance: height / limit,
+            verdict,
         }
     }
 

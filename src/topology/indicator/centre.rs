@@ -180,41 +180,56 @@ fn type_of(indicators: &[Indicator], doubt: f64) -> Option<Type> {
     })
 }
 
-/// The signature that persistence found, corrected by the type of the centre where that is beyond doubt. `peaks`
-/// and `craters` are the places of those that are present.
+/// What persistence found.
+pub(crate) struct Found<'a> {
+    pub(crate) signature: Signature,
+    /// Places of the peaks that are present, rings left out.
+    pub(crate) peaks: &'a [Vec<f64>],
+    /// Places of the craters that are present.
+    pub(crate) craters: &'a [Vec<f64>],
+    /// Rings that the centre lies in.
+    pub(crate) rings_around_centre: usize,
+}
+
+/// The signature that persistence found, corrected by the type of the centre where that is beyond doubt. Peaks, unlike rings, come in pairs
+/// about the centre.
 pub(crate) fn corrected(
     estimated: &EstimatedDensity,
     indicators: &[Indicator],
     doubt: f64,
-    peaks: &[Vec<f64>],
-    craters: &[Vec<f64>],
+    found: &Found<'_>,
 ) -> Signature {
-    let found = Signature {
-        peaks: peaks.len(),
-        craters: craters.len(),
-    };
+    let mut signature = found.signature;
     let (Some(kind), Some(centre)) = (type_of(indicators, doubt), &estimated.structure.centre)
     else {
-        return found;
+        return signature;
     };
     let near = |place: &Vec<f64>| cells_from(estimated, centre, place) <= NEAR;
     let is_marginal = centre.len() == 1;
-    let even = found.peaks.is_multiple_of(2);
-    let bottom_seen = craters.iter().any(near);
-    let mut signature = found;
+    let even = signature.peaks.is_multiple_of(2);
+    let at_centre = found.craters.iter().filter(|place| near(place)).count();
+    let encloses = found.rings_around_centre > 0;
     match (kind, even) {
         // A peak at the centre is one, all others are pairs: a pair that straddles the centre is this one peak.
-        (Type::Peak, true) if peaks.iter().any(near) => signature.peaks -= 1,
-        (Type::Peak, true) => signature.peaks += 1,
+        (Type::Peak, true) if found.peaks.iter().any(near) => {
+            signature.peaks -= 1;
+            signature.enclosed_peaks -= usize::from(signature.enclosed_peaks > 1);
+        }
+        (Type::Peak, true) => {
+            signature.peaks += 1;
+            signature.enclosed_peaks += usize::from(encloses);
+        }
         (Type::Saddle, false) => signature.peaks += 1,
         (Type::Bottom, false) if is_marginal => signature.peaks += 1,
         _ => {}
     }
     if !is_marginal {
-        match (kind == Type::Bottom, bottom_seen) {
-            (true, false) => signature.craters += 1,
-            (false, true) => {
-                signature.craters -= craters.iter().filter(|place| near(place)).count()
+        match (kind == Type::Bottom, at_centre) {
+            (true, 0) => signature.craters += 1,
+            // Between a peak at the centre and a ring lies a moat.
+            (false, _) => {
+                let others = signature.craters - at_centre.min(signature.craters);
+                signature.craters = others.max(found.rings_around_centre.min(signature.craters));
             }
             _ => {}
         }

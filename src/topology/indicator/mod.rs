@@ -14,15 +14,19 @@
 //! All are relative to the density at the place, so that its scale does not matter.
 
 mod centre;
+mod fold;
 mod pair;
+mod ring;
 mod shoulder;
 mod smooth;
 #[cfg(test)]
 mod tests;
 mod window;
 
-pub(super) use centre::{at_centre, corrected};
+pub(super) use centre::{Found, at_centre, corrected};
+pub(super) use fold::fold;
 pub(super) use pair::put_right;
+pub(super) use ring::ring_slope;
 pub(super) use shoulder::shoulder;
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -47,6 +51,11 @@ pub enum IndicatorKind {
         /// Whether the density rises with the coordinate between the two.
         rising: bool,
     },
+    /// Slope along a ridge or trench of a joint density where it is nearest to level, positive when a peak and a saddle (a
+    /// saddle and a crater) are there.
+    Fold,
+    /// Outward slope of a joint density between a moat and the ring around it, positive when both are there.
+    Ring,
 }
 
 impl IndicatorKind {
@@ -59,6 +68,8 @@ impl IndicatorKind {
             Self::LowerCurvature => "lower curvature at the centre",
             Self::UpperCurvature => "upper curvature at the centre",
             Self::Shoulder { .. } => "slope at the inflection",
+            Self::Fold => "slope at the shoulder",
+            Self::Ring => "slope to the ring",
         }
     }
 }

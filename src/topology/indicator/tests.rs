@@ -48,7 +48,7 @@ fn the_signature_follows_the_centre_long_before_peaks_stand_out() {
     let detector = PersistenceDetector::new(DetectOptions::default(), 61);
     for (a, peaks) in [(-1e-3, 1), (1e-3, 2)] {
         let detection = detector.detect(&bistable(a, 100));
-        assert_eq!(detection.signature, Signature { peaks, craters: 0 });
+        assert_eq!(detection.signature, Signature::of_peaks(peaks));
     }
     // Without the symmetry persistence alone decides, and is late.
     let mut plain = bistable(1e-3, 100);

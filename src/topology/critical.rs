@@ -1,0 +1,209 @@
+//! Critical points of a density between its cells, and how certain the height of one above another is.
+//!
+//! A candidate (the cell of a peak, saddle or basin) is followed by Newton's method along those principal directions in which the
+//! density is curved. Along a rim of constant height nothing is curved, and the point stays on the rim where it was. On a plane where the
+//! derivative jumps from rising to falling (or back) the point stays on the plane.
+
+use super::FeatureKind;
+use super::field::{Field, Jet, Stencil};
+use crate::density::EstimatedDensity;
+
+/// Most steps of Newton's method.
+const MOST_STEPS: usize = 12;
+/// Longest way from the centre of the candidate's cell, in cells.
+const FARTHEST: f64 = 2.5;
+/// A direction whose curvature is a smaller share of the larger one is flat.
+const FLAT: f64 = 0.02;
+/// A step that is a smaller share of a cell ends the search.
+const SETTLED: f64 = 1e-6;
+
+/// A critical point.
+#[derive(Debug, Clone)]
+pub(super) struct Critical {
+    /// One coordinate an axis.
+    pub(super) position: Vec<f64>,
+    /// Value and derivatives there.
+    pub(super) jet: Jet,
+    /// Whether it lies on a plane with a jump of the derivative, one value an axis.
+    pinned: Vec<bool>,
+    /// Widths of the cell, in units of the axes.
+    cell: [f64; 2],
+    fine: Stencil,
+    rough: Stencil,
+}
+
+impl Critical {
+    /// The critical point of the given kind in or beside a cell.
+    pub(super) fn near(
+        field: &Field<'_>,
+        centre: &[f64],
+        kind: FeatureKind,
+        values: &[f64],
+    ) -> Option<Self> {
+        let mut position = centre.to_vec();
+        let pinned: Vec<bool> = (0..centre.len())
+            .map(|k| match field.plane_near(k, centre[k]) {
+                Some(plane) => {
+                    position[k] = plane;
+                    let holds = holds(field, &position, k, kind, values);
+                    if !holds {
+                        position[k] = centre[k];
+                    }
+                    holds
+                }
+                None => false,
+            })
+            .collect();
+        for _ in 0..MOST_STEPS {
+            let jet = field.stencil(&position, 0)?.jet(values);
+            let step = step(&jet, kind, &pinned);
+            let mut longest: f64 = 0.0;
+            for k in 0..position.len() {
+                let cell = field.cell_width(k, centre[k]);
+                let limited = step[k].clamp(-cell, cell);
+                longest = longest.max(limited.abs() / cell);
+                let unit = field.unit(k);
+                let (low, high) = field.side(k, centre[k], FARTHEST * cell * unit);
+                position[k] = (position[k] + limited * unit).clamp(low, high);
+            }
+            if longest < SETTLED {
+                break;
+            }
+        }
+        let fine = field.stencil(&position, 0)?;
+        let mut cell = [0.0; 2];
+        let mut pinned = pinned;
+        for (k, axis) in field.axes().iter().enumerate() {
+            cell[k] = field.cell_width(k, centre[k]);
+            // At an end of the range the density need not be level.
+            pinned[k] |= position[k] <= axis.from() || position[k] >= axis.to();
+        }
+        Some(Self {
+            cell,
+            jet: fine.jet(values),
+            rough: field.stencil(&position, 1)?,
+            fine,
+            position,
+            pinned,
+        })
+    }
+
+    /// Whether every direction in which the density is curved is curved as a peak, or a crater, is: no direction the other way along
+    /// which a cell's width changes the density by half the height that is asked about.
+    pub(super) fn is_of_kind(&self, kind: FeatureKind, height: f64) -> bool {
+        let sign = match kind {
+            FeatureKind::Peak | FeatureKind::Ring => 1.0,
+            FeatureKind::Crater => -1.0,
+            FeatureKind::Valley => return true,
+        };
+        let bent = |curvature: f64, width: f64| sign * curvature * width * width > height;
+        let along = |k: usize| !bent(self.jet.second[2 * k], self.cell[k]);
+        match self.pinned[..] {
+            [false] | [false, true] => along(0),
+            [true, false] => along(1),
+            [false, false] => self.jet.principal().iter().all(|one| {
+                let width =
+                    (self.cell[0] * one.direction[0]).hypot(self.cell[1] * one.direction[1]);
+                !bent(one.value, width)
+            }),
+            _ => true,
+        }
+    }
+
+    /// Whether the density is curved to one side in every direction, as at no saddle of two axes.
+    pub(super) fn is_extremum(&self) -> bool {
+        let [lower, upper] = self.jet.principal().map(|one| one.value);
+        let largest = lower.abs().max(upper.abs());
+        self.pinned == [false, false]
+            && lower * upper > 0.0
+            && lower.abs().min(upper.abs()) > FLAT * largest
+    }
+
+    /// Value of another variant of the density at the same place.
+    fn value(&self, values: &[f64]) -> f64 {
+        self.fine.value(values)
+    }
+
+    /// What the rougher reconstruction changes of the value.
+    fn roughness(&self, values: &[f64]) -> f64 {
+        self.rough.value(values) - self.fine.value(values)
+    }
+}
+
+/// Whether the density has an extremum across a plane with a jump of the derivative: slopes on both sides point to it, or
+/// away from it.
+fn holds(field: &Field<'_>, at: &[f64], k: usize, kind: FeatureKind, values: &[f64]) -> bool {
+    let beside = |step: f64| {
+        let mut point = at.to_vec();
+        point[k] += step * 1e-9 * field.unit(k);
+        Some(field.stencil(&point, 0)?.jet(values).first[k])
+    };
+    let (Some(below), Some(above)) = (beside(-1.0), beside(1.0)) else {
+        return false;
+    };
+    match kind {
+        FeatureKind::Peak | FeatureKind::Ring => below > 0.0 && above < 0.0,
+        FeatureKind::Crater => below < 0.0 && above > 0.0,
+        FeatureKind::Valley => below * above < 0.0,
+    }
+}
+
+/// Newton's step in units of the axes, along the directions that are curved as the kind wants.
+fn step(jet: &Jet, kind: FeatureKind, pinned: &[bool]) -> [f64; 2] {
+    let suits = |curvature: f64| match kind {
+        FeatureKind::Peak | FeatureKind::Ring => curvature < 0.0,
+        FeatureKind::Crater => curvature > 0.0,
+        FeatureKind::Valley => true,
+    };
+    let along = |k: usize| {
+        let curvature = jet.second[2 * k];
+        let mut step = [0.0; 2];
+        // Along one axis a valley is a minimum.
+        let fits = if pinned.len() == 1 && kind == FeatureKind::Valley {
+            curvature > 0.0
+        } else {
+            suits(curvature)
+        };
+        if fits {
+            step[k] = -jet.first[k] / curvature;
+        }
+        step
+    };
+    match *pinned {
+        [false] => along(0),
+        [false, true] => along(0),
+        [true, false] => along(1),
+        [false, false] => {
+            let principal = jet.principal();
+            let largest = principal
+                .iter()
+                .map(|one| one.value.abs())
+                .fold(0.0, f64::max);
+            let mut step = [0.0; 2];
+            for one in principal {
+                if suits(one.value) && one.value.abs() > FLAT * largest {
+                    let length = -jet.slope(one.direction) / one.value;
+                    step[0] += length * one.direction[0];
+                    step[1] += length * one.direction[1];
+                }
+            }
+            step
+        }
+        _ => [0.0; 2],
+    }
+}
+
+/// Height of one critical point above another with its error: what a rougher reconstruction and the second discretisation change.
+pub(super) fn height_above(
+    high: &Critical,
+    low: &Critical,
+    estimated: &EstimatedDensity,
+) -> (f64, f64) {
+    let values = &estimated.density.values;
+    let height = |values: &[f64]| high.value(values) - low.value(values);
+    let found = height(values);
+    let rough = (high.roughness(values) - low.roughness(values)).abs();
+    let scheme = estimated.variants.second_scheme();
+    let scheme = scheme.map_or(0.0, |values| (height(values) - found).abs());
+    (found, rough + scheme)
+}

@@ -1,0 +1,114 @@
+//! The signature of a density: how many peaks, rings and craters it has, and what lies within what.
+
+use std::fmt::{self, Display, Formatter};
+
+/// What is compared along a sweep: numbers of significant peaks, rings and craters. Of a marginal only peaks are counted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Signature {
+    /// Number of significant peaks: maxima at a point, those on the rims of craters included.
+    pub peaks: usize,
+    /// Number of significant craters: basins that higher ground encloses, the moat around a peak in a ring included.
+    pub craters: usize,
+    /// Number of rings: maxima along a closed curve, of constant height within the density's error.
+    pub rings: usize,
+    /// How many of the peaks lie within a ring, or within the rim of a crater.
+    pub enclosed_peaks: usize,
+    /// How many of the rings lie within another.
+    pub enclosed_rings: usize,
+}
+
+impl Signature {
+    /// Of a density with so many peaks and nothing else.
+    pub fn of_peaks(peaks: usize) -> Self {
+        Self {
+            peaks,
+            ..Self::default()
+        }
+    }
+}
+
+/// A number with its noun.
+fn counted(number: usize, noun: &str) -> String {
+    match number {
+        1 => format!("1 {noun}"),
+        _ => format!("{number} {noun}s"),
+    }
+}
+
+impl Display for Signature {
+    /// `1 peak`, `2 peaks`; `crater` (its rim has no second peak), `crater with 2 peaks`; `ring`, `peak in a ring`, `2 rings`, `ring around 2
+    /// craters`, `ring and 1 peak`.
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let outside = self.peaks - self.enclosed_peaks.min(self.peaks);
+        if self.rings == 0 {
+            return match (self.craters, outside, self.enclosed_peaks) {
+                (0, ..) => f.write_str(&counted(self.peaks, "peak")),
+                (1, 0 | 1, 0) => f.write_str("crater"),
+                (1, ..) => write!(f, "crater with {}", counted(outside, "peak")),
+                (craters, 0 | 1, 0) => f.write_str(&counted(craters, "crater")),
+                (craters, ..) => write!(
+                    f,
+                    "{} with {}",
+                    counted(craters, "crater"),
+                    counted(outside, "peak")
+                ),
+            }
+            .and_then(|()| match (self.craters, self.enclosed_peaks) {
+                (0, _) | (_, 0) => Ok(()),
+                (_, enclosed) => write!(f, " around {}", counted(enclosed, "peak")),
+            });
+        }
+        let ring = match (self.rings, self.enclosed_rings) {
+            (1, _) => "ring".to_owned(),
+            (2, 1) => "ring in a ring".to_owned(),
+            (rings, _) => format!("{rings} rings"),
+        };
+        match (self.enclosed_peaks, self.rings) {
+            (0, _) => f.write_str(&ring)?,
+            (1, 1) => f.write_str("peak in a ring")?,
+            (1, _) => write!(f, "peak in {ring}")?,
+            (peaks, 1) => write!(f, "{peaks} peaks in a ring")?,
+            (peaks, _) => write!(f, "{peaks} peaks in {ring}")?,
+        }
+        // Every ring has a basin within; what is more are craters of their own.
+        if self.craters > self.rings {
+            write!(f, " around {} craters", self.craters + 1 - self.rings)?;
+        }
+        match outside {
+            0 => Ok(()),
+            peaks => write!(f, " and {}", counted(peaks, "peak")),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_say_what_contains_what() {
+        let of = |peaks, craters, rings, enclosed_peaks, enclosed_rings| {
+            Signature {
+                peaks,
+                craters,
+                rings,
+                enclosed_peaks,
+                enclosed_rings,
+            }
+            .to_string()
+        };
+        assert_eq!(of(1, 0, 0, 0, 0), "1 peak");
+        assert_eq!(of(0, 0, 0, 0, 0), "0 peaks");
+        assert_eq!(of(1, 1, 0, 0, 0), "crater");
+        assert_eq!(of(2, 1, 0, 0, 0), "crater with 2 peaks");
+        assert_eq!(of(2, 2, 0, 0, 0), "2 craters with 2 peaks");
+        assert_eq!(of(3, 1, 0, 1, 0), "crater with 2 peaks around 1 peak");
+        assert_eq!(of(0, 1, 1, 0, 0), "ring");
+        assert_eq!(of(1, 1, 1, 1, 0), "peak in a ring");
+        assert_eq!(of(2, 1, 1, 1, 0), "peak in a ring and 1 peak");
+        assert_eq!(of(0, 2, 2, 0, 0), "2 rings");
+        assert_eq!(of(0, 2, 1, 0, 0), "ring around 2 craters");
+        assert_eq!(of(0, 2, 2, 0, 1), "ring in a ring");
+        assert_eq!(of(1, 2, 2, 1, 1), "peak in ring in a ring");
+    }
+}
