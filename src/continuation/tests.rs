@@ -103,6 +103,7 @@ impl Detector for SquareLaw {
             standard_error: self.noise,
             significance,
             verdict,
+            partner: None,
         };
         let present = verdict == Verdict::Present;
         Detection {

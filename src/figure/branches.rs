@@ -134,6 +134,7 @@ mod tests {
             standard_error: 0.0,
             significance: 9.0,
             verdict: Verdict::Present,
+            partner: None,
         };
         let detection = |places: &[f64]| Detection {
             indicators: Vec::new(),

@@ -47,6 +47,7 @@ fn point(value: f64, solved: bool) -> Point {
             standard_error: 0.1,
             significance: 3.0,
             verdict: Verdict::Present,
+            partner: None,
         }],
     };
     let kept = |count: usize| if solved { count } else { 0 };

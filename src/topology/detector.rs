@@ -167,7 +167,17 @@ impl Candidate {
             standard_error: self.standard_error,
             significance: self.judgement.significance,
             verdict: self.judgement.verdict,
+            partner: self.partner(estimated, kind),
         }
+    }
+
+    /// The saddle where it merges.
+    fn partner(&self, estimated: &EstimatedDensity, kind: FeatureKind) -> Option<Vec<f64>> {
+        let saddle = self
+            .component
+            .death
+            .filter(|_| kind != FeatureKind::Valley)?;
+        Some(refine(estimated, saddle, FeatureKind::Valley).position)
     }
 }
 
@@ -297,15 +307,15 @@ impl Detector for PersistenceDetector {
         let at_birth =
             |kind| move |one: &Candidate| one.feature(density, kind, one.component.birth);
         let top = |peak: &Candidate| {
-            let on_ring = enclosures
-                .iter()
-                .any(|one| one.is_ring && one.rim.is_rim(peak.component.birth));
-            let kind = if on_ring {
-                FeatureKind::Ring
-            } else {
-                FeatureKind::Peak
-            };
-            peak.feature(density, kind, peak.component.birth)
+            let cell = peak.component.birth;
+            let mut rings = enclosures.iter().filter(|one| one.is_ring);
+            match rings.find(|ring| ring.rim.is_rim(cell)) {
+                Some(ring) => Feature {
+                    partner: Some(ring.rim.middle(&density.density.axes)),
+                    ..peak.feature(density, FeatureKind::Ring, cell)
+                },
+                None => peak.feature(density, FeatureKind::Peak, cell),
+            }
         };
         let mut features: Vec<Feature> = peaks.iter().map(top).collect();
         features.extend(peaks.iter().filter_map(|peak| {

@@ -4,6 +4,7 @@
 //! with it are its *rim*. Where the highest point of the rim is no higher than the saddle, within the errors of both, the maximum lies along a closed curve: a *ring*, which has no peak of its own.
 
 use super::persistence::Grid;
+use crate::space::Axis;
 
 /// The rim of a basin.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,6 +61,25 @@ impl Enclosure {
             }
         }
         Self { top, sides }
+    }
+
+    /// The middle of what lies within the rim: one coordinate an axis.
+    pub(super) fn middle(&self, axes: &[Axis]) -> Vec<f64> {
+        let columns = axes.last().map_or(1, Axis::count);
+        let (mut sums, mut area) = ([0.0; 2], 0.0);
+        for (cell, _) in self
+            .sides
+            .iter()
+            .enumerate()
+            .filter(|one| *one.1 == Side::Inside)
+        {
+            let (row, column) = (cell / columns, cell % columns);
+            let weight = axes[0].width(row) * axes[1].width(column);
+            sums[0] += weight * axes[0].centre(row);
+            sums[1] += weight * axes[1].centre(column);
+            area += weight;
+        }
+        sums.iter().map(|sum| sum / area).collect()
     }
 
     /// Whether a cell belongs to the rim.

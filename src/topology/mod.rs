@@ -89,6 +89,8 @@ pub struct Feature {
     pub significance: f64,
     /// Whether it is there.
     pub verdict: Verdict,
+    /// The saddle where it merges with another; of a ring a point inside. `None` for the highest peak and for valleys.
+    pub partner: Option<Vec<f64>>,
 }
 
 /// The detector's findings on one density.

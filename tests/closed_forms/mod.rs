@@ -18,6 +18,7 @@ fn feature(kind: FeatureKind, position: Vec<f64>, density: f64) -> Feature {
         standard_error: 0.0,
         significance: 10.0,
         verdict: Verdict::Present,
+        partner: None,
     }
 }
 

@@ -72,6 +72,7 @@ pub(crate) fn put_right(
         standard_error: 0.0,
         significance: significance.min(1e9),
         verdict: Verdict::Present,
+        partner: (split && kind == FeatureKind::Peak).then(|| vec![centre]),
     };
     let limit = offset.max(reach);
     features.retain(|one| {
