@@ -1,17 +1,16 @@
 //! Pairs of neighbouring points whose signatures differ: which feature makes the difference, and whether
 //! narrowing the pair would still teach anything.
 
+use super::events::COUNTED;
 use super::{LocateOptions, Point};
 use crate::topology::{Detection, Feature, FeatureKind, Verdict};
-
-/// The two counts that make a signature.
-pub(super) const COUNTED: [FeatureKind; 2] = [FeatureKind::Peak, FeatureKind::Crater];
 
 /// Number of features of a kind that a detection counts.
 pub(super) fn count(detection: &Detection, kind: FeatureKind) -> usize {
     match kind {
         FeatureKind::Peak => detection.signature.peaks,
         FeatureKind::Crater => detection.signature.craters,
+        FeatureKind::Ring => detection.signature.rings,
         FeatureKind::Valley => 0,
     }
 }

@@ -1,11 +1,12 @@
 //! Changes of signature between neighbouring points, and the indicator that decides each.
 //!
-//! A signature changes where persistence passes what noise and floor allow, or where an indicator at a centre of
-//! symmetry changes sign. The indicator's own change of sign is the bifurcation: between the same two points, or, when
-//! the signature is late, further on the side where the feature is absent.
+//! A signature changes where a feature passes what noise and floor allow, or where an indicator changes sign. The indicator's own change
+//! of sign is the bifurcation: at a centre of symmetry, or at the place where a feature is born. Several features may change between the
+//! same two points; each is a change of its own.
 
 use super::Point;
-use super::bracket::{COUNTED, count, deciding_feature};
+use super::events::{Event, events};
+use super::follow::{Followed, follow};
 use crate::topology::{Detector, FeatureKind, Indicator, IndicatorKind, Signature};
 
 /// A change of one observable's signature between two neighbouring points.
@@ -17,8 +18,55 @@ pub(super) struct Change {
     pub(super) left: usize,
     pub(super) before: Signature,
     pub(super) after: Signature,
-    /// Where the indicator that decides changes sign; `None` when only persistence tells.
-    pub(super) crossing: Option<Crossing>,
+    pub(super) found: Found,
+    /// The feature that appears or vanishes; `None` where the change is that of a centre, or of no single feature.
+    pub(super) event: Option<Event>,
+}
+
+/// How a change is known.
+#[derive(Debug, Clone)]
+pub(super) enum Found {
+    /// An indicator changes sign.
+    Crossing(Crossing),
+    /// An indicator is lost between the point with this index and the next one: values between would show more.
+    Lost(usize),
+    /// Only persistence tells.
+    Persistence,
+}
+
+impl Change {
+    /// The signature that this change alone makes of another.
+    pub(super) fn step(&self, before: Signature) -> Signature {
+        let Some(event) = &self.event else {
+            return self.after;
+        };
+        let moved = |count: usize| match event.above {
+            true => count + 1,
+            false => count.saturating_sub(1),
+        };
+        let mut after = before;
+        match event.feature {
+            FeatureKind::Peak => after.peaks = moved(before.peaks),
+            FeatureKind::Crater => after.craters = moved(before.craters),
+            FeatureKind::Ring => {
+                after.rings = moved(before.rings);
+                after.craters = moved(before.craters);
+            }
+            FeatureKind::Valley => {}
+        }
+        after.enclosed_peaks = match after.craters {
+            0 => 0,
+            _ => after.enclosed_peaks.min(after.peaks),
+        };
+        after
+    }
+
+    pub(super) fn crossing(&self) -> Option<&Crossing> {
+        match &self.found {
+            Found::Crossing(crossing) => Some(crossing),
+            _ => None,
+        }
+    }
 }
 
 /// A change of sign of an indicator between two neighbouring points.
@@ -38,39 +86,73 @@ impl Crossing {
     }
 }
 
-/// All changes along points that are solved, in ascending parameter; both indicators of a centre may change between
-/// the same points, and are then changes of their own only where a point separates them.
+/// All changes along points that are solved, in ascending parameter.
 pub(super) fn changes(points: &[&Point], detector: &dyn Detector) -> Vec<Change> {
     let observables = points.first().map_or(0, |point| point.detections.len());
     let mut found = Vec::new();
     for observable in 0..observables {
-        for left in 1..points.len() {
+        for left in 0..points.len().saturating_sub(1) {
             let signature = |index: usize| points[index].detections[observable].signature;
-            let (before, after) = (signature(left - 1), signature(left));
-            if before != after {
-                found.push(Change {
-                    observable,
-                    left: left - 1,
-                    before,
-                    after,
-                    crossing: crossing(points, detector, observable, left - 1),
-                });
+            if signature(left) != signature(left + 1) {
+                found.extend(between(points, detector, observable, left));
             }
         }
     }
     found
 }
 
-/// The change of sign that belongs to a change of signature.
-fn crossing(
+/// The changes between two neighbours whose signatures differ; at least one.
+fn between(
     points: &[&Point],
     detector: &dyn Detector,
     observable: usize,
     left: usize,
-) -> Option<Crossing> {
-    let here = at_centre(points, observable, left);
-    here.or_else(|| doubtful_centre(points, detector, observable, left))
-        .or_else(|| at_shoulder(points, detector, observable, left))
+) -> Vec<Change> {
+    let signature = |index: usize| points[index].detections[observable].signature;
+    let change = |found: Found, event: Option<Event>| Change {
+        observable,
+        left,
+        before: signature(left),
+        after: signature(left + 1),
+        found,
+        event,
+    };
+    let mut events = events(points[left], points[left + 1], observable);
+    let mut found = Vec::new();
+    let centre = at_centre(points, observable, left)
+        .or_else(|| doubtful_centre(points, detector, observable, left));
+    if let Some(crossing) = centre {
+        take_those_of_centre(&mut events, &signature(left), &signature(left + 1));
+        found.push(change(Found::Crossing(crossing), None));
+    }
+    for event in events {
+        match follow(points, detector, observable, left, &event) {
+            Some(Followed::Crossing(crossing)) => {
+                found.push(change(Found::Crossing(crossing), Some(event)))
+            }
+            Some(Followed::Lost(gap)) => found.push(change(Found::Lost(gap), Some(event))),
+            None => {}
+        }
+    }
+    if found.is_empty() {
+        found.push(change(Found::Persistence, None));
+    }
+    found
+}
+
+/// Takes away the events that a change at the centre explains: it makes one peak two, or closes one crater. Counts that change by more have
+/// other causes beside it.
+fn take_those_of_centre(events: &mut Vec<Event>, before: &Signature, after: &Signature) {
+    let others = before.peaks.abs_diff(after.peaks) > 1
+        || before.craters.abs_diff(after.craters) > 1
+        || before.rings.abs_diff(after.rings) > 1;
+    if !others {
+        events.clear();
+        return;
+    }
+    events.sort_by(|a, b| a.from_centre.total_cmp(&b.from_centre));
+    let explained = events.len().min(2);
+    events.drain(..explained);
 }
 
 /// An indicator of the centre that changes sign between two neighbours. A value of zero counts with the side below.
@@ -110,95 +192,6 @@ fn doubtful_centre(
     below
         .chain(above)
         .min_by_key(|found| found.left.abs_diff(left))
-}
-
-/// The birth of the deciding peak with its valley: the slope between them, followed to where it changes sign.
-fn at_shoulder(
-    points: &[&Point],
-    detector: &dyn Detector,
-    observable: usize,
-    left: usize,
-) -> Option<Crossing> {
-    let below = sole_peak_is_below(points, observable, left)?;
-    let present = if below { left } else { left + 1 };
-    let (kind, near) = shoulder(points, observable, left, present)?;
-    let path: Vec<usize> = match below {
-        true => (present..points.len()).collect(),
-        false => (0..=present).rev().collect(),
-    };
-    let (index, [previous, found]) = followed(points, detector, observable, &path, kind, near)?;
-    Some(match below {
-        true => Crossing {
-            observable,
-            left: index - 1,
-            ends: [previous, found],
-        },
-        false => Crossing {
-            observable,
-            left: index,
-            ends: [found, previous],
-        },
-    })
-}
-
-/// Whether it is the point below that has more peaks than its neighbour; `None` where peaks are not all that changes.
-fn sole_peak_is_below(points: &[&Point], observable: usize, left: usize) -> Option<bool> {
-    let detections = [left, left + 1].map(|index| &points[index].detections[observable]);
-    let counts = |kind: FeatureKind| detections.map(|one| count(one, kind));
-    let differs = |kind: FeatureKind| counts(kind)[0] != counts(kind)[1];
-    let others = COUNTED.iter().filter(|&&kind| kind != FeatureKind::Peak);
-    let [a, b] = counts(FeatureKind::Peak);
-    (a != b && !others.copied().any(differs)).then_some(a > b)
-}
-
-/// The slope between the deciding peak and the valley it was born with, at the point where they are present, and the place
-/// half way between them.
-fn shoulder(
-    points: &[&Point],
-    observable: usize,
-    left: usize,
-    present: usize,
-) -> Option<(IndicatorKind, Vec<f64>)> {
-    let peaks = |index: usize| count(&points[index].detections[observable], FeatureKind::Peak);
-    let detection = &points[present].detections[observable];
-    let fewer = peaks(left).min(peaks(left + 1));
-    let peak = deciding_feature(detection, FeatureKind::Peak, fewer)?;
-    let valley = detection
-        .features
-        .iter()
-        .find(|one| one.kind == FeatureKind::Valley && one.persistence == peak.persistence)?;
-    let rising = valley.position.first()? < peak.position.first()?;
-    let pairs = valley.position.iter().zip(&peak.position);
-    let half_way = pairs.map(|(a, b)| 0.5 * (a + b)).collect();
-    Some((IndicatorKind::Shoulder { rising }, half_way))
-}
-
-/// Follows an indicator from place to place along points, to the first where it is not positive any more: that point,
-/// and the indicator before and there.
-fn followed(
-    points: &[&Point],
-    detector: &dyn Detector,
-    observable: usize,
-    path: &[usize],
-    kind: IndicatorKind,
-    mut near: Vec<f64>,
-) -> Option<(usize, [Indicator; 2])> {
-    let mut last: Option<Indicator> = None;
-    for &index in path {
-        let density = &points[index].densities[observable];
-        let found = detector.indicator(density, kind, &near)?;
-        near.clone_from(&found.place);
-        if let Some(previous) = last {
-            if previous.value <= 0.0 {
-                return None;
-            }
-            if found.value <= 0.0 {
-                return Some((index, [previous, found]));
-            }
-        }
-        last = Some(found);
-    }
-    None
 }
 
 /// Every change of sign of an indicator at a centre between neighbours, of densities without sampling errors: by

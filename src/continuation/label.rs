@@ -2,7 +2,7 @@
 
 use super::{ErrorParts, Point};
 use crate::density::Observable;
-use crate::topology::Signature;
+use crate::topology::{IndicatorKind, Signature};
 
 /// What a labelled point is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -76,6 +76,10 @@ pub struct LabelledPoint {
     pub change: &'static str,
     /// What it was located by: the name of an indicator, or `persistence`; empty for end points and failures.
     pub method: &'static str,
+    /// The indicator whose zero it is.
+    pub indicator: Option<IndicatorKind>,
+    /// Whether the indicator rises through its zero.
+    pub rises: bool,
     /// Parts of the error; `None` where persistence alone gives a band, and for end points and failures.
     pub parts: Option<ErrorParts>,
 }
@@ -119,6 +123,8 @@ fn unplaced(kind: PointType, lower: f64, upper: f64) -> LabelledPoint {
         change: "",
         method: "",
         parts: None,
+        indicator: None,
+        rises: false,
     }
 }
 

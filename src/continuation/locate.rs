@@ -1,6 +1,6 @@
 //! The rows of a sweep: every change of signature with its value, error, bracket and status.
 
-use super::change::{Change, changes};
+use super::change::{Change, Found, changes};
 use super::grid::{Checked, GridCheck, SHARE_OF_DISTANCE};
 use super::label::{self, BifurcationStatus, LabelledPoint, PointType};
 use super::root::{Root, root};
@@ -23,25 +23,69 @@ pub(super) fn label_points(
     labels.extend(label::failures(points));
     let solved: Vec<&Point> = points.iter().filter(|p| !p.detections.is_empty()).collect();
     let mut rows: Vec<LabelledPoint> = Vec::new();
-    for change in changes(&solved, detector) {
-        let row = match &change.crossing {
-            Some(_) => by_indicator(&solved, observables, &change, detector, options, check),
-            None => by_persistence(&solved, observables, &change, options),
-        };
-        // Two indicators whose zeros cannot be told apart make one change.
-        let same = rows.last_mut().filter(|last| inseparable(last, &row));
-        match same {
-            Some(last) => merge(last, &row),
-            None => rows.push(row),
+    let changes = changes(&solved, detector);
+    for gap in changes.chunk_by(|a, b| (a.observable, a.left) == (b.observable, b.left)) {
+        let found = gap.iter().map(|change| {
+            let row = match &change.found {
+                Found::Crossing(_) => {
+                    by_indicator(&solved, observables, change, detector, options, check)
+                }
+                Found::Lost(at) => by_bracket(&solved, observables, change, *at),
+                Found::Persistence => by_persistence(&solved, observables, change, options),
+            };
+            (row, change)
+        });
+        for row in in_order(found.collect()) {
+            // Two indicators whose zeros cannot be told apart make one change.
+            let same = rows.last_mut().filter(|last| inseparable(last, &row));
+            match same {
+                Some(last) => merge(last, &row),
+                None => rows.push(row),
+            }
         }
+    }
+    for row in &mut rows {
+        say(row);
     }
     labels.extend(rows);
     label::number(labels)
 }
 
+/// The rows of changes between the same two points, ascending, each from the signature that the one before leaves; those whose values cannot be told
+/// apart are one.
+fn in_order(mut found: Vec<(LabelledPoint, &Change)>) -> Vec<LabelledPoint> {
+    found.sort_by(|a, b| a.0.value.total_cmp(&b.0.value));
+    let Some(last) = found.last().map(|one| one.1.after) else {
+        return Vec::new();
+    };
+    let mut rows: Vec<LabelledPoint> = Vec::new();
+    for (mut row, change) in found {
+        let before = rows
+            .last()
+            .map_or(change.before, |row| row.after.unwrap_or(change.before));
+        row.before = Some(before);
+        row.after = Some(change.step(before));
+        match rows.last_mut() {
+            Some(last) if row.value - last.value <= last.error + row.error => merge(last, &row),
+            _ => rows.push(row),
+        }
+    }
+    if let Some(row) = rows.last_mut() {
+        row.after = Some(last);
+    }
+    rows
+}
+
+/// Says what happens, once it is known between which signatures.
+fn say(row: &mut LabelledPoint) {
+    if let (Some(before), Some(after)) = (row.before, row.after) {
+        row.change = words::change(row.indicator, row.rises, before, after);
+    }
+}
+
 /// A row with all but value, error and status.
 fn blank(observables: &[Observable], change: &Change) -> LabelledPoint {
-    let crossing = change.crossing.as_ref();
+    let crossing = change.crossing();
     let kind = crossing.map(|crossing| crossing.kind());
     let rises = crossing.is_some_and(|crossing| crossing.ends[1].value > crossing.ends[0].value);
     LabelledPoint {
@@ -55,9 +99,33 @@ fn blank(observables: &[Observable], change: &Change) -> LabelledPoint {
         before: Some(change.before),
         after: Some(change.after),
         status: None,
-        change: words::change(kind, rises, change.before, change.after),
+        change: "",
         method: kind.map_or("persistence", IndicatorKind::name),
         parts: None,
+        indicator: kind,
+        rises,
+    }
+}
+
+/// An indicator was lost between two points: its zero lies there, or beyond.
+fn by_bracket(
+    points: &[&Point],
+    observables: &[Observable],
+    change: &Change,
+    at: usize,
+) -> LabelledPoint {
+    let (lost, gap) = (
+        (points[at].value, points[at + 1].value),
+        (points[change.left].value, points[change.left + 1].value),
+    );
+    let (lower, upper) = (lost.0.min(gap.0), lost.1.max(gap.1));
+    LabelledPoint {
+        value: 0.5 * (lower + upper),
+        error: 0.5 * (upper - lower),
+        lower,
+        upper,
+        status: Some(BifurcationStatus::Unresolved),
+        ..blank(observables, change)
     }
 }
 
@@ -68,7 +136,9 @@ fn by_persistence(
     options: &LocateOptions,
 ) -> LabelledPoint {
     let band = persistence::band(points, change.observable, change.left);
-    let located = band.upper - band.lower <= options.tolerance * (1.0 + 1e-9);
+    // Counting follows what the cells show, and nothing says how far that is from the truth, but for noise.
+    let is_noisy = points[change.left].densities[change.observable].is_noisy();
+    let located = is_noisy && band.upper - band.lower <= options.tolerance * (1.0 + 1e-9);
     LabelledPoint {
         value: band.value,
         error: (band.value - band.lower).max(band.upper - band.value),
@@ -92,7 +162,7 @@ fn by_indicator(
     check: Check<'_>,
 ) -> LabelledPoint {
     let mut row = blank(observables, change);
-    let Some(crossing) = &change.crossing else {
+    let Some(crossing) = change.crossing() else {
         return row;
     };
     let mut found: Root = root(points, crossing, detector.confidence());
@@ -154,13 +224,14 @@ fn merge(first: &mut LabelledPoint, second: &LabelledPoint) {
     if let Some(parts) = &mut first.parts {
         parts.grid += half;
     }
+    let later = second.value > first.value;
     first.value = value;
     first.after = second.after;
     if first.status == Some(BifurcationStatus::Located) {
         first.status = second.status;
     }
-    if let (Some(before), Some(after)) = (first.before, first.after) {
-        let kind = Some(IndicatorKind::LowerCurvature);
-        first.change = words::change(kind, second.value > first.value, before, after);
+    if first.indicator != second.indicator {
+        first.indicator = Some(IndicatorKind::LowerCurvature);
+        first.rises = later;
     }
 }

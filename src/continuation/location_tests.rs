@@ -257,7 +257,7 @@ fn a_stage_within_a_narrow_window_has_its_own_rows() {
         found,
         [
             "1 peak → 2 peaks, symmetric split",
-            "2 peaks → crater, crater opens"
+            "2 peaks → crater with 2 peaks, crater opens"
         ]
     );
     for (row, truth) in rows.iter().zip([-0.002, 0.0]) {
@@ -306,7 +306,7 @@ fn curvatures_that_vanish_together_make_one_row() {
     let rows = rows(&result);
     assert_eq!(rows.len(), 1, "{rows:?}");
     assert!(
-        words(rows[0]).starts_with("1 peak → crater"),
+        words(rows[0]).starts_with("1 peak → ring, ring opens"),
         "{}",
         words(rows[0])
     );
@@ -350,4 +350,146 @@ fn densities_that_change_fast_get_values_between() {
         .fold(0.0, f64::max);
     assert!(result.points.len() > 11 && largest <= LocateOptions::default().largest_distance);
     assert!(rows(&result).is_empty());
+}
+
+#[test]
+fn two_folds_within_one_step_have_a_row_each() {
+    // (log p)' = -(x - 1.1) (x + 1.1) ... three peaks become one: shoulders of opposite flanks pass zero at 0.1 and 0.11.
+    let source = Exact::new(
+        1,
+        160,
+        |_| Structure::default(),
+        |theta: f64, at: &[f64]| {
+            let x = at[0];
+            // A wide hill and two bumps on its flanks, whose heights fall below what makes a peak.
+            let bump = |c: f64, w: f64| w * (-0.5 * ((x - c) / 0.15).powi(2)).exp();
+            (-0.5 * x * x + bump(-1.0, 0.3 - theta) + bump(1.0, 0.31 - theta)).exp()
+        },
+    );
+    let result = run(&source, (0.0, 0.3, 4), 1e-4);
+    let found: Vec<String> = rows(&result)
+        .iter()
+        .map(|row| format!("{} {:?} {}", words(row), row.status, row.value))
+        .collect();
+    assert_eq!(found.len(), 2, "{found:#?}");
+    let rows = rows(&result);
+    assert_eq!(words(rows[0]), "3 peaks → 2 peaks, peak and valley vanish");
+    assert_eq!(words(rows[1]), "2 peaks → 1 peak, peak and valley vanish");
+    assert!(
+        (rows[1].value - rows[0].value - 0.01).abs() < 1e-4,
+        "the same bump, 0.01 higher: {found:#?}"
+    );
+    assert!(
+        rows.iter()
+            .all(|row| row.status == Some(BifurcationStatus::Located))
+    );
+}
+
+#[test]
+fn the_end_of_a_ring_around_a_peak_is_located() {
+    let source = Exact::new(
+        2,
+        80,
+        |_| centred(2),
+        |c: f64, at: &[f64]| {
+            let energy = at[0] * at[0] + at[1] * at[1];
+            (-6.0 * (c * energy - 0.5 * energy.powi(2) + energy.powi(3) / 3.0)).exp()
+        },
+    );
+    let result = run(&source, (-0.2, 0.5, 11), 1e-4);
+    let found: Vec<String> = rows(&result)
+        .iter()
+        .map(|row| {
+            format!(
+                "{} {:?} {} {}",
+                words(row),
+                row.status,
+                row.value,
+                row.error
+            )
+        })
+        .collect();
+    assert_eq!(found.len(), 2, "{found:#?}");
+    let rows = rows(&result);
+    assert!(
+        words(rows[0]).starts_with("ring → peak in a ring"),
+        "{found:#?}"
+    );
+    assert!(
+        words(rows[1]).starts_with("peak in a ring → 1 peak, ring vanishes"),
+        "{found:#?}"
+    );
+    for (row, truth) in rows.iter().zip([0.0, 0.25]) {
+        assert_eq!(row.status, Some(BifurcationStatus::Located), "{found:#?}");
+        assert!(
+            (row.value - truth).abs() <= row.error && row.error < 1e-4,
+            "{found:#?}"
+        );
+    }
+}
+
+#[test]
+fn a_peak_born_beside_another_in_the_plane_is_located() {
+    let source = Exact::new(
+        2,
+        90,
+        |_| Structure::default(),
+        |h: f64, at: &[f64]| {
+            let (x, y) = (0.8 * at[0] + 0.6 * at[1], 0.8 * at[1] - 0.6 * at[0]);
+            (-6.0 * (0.5 * y * y - h * x - 0.5 * x * x + 0.25 * x.powi(4))).exp()
+        },
+    );
+    let result = run(&source, (-0.55, 0.5, 12), 1e-4);
+    let found: Vec<String> = rows(&result)
+        .iter()
+        .map(|row| {
+            format!(
+                "{} {:?} {} {}",
+                words(row),
+                row.status,
+                row.value,
+                row.error
+            )
+        })
+        .collect();
+    assert_eq!(found.len(), 2, "{found:#?}");
+    let truth = (4.0f64 / 27.0).sqrt();
+    for (row, truth) in rows(&result).iter().zip([-truth, truth]) {
+        assert_eq!(row.status, Some(BifurcationStatus::Located), "{found:#?}");
+        assert!(
+            (row.value - truth).abs() <= row.error && row.error < 1e-4,
+            "{found:#?}"
+        );
+    }
+}
+
+#[test]
+fn a_split_that_is_not_quite_symmetric_is_located_where_its_pair_is_born() {
+    // (log p)' = 8 (0.001 + θ x - x³): 27 · 0.001² = 4 θ³.
+    let source = Exact::new(
+        1,
+        100,
+        |_| Structure::default(),
+        |theta: f64, at: &[f64]| {
+            let x = at[0];
+            (8.0 * (0.001 * x + 0.5 * theta * x * x - 0.25 * x.powi(4))).exp()
+        },
+    );
+    let result = run(&source, (-1.0, 1.0, 41), 2e-4);
+    let truth = 3.0 * (0.0005f64).powf(2.0 / 3.0);
+    let found: Vec<String> = rows(&result)
+        .iter()
+        .map(|row| {
+            format!(
+                "{} {:?} {} {} {truth}",
+                words(row),
+                row.status,
+                row.value,
+                row.error
+            )
+        })
+        .collect();
+    assert_eq!(found.len(), 1, "{found:#?}");
+    let row = rows(&result)[0];
+    assert!((row.value - truth).abs() <= row.error, "{found:#?}");
 }

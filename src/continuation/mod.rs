@@ -6,7 +6,9 @@
 mod again;
 mod bracket;
 mod change;
+mod events;
 mod finding;
+mod follow;
 mod grid;
 mod label;
 mod locate;

@@ -12,7 +12,8 @@
 //! `unconfirmed`: it may be one of the cells, not of the density.
 
 use super::Point;
-use super::bracket::{COUNTED, count, deciding_feature};
+use super::bracket::{count, deciding_feature};
+use super::events::COUNTED;
 use crate::density::EstimatedDensity;
 use crate::topology::{Detection, Feature, FeatureKind, Verdict};
 

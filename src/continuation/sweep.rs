@@ -4,7 +4,7 @@
 use std::time::Instant;
 
 use super::bracket::is_settled;
-use super::change::{changes, crossings_at_centre, dip};
+use super::change::{Found, changes, crossings_at_centre, dip};
 use super::grid::{Checked, FinerIndicator, Seen, check, known, solve};
 use super::locate::label_points;
 use super::root::{next_value, root};
@@ -228,9 +228,16 @@ impl<S: DensitySource> Run<'_, S> {
             return Some(value);
         }
         let changes = changes(&solved, self.detector);
-        changes.iter().find_map(|change| match &change.crossing {
-            Some(crossing) => next_value(&solved, crossing, self.detector.confidence(), tolerance),
-            None => {
+        changes.iter().find_map(|change| match &change.found {
+            Found::Crossing(crossing) => {
+                next_value(&solved, crossing, self.detector.confidence(), tolerance)
+            }
+            Found::Lost(at) => {
+                let (a, b) = (solved[*at].value, solved[*at + 1].value);
+                let middle = 0.5 * (a + b);
+                (b - a > tolerance && middle > a && middle < b).then_some(middle)
+            }
+            Found::Persistence => {
                 let (a, b) = (solved[change.left], solved[change.left + 1]);
                 let middle = 0.5 * (a.value + b.value);
                 let settled = is_settled(a, b, self.span.step, self.options);

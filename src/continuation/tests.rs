@@ -166,7 +166,8 @@ fn without_noise_the_bracket_reaches_the_tolerance() {
     };
     let result = run(&Ramp::new(-1.0, 1.0), &detector, 41, 1e-4);
     let rows = bifurcations(&result);
-    assert_eq!(rows[0].status, Some(BifurcationStatus::Located));
+    // What cells count is no proof, however narrow the bracket.
+    assert_eq!(rows[0].status, Some(BifurcationStatus::Unresolved));
     assert!(rows[0].upper - rows[0].lower <= 1e-4);
     assert!(rows[0].lower <= 0.1 && 0.1 <= rows[0].upper);
     // 0.05 / 2^9 < 1e-4: nine halvings and no more.

@@ -20,6 +20,22 @@ pub(super) fn change(
         (Some(IndicatorKind::KinkSlope), Equal, _) => "merger at a kink",
         (Some(IndicatorKind::Shoulder { .. }), _, Greater) => "peak and valley are born",
         (Some(IndicatorKind::Shoulder { .. }), ..) => "peak and valley vanish",
+        (Some(IndicatorKind::Fold), Equal, Greater) => "peak and saddle are born",
+        (Some(IndicatorKind::Fold), Equal, _) => "peak and saddle vanish",
+        _ if after.rings > before.rings && craters == Greater => {
+            match before.peaks == after.peaks {
+                true => "ring is born",
+                false => "ring opens",
+            }
+        }
+        _ if after.rings < before.rings && craters == Less => match before.peaks == after.peaks {
+            true => "ring vanishes",
+            false => "ring closes",
+        },
+        _ if after.rings < before.rings && after.rings > 0 => "rings merge",
+        _ if after.rings > before.rings && before.rings > 0 => "ring parts",
+        _ if after.rings > before.rings => "rim becomes level",
+        _ if after.rings < before.rings => "rim breaks into peaks",
         (_, Greater, _) => "crater opens",
         (_, Less, _) => "crater closes",
         (Some(_), Equal, _) if rises => "symmetric split",

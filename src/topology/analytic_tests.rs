@@ -404,3 +404,25 @@ fn the_birth_of_a_peak_beside_another_is_where_the_slope_between_passes_zero() {
         "{zero} {error}"
     );
 }
+
+#[test]
+fn a_rim_that_is_nearly_level_has_its_peaks() {
+    // Heights along the rim differ by 1e-4 of the density and less, a tenth of what oblique cells make of it.
+    let axis = uniform(2.0, 60);
+    for theta in [0.075, 0.175, 0.275, 0.375f64, 0.475] {
+        let density = joint(&axis, &axis, |x, y| {
+            let square = x * x + y * y;
+            (0.5 * (theta * x * x + (theta + 0.002) * y * y) - 0.5 * square * square).exp()
+        });
+        let detection = detect(&density);
+        assert_eq!(detection.signature, signature(2, 1), "{theta}");
+        let second = detection.ranked(FeatureKind::Peak, 1).unwrap();
+        // On the axis of y where (θ + 0.002)/2 = y².
+        let expected = (0.5 * (theta + 0.002)).sqrt();
+        assert!(second.position[0].abs() < 1e-6);
+        assert!(
+            (second.position[1].abs() - expected).abs() < 1e-5,
+            "{second:?}"
+        );
+    }
+}

@@ -12,8 +12,10 @@ use crate::density::EstimatedDensity;
 const MOST_STEPS: usize = 12;
 /// Longest way from the centre of the candidate's cell, in cells.
 const FARTHEST: f64 = 2.5;
-/// A direction whose curvature is a smaller share of the larger one is flat.
+/// A direction whose curvature is a smaller share of the larger one is flat, as along a rim.
 const FLAT: f64 = 0.02;
+/// A flat direction is followed all the same where a rougher reconstruction agrees on its curvature to this share.
+const CERTAIN: f64 = 0.3;
 /// A step that is a smaller share of a cell ends the search.
 const SETTLED: f64 = 1e-6;
 
@@ -56,7 +58,8 @@ impl Critical {
             .collect();
         for _ in 0..MOST_STEPS {
             let jet = field.stencil(&position, 0)?.jet(values);
-            let step = step(&jet, kind, &pinned);
+            let rough = || Some(field.stencil(&position, 1)?.jet(values));
+            let step = step(&jet, &rough, kind, &pinned);
             let mut longest: f64 = 0.0;
             for k in 0..position.len() {
                 let cell = field.cell_width(k, centre[k]);
@@ -110,6 +113,13 @@ impl Critical {
         }
     }
 
+    /// Whether the density is level: over a cell it changes by less than half the height that is asked about.
+    pub(super) fn is_level(&self, height: f64) -> bool {
+        let free = (0..self.position.len()).filter(|&k| !self.pinned[k]);
+        free.map(|k| (self.jet.first[k] * self.cell[k]).abs())
+            .all(|change| change <= 0.5 * height)
+    }
+
     /// Whether the density is curved to one side in every direction, as at no saddle of two axes.
     pub(super) fn is_extremum(&self) -> bool {
         let [lower, upper] = self.jet.principal().map(|one| one.value);
@@ -149,7 +159,12 @@ fn holds(field: &Field<'_>, at: &[f64], k: usize, kind: FeatureKind, values: &[f
 }
 
 /// Newton's step in units of the axes, along the directions that are curved as the kind wants.
-fn step(jet: &Jet, kind: FeatureKind, pinned: &[bool]) -> [f64; 2] {
+fn step(
+    jet: &Jet,
+    rough: &dyn Fn() -> Option<Jet>,
+    kind: FeatureKind,
+    pinned: &[bool],
+) -> [f64; 2] {
     let suits = |curvature: f64| match kind {
         FeatureKind::Peak | FeatureKind::Ring => curvature < 0.0,
         FeatureKind::Crater => curvature > 0.0,
@@ -181,7 +196,11 @@ fn step(jet: &Jet, kind: FeatureKind, pinned: &[bool]) -> [f64; 2] {
                 .fold(0.0, f64::max);
             let mut step = [0.0; 2];
             for one in principal {
-                if suits(one.value) && one.value.abs() > FLAT * largest {
+                let certain = || {
+                    let rough = rough().map_or(f64::NAN, |rough| rough.curvature(one.direction));
+                    (rough - one.value).abs() < CERTAIN * one.value.abs()
+                };
+                if suits(one.value) && (one.value.abs() > FLAT * largest || certain()) {
                     let length = -jet.slope(one.direction) / one.value;
                     step[0] += length * one.direction[0];
                     step[1] += length * one.direction[1];

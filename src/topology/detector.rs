@@ -1,13 +1,13 @@
 //! The detector by persistence: components of the superlevel and sublevel sets, judged and refined.
 
 use super::critical::{Critical, height_above};
-use super::enclosure::Enclosure;
 use super::field::Field;
 use super::indicator::{Found, at_centre, corrected, fold, put_right, ring_slope, shoulder};
 use super::persistence::{Component, Grid, components};
 use super::refine::refine;
 use super::ridge;
 use super::significance::{Judgement, Limits};
+use super::surroundings::{contents, rims};
 use super::{
     DetectOptions, Detection, Detector, Feature, FeatureKind, Indicator, IndicatorKind, Signature,
     Verdict,
@@ -41,11 +41,11 @@ pub struct PersistenceDetector {
 }
 
 /// A component with its verdict, before it is refined.
-struct Candidate {
-    component: Component,
-    persistence: f64,
-    standard_error: f64,
-    judgement: Judgement,
+pub(super) struct Candidate {
+    pub(super) component: Component,
+    pub(super) persistence: f64,
+    pub(super) standard_error: f64,
+    pub(super) judgement: Judgement,
 }
 
 impl PersistenceDetector {
@@ -151,13 +151,19 @@ fn height(
         false => height_above(&extremum, &saddle, estimated),
     };
     // Else a cell that is the highest around it only because of how the cells lie.
-    let is_of_kind = extremum.is_of_kind(kind, height);
+    let is_of_kind =
+        extremum.is_of_kind(kind, height) && extremum.is_level(height) && saddle.is_level(height);
     Some((if is_of_kind { height } else { 0.0 }, error))
 }
 
 impl Candidate {
     /// The feature of the given kind at the given cell, which is that of birth or death.
-    fn feature(&self, estimated: &EstimatedDensity, kind: FeatureKind, cell: usize) -> Feature {
+    pub(super) fn feature(
+        &self,
+        estimated: &EstimatedDensity,
+        kind: FeatureKind,
+        cell: usize,
+    ) -> Feature {
         let place = refine(estimated, cell, kind);
         Feature {
             kind,
@@ -179,86 +185,6 @@ impl Candidate {
             .filter(|_| kind != FeatureKind::Valley)?;
         Some(refine(estimated, saddle, FeatureKind::Valley).position)
     }
-}
-
-/// A crater's rim.
-struct Rim {
-    rim: Enclosure,
-    /// Whether it is of constant height within the errors.
-    is_ring: bool,
-}
-
-impl Rim {
-    /// Whether it runs around the centre of symmetry.
-    fn holds(&self, estimated: &EstimatedDensity) -> bool {
-        let axes = &estimated.density.axes;
-        let Some(&[x, y]) = estimated.structure.centre.as_deref() else {
-            return false;
-        };
-        let cell = axes[0].find(x).zip(axes[1].find(y));
-        cell.is_some_and(|(row, column)| self.rim.holds(row * axes[1].count() + column))
-    }
-}
-
-/// The rims of the craters that are present.
-fn enclosures(
-    grid: Grid<'_>,
-    estimated: &EstimatedDensity,
-    craters: &[Candidate],
-    limits: &Limits,
-) -> Vec<Rim> {
-    let present = craters
-        .iter()
-        .filter(|one| one.judgement.verdict == Verdict::Present);
-    let rim = |crater: &Candidate| {
-        let saddle = crater.component.death?;
-        let rim = Enclosure::at(grid, saddle);
-        let is_ring = is_level(estimated, rim.top, saddle, limits);
-        Some(Rim { rim, is_ring })
-    };
-    present.filter_map(rim).collect()
-}
-
-/// Whether the highest and the lowest point of a rim are of one height within their errors.
-fn is_level(estimated: &EstimatedDensity, top: usize, saddle: usize, limits: &Limits) -> bool {
-    let values = &estimated.density.values;
-    let rise = values[top] - values[saddle];
-    let field = Field::new(estimated).filter(|_| !estimated.is_noisy());
-    let Some(field) = field else {
-        let noise = estimated.standard_error[top].hypot(estimated.standard_error[saddle]);
-        return limits.judge(rise, noise).verdict != Verdict::Present;
-    };
-    let near = |cell, kind| Critical::near(&field, &field.centre(cell), kind, values);
-    let (Some(top), Some(low)) = (
-        near(top, FeatureKind::Peak),
-        near(saddle, FeatureKind::Valley),
-    ) else {
-        return false;
-    };
-    let (height, error) = height_above(&top, &low, estimated);
-    limits.judge_exact(height, error).verdict != Verdict::Present
-}
-
-/// What there is, and what lies within what.
-fn contents(peaks: &[Candidate], craters: &[Candidate], rims: &[Rim]) -> Signature {
-    let is_present = |one: &&Candidate| one.judgement.verdict == Verdict::Present;
-    let mut signature = Signature {
-        craters: craters.iter().filter(is_present).count(),
-        ..Signature::default()
-    };
-    // Basins of one moat spill over into each other before they spill over the ring: they do not share it.
-    let rings: Vec<&Rim> = rims.iter().filter(|rim| rim.is_ring).collect();
-    signature.rings = rings.len();
-    let within = |ring: &&&Rim| rims.iter().any(|other| other.rim.holds(ring.rim.top));
-    signature.enclosed_rings = rings.iter().filter(within).count();
-    for peak in peaks.iter().filter(is_present) {
-        let cell = peak.component.birth;
-        if !rings.iter().any(|ring| ring.rim.is_rim(cell)) {
-            signature.peaks += 1;
-            signature.enclosed_peaks += usize::from(rims.iter().any(|rim| rim.rim.holds(cell)));
-        }
-    }
-    signature
 }
 
 /// The grid of a density, unless it cannot have features.
@@ -302,27 +228,32 @@ impl Detector for PersistenceDetector {
         let (peaks, craters) = components(grid);
         let peaks = self.judged(peaks, false, density, &limits);
         let craters = self.judged(craters, true, density, &limits);
-        let enclosures = enclosures(grid, density, &craters, &limits);
-        let counted = contents(&peaks, &craters, &enclosures);
-        let at_birth =
-            |kind| move |one: &Candidate| one.feature(density, kind, one.component.birth);
-        let top = |peak: &Candidate| {
+        let rims = rims(grid, density, &craters, &limits);
+        let counted = contents(&peaks, &craters, &rims);
+        let on_rim = |peak: &&Candidate| {
             let cell = peak.component.birth;
-            let mut rings = enclosures.iter().filter(|one| one.is_ring);
-            match rings.find(|ring| ring.rim.is_rim(cell)) {
-                Some(ring) => Feature {
-                    partner: Some(ring.rim.middle(&density.density.axes)),
-                    ..peak.feature(density, FeatureKind::Ring, cell)
-                },
-                None => peak.feature(density, FeatureKind::Peak, cell),
-            }
+            rims.iter().any(|rim| rim.owns(cell))
         };
-        let mut features: Vec<Feature> = peaks.iter().map(top).collect();
-        features.extend(peaks.iter().filter_map(|peak| {
-            let saddle = peak.component.death?;
-            Some(peak.feature(density, FeatureKind::Valley, saddle))
-        }));
-        features.extend(craters.iter().map(at_birth(FeatureKind::Crater)));
+        let mut features: Vec<Feature> = Vec::new();
+        for peak in peaks.iter().filter(|peak| !on_rim(peak)) {
+            features.push(peak.feature(density, FeatureKind::Peak, peak.component.birth));
+            if let Some(saddle) = peak.component.death {
+                features.push(peak.feature(density, FeatureKind::Valley, saddle));
+            }
+        }
+        for rim in &rims {
+            // By falling persistence: the first stands for the rim as a whole.
+            let whole = peaks.iter().find(|peak| rim.owns(peak.component.birth));
+            features.extend(rim.features(density, whole));
+        }
+        for crater in &craters {
+            features.push(crater.feature(density, FeatureKind::Crater, crater.component.birth));
+        }
+        features.sort_by(|a, b| {
+            a.kind
+                .cmp(&b.kind)
+                .then(b.persistence.total_cmp(&a.persistence))
+        });
         let indicators = at_centre(density);
         let places = |kind| {
             let present = features
@@ -333,7 +264,7 @@ impl Detector for PersistenceDetector {
                 .collect::<Vec<_>>()
         };
         let (peaks, craters) = (places(FeatureKind::Peak), places(FeatureKind::Crater));
-        let around_centre = enclosures.iter().filter(|one| one.holds(density));
+        let around_centre = rims.iter().filter(|one| one.holds_centre(density));
         let found = Found {
             signature: counted,
             peaks: &peaks,

@@ -62,6 +62,14 @@ impl<'a> Field<'a> {
         }
     }
 
+    /// The cell that holds a point; `None` outside.
+    pub(super) fn cell_at(&self, at: &[f64]) -> Option<usize> {
+        let pairs = self.axes().iter().zip(at);
+        pairs.fold(Some(0), |cell, (axis, &at)| {
+            Some(cell? * axis.count() + axis.find(at)?)
+        })
+    }
+
     /// Unit of an axis: the length of its range.
     pub(super) fn unit(&self, k: usize) -> f64 {
         self.axes()
@@ -251,6 +259,13 @@ impl Jet {
     /// Slope along a direction.
     pub(super) fn slope(&self, direction: [f64; 2]) -> f64 {
         self.first[0] * direction[0] + self.first[1] * direction[1]
+    }
+
+    /// Second derivative along a direction.
+    pub(super) fn curvature(&self, direction: [f64; 2]) -> f64 {
+        let [xx, xy, yy] = self.second;
+        let [u, v] = direction;
+        u * u * xx + 2.0 * u * v * xy + v * v * yy
     }
 
     /// Third derivative with two factors along `v` and one along `w`.

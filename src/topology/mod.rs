@@ -10,8 +10,10 @@ mod quadratic;
 mod reconstruction;
 mod refine;
 mod ridge;
+mod rim;
 mod signature;
 mod significance;
+mod surroundings;
 
 #[cfg(test)]
 mod analytic_tests;

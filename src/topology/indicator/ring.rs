@@ -98,9 +98,7 @@ fn shoulder(field: &Field<'_>, inside: &[f64], ray: usize) -> Option<Shoulder> {
     for _ in 0..MOST_STEPS {
         let jet = field.jet(&at(s))?;
         let bend = jet.bend(direction, direction);
-        let [xx, xy, yy] = jet.second;
-        let [u, v] = direction;
-        let curvature = u * u * xx + 2.0 * u * v * xy + v * v * yy;
+        let curvature = jet.curvature(direction);
         s = (s - curvature / bend).clamp(low, high);
     }
     let place = at(s);

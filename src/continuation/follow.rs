@@ -1,0 +1,106 @@
+//! An indicator away from any centre, followed from the point where its feature is present to where it changes sign.
+
+use super::Point;
+use super::change::Crossing;
+use super::events::Event;
+use crate::topology::{Detector, Indicator};
+
+/// Places of an indicator at neighbouring points farther apart than this, in ranges, are not one place that moved.
+const ONE_PLACE: f64 = 0.1;
+
+/// What following an indicator shows.
+pub(super) enum Followed {
+    /// It changes sign between two neighbours.
+    Crossing(Crossing),
+    /// It is lost between the point with this index and the next one, before it changes sign.
+    Lost(usize),
+}
+
+/// Follows the indicator of an event between `left` and its successor toward the side where the feature is absent; `None` where the
+/// event has none. `doubtful` says whether a feature is in doubt at a point: only there the search goes on.
+pub(super) fn follow(
+    points: &[&Point],
+    detector: &dyn Detector,
+    observable: usize,
+    left: usize,
+    event: &Event,
+) -> Option<Followed> {
+    let (kind, near) = event.indicator.as_ref()?;
+    let at = |index: usize, near: &[f64]| {
+        let density = &points[index].densities[observable];
+        detector.indicator(density, *kind, near)
+    };
+    // From the side where the feature is, outward.
+    let present = if event.above { left + 1 } else { left };
+    let outward: Vec<usize> = match event.above {
+        true => (0..=left).rev().collect(),
+        false => (left + 1..points.len()).collect(),
+    };
+    let mut last = at(present, near)?;
+    let mut last_index = present;
+    if last.value <= 0.0 {
+        return deeper(points, &at, last, present, event.above, observable);
+    }
+    for index in outward {
+        let gap = index.min(last_index);
+        let Some(next) =
+            at(index, &last.place).filter(|next| is_one_place(points, observable, &last, next))
+        else {
+            return Some(Followed::Lost(gap));
+        };
+        if next.value <= 0.0 {
+            let ends = if event.above {
+                [next, last]
+            } else {
+                [last, next]
+            };
+            return Some(Followed::Crossing(Crossing {
+                observable,
+                left: gap,
+                ends,
+            }));
+        }
+        last = next;
+        last_index = index;
+    }
+    None
+}
+
+/// The zero lies on the side where the feature was seen: noise of the cells showed it too early.
+fn deeper(
+    points: &[&Point],
+    at: &dyn Fn(usize, &[f64]) -> Option<Indicator>,
+    first: Indicator,
+    present: usize,
+    above: bool,
+    observable: usize,
+) -> Option<Followed> {
+    let inward: Vec<usize> = match above {
+        true => (present + 1..points.len()).collect(),
+        false => (0..present).rev().collect(),
+    };
+    let (mut last, mut last_index) = (first, present);
+    for index in inward {
+        let next =
+            at(index, &last.place).filter(|next| is_one_place(points, observable, &last, next))?;
+        if next.value > 0.0 {
+            let ends = if above { [last, next] } else { [next, last] };
+            return Some(Followed::Crossing(Crossing {
+                observable,
+                left: index.min(last_index),
+                ends,
+            }));
+        }
+        last = next;
+        last_index = index;
+    }
+    None
+}
+
+/// Whether two readings at neighbouring points may be of one place that moved.
+fn is_one_place(points: &[&Point], observable: usize, a: &Indicator, b: &Indicator) -> bool {
+    let axes = &points[0].densities[observable].density.axes;
+    let moved = a.place.iter().zip(&b.place).zip(axes);
+    let apart = moved.map(|((a, b), axis)| ((a - b) / (axis.to() - axis.from())).abs());
+    apart.fold(0.0, f64::max) <= ONE_PLACE
+}
