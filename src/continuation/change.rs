@@ -91,42 +91,55 @@ pub(super) fn changes(points: &[&Point], detector: &dyn Detector) -> Vec<Change>
     let observables = points.first().map_or(0, |point| point.detections.len());
     let mut found = Vec::new();
     for observable in 0..observables {
-        for left in 0..points.len().saturating_sub(1) {
-            let signature = |index: usize| points[index].detections[observable].signature;
-            if signature(left) != signature(left + 1) {
-                found.extend(between(points, detector, observable, left));
+        let at = |index: usize| &points[index].detections[observable];
+        // A signature of which a part was not seen is compared only where the sweep ends with it.
+        let last = points.len().saturating_sub(1);
+        let seen: Vec<usize> = (0..points.len())
+            .filter(|&index| at(index).is_seen || index == 0 || index == last)
+            .collect();
+        for pair in seen.windows(2) {
+            if at(pair[0]).signature != at(pair[1]).signature {
+                found.extend(between(points, detector, observable, (pair[0], pair[1])));
             }
         }
     }
     found
 }
 
-/// The changes between two neighbours whose signatures differ; at least one.
+/// The changes between two points whose signatures differ, of which a part was not seen in between; at least one.
 fn between(
     points: &[&Point],
     detector: &dyn Detector,
     observable: usize,
-    left: usize,
+    (left, right): (usize, usize),
 ) -> Vec<Change> {
     let signature = |index: usize| points[index].detections[observable].signature;
     let change = |found: Found, event: Option<Event>| Change {
         observable,
         left,
         before: signature(left),
-        after: signature(left + 1),
+        after: signature(right),
         found,
         event,
     };
-    let mut events = events(points[left], points[left + 1], observable);
+    let mut events = events(points[left], points[right], observable);
     let mut found = Vec::new();
-    let centre = at_centre(points, observable, left)
-        .or_else(|| doubtful_centre(points, detector, observable, left));
-    if let Some(crossing) = centre {
-        take_those_of_centre(&mut events, &signature(left), &signature(left + 1));
-        found.push(change(Found::Crossing(crossing), None));
+    let mut centre: Vec<Crossing> = (left..right)
+        .filter_map(|index| at_centre(points, observable, index))
+        .collect();
+    if centre.is_empty() {
+        centre.extend(doubtful_centre(points, detector, observable, left));
+    }
+    if !centre.is_empty() {
+        take_those_of_centre(&mut events, &signature(left), &signature(right));
+        found.extend(
+            centre
+                .into_iter()
+                .map(|crossing| change(Found::Crossing(crossing), None)),
+        );
     }
     for event in events {
-        match follow(points, detector, observable, left, &event) {
+        match follow(points, detector, observable, (left, right), &event) {
             Some(Followed::Crossing(crossing)) => {
                 found.push(change(Found::Crossing(crossing), Some(event)))
             }

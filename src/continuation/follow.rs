@@ -16,13 +16,12 @@ pub(super) enum Followed {
     Lost(usize),
 }
 
-/// Follows the indicator of an event between `left` and its successor toward the side where the feature is absent; `None` where the
-/// event has none. `doubtful` says whether a feature is in doubt at a point: only there the search goes on.
+/// Follows the indicator of an event between two points toward the side where the feature is absent; `None` where the event has none.
 pub(super) fn follow(
     points: &[&Point],
     detector: &dyn Detector,
     observable: usize,
-    left: usize,
+    (left, right): (usize, usize),
     event: &Event,
 ) -> Option<Followed> {
     let (kind, near) = event.indicator.as_ref()?;
@@ -31,9 +30,9 @@ pub(super) fn follow(
         detector.indicator(density, *kind, near)
     };
     // From the side where the feature is, outward.
-    let present = if event.above { left + 1 } else { left };
+    let present = if event.above { right } else { left };
     let outward: Vec<usize> = match event.above {
-        true => (0..=left).rev().collect(),
+        true => (0..right).rev().collect(),
         false => (left + 1..points.len()).collect(),
     };
     let mut last = at(present, near)?;

@@ -109,6 +109,7 @@ impl Detector for SquareLaw {
         Detection {
             signature: Signature::of_peaks(1 + usize::from(present)),
             indicators: Vec::new(),
+            is_seen: true,
             features: vec![
                 feature(1.0, f64::MAX, Verdict::Present),
                 feature(persistence, significance, verdict),

@@ -138,6 +138,7 @@ mod tests {
         };
         let detection = |places: &[f64]| Detection {
             indicators: Vec::new(),
+            is_seen: true,
             signature: Signature::of_peaks(places.len()),
             features: places.iter().map(feature).collect(),
         };

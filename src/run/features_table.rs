@@ -73,6 +73,7 @@ fn kind_word(kind: FeatureKind) -> &'static str {
         FeatureKind::Peak => "peak",
         FeatureKind::Valley => "valley",
         FeatureKind::Crater => "crater",
+        FeatureKind::Ring => "ring",
     }
 }
 

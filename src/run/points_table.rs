@@ -57,6 +57,7 @@ pub(super) fn columns<'a>(
         ));
     }
     columns.extend(of_doubts(family));
+    columns.extend(rings(family, observables));
     Columns(columns)
 }
 
@@ -135,19 +136,38 @@ fn of_moments<'a>(axis: usize, name: &str) -> [Column<'a, Point>; 2] {
 
 /// Counts of peaks and craters.
 fn of_detections<'a>(family: &Family, observables: &[Observable]) -> Vec<Column<'a, Point>> {
-    let column = |kind: &str, number: usize, count: fn(&Detection) -> usize| {
-        let of = move |point: &Point| point.detections.get(number).map(count);
-        let name = format!("{kind}_{}", observables[number].name(family));
-        digits(name, move |point| {
-            of(point).map_or(String::new(), |count| count.to_string())
+    let all = 0..observables.len();
+    let peaks = |number| counts(family, observables, "peaks", number, |one| one.signature.peaks);
+    let craters = |number| {
+        counts(family, observables, "craters", number, |one| {
+            one.signature.craters
         })
     };
-    let all = 0..observables.len();
     let joint = |number: &usize| matches!(observables[*number], Observable::Joint(..));
-    let peaks = |number| column("peaks", number, |one| one.signature.peaks);
-    let craters = |number| column("craters", number, |one| one.signature.craters);
     let peaks = all.clone().map(peaks);
     peaks.chain(all.filter(joint).map(craters)).collect()
+}
+
+/// Counts of rings.
+fn rings<'a>(family: &Family, observables: &[Observable]) -> Vec<Column<'a, Point>> {
+    let joint = |number: &usize| matches!(observables[*number], Observable::Joint(..));
+    let rings = |number| counts(family, observables, "rings", number, |one| one.signature.rings);
+    (0..observables.len()).filter(joint).map(rings).collect()
+}
+
+/// Counts of one kind in the observable of the given number.
+fn counts<'a>(
+    family: &Family,
+    observables: &[Observable],
+    kind: &str,
+    number: usize,
+    count: fn(&Detection) -> usize,
+) -> Column<'a, Point> {
+    let of = move |point: &Point| point.detections.get(number).map(count);
+    let name = format!("{kind}_{}", observables[number].name(family));
+    digits(name, move |point| {
+        of(point).map_or(String::new(), |count| count.to_string())
+    })
 }
 
 /// What the solve says of its own errors, and what else it found.

@@ -35,9 +35,11 @@ fn point(value: f64, solved: bool) -> Point {
     };
     let detection = Detection {
         indicators: Vec::new(),
+        is_seen: true,
         signature: Signature {
             peaks: 2,
             craters: 1,
+            ..Signature::default()
         },
         features: vec![Feature {
             kind: FeatureKind::Peak,
@@ -121,13 +123,13 @@ fn points_have_the_columns_of_the_contract_and_no_nan() {
     assert_eq!(
         lines.next().unwrap(),
         "f_c,status,method,iterations,residual,escape_rate,negative_mass,edge_mass,mean_x,sd_x,mean_y,sd_y,\
-         peaks_x,peaks_xy,craters_xy,distance,seconds,map_step,factorisations,numerical_diffusion_x,numerical_diffusion_y,solver_error,time_step_bias,warnings,findings"
+         peaks_x,peaks_xy,craters_xy,distance,seconds,map_step,factorisations,numerical_diffusion_x,numerical_diffusion_y,solver_error,time_step_bias,warnings,findings,rings_xy"
     );
     let first = lines.next().unwrap();
     assert!(first.starts_with("-0.02,no-steady-state,sgcm,7,1e-12,,0,1e-5,,,,,,,,"));
     assert!(
         first.contains(",\"the trajectories spend 12.5 % of their time outside Ω: ")
-            && first.ends_with(" [-8, 8]\",outside:0.125;edge-mass-y:0.5:-8:8"),
+            && first.ends_with(" [-8, 8]\",outside:0.125;edge-mass-y:0.5:-8:8,"),
         "{first}"
     );
     assert!(
@@ -237,6 +239,8 @@ fn tables_for_people_round_to_the_error() {
         status: Some(BifurcationStatus::Unresolved),
         change: "symmetric split",
         method: "curvature at the centre",
+        indicator: None,
+        rises: false,
         parts: None,
     };
     let end = LabelledPoint {

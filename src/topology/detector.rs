@@ -68,7 +68,7 @@ impl PersistenceDetector {
                 .total_cmp(&a.persistence)
                 .then(a.birth.cmp(&b.birth))
         });
-        let field = Field::new(estimated).filter(|_| !estimated.is_noisy());
+        let field = Field::new(estimated).filter(|_| is_smooth(estimated));
         let mut absent = 0;
         let mut looked = 0;
         let mut candidates: Vec<Candidate> = found
@@ -123,6 +123,13 @@ impl PersistenceDetector {
         let death_error = component.death.map_or(0.0, |cell| errors[cell]);
         errors[component.birth].hypot(death_error)
     }
+}
+
+/// Whether the density can be judged between its cells. Noise forbids it, and a plane with a jump of the derivative in a joint density: along such a
+/// plane a ridge has a sharp edge, which no polynomial follows.
+pub(super) fn is_smooth(estimated: &EstimatedDensity) -> bool {
+    let is_joint = estimated.density.axes.len() > 1;
+    !estimated.is_noisy() && !(is_joint && !estimated.structure.kinks.is_empty())
 }
 
 /// Height of a component's critical point over the saddle where it dies (of a crater its depth below), between the cells, with
@@ -214,6 +221,7 @@ impl Detector for PersistenceDetector {
         let Some(grid) = grid(density) else {
             return Detection {
                 signature: Signature::default(),
+                is_seen: true,
                 indicators: Vec::new(),
                 features: Vec::new(),
             };
@@ -275,6 +283,7 @@ impl Detector for PersistenceDetector {
         put_right(density, &indicators, self.doubt(), &mut features);
         Detection {
             signature,
+            is_seen: signature.craters <= counted.craters,
             indicators,
             features,
         }

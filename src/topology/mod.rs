@@ -101,6 +101,9 @@ pub struct Detection {
     /// Counts of the features whose verdict is `Present`, corrected by the indicators at a centre of symmetry, and what lies
     /// within what.
     pub signature: Signature,
+    /// Whether all that the signature counts was seen. Where an indicator proves a bottom at the centre and the cells do not show the rim
+    /// around it, nobody knows whether that has peaks.
+    pub is_seen: bool,
     /// Indicators at the centre of symmetry; empty without one.
     pub indicators: Vec<Indicator>,
     /// All features that are `Present` or `Unresolved`, and of each kind the strongest `Absent` ones (so that

@@ -1,7 +1,7 @@
 //! The rims of a joint density's craters: which are rings, which peaks stand on them, and what lies within.
 
 use super::critical::{Critical, height_above};
-use super::detector::Candidate;
+use super::detector::{Candidate, is_smooth};
 use super::enclosure::Enclosure;
 use super::field::Field;
 use super::persistence::Grid;
@@ -134,9 +134,7 @@ pub(super) fn rims(
 
 /// A rim with its peaks.
 fn judged(estimated: &EstimatedDensity, around: Enclosure, saddle: usize, limits: &Limits) -> Rim {
-    // Across a plane with a jump of the derivative the crest has corners of its own.
-    let is_smooth = !estimated.is_noisy() && estimated.structure.kinks.is_empty();
-    let field = Field::new(estimated).filter(|_| is_smooth);
+    let field = Field::new(estimated).filter(|_| is_smooth(estimated));
     let inside = around.middle(&estimated.density.axes);
     let summits = field.and_then(|field| summits(&field, estimated, &around, &inside));
     let Some(summits) = summits else {
@@ -165,7 +163,7 @@ fn judged(estimated: &EstimatedDensity, around: Enclosure, saddle: usize, limits
 fn is_level(estimated: &EstimatedDensity, top: usize, saddle: usize, limits: &Limits) -> bool {
     let values = &estimated.density.values;
     let rise = values[top] - values[saddle];
-    let field = Field::new(estimated).filter(|_| !estimated.is_noisy());
+    let field = Field::new(estimated).filter(|_| is_smooth(estimated));
     let Some(field) = field else {
         let noise = estimated.standard_error[top].hypot(estimated.standard_error[saddle]);
         return limits.judge(rise, noise).verdict != Verdict::Present;

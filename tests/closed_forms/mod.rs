@@ -31,6 +31,7 @@ fn detection(features: Vec<Feature>) -> Detection {
     };
     Detection {
         indicators: Vec::new(),
+        is_seen: true,
         signature: Signature {
             peaks: count(FeatureKind::Peak),
             craters: count(FeatureKind::Crater),
