@@ -90,6 +90,7 @@ mod tests {
             standard_error: errors.to_vec(),
             variants: Variants::None,
             structure: Structure::default(),
+            negligible: crate::density::NEGLIGIBLE,
         }
     }
 

@@ -4,12 +4,15 @@ use super::change::{Change, Found, changes};
 use super::grid::{Checked, GridCheck, SHARE_OF_DISTANCE};
 use super::label::{self, BifurcationStatus, LabelledPoint, PointType};
 use super::root::{Root, root};
-use super::{LocateOptions, Point, persistence, words};
+use super::{LocateOptions, Point, PointStatus, persistence, words};
 use crate::density::Observable;
 use crate::topology::{Detector, IndicatorKind};
 
 /// The check on a finer grid: takes what is checked, `None` when there is no finer grid.
 pub(super) type Check<'a> = &'a mut dyn FnMut(&Checked<'_>) -> Option<GridCheck>;
+
+/// So many rows in a row that are not located are one.
+const FLICKER: usize = 3;
 
 /// All labelled points of a sweep, in ascending parameter. `points` must be ascending.
 pub(super) fn label_points(
@@ -44,6 +47,7 @@ pub(super) fn label_points(
             }
         }
     }
+    let mut rows = without_flicker(rows);
     for row in &mut rows {
         say(row);
     }
@@ -74,6 +78,42 @@ fn in_order(mut found: Vec<(LabelledPoint, &Change)>) -> Vec<LabelledPoint> {
         row.after = Some(last);
     }
     rows
+}
+
+/// Where features come and go from point to point, one row says from where to where, instead of one a point.
+fn without_flicker(rows: Vec<LabelledPoint>) -> Vec<LabelledPoint> {
+    let in_doubt = |row: &LabelledPoint| row.status != Some(BifurcationStatus::Located);
+    let runs = rows.chunk_by(|a, b| a.observable == b.observable && in_doubt(a) == in_doubt(b));
+    let mut kept = Vec::new();
+    for run in runs {
+        let (first, last) = (&run[0], &run[run.len() - 1]);
+        let returns = run.len() > 1 && first.before == last.after;
+        if !in_doubt(first) || (run.len() < FLICKER && !returns) {
+            kept.extend_from_slice(run);
+            continue;
+        }
+        let lower = run
+            .iter()
+            .map(|row| row.lower)
+            .fold(f64::INFINITY, f64::min);
+        let upper = run
+            .iter()
+            .map(|row| row.upper)
+            .fold(f64::NEG_INFINITY, f64::max);
+        kept.push(LabelledPoint {
+            value: 0.5 * (lower + upper),
+            error: 0.5 * (upper - lower),
+            lower,
+            upper,
+            after: last.after,
+            status: Some(BifurcationStatus::Unresolved),
+            method: "persistence",
+            indicator: None,
+            parts: None,
+            ..first.clone()
+        });
+    }
+    kept
 }
 
 /// Says what happens, once it is known between which signatures.
@@ -195,9 +235,12 @@ fn by_indicator(
         .numerical_diffusion
         .is_empty();
     let depends_on_cells = crossing.kind() != IndicatorKind::KinkSlope;
+    // What holds of a density that leaks away, or has not converged, is not what holds of the steady state.
+    let is_sound = |index: usize| points[index].report.status == PointStatus::Solved;
+    let sound = is_sound(crossing.left) && is_sound(crossing.left + 1);
     row.status = Some(match checked {
         Some(GridCheck::Unconfirmed) => BifurcationStatus::Unconfirmed,
-        _ if !narrow || error > options.tolerance => BifurcationStatus::Unresolved,
+        _ if !sound || !narrow || error > options.tolerance => BifurcationStatus::Unresolved,
         None if diffused && depends_on_cells => BifurcationStatus::Unconfirmed,
         _ => BifurcationStatus::Located,
     });

@@ -93,6 +93,7 @@ impl<F: Fn(f64, &[f64]) -> f64 + Clone> DensitySource for Exact<F> {
                 density,
                 variants: Variants::None,
                 structure: (self.structure)(value),
+                negligible: crate::density::NEGLIGIBLE,
             }],
             state: Some(()),
         })

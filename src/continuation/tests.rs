@@ -61,6 +61,7 @@ impl DensitySource for Ramp {
             standard_error: vec![0.0; 2],
             variants: crate::density::Variants::None,
             structure: crate::density::Structure::default(),
+            negligible: crate::density::NEGLIGIBLE,
         };
         let moments = Moments {
             mean: 0.0,

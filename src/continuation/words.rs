@@ -13,6 +13,9 @@ pub(super) fn change(
     let craters = after.craters.cmp(&before.craters);
     let peaks = after.peaks.cmp(&before.peaks);
     use std::cmp::Ordering::{Equal, Greater, Less};
+    if before == after {
+        return "comes and goes";
+    }
     match (kind, craters, peaks) {
         (Some(IndicatorKind::Curvature), ..) if rises => "symmetric split",
         (Some(IndicatorKind::Curvature), ..) => "symmetric merger",

@@ -37,6 +37,7 @@ pub fn estimate_from_difference(
         standard_error: squares.into_iter().map(f64::sqrt).collect(),
         variants: Variants::Scheme(second),
         structure: Structure::default(),
+        negligible: crate::density::NEGLIGIBLE,
     })
 }
 

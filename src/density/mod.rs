@@ -102,7 +102,12 @@ pub struct EstimatedDensity {
     pub variants: Variants,
     /// Symmetry and kinks that the system's equations imply.
     pub structure: Structure,
+    /// Share of the maximum below which values are what the solver leaves; zero where every cell has its digits, whatever its mass.
+    pub negligible: f64,
 }
+
+/// [`EstimatedDensity::negligible`] of a density whose solver bounds the error of all masses together.
+pub const NEGLIGIBLE: f64 = 1e-7;
 
 impl EstimatedDensity {
     /// Whether its values carry noise, as those of sampled methods do; else its errors are those of a grid.

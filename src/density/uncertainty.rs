@@ -55,6 +55,7 @@ pub fn estimate(
         standard_error,
         variants,
         structure: Structure::default(),
+        negligible: crate::density::NEGLIGIBLE,
     })
 }
 

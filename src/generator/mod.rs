@@ -14,6 +14,7 @@
 //! | fluxes along a grid line: fitted and advected drift | `line.rs` |
 //! | the matrix | `assemble.rs`, `columns.rs` |
 //! | masses of cells and moments from the unknowns | `masses.rs` |
+//! | one axis: the steady state by quadrature | `one_axis.rs` |
 //! | dQ/dθ | `derivative.rs` |
 //! | axes graded toward switching surfaces | `grading.rs` |
 //! | is the grid fine enough for the noise | `resolution.rs` |
@@ -29,6 +30,7 @@ mod geometry;
 mod grading;
 mod line;
 mod masses;
+mod one_axis;
 mod resolution;
 mod sampler;
 mod scheme;
@@ -37,6 +39,7 @@ pub use assemble::assemble;
 pub use derivative::assemble_derivative;
 pub use grading::automatic_grading;
 pub use masses::{cell_masses, unknown_moments};
+pub use one_axis::{OneAxis, one_axis};
 pub use resolution::{Resolution, resolution};
 pub use scheme::AdvectiveScheme;
 

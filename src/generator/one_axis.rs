@@ -126,7 +126,8 @@ fn look(system: &dyn System, places: &Lanes) -> (Lanes, Lanes) {
 fn integrate(system: &dyn System, axis: &Axis, rule: &Rule, panels: usize) -> Option<OneAxis> {
     let count = axis.count();
     // Logarithms of the integrals over each cell of p and of p times the distance from its lower edge and its square.
-    let (mut logs, mut firsts, mut seconds) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
+    let (mut logs, mut firsts, mut seconds) =
+        (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
     let mut exponent = 0.0;
     for cell in 0..count {
         let (from, width) = (axis.edges()[cell], axis.width(cell) / panels as f64);
@@ -139,15 +140,25 @@ fn integrate(system: &dyn System, axis: &Axis, rule: &Rule, panels: usize) -> Op
         let mut sums = [0.0; 3];
         for panel in 0..panels {
             let lanes = panel * NODES..(panel + 1) * NODES;
-            let usable = lanes.clone().all(|l| drift[l].is_finite() && intensity[l].is_finite() && intensity[l] > 0.0);
+            let usable = lanes
+                .clone()
+                .all(|l| drift[l].is_finite() && intensity[l].is_finite() && intensity[l] > 0.0);
             if !usable {
                 return None;
             }
-            let rate: Vec<f64> = lanes.clone().map(|l| 2.0 * drift[l] / intensity[l]).collect();
+            let rate: Vec<f64> = lanes
+                .clone()
+                .map(|l| 2.0 * drift[l] / intensity[l])
+                .collect();
             for node in 0..NODES {
                 let lane = panel * NODES + node;
-                let rise: f64 = rule.integrals[node].iter().zip(&rate).map(|(w, r)| w * r).sum();
-                let weight = rule.weights[node] * width * (exponent + width * rise - start).exp() / intensity[lane];
+                let rise: f64 = rule.integrals[node]
+                    .iter()
+                    .zip(&rate)
+                    .map(|(w, r)| w * r)
+                    .sum();
+                let weight = rule.weights[node] * width * (exponent + width * rise - start).exp()
+                    / intensity[lane];
                 let offset = places[lane] - from;
                 sums[0] += weight;
                 sums[1] += weight * offset;
@@ -167,7 +178,9 @@ fn integrate(system: &dyn System, axis: &Axis, rule: &Rule, panels: usize) -> Op
         return None;
     }
     masses.iter_mut().for_each(|mass| *mass /= total);
-    let mean: f64 = (0..count).map(|i| masses[i] * (axis.edges()[i] + firsts[i])).sum();
+    let mean: f64 = (0..count)
+        .map(|i| masses[i] * (axis.edges()[i] + firsts[i]))
+        .sum();
     let variance: f64 = (0..count)
         .map(|i| {
             let edge = axis.edges()[i] - mean;
@@ -211,19 +224,27 @@ mod tests {
     #[test]
     fn cells_of_a_shallow_well_have_all_their_digits_beside_a_deep_one() {
         // Depths differ by more than 100 times the noise: e^-100 of the mass is in the left well.
-        let system = Tilted { h: 0.38, sigma2: 0.014 };
+        let system = Tilted {
+            h: 0.38,
+            sigma2: 0.014,
+        };
         let axis = Axis::uniform(-1.9, 1.9, 200).unwrap();
         let found = one_axis(&system, &axis).unwrap();
         let potential = |x: f64| -system.h * x - 0.5 * x * x + 0.25 * x.powi(4);
         let p = |x: f64| (-2.0 / system.sigma2 * (potential(x) - potential(1.15))).exp();
         let mass = |cell: usize| {
             let (from, width) = (axis.edges()[cell], axis.width(cell));
-            (0..1000).map(|i| p(from + width * (f64::from(i) + 0.5) / 1000.0)).sum::<f64>()
+            (0..1000)
+                .map(|i| p(from + width * (f64::from(i) + 0.5) / 1000.0))
+                .sum::<f64>()
         };
         let left = axis.find(-0.6).unwrap();
         assert!(found.masses[left] > 0.0 && found.masses[left] < 1e-40);
         for cell in [left - 3, left + 5] {
-            let (ratio, expected) = (found.masses[cell] / found.masses[left], mass(cell) / mass(left));
+            let (ratio, expected) = (
+                found.masses[cell] / found.masses[left],
+                mass(cell) / mass(left),
+            );
             // The midpoint rule on 1000 points is off by (p''/p) h²/24e6, below 1e-6.
             assert!((ratio / expected - 1.0).abs() < 1e-6, "{ratio} {expected}");
         }

@@ -29,6 +29,9 @@ pub(super) const REPLICATE_CHUNK: u64 = 8;
 /// Attribute of a density.
 pub(super) const CENTRE: &str = "centre_of_symmetry";
 
+/// Attribute of a density: share of its maximum below which values are what the solver leaves.
+pub(super) const NEGLIGIBLE: &str = "negligible";
+
 /// Attributes of a kink: name of the axis on which the plane stands, and its coordinate.
 pub(super) const KINK_AXIS: &str = "axis";
 /// See [`KINK_AXIS`].
@@ -104,6 +107,7 @@ impl Layout {
             density(family, estimate.observable),
             words,
         );
+        let layout = layout.attribute(NEGLIGIBLE, json!(estimate.negligible));
         match &estimate.structure.centre {
             Some(centre) => layout.attribute(CENTRE, json!(centre)),
             None => layout,

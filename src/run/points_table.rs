@@ -137,7 +137,11 @@ fn of_moments<'a>(axis: usize, name: &str) -> [Column<'a, Point>; 2] {
 /// Counts of peaks and craters.
 fn of_detections<'a>(family: &Family, observables: &[Observable]) -> Vec<Column<'a, Point>> {
     let all = 0..observables.len();
-    let peaks = |number| counts(family, observables, "peaks", number, |one| one.signature.peaks);
+    let peaks = |number| {
+        counts(family, observables, "peaks", number, |one| {
+            one.signature.peaks
+        })
+    };
     let craters = |number| {
         counts(family, observables, "craters", number, |one| {
             one.signature.craters
@@ -151,7 +155,11 @@ fn of_detections<'a>(family: &Family, observables: &[Observable]) -> Vec<Column<
 /// Counts of rings.
 fn rings<'a>(family: &Family, observables: &[Observable]) -> Vec<Column<'a, Point>> {
     let joint = |number: &usize| matches!(observables[*number], Observable::Joint(..));
-    let rings = |number| counts(family, observables, "rings", number, |one| one.signature.rings);
+    let rings = |number| {
+        counts(family, observables, "rings", number, |one| {
+            one.signature.rings
+        })
+    };
     (0..observables.len()).filter(joint).map(rings).collect()
 }
 

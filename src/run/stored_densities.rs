@@ -9,7 +9,9 @@ use zarrs::filesystem::FilesystemStore;
 
 use super::{RunError, arrays};
 use crate::continuation::Subject;
-use crate::density::{Density, EstimatedDensity, Kink, Observable, Structure, Variants};
+use crate::density::{
+    Density, EstimatedDensity, Kink, NEGLIGIBLE, Observable, Structure, Variants,
+};
 use crate::space::{Axis, CellSpace};
 use crate::system::Family;
 
@@ -32,6 +34,7 @@ struct Observed {
     second: Option<StoredArray>,
     replicates: Option<StoredArray>,
     centre: Option<Vec<f64>>,
+    negligible: f64,
     kinks: Vec<StoredKink>,
 }
 
@@ -106,6 +109,7 @@ impl Observed {
                 centre: self.centre.clone(),
                 kinks,
             },
+            negligible: self.negligible,
         })
     }
 
@@ -245,6 +249,8 @@ impl Opened {
             let numbers = centre.iter().filter_map(Value::as_f64);
             numbers.collect::<Vec<f64>>()
         });
+        let negligible = density.attributes().get(arrays::NEGLIGIBLE);
+        let negligible = negligible.and_then(Value::as_f64);
         Ok(Observed {
             observable,
             error: self.shaped(&arrays::error(family, observable), &shape)?,
@@ -252,6 +258,7 @@ impl Opened {
             replicates: self.optional(&arrays::replicates(family, observable), &shape)?,
             centre: centre.filter(|centre| centre.len() == axes.len()),
             kinks: self.kinks(family, observable, &shape)?,
+            negligible: negligible.unwrap_or(NEGLIGIBLE),
             axes,
             density,
         })

@@ -73,6 +73,7 @@ fn point(value: f64, replicates: Option<usize>, kinks: usize) -> Point {
                 centre: Some(vec![0.1 + 0.2; observable.axes().len()]),
                 kinks: (0..kinks).map(kink).collect(),
             },
+            negligible: 0.25,
         }
     });
     Point {

@@ -32,6 +32,7 @@ fn point(value: f64, solved: bool) -> Point {
         standard_error: vec![0.5; cells],
         variants: crate::density::Variants::None,
         structure: crate::density::Structure::default(),
+        negligible: crate::density::NEGLIGIBLE,
     };
     let detection = Detection {
         indicators: Vec::new(),

@@ -56,6 +56,7 @@ fn exact(axes: Vec<Axis>, values: Vec<f64>) -> EstimatedDensity {
         standard_error: vec![0.0; density.values.len()],
         variants: crate::density::Variants::None,
         structure: crate::density::Structure::default(),
+        negligible: crate::density::NEGLIGIBLE,
         density,
     }
 }

@@ -231,7 +231,7 @@ impl Detector for PersistenceDetector {
             self.looks,
             density.density.axes.len(),
             grid.values.len(),
-            density.density.maximum(),
+            (density.density.maximum(), density.negligible),
         );
         let (peaks, craters) = components(grid);
         let peaks = self.judged(peaks, false, density, &limits);
@@ -329,6 +329,7 @@ mod tests {
             standard_error: errors,
             variants: crate::density::Variants::None,
             structure: crate::density::Structure::default(),
+            negligible: crate::density::NEGLIGIBLE,
         }
     }
 
@@ -385,6 +386,7 @@ mod tests {
             standard_error: vec![1.0; 40],
             variants: crate::density::Variants::None,
             structure: crate::density::Structure::default(),
+            negligible: crate::density::NEGLIGIBLE,
         };
         let detection = detector().detect(&density);
         let peaks = |verdict| {

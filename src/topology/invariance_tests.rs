@@ -19,6 +19,7 @@ fn rough(noise: &[f64]) -> EstimatedDensity {
         standard_error: (0..99).map(|cell| 0.05 + 0.02 * noise[cell]).collect(),
         variants: crate::density::Variants::None,
         structure: crate::density::Structure::default(),
+        negligible: crate::density::NEGLIGIBLE,
         density: Density {
             values: (0..99).map(value).collect(),
             axes: vec![x, y],
@@ -38,6 +39,7 @@ fn rearranged(
         standard_error: take(&of.standard_error),
         variants: crate::density::Variants::None,
         structure: crate::density::Structure::default(),
+        negligible: crate::density::NEGLIGIBLE,
         density: Density {
             axes,
             values: take(&of.density.values),

@@ -168,6 +168,7 @@ mod tests {
             standard_error: vec![0.0; values.len()],
             variants: crate::density::Variants::None,
             structure: crate::density::Structure::default(),
+            negligible: crate::density::NEGLIGIBLE,
             density: Density { axes, values },
         }
     }

@@ -28,9 +28,6 @@ const SHARE_OF_PAIR: [f64; 2] = [1.0, 0.8];
 /// Persistences below this share of the maximum are rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// Heights below this share of the maximum are what the solver leaves.
-const NEGLIGIBLE: f64 = 1e-7;
-
 /// A height of a density without noise counts from so many times its estimated error.
 const SAFETY: f64 = 3.0;
 
@@ -61,7 +58,7 @@ impl Limits {
         looks: usize,
         dimension: usize,
         cells: usize,
-        maximum: f64,
+        (maximum, negligible): (f64, f64),
     ) -> Self {
         let index = dimension.clamp(1, 2) - 1;
         let (freedom, of_pair) = (DEGREES_OF_FREEDOM[index], SHARE_OF_PAIR[index]);
@@ -73,7 +70,7 @@ impl Limits {
             certain: of_pair * student_limit(share(doubt) / looks.max(1) as f64, freedom),
             typical: of_pair * student_limit(share(0.5), freedom),
             floor: options.floor.max(ROUNDING) * maximum,
-            negligible: NEGLIGIBLE * maximum,
+            negligible: negligible * maximum,
         }
     }
 
@@ -148,7 +145,7 @@ mod tests {
 
     #[test]
     fn verdicts_split_at_the_floor_the_typical_and_the_certain_limit() {
-        let limits = Limits::new(&DetectOptions::default(), 61, 2, 2500, 10.0);
+        let limits = Limits::new(&DetectOptions::default(), 61, 2, 2500, (10.0, 1e-7));
         assert!(limits.typical > 2.5 && limits.certain > limits.typical + 1.0);
         let verdict = |persistence, error| limits.judge(persistence, error).verdict;
         assert_eq!(verdict(limits.certain * 1.01, 1.0), Verdict::Present);
@@ -159,7 +156,7 @@ mod tests {
         assert_eq!(verdict(0.0099, 0.0), Verdict::Absent);
         assert!((limits.judge(0.005, 0.0).significance - 0.5).abs() < 1e-12);
         // More looks ask for more.
-        let alone = Limits::new(&DetectOptions::default(), 1, 2, 2500, 10.0);
+        let alone = Limits::new(&DetectOptions::default(), 1, 2, 2500, (10.0, 1e-7));
         assert!(alone.certain < limits.certain && alone.typical == limits.typical);
     }
 }

@@ -107,6 +107,7 @@ fn estimated(
         standard_error,
         variants: pbif::density::Variants::None,
         structure: pbif::density::Structure::default(),
+        negligible: pbif::density::NEGLIGIBLE,
     }
 }
 

@@ -10,6 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::GeneratorMethodOptions;
+use super::one_axis;
 use super::relaxation::Relaxation;
 use super::trail::{self, Trail};
 use crate::continuation::{DensitySource, Solution, SourceError, Subject};
@@ -94,6 +95,12 @@ impl GeneratorSource {
 
     fn try_solve(&self, value: f64, start: Option<&State>) -> Result<Solution<State>, MethodError> {
         let system = self.problem.family().at(value)?;
+        let known = (self.closed_ends.as_slice(), self.kinked.as_slice());
+        if let Some(solution) =
+            one_axis::solution(system.as_ref(), (value, METHOD), &self.problem, known)
+        {
+            return solution;
+        }
         let generator = self.assemble(system.as_ref(), self.options.scheme)?;
         let trail = start.map(|state| &state.trail);
         let guess = trail.and_then(|trail| trail.mass_at(value));
