@@ -32,6 +32,7 @@ fn noisy_ring(count: usize, dimension: u32) -> EstimatedDensity {
         standard_error: values.iter().map(|value| 0.03 * value + 1e-4).collect(),
         variants: pbif::density::Variants::None,
         structure: pbif::density::Structure::default(),
+        negligible: pbif::density::NEGLIGIBLE,
         density: Density {
             axes: vec![axis; dimension as usize],
             values,

@@ -35,6 +35,7 @@ fn detection(features: Vec<Feature>) -> Detection {
         signature: Signature {
             peaks: count(FeatureKind::Peak),
             craters: count(FeatureKind::Crater),
+            ..Signature::default()
         },
         features,
     }
@@ -78,6 +79,8 @@ fn bifurcation(
         status: Some(status),
         change: "",
         method: "",
+        indicator: None,
+        rises: false,
         parts: None,
     }
 }
