@@ -110,7 +110,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let points = 8;
     let detector = PersistenceDetector::new(DetectOptions::default(), points);
     let locate = LocateOptions {
-        tolerance: 0.1,
+        tolerance: Some(0.1),
         ..LocateOptions::default()
     };
     let result = sweep(&source, &detector, points, &locate, &mut ())?;

@@ -53,7 +53,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let points = 21;
     let detector = PersistenceDetector::new(DetectOptions::default(), points);
     let locate = LocateOptions {
-        tolerance: 0.1,
+        tolerance: Some(0.1),
         ..LocateOptions::default()
     };
     let mut observer = UntilTwoPeaks::default();

@@ -386,7 +386,7 @@ impl Sweep {
         let source = MethodSource::new(&problem, method, Default::default())?;
         let detector = PersistenceDetector::new(DetectOptions::default(), self.points);
         let options = LocateOptions {
-            tolerance: 5e-4 * (self.range.1 - self.range.0),
+            relative_tolerance: 5e-4,
             ..LocateOptions::default()
         };
         let found = sweep(&source, &detector, self.points, &options, &mut ())?;

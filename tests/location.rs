@@ -38,7 +38,7 @@ impl Case<'_> {
         let looks = self.points * self.observables.len();
         let detector = PersistenceDetector::new(DetectOptions::default(), looks);
         let options = LocateOptions {
-            tolerance: self.tolerance,
+            tolerance: Some(self.tolerance),
             ..LocateOptions::default()
         };
         sweep(&source, &detector, self.points, &options, &mut ()).unwrap()

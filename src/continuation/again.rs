@@ -3,7 +3,7 @@
 use super::grid::{Checked, FinerIndicator, GridCheck, check, known};
 use super::span::Span;
 use super::sweep::fill_distances;
-use super::{LocateOptions, Point, Subject, SweepResult, locate::label_points};
+use super::{Goal, LocateOptions, Point, Subject, SweepResult, locate::label_points};
 use crate::topology::Detector;
 
 /// Detects and locates again on all points there are, those that once refined brackets included, of a sweep with `given` given
@@ -29,6 +29,7 @@ pub fn detect_again(
         fill_distances(&mut points, place);
     }
     let span = Span::new(&subject, given);
+    let options = &options.goal(span.length());
     let seen = finer.as_deref().filter(|_| options.grid_check);
     let mut on_finer =
         |checked: &Checked<'_>| seen.and_then(|seen| repeat(seen, checked, span, options));
@@ -53,7 +54,7 @@ fn repeat(
     seen: &[FinerIndicator],
     checked: &Checked<'_>,
     span: Span,
-    options: &LocateOptions,
+    options: &Goal,
 ) -> Option<GridCheck> {
     let mut evaluate = |value: f64| known(seen, checked, value);
     let same = check(&mut evaluate, checked, span, options.tolerance);

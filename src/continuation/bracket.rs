@@ -2,7 +2,7 @@
 //! narrowing the pair would still teach anything.
 
 use super::events::COUNTED;
-use super::{LocateOptions, Point};
+use super::{Goal, Point};
 use crate::topology::{Detection, Feature, FeatureKind, Verdict};
 
 /// Number of features of a kind that a detection counts.
@@ -19,7 +19,7 @@ pub(super) fn count(detection: &Detection, kind: FeatureKind) -> usize {
 /// differs, the feature that makes the difference is unresolved on the side where it is not counted. There
 /// bisection would only chase the confidence level; a quarter of the sweep's step is close enough to show
 /// where the data stop telling.
-pub(super) fn is_settled(a: &Point, b: &Point, step: f64, options: &LocateOptions) -> bool {
+pub(super) fn is_settled(a: &Point, b: &Point, step: f64, options: &Goal) -> bool {
     let width = (a.value - b.value).abs();
     if width <= options.tolerance {
         return true;

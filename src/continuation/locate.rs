@@ -4,7 +4,7 @@ use super::change::{Change, Found, changes};
 use super::grid::{Checked, GridCheck, SHARE_OF_DISTANCE};
 use super::label::{self, BifurcationStatus, LabelledPoint, PointType};
 use super::root::{Root, root};
-use super::{LocateOptions, Point, PointStatus, persistence, words};
+use super::{Goal, Point, PointStatus, persistence, words};
 use crate::density::Observable;
 use crate::topology::{Detector, IndicatorKind};
 
@@ -19,7 +19,7 @@ pub(super) fn label_points(
     points: &[Point],
     observables: &[Observable],
     detector: &dyn Detector,
-    options: &LocateOptions,
+    options: &Goal,
     check: Check<'_>,
 ) -> Vec<LabelledPoint> {
     let mut labels = label::end_points(points);
@@ -173,7 +173,7 @@ fn by_persistence(
     points: &[&Point],
     observables: &[Observable],
     change: &Change,
-    options: &LocateOptions,
+    options: &Goal,
 ) -> LabelledPoint {
     let band = persistence::band(points, change.observable, change.left);
     // Counting follows what the cells show, and nothing says how far that is from the truth, but for noise.
@@ -198,7 +198,7 @@ fn by_indicator(
     observables: &[Observable],
     change: &Change,
     detector: &dyn Detector,
-    options: &LocateOptions,
+    options: &Goal,
     check: Check<'_>,
 ) -> LabelledPoint {
     let mut row = blank(observables, change);

@@ -124,7 +124,7 @@ fn run<F: Fn(f64, &[f64]) -> f64 + Clone>(
     source.subject.family = bistable(from, to);
     let detector = PersistenceDetector::new(DetectOptions::default(), points);
     let options = LocateOptions {
-        tolerance,
+        tolerance: Some(tolerance),
         ..LocateOptions::default()
     };
     sweep(&source, &detector, points, &options, &mut ()).unwrap()

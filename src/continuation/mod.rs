@@ -44,8 +44,10 @@ use crate::topology::Detection;
 /// Settings of location.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LocateOptions {
-    /// Wanted width of a P-bifurcation's bracket, in units of the parameter.
-    pub tolerance: f64,
+    /// Wanted width of a P-bifurcation's bracket, in units of the parameter; `None` leaves it to the relative tolerance.
+    pub tolerance: Option<f64>,
+    /// Wanted width of a bracket as a share of the range that is swept.
+    pub relative_tolerance: f64,
     /// Hellinger distance between neighbouring densities above which a value between is solved too.
     pub largest_distance: f64,
     /// Whether located values are checked on a finer grid, where the source has one.
@@ -55,11 +57,33 @@ pub struct LocateOptions {
 impl Default for LocateOptions {
     fn default() -> Self {
         Self {
-            tolerance: 1e-4,
+            tolerance: None,
+            relative_tolerance: 1e-4,
             largest_distance: 0.2,
             grid_check: true,
         }
     }
+}
+
+impl LocateOptions {
+    /// What is wanted on a range of this length, in units of the parameter.
+    fn goal(&self, length: f64) -> Goal {
+        Goal {
+            tolerance: self
+                .tolerance
+                .unwrap_or(self.relative_tolerance * length.abs()),
+            largest_distance: self.largest_distance,
+            grid_check: self.grid_check,
+        }
+    }
+}
+
+/// Settings of location on a range that is known.
+#[derive(Debug, Clone, PartialEq)]
+struct Goal {
+    tolerance: f64,
+    largest_distance: f64,
+    grid_check: bool,
 }
 
 /// One parameter value of a sweep with all that was found there.

@@ -22,6 +22,11 @@ impl Span {
         }
     }
 
+    /// Distance between the ends.
+    pub(super) fn length(&self) -> f64 {
+        self.upper - self.lower
+    }
+
     /// Whether a value lies between the ends or is one of them.
     pub(super) fn contains(&self, value: f64) -> bool {
         (self.lower..=self.upper).contains(&value)

@@ -10,7 +10,7 @@ use super::locate::label_points;
 use super::root::{next_value, root};
 use super::span::Span;
 use super::{
-    DensitySource, LabelledPoint, LocateOptions, Observer, Point, SourceError, SweepResult,
+    DensitySource, Goal, LabelledPoint, LocateOptions, Observer, Point, SourceError, SweepResult,
 };
 use crate::density::hellinger;
 use crate::topology::Detector;
@@ -63,13 +63,14 @@ pub fn sweep<S: DensitySource>(
     observer: &mut dyn Observer,
 ) -> Result<SweepResult, SweepError> {
     let subject = source.subject();
+    let span = Span::new(subject, points);
     let values = evenly_spaced(subject.family.ends(), points);
     observer.begin(values.len());
     let mut run = Run {
         source,
         detector,
-        span: Span::new(subject, points),
-        options,
+        span,
+        options: options.goal(span.length()),
         observer,
         remaining: values.len(),
         points: Vec::new(),
@@ -110,7 +111,7 @@ struct Run<'a, S: DensitySource> {
     source: &'a S,
     detector: &'a dyn Detector,
     span: Span,
-    options: &'a LocateOptions,
+    options: Goal,
     observer: &'a mut dyn Observer,
     remaining: usize,
     /// Ascending in the parameter.
@@ -240,7 +241,7 @@ impl<S: DensitySource> Run<'_, S> {
             Found::Persistence => {
                 let (a, b) = (solved[change.left], solved[change.left + 1]);
                 let middle = 0.5 * (a.value + b.value);
-                let settled = is_settled(a, b, self.span.step, self.options);
+                let settled = is_settled(a, b, self.span.step, &self.options);
                 (!settled && middle > a.value && middle < b.value).then_some(middle)
             }
         })
@@ -292,7 +293,7 @@ impl<S: DensitySource> Run<'_, S> {
             &self.points,
             observables,
             self.detector,
-            self.options,
+            &self.options,
             &mut on_finer,
         );
         let has_finer = finer.map_or_else(|| self.source.finer().is_some(), |one| one.is_some());

@@ -125,7 +125,7 @@ fn run(source: &Ramp, detector: &SquareLaw, points: usize, tolerance: f64) -> Sw
         detector,
         points,
         &LocateOptions {
-            tolerance,
+            tolerance: Some(tolerance),
             ..LocateOptions::default()
         },
         &mut (),

@@ -105,7 +105,9 @@ fn the_resolved_file_holds_every_key() {
     // Between them the resolved files of all methods; `range` has become numbers.
     let texts = MethodOptions::KINDS.map(|kind| {
         let kind = format!("method.kind={kind}");
-        parse(FILE, &[&kind]).unwrap().to_toml()
+        parse(FILE, &[&kind, "locate.tolerance=1e-3"])
+            .unwrap()
+            .to_toml()
     });
     let text = texts.join("\n# next\n");
     let tables = texts.map(|text| text.parse::<toml::Table>().unwrap());
