@@ -13,9 +13,9 @@ const CELLS: usize = 64;
 const INSIDE: f64 = 0.9995;
 /// Share of an axis that must have been visited, else the box is shrunk to look more closely.
 const FILLED: f64 = 0.2;
-/// What visits reach is widened by this factor: some 1e5 states show a normal density to 4.3 standard deviations, and
-/// 5.4 leave 1e-7 outside.
-const MARGIN: f64 = 1.25;
+/// What visits reach is widened by this factor: some 1e5 states show a normal density to 4.3 standard deviations. With 5.4 of them
+/// 1e-7 of the mass is outside, and what leaks away moves located values by more than cells do; with 6.5 it is 1e-10.
+const MARGIN: f64 = 1.5;
 /// Most times that the box is changed.
 const MOST_CHANGES: usize = 40;
 
@@ -140,7 +140,7 @@ mod tests {
     use crate::system::registry;
 
     #[test]
-    fn a_normal_density_is_held_to_five_deviations_and_not_much_more() {
+    fn a_normal_density_is_held_to_six_deviations_and_not_much_more() {
         // Without friction and cubic stiffness both marginals are normal with variance σ²/(2κ).
         let model = registry::find("coulomb").unwrap();
         for sigma2 in [0.01, 1e-6] {
@@ -151,7 +151,7 @@ mod tests {
             for (from, to) in ranges {
                 assert_eq!(from, -to, "alike on both sides of the centre");
                 assert!(
-                    to > 4.5 * deviation && to < 7.5 * deviation,
+                    to > 5.5 * deviation && to < 8.5 * deviation,
                     "{to} {deviation}"
                 );
             }

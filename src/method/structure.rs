@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crate::density::{Kink, Observable, Structure};
 use crate::space::CellSpace;
-use crate::system::{SwitchingSurface, System};
+use crate::system::{SwitchingSurface, System, proved_symmetry};
 
 /// Distance from the plane, in widths of the cell beside it, at which the drift on either side is taken.
 const BESIDE: f64 = 1e-6;
@@ -63,14 +63,19 @@ pub(super) fn structure(
         .filter_map(|surface| kink(system, space, masses, &axes, *surface))
         .collect();
     Structure {
-        centre: centre(system, &axes),
+        centre: centre(system, space, &axes),
         kinks,
     }
 }
 
 /// The point of symmetry, where all axes that are kept are reflected.
-fn centre(system: &dyn System, axes: &[usize]) -> Option<Vec<f64>> {
-    let symmetry = system.symmetry()?;
+fn centre(system: &dyn System, space: &CellSpace, axes: &[usize]) -> Option<Vec<f64>> {
+    let ends: Vec<(f64, f64)> = space
+        .axes()
+        .iter()
+        .map(|axis| (axis.from(), axis.to()))
+        .collect();
+    let symmetry = proved_symmetry(system, &ends)?;
     let all = axes.iter().all(|&axis| symmetry.reflected[axis]);
     all.then(|| axes.iter().map(|&axis| symmetry.centre[axis]).collect())
 }

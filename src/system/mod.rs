@@ -18,6 +18,7 @@ mod parameters;
 mod path;
 mod rayleigh;
 pub mod registry;
+mod symmetry;
 
 pub use facts::{PeriodicDrift, SwitchingSurface, Symmetry};
 pub use family::Family;
@@ -28,6 +29,7 @@ pub use oscillator::{
     DISPLACEMENT, Damping, Duffing, FIRST_INTERNAL_STATE, Oscillator, VELOCITY, Viscous,
 };
 pub use path::Path;
+pub use symmetry::proved_symmetry;
 
 /// Number of states that are advanced together. Kernels work on whole batches, so that a model's
 /// arithmetic fills vector registers and the cost of a virtual call is shared by this many states.

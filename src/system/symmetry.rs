@@ -1,0 +1,179 @@
+//! Reflections that a system has, found and proved by trial: drift and noise at states and at their images.
+
+use super::{LANES, Lanes, Symmetry, System};
+
+/// Relative difference of drift or noise at a state and its image that is rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Batches of states that are tried.
+const BATCHES: usize = 2;
+
+/// The reflection of a system on a box with the given ends, one pair an axis: the one it declares, where that holds, or else one about the
+/// origin or the middle of the box that is found by trial, with the most axes reflected. Trial cannot tell a symmetry that fails only in a part of the box that
+/// no tried state lies in.
+pub fn proved_symmetry(system: &dyn System, ends: &[(f64, f64)]) -> Option<Symmetry> {
+    if let Some(declared) = system.symmetry() {
+        return holds(system, &declared, ends).then_some(declared);
+    }
+    let axes = system.dimension();
+    let middle: Vec<f64> = ends.iter().map(|(from, to)| 0.5 * (from + to)).collect();
+    let mut found: Vec<Symmetry> = Vec::new();
+    for centre in [vec![0.0; axes], middle] {
+        for subset in 1..1_usize << axes {
+            let candidate = Symmetry {
+                centre: centre.clone(),
+                reflected: (0..axes).map(|axis| subset >> axis & 1 == 1).collect(),
+            };
+            if holds(system, &candidate, ends) {
+                found.push(candidate);
+            }
+        }
+    }
+    let reflected = |one: &Symmetry| one.reflected.iter().filter(|&&is| is).count();
+    // The first of those with the most axes: about the origin where both serve.
+    let most = found.iter().map(reflected).max()?;
+    found.into_iter().find(|one| reflected(one) == most)
+}
+
+/// Whether drift and noise at the images of states are the images of those at the states.
+fn holds(system: &dyn System, symmetry: &Symmetry, ends: &[(f64, f64)]) -> bool {
+    let axes = system.dimension();
+    if symmetry.centre.len() != axes || symmetry.reflected.len() != axes || ends.len() != axes {
+        return false;
+    }
+    (0..BATCHES).all(|batch| {
+        let states: Vec<Lanes> = (0..axes)
+            .map(|axis| spread(batch, axis, ends[axis]))
+            .collect();
+        let images: Vec<Lanes> = (0..axes)
+            .map(|axis| match symmetry.reflected[axis] {
+                true => states[axis].map(|value| 2.0 * symmetry.centre[axis] - value),
+                false => states[axis],
+            })
+            .collect();
+        drifts_agree(system, symmetry, &states, &images) && noise_agrees(system, &states, &images)
+    })
+}
+
+/// States over an interval, of no simple ratio to each other: multiples of the golden section and its like, one an axis.
+fn spread(batch: usize, axis: usize, (from, to): (f64, f64)) -> Lanes {
+    const STEPS: [f64; 4] = [
+        0.618_033_988_75,
+        0.754_877_666_25,
+        0.569_840_290_998,
+        0.438_447_187_19,
+    ];
+    let mut lanes = [0.0; LANES];
+    for (lane, value) in lanes.iter_mut().enumerate() {
+        let share = ((batch * LANES + lane + 1) as f64 * STEPS[axis % 4]).fract();
+        *value = from + share * (to - from);
+    }
+    lanes
+}
+
+fn drifts_agree(
+    system: &dyn System,
+    symmetry: &Symmetry,
+    states: &[Lanes],
+    images: &[Lanes],
+) -> bool {
+    let at = |states: &[Lanes]| {
+        let mut drift = vec![[0.0; LANES]; states.len()];
+        system.drift(0.0, states, &mut drift);
+        drift
+    };
+    let (here, there) = (at(states), at(images));
+    (0..states.len()).all(|axis| {
+        let sign = if symmetry.reflected[axis] { -1.0 } else { 1.0 };
+        let image = here[axis].map(|value| sign * value);
+        agree(&image, &there[axis])
+    })
+}
+
+/// The sign of an amplitude does not matter: a Wiener process has none.
+fn noise_agrees(system: &dyn System, states: &[Lanes], images: &[Lanes]) -> bool {
+    (0..system.noise_axes().len()).all(|channel| {
+        let at = |states: &[Lanes]| {
+            let mut amplitude = [0.0; LANES];
+            system.amplitude(channel, 0.0, states, &mut amplitude);
+            amplitude.map(f64::abs)
+        };
+        agree(&at(states), &at(images))
+    })
+}
+
+fn agree(a: &Lanes, b: &Lanes) -> bool {
+    let size = a
+        .iter()
+        .chain(b)
+        .map(|value| value.abs())
+        .fold(0.0, f64::max);
+    let pairs = a.iter().zip(b);
+    size.is_finite()
+        && pairs
+            .into_iter()
+            .all(|(a, b)| (a - b).abs() <= ROUNDING * size)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// x' = y, y' = -y - x³ + lean + noise, which declares whatever it is told to.
+    struct Leaning {
+        lean: f64,
+        declared: Option<Symmetry>,
+    }
+
+    impl System for Leaning {
+        fn dimension(&self) -> usize {
+            2
+        }
+        fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
+            for lane in 0..LANES {
+                let (x, y) = (states[0][lane], states[1][lane]);
+                drift[0][lane] = y;
+                drift[1][lane] = -y - x.powi(3) + self.lean;
+            }
+        }
+        fn noise_axes(&self) -> &[usize] {
+            &[1]
+        }
+        fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
+            Some(0.3)
+        }
+        fn symmetry(&self) -> Option<Symmetry> {
+            self.declared.clone()
+        }
+    }
+
+    fn whole() -> Symmetry {
+        Symmetry {
+            centre: vec![0.0; 2],
+            reflected: vec![true; 2],
+        }
+    }
+
+    #[test]
+    fn a_symmetry_is_found_where_nobody_declared_one() {
+        let system = Leaning {
+            lean: 0.0,
+            declared: None,
+        };
+        for ends in [[(-2.0, 2.0), (-2.0, 2.0)], [(-2.0, 3.0), (-1.0, 2.0)]] {
+            assert_eq!(proved_symmetry(&system, &ends), Some(whole()));
+        }
+    }
+
+    #[test]
+    fn a_declared_symmetry_that_fails_is_none() {
+        let ends = [(-2.0, 2.0), (-2.0, 2.0)];
+        for declared in [None, Some(whole())] {
+            let system = Leaning {
+                lean: 1e-3,
+                declared,
+            };
+            assert_eq!(proved_symmetry(&system, &ends), None);
+        }
+    }
+}
