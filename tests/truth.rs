@@ -1,0 +1,229 @@
+//! Located values on systems with known answers that are not built in: what is called located must be so. The random sweeps are
+//! ignored by default (`cargo test --release --test truth -- --ignored --nocapture`); their results stand in docs/location.md.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use std::sync::Arc;
+
+use pbif::continuation::{
+    BifurcationStatus, LabelledPoint, LocateOptions, PointType, SweepResult, sweep,
+};
+use pbif::density::Observable;
+use pbif::method::{GeneratorMethodOptions, GeneratorSource, Problem};
+use pbif::space::{Axis, CellSpace};
+use pbif::system::{AxisDescription, Family, Lanes, Model, ParameterDescription, Path, System};
+use pbif::topology::{DetectOptions, PersistenceDetector};
+
+/// Drift of a system with one parameter.
+type Drift = fn(f64, &[f64], &mut [f64]);
+
+/// A system by its drift, with white noise on its last axis.
+struct ByDrift {
+    axes: usize,
+    theta: f64,
+    sigma: f64,
+    drift: Drift,
+    noisy: Vec<usize>,
+}
+
+impl System for ByDrift {
+    fn dimension(&self) -> usize {
+        self.axes
+    }
+    fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
+        let (mut state, mut slope) = (vec![0.0; self.axes], vec![0.0; self.axes]);
+        for lane in 0..states[0].len() {
+            for axis in 0..self.axes {
+                state[axis] = states[axis][lane];
+            }
+            (self.drift)(self.theta, &state, &mut slope);
+            for axis in 0..self.axes {
+                drift[axis][lane] = slope[axis];
+            }
+        }
+    }
+    fn noise_axes(&self) -> &[usize] {
+        &self.noisy
+    }
+    fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
+        Some(self.sigma)
+    }
+}
+
+fn model(axes: usize, sigma2: f64, drift: Drift) -> Model {
+    let names = ["x", "y"].into_iter().take(axes);
+    let described: Vec<AxisDescription> = names
+        .map(|name| AxisDescription::new(name, name, "coordinate"))
+        .collect();
+    Model::new("by_drift", "A system by its drift", move |values| {
+        Arc::new(ByDrift {
+            axes,
+            theta: values[0],
+            sigma: sigma2.sqrt(),
+            drift,
+            noisy: vec![axes - 1],
+        })
+    })
+    .with_axes(described)
+    .with_parameters([ParameterDescription::new(
+        "theta",
+        "θ",
+        "the swept parameter",
+    )])
+}
+
+/// One sweep of the last observable of a system: the marginal of its only axis, or the joint density of two.
+fn rows(
+    model: Model,
+    ends: (f64, f64),
+    points: usize,
+    axes: Vec<Axis>,
+) -> (SweepResult, Vec<LabelledPoint>) {
+    let observable = match axes.len() {
+        1 => Observable::Marginal(0),
+        _ => Observable::Joint(0, 1),
+    };
+    let path = Path::parameter("theta", ends.0, ends.1);
+    let family = Family::new(Arc::new(model), &[], path).unwrap();
+    let problem = Problem::new(family, CellSpace::new(axes).unwrap(), vec![observable]).unwrap();
+    let options = GeneratorMethodOptions::default();
+    let source = GeneratorSource::new(&problem, &options, Arc::default()).unwrap();
+    let detector = PersistenceDetector::new(DetectOptions::default(), points);
+    let result = sweep(
+        &source,
+        &detector,
+        points,
+        &LocateOptions::default(),
+        &mut (),
+    )
+    .unwrap();
+    let rows = result
+        .labels
+        .iter()
+        .filter(|row| row.kind == PointType::Bifurcation);
+    let rows = rows.cloned().collect();
+    (result, rows)
+}
+
+fn words(rows: &[LabelledPoint]) -> String {
+    let lines = rows.iter().map(|row| {
+        format!(
+            "{:?} {} ± {} {} → {}, {}\n",
+            row.status,
+            row.value,
+            row.error,
+            row.before.unwrap(),
+            row.after.unwrap(),
+            row.change
+        )
+    });
+    lines.collect()
+}
+
+/// Asserts that the rows are located at the truths, with errors within 1e-4 of the range.
+fn assert_located(rows: &[LabelledPoint], truths: &[f64], range: f64) {
+    assert_eq!(rows.len(), truths.len(), "{}", words(rows));
+    for (row, truth) in rows.iter().zip(truths) {
+        assert_eq!(
+            row.status,
+            Some(BifurcationStatus::Located),
+            "{}",
+            words(rows)
+        );
+        assert!(
+            (row.value - truth).abs() <= row.error,
+            "{truth}\n{}",
+            words(rows)
+        );
+        assert!(row.error <= 1e-4 * range, "{}", words(rows));
+    }
+}
+
+fn tilted(h: f64, state: &[f64], slope: &mut [f64]) {
+    slope[0] = h + state[0] - state[0].powi(3);
+}
+
+#[test]
+fn folds_beside_a_well_a_billion_times_as_deep_are_located() {
+    let truth = (4.0f64 / 27.0).sqrt();
+    for (sigma2, from, to) in [(0.03, -0.5, 0.5), (0.05, -0.5, 0.5), (0.25, 0.33, 0.5)] {
+        let axes = vec![Axis::uniform(-1.9, 1.9, 200).unwrap()];
+        let (_, rows) = rows(model(1, sigma2, tilted), (from, to), 41, axes);
+        let truths = [-truth, truth];
+        let inside: Vec<f64> = truths.into_iter().filter(|one| *one > from).collect();
+        assert_located(&rows, &inside, to - from);
+    }
+}
+
+#[test]
+fn two_deep_wells_split_once() {
+    fn drift(a: f64, state: &[f64], slope: &mut [f64]) {
+        slope[0] = a * state[0] - state[0].powi(3);
+    }
+    let axes = vec![Axis::uniform(-2.2, 2.2, 200).unwrap()];
+    let (result, rows) = rows(model(1, 0.01, drift), (-1.0, 1.0), 41, axes);
+    // Nobody declared the symmetry: it is found.
+    assert_located(&rows, &[0.0], 2.0);
+    assert!(result.points.len() < 100, "{}", result.points.len());
+}
+
+#[test]
+fn a_split_that_is_not_quite_symmetric_is_no_symmetric_one() {
+    fn drift(a: f64, state: &[f64], slope: &mut [f64]) {
+        slope[0] = 0.001 + a * state[0] - state[0].powi(3);
+    }
+    let axes = vec![Axis::uniform(-2.2, 2.2, 100).unwrap()];
+    let (_, rows) = rows(model(1, 0.25, drift), (-1.0, 1.0), 41, axes);
+    let truth = 3.0 * 0.0005f64.powf(2.0 / 3.0);
+    assert_eq!(rows.len(), 1, "{}", words(&rows));
+    assert!(
+        (rows[0].value - truth).abs() <= rows[0].error,
+        "{truth} {}",
+        words(&rows)
+    );
+    assert!(rows[0].error < 1e-3, "{}", words(&rows));
+}
+
+#[test]
+fn a_parameter_in_units_of_a_billion_has_the_same_row() {
+    fn drift(a: f64, state: &[f64], slope: &mut [f64]) {
+        slope[0] = 1e-9 * a * state[0] - state[0].powi(3);
+    }
+    let axes = vec![Axis::uniform(-2.2, 2.2, 100).unwrap()];
+    let (_, rows) = rows(model(1, 0.25, drift), (-1e9, 1e9), 40, axes);
+    assert_located(&rows, &[0.0], 2e9);
+}
+
+#[test]
+fn a_ring_ends_around_a_peak_where_its_moat_does() {
+    fn drift(c: f64, state: &[f64], slope: &mut [f64]) {
+        let (x, y) = (state[0], state[1]);
+        let energy = 0.5 * (x * x + y * y);
+        slope[0] = y;
+        slope[1] = -(c - energy + energy * energy) * y - x;
+    }
+    let axis = || Axis::uniform(-2.4, 2.4, 80).unwrap();
+    let (_, rows) = rows(model(2, 0.4, drift), (-0.2, 0.5), 15, vec![axis(), axis()]);
+    assert!(
+        rows[0].after.unwrap().to_string() == "peak in a ring",
+        "{}",
+        words(&rows)
+    );
+    assert_located(&rows, &[0.0, 0.25], 0.7);
+}
+
+#[test]
+fn a_fold_of_a_joint_density_is_located() {
+    fn drift(h: f64, state: &[f64], slope: &mut [f64]) {
+        let (x, y) = (state[0], state[1]);
+        slope[0] = y;
+        slope[1] = -y - x.powi(3) + x + h;
+    }
+    let axes = vec![
+        Axis::uniform(-2.6, 2.6, 100).unwrap(),
+        Axis::uniform(-3.2, 3.2, 80).unwrap(),
+    ];
+    let (_, rows) = rows(model(2, 0.5, drift), (-0.5, 0.5), 16, axes);
+    let truth = (4.0f64 / 27.0).sqrt();
+    assert_located(&rows, &[-truth, truth], 1.0);
+}
