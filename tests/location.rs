@@ -138,7 +138,7 @@ fn the_generator_locates_exact_families_within_its_stated_errors() {
     assert_located(&result, Observable::Joint(0, 1), 0.0, 2e-6);
     assert_located(&result, x, rayleigh_split_of_x(0.1, 0.02), 5e-5);
     let joint = rows(&result, Observable::Joint(0, 1))[0];
-    assert_eq!(joint.after.unwrap().to_string(), "crater");
+    assert_eq!(joint.after.unwrap().to_string(), "ring");
 }
 
 #[test]

@@ -220,11 +220,7 @@ fn exact_bifurcations_lie_in_the_stated_band() {
         assert_eq!(before, "1 peak", "{name}");
         assert_eq!(
             after,
-            if observable == "x" {
-                "2 peaks"
-            } else {
-                "crater"
-            },
+            if observable == "x" { "2 peaks" } else { "ring" },
             "{name}"
         );
     }
