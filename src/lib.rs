@@ -3,6 +3,7 @@
 //!
 //! | task | module |
 //! | --- | --- |
+//! | read formulas, differentiate and analyse them, run them on many states at a time | [`formula`] |
 //! | state a model, look up the built-in ones | [`system`] |
 //! | lay a grid of cells over the domain | [`space`] |
 //! | sample a transition matrix by trajectories (SGCM) | [`sampling`] |
@@ -26,6 +27,7 @@ pub mod compare;
 pub mod continuation;
 pub mod density;
 pub mod figure;
+pub mod formula;
 pub mod generator;
 pub mod method;
 pub mod monte_carlo;

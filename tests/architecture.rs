@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 
 /// The modules that each module may use. The order is the one of the table in `src/lib.rs`.
 const ALLOWED: &[(&str, &[&str])] = &[
-    ("system", &[]),
+    ("formula", &[]),
+    ("system", &["formula"]),
     ("space", &[]),
     ("sampling", &["system", "space"]),
     ("monte_carlo", &["system", "space", "sampling"]),

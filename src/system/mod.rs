@@ -3,7 +3,8 @@
 //! A [`System`] is an Itô equation dX = a(X, t; θ) dt + B(X, t; θ) dW in d = 1…4 dimensions with its
 //! parameters θ already bound. A [`Model`] is what it comes from: names, equations, parameters
 //! with their meaning, and a function that binds values. A [`Family`] is a model with fixed values and a [`Path`] through its
-//! parameters: what is swept. [`registry`] lists the built-in models.
+//! parameters: what is swept. [`registry`] lists the built-in models; a
+//! [`TypedModel`] makes one of equations as text.
 
 mod bistable;
 pub mod contract;
@@ -19,7 +20,9 @@ mod path;
 mod rayleigh;
 pub mod registry;
 mod symmetry;
+mod typed;
 
+pub use crate::formula::{LANES, Lanes};
 pub use facts::{PeriodicDrift, SwitchingSurface, Symmetry};
 pub use family::Family;
 pub use model::{
@@ -30,13 +33,7 @@ pub use oscillator::{
 };
 pub use path::Path;
 pub use symmetry::proved_symmetry;
-
-/// Number of states that are advanced together. Kernels work on whole batches, so that a model's
-/// arithmetic fills vector registers and the cost of a virtual call is shared by this many states.
-pub const LANES: usize = 64;
-
-/// One coordinate of a batch of [`LANES`] states.
-pub type Lanes = [f64; LANES];
+pub use typed::{FormulaPlace, Interpretation, TypedModel, TypedModelError};
 
 /// An Itô equation dX = a(X, t) dt + Σ_k b_k(X, t) e_{axis(k)} dW_k with bound parameters.
 ///

@@ -1,0 +1,332 @@
+//! Whether an expression is even or odd under a reflection of the state.
+
+use super::reflection::Reflection;
+use crate::formula::arithmetic::{Binary, Unary, small_integer};
+use crate::formula::graph::{Evaluator, Expression, Graph, Node, PartMap, Point, Symbol, TooLarge};
+
+/// What a reflection does to an expression.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Parity {
+    /// It is zero everywhere.
+    Zero,
+    /// It keeps its value.
+    Even,
+    /// It changes its sign.
+    Odd,
+    /// Neither.
+    Neither,
+}
+
+/// The parity of an expression and how it is known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ParityFinding {
+    /// What the reflection does.
+    pub parity: Parity,
+    /// Whether the form of the expression shows it; otherwise trials at many states do.
+    pub proven: bool,
+    /// A state at which it is not even, where that was found by trial.
+    pub not_even: Option<Vec<f64>>,
+    /// A state at which it is not odd, where that was found by trial.
+    pub not_odd: Option<Vec<f64>>,
+}
+
+/// Trial states at each of [`SCALES`].
+const TRIALS: usize = 200;
+/// Half-widths of the boxes that trial states are drawn from.
+const SCALES: [f64; 3] = [0.1, 1.0, 4.0];
+/// Largest difference, relative to the largest value among the trials, that counts as rounding.
+const ROUNDING: f64 = 1e-11;
+
+impl Graph {
+    /// What a reflection does to an expression with these values of the parameters.
+    ///
+    /// # Errors
+    /// [`TooLarge`].
+    pub fn parity(
+        &mut self,
+        expression: Expression,
+        reflection: &Reflection,
+        parameters: &[f64],
+    ) -> Result<ParityFinding, TooLarge> {
+        let bound = self.bound(expression, parameters)?;
+        let parity = self.parity_by_form(bound, reflection);
+        if let Some(parity) = parity {
+            return Ok(ParityFinding {
+                parity,
+                proven: true,
+                not_even: None,
+                not_odd: None,
+            });
+        }
+        Ok(self.parity_by_trial(bound, reflection))
+    }
+
+    /// The parity that the form of an expression without parameters shows.
+    fn parity_by_form(&self, expression: Expression, reflection: &Reflection) -> Option<Parity> {
+        let parts = self.parts(&[expression]);
+        let mut lines: Vec<Option<Line>> = Vec::with_capacity(parts.len());
+        let mut parities: PartMap<Option<Parity>> = PartMap::new(&parts, None);
+        for &part in &parts {
+            let line = |operand: Expression| {
+                let position = parts.binary_search(&operand).ok()?;
+                lines.get(position)?.clone()
+            };
+            let of = |operand: Expression| parities.get(operand).flatten();
+            let own = Line::of(self.node(part), &line, reflection.reflected.len());
+            let parity = own
+                .as_ref()
+                .and_then(|line| line.parity(reflection))
+                .or_else(|| parity_of(self, self.node(part), &of));
+            parities.set(part, parity);
+            lines.push(own);
+        }
+        parities.get(expression).flatten()
+    }
+
+    /// The same, looked for at many states even where the form of the expression shows it.
+    ///
+    /// # Errors
+    /// [`TooLarge`].
+    pub(super) fn parity_of_trials(
+        &mut self,
+        expression: Expression,
+        reflection: &Reflection,
+        parameters: &[f64],
+    ) -> Result<ParityFinding, TooLarge> {
+        let bound = self.bound(expression, parameters)?;
+        Ok(self.parity_by_trial(bound, reflection))
+    }
+
+    fn parity_by_trial(&self, expression: Expression, reflection: &Reflection) -> ParityFinding {
+        let mut evaluator = Evaluator::new(self, &[expression]);
+        let mut value = |state: &[f64], time: f64| {
+            evaluator.evaluate(
+                self,
+                &Point {
+                    states: state,
+                    parameters: &[],
+                    time,
+                },
+            );
+            evaluator.value(expression)
+        };
+        let mut random = Random(7);
+        let (mut not_even, mut not_odd) = (None, None);
+        for scale in SCALES {
+            let mut trials = Vec::with_capacity(TRIALS);
+            for _ in 0..TRIALS {
+                let state = random.state(reflection, scale);
+                let (time, mirrored) = (random.symmetric(10.0), reflection.mirrored(&state));
+                let (here, there) = (value(&state, time), value(&mirrored, time));
+                if here.is_finite() || there.is_finite() {
+                    trials.push((here, there, state));
+                }
+            }
+            let size = trials
+                .iter()
+                .map(|(here, _, _)| here.abs())
+                .filter(|size| size.is_finite());
+            let rounding = ROUNDING * size.fold(0.0, f64::max);
+            for (here, there, state) in trials {
+                // Infinite on one side alone is a difference too.
+                let same = (here - there).abs() <= rounding;
+                let opposite = (here + there).abs() <= rounding;
+                if !same && not_even.is_none() {
+                    not_even = Some(state.clone());
+                }
+                if !opposite && not_odd.is_none() {
+                    not_odd = Some(state);
+                }
+            }
+        }
+        let parity = match (&not_even, &not_odd) {
+            (None, None) => Parity::Zero,
+            (None, Some(_)) => Parity::Even,
+            (Some(_), None) => Parity::Odd,
+            (Some(_), Some(_)) => Parity::Neither,
+        };
+        ParityFinding {
+            parity,
+            proven: false,
+            not_even,
+            not_odd,
+        }
+    }
+}
+
+/// constant + Σ slope_i x_i.
+#[derive(Debug, Clone)]
+struct Line {
+    constant: f64,
+    slopes: Vec<f64>,
+}
+
+impl Line {
+    fn of(
+        node: Node,
+        line: &impl Fn(Expression) -> Option<Line>,
+        dimension: usize,
+    ) -> Option<Self> {
+        let constant = |constant| Line {
+            constant,
+            slopes: vec![0.0; dimension],
+        };
+        match node {
+            Node::Constant(number) => Some(constant(number.value())),
+            Node::Symbol(Symbol::State(state)) => {
+                let mut own = constant(0.0);
+                *own.slopes.get_mut(state)? = 1.0;
+                Some(own)
+            }
+            Node::Unary(Unary::Negate, a) => line(a).map(|a| a.scaled(-1.0)),
+            Node::Binary(Binary::Add, a, b) => Some(line(a)?.plus(&line(b)?, 1.0)),
+            Node::Binary(Binary::Subtract, a, b) => Some(line(a)?.plus(&line(b)?, -1.0)),
+            Node::Binary(Binary::Multiply, a, b) => {
+                let (a, b) = (line(a)?, line(b)?);
+                match (a.number(), b.number()) {
+                    (Some(factor), _) => Some(b.scaled(factor)),
+                    (_, Some(factor)) => Some(a.scaled(factor)),
+                    _ => None,
+                }
+            }
+            Node::Binary(Binary::Divide, a, b) => {
+                let divisor = line(b)?.number()?;
+                line(a).map(|a| a.scaled(1.0 / divisor))
+            }
+            _ => None,
+        }
+    }
+
+    fn number(&self) -> Option<f64> {
+        self.slopes
+            .iter()
+            .all(|slope| *slope == 0.0)
+            .then_some(self.constant)
+    }
+
+    fn scaled(mut self, factor: f64) -> Self {
+        self.constant *= factor;
+        self.slopes.iter_mut().for_each(|slope| *slope *= factor);
+        self
+    }
+
+    fn plus(mut self, other: &Self, factor: f64) -> Self {
+        self.constant += factor * other.constant;
+        for (slope, other) in self.slopes.iter_mut().zip(&other.slopes) {
+            *slope += factor * other;
+        }
+        self
+    }
+
+    /// Even without slopes along reflected axes, odd if the value at the centre is zero and other slopes are too.
+    fn parity(&self, reflection: &Reflection) -> Option<Parity> {
+        let (mut centre, mut size) = (self.constant, self.constant.abs());
+        let (mut even, mut odd) = (true, true);
+        for ((slope, reflected), at) in self
+            .slopes
+            .iter()
+            .zip(&reflection.reflected)
+            .zip(&reflection.centre)
+        {
+            if *reflected {
+                centre += slope * at;
+                size += (slope * at).abs();
+                even &= *slope == 0.0;
+            } else {
+                odd &= *slope == 0.0;
+            }
+        }
+        odd &= centre.abs() <= 4.0 * f64::EPSILON * size;
+        match (even, odd) {
+            (true, true) => Some(Parity::Zero),
+            (true, false) => Some(Parity::Even),
+            (false, true) => Some(Parity::Odd),
+            (false, false) => None,
+        }
+    }
+}
+
+/// The parity of an operation from those of its operands.
+fn parity_of(
+    graph: &Graph,
+    node: Node,
+    of: &impl Fn(Expression) -> Option<Parity>,
+) -> Option<Parity> {
+    use Parity::{Even, Odd, Zero};
+    match node {
+        Node::Constant(_) | Node::Symbol(Symbol::Time | Symbol::Parameter(_)) => Some(Even),
+        Node::Symbol(Symbol::State(_)) => None,
+        Node::Unary(Unary::Negate, a) => of(a),
+        Node::Unary(operation, a) => match of(a)? {
+            Odd if operation.is_odd() => Some(Odd),
+            Odd if operation.is_even() => Some(Even),
+            Odd => None,
+            Zero if operation.is_odd() => Some(Zero),
+            _ => Some(Even),
+        },
+        Node::Binary(Binary::Add | Binary::Subtract, a, b) => common(of(a)?, of(b)?),
+        Node::Binary(Binary::Multiply | Binary::Divide, a, b) => Some(match (of(a)?, of(b)?) {
+            (Zero, _) | (_, Zero) => Zero,
+            (a, b) if a == b => Even,
+            _ => Odd,
+        }),
+        Node::Binary(Binary::Power, a, b) => {
+            let odd_power = graph
+                .as_constant(b)
+                .and_then(small_integer)
+                .map(|n| n % 2 != 0);
+            match (of(a)?, of(b)?, odd_power) {
+                (Odd, _, Some(true)) => Some(Odd),
+                (Odd, _, Some(false)) | (Even | Zero, Even | Zero, _) => Some(Even),
+                _ => None,
+            }
+        }
+        Node::Binary(Binary::Hypot, a, b) => of(a).and(of(b)).map(|_| Even),
+        Node::Binary(Binary::Atan2, a, b) => match (of(a)?, of(b)?) {
+            (Odd, Even) => Some(Odd),
+            (Even | Zero, Even | Zero) => Some(Even),
+            _ => None,
+        },
+        Node::Binary(Binary::Equal | Binary::NotEqual, a, b) => {
+            common(of(a)?, of(b)?).map(|_| Even)
+        }
+        Node::Binary(_, a, b) => match common(of(a)?, of(b)?)? {
+            Odd => None,
+            _ => Some(Even),
+        },
+        Node::Select(condition, yes, no) => match of(condition)? {
+            Odd => None,
+            _ => common(of(yes)?, of(no)?),
+        },
+    }
+}
+
+/// The parity of a sum.
+fn common(a: Parity, b: Parity) -> Option<Parity> {
+    match (a, b) {
+        (Parity::Zero, other) | (other, Parity::Zero) => Some(other),
+        _ => (a == b).then_some(a),
+    }
+}
+
+/// Reproducible trial states.
+struct Random(u64);
+
+impl Random {
+    fn symmetric(&mut self, size: f64) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(0x5851_f42d_4c95_7f2d)
+            .wrapping_add(0x1405_7b7e_f767_814f);
+        let word = (self.0 ^ (self.0 >> 29)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        size * ((word >> 11) as f64 / (1_u64 << 52) as f64 - 1.0)
+    }
+
+    fn state(&mut self, reflection: &Reflection, scale: f64) -> Vec<f64> {
+        reflection
+            .centre
+            .iter()
+            .map(|centre| centre + self.symmetric(scale))
+            .collect()
+    }
+}

@@ -1,0 +1,171 @@
+//! What can be wrong with a model made of typed equations.
+
+use std::fmt;
+use std::ops::Range;
+
+use crate::MAX_DIMENSION;
+use crate::formula::language::FormulaError;
+use crate::formula::limits;
+use crate::formula::scope::SymbolError;
+
+/// Where a formula of a model stands.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum FormulaPlace {
+    /// The equation of an axis.
+    Equation {
+        /// The axis.
+        axis: String,
+    },
+    /// The amplitude of a noise.
+    Noise {
+        /// The axis.
+        axis: String,
+        /// The Wiener process, counted from 0 over the whole model.
+        process: usize,
+    },
+    /// A definition.
+    Definition {
+        /// Its name.
+        name: String,
+    },
+    /// A bound of an axis.
+    Bound {
+        /// The axis.
+        axis: String,
+    },
+    /// The period in time.
+    Period,
+}
+
+impl fmt::Display for FormulaPlace {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Equation { axis } => write!(f, "the equation of `{axis}`"),
+            Self::Noise { axis, process } => {
+                write!(f, "the amplitude of noise {} on `{axis}`", process + 1)
+            }
+            Self::Definition { name } => write!(f, "the definition of `{name}`"),
+            Self::Bound { axis } => write!(f, "a bound of `{axis}`"),
+            Self::Period => f.write_str("the period"),
+        }
+    }
+}
+
+/// Why typed equations do not make a model.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum TypedModelError {
+    /// No axes, or more than the methods have.
+    #[error("{given} axes; a model has 1 to {MAX_DIMENSION}")]
+    Axes {
+        /// How many are given.
+        given: usize,
+    },
+    /// A name that cannot be given: reserved, given twice, malformed.
+    #[error(transparent)]
+    Name(#[from] SymbolError),
+    /// An equation, a noise or a bound of an axis that the model does not have.
+    #[error("{place}: the model has no axis of that name; its axes are {}", .known.join(", "))]
+    UnknownAxis {
+        /// What is given for the axis.
+        place: FormulaPlace,
+        /// The axes.
+        known: Vec<String>,
+    },
+    /// An axis without an equation.
+    #[error("axis `{axis}` has no equation; write 0 for a coordinate that only noise moves")]
+    MissingEquation {
+        /// The axis.
+        axis: String,
+    },
+    /// An equation, a bound or an amplitude of one noise that is given twice.
+    #[error("{place} is given twice")]
+    Doubled {
+        /// What is given twice.
+        place: FormulaPlace,
+    },
+    /// A formula that cannot be read.
+    #[error("{place}:\n{}", .error.drawn(.text))]
+    Formula {
+        /// Where it stands.
+        place: FormulaPlace,
+        /// The formula.
+        text: String,
+        /// What is wrong with it, with the bytes of the text.
+        error: Box<FormulaError>,
+    },
+    /// A definition that needs itself.
+    #[error("{place}: it needs itself: {}", .circle.join(" → "))]
+    Circle {
+        /// The definition.
+        place: FormulaPlace,
+        /// The names in the order in which they need each other; the first is also the last.
+        circle: Vec<String>,
+        /// Where in the definition's text the next of them stands, in bytes.
+        span: Range<usize>,
+    },
+    /// One Wiener process in several equations.
+    #[error(
+        "noise {} drives {}: one noise in several equations makes noises that are correlated between axes, \
+         which the methods do not know; give each axis noises of its own", .process + 1, .axes.join(" and ")
+    )]
+    SharedNoise {
+        /// The Wiener process, counted from 0 over the whole model.
+        process: usize,
+        /// The axes where its amplitude is not zero.
+        axes: Vec<String>,
+    },
+    /// A noise that is read in two ways.
+    #[error(
+        "a noise on `{axis}` has an amplitude that depends on `{axis}`, so that Itô's and Stratonovich's readings \
+         differ; say which is meant"
+    )]
+    Interpretation {
+        /// The axis.
+        axis: String,
+    },
+    /// A Stratonovich noise whose amplitude may jump where the coordinate that it drives moves through.
+    #[error(
+        "an amplitude may jump where {argument} = 0: Stratonovich's reading then has no drift correction; \
+         use an amplitude without jumps, or Itô's reading"
+    )]
+    JumpingNoise {
+        /// What is zero where it may jump.
+        argument: String,
+    },
+    /// Time in an equation or an amplitude, without a period.
+    #[error("{place} contains the time t; a model that depends on time needs a period")]
+    TimeWithoutPeriod {
+        /// Where it stands.
+        place: FormulaPlace,
+    },
+    /// States or time in a bound or a period.
+    #[error("{place} contains `{symbol}`; it may contain parameters and numbers only")]
+    NotOfParameters {
+        /// Where it stands.
+        place: FormulaPlace,
+        /// A symbol that may not stand there.
+        symbol: String,
+    },
+    /// A default outside the range of its parameter.
+    #[error("the default of parameter `{parameter}` is {value}; it must be {allowed}")]
+    Default {
+        /// The parameter.
+        parameter: String,
+        /// Its default.
+        value: f64,
+        /// The range in words.
+        allowed: &'static str,
+    },
+    /// What follows from the formulas, derivatives for example, has no room.
+    #[error(
+        "the formulas and their derivatives have more than {} different parts",
+        limits::NODES
+    )]
+    TooLarge,
+    /// More intermediate results at one time than a tape keeps.
+    #[error(
+        "the formulas keep more than {} intermediate results at one time",
+        limits::REGISTERS
+    )]
+    TooWide,
+}

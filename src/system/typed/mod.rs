@@ -1,0 +1,273 @@
+//! Models made of typed equations: text in, a [`Model`] out.
+//!
+//! ```text
+//! TypedModel ── read: names, formulas, drift correction ──► Reading ── bind values ──► a System of tapes
+//! ```
+//!
+//! `read` turns texts into expressions and refuses what does not fit together, `bound` is the system with its values,
+//! `error` says what can be wrong. The language is described in [`crate::formula`].
+
+mod bound;
+mod error;
+mod read;
+
+use std::sync::Arc;
+
+use super::{AxisDescription, Model, ParameterDescription};
+use crate::formula::language::typeset_name;
+
+pub use error::{FormulaPlace, TypedModelError};
+
+/// How a stochastic integral is read where the amplitude of a noise depends on the state that it drives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Interpretation {
+    /// The equation is an Itô equation: the amplitude is taken before each increment.
+    Ito,
+    /// The equation is a Stratonovich equation, the limit of noise with a short memory. Its Itô drift, which is what every
+    /// method uses, has ½ Σ_k b_k ∂b_k/∂x_i more on axis i.
+    Stratonovich,
+}
+
+/// A stochastic differential equation as text, from which [`TypedModel::build`] makes a [`Model`].
+///
+/// An axis x has the equation x' = f(x, …) + Σ_k b_k ξ_k(t) with independent white noises E\[ξ(t) ξ(t+τ)\] = δ(τ). What a
+/// model declares beside its drift is read off the formulas: constant amplitudes, switching surfaces, and the reflection
+/// symmetry, which is verified at every value of the parameters.
+///
+/// ```
+/// use pbif::system::{Interpretation, ParameterDescription, ParameterRange, TypedModel, contract};
+///
+/// let model = TypedModel::new("duffing", "Duffing oscillator with dry friction", ["x", "y"])
+///     .with_equation("x", "y")
+///     .with_equation("y", "-kappa y - x (1 + mu x^2) - f_c sign(y)")
+///     .with_noise("y", ["sqrt(sigma2)", "0.1 x"])
+///     .with_interpretation(Interpretation::Stratonovich)
+///     .with_parameters([
+///         ParameterDescription::from("kappa"),
+///         ParameterDescription::from("mu").with_default(0.0),
+///         ParameterDescription::from("f_c"),
+///         ParameterDescription::from("sigma2").within(ParameterRange::Positive),
+///     ])
+///     .build()?;
+/// let values = model.values(&[("kappa", 0.1), ("f_c", 0.2), ("sigma2", 0.04)])?;
+/// let system = model.system(&values);
+/// assert_eq!(system.drift_at(0.0, &[1.0, -2.0]), vec![-2.0, 0.2 - 1.0 + 0.2]);
+/// assert_eq!(system.additive_amplitude(0), Some(0.2));
+/// assert_eq!(system.switching_surfaces()[0].axis, 1);
+/// contract::verify_model(&model, &values, &[(-2.0, 2.0); 2])?;
+///
+/// // What is wrong is shown in the formula.
+/// let refused = TypedModel::new("decay", "Linear decay", ["x"])
+///     .with_equation("x", "-rat x")
+///     .with_parameters([ParameterDescription::from("rate")])
+///     .build();
+/// assert!(refused.unwrap_err().to_string().contains("did you mean `rate`?"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct TypedModel {
+    name: String,
+    title: String,
+    axes: Vec<AxisDescription>,
+    parameters: Vec<ParameterDescription>,
+    /// Axis and drift.
+    equations: Vec<(String, String)>,
+    /// Name and formula.
+    definitions: Vec<(String, String)>,
+    /// Wiener processes, each with the axes that it drives and its amplitudes there.
+    processes: Vec<Vec<(String, String)>>,
+    interpretation: Option<Interpretation>,
+    /// Axis, lower and upper bound.
+    bounds: Vec<(String, String, String)>,
+    period: Option<String>,
+    source: String,
+    notes: Vec<String>,
+}
+
+impl TypedModel {
+    /// A model with its axes, in the order of the state; a name will do for an axis.
+    pub fn new<A: Into<AxisDescription>>(
+        name: impl Into<String>,
+        title: impl Into<String>,
+        axes: impl IntoIterator<Item = A>,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            title: title.into(),
+            axes: axes.into_iter().map(Into::into).collect(),
+            parameters: Vec::new(),
+            equations: Vec::new(),
+            definitions: Vec::new(),
+            processes: Vec::new(),
+            interpretation: None,
+            bounds: Vec::new(),
+            period: None,
+            source: String::new(),
+            notes: Vec::new(),
+        }
+    }
+
+    /// The right side of the equation of an axis, without its noise. Every axis needs one.
+    #[must_use]
+    pub fn with_equation(mut self, axis: impl Into<String>, drift: impl Into<String>) -> Self {
+        self.equations.push((axis.into(), drift.into()));
+        self
+    }
+
+    /// Independent white noises on the equation of an axis, by their amplitudes (the root of the noise intensity).
+    #[must_use]
+    pub fn with_noise<S: Into<String>>(
+        mut self,
+        axis: impl Into<String>,
+        amplitudes: impl IntoIterator<Item = S>,
+    ) -> Self {
+        let axis = axis.into();
+        for amplitude in amplitudes {
+            self.processes.push(vec![(axis.clone(), amplitude.into())]);
+        }
+        self
+    }
+
+    /// One white noise that stands in the equations of several axes, with its amplitude in each. The methods need noises
+    /// that are independent between axes, so that [`TypedModel::build`] refuses all but one amplitude that is not zero.
+    #[must_use]
+    pub fn with_shared_noise<A: Into<String>, S: Into<String>>(
+        mut self,
+        amplitudes: impl IntoIterator<Item = (A, S)>,
+    ) -> Self {
+        let amplitudes = amplitudes.into_iter();
+        let process = amplitudes.map(|(axis, amplitude)| (axis.into(), amplitude.into()));
+        self.processes.push(process.collect());
+        self
+    }
+
+    /// How the noise is read. It must be said where it makes a difference: where an amplitude on an axis depends on that
+    /// same axis.
+    #[must_use]
+    pub fn with_interpretation(mut self, interpretation: Interpretation) -> Self {
+        self.interpretation = Some(interpretation);
+        self
+    }
+
+    /// A name for a formula of states, parameters, time and other definitions, in whatever order.
+    #[must_use]
+    pub fn with_definition(mut self, name: impl Into<String>, formula: impl Into<String>) -> Self {
+        self.definitions.push((name.into(), formula.into()));
+        self
+    }
+
+    /// Values that an axis never leaves, as formulas of the parameters; see [`System::bounds`](super::System::bounds).
+    #[must_use]
+    pub fn with_bounds(
+        mut self,
+        axis: impl Into<String>,
+        lower: impl Into<String>,
+        upper: impl Into<String>,
+    ) -> Self {
+        self.bounds.push((axis.into(), lower.into(), upper.into()));
+        self
+    }
+
+    /// The period in time of formulas that contain `t`, as a formula of the parameters.
+    #[must_use]
+    pub fn with_period(mut self, period: impl Into<String>) -> Self {
+        self.period = Some(period.into());
+        self
+    }
+
+    /// The parameters, in order; a name will do for one that must be given and may be any number.
+    #[must_use]
+    pub fn with_parameters<P: Into<ParameterDescription>>(
+        mut self,
+        parameters: impl IntoIterator<Item = P>,
+    ) -> Self {
+        self.parameters
+            .extend(parameters.into_iter().map(Into::into));
+        self
+    }
+
+    /// The words that say where the model comes from.
+    #[must_use]
+    pub fn with_source(mut self, source: impl Into<String>) -> Self {
+        self.source = source.into();
+        self
+    }
+
+    /// What a user should know, one paragraph a string.
+    #[must_use]
+    pub fn with_notes<S: Into<String>>(mut self, notes: impl IntoIterator<Item = S>) -> Self {
+        self.notes.extend(notes.into_iter().map(Into::into));
+        self
+    }
+
+    /// Reads all formulas. Places where the drift is not smooth and that are no plane of one coordinate are named in the
+    /// model's notes.
+    ///
+    /// # Errors
+    /// The first [`TypedModelError`] that is found.
+    pub fn build(self) -> Result<Arc<Model>, TypedModelError> {
+        let (reading, found) = read::read(&self)?;
+        let reading = Arc::new(reading);
+        let lines = self.lines();
+        let bind = move |values: &[f64]| bound::bind(&reading, values);
+        let notes = self.notes.into_iter().chain(found);
+        let model = Model::new(self.name, self.title, bind)
+            .with_equations(lines)
+            .with_axes(self.axes)
+            .with_parameters(self.parameters)
+            .with_source(self.source)
+            .with_notes(notes);
+        Ok(Arc::new(model))
+    }
+
+    /// The equations as they were typed, one a line.
+    fn lines(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        for axis in &self.axes {
+            let own = self.equations.iter().filter(|(name, _)| *name == axis.name);
+            for (name, drift) in own {
+                let mut line = format!("{name}' = {drift}");
+                for (number, process) in self.processes.iter().enumerate() {
+                    for (_, amplitude) in process.iter().filter(|(driven, _)| driven == name) {
+                        line.push_str(&format!(" + ({amplitude}) ξ_{}(t)", number + 1));
+                    }
+                }
+                lines.push(line);
+            }
+        }
+        for (name, formula) in &self.definitions {
+            lines.push(format!("{name} = {formula}"));
+        }
+        if !self.processes.is_empty() {
+            let read = match self.interpretation {
+                Some(Interpretation::Ito) => ", read as Itô",
+                Some(Interpretation::Stratonovich) => ", read as Stratonovich",
+                None => "",
+            };
+            lines.push(format!("E[ξ_i(t) ξ_j(t+τ)] = δ_ij δ(τ){read}"));
+        }
+        lines
+    }
+}
+
+/// The symbol of a name in figures: Greek letters, and what follows `_` as a subscript.
+fn symbol(name: &str) -> String {
+    match typeset_name(name).split_once('_') {
+        Some((letter, subscript)) => format!("{letter}_{{{subscript}}}"),
+        None => typeset_name(name),
+    }
+}
+
+/// An axis by its name, with the symbol that follows from it (`alpha_0`: α₀).
+impl From<&str> for AxisDescription {
+    fn from(name: &str) -> Self {
+        Self::new(name, symbol(name), "")
+    }
+}
+
+/// A parameter by its name, with the symbol that follows from it; it must be given and may be any number.
+impl From<&str> for ParameterDescription {
+    fn from(name: &str) -> Self {
+        Self::new(name, symbol(name), "")
+    }
+}
