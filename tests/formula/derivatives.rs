@@ -53,7 +53,7 @@ fn derivatives_agree_with_differences() {
     let (mut compared, mut tried) = (0, 0);
     for number in 0..3000 {
         let text = random.formula(1 + number % 12);
-        let mut scope = support::scope();
+        let mut scope = crate::support::scope();
         let expression = scope.formula(&text).unwrap();
         let kinks = scope.graph_mut().kinks(expression).unwrap();
         for symbol in [

@@ -1,11 +1,10 @@
 //! An independent reader and evaluators of formulas, and random formulas.
-#![allow(dead_code)] // each test uses a part
+#![allow(clippy::unwrap_used)]
 
 pub(crate) mod evaluate;
 pub(crate) mod random;
 pub(crate) mod read;
 
-use pbif::formula::graph::Expression;
 use pbif::formula::scope::{Scope, Symbols};
 
 pub(crate) const STATES: [&str; 3] = ["x", "y", "z"];
@@ -64,8 +63,4 @@ pub(crate) fn states(random: &mut random::Random, count: usize) -> Vec<[f64; 3]>
         states.push(std::array::from_fn(|_| 4.0 * random.unit() - 2.0));
     }
     states
-}
-
-pub(crate) fn text_of(scope: &Scope, expression: Expression) -> Option<String> {
-    scope.text(expression).ok()
 }
