@@ -175,21 +175,51 @@ fn series(
 /// Reads the window: `spacing` is the time of one record.
 fn judge(watched: &[Watched], pilot: crate::sampling::Pilot, spacing: f64) -> Relaxation {
     let dimension = pilot.standard_deviation.len();
+    let found = correlations(watched, dimension, spacing);
+    let alive: usize = watched.iter().map(|one| one.batch.n_alive()).sum();
+    // Of what has run away, only how long it was watched is known.
+    let longest = match alive {
+        0 => RECORDS as f64,
+        _ => found.longest,
+    };
+    let speed = |axis: usize| pilot.frequency * found.variance[axis].sqrt();
+    Relaxation {
+        time: longest * spacing,
+        resolved: RECORDS as f64 >= LONG * longest,
+        averaging_time: found.averaging_time,
+        frequency: pilot.frequency,
+        crossing_time: (0..dimension)
+            .map(|axis| pilot.mean_square_width[axis].sqrt() / speed(axis))
+            .collect(),
+        runaways: 1.0 - alive as f64 / (watched.len() * LANES) as f64,
+        settled: settled(watched),
+        mean: found.mean,
+        variance: found.variance,
+        pilot,
+    }
+}
+
+/// What the records of a window say of the axes, their squares and the energy.
+struct Correlations {
+    mean: Vec<f64>,
+    variance: Vec<f64>,
+    /// As in [`Relaxation`].
+    averaging_time: Vec<f64>,
+    /// Longest autocorrelation time, in records.
+    longest: f64,
+}
+
+fn correlations(watched: &[Watched], dimension: usize, spacing: f64) -> Correlations {
     let power = |place: usize| {
         move |one: &Watched, record: usize, lane: usize| one.means[place][record][lane]
     };
-    let mut correlations: Vec<Correlation> = (0..dimension)
+    let first: Vec<Correlation> = (0..dimension)
         .map(|axis| correlation(&series(watched, &power(2 * axis))))
         .collect();
-    let mean: Vec<f64> = correlations.iter().map(|first| first.mean).collect();
+    let mean: Vec<f64> = first.iter().map(|found| found.mean).collect();
     let square = |axis: usize, one: &Watched, record: usize, lane: usize| {
         let of = |place: usize| one.means[place][record][lane];
         of(2 * axis + 1) - mean[axis] * (2.0 * of(2 * axis) - mean[axis])
-    };
-    let mut averaging_time = Vec::new();
-    let ratio = |found: &Correlation| {
-        let relative = found.long_run_variance * spacing / (found.mean * found.mean);
-        if relative.is_finite() { relative } else { 0.0 }
     };
     let squares: Vec<Correlation> = (0..dimension)
         .map(|axis| {
@@ -199,33 +229,22 @@ fn judge(watched: &[Watched], pilot: crate::sampling::Pilot, spacing: f64) -> Re
         })
         .collect();
     let variance: Vec<f64> = squares.iter().map(|found| found.mean).collect();
-    averaging_time.extend(squares.iter().map(ratio));
-    correlations.extend(squares);
     let energy = correlation(&series(watched, &|one, record, lane| {
         let part =
             |axis: usize| square(axis, one, record, lane) / variance[axis].max(f64::MIN_POSITIVE);
         (0..dimension).map(part).sum()
     }));
-    averaging_time.push(ratio(&energy));
-    correlations.push(energy);
-    let longest = correlations.iter().map(|one| one.time).fold(0.5, f64::max);
-    let alive: usize = watched.iter().map(|one| one.batch.n_alive()).sum();
-    // Of what has run away, only how long it was watched is known.
-    let longest = if alive > 0 { longest } else { RECORDS as f64 };
-    let speed = |axis: usize| pilot.frequency * variance[axis].sqrt();
-    Relaxation {
-        time: longest * spacing,
-        resolved: RECORDS as f64 >= LONG * longest,
-        averaging_time,
-        frequency: pilot.frequency,
-        crossing_time: (0..dimension)
-            .map(|axis| pilot.mean_square_width[axis].sqrt() / speed(axis))
-            .collect(),
-        runaways: 1.0 - alive as f64 / (watched.len() * LANES) as f64,
-        settled: settled(watched),
+    let ratio = |found: &Correlation| {
+        let relative = found.long_run_variance * spacing / (found.mean * found.mean);
+        if relative.is_finite() { relative } else { 0.0 }
+    };
+    let averaged = || squares.iter().chain([&energy]);
+    let times = first.iter().chain(averaged()).map(|found| found.time);
+    Correlations {
+        averaging_time: averaged().map(ratio).collect(),
+        longest: times.fold(0.5, f64::max),
         mean,
         variance,
-        pilot,
     }
 }
 

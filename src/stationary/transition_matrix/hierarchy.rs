@@ -3,6 +3,8 @@
 //!
 //! States are numbered along a Morton curve, so that the members of a lump are consecutive on every level.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::chain::Chain;
@@ -77,6 +79,45 @@ pub(super) fn levels(chain: Chain, mut keys: Vec<u128>, axes: usize) -> Vec<Leve
     levels
 }
 
+/// The pattern of some rows of a coarse chain.
+struct Pattern {
+    /// Entries of each row.
+    lengths: Vec<usize>,
+    columns: Vec<u32>,
+    /// Of every entry of the fine rows, which entry of its coarse row it goes to.
+    entries: Vec<u32>,
+}
+
+impl Pattern {
+    fn of(fine: &Chain, members: &[usize], lump_of: &[u32], rows: Range<usize>) -> Self {
+        let (mut lengths, mut columns, mut entries) = (Vec::new(), Vec::new(), Vec::new());
+        let mut found = vec![(INSIDE, 0u32); members.len() - 1];
+        for lump in rows {
+            let before = columns.len();
+            let range = fine.starts[members[lump]]..fine.starts[members[lump + 1]];
+            for &from in &fine.columns[range] {
+                let source = lump_of[from as usize];
+                let (row, entry) = &mut found[source as usize];
+                if source as usize == lump {
+                    entries.push(INSIDE);
+                    continue;
+                }
+                if *row != lump as u32 {
+                    (*row, *entry) = (lump as u32, (columns.len() - before) as u32);
+                    columns.push(source);
+                }
+                entries.push(*entry);
+            }
+            lengths.push(columns.len() - before);
+        }
+        Self {
+            lengths,
+            columns,
+            entries,
+        }
+    }
+}
+
 impl Lumping {
     /// Finds the pattern of the coarse chain; its values are left at zero.
     fn new(fine: &Chain, members: Vec<usize>) -> (Self, Chain) {
@@ -86,31 +127,13 @@ impl Lumping {
             lump_of[members[lump]..members[lump + 1]].fill(lump as u32);
         }
         let tasks: Vec<usize> = (0..lumps).step_by(LUMPS_A_TASK).collect();
-        let pattern = |&first: &usize| {
-            let last = (first + LUMPS_A_TASK).min(lumps);
-            let (mut lengths, mut columns, mut entries) = (Vec::new(), Vec::new(), Vec::new());
-            let mut found = vec![(INSIDE, 0u32); lumps];
-            for lump in first..last {
-                let before = columns.len();
-                let range = fine.starts[members[lump]]..fine.starts[members[lump + 1]];
-                for &from in &fine.columns[range] {
-                    let source = lump_of[from as usize];
-                    let (row, entry) = &mut found[source as usize];
-                    if source as usize == lump {
-                        entries.push(INSIDE);
-                        continue;
-                    }
-                    if *row != lump as u32 {
-                        (*row, *entry) = (lump as u32, (columns.len() - before) as u32);
-                        columns.push(source);
-                    }
-                    entries.push(*entry);
-                }
-                lengths.push(columns.len() - before);
-            }
-            (lengths, columns, entries)
-        };
-        let parts: Vec<_> = tasks.par_iter().map(pattern).collect();
+        let parts: Vec<Pattern> = tasks
+            .par_iter()
+            .map(|&first| {
+                let last = (first + LUMPS_A_TASK).min(lumps);
+                Pattern::of(fine, &members, &lump_of, first..last)
+            })
+            .collect();
         let mut coarse = Chain {
             starts: vec![0],
             escape: vec![0.0; lumps],
@@ -119,13 +142,13 @@ impl Lumping {
         };
         let mut entries = Vec::with_capacity(fine.columns.len());
         let mut end = 0;
-        for (lengths, columns, part) in parts {
-            for length in lengths {
+        for part in parts {
+            for length in part.lengths {
                 end += length;
                 coarse.starts.push(end);
             }
-            coarse.columns.extend(columns);
-            entries.extend(part);
+            coarse.columns.extend(part.columns);
+            entries.extend(part.entries);
         }
         coarse.values = vec![0.0; end];
         (Self { members, entries }, coarse)
