@@ -128,8 +128,8 @@ impl PersistenceDetector {
 /// Whether the density can be judged between its cells. Noise forbids it, and a plane with a jump of the derivative in a joint density: along such a
 /// plane a ridge has a sharp edge, which no polynomial follows.
 pub(super) fn is_smooth(estimated: &EstimatedDensity) -> bool {
-    let is_joint = estimated.density.axes.len() > 1;
-    !estimated.is_noisy() && !(is_joint && !estimated.structure.kinks.is_empty())
+    let is_marginal = estimated.density.axes.len() == 1;
+    !estimated.is_noisy() && (is_marginal || estimated.structure.kinks.is_empty())
 }
 
 /// Height of a component's critical point over the saddle where it dies (of a crater its depth below), between the cells, with

@@ -64,9 +64,9 @@ impl<'a> Field<'a> {
 
     /// The cell that holds a point; `None` outside.
     pub(super) fn cell_at(&self, at: &[f64]) -> Option<usize> {
-        let pairs = self.axes().iter().zip(at);
-        pairs.fold(Some(0), |cell, (axis, &at)| {
-            Some(cell? * axis.count() + axis.find(at)?)
+        let mut pairs = self.axes().iter().zip(at);
+        pairs.try_fold(0, |cell, (axis, &at)| {
+            Some(cell * axis.count() + axis.find(at)?)
         })
     }
 
