@@ -7,6 +7,7 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use pbif::cancellation::Cancellation;
 use pbif::monte_carlo::{ErgodicRun, ergodic};
 use pbif::sampling::Integrator;
 use pbif::space::{Axis, CellSpace, Grading};
@@ -66,7 +67,7 @@ fn long_trajectories(criterion: &mut Criterion) {
                 length: STEPS as f64 * STEP,
                 stride,
             };
-            let run = || ergodic(&*system, space, &[], &run, &|| false);
+            let run = || ergodic(&*system, space, &[], &run, &Cancellation::new());
             let name = format!(
                 "{name}, every {stride} steps, {}, {threads} threads",
                 integrator.name()

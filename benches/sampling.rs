@@ -8,6 +8,7 @@ use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use multiversion::multiversion;
+use pbif::cancellation::Cancellation;
 use pbif::sampling::{Integrator, SamplingOptions, sample_transitions};
 use pbif::space::{Axis, CellSpace};
 use pbif::system::{LANES, Lanes, registry};
@@ -61,7 +62,8 @@ fn sampling(criterion: &mut Criterion) {
                 integrator,
                 keep_starts: false,
             };
-            let run = || sample_transitions(&*system, &space, &seeds, &options, &|| false);
+            let run =
+                || sample_transitions(&*system, &space, &seeds, &options, &Cancellation::new());
             let name = format!("{}, {threads} threads", integrator.name());
             group.bench_function(name, |bencher| {
                 bencher.iter(|| pool.install(|| black_box(run())))

@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stderr)]
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use pbif::cancellation::Cancellation;
 use pbif::sampling::TransitionMatrix;
 use pbif::space::{Axis, CellSpace};
 use pbif::stationary::{Options, Outcome, Solver, second_eigenvalue, solve};
@@ -55,11 +56,14 @@ fn benchmark(criterion: &mut Criterion) {
             group.bench_function(solver.name(), |bencher| bencher.iter(run));
         }
         if let Some(steady) = steady {
-            eprintln!("{:?}", second_eigenvalue(&matrix, &steady));
+            eprintln!(
+                "{:?}",
+                second_eigenvalue(&matrix, &steady, &Cancellation::new())
+            );
             let options = Options::new(Solver::MultilevelAggregation, 1e-12);
             let warm = || solve(&matrix, &space, Some(&steady.mass), &options);
             group.bench_function("warm", |bencher| bencher.iter(warm));
-            let second = || second_eigenvalue(&matrix, &steady);
+            let second = || second_eigenvalue(&matrix, &steady, &Cancellation::new());
             group.bench_function("second eigenvalue", |bencher| bencher.iter(second));
         }
         group.finish();

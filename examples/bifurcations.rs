@@ -4,6 +4,7 @@
 
 #![allow(clippy::print_stdout)] // An example talks to its reader.
 
+use pbif::cancellation::Cancellation;
 use pbif::continuation::{LocateOptions, sweep};
 use pbif::density::Observable;
 use pbif::method::{Problem, SgcmOptions, SgcmSource};
@@ -16,7 +17,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let family = Family::new(registry::find("bistable")?, &[("sigma2", 0.25)], path)?;
     let space = CellSpace::new(vec![Axis::uniform(-2.2, 2.2, 100)?])?;
     let problem = Problem::new(family, space, vec![Observable::Marginal(0)])?;
-    let source = SgcmSource::new(&problem, &SgcmOptions::default(), Default::default())?;
+    let never = Cancellation::new();
+    let source = SgcmSource::new(&problem, &SgcmOptions::default(), &never)?;
     let points = 41;
     let detector = PersistenceDetector::new(DetectOptions::default(), points);
     let found = sweep(
@@ -24,6 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         &detector,
         points,
         &LocateOptions::default(),
+        &never,
         &mut (),
     )?;
     for row in &found.labels {

@@ -8,6 +8,7 @@
 
 use std::sync::Arc;
 
+use pbif::cancellation::Cancellation;
 use pbif::continuation::{LocateOptions, sweep};
 use pbif::density::Observable;
 use pbif::method::{Problem, SgcmOptions, SgcmSource};
@@ -106,14 +107,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         samples: 400,
         ..SgcmOptions::default()
     };
-    let source = SgcmSource::new(&problem, &options, Arc::default())?;
+    let never = Cancellation::new();
+    let source = SgcmSource::new(&problem, &options, &never)?;
     let points = 8;
     let detector = PersistenceDetector::new(DetectOptions::default(), points);
     let locate = LocateOptions {
         tolerance: Some(0.1),
         ..LocateOptions::default()
     };
-    let result = sweep(&source, &detector, points, &locate, &mut ())?;
+    let result = sweep(&source, &detector, points, &locate, &never, &mut ())?;
     for point in &result.points {
         let signatures: Vec<String> = point
             .detections

@@ -4,6 +4,7 @@
 
 #![allow(clippy::print_stdout)] // An example talks to its reader.
 
+use pbif::cancellation::Cancellation;
 use pbif::density::{Observable, estimate, moments, total_variation_of_masses};
 use pbif::sampling::{Integrator, SamplingOptions, pilot, sample_transitions};
 use pbif::space::{Axis, CellSpace};
@@ -27,7 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let space = CellSpace::new(vec![axis.clone(), axis])?;
 
     // A few free trajectories show which cells to start from and which steps suit the system.
-    let pilot = pilot(system.as_ref(), &space, 1);
+    let pilot = pilot(system.as_ref(), &space, 1, &Cancellation::new())?;
     let time_step = pilot.automatic_time_step(Integrator::StochasticHeun);
     let options = SamplingOptions {
         map_step: pilot.automatic_map_step(time_step),
@@ -38,8 +39,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         integrator: Integrator::StochasticHeun,
         keep_starts: false,
     };
-    let transitions =
-        sample_transitions(system.as_ref(), &space, &pilot.cells, &options, &|| false)?;
+    let transitions = sample_transitions(
+        system.as_ref(),
+        &space,
+        &pilot.cells,
+        &options,
+        &Cancellation::new(),
+    )?;
 
     // The steady state p = P p, and the same without each group of samples for the sampling error.
     let solver = Options::new(Solver::MultilevelAggregation, 1e-10);

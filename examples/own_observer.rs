@@ -4,8 +4,7 @@
 
 #![allow(clippy::print_stdout)] // An example talks to its reader.
 
-use std::sync::Arc;
-
+use pbif::cancellation::Cancellation;
 use pbif::continuation::{LocateOptions, Observer, Point, sweep};
 use pbif::density::Observable;
 use pbif::method::{Problem, SgcmOptions, SgcmSource};
@@ -14,9 +13,9 @@ use pbif::system::{Family, Path, registry};
 use pbif::topology::{DetectOptions, PersistenceDetector};
 
 /// Stops once the density has had two peaks at three points.
-#[derive(Default)]
 struct UntilTwoPeaks {
     seen: usize,
+    cancellation: Cancellation,
 }
 
 impl Observer for UntilTwoPeaks {
@@ -31,11 +30,10 @@ impl Observer for UntilTwoPeaks {
             println!("{done:3}  a = {:+.3}  {signature}", point.value);
             self.seen += usize::from(signature.peaks == 2);
         }
+        if self.seen >= 3 {
+            self.cancellation.cancel();
+        }
         Ok(())
-    }
-
-    fn interrupted(&self) -> bool {
-        self.seen >= 3
     }
 }
 
@@ -49,15 +47,26 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         samples: 5000,
         ..SgcmOptions::default()
     };
-    let source = SgcmSource::new(&problem, &options, Arc::default())?;
+    let cancellation = Cancellation::new();
+    let source = SgcmSource::new(&problem, &options, &cancellation)?;
     let points = 21;
     let detector = PersistenceDetector::new(DetectOptions::default(), points);
     let locate = LocateOptions {
         tolerance: Some(0.1),
         ..LocateOptions::default()
     };
-    let mut observer = UntilTwoPeaks::default();
-    let result = sweep(&source, &detector, points, &locate, &mut observer)?;
+    let mut observer = UntilTwoPeaks {
+        seen: 0,
+        cancellation: cancellation.clone(),
+    };
+    let result = sweep(
+        &source,
+        &detector,
+        points,
+        &locate,
+        &cancellation,
+        &mut observer,
+    )?;
     let solved = result.points.len();
     println!("{solved} points, interrupted: {}", result.interrupted);
     Ok(())

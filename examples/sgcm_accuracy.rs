@@ -7,6 +7,7 @@
 
 use std::time::Instant;
 
+use pbif::cancellation::Cancellation;
 use pbif::density::{Observable, estimate, total_variation_of_masses};
 use pbif::method::{Corrected, solve_corrected};
 use pbif::sampling::{Integrator, Pilot, SampledTransitions, SamplingOptions, pilot};
@@ -39,7 +40,7 @@ impl<'a> Trial<'a> {
         let space = CellSpace::new(vec![axis.clone(), axis])?;
         Ok(Self {
             system,
-            pilot: pilot(system, &space, 1),
+            pilot: pilot(system, &space, 1, &Cancellation::new())?,
             exact: exact_masses(system, &space)?,
             space,
         })
@@ -49,7 +50,8 @@ impl<'a> Trial<'a> {
     fn run(&self, options: &SamplingOptions) -> Result<Run, AnyError> {
         let start = Instant::now();
         let (system, seeds) = (self.system, &self.pilot.cells);
-        let transitions = sample_transitions(system, &self.space, seeds, options, &|| false)?;
+        let transitions =
+            sample_transitions(system, &self.space, seeds, options, &Cancellation::new())?;
         let sampled = start.elapsed().as_secs_f64();
         let matrix = transitions.matrix();
         let solver = Options::new(Solver::MultilevelAggregation, 1e-10);
@@ -289,7 +291,8 @@ fn integrators(system: &dyn System) -> Result<(), AnyError> {
                 let moments = pbif::density::moments(&trial.space, &steady.mass)?;
                 let spread = moments[1].standard_deviation;
                 let rate = -(-steady.info.escape_per_step).ln_1p() / run.matrix.map_step;
-                let relaxation = second_eigenvalue(&run.matrix, steady)?.relaxation_time;
+                let relaxation =
+                    second_eigenvalue(&run.matrix, steady, &Cancellation::new())?.relaxation_time;
                 let share = 100.0 * rate * relaxation.unwrap_or(f64::INFINITY);
                 println!(
                     "{:.3} | {spread:.3} | {share:.2} % |",

@@ -8,6 +8,7 @@
 use std::error::Error;
 use std::path::Path;
 
+use pbif::cancellation::Cancellation;
 use pbif::continuation::SweepResult;
 use pbif::run::StoredRun;
 use pbif::sweep_file::SweepFile;
@@ -27,8 +28,8 @@ fn solved() -> Result<String, Box<dyn Error>> {
     let mut file = SweepFile::read(Path::new("sweeps/bistable.toml"))?;
     file.set("sweep.points", "21").set("cells.x.count", "120");
     // Everything is checked, and nothing was run so far; ranges that are left to the program take some trajectories.
-    let sweep = file.validate()?.prepare()?;
-    let found = sweep.run(Default::default(), &mut ())?;
+    let sweep = file.validate()?.prepare(&Cancellation::new())?;
+    let found = sweep.run(&Cancellation::new(), &mut ())?;
     print(&found);
     println!("{}", sweep.to_toml());
     Ok(sweep.to_toml())

@@ -8,6 +8,7 @@
 
 #![allow(clippy::print_stdout)] // An example talks to its reader.
 
+use pbif::cancellation::Cancellation;
 use pbif::continuation::{LocateOptions, sweep};
 use pbif::density::Observable;
 use pbif::method::{GeneratorMethodOptions, GeneratorSource, Problem};
@@ -50,11 +51,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let watched = vec![Observable::Marginal(0), Observable::Joint(0, 1)];
     let problem = Problem::new(family, space, watched)?;
     let options = GeneratorMethodOptions::default();
-    let source = GeneratorSource::new(&problem, &options, Default::default())?;
+    let source = GeneratorSource::new(&problem, &options)?;
     let points = 11;
     let detector = PersistenceDetector::new(DetectOptions::default(), points);
     let locate = LocateOptions::default();
-    let found = sweep(&source, &detector, points, &locate, &mut ())?;
+    let found = sweep(
+        &source,
+        &detector,
+        points,
+        &locate,
+        &Cancellation::new(),
+        &mut (),
+    )?;
     for row in &found.labels {
         println!("{}: c0 = {:.3} ± {:.3}", row.label, row.value, row.error);
     }

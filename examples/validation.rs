@@ -5,6 +5,7 @@
 
 #![allow(clippy::print_stdout)] // An example talks to its reader.
 
+use pbif::cancellation::Cancellation;
 use pbif::continuation::{DensitySource, LocateOptions, PointType, sweep};
 use pbif::density::{EstimatedDensity, Observable, hellinger_of_masses, total_variation_of_masses};
 use pbif::generator::{AdvectiveScheme, automatic_grading};
@@ -133,8 +134,9 @@ impl Case {
     ) -> Result<EstimatedDensity, AnyError> {
         let value = self.parameter.1;
         let problem = self.problem((value, value), space, observable)?;
-        let source = MethodSource::new(&problem, method, Default::default())?;
-        let found = source.solve(value, None)?;
+        let source = MethodSource::new(&problem, method, &Cancellation::new())?;
+        let mut session = source.open(&Cancellation::new());
+        let found = session.solve(value)?;
         found
             .densities
             .into_iter()
@@ -383,13 +385,20 @@ impl Sweep {
         let problem = self
             .case
             .problem(self.range, &self.space, self.observable)?;
-        let source = MethodSource::new(&problem, method, Default::default())?;
+        let source = MethodSource::new(&problem, method, &Cancellation::new())?;
         let detector = PersistenceDetector::new(DetectOptions::default(), self.points);
         let options = LocateOptions {
             relative_tolerance: 5e-4,
             ..LocateOptions::default()
         };
-        let found = sweep(&source, &detector, self.points, &options, &mut ())?;
+        let found = sweep(
+            &source,
+            &detector,
+            self.points,
+            &options,
+            &Cancellation::new(),
+            &mut (),
+        )?;
         let mut rows = found
             .labels
             .iter()

@@ -12,6 +12,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
+use pbif::cancellation::Cancellation;
 use pbif::continuation::DensitySource as _;
 use pbif::density::{EstimatedDensity, Observable, Variants, estimate};
 use pbif::generator::AdvectiveScheme;
@@ -41,7 +42,7 @@ impl Example {
         let path = root.join("sweeps").join(format!("{name}.toml"));
         let mut file = SweepFile::read(&path).unwrap();
         let settings = file.set_all("test", overrides).validate().unwrap();
-        let sweep = settings.prepare().unwrap();
+        let sweep = settings.prepare(&Cancellation::new()).unwrap();
         let family = sweep.problem.family();
         let fixed = family.fixed().map(|(name, value)| (name.to_owned(), value));
         Self {
@@ -78,8 +79,9 @@ impl Example {
             ..GeneratorMethodOptions::default()
         };
         let problem = self.problem(value);
-        let source = GeneratorSource::new(&problem, &options, Default::default()).unwrap();
-        source.solve(value, None).unwrap().densities
+        let source = GeneratorSource::new(&problem, &options).unwrap();
+        let mut session = source.open(&Cancellation::new());
+        session.solve(value).unwrap().densities
     }
 
     /// Densities by trajectories planned for this value alone, and the steps they took.
@@ -91,8 +93,8 @@ impl Example {
             ..MonteCarloOptions::default()
         };
         let problem = self.problem(value);
-        let source = MonteCarloSource::new(&problem, &options, Default::default()).unwrap();
-        let (solution, found) = source.estimate(value).unwrap();
+        let source = MonteCarloSource::new(&problem, &options, &Cancellation::new()).unwrap();
+        let (solution, found) = source.estimate(value, &Cancellation::new()).unwrap();
         assert!(
             solution.report.findings.is_empty(),
             "{:?}",

@@ -8,19 +8,27 @@ use std::path::{Path, PathBuf};
 
 /// The modules that each module may use. The order is the one of the table in `src/lib.rs`.
 const ALLOWED: &[(&str, &[&str])] = &[
+    ("cancellation", &[]),
     ("formula", &[]),
     ("system", &["formula"]),
     ("space", &[]),
-    ("sampling", &["system", "space"]),
-    ("monte_carlo", &["system", "space", "sampling"]),
+    ("sampling", &["cancellation", "system", "space"]),
+    (
+        "monte_carlo",
+        &["cancellation", "system", "space", "sampling"],
+    ),
     ("generator", &["system", "space"]),
-    ("stationary", &["space", "sampling"]),
+    ("stationary", &["cancellation", "space", "sampling"]),
     ("density", &["system", "space"]),
     ("topology", &["space", "density"]),
-    ("continuation", &["system", "space", "density", "topology"]),
+    (
+        "continuation",
+        &["cancellation", "system", "space", "density", "topology"],
+    ),
     (
         "method",
         &[
+            "cancellation",
             "system",
             "space",
             "sampling",
@@ -34,6 +42,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     (
         "compare",
         &[
+            "cancellation",
             "system",
             "space",
             "sampling",
@@ -57,6 +66,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     (
         "sweep_file",
         &[
+            "cancellation",
             "system",
             "space",
             "sampling",
@@ -84,6 +94,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     (
         "cli",
         &[
+            "cancellation",
             "system",
             "space",
             "sampling",

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+use pbif::cancellation::Cancellation;
 use pbif::continuation::{DensitySource as _, Point};
 use pbif::figure::Figures;
 use pbif::sweep_file::SweepFile;
@@ -25,9 +26,14 @@ x = { range = "auto", count = 100 }
 #[test]
 fn from_a_text_to_a_figure_without_a_disk() {
     let file = SweepFile::parse("two wells", FILE);
-    let sweep = file.validate().unwrap().prepare().unwrap();
-    let source = sweep.source(Default::default()).unwrap();
-    let solved = source.solve(0.8, None).unwrap();
+    let sweep = file
+        .validate()
+        .unwrap()
+        .prepare(&Cancellation::new())
+        .unwrap();
+    let source = sweep.source(&Cancellation::new()).unwrap();
+    let mut session = source.open(&Cancellation::new());
+    let solved = session.solve(0.8).unwrap();
     let detections: Vec<_> = {
         let detector = sweep.detector();
         let densities = solved.densities.iter();
@@ -35,7 +41,7 @@ fn from_a_text_to_a_figure_without_a_disk() {
     };
     assert_eq!(detections[0].signature.to_string(), "2 peaks");
 
-    let found = sweep.run(Default::default(), &mut ()).unwrap();
+    let found = sweep.run(&Cancellation::new(), &mut ()).unwrap();
     let change = found.labels.iter().find(|row| row.label == "PB1").unwrap();
     // One peak for a ≤ 0, two for a > 0.
     assert!(
@@ -58,7 +64,7 @@ fn a_sweep_is_written_changed_and_read_again() {
     assert_eq!(file.get("sweep.pionts"), None);
     let open = file.set("sweep.points", "21").validate().unwrap();
     assert_eq!((open.points, open.axes[0].range), (21, None));
-    let sweep = open.prepare().unwrap();
+    let sweep = open.prepare(&Cancellation::new()).unwrap();
     let mut again = SweepFile::parse("again", &sweep.to_toml());
     assert_eq!(again.get("title").as_deref(), Some("\"two wells\""));
     // What was found is in the text: nothing is left to the program.

@@ -5,12 +5,10 @@
     reason = "a test that cannot be set up should stop"
 )]
 
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
-
+use pbif::cancellation::Cancellation;
 use pbif::continuation::{DensitySource, PointStatus, Solution};
 use pbif::density::Observable;
-use pbif::method::{GeneratorMethodOptions, GeneratorSource, Problem, State};
+use pbif::method::{GeneratorMethodOptions, GeneratorSource, Problem};
 use pbif::space::{Axis, CellSpace, Grading};
 use pbif::system::{Family, Path, registry};
 
@@ -30,29 +28,24 @@ fn with_source<T>(task: impl FnOnce(&GeneratorSource) -> T) -> T {
     let space = CellSpace::new(vec![x, y]).unwrap();
     let problem = Problem::new(family, space, OBSERVABLES.to_vec()).unwrap();
     let options = GeneratorMethodOptions::default();
-    let interrupt = Arc::new(AtomicBool::new(false));
-    task(&GeneratorSource::new(&problem, &options, interrupt).unwrap())
+    task(&GeneratorSource::new(&problem, &options).unwrap())
 }
 
 fn value(index: usize) -> f64 {
     -0.01 + 5e-4 * index as f64
 }
 
-fn sweep(source: &GeneratorSource, warm: bool) -> Vec<Solution<State>> {
-    let mut solutions: Vec<Solution<State>> = Vec::new();
-    for index in 0..41 {
-        let start = solutions.last().filter(|_| warm);
-        let start = start.and_then(|before| before.state.as_ref());
-        let solution = source.solve(value(index), start).unwrap();
-        assert_eq!(solution.report.status, PointStatus::Solved);
-        solutions.push(solution);
-    }
+fn sweep(source: &GeneratorSource) -> Vec<Solution<'static>> {
+    let mut session = source.open(&Cancellation::new());
+    let solutions = (0..41).map(|index| session.solve(value(index)).unwrap().detached());
     solutions
+        .inspect(|solution| assert_eq!(solution.report.status, PointStatus::Solved))
+        .collect()
 }
 
 #[test]
 fn work_counters_are_as_they_were() {
-    let solutions = with_source(|source| sweep(source, true));
+    let solutions = with_source(sweep);
     let reports = solutions.iter().map(|solution| &solution.report);
     let counts: Vec<String> = reports
         .map(|report| format!("{}+{}", report.own.factorisations, report.iterations))
@@ -71,9 +64,12 @@ fn work_counters_are_as_they_were() {
 /// between schemes, which are the errors, are known to two digits.
 #[test]
 fn a_predicted_point_is_the_point_solved_alone() {
-    let chained = with_source(|source| sweep(source, true));
+    let chained = with_source(sweep);
     for index in [7, 23, 40] {
-        let alone = with_source(|source| source.solve(value(index), None).unwrap());
+        let alone = with_source(|source| {
+            let mut session = source.open(&Cancellation::new());
+            session.solve(value(index)).unwrap().detached()
+        });
         let pairs = chained[index].densities.iter().zip(&alone.densities);
         for (a, b) in pairs {
             let masses = a.density.masses().into_iter().zip(b.density.masses());

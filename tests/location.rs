@@ -3,9 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
-
+use pbif::cancellation::Cancellation;
 use pbif::continuation::{LabelledPoint, LocateOptions, PointType, SweepResult, sweep};
 use pbif::density::Observable;
 use pbif::method::{
@@ -34,14 +32,15 @@ impl Case<'_> {
         let family = Family::new(model, self.parameters, path).unwrap();
         let space = CellSpace::new(self.axes.clone()).unwrap();
         let problem = Problem::new(family, space, self.observables.clone()).unwrap();
-        let source = MethodSource::new(&problem, method, Arc::new(AtomicBool::new(false))).unwrap();
+        let source = MethodSource::new(&problem, method, &Cancellation::new()).unwrap();
         let looks = self.points * self.observables.len();
         let detector = PersistenceDetector::new(DetectOptions::default(), looks);
         let options = LocateOptions {
             tolerance: Some(self.tolerance),
             ..LocateOptions::default()
         };
-        sweep(&source, &detector, self.points, &options, &mut ()).unwrap()
+        let never = Cancellation::new();
+        sweep(&source, &detector, self.points, &options, &never, &mut ()).unwrap()
     }
 }
 

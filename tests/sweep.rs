@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Output;
 
 use assert_cmd::Command;
+use pbif::cancellation::Cancellation;
 use pbif::sweep_file::{Grade, SweepFile};
 use tempfile::TempDir;
 
@@ -408,7 +409,11 @@ fn ranges_and_gradings_are_found() {
     let axis = "{ range = \"auto\", count = 40, grade = \"auto\" }";
     let mut file = SweepFile::read(&sweep_file("coulomb_fc")).unwrap();
     file.set("cells.x", axis).set("cells.y", axis);
-    let sweep = file.validate().unwrap().prepare().unwrap();
+    let sweep = file
+        .validate()
+        .unwrap()
+        .prepare(&Cancellation::new())
+        .unwrap();
     for axis in &sweep.settings.axes {
         // At f_c = -0.02 the ring has radius 2.5 and noise around it: 5.5 holds all but 1e-5.
         let (from, to) = axis.range.unwrap();

@@ -5,6 +5,7 @@
 
 use std::sync::Arc;
 
+use pbif::cancellation::Cancellation;
 use pbif::continuation::{
     BifurcationStatus, LabelledPoint, LocateOptions, PointType, SweepResult, sweep,
 };
@@ -87,13 +88,14 @@ fn rows(
     let family = Family::new(Arc::new(model), &[], path).unwrap();
     let problem = Problem::new(family, CellSpace::new(axes).unwrap(), vec![observable]).unwrap();
     let options = GeneratorMethodOptions::default();
-    let source = GeneratorSource::new(&problem, &options, Arc::default()).unwrap();
+    let source = GeneratorSource::new(&problem, &options).unwrap();
     let detector = PersistenceDetector::new(DetectOptions::default(), points);
     let result = sweep(
         &source,
         &detector,
         points,
         &LocateOptions::default(),
+        &Cancellation::new(),
         &mut (),
     )
     .unwrap();

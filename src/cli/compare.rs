@@ -1,8 +1,6 @@
 //! `pbif compare`: solves by every method at the values of `figures.at`, and writes tables and figures of how they agree.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 use comfy_table::{Table, presets};
 
@@ -10,6 +8,7 @@ use super::args::CompareArguments;
 use super::output::OutputFolder;
 use super::sweep::progress::Progress;
 use super::{CommandError, Outcome, warnings};
+use crate::cancellation::Cancellation;
 use crate::compare::{CompareError, Task, compare};
 use crate::figure::{Figures, write_figures};
 use crate::run::{CompareFolder, ComparedRun, compare_tables, format_number};
@@ -32,16 +31,16 @@ pub(super) fn run(
     let default = || Path::new("output").join(format!("{name}-compare"));
     let path = arguments.out.clone().unwrap_or_else(default);
     let output = OutputFolder::prepare(&path)?;
-    let (threads, cancelled) = super::interruptible(arguments.threads)?;
+    let (threads, cancellation) = super::interruptible(arguments.threads)?;
     let quiet = arguments.quiet;
-    threads.install(|| carry_out(spec, output.path(), quiet, &cancelled))
+    threads.install(|| carry_out(spec, output.path(), quiet, &cancellation))
 }
 
 fn carry_out(
     spec: &Sweep,
     path: &Path,
     quiet: bool,
-    cancelled: &Arc<AtomicBool>,
+    cancellation: &Cancellation,
 ) -> Result<Outcome, CommandError> {
     let mut at: Vec<f64> = Vec::new();
     for &value in &spec.settings.figures_at {
@@ -57,7 +56,7 @@ fn carry_out(
         monte_carlo: spec.settings.method.monte_carlo.clone(),
     };
     let progress = Progress::new(2 + 3 * at.len(), quiet);
-    let compared = compare(&task, cancelled, &mut |step| {
+    let compared = compare(&task, cancellation, &mut |step| {
         progress.step(&step.next, step.done, step.total);
     });
     let comparison = match compared {

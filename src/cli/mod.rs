@@ -13,11 +13,10 @@ mod warnings;
 
 use std::io::{self, IsTerminal as _, Write as _};
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Parser as _;
 
+use crate::cancellation::Cancellation;
 use crate::sweep_file::{Diagnostic, Report, Settings, SweepFile};
 use args::{Arguments, Command};
 use output::OutputError;
@@ -113,15 +112,15 @@ pub fn run() -> ExitCode {
 fn dispatch(command: &Command) -> Result<Outcome, CommandError> {
     match command {
         Command::Sweep { input, run } => {
-            let spec = load(input, run.quiet)?.prepare()?;
+            let spec = load(input, run.quiet)?.prepare(&Cancellation::new())?;
             sweep::run(&spec, &input.name(), run)
         }
         Command::Check { input } => {
-            let spec = load(input, false)?.prepare()?;
+            let spec = load(input, false)?.prepare(&Cancellation::new())?;
             print(&check::text(&input.file, &spec)?)
         }
         Command::Compare { input, run } => {
-            let spec = load(input, run.quiet)?.prepare()?;
+            let spec = load(input, run.quiet)?.prepare(&Cancellation::new())?;
             compare::run(&spec, &input.name(), run)
         }
         Command::Detect { run } => detect::run(run),
@@ -167,22 +166,23 @@ fn render(error: CommandError, styled: bool) -> String {
     format!("{findings}{count}; nothing was run or written\n")
 }
 
-/// The threads that a command runs on (`None`: one a core), and a flag that the first interrupt sets. The second ends
+/// The threads that a command runs on (`None`: one a core), and what the first interrupt cancels. The second ends
 /// the program at once.
 fn interruptible(
     threads: Option<usize>,
-) -> Result<(rayon::ThreadPool, Arc<AtomicBool>), CommandError> {
+) -> Result<(rayon::ThreadPool, Cancellation), CommandError> {
     let threads = rayon::ThreadPoolBuilder::new()
         .num_threads(threads.unwrap_or(0))
         .build()?;
-    let cancelled = Arc::new(AtomicBool::new(false));
-    let flag = cancelled.clone();
+    let cancellation = Cancellation::new();
+    let asked = cancellation.clone();
     ctrlc::set_handler(move || {
-        if flag.swap(true, Ordering::Relaxed) {
+        if asked.is_cancelled() {
             // Nothing is half-written: files are put in place by renaming.
             #[allow(clippy::exit)]
             std::process::exit(130);
         }
+        asked.cancel();
     })?;
-    Ok((threads, cancelled))
+    Ok((threads, cancellation))
 }

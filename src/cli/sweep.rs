@@ -4,18 +4,17 @@ pub(super) mod progress;
 pub(super) mod summary;
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use super::args::SweepArguments;
 use super::output::OutputFolder;
 use super::{CommandError, Outcome, warnings};
+use crate::cancellation::Cancellation;
 use crate::continuation::{
     BifurcationStatus, Observer, Point, Subject, SweepError, SweepResult, sweep,
 };
 use crate::figure::{Figures, write_figures};
-use crate::method::MethodSource;
+use crate::method::{MethodError, MethodSource};
 use crate::run::{Ending, Manifest, RunError, RunFolder};
 use crate::sweep_file::Sweep;
 use progress::Progress;
@@ -30,9 +29,16 @@ pub(super) fn run(
     arguments: &SweepArguments,
 ) -> Result<Outcome, CommandError> {
     let output = OutputFolder::prepare(&output_path(name, arguments.out.as_deref()))?;
-    let (threads, cancelled) = super::interruptible(arguments.threads)?;
+    let (threads, cancellation) = super::interruptible(arguments.threads)?;
     let path = output.path().to_owned();
-    threads.install(|| Run::new(spec, &path, arguments.quiet, cancelled)?.carry_out())
+    let prepared = threads.install(|| Run::new(spec, &path, arguments.quiet, cancellation));
+    match prepared {
+        Err(CommandError::Method(MethodError::Cancelled(_))) => {
+            super::print("interrupted: nothing was written\n")?;
+            Ok(Outcome::Interrupted)
+        }
+        prepared => threads.install(|| prepared?.carry_out()),
+    }
 }
 
 /// The folder the results go to: as asked for, or `output/` and the name of the sweep file.
@@ -47,7 +53,7 @@ struct Run<'a> {
     manifest: Manifest,
     progress: Progress,
     quiet: bool,
-    cancelled: Arc<AtomicBool>,
+    cancellation: Cancellation,
 }
 
 impl<'a> Run<'a> {
@@ -55,10 +61,10 @@ impl<'a> Run<'a> {
         spec: &'a Sweep,
         path: &Path,
         quiet: bool,
-        cancelled: Arc<AtomicBool>,
+        cancellation: Cancellation,
     ) -> Result<Self, CommandError> {
         let progress = Progress::new(spec.settings.points, quiet);
-        let source = spec.source(cancelled.clone())?;
+        let source = spec.source(&cancellation)?;
         let cells = spec.problem.space().n_cells();
         progress.say(&format!("{}, {cells} cells", source.describe()));
         let resolved = spec.to_toml();
@@ -73,7 +79,7 @@ impl<'a> Run<'a> {
             manifest,
             progress,
             quiet,
-            cancelled,
+            cancellation,
         })
     }
 
@@ -111,13 +117,13 @@ impl<'a> Run<'a> {
             subject: self.spec.problem.subject(),
             folder: &mut self.folder,
             progress: &self.progress,
-            cancelled: &self.cancelled,
         };
         sweep(
             &self.source,
             &detector,
             self.spec.settings.points,
             &self.spec.settings.locate,
+            &self.cancellation,
             &mut recorder,
         )
         .map_err(|error| match error {
@@ -152,7 +158,6 @@ struct Recorder<'a> {
     subject: &'a Subject,
     folder: &'a mut RunFolder,
     progress: &'a Progress,
-    cancelled: &'a AtomicBool,
 }
 
 impl Observer for Recorder<'_> {
@@ -165,10 +170,6 @@ impl Observer for Recorder<'_> {
         self.folder.add_point(self.subject, point)?;
         self.progress.point(self.subject, point, done, remaining);
         Ok(())
-    }
-
-    fn interrupted(&self) -> bool {
-        self.cancelled.load(Ordering::Relaxed)
     }
 }
 

@@ -1,13 +1,11 @@
 //! Error against time: every method at one parameter value over a few grids or numbers of samples.
 
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
-
 use super::solve::{Sources, generator_on};
 use super::{
     CompareError, ComparedValue, Distance, Method, PAPER_CELLS, Solved, Task, distances,
     exact_density, uniform_cells,
 };
+use crate::cancellation::Cancellation;
 use crate::density::{EstimatedDensity, Observable};
 use crate::space::CellSpace;
 
@@ -67,7 +65,7 @@ pub(super) fn measure(
     common: &CellSpace,
     sources: &Sources<'_>,
     values: &[ComparedValue],
-    cancelled: &Arc<AtomicBool>,
+    cancellation: &Cancellation,
 ) -> Result<Option<Accuracy>, CompareError> {
     let complete = |value: &&ComparedValue| {
         let mut all = value.solved.iter();
@@ -86,7 +84,7 @@ pub(super) fn measure(
     let gauge = Gauge {
         task,
         common,
-        cancelled,
+        cancellation,
         compared,
         observable,
     };
@@ -97,7 +95,7 @@ pub(super) fn measure(
 struct Gauge<'a> {
     task: &'a Task<'a>,
     common: &'a CellSpace,
-    cancelled: &'a Arc<AtomicBool>,
+    cancellation: &'a Cancellation,
     compared: &'a ComparedValue,
     observable: Observable,
 }
@@ -154,7 +152,7 @@ impl Gauge<'_> {
         let axes = self.task.problem.space().axes().iter();
         let space = CellSpace::new(axes.map(|axis| axis.refined(factor)).collect())?;
         let value = self.compared.value;
-        let solved = generator_on(self.task, &space, self.common, value, self.cancelled)?;
+        let solved = generator_on(self.task, &space, self.common, value, self.cancellation)?;
         Ok((space, solved))
     }
 

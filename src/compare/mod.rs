@@ -18,12 +18,10 @@ pub use exact::{exact_density, exact_masses};
 pub use overlap::{rebin, rebin_density};
 pub use solve::{Solved, Work};
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-
+use crate::cancellation::{Cancellation, Cancelled};
 use crate::continuation::Subject;
 use crate::density::{EstimatedDensity, Observable};
-use crate::method::{GeneratorMethodOptions, MonteCarloOptions, Problem, SgcmOptions};
+use crate::method::{GeneratorMethodOptions, MethodError, MonteCarloOptions, Problem, SgcmOptions};
 use crate::space::{Axis, CellSpace};
 use solve::Sources;
 
@@ -224,7 +222,7 @@ pub enum CompareError {
     Interrupted,
     /// A method refuses.
     #[error(transparent)]
-    Method(#[from] crate::method::MethodError),
+    Method(MethodError),
     /// The common cells cannot be laid out.
     #[error(transparent)]
     Space(#[from] crate::space::SpaceError),
@@ -234,6 +232,15 @@ pub enum CompareError {
     /// A source of densities refuses.
     #[error(transparent)]
     Source(Box<dyn std::error::Error + Send + Sync>),
+}
+
+impl From<MethodError> for CompareError {
+    fn from(error: MethodError) -> Self {
+        match error {
+            MethodError::Cancelled(_) => Self::Interrupted,
+            error => Self::Method(error),
+        }
+    }
 }
 
 /// The common cells of a sweep on `space`: the same ranges, [`PAPER_CELLS`] cells of equal width along the first two axes and as many as
@@ -257,14 +264,14 @@ fn uniform_cells(space: &CellSpace, count: usize) -> Result<CellSpace, crate::sp
     CellSpace::new(axes?)
 }
 
-/// Solves by every method at every value and compares. `observe` is told before every step. Setting `cancelled` ends in
+/// Solves by every method at every value and compares. `observe` is told before every step. Cancelled, it ends in
 /// [`CompareError::Interrupted`]. Everything but the times is the same for any number of threads.
 ///
 /// # Errors
 /// [`CompareError`].
 pub fn compare(
     task: &Task<'_>,
-    cancelled: &Arc<AtomicBool>,
+    cancellation: &Cancellation,
     observe: &mut dyn FnMut(&Progress),
 ) -> Result<Comparison, CompareError> {
     let common = common_cells(task.problem.space())?;
@@ -274,13 +281,12 @@ pub fn compare(
     let mut tell = |next: String| {
         observe(&Progress { done, total, next });
         done += 1;
-        match cancelled.load(Ordering::Relaxed) {
-            true => Err(CompareError::Interrupted),
-            false => Ok(()),
-        }
+        cancellation
+            .check()
+            .map_err(|Cancelled| CompareError::Interrupted)
     };
     tell("choosing steps".to_owned())?;
-    let sources = Sources::new(task, &common, cancelled)?;
+    let sources = Sources::new(task, &common, cancellation)?;
     let family = task.problem.family();
     let mut values = Vec::new();
     for &value in task.at {
@@ -301,7 +307,7 @@ pub fn compare(
         });
     }
     tell("error against time".to_owned())?;
-    let accuracy = accuracy::measure(task, &common, &sources, &values, cancelled)?;
+    let accuracy = accuracy::measure(task, &common, &sources, &values, cancellation)?;
     Ok(Comparison {
         common,
         subject: task.problem.subject().clone(),

@@ -1,19 +1,16 @@
 //! One method at one parameter value: its density on the common cells, and what it cost.
 
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use super::exact::axes_of;
 use super::{CompareError, Method, PAPER_MAP_STEP, Task, overlap::rebin_density};
+use crate::cancellation::Cancellation;
 use crate::continuation::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
 use crate::density::EstimatedDensity;
 use crate::method::{
-    Correction, GeneratorSource, MethodError, MonteCarloOptions, MonteCarloSource, SgcmOptions,
-    SgcmSource, State, StepChoice,
+    Correction, GeneratorSource, MonteCarloOptions, MonteCarloSource, SgcmOptions, SgcmSource,
+    StepChoice,
 };
-use crate::monte_carlo::MonteCarloError;
-use crate::sampling::SamplingError;
 use crate::space::CellSpace;
 
 /// What a solve took.
@@ -66,7 +63,7 @@ pub struct Solved {
 pub(super) struct Sources<'a> {
     task: &'a Task<'a>,
     common: &'a CellSpace,
-    cancelled: &'a Arc<AtomicBool>,
+    cancellation: &'a Cancellation,
     sgcm: SgcmSource,
     sgcm_seconds: f64,
     monte_carlo: MonteCarloSource,
@@ -77,18 +74,18 @@ impl<'a> Sources<'a> {
     pub(super) fn new(
         task: &'a Task<'a>,
         common: &'a CellSpace,
-        cancelled: &'a Arc<AtomicBool>,
+        cancellation: &'a Cancellation,
     ) -> Result<Self, CompareError> {
         let clock = Instant::now();
-        let sgcm = sgcm_on(task, common, cancelled)?;
+        let sgcm = sgcm_on(task, common, cancellation)?;
         let sgcm_seconds = clock.elapsed().as_secs_f64();
         let clock = Instant::now();
         let problem = task.problem.on(common.clone())?;
-        let monte_carlo = MonteCarloSource::new(&problem, &task.monte_carlo, cancelled.clone())?;
+        let monte_carlo = MonteCarloSource::new(&problem, &task.monte_carlo, cancellation)?;
         Ok(Self {
             task,
             common,
-            cancelled,
+            cancellation,
             sgcm,
             sgcm_seconds,
             monte_carlo,
@@ -102,12 +99,18 @@ impl<'a> Sources<'a> {
             self.task.problem.space(),
             self.common,
             value,
-            self.cancelled,
+            self.cancellation,
         )
     }
 
     pub(super) fn sgcm(&self, value: f64) -> Result<Vec<Solved>, CompareError> {
-        let mut both = sgcm_both(&self.sgcm, &self.task.sgcm, self.common, value)?;
+        let mut both = sgcm_both(
+            &self.sgcm,
+            &self.task.sgcm,
+            self.common,
+            value,
+            self.cancellation,
+        )?;
         for solved in &mut both {
             solved.work.preparation_seconds = self.sgcm_seconds;
         }
@@ -120,6 +123,7 @@ impl<'a> Sources<'a> {
             &self.task.monte_carlo,
             self.common,
             value,
+            self.cancellation,
         )?;
         solved.work.preparation_seconds = self.monte_carlo_seconds;
         Ok(solved)
@@ -131,7 +135,13 @@ impl<'a> Sources<'a> {
         space: &CellSpace,
         value: f64,
     ) -> Result<Vec<Solved>, CompareError> {
-        sgcm_both(&self.sgcm.on(space)?, &self.task.sgcm, self.common, value)
+        sgcm_both(
+            &self.sgcm.on(space)?,
+            &self.task.sgcm,
+            self.common,
+            value,
+            self.cancellation,
+        )
     }
 
     /// Monte Carlo for a share of its time.
@@ -141,6 +151,7 @@ impl<'a> Sources<'a> {
             &self.task.monte_carlo,
             self.common,
             value,
+            self.cancellation,
         )
     }
 }
@@ -149,7 +160,7 @@ impl<'a> Sources<'a> {
 fn sgcm_on(
     task: &Task<'_>,
     space: &CellSpace,
-    cancelled: &Arc<AtomicBool>,
+    cancellation: &Cancellation,
 ) -> Result<SgcmSource, CompareError> {
     let problem = task.problem.on(space.clone())?;
     let source = |map_step: f64| {
@@ -158,7 +169,7 @@ fn sgcm_on(
             correction: Correction::Slope,
             ..task.sgcm.clone()
         };
-        SgcmSource::new(&problem, &options, cancelled.clone())
+        SgcmSource::new(&problem, &options, cancellation)
     };
     let paper = source(PAPER_MAP_STEP)?;
     Ok(match paper.time_step() > PAPER_MAP_STEP {
@@ -173,15 +184,17 @@ pub(super) fn generator_on(
     space: &CellSpace,
     common: &CellSpace,
     value: f64,
-    cancelled: &Arc<AtomicBool>,
+    cancellation: &Cancellation,
 ) -> Result<Solved, CompareError> {
     let clock = Instant::now();
     let problem = task.problem.on(space.clone())?;
-    let source = GeneratorSource::new(&problem, &task.generator, cancelled.clone())?;
-    let solution = source.solve(value, None).map_err(|error| match error {
+    let source = GeneratorSource::new(&problem, &task.generator)?;
+    let mut session = source.open(cancellation);
+    let solution = session.solve(value).map_err(|error| match error {
         SourceError::Interrupted => CompareError::Interrupted,
         SourceError::Method(error) => CompareError::Source(error),
     })?;
+    let solution = solution.detached();
     let work = Work {
         solve_seconds: clock.elapsed().as_secs_f64(),
         bytes: task.generator.cost(space).ok().map(|cost| cost.bytes),
@@ -197,9 +210,10 @@ fn sgcm_both(
     options: &SgcmOptions,
     common: &CellSpace,
     value: f64,
+    cancellation: &Cancellation,
 ) -> Result<Vec<Solved>, CompareError> {
     let clock = Instant::now();
-    let point = source.sample_at(value, None).map_err(stopped)?;
+    let point = source.sample_at(value, None, cancellation)?;
     let sampling_seconds = clock.elapsed().as_secs_f64();
     let transitions = point.transitions();
     // Both corrections work on samples that keep their starts.
@@ -224,7 +238,7 @@ fn sgcm_both(
     .into_iter()
     .map(|(method, correction)| {
         let clock = Instant::now();
-        let solution = source.solve_sampled(&point, correction, None)?;
+        let (solution, _) = source.solve_sampled(&point, correction, None, cancellation)?;
         let work = Work {
             solve_seconds: clock.elapsed().as_secs_f64(),
             ..work.clone()
@@ -240,9 +254,10 @@ fn monte_carlo_by(
     options: &MonteCarloOptions,
     common: &CellSpace,
     value: f64,
+    cancellation: &Cancellation,
 ) -> Result<Solved, CompareError> {
     let clock = Instant::now();
-    let (solution, estimate) = source.estimate(value).map_err(stopped)?;
+    let (solution, estimate) = source.estimate(value, cancellation)?;
     let work = Work {
         sampling_seconds: clock.elapsed().as_secs_f64(),
         steps: estimate.steps,
@@ -258,19 +273,10 @@ fn monte_carlo_by(
     })
 }
 
-/// Tells an interrupt from a failure.
-fn stopped(error: MethodError) -> CompareError {
-    match error {
-        MethodError::Sampling(SamplingError::Cancelled)
-        | MethodError::MonteCarlo(MonteCarloError::Cancelled) => CompareError::Interrupted,
-        error => error.into(),
-    }
-}
-
 /// Brings the densities to the common cells.
 fn solved(
     method: Method,
-    solution: Solution<State>,
+    solution: Solution<'_>,
     work: Work,
     time_step: Option<f64>,
     common: &CellSpace,

@@ -6,7 +6,7 @@
 
 use super::root::Root;
 use super::span::Span;
-use super::{DensitySource, SourceError};
+use super::{Session, SourceError};
 use crate::topology::{Detector, IndicatorKind};
 
 /// Error of the finer value over its distance to the coarser one: 1/(1.25² - 1).
@@ -92,15 +92,14 @@ pub(super) fn known(seen: &[FinerIndicator], checked: &Checked<'_>, value: f64) 
     })
 }
 
-/// Solves on the finer grid, from the state of the value before.
-pub(super) fn solve<S: DensitySource>(
-    finer: &S,
+/// Solves on the finer grid.
+pub(super) fn solve(
+    finer: &mut dyn Session,
     detector: &dyn Detector,
     checked: &Checked<'_>,
     value: f64,
-    state: &mut Option<S::State>,
 ) -> Seen {
-    let solution = match finer.solve(value, state.as_ref()) {
+    let solution = match finer.solve(value) {
         Ok(solution) => solution,
         Err(SourceError::Interrupted) => return Seen::Unknown,
         Err(SourceError::Method(_)) => return Seen::Absent,
@@ -108,7 +107,6 @@ pub(super) fn solve<S: DensitySource>(
     let density = solution.densities.get(checked.observable);
     let indicator =
         density.and_then(|density| detector.indicator(density, checked.kind, checked.place));
-    *state = solution.state.or(state.take());
     indicator.map_or(Seen::Absent, |indicator| Seen::Value(indicator.value))
 }
 

@@ -1,12 +1,17 @@
 //! Location with the real detector on closed-form densities, whose bifurcations are known exactly.
 
 use super::*;
+use crate::cancellation::Cancellation;
 use crate::density::{Density, EstimatedDensity, Kink, Observable, Structure, Variants};
 use crate::space::Axis;
 use crate::system::examples::bistable;
 use crate::topology::{DetectOptions, PersistenceDetector};
 
-/// A density p(x; θ) of one or two axes, by Gauss quadrature over cells; counts its solves.
+/// p(x; θ), not normalised.
+trait Formula: Fn(f64, &[f64]) -> f64 + Clone + Send + Sync + 'static {}
+impl<F: Fn(f64, &[f64]) -> f64 + Clone + Send + Sync + 'static> Formula for F {}
+
+/// A density of one or two axes, by Gauss quadrature over cells.
 #[derive(Clone)]
 struct Exact<F> {
     subject: Subject,
@@ -14,7 +19,6 @@ struct Exact<F> {
     structure: fn(f64) -> Structure,
     density: F,
     scale: f64,
-    solves: std::cell::Cell<usize>,
 }
 
 const GAUSS: [(f64, f64); 3] = [
@@ -23,7 +27,7 @@ const GAUSS: [(f64, f64); 3] = [
     (0.774_596_669_241_483_4, 5.0 / 18.0),
 ];
 
-impl<F: Fn(f64, &[f64]) -> f64 + Clone> Exact<F> {
+impl<F: Formula> Exact<F> {
     fn new(axes: usize, count: usize, structure: fn(f64) -> Structure, density: F) -> Self {
         let subject = Subject {
             family: bistable(-1.0, 1.0),
@@ -31,6 +35,7 @@ impl<F: Fn(f64, &[f64]) -> f64 + Clone> Exact<F> {
                 1 => Observable::Marginal(0),
                 _ => Observable::Joint(0, 1),
             }],
+            cell_check: CellCheck::OnFinerCells,
         };
         Self {
             subject,
@@ -38,7 +43,6 @@ impl<F: Fn(f64, &[f64]) -> f64 + Clone> Exact<F> {
             structure,
             density,
             scale: 1.0,
-            solves: std::cell::Cell::new(0),
         }
     }
 
@@ -63,15 +67,8 @@ impl<F: Fn(f64, &[f64]) -> f64 + Clone> Exact<F> {
     }
 }
 
-impl<F: Fn(f64, &[f64]) -> f64 + Clone> DensitySource for Exact<F> {
-    type State = ();
-
-    fn subject(&self) -> &Subject {
-        &self.subject
-    }
-
-    fn solve(&self, value: f64, _: Option<&()>) -> Result<Solution<()>, SourceError> {
-        self.solves.set(self.solves.get() + 1);
+impl<F: Formula> Exact<F> {
+    fn solve(&self, value: f64) -> Solution<'static> {
         let cells = self.axes[0].count().pow(self.axes.len() as u32);
         let values: Vec<f64> = (0..cells).map(|cell| self.average(value, cell)).collect();
         let mut density = Density {
@@ -83,28 +80,39 @@ impl<F: Fn(f64, &[f64]) -> f64 + Clone> DensitySource for Exact<F> {
             .values
             .iter_mut()
             .for_each(|p| *p *= self.scale / total);
-        let observable = self.subject.observables[0];
-        Ok(Solution {
-            report: SolveReport::solved("exact"),
-            moments: Vec::new(),
-            densities: vec![EstimatedDensity {
-                observable,
-                standard_error: vec![0.0; density.values.len()],
-                density,
-                variants: Variants::None,
-                structure: (self.structure)(value),
-                negligible: crate::density::NEGLIGIBLE,
-            }],
-            state: Some(()),
-        })
+        let mut solution = Solution::without_density(SolveReport::solved("exact"));
+        solution.densities = vec![EstimatedDensity {
+            observable: self.subject.observables[0],
+            standard_error: vec![0.0; density.values.len()],
+            density,
+            variants: Variants::None,
+            structure: (self.structure)(value),
+            negligible: crate::density::NEGLIGIBLE,
+        }];
+        solution
+    }
+}
+
+impl<F: Formula> DensitySource for Exact<F> {
+    fn method(&self) -> &'static str {
+        "exact"
     }
 
-    fn finer(&self) -> Option<Self> {
+    fn subject(&self) -> &Subject {
+        &self.subject
+    }
+
+    fn open(&self, _: &Cancellation) -> Box<dyn Session> {
+        let source = self.clone();
+        Box::new(move |value: f64| Ok(source.solve(value)))
+    }
+
+    fn finer(&self) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
         let axes = self.axes.iter().map(|axis| axis.refined(1.5)).collect();
-        Some(Self {
+        Ok(Some(Box::new(Self {
             axes,
             ..self.clone()
-        })
+        })))
     }
 }
 
@@ -115,7 +123,7 @@ fn centred(axes: usize) -> Structure {
     }
 }
 
-fn run<F: Fn(f64, &[f64]) -> f64 + Clone>(
+fn run<F: Formula>(
     source: &Exact<F>,
     (from, to, points): (f64, f64, usize),
     tolerance: f64,
@@ -127,7 +135,8 @@ fn run<F: Fn(f64, &[f64]) -> f64 + Clone>(
         tolerance: Some(tolerance),
         ..LocateOptions::default()
     };
-    sweep(&source, &detector, points, &options, &mut ()).unwrap()
+    let never = Cancellation::new();
+    sweep(&source, &detector, points, &options, &never, &mut ()).unwrap()
 }
 
 fn rows(result: &SweepResult) -> Vec<&LabelledPoint> {
@@ -148,7 +157,7 @@ fn words(row: &LabelledPoint) -> String {
 }
 
 /// One peak to two at θ = 0.03: log p = 2((θ - 0.03) x²/2 - x⁴/4)/σ², σ² = 0.5.
-fn split() -> Exact<impl Fn(f64, &[f64]) -> f64 + Clone> {
+fn split() -> Exact<impl Formula> {
     Exact::new(
         1,
         100,
@@ -201,7 +210,7 @@ fn scale_and_direction_change_no_row() {
 }
 
 /// A main peak at -1 and, from θ = 0 on, a pair born at 0.5: (log p)' = -(x + 1)(2 (x - 0.5)² - θ); mirrored for sign -1.
-fn flank(sign: f64) -> Exact<impl Fn(f64, &[f64]) -> f64 + Clone> {
+fn flank(sign: f64) -> Exact<impl Formula> {
     Exact::new(
         1,
         120,

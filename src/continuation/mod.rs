@@ -30,7 +30,7 @@ pub use label::{BifurcationStatus, LabelledPoint, PointType};
 pub use observer::Observer;
 pub use report::{MethodPart, PointStatus, SolveReport};
 pub use root::ErrorParts;
-pub use source::{DensitySource, Solution, SourceError, Subject};
+pub use source::{CellCheck, DensitySource, Sensitivity, Session, Solution, SourceError, Subject};
 pub use sweep::{SweepError, evenly_spaced, sweep};
 
 #[cfg(test)]

@@ -2,7 +2,8 @@
 
 use super::Point;
 
-/// Receives every point as soon as it is done, and may stop the sweep. All methods have defaults.
+/// Receives every point as soon as it is done, and may stop the sweep with an error, or by cancelling
+/// it ([`Cancellation`](crate::cancellation::Cancellation)). All methods have defaults.
 pub trait Observer {
     /// The sweep starts; `planned` is the number of given parameter values.
     fn begin(&mut self, planned: usize) {
@@ -22,11 +23,6 @@ pub trait Observer {
     ) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
         let _ = (point, done, remaining);
         Ok(())
-    }
-
-    /// Asked before every point: whether to stop with what there is.
-    fn interrupted(&self) -> bool {
-        false
     }
 }
 

@@ -1,32 +1,98 @@
-//! The seam of a sweep: whatever can give densities at a parameter value, starting from a neighbour's.
+//! The seam of a sweep: whatever can give densities along a path.
+//!
+//! A [`DensitySource`] says what it gives densities of and is opened into sessions. A [`Session`] is a source at work: it remembers
+//! what it solved, starts each solve from there, and owns everything that takes memory. Sessions of one source know nothing of
+//! each other and may run side by side.
 
 use super::SolveReport;
+use crate::cancellation::{Cancellation, Cancelled};
 use crate::density::{EstimatedDensity, Moments, Observable};
 use crate::system::Family;
 
-/// A solve's result: densities, report, and what warm-starts the neighbour.
+/// What a source gives densities of.
 #[derive(Debug, Clone)]
-pub struct Solution<State> {
+pub struct Subject {
+    /// Systems along a path; the ends of the path are those of a sweep.
+    pub family: Family,
+    /// The densities that are watched, in the order in which a source gives them.
+    pub observables: Vec<Observable>,
+    /// Whether what cells do to these densities can be checked.
+    pub cell_check: CellCheck,
+}
+
+/// Whether it can be checked what cells do to densities, beyond the errors that these state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CellCheck {
+    /// By the same source on finer cells: [`DensitySource::finer`].
+    OnFinerCells,
+    /// It cannot: the cells move what is found, and finer ones would bring a noise of their own.
+    Impossible,
+    /// It need not: cells only count.
+    Needless,
+}
+
+/// What a solve gives: densities, report, and how they answer to parameters.
+pub struct Solution<'session> {
     /// How it went.
     pub report: SolveReport,
     /// Mean and standard deviation of every axis; empty without a density.
     pub moments: Vec<Moments>,
-    /// The observed densities in the order the source was asked for; empty without a density.
+    /// The watched densities, in the order of [`Subject::observables`]; empty without a density.
     pub densities: Vec<EstimatedDensity>,
-    /// Start for a neighbour; `None` without a density.
-    pub state: Option<State>,
+    /// How the densities answer to parameters, from what the solve left in the session; `None` where the source cannot tell, or there
+    /// is no density.
+    pub sensitivity: Option<Box<dyn Sensitivity + 'session>>,
 }
 
-impl<State> Solution<State> {
+impl Solution<'_> {
     /// A solution without densities, for the reason that the report gives.
     pub fn without_density(report: SolveReport) -> Self {
         Self {
             report,
             moments: Vec::new(),
             densities: Vec::new(),
-            state: None,
+            sensitivity: None,
         }
     }
+
+    /// The solution alone: the session is free again.
+    pub fn detached(self) -> Solution<'static> {
+        Solution {
+            report: self.report,
+            moments: self.moments,
+            densities: self.densities,
+            sensitivity: None,
+        }
+    }
+}
+
+impl std::fmt::Debug for Solution<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Solution")
+            .field("report", &self.report)
+            .field("moments", &self.moments)
+            .field("densities", &self.densities.len())
+            .field("has_sensitivity", &self.sensitivity.is_some())
+            .finish()
+    }
+}
+
+/// How the watched densities of a solved point change with parameters. It belongs to one [`Solution`], so that it cannot be asked of
+/// another.
+pub trait Sensitivity {
+    /// dp/dθ of every watched density for a named parameter of the model, swept or not, all others held: one value a cell, in the
+    /// order of [`Density::values`](crate::density::Density::values), ∫ = 0.
+    ///
+    /// # Errors
+    /// [`SourceError::Method`] for a name that is no parameter, and when the solve does not converge;
+    /// [`SourceError::Interrupted`].
+    fn to_parameter(&mut self, name: &str) -> Result<Vec<Vec<f64>>, SourceError>;
+
+    /// The same for the coordinate of the path, which may move several parameters at once.
+    ///
+    /// # Errors
+    /// As [`Sensitivity::to_parameter`].
+    fn along_path(&mut self) -> Result<Vec<Vec<f64>>, SourceError>;
 }
 
 /// Why a source cannot give a solution at all. A failed solve is data, not an error: see
@@ -41,44 +107,105 @@ pub enum SourceError {
     Method(#[from] Box<dyn std::error::Error + Send + Sync>),
 }
 
-/// What a source gives densities of.
-#[derive(Debug, Clone)]
-pub struct Subject {
-    /// Systems along a path; the ends of the path are those of a sweep.
-    pub family: Family,
-    /// The densities that are watched, in the order in which a source gives them.
-    pub observables: Vec<Observable>,
+impl From<Cancelled> for SourceError {
+    fn from(_: Cancelled) -> Self {
+        Self::Interrupted
+    }
 }
 
 /// A source of densities along a path through the parameters of a model.
-pub trait DensitySource {
-    /// What a solution leaves for its neighbour (a mass vector, a factorisation).
-    type State;
+///
+/// # A source in full
+///
+/// The density of a particle in a quartic potential, from its formula. What is left of a solve is nothing, so a session is a
+/// function.
+///
+/// ```
+/// use pbif::cancellation::Cancellation;
+/// use pbif::continuation::{CellCheck, DensitySource, Session, Solution, SolveReport, Subject};
+/// use pbif::density::{Density, EstimatedDensity, Observable, Structure, Variants};
+/// use pbif::space::Axis;
+/// use pbif::system::{Family, Path, registry};
+///
+/// struct Quartic {
+///     subject: Subject,
+/// }
+///
+/// fn density(a: f64) -> EstimatedDensity {
+///     let axis = Axis::uniform(-3.0, 3.0, 100).unwrap();
+///     let value = |x: f64| (4.0 * (0.5 * a * x * x - 0.25 * x.powi(4))).exp();
+///     let values: Vec<f64> = axis.centres().into_iter().map(value).collect();
+///     let mass: f64 = values.iter().map(|value| value * axis.width(0)).sum();
+///     EstimatedDensity {
+///         observable: Observable::Marginal(0),
+///         standard_error: vec![0.0; values.len()],
+///         density: Density { axes: vec![axis], values: values.iter().map(|p| p / mass).collect() },
+///         variants: Variants::None,
+///         structure: Structure { centre: Some(vec![0.0]), kinks: Vec::new() },
+///     }
+/// }
+///
+/// impl DensitySource for Quartic {
+///     fn method(&self) -> &'static str {
+///         "formula"
+///     }
+///     fn subject(&self) -> &Subject {
+///         &self.subject
+///     }
+///     fn open(&self, _: &Cancellation) -> Box<dyn Session> {
+///         Box::new(|a: f64| {
+///             let mut solution = Solution::without_density(SolveReport::solved("formula"));
+///             solution.densities = vec![density(a)];
+///             Ok(solution)
+///         })
+///     }
+/// }
+///
+/// let path = Path::parameter("a", -1.0, 1.0);
+/// let family = Family::new(registry::find("bistable").unwrap(), &[("sigma2", 0.5)], path).unwrap();
+/// let observables = vec![Observable::Marginal(0)];
+/// let source = Quartic { subject: Subject { family, observables, cell_check: CellCheck::Needless } };
+/// let mut session = source.open(&Cancellation::new());
+/// let solution = session.solve(0.3).unwrap();
+/// assert!((solution.densities[0].density.masses().iter().sum::<f64>() - 1.0).abs() < 1e-12);
+/// ```
+pub trait DensitySource: Send + Sync {
+    /// Name of the method in tables, for example `sgcm`.
+    fn method(&self) -> &'static str;
 
     /// What it gives densities of.
     fn subject(&self) -> &Subject;
 
-    /// Densities at a parameter value, warm-started from a neighbour's state where one is given.
+    /// Opens a session, which ends its work when `cancellation` is cancelled.
+    fn open(&self, cancellation: &Cancellation) -> Box<dyn Session>;
+
+    /// The same source on finer cells, to check what was found; `None` where there is none, or it would say nothing (sampling
+    /// errors differ from grid to grid).
     ///
     /// # Errors
-    /// [`SourceError`] when the value is not allowed. Failed solves are reported in the solution.
-    fn solve(
-        &self,
-        value: f64,
-        start: Option<&Self::State>,
-    ) -> Result<Solution<Self::State>, SourceError>;
-
-    /// The same source on finer cells, to check what was found; `None` where there is none, or it would say
-    /// nothing (sampling errors differ from grid to grid).
-    fn finer(&self) -> Option<Self>
-    where
-        Self: Sized,
-    {
-        None
+    /// [`SourceError::Method`] when it cannot be made.
+    fn finer(&self) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
+        Ok(None)
     }
+}
 
-    /// Bytes that a state takes, for the sweep to decide how many to keep.
-    fn state_bytes(&self, state: &Self::State) -> usize {
-        size_of_val(state)
+/// A source at work. It chooses its own start for every solve, from what it solved before: values are best asked for in an order
+/// in which neighbours follow each other.
+///
+/// A function of a value is a session that remembers nothing.
+pub trait Session: Send {
+    /// The densities at a value of the path's coordinate, which may lie beyond its ends.
+    ///
+    /// # Errors
+    /// [`SourceError`] when there is nothing to report; failed solves are reported in the solution. The session can be used on.
+    fn solve(&mut self, value: f64) -> Result<Solution<'_>, SourceError>;
+}
+
+impl<F> Session for F
+where
+    F: FnMut(f64) -> Result<Solution<'static>, SourceError> + Send,
+{
+    fn solve(&mut self, value: f64) -> Result<Solution<'_>, SourceError> {
+        self(value)
     }
 }

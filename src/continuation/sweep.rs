@@ -10,8 +10,10 @@ use super::locate::label_points;
 use super::root::{next_value, root};
 use super::span::Span;
 use super::{
-    DensitySource, Goal, LabelledPoint, LocateOptions, Observer, Point, SourceError, SweepResult,
+    CellCheck, DensitySource, Goal, LabelledPoint, LocateOptions, Observer, Point, Session,
+    SourceError, SweepResult,
 };
+use crate::cancellation::Cancellation;
 use crate::density::hellinger;
 use crate::topology::Detector;
 
@@ -50,16 +52,17 @@ pub enum SweepError {
 
 /// Sweeps a source along its path from end to end, with `points` evenly spaced values (at least 2).
 ///
-/// An interruption (by the observer or the source) ends the sweep early with the points so far and
-/// [`SweepResult::interrupted`] set; failed points are kept as data and labelled `MX`.
+/// Cancelled, it ends early with the points so far and [`SweepResult::interrupted`] set; an observer that wants to stop
+/// cancels. Failed points are kept as data and labelled `MX`.
 ///
 /// # Errors
 /// [`SweepError`] when a value is not allowed or the observer fails.
-pub fn sweep<S: DensitySource>(
-    source: &S,
+pub fn sweep(
+    source: &dyn DensitySource,
     detector: &dyn Detector,
     points: usize,
     options: &LocateOptions,
+    cancellation: &Cancellation,
     observer: &mut dyn Observer,
 ) -> Result<SweepResult, SweepError> {
     let subject = source.subject();
@@ -68,13 +71,14 @@ pub fn sweep<S: DensitySource>(
     observer.begin(values.len());
     let mut run = Run {
         source,
+        session: source.open(cancellation),
         detector,
         span,
         options: options.goal(span.length()),
+        cancellation,
         observer,
         remaining: values.len(),
         points: Vec::new(),
-        states: Vec::new(),
         interrupted: false,
     };
     let mut previous: Option<f64> = None;
@@ -104,36 +108,31 @@ pub fn sweep<S: DensitySource>(
 const HALVINGS: usize = 4;
 /// Solves beyond the given values at most.
 const MOST_EXTRA: usize = 400;
-/// Bytes of states that are kept to start from; beyond, every second one is dropped.
-const KEPT_BYTES: usize = 1 << 30;
 
-struct Run<'a, S: DensitySource> {
-    source: &'a S,
+struct Run<'a> {
+    source: &'a dyn DensitySource,
+    session: Box<dyn Session>,
     detector: &'a dyn Detector,
     span: Span,
     options: Goal,
+    cancellation: &'a Cancellation,
     observer: &'a mut dyn Observer,
     remaining: usize,
     /// Ascending in the parameter.
     points: Vec<Point>,
-    /// States to start from, in the order in which they were made.
-    states: Vec<(f64, S::State)>,
     interrupted: bool,
 }
 
-impl<S: DensitySource> Run<'_, S> {
-    /// Solves one value from the nearest state, tells the observer and keeps the point.
+impl Run<'_> {
+    /// Solves one value, tells the observer and keeps the point.
     fn solve(&mut self, value: f64) -> Result<(), SweepError> {
-        if self.interrupted || self.observer.interrupted() {
+        if self.interrupted || self.cancellation.is_cancelled() {
             self.interrupted = true;
             return Ok(());
         }
         let clock = Instant::now();
-        let distance = |state: &&(f64, S::State)| (state.0 - value).abs();
-        // The last of equally near ones: it is the neighbour along the sweep.
-        let start = (self.states.iter().rev()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        let solution = match self.source.solve(value, start.map(|(_, state)| state)) {
-            Ok(solution) => solution,
+        let solution = match self.session.solve(value) {
+            Ok(solution) => solution.detached(),
             Err(SourceError::Interrupted) => {
                 self.interrupted = true;
                 return Ok(());
@@ -160,26 +159,10 @@ impl<S: DensitySource> Run<'_, S> {
         };
         self.points.insert(place, point);
         fill_distances(&mut self.points, place);
-        if let Some(state) = solution.state {
-            self.keep(value, state);
-        }
         let done = self.points.len();
         self.observer
             .point(&self.points[place], done, self.remaining)
             .map_err(SweepError::Observer)
-    }
-
-    fn keep(&mut self, value: f64, state: S::State) {
-        let bytes = self.source.state_bytes(&state);
-        self.states.push((value, state));
-        if bytes.saturating_mul(self.states.len()) > KEPT_BYTES {
-            let last = self.states.len() - 1;
-            let mut index = 0;
-            self.states.retain(|_| {
-                index += 1;
-                index > last || index % 2 == 0
-            });
-        }
     }
 
     fn at(&self, value: f64) -> Option<&Point> {
@@ -271,18 +254,21 @@ impl<S: DensitySource> Run<'_, S> {
     /// The rows, each checked on a finer grid where the source has one, and what was seen there.
     fn labels(&mut self) -> (Vec<LabelledPoint>, Option<Vec<FinerIndicator>>) {
         let wanted = self.options.grid_check && !self.interrupted;
-        let mut finer: Option<Option<S>> = (!wanted).then_some(None);
+        let open = || {
+            let finer = self.source.finer().ok().flatten();
+            finer.map(|finer| finer.open(self.cancellation))
+        };
+        let mut session: Option<Option<Box<dyn Session>>> = (!wanted).then_some(None);
         let mut seen = Vec::new();
         let span = self.span;
         let mut on_finer = |checked: &Checked<'_>| {
-            let finer = finer.get_or_insert_with(|| self.source.finer()).as_ref()?;
-            let mut state = None;
+            let session = session.get_or_insert_with(open).as_mut()?;
             let mut evaluate = |value: f64| {
                 let before = known(&seen, checked, value);
                 if before != Seen::Unknown {
                     return before;
                 }
-                let found = solve(finer, self.detector, checked, value, &mut state);
+                let found = solve(session.as_mut(), self.detector, checked, value);
                 seen.extend(found.record(checked, value));
                 found
             };
@@ -296,7 +282,8 @@ impl<S: DensitySource> Run<'_, S> {
             &self.options,
             &mut on_finer,
         );
-        let has_finer = finer.map_or_else(|| self.source.finer().is_some(), |one| one.is_some());
+        let can_check = self.source.subject().cell_check == CellCheck::OnFinerCells;
+        let has_finer = can_check && session.is_none_or(|one| one.is_some());
         (labels, has_finer.then_some(seen))
     }
 }

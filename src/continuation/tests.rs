@@ -1,16 +1,18 @@
 //! The sweep driver on sources whose answers are known in closed form.
 
 use super::*;
+use crate::cancellation::Cancellation;
 use crate::density::{Density, EstimatedDensity, Moments, Observable};
 use crate::space::Axis;
 use crate::system::examples::bistable;
 use crate::topology::{Detection, Detector, Feature, FeatureKind, Signature, Verdict};
 
-/// A source that hands the parameter to the detector, fails where asked, and counts cold starts.
+/// A source that hands the parameter to the detector, and fails where asked.
+#[derive(Clone)]
 struct Ramp {
     subject: Subject,
+    /// Values without a steady state.
     failing: Option<(f64, f64)>,
-    cold: std::cell::Cell<usize>,
 }
 
 impl Ramp {
@@ -18,41 +20,26 @@ impl Ramp {
         let subject = Subject {
             family: bistable(from, to),
             observables: vec![Observable::Marginal(0)],
+            cell_check: CellCheck::Needless,
         };
         Self {
             subject,
             failing: None,
-            cold: std::cell::Cell::new(0),
         }
     }
-}
 
-impl DensitySource for Ramp {
-    type State = f64;
-
-    fn subject(&self) -> &Subject {
-        &self.subject
-    }
-
-    fn solve(&self, value: f64, start: Option<&f64>) -> Result<Solution<f64>, SourceError> {
-        if start.is_none() {
-            self.cold.set(self.cold.get() + 1);
-        }
+    fn solve(&self, value: f64) -> Solution<'static> {
         let failed = self.failing.is_some_and(|(a, b)| (a..=b).contains(&value));
-        let report = SolveReport {
-            status: if failed {
-                PointStatus::NoSteadyState
-            } else {
-                PointStatus::Solved
-            },
-            edge_mass: vec![0.0],
-            own: MethodPart {
-                numerical_diffusion: vec![0.0],
-                ..MethodPart::default()
-            },
-            ..SolveReport::solved("exact")
-        };
-        let density = EstimatedDensity {
+        let mut solution = Solution::without_density(SolveReport::solved("exact"));
+        if failed {
+            solution.report.status = PointStatus::NoSteadyState;
+            return solution;
+        }
+        solution.moments = vec![Moments {
+            mean: 0.0,
+            standard_deviation: 1.0,
+        }];
+        solution.densities = vec![EstimatedDensity {
             observable: Observable::Marginal(0),
             density: Density {
                 axes: vec![Axis::uniform(-1.0, 1.0, 2).unwrap()],
@@ -62,17 +49,23 @@ impl DensitySource for Ramp {
             variants: crate::density::Variants::None,
             structure: crate::density::Structure::default(),
             negligible: crate::density::NEGLIGIBLE,
-        };
-        let moments = Moments {
-            mean: 0.0,
-            standard_deviation: 1.0,
-        };
-        Ok(Solution {
-            report,
-            moments: if failed { Vec::new() } else { vec![moments] },
-            densities: if failed { Vec::new() } else { vec![density] },
-            state: (!failed).then_some(value),
-        })
+        }];
+        solution
+    }
+}
+
+impl DensitySource for Ramp {
+    fn method(&self) -> &'static str {
+        "exact"
+    }
+
+    fn subject(&self) -> &Subject {
+        &self.subject
+    }
+
+    fn open(&self, _: &Cancellation) -> Box<dyn Session> {
+        let source = self.clone();
+        Box::new(move |value: f64| Ok(source.solve(value)))
     }
 }
 
@@ -128,6 +121,7 @@ fn run(source: &Ramp, detector: &SquareLaw, points: usize, tolerance: f64) -> Sw
             tolerance: Some(tolerance),
             ..LocateOptions::default()
         },
+        &Cancellation::new(),
         &mut (),
     )
     .unwrap()
@@ -215,13 +209,11 @@ fn failures_are_rows_and_do_not_stop_the_sweep() {
     assert_eq!(failures[0].label, "MX1");
     assert_eq!(bifurcations(&result).len(), 1);
     assert_eq!(result.labels[0].label, "EP1");
-    // A failure's successor starts from the last good point.
-    assert_eq!(source.cold.get(), 1);
 }
 
 #[test]
 fn an_interruption_keeps_the_points_so_far() {
-    struct StopAfter(usize, usize);
+    struct StopAfter(usize, Cancellation);
     impl Observer for StopAfter {
         fn point(
             &mut self,
@@ -229,20 +221,29 @@ fn an_interruption_keeps_the_points_so_far() {
             done: usize,
             _: usize,
         ) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-            self.1 = done;
+            if done == self.0 {
+                self.1.cancel();
+            }
             Ok(())
         }
-        fn interrupted(&self) -> bool {
-            self.1 >= self.0
-        }
     }
+    let cancellation = Cancellation::new();
+    let mut observer = StopAfter(7, cancellation.clone());
     let detector = SquareLaw {
         birth: 0.1,
         noise: 1e-6,
     };
     let options = LocateOptions::default();
     let source = Ramp::new(-1.0, 1.0);
-    let result = sweep(&source, &detector, 41, &options, &mut StopAfter(7, 0)).unwrap();
+    let result = sweep(
+        &source,
+        &detector,
+        41,
+        &options,
+        &cancellation,
+        &mut observer,
+    )
+    .unwrap();
     assert!(result.interrupted);
     assert_eq!(result.points.len(), 7);
 }

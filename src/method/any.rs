@@ -1,12 +1,8 @@
 //! A source by any method, chosen at run time.
 
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
-
-use super::{
-    GeneratorSource, MethodError, MethodOptions, MonteCarloSource, Problem, SgcmSource, State,
-};
-use crate::continuation::{DensitySource, Solution, SourceError, Subject};
+use super::{GeneratorSource, MethodError, MethodOptions, MonteCarloSource, Problem, SgcmSource};
+use crate::cancellation::Cancellation;
+use crate::continuation::{DensitySource, Session, SourceError, Subject};
 
 /// A source of densities by one of the methods.
 pub enum MethodSource {
@@ -26,17 +22,17 @@ impl MethodSource {
     pub fn new(
         problem: &Problem,
         options: &MethodOptions,
-        cancelled: Arc<AtomicBool>,
+        cancellation: &Cancellation,
     ) -> Result<Self, MethodError> {
         Ok(match options {
             MethodOptions::Generator(options) => {
-                Self::Generator(Box::new(GeneratorSource::new(problem, options, cancelled)?))
+                Self::Generator(Box::new(GeneratorSource::new(problem, options)?))
             }
             MethodOptions::Sgcm(options) => {
-                Self::Sgcm(Box::new(SgcmSource::new(problem, options, cancelled)?))
+                Self::Sgcm(Box::new(SgcmSource::new(problem, options, cancellation)?))
             }
             MethodOptions::MonteCarlo(options) => Self::MonteCarlo(Box::new(
-                MonteCarloSource::new(problem, options, cancelled)?,
+                MonteCarloSource::new(problem, options, cancellation)?,
             )),
         })
     }
@@ -53,40 +49,30 @@ impl MethodSource {
             Self::MonteCarlo(source) => source.describe(),
         }
     }
+
+    fn source(&self) -> &dyn DensitySource {
+        match self {
+            Self::Generator(source) => source.as_ref(),
+            Self::Sgcm(source) => source.as_ref(),
+            Self::MonteCarlo(source) => source.as_ref(),
+        }
+    }
 }
 
 impl DensitySource for MethodSource {
-    type State = State;
+    fn method(&self) -> &'static str {
+        self.source().method()
+    }
 
     fn subject(&self) -> &Subject {
-        match self {
-            Self::Generator(source) => source.subject(),
-            Self::Sgcm(source) => source.subject(),
-            Self::MonteCarlo(source) => source.subject(),
-        }
+        self.source().subject()
     }
 
-    fn solve(&self, value: f64, start: Option<&State>) -> Result<Solution<State>, SourceError> {
-        match self {
-            Self::Generator(source) => source.solve(value, start),
-            Self::Sgcm(source) => source.solve(value, start),
-            Self::MonteCarlo(source) => source.solve(value, start),
-        }
+    fn open(&self, cancellation: &Cancellation) -> Box<dyn Session> {
+        self.source().open(cancellation)
     }
 
-    fn finer(&self) -> Option<Self> {
-        match self {
-            Self::Generator(source) => source.finer().map(Box::new).map(Self::Generator),
-            // The noise of another grid is another one: it would say nothing of the cells.
-            Self::Sgcm(_) | Self::MonteCarlo(_) => None,
-        }
-    }
-
-    fn state_bytes(&self, state: &State) -> usize {
-        match self {
-            Self::Generator(source) => source.state_bytes(state),
-            Self::Sgcm(source) => source.state_bytes(state),
-            Self::MonteCarlo(source) => source.state_bytes(state),
-        }
+    fn finer(&self) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
+        self.source().finer()
     }
 }

@@ -4,12 +4,12 @@ mod any;
 mod cost;
 mod generator;
 mod monte_carlo;
+mod neighbours;
 mod options;
 mod problem;
 mod range;
 mod report;
 mod sgcm;
-mod state;
 mod structure;
 mod time_step;
 
@@ -21,12 +21,17 @@ pub use monte_carlo::{
 };
 pub use options::{MethodOptions, StepChoice};
 pub use problem::Problem;
-pub use range::automatic_ranges;
+pub use range::{RangeError, automatic_ranges};
 pub use sgcm::{
     Corrected, Correction, SampledPoint, SgcmCost, SgcmOptions, SgcmSource, solve_corrected,
 };
-pub use state::State;
 
+use crate::cancellation::Cancelled;
+use crate::continuation::SourceError;
+use crate::monte_carlo::MonteCarloError;
+use crate::sampling::SamplingError;
+use crate::stationary::StationaryError;
+use crate::stationary::generator::RateError;
 use crate::system::System;
 
 /// Why a method cannot give a solution at all. Failed solves are data, see
@@ -47,21 +52,32 @@ pub enum MethodError {
     /// The drift depends on time.
     #[error(transparent)]
     Periodic(#[from] crate::system::PeriodicDrift),
+    /// The cells cannot be laid out.
+    #[error(transparent)]
+    Space(#[from] crate::space::SpaceError),
+    /// The caller asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// Transitions could not be sampled.
     #[error(transparent)]
-    Sampling(#[from] crate::sampling::SamplingError),
+    Sampling(SamplingError),
     /// Free trajectories could not be run.
     #[error(transparent)]
-    MonteCarlo(#[from] crate::monte_carlo::MonteCarloError),
+    MonteCarlo(MonteCarloError),
     /// The generator could not be assembled.
     #[error(transparent)]
     Generator(#[from] crate::generator::GeneratorError),
     /// The generator cannot be solved.
     #[error(transparent)]
-    Rates(#[from] crate::stationary::generator::RateError),
+    Rates(RateError),
     /// The transition matrix cannot be solved.
     #[error(transparent)]
-    Stationary(#[from] crate::stationary::StationaryError),
+    Stationary(StationaryError),
+    /// Beside the solved value there is no steady state to compare with.
+    #[error(
+        "there is no steady state on both sides of the value, so no derivative by the parameter"
+    )]
+    NoSensitivity,
     /// A density could not be computed.
     #[error(transparent)]
     Density(#[from] crate::density::DensityError),
@@ -73,6 +89,53 @@ fn autonomous(systems: &[std::sync::Arc<dyn System>]) -> Result<(), MethodError>
         system.autonomous()?;
     }
     Ok(())
+}
+
+// Whatever part of a method was asked to stop, the method was.
+
+impl From<SamplingError> for MethodError {
+    fn from(error: SamplingError) -> Self {
+        match error {
+            SamplingError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            error => Self::Sampling(error),
+        }
+    }
+}
+
+impl From<MonteCarloError> for MethodError {
+    fn from(error: MonteCarloError) -> Self {
+        match error {
+            MonteCarloError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            error => Self::MonteCarlo(error),
+        }
+    }
+}
+
+impl From<RateError> for MethodError {
+    fn from(error: RateError) -> Self {
+        match error {
+            RateError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            error => Self::Rates(error),
+        }
+    }
+}
+
+impl From<StationaryError> for MethodError {
+    fn from(error: StationaryError) -> Self {
+        match error {
+            StationaryError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            error => Self::Stationary(error),
+        }
+    }
+}
+
+impl From<MethodError> for SourceError {
+    fn from(error: MethodError) -> Self {
+        match error {
+            MethodError::Cancelled(_) => Self::Interrupted,
+            error => Self::Method(Box::new(error)),
+        }
+    }
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! Which method, and what the settings of all methods share. Each method's settings and defaults stand in its wing.
 
+use crate::continuation::CellCheck;
+
 use super::{GeneratorMethodOptions, MonteCarloOptions, SgcmOptions};
 
 /// Largest share of the mass that may leave Ω within one relaxation time, whatever the method.
@@ -32,6 +34,15 @@ impl MethodOptions {
             Self::Generator(_) => Self::KINDS[0],
             Self::Sgcm(_) => Self::KINDS[1],
             Self::MonteCarlo(_) => Self::KINDS[2],
+        }
+    }
+
+    /// Whether what cells do to the densities can be checked.
+    pub fn cell_check(&self) -> CellCheck {
+        match self {
+            Self::Generator(_) => GeneratorMethodOptions::CELL_CHECK,
+            Self::Sgcm(_) => SgcmOptions::CELL_CHECK,
+            Self::MonteCarlo(_) => MonteCarloOptions::CELL_CHECK,
         }
     }
 

@@ -1,7 +1,7 @@
 //! What a source of densities is made for.
 
 use super::MethodError;
-use crate::continuation::Subject;
+use crate::continuation::{CellCheck, Subject};
 use crate::density::{Observable, Projection};
 use crate::space::CellSpace;
 use crate::system::Family;
@@ -34,6 +34,7 @@ impl Problem {
         let subject = Subject {
             family,
             observables,
+            cell_check: CellCheck::Needless,
         };
         Ok(Self { subject, space })
     }
@@ -58,6 +59,14 @@ impl Problem {
         &self.space
     }
 
+    /// The same for a method of which this is known of its cells; a source says so of itself.
+    #[must_use]
+    pub fn checked_by(&self, cell_check: CellCheck) -> Self {
+        let mut problem = self.clone();
+        problem.subject.cell_check = cell_check;
+        problem
+    }
+
     /// The same on other cells.
     ///
     /// # Errors
@@ -66,6 +75,7 @@ impl Problem {
         let Subject {
             family,
             observables,
+            ..
         } = self.subject.clone();
         Self::new(family, space, observables)
     }

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use crate::cancellation::Cancellation;
 use crate::sampling::pilot;
 use crate::space::{Axis, CellSpace};
 use crate::system::System;
@@ -19,16 +20,34 @@ const MARGIN: f64 = 1.5;
 /// Most times that the box is changed.
 const MOST_CHANGES: usize = 40;
 
+/// Why no ranges were found.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RangeError {
+    /// However wide the box, trajectories leave it.
+    #[error("no range holds the density: free trajectories run away somewhere along the sweep")]
+    RunsAway,
+    /// The box got too large or too small for numbers.
+    #[error(transparent)]
+    Space(#[from] crate::space::SpaceError),
+    /// The caller asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] crate::cancellation::Cancelled),
+}
+
 /// Ranges, one an axis, that hold the densities of all the systems, as known or found; `None` for an axis means that it is to be
-/// found. No answer when trajectories run away.
+/// found.
+///
+/// # Errors
+/// [`RangeError`].
 pub fn automatic_ranges(
     systems: &[Arc<dyn System>],
     known: &[Option<(f64, f64)>],
     seed: u64,
-) -> Option<Vec<(f64, f64)>> {
+    cancellation: &Cancellation,
+) -> Result<Vec<(f64, f64)>, RangeError> {
     let mut hull: Option<Vec<(f64, f64)>> = None;
     for system in systems {
-        let found = ranges_of(system.as_ref(), known, seed)?;
+        let found = ranges_of(system.as_ref(), known, seed, cancellation)?;
         hull = Some(match hull {
             None => found,
             Some(hull) => hull
@@ -38,28 +57,26 @@ pub fn automatic_ranges(
                 .collect(),
         });
     }
-    let hull = hull?;
-    let rounded = hull.iter().zip(known);
-    Some(
-        rounded
-            .map(|(&found, known)| known.unwrap_or_else(|| outward(found)))
-            .collect(),
-    )
+    let rounded = hull.iter().flatten().zip(known);
+    Ok(rounded
+        .map(|(&found, known)| known.unwrap_or_else(|| outward(found)))
+        .collect())
 }
 
 fn ranges_of(
     system: &dyn System,
     known: &[Option<(f64, f64)>],
     seed: u64,
-) -> Option<Vec<(f64, f64)>> {
+    cancellation: &Cancellation,
+) -> Result<Vec<(f64, f64)>, RangeError> {
     let mut ranges: Vec<(f64, f64)> = known.iter().map(|k| k.unwrap_or((-1.0, 1.0))).collect();
     for _ in 0..MOST_CHANGES {
         let axes: Result<Vec<Axis>, _> = ranges
             .iter()
             .map(|&(from, to)| Axis::uniform(from, to, CELLS))
             .collect();
-        let space = CellSpace::new(axes.ok()?).ok()?;
-        let seen = pilot(system, &space, seed);
+        let space = CellSpace::new(axes?)?;
+        let seen = pilot(system, &space, seed, cancellation)?;
         let free = || (0..ranges.len()).filter(|&axis| known[axis].is_none());
         if seen.share_inside < INSIDE {
             for axis in free().collect::<Vec<_>>() {
@@ -77,7 +94,7 @@ fn ranges_of(
             })
             .collect();
         if narrow.is_empty() {
-            return Some(widened(system, &visited, known));
+            return Ok(widened(system, &visited, known));
         }
         for axis in narrow {
             let (from, to) = visited[axis];
@@ -85,7 +102,7 @@ fn ranges_of(
             ranges[axis] = (from - 0.5 * half, to + 0.5 * half);
         }
     }
-    None
+    Err(RangeError::RunsAway)
 }
 
 /// What some cells span along each axis.
@@ -147,7 +164,8 @@ mod tests {
             let given = [("kappa", 0.05), ("f_c", 0.0), ("sigma2", sigma2)];
             let system = model.system_with(&given).unwrap();
             let deviation = (sigma2 / 0.1_f64).sqrt();
-            let ranges = automatic_ranges(&[system], &[None, None], 1).unwrap();
+            let ranges =
+                automatic_ranges(&[system], &[None, None], 1, &Cancellation::new()).unwrap();
             for (from, to) in ranges {
                 assert_eq!(from, -to, "alike on both sides of the centre");
                 assert!(
@@ -163,6 +181,7 @@ mod tests {
         let model = registry::find("coulomb").unwrap();
         let given = [("kappa", -0.05), ("f_c", 0.0), ("sigma2", 0.01)];
         let system = model.system_with(&given).unwrap();
-        assert!(automatic_ranges(&[system], &[None, None], 1).is_none());
+        let found = automatic_ranges(&[system], &[None, None], 1, &Cancellation::new());
+        assert_eq!(found, Err(RangeError::RunsAway));
     }
 }

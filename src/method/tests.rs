@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::*;
+use crate::cancellation::Cancellation;
 use crate::density::Observable;
 use crate::generator::{GeneratorError, GeneratorOptions, assemble};
 use crate::monte_carlo::{EnsembleRun, ErgodicRun, MonteCarloError, ensemble, ergodic};
@@ -69,7 +70,7 @@ fn no_method_takes_a_periodic_system_for_an_autonomous_one() {
         MethodOptions::Sgcm(SgcmOptions::default()),
         MethodOptions::MonteCarlo(MonteCarloOptions::default()),
     ] {
-        let Err(refused) = MethodSource::new(&problem, &method, Arc::default()) else {
+        let Err(refused) = MethodSource::new(&problem, &method, &Cancellation::new()) else {
             panic!("{method:?} takes it");
         };
         assert!(matches!(refused, MethodError::Periodic(PERIODIC)));
@@ -95,7 +96,7 @@ fn nor_does_what_the_methods_are_made_of() {
         integrator: Integrator::StochasticHeun,
         keep_starts: false,
     };
-    let sampled = sample_transitions(&system, &space, &[10], &options, &|| false);
+    let sampled = sample_transitions(&system, &space, &[10], &options, &Cancellation::new());
     assert_eq!(sampled.err(), Some(SamplingError::Periodic(PERIODIC)));
     let run = ErgodicRun {
         time_step: 0.1,
@@ -106,7 +107,7 @@ fn nor_does_what_the_methods_are_made_of() {
         length: 1.0,
         stride: 2,
     };
-    let counted = ergodic(&system, &space, &[], &run, &|| false);
+    let counted = ergodic(&system, &space, &[], &run, &Cancellation::new());
     assert_eq!(counted.err(), Some(MonteCarloError::Periodic(PERIODIC)));
     let run = EnsembleRun {
         time_step: 0.1,
@@ -116,6 +117,6 @@ fn nor_does_what_the_methods_are_made_of() {
         time: 1.0,
         start: Vec::new(),
     };
-    let counted = ensemble(&system, &space, &run, &|| false);
+    let counted = ensemble(&system, &space, &run, &Cancellation::new());
     assert_eq!(counted.err(), Some(MonteCarloError::Periodic(PERIODIC)));
 }

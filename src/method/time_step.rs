@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::StepChoice;
+use crate::cancellation::{Cancellation, Cancelled};
 use crate::monte_carlo::{Relaxation, StepBias, automatic_step, step_bias};
 use crate::sampling::Integrator;
 use crate::space::CellSpace;
@@ -10,22 +11,36 @@ use crate::system::System;
 
 /// The longest step whose bias stays below `wanted` for all of some systems along a sweep, unless one is given; and its
 /// bias, the most certain of theirs, by halving it on a sample of settled trajectories. `None` where nothing settles.
+///
+/// # Errors
+/// [`Cancelled`].
 pub(super) fn time_step(
     (systems, relaxed): (&[Arc<dyn System>], &[Relaxation]),
     space: &CellSpace,
     choice: StepChoice,
     wanted: f64,
     (integrator, seed): (Integrator, u64),
-) -> (f64, Option<StepBias>) {
+    cancellation: &Cancellation,
+) -> Result<(f64, Option<StepBias>), Cancelled> {
     let all = || systems.iter().zip(relaxed);
-    let step = choice.or(|| {
-        let steps = all().map(|(system, relaxed)| {
-            automatic_step(system.as_ref(), space, relaxed, integrator, wanted, seed).0
-        });
-        steps.fold(f64::INFINITY, f64::min)
-    });
-    let biases = all().filter_map(|(system, relaxed)| {
-        step_bias(system.as_ref(), space, relaxed, (integrator, step), seed)
-    });
-    (step, biases.reduce(StepBias::worse))
+    let step = match choice {
+        StepChoice::Fixed(step) => step,
+        StepChoice::Auto => {
+            let mut shortest = f64::INFINITY;
+            for (system, relaxed) in all() {
+                let wanted = (integrator, wanted);
+                let found =
+                    automatic_step(system.as_ref(), space, relaxed, wanted, seed, cancellation)?;
+                shortest = shortest.min(found.0);
+            }
+            shortest
+        }
+    };
+    let mut worst: Option<StepBias> = None;
+    for (system, relaxed) in all() {
+        let step = (integrator, step);
+        let bias = step_bias(system.as_ref(), space, relaxed, step, seed, cancellation)?;
+        worst = worst.into_iter().chain(bias).reduce(StepBias::worse);
+    }
+    Ok((step, worst))
 }

@@ -4,6 +4,7 @@ use multiversion::multiversion;
 
 use super::lookup::CellLookup;
 use crate::MAX_DIMENSION;
+use crate::cancellation::Cancelled;
 use crate::sampling::{NormalStream, Stepper, StreamKey, mix, unit};
 use crate::space::CellSpace;
 use crate::system::{LANES, Lanes};
@@ -80,9 +81,10 @@ impl Batch {
         }
     }
 
-    pub(super) fn advance(&mut self, stepper: &Stepper<'_>, steps: usize) {
-        stepper.advance(&mut self.states, self.steps, steps, &mut self.stream);
+    pub(super) fn advance(&mut self, stepper: &Stepper<'_>, steps: usize) -> Result<(), Cancelled> {
+        stepper.advance(&mut self.states, self.steps, steps, &mut self.stream)?;
         self.steps += steps;
+        Ok(())
     }
 
     /// Number of trajectories that have not run away.

@@ -4,6 +4,7 @@ use super::batch::{Limits, Purpose};
 use super::ergodic::{ErgodicRun, Starts, Worker, whole};
 use super::lookup::CellLookup;
 use super::{Estimate, MonteCarloError};
+use crate::cancellation::Cancellation;
 use crate::sampling::{Integrator, Stepper};
 use crate::space::CellSpace;
 use crate::system::System;
@@ -35,7 +36,7 @@ pub fn ensemble(
     system: &dyn System,
     space: &CellSpace,
     run: &EnsembleRun,
-    cancelled: &(dyn Fn() -> bool + Sync),
+    cancellation: &Cancellation,
 ) -> Result<Estimate, MonteCarloError> {
     // One look, a pair of steps after the rest.
     let stride = 2;
@@ -59,7 +60,7 @@ pub fn ensemble(
         return Err(MonteCarloError::Start);
     }
     let worker = Worker {
-        stepper: Stepper::new(system, run.integrator, run.time_step),
+        stepper: Stepper::new(system, run.integrator, run.time_step, cancellation),
         lookup: &CellLookup::new(space),
         limits: Limits::new(space),
         starts: Starts::Box(match run.start.is_empty() {
@@ -68,7 +69,6 @@ pub fn ensemble(
         }),
         purpose: Purpose::Ensemble,
         run: &as_ergodic,
-        cancelled,
     };
     worker.all(space)
 }

@@ -8,6 +8,7 @@ use super::batch::{Batch, Histogram, Limits, Purpose, key, random_point};
 use super::estimate::{BLOCKS, Estimate, Tally};
 use super::lookup::CellLookup;
 use super::{MonteCarloError, Relaxation};
+use crate::cancellation::{Cancellation, Cancelled};
 use crate::sampling::{Integrator, Stepper};
 use crate::space::CellSpace;
 use crate::system::{LANES, Lanes, System};
@@ -87,7 +88,7 @@ fn tasks(batches: usize) -> (Vec<Range<usize>>, usize) {
 /// Trajectories start from `starts` (any states, d values each; settled ones of a [`Relaxation`] need the least burn-in), drawn
 /// with replacement; without any, all over Ω. They keep running when they leave Ω; those that run away (not finite, or
 /// beyond a hundred times the half range) are counted and never restarted. Results are the same bits for any number of threads: the
-/// work is cut by the number of a trajectory. `cancelled` is asked now and then.
+/// work is cut by the number of a trajectory.
 ///
 /// # Errors
 /// [`MonteCarloError`].
@@ -96,7 +97,7 @@ pub fn ergodic(
     space: &CellSpace,
     starts: &[Vec<f64>],
     run: &ErgodicRun,
-    cancelled: &(dyn Fn() -> bool + Sync),
+    cancellation: &Cancellation,
 ) -> Result<Estimate, MonteCarloError> {
     run.check(system, space)?;
     if starts.iter().any(|state| state.len() != space.dimension()) {
@@ -104,7 +105,7 @@ pub fn ergodic(
     }
     let lookup = CellLookup::new(space);
     let worker = Worker {
-        stepper: Stepper::new(system, run.integrator, run.time_step),
+        stepper: Stepper::new(system, run.integrator, run.time_step, cancellation),
         lookup: &lookup,
         limits: Limits::new(space),
         starts: match starts.is_empty() {
@@ -113,7 +114,6 @@ pub fn ergodic(
         },
         purpose: Purpose::Ergodic,
         run,
-        cancelled,
     };
     worker.all(space)
 }
@@ -138,7 +138,6 @@ pub(super) struct Worker<'a> {
     pub(super) starts: Starts<'a>,
     pub(super) purpose: Purpose,
     pub(super) run: &'a ErgodicRun,
-    pub(super) cancelled: &'a (dyn Fn() -> bool + Sync),
 }
 
 impl Worker<'_> {
@@ -184,7 +183,7 @@ impl Worker<'_> {
         states
     }
 
-    fn batch(&self, number: usize, tally: &mut Tally) -> Result<(), MonteCarloError> {
+    fn batch(&self, number: usize, tally: &mut Tally) -> Result<(), Cancelled> {
         let run = self.run;
         let key = key(run.seed, self.purpose, number as u64);
         let mut batch = Batch::new(self.start(number), key);
@@ -193,9 +192,8 @@ impl Worker<'_> {
         burn_in += burn_in % 2;
         tally.trajectories += LANES as u64;
         while burn_in > 0 && batch.n_alive() > 0 {
-            self.ask()?;
             let steps = stretch.min(burn_in);
-            self.advance(&mut batch, steps, tally);
+            self.advance(&mut batch, steps, tally)?;
             batch.retire(&self.limits);
             burn_in -= steps;
         }
@@ -204,11 +202,10 @@ impl Worker<'_> {
         for block in 0..blocks {
             let mut left = (block + 1) * looks / blocks - block * looks / blocks;
             while left > 0 && batch.n_alive() > 0 {
-                self.ask()?;
                 let count = LOOKS_A_CHECK.min(left);
                 let gone = LANES - batch.n_alive();
                 for _ in 0..count {
-                    self.advance(&mut batch, run.stride, tally);
+                    self.advance(&mut batch, run.stride, tally)?;
                     tally.blocks[block].look(self.lookup, &batch);
                 }
                 tally.blocks[block].exclude(gone, count);
@@ -220,17 +217,11 @@ impl Worker<'_> {
         Ok(())
     }
 
-    fn advance(&self, batch: &mut Batch, steps: usize, tally: &mut Tally) {
-        batch.advance(&self.stepper, steps);
+    fn advance(&self, batch: &mut Batch, steps: usize, tally: &mut Tally) -> Result<(), Cancelled> {
+        batch.advance(&self.stepper, steps)?;
         let alive = batch.n_alive() as f64;
         tally.steps += (steps * LANES) as u64;
         tally.lived += alive * steps as f64 * self.run.time_step;
-    }
-
-    fn ask(&self) -> Result<(), MonteCarloError> {
-        match (self.cancelled)() {
-            true => Err(MonteCarloError::Cancelled),
-            false => Ok(()),
-        }
+        Ok(())
     }
 }

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::Relaxation;
 use super::batch::{Purpose, key};
+use crate::cancellation::{Cancellation, Cancelled};
 use crate::sampling::{Integrator, NormalStream, Stepper};
 use crate::space::CellSpace;
 use crate::system::{LANES, Lanes, System};
@@ -70,21 +71,27 @@ impl StepBias {
 
 /// The bias of a time step, that of the quantity for which it is most certain to be large. Keyed by `seed`; does not depend on
 /// the number of threads. `None` where nothing settled in the relaxation.
+///
+/// # Errors
+/// [`Cancelled`].
 pub fn step_bias(
     system: &dyn System,
     space: &CellSpace,
     relaxation: &Relaxation,
     (integrator, time_step): (Integrator, f64),
     seed: u64,
-) -> Option<StepBias> {
+    cancellation: &Cancellation,
+) -> Result<Option<StepBias>, Cancelled> {
     if relaxation.settled.is_empty() || !(time_step > 0.0 && time_step.is_finite()) {
-        return None;
+        return Ok(None);
     }
-    let comparison = Comparison::new(system, space, relaxation, integrator, time_step);
-    let lanes: Vec<Vec<[f64; 2]>> = (0..BATCHES)
+    let steps = (integrator, time_step);
+    let comparison = Comparison::new(system, space, relaxation, steps, cancellation);
+    let batches: Result<Vec<_>, Cancelled> = (0..BATCHES)
         .into_par_iter()
-        .flat_map_iter(|batch| comparison.batch(seed, batch))
+        .map(|batch| comparison.batch(seed, batch))
         .collect();
+    let lanes = batches?.concat();
     let additive =
         (0..system.noise_axes().len()).all(|channel| system.additive_amplitude(channel).is_some());
     // d(h) - d(h/2) = (1 - 2^-order) × bias of h.
@@ -107,7 +114,7 @@ pub fn step_bias(
         }
     });
     let finite = biases.filter(|bias| bias.relative.is_finite());
-    finite.reduce(StepBias::worse)
+    Ok(finite.reduce(StepBias::worse))
 }
 
 /// Weak order of an integrator.
@@ -120,16 +127,23 @@ fn order(integrator: Integrator, additive: bool) -> u32 {
 
 /// A time step whose bias is not certain to be above `wanted` (relative, of variances and shares), with that bias: the pilot's
 /// rule, shortened until halving agrees.
+///
+/// # Errors
+/// [`Cancelled`].
 pub fn automatic_step(
     system: &dyn System,
     space: &CellSpace,
     relaxation: &Relaxation,
-    integrator: Integrator,
-    wanted: f64,
+    (integrator, wanted): (Integrator, f64),
     seed: u64,
-) -> (f64, Option<StepBias>) {
+    cancellation: &Cancellation,
+) -> Result<(f64, Option<StepBias>), Cancelled> {
     let mut time_step = relaxation.time_step(integrator, 0.5 * wanted);
-    let mut bias = step_bias(system, space, relaxation, (integrator, time_step), seed);
+    let bias_of = |step: f64| {
+        let step = (integrator, step);
+        step_bias(system, space, relaxation, step, seed, cancellation)
+    };
+    let mut bias = bias_of(time_step)?;
     for _ in 0..MOST_ROUNDS {
         let Some(certain) = bias
             .map(|bias| bias.certain())
@@ -139,9 +153,9 @@ pub fn automatic_step(
         };
         let power = f64::from(order(integrator, true));
         time_step *= (0.7 * wanted / certain).powf(1.0 / power).clamp(0.2, 0.8);
-        bias = step_bias(system, space, relaxation, (integrator, time_step), seed);
+        bias = bias_of(time_step)?;
     }
-    (time_step, bias)
+    Ok((time_step, bias))
 }
 
 /// Both paths and what is compared.
@@ -155,6 +169,7 @@ struct Comparison<'a> {
     surfaces: Vec<f64>,
     settle: usize,
     looks: usize,
+    cancellation: &'a Cancellation,
 }
 
 impl<'a> Comparison<'a> {
@@ -162,8 +177,8 @@ impl<'a> Comparison<'a> {
         system: &'a dyn System,
         space: &CellSpace,
         relaxation: &'a Relaxation,
-        integrator: Integrator,
-        time_step: f64,
+        (integrator, time_step): (Integrator, f64),
+        cancellation: &'a Cancellation,
     ) -> Self {
         let mut quantities: Vec<BiasedQuantity> = (0..system.dimension())
             .map(BiasedQuantity::Variance)
@@ -181,19 +196,20 @@ impl<'a> Comparison<'a> {
         let part =
             |share: f64| ((share / (SETTLE + COMPARE) * least / LOOK as f64) as usize).max(8);
         Self {
-            coarse: Stepper::new(system, integrator, time_step),
-            fine: Stepper::new(system, integrator, 0.5 * time_step),
+            coarse: Stepper::new(system, integrator, time_step, cancellation),
+            fine: Stepper::new(system, integrator, 0.5 * time_step, cancellation),
             channels: system.noise_axes().len(),
             relaxation,
             quantities,
             surfaces,
             settle: part(SETTLE),
             looks: part(COMPARE),
+            cancellation,
         }
     }
 
     /// Averages over time of every quantity, coarse and fine, a trajectory.
-    fn batch(&self, seed: u64, number: u64) -> Vec<Vec<[f64; 2]>> {
+    fn batch(&self, seed: u64, number: u64) -> Result<Vec<Vec<[f64; 2]>>, Cancelled> {
         let settled = &self.relaxation.settled;
         let dimension = self.relaxation.mean.len();
         let mut coarse = vec![[0.0; LANES]; dimension];
@@ -207,6 +223,7 @@ impl<'a> Comparison<'a> {
         let mut stream = NormalStream::new(key(seed, Purpose::Halving, number));
         let mut averages = vec![vec![[0.0; 2]; self.quantities.len()]; LANES];
         for look in 0..self.settle + self.looks {
+            self.cancellation.check()?;
             self.advance(&mut coarse, &mut fine, look * LOOK, &mut stream);
             if look >= self.settle {
                 for (lane, averages) in averages.iter_mut().enumerate() {
@@ -215,7 +232,7 @@ impl<'a> Comparison<'a> {
                 }
             }
         }
-        averages
+        Ok(averages)
     }
 
     fn advance(
@@ -290,15 +307,25 @@ mod tests {
             .unwrap();
         let axis = Axis::uniform(-4.0, 4.0, 40).unwrap();
         let space = CellSpace::new(vec![axis.clone(), axis]).unwrap();
-        let relaxation = relaxation(&*system, &space, 1);
+        let never = Cancellation::new();
+        let relaxation = relaxation(&*system, &space, 1, &never).unwrap();
         (system, space, relaxation)
+    }
+
+    fn bias(
+        system: &dyn System,
+        space: &CellSpace,
+        relaxation: &Relaxation,
+        step: (Integrator, f64),
+    ) -> StepBias {
+        let found = step_bias(system, space, relaxation, step, 1, &Cancellation::new());
+        found.unwrap().unwrap()
     }
 
     #[test]
     fn euler_maruyama_that_leaves_no_damping_is_caught_and_heun_passes() {
         let (system, space, relaxation) = oscillator(0.01, 0.0);
-        let bias =
-            |integrator| step_bias(&*system, &space, &relaxation, (integrator, 0.01), 1).unwrap();
+        let bias = |integrator| bias(&*system, &space, &relaxation, (integrator, 0.01));
         // ω²dt = κ: the coarse path has no steady state, the fine one half the damping.
         let euler = bias(Integrator::EulerMaruyama);
         assert!(euler.certain() > 1.0, "{euler:?}");
@@ -316,7 +343,7 @@ mod tests {
         // dt/2 1/0.95; the difference relative to the latter, 0.0556, extrapolates to 0.111, up to O(κdt).
         let (system, space, relaxation) = oscillator(0.1, 0.0);
         let step = (Integrator::EulerMaruyama, 0.01);
-        let bias = step_bias(&*system, &space, &relaxation, step, 1).unwrap();
+        let bias = bias(&*system, &space, &relaxation, step);
         assert!(
             (bias.relative - 0.111).abs() < 0.01 + 3.0 * bias.standard_error,
             "{bias:?}"
@@ -329,8 +356,15 @@ mod tests {
         let (system, space, relaxation) = oscillator(0.05, 0.02);
         for integrator in Integrator::ALL {
             for wanted in [0.02, 0.005] {
-                let (step, bias) =
-                    automatic_step(&*system, &space, &relaxation, integrator, wanted, 1);
+                let (step, bias) = automatic_step(
+                    &*system,
+                    &space,
+                    &relaxation,
+                    (integrator, wanted),
+                    1,
+                    &Cancellation::new(),
+                )
+                .unwrap();
                 let bias = bias.unwrap();
                 assert!(bias.certain() <= wanted, "{integrator:?} {step} {bias:?}");
                 assert!(step > 1e-5, "{integrator:?} {step} {bias:?}");

@@ -52,8 +52,8 @@ pub enum MonteCarloError {
     #[error(transparent)]
     Periodic(#[from] PeriodicDrift),
     /// The caller asked to stop.
-    #[error("the run was cancelled")]
-    Cancelled,
+    #[error(transparent)]
+    Cancelled(#[from] crate::cancellation::Cancelled),
 }
 
 impl MonteCarloError {

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::autocorrelation::{Correlation, correlation};
 use super::batch::{Batch, Limits, Purpose, key, random_point};
+use crate::cancellation::{Cancellation, Cancelled};
 use crate::sampling::{Integrator, Stepper, pilot};
 use crate::space::CellSpace;
 use crate::system::{LANES, Lanes, System};
@@ -83,24 +84,32 @@ struct Watched {
 /// Watches free trajectories until they have settled, in windows that double in length until one of them holds thirty
 /// autocorrelation times. Keyed by `seed`; does not depend on the number of threads. What it finds is meant for systems
 /// whose drift does not depend on time.
-pub fn relaxation(system: &dyn System, space: &CellSpace, seed: u64) -> Relaxation {
-    let pilot = pilot(system, space, seed);
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn relaxation(
+    system: &dyn System,
+    space: &CellSpace,
+    seed: u64,
+    cancellation: &Cancellation,
+) -> Result<Relaxation, Cancelled> {
+    let pilot = pilot(system, space, seed, cancellation)?;
     let step = pilot.automatic_time_step(Integrator::StochasticHeun);
-    let stepper = Stepper::new(system, Integrator::StochasticHeun, step);
+    let stepper = Stepper::new(system, Integrator::StochasticHeun, step, cancellation);
     let limits = Limits::new(space);
     let mut watched: Vec<Watched> = (0..BATCHES).map(|n| start(space, seed, n)).collect();
     let mut stride = LOOKS;
     let watch = |watched: &mut Vec<Watched>, stride: usize| {
         let each = watched.par_iter_mut();
-        each.for_each(|one| one.window(&stepper, &limits, stride));
+        each.try_for_each(|one| one.window(&stepper, &limits, stride))
     };
-    watch(&mut watched, stride);
+    watch(&mut watched, stride)?;
     loop {
-        watch(&mut watched, stride);
+        watch(&mut watched, stride)?;
         let found = judge(&watched, pilot.clone(), step * (stride * LOOKS) as f64);
         let steps = RECORDS * LOOKS * stride;
         if found.resolved || found.settled.is_empty() || 2 * steps > MOST_STEPS {
-            return found;
+            return Ok(found);
         }
         stride *= 2;
     }
@@ -133,12 +142,17 @@ fn start(space: &CellSpace, seed: u64, number: u64) -> Watched {
 impl Watched {
     /// Records means over `LOOKS` looks, `stride` steps apart. What was recorded before is burn-in and forgotten. Means,
     /// not values: an oscillation that is faster than the records must not look slow.
-    fn window(&mut self, stepper: &Stepper<'_>, limits: &Limits, stride: usize) {
+    fn window(
+        &mut self,
+        stepper: &Stepper<'_>,
+        limits: &Limits,
+        stride: usize,
+    ) -> Result<(), Cancelled> {
         self.means.iter_mut().for_each(Vec::clear);
         for _ in 0..RECORDS {
             let mut sums = vec![[0.0; LANES]; self.means.len()];
             for _ in 0..LOOKS {
-                self.batch.advance(stepper, stride);
+                self.batch.advance(stepper, stride)?;
                 for (axis, lanes) in self.batch.states.iter().enumerate() {
                     for lane in 0..LANES {
                         sums[2 * axis][lane] += lanes[lane] / LOOKS as f64;
@@ -151,6 +165,7 @@ impl Watched {
                 means.push(sums);
             }
         }
+        Ok(())
     }
 }
 
@@ -284,7 +299,8 @@ mod tests {
             .unwrap()
             .system_with(&values)
             .unwrap();
-        let found = relaxation(&*system, &square_space(2.0), 1);
+        let never = Cancellation::new();
+        let found = relaxation(&*system, &square_space(2.0), 1, &never).unwrap();
         assert!(found.resolved && found.runaways == 0.0);
         let words = format!(
             "{} {:?} {:?}",
@@ -324,7 +340,8 @@ mod tests {
             .unwrap()
             .system_with(&values)
             .unwrap();
-        let found = relaxation(&*system, &square_space(2.0), 1);
+        let never = Cancellation::new();
+        let found = relaxation(&*system, &square_space(2.0), 1, &never).unwrap();
         assert_eq!(found.runaways, 1.0);
     }
 }

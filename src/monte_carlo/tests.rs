@@ -1,6 +1,7 @@
 //! Densities by free trajectories against exact ones, cell by cell in units of their standard errors.
 
 use super::*;
+use crate::cancellation::{Cancellation, Cancelled};
 use crate::density::{EstimatedDensity, Observable, Projection, estimate};
 use crate::sampling::Integrator;
 use crate::space::Axis;
@@ -18,7 +19,7 @@ impl Case {
         let system = registry::find(model).unwrap().system_with(values).unwrap();
         let axis = Axis::uniform(-half, half, count).unwrap();
         let space = CellSpace::new(vec![axis; system.dimension()]).unwrap();
-        let relaxation = relaxation(&*system, &space, 5);
+        let relaxation = relaxation(&*system, &space, 5, &Cancellation::new()).unwrap();
         Self {
             system,
             space,
@@ -44,7 +45,14 @@ impl Case {
 
     fn estimate(&self, run: &ErgodicRun) -> Estimate {
         let starts = &self.relaxation.settled;
-        ergodic(&*self.system, &self.space, starts, run, &|| false).unwrap()
+        ergodic(
+            &*self.system,
+            &self.space,
+            starts,
+            run,
+            &Cancellation::new(),
+        )
+        .unwrap()
     }
 
     /// Integrals of the exact density over the cells, by midpoints of 8 parts an axis: error h²/(24·64) of the second derivative.
@@ -135,7 +143,7 @@ fn any_number_of_threads_gives_the_same_bits() {
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
         pool.build().unwrap().install(|| {
-            let relaxed = relaxation(&*case.system, &case.space, 5);
+            let relaxed = relaxation(&*case.system, &case.space, 5, &Cancellation::new()).unwrap();
             (relaxed.settled, relaxed.time.to_bits(), case.estimate(&run))
         })
     };
@@ -158,7 +166,7 @@ fn trajectories_that_run_away_are_counted_and_the_rest_is_kept() {
         length: 100.0,
         stride: 2,
     };
-    let found = ergodic(&*case.system, &case.space, &[], &run, &|| false).unwrap();
+    let found = ergodic(&*case.system, &case.space, &[], &run, &Cancellation::new()).unwrap();
     assert_eq!(found.runaways, 1.0);
     assert!(
         found.looks > 0 && found.runaway_rate > 0.01,
@@ -180,7 +188,7 @@ fn an_ensemble_agrees_with_the_exact_density_and_with_the_time_average() {
         time: 12.0 * case.relaxation.time,
         start: vec![(0.5, 0.5), (0.0, 0.2)],
     };
-    let found = ensemble(&*case.system, &case.space, &run, &|| false).unwrap();
+    let found = ensemble(&*case.system, &case.space, &run, &Cancellation::new()).unwrap();
     assert_eq!(
         found.looks + (found.share_outside * 200_000.0) as u64,
         200_000
@@ -193,7 +201,7 @@ fn an_ensemble_agrees_with_the_exact_density_and_with_the_time_average() {
         assert!((ratio - 1.0).abs() < 0.02, "{ratio}");
     }
     let early = EnsembleRun { time: 0.2, ..run };
-    let early = ensemble(&*case.system, &case.space, &early, &|| false).unwrap();
+    let early = ensemble(&*case.system, &case.space, &early, &Cancellation::new()).unwrap();
     assert!((early.mean[0] - 0.5).abs() < 0.1, "still at its start");
 }
 
@@ -202,7 +210,14 @@ fn refusals_name_what_is_wrong() {
     let case = Case::new("bistable", &[("a", -0.5), ("sigma2", 0.3)], 2.0, 10);
     let run = case.run(64, 1.0);
     let refused = |run: &ErgodicRun, starts: &[Vec<f64>]| {
-        ergodic(&*case.system, &case.space, starts, run, &|| false).unwrap_err()
+        ergodic(
+            &*case.system,
+            &case.space,
+            starts,
+            run,
+            &Cancellation::new(),
+        )
+        .unwrap_err()
     };
     let still = ErgodicRun {
         time_step: 0.0,
@@ -215,6 +230,8 @@ fn refusals_name_what_is_wrong() {
         ..run.clone()
     };
     assert_eq!(refused(&blind, &[]), MonteCarloError::Stride);
-    let stopped = ergodic(&*case.system, &case.space, &[], &run, &|| true);
-    assert_eq!(stopped.unwrap_err(), MonteCarloError::Cancelled);
+    let cancellation = Cancellation::new();
+    cancellation.cancel();
+    let stopped = ergodic(&*case.system, &case.space, &[], &run, &cancellation);
+    assert_eq!(stopped.unwrap_err(), MonteCarloError::Cancelled(Cancelled));
 }

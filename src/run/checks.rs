@@ -51,6 +51,7 @@ pub(super) fn checks_csv(subject: &Subject, seen: &[FinerIndicator]) -> Result<S
     let Subject {
         family,
         observables,
+        ..
     } = subject;
     let watched = seen.iter().filter(|one| one.observable < observables.len());
     columns(family, observables).csv(watched)
@@ -64,6 +65,7 @@ pub(super) fn read_checks(path: &Path, subject: &Subject) -> Result<Vec<FinerInd
     let Subject {
         family,
         observables,
+        ..
     } = subject;
     let blank = || FinerIndicator {
         value: f64::NAN,

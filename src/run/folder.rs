@@ -87,6 +87,7 @@ impl RunFolder {
         let Subject {
             family,
             observables,
+            ..
         } = subject;
         if !point.densities.is_empty() {
             self.store.append(family, point.value, &point.densities)?;

@@ -1,7 +1,9 @@
 //! A run written and read back: densities bit for bit, whatever they carry, and what is said of broken files.
 
 use super::*;
-use crate::continuation::{Finding, MethodPart, Point, PointStatus, SolveReport, Subject};
+use crate::continuation::{
+    CellCheck, Finding, MethodPart, Point, PointStatus, SolveReport, Subject,
+};
 use crate::density::{Density, EstimatedDensity, Kink, Moments, Observable, Structure, Variants};
 use crate::space::{Axis, CellSpace, Grading};
 use crate::system::examples::coulomb;
@@ -12,6 +14,7 @@ fn subject(observables: &[Observable]) -> Subject {
     Subject {
         family: coulomb(),
         observables: observables.to_vec(),
+        cell_check: CellCheck::Needless,
     }
 }
 

@@ -6,7 +6,7 @@ use zarrs::array::Array;
 
 use super::*;
 use crate::continuation::{
-    Finding, MethodPart, Point, PointStatus, SolveReport, Subject, SweepResult,
+    CellCheck, Finding, MethodPart, Point, PointStatus, SolveReport, Subject, SweepResult,
 };
 use crate::density::{Density, EstimatedDensity, Moments, Observable};
 use crate::space::Axis;
@@ -17,6 +17,7 @@ fn subject() -> Subject {
     Subject {
         family: coulomb(),
         observables: vec![Observable::Marginal(0), Observable::Joint(0, 1)],
+        cell_check: CellCheck::Needless,
     }
 }
 

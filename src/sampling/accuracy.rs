@@ -5,6 +5,7 @@
 //! dx = -x dt + σ dW has the steady variance σ²/2 + (h²/6)/(1 - e^{-2Δt}), up to sampling and terms that are
 //! exponentially small in (spread over h)².
 
+use crate::cancellation::Cancellation;
 use crate::sampling::{Integrator, SamplingOptions, TransitionMatrix, sample_transitions};
 use crate::space::{Axis, CellSpace};
 use crate::system::{Lanes, System};
@@ -57,8 +58,14 @@ fn variance_and_diffusion(map_step: f64, samples: usize) -> (f64, f64) {
         integrator: Integrator::StochasticHeun,
         keep_starts: false,
     };
-    let sampled =
-        sample_transitions(&OrnsteinUhlenbeck, &space, &[20], &options, &|| false).unwrap();
+    let sampled = sample_transitions(
+        &OrnsteinUhlenbeck,
+        &space,
+        &[20],
+        &options,
+        &Cancellation::new(),
+    )
+    .unwrap();
     let mass = steady_masses(&sampled.matrix());
     let moment = |power: i32| -> f64 {
         let cells = sampled.cells().iter().zip(&mass);

@@ -5,6 +5,7 @@ use super::integrator::Stepper;
 use super::random::{NormalStream, StreamKey};
 use super::starts::StartLattice;
 use crate::MAX_DIMENSION;
+use crate::cancellation::{Cancellation, Cancelled};
 use crate::space::CellSpace;
 use crate::system::{LANES, Lanes, System};
 
@@ -70,6 +71,7 @@ impl<'a> ColumnSampler<'a> {
         system: &'a dyn System,
         space: &'a CellSpace,
         options: &'a SamplingOptions,
+        cancellation: &Cancellation,
     ) -> Self {
         let steps = options.steps();
         let time_step = options.map_step / steps as f64;
@@ -88,14 +90,14 @@ impl<'a> ColumnSampler<'a> {
             space,
             options,
             steps,
-            stepper: Stepper::new(system, options.integrator, time_step),
+            stepper: Stepper::new(system, options.integrator, time_step, cancellation),
             lattice: StartLattice::new(largest, space.dimension()),
             group_starts,
         }
     }
 
     /// Runs the trajectories of one cell. Depends on the cell's number and the options alone.
-    pub(super) fn column(&self, cell: usize) -> Column {
+    pub(super) fn column(&self, cell: usize) -> Result<Column, Cancelled> {
         let dimension = self.space.dimension();
         let mut ends: Vec<End> = Vec::with_capacity(self.options.samples);
         let keeps = self.options.keep_starts;
@@ -118,7 +120,7 @@ impl<'a> ColumnSampler<'a> {
             self.place_starts(cell, first, &groups, &mut states[..dimension], &mut offsets);
             let mut stream = NormalStream::new(self.key(cell, block as u64));
             self.stepper
-                .advance(&mut states[..dimension], 0, self.steps, &mut stream);
+                .advance(&mut states[..dimension], 0, self.steps, &mut stream)?;
             for (lane, &of_lane) in groups.iter().enumerate().take(count) {
                 let end = self.find_end(lane, &states[..dimension], &mut spreading);
                 ends.push((end, of_lane as u8, (first + lane) as u32));
@@ -133,7 +135,7 @@ impl<'a> ColumnSampler<'a> {
         }
         let mut column = compress(ends, spreading, &starts, dimension);
         column.ends = moments;
-        column
+        Ok(column)
     }
 
     fn key(&self, cell: usize, block: u64) -> StreamKey {

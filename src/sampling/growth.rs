@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::column::{Column, ColumnSampler, SINK};
 use super::{Integrator, SampledTransitions, SamplingError};
+use crate::cancellation::{Cancellation, Cancelled};
 use crate::space::CellSpace;
 use crate::system::System;
 
@@ -60,7 +61,7 @@ impl SamplingOptions {
 /// seeds first, then the cells their trajectories end in, until no new cell appears.
 ///
 /// Results depend on neither the number of threads nor, but for which cells are sampled, on the seeds: a cell's
-/// trajectories are keyed by the options' seed and the cell's number. `cancelled` is asked before every cell.
+/// trajectories are keyed by the options' seed and the cell's number.
 ///
 /// # Errors
 /// [`SamplingError`].
@@ -69,7 +70,7 @@ pub fn sample_transitions(
     space: &CellSpace,
     seeds: &[usize],
     options: &SamplingOptions,
-    cancelled: &(dyn Fn() -> bool + Sync),
+    cancellation: &Cancellation,
 ) -> Result<SampledTransitions, SamplingError> {
     options.check()?;
     if system.dimension() != space.dimension() {
@@ -83,11 +84,8 @@ pub fn sample_transitions(
     if let Some(&cell) = seeds.iter().find(|&&cell| cell >= n_cells) {
         return Err(SamplingError::Seed { cell, n_cells });
     }
-    let sampler = ColumnSampler::new(system, space, options);
-    let sample = |&cell: &usize| match cancelled() {
-        true => Err(SamplingError::Cancelled),
-        false => Ok((cell, sampler.column(cell))),
-    };
+    let sampler = ColumnSampler::new(system, space, options, cancellation);
+    let sample = |&cell: &usize| -> Result<_, Cancelled> { Ok((cell, sampler.column(cell)?)) };
     let mut known = vec![false; n_cells];
     let mut columns: Vec<(usize, Column)> = Vec::new();
     let mut frontier = unknown_of(seeds.iter().copied(), &mut known);

@@ -8,6 +8,7 @@ use multiversion::multiversion;
 
 use super::random::NormalStream;
 use crate::MAX_DIMENSION;
+use crate::cancellation::{Cancellation, Cancelled};
 use crate::system::{LANES, Lanes, System};
 
 /// Integrators by name.
@@ -41,6 +42,7 @@ pub(crate) struct Stepper<'a> {
     integrator: Integrator,
     time_step: f64,
     noise: Vec<Channel>,
+    cancellation: Cancellation,
 }
 
 /// A Wiener process: the axis it drives, and its amplitude times √dt where it is constant.
@@ -51,8 +53,13 @@ struct Channel {
 }
 
 impl<'a> Stepper<'a> {
-    /// Steps of `time_step`.
-    pub(crate) fn new(system: &'a dyn System, integrator: Integrator, time_step: f64) -> Self {
+    /// Steps of `time_step`, until cancelled.
+    pub(crate) fn new(
+        system: &'a dyn System,
+        integrator: Integrator,
+        time_step: f64,
+        cancellation: &Cancellation,
+    ) -> Self {
         let channel = |(channel, &axis): (usize, &usize)| Channel {
             axis,
             increment: system
@@ -69,17 +76,18 @@ impl<'a> Stepper<'a> {
                 .enumerate()
                 .map(channel)
                 .collect(),
+            cancellation: cancellation.clone(),
         }
     }
 
-    /// Advances a batch, `states[axis][lane]`, by `steps` steps from the step of number `first`.
+    /// Advances a batch, `states[axis][lane]`, by `steps` steps from the step of number `first`; cancelled, by fewer.
     pub(crate) fn advance(
         &self,
         states: &mut [Lanes],
         first: usize,
         steps: usize,
         stream: &mut NormalStream,
-    ) {
+    ) -> Result<(), Cancelled> {
         let channels = self.noise.len();
         // Whole pairs of rows, so that no normal is dropped but at the very end.
         let chunk = (ROWS / channels.max(1)).max(2) & !1;
@@ -93,12 +101,14 @@ impl<'a> Stepper<'a> {
         };
         let mut done = 0;
         while done < steps {
+            self.cancellation.check()?;
             let count = chunk.min(steps - done);
             let normals = &mut buffer[..count * channels];
             stream.fill(normals);
             self.advance_with(states, first + done, count, normals);
             done += count;
         }
+        Ok(())
     }
 
     /// Advances by `steps` steps with the given standard normals, one row a step and Wiener process.

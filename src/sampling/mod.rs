@@ -66,6 +66,6 @@ pub enum SamplingError {
         n_cells: usize,
     },
     /// The caller asked to stop.
-    #[error("sampling was cancelled")]
-    Cancelled,
+    #[error(transparent)]
+    Cancelled(#[from] crate::cancellation::Cancelled),
 }

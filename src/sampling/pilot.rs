@@ -7,6 +7,7 @@ use super::Integrator;
 use super::integrator::Stepper;
 use super::jacobian::{LocalRates, local_rates};
 use super::random::{NormalStream, StreamKey, mix, unit};
+use crate::cancellation::{Cancellation, Cancelled};
 use crate::space::CellSpace;
 use crate::system::{LANES, Lanes, System};
 
@@ -124,7 +125,15 @@ fn summary(rates: &[LocalRates], share: f64) -> (f64, f64) {
 
 /// Runs a few hundred trajectories, lets them settle, and records where they go. Keyed by `seed`; the result
 /// does not depend on the number of threads.
-pub fn pilot(system: &dyn System, space: &CellSpace, seed: u64) -> Pilot {
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn pilot(
+    system: &dyn System,
+    space: &CellSpace,
+    seed: u64,
+    cancellation: &Cancellation,
+) -> Result<Pilot, Cancelled> {
     let scouts = (0..SCOUTS).map(|scout| place(space, seed, scout, true));
     let scouted: Vec<LocalRates> = scouts
         .filter_map(|state| local_rates(system, space, &state))
@@ -146,17 +155,17 @@ pub fn pilot(system: &dyn System, space: &CellSpace, seed: u64) -> Pilot {
         3.0 * periods
     };
     let steps = ((settling / step) as usize).clamp(RECORDS, MOST_STEPS);
-    let stepper = Stepper::new(system, Integrator::StochasticHeun, step);
+    let stepper = Stepper::new(system, Integrator::StochasticHeun, step, cancellation);
     let run = |batch: u64| trajectories(&stepper, system, space, seed, batch, steps);
-    let records: Vec<Record> = (0..BATCHES).into_par_iter().map(run).collect();
+    let records: Result<Vec<Record>, _> = (0..BATCHES).into_par_iter().map(run).collect();
     let mut record = Record::new(space);
-    for of_batch in &records {
+    for of_batch in &records? {
         record.join(of_batch);
     }
     if record.inside == 0 {
-        return nothing_stays(system, space, seed, scouted);
+        return Ok(nothing_stays(system, space, seed, scouted));
     }
-    record.finish()
+    Ok(record.finish())
 }
 
 /// What is left to say where no trajectory stays in Ω: means over Ω itself.
@@ -206,7 +215,7 @@ fn trajectories(
     seed: u64,
     batch: u64,
     steps: usize,
-) -> Record {
+) -> Result<Record, Cancelled> {
     let mut states: Vec<Lanes> = vec![[0.0; LANES]; space.dimension()];
     for lane in 0..LANES {
         let point = SCOUTS + batch * LANES as u64 + lane as u64;
@@ -220,16 +229,16 @@ fn trajectories(
         cell: PILOT_CELL,
         block: batch,
     });
-    stepper.advance(&mut states, 0, steps, &mut stream);
+    stepper.advance(&mut states, 0, steps, &mut stream)?;
     let mut record = Record::new(space);
     let mut done = steps;
     for visit in 1..=RECORDS {
         let until = steps + visit * steps / RECORDS;
-        stepper.advance(&mut states, done, until - done, &mut stream);
+        stepper.advance(&mut states, done, until - done, &mut stream)?;
         done = until;
         record.batch(system, space, &states, visit % 16 == 0);
     }
-    record
+    Ok(record)
 }
 
 #[cfg(test)]

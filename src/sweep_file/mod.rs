@@ -9,13 +9,15 @@
 //! [`keys`].
 //!
 //! ```
+//! use pbif::cancellation::Cancellation;
 //! use pbif::sweep_file::SweepFile;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let mut file = SweepFile::parse("bistable.toml", include_str!("../../sweeps/bistable.toml"));
 //! file.set("sweep.points", "11").set("cells.x.count", "100");
-//! let sweep = file.validate()?.prepare()?;
-//! let found = sweep.run(Default::default(), &mut ())?;
+//! let never = Cancellation::new();
+//! let sweep = file.validate()?.prepare(&never)?;
+//! let found = sweep.run(&never, &mut ())?;
 //! let change = found.labels.iter().find(|row| row.label == "PB1").unwrap();
 //! assert!(change.value.abs() < 1e-3);
 //!

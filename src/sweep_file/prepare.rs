@@ -9,8 +9,9 @@ use super::names::list;
 use super::report::Report;
 use super::settings::{Grade, Settings, at_cells, cell_space};
 use super::sweep::Sweep;
+use crate::cancellation::Cancellation;
 use crate::generator::automatic_grading;
-use crate::method::{Problem, SgcmOptions, automatic_ranges};
+use crate::method::{Problem, RangeError, SgcmOptions, automatic_ranges};
 use crate::space::Grading;
 use crate::system::System;
 
@@ -19,10 +20,10 @@ impl Settings {
     /// a point fits into this machine's memory.
     ///
     /// # Errors
-    /// A report where it does not fit, or where no range holds the density.
-    pub fn prepare(mut self) -> Result<Sweep, Report> {
+    /// A report where it does not fit, where no range holds the density, or when cancelled.
+    pub fn prepare(mut self, cancellation: &Cancellation) -> Result<Sweep, Report> {
         self.check_memory()?;
-        self.find_cells()?;
+        self.find_cells(cancellation)?;
         let sweep = self.fixed()?;
         sweep.settings.check_factors(&sweep)?;
         Ok(sweep)
@@ -36,6 +37,7 @@ impl Settings {
         let space = cell_space(&self.document, &self.family, &self.axes)
             .map_err(|diagnostic| self.refuse(*diagnostic))?;
         let problem = Problem::new(self.family.clone(), space, self.observables.clone())
+            .map(|problem| problem.checked_by(self.method.chosen().cell_check()))
             .map_err(|error| self.refuse(Diagnostic::new(error.to_string())))?;
         Ok(Sweep {
             settings: self,
@@ -52,7 +54,7 @@ impl Settings {
     }
 
     /// Replaces what is left to the program by numbers.
-    fn find_cells(&mut self) -> Result<(), Report> {
+    fn find_cells(&mut self, cancellation: &Cancellation) -> Result<(), Report> {
         let is_open = |grade: &Grade| *grade == Grade::Auto;
         let open = |axis: &super::AxisSettings| axis.range.is_none() || is_open(&axis.grade);
         if !self.axes.iter().any(open) {
@@ -62,7 +64,7 @@ impl Settings {
         let ends: Result<Vec<Arc<dyn System>>, _> =
             [from, to].iter().map(|&end| self.family.at(end)).collect();
         let ends = ends.map_err(|error| self.refuse(Diagnostic::new(error.to_string())))?;
-        let ranges = self.find_ranges(&ends)?;
+        let ranges = self.find_ranges(&ends, cancellation)?;
         for (index, axis) in self.axes.iter_mut().enumerate() {
             axis.range = Some(ranges[index]);
             if is_open(&axis.grade) {
@@ -78,17 +80,22 @@ impl Settings {
         Ok(())
     }
 
-    fn find_ranges(&self, ends: &[Arc<dyn System>]) -> Result<Vec<(f64, f64)>, Report> {
+    fn find_ranges(
+        &self,
+        ends: &[Arc<dyn System>],
+        cancellation: &Cancellation,
+    ) -> Result<Vec<(f64, f64)>, Report> {
         let known: Vec<Option<(f64, f64)>> = self.axes.iter().map(|axis| axis.range).collect();
         if let Some(given) = known.iter().copied().collect() {
             return Ok(given);
         }
-        automatic_ranges(ends, &known, SgcmOptions::default().seed).ok_or_else(|| {
-            let diagnostic = Diagnostic::new(
-                "no range holds the density: free trajectories run away somewhere along the sweep",
-            )
-            .remedy("give `from` and `to` instead of `range = \"auto\"`");
-            self.refuse_cells(diagnostic)
+        let found = automatic_ranges(ends, &known, SgcmOptions::default().seed, cancellation);
+        found.map_err(|error| {
+            let diagnostic = Diagnostic::new(error.to_string());
+            self.refuse_cells(match error {
+                RangeError::Cancelled(_) => diagnostic,
+                _ => diagnostic.remedy("give `from` and `to` instead of `range = \"auto\"`"),
+            })
         })
     }
 

@@ -1,9 +1,7 @@
 //! A sweep that is ready to run: settings with their cells.
 
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
-
 use super::settings::Settings;
+use crate::cancellation::Cancellation;
 use crate::continuation::{Observer, SweepError, SweepResult, sweep};
 use crate::method::{MethodError, MethodSource, Problem};
 use crate::topology::PersistenceDetector;
@@ -36,12 +34,12 @@ impl Sweep {
         PersistenceDetector::new(settings.detect.clone(), looks)
     }
 
-    /// The source of densities by the chosen method; it stops soon after `cancelled` is set.
+    /// The source of densities by the chosen method; what is left to it is chosen here.
     ///
     /// # Errors
     /// [`MethodError`] where the method refuses.
-    pub fn source(&self, cancelled: Arc<AtomicBool>) -> Result<MethodSource, MethodError> {
-        MethodSource::new(&self.problem, &self.settings.method.chosen(), cancelled)
+    pub fn source(&self, cancellation: &Cancellation) -> Result<MethodSource, MethodError> {
+        MethodSource::new(&self.problem, &self.settings.method.chosen(), cancellation)
     }
 
     /// Solves along the parameter and locates the changes; `observer` sees every point as it is done, `()` looks away.
@@ -50,13 +48,20 @@ impl Sweep {
     /// [`SolveError`]; failed points are data.
     pub fn run(
         &self,
-        cancelled: Arc<AtomicBool>,
+        cancellation: &Cancellation,
         observer: &mut dyn Observer,
     ) -> Result<SweepResult, SolveError> {
-        let source = self.source(cancelled)?;
+        let source = self.source(cancellation)?;
         let (detector, settings) = (self.detector(), &self.settings);
         let (points, locate) = (settings.points, &settings.locate);
-        Ok(sweep(&source, &detector, points, locate, observer)?)
+        Ok(sweep(
+            &source,
+            &detector,
+            points,
+            locate,
+            cancellation,
+            observer,
+        )?)
     }
 
     /// The sweep as a complete sweep file. Read again it gives the same sweep.

@@ -1,8 +1,8 @@
 //! Sweeps with closed-form densities, for tests that need a result but no solver.
 
 use pbif::continuation::{
-    BifurcationStatus, LabelledPoint, Point, PointStatus, PointType, SolveReport, Subject,
-    SweepResult,
+    BifurcationStatus, CellCheck, LabelledPoint, Point, PointStatus, PointType, SolveReport,
+    Subject, SweepResult,
 };
 use pbif::density::{Density, EstimatedDensity, Observable};
 use pbif::space::Axis;
@@ -147,6 +147,7 @@ pub(crate) fn bistable() -> SweepResult {
         subject: Subject {
             family: along("bistable", "a", (-1.0, 1.0)),
             observables: vec![Observable::Marginal(0)],
+            cell_check: CellCheck::Needless,
         },
         points: values.into_iter().map(at).collect(),
         labels: vec![bifurcation(
@@ -220,6 +221,7 @@ pub(crate) fn rayleigh((model, parameter): (&str, &str), scale: f64, y: &Axis) -
         subject: Subject {
             family: along(model, parameter, (-scale, scale)),
             observables,
+            cell_check: CellCheck::Needless,
         },
         points,
         labels,

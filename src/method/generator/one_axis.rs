@@ -2,66 +2,113 @@
 
 use std::sync::Arc;
 
-use super::trail::{self, Trail};
-use crate::continuation::Solution;
-use crate::density::{Moments, estimate_from_difference};
-use crate::generator::one_axis;
+use super::GeneratorSource;
+use super::source::METHOD;
+use crate::continuation::{Sensitivity, Solution, SourceError};
+use crate::density::{Moments, Projection, estimate_from_difference};
+use crate::generator::{OneAxis, one_axis};
+use crate::method::MethodError;
 use crate::method::report::Reporter;
 use crate::method::structure::structure;
-use crate::method::{MethodError, Problem, State};
-use crate::system::{SwitchingSurface, System};
+use crate::system::{System, SystemError};
 
 /// Largest relative error of a cell that the quadrature may have; where noise nearly vanishes, or the drift jumps inside a cell,
 /// the generator serves better.
 const LARGEST_ERROR: f64 = 1e-6;
 
-/// The solution at a value; `None` where the system has more axes, or pushes mass out of the range.
-pub(super) fn solution(
-    system: &dyn System,
-    (value, method): (f64, &'static str),
-    problem: &Problem,
-    (closed_ends, kinked): (&[[bool; 2]], &[SwitchingSurface]),
-) -> Option<Result<Solution<State>, MethodError>> {
-    let space = problem.space();
-    let [axis] = space.axes() else {
+/// Step of differences, relative to the number that is varied (to `LEAST` where that is smaller). Their error is step⁴ p⁽⁵⁾/30, and
+/// rounding over the step.
+const STEP: f64 = 2e-3;
+const LEAST: f64 = 1e-2;
+
+/// Masses by quadrature; `None` where the system has more axes, or pushes mass out of the range.
+pub(super) fn masses(source: &GeneratorSource, system: &dyn System) -> Option<OneAxis> {
+    let [axis] = source.problem.space().axes() else {
         return None;
     };
     let pushes_in = |at: f64, sign: f64| sign * system.drift_at(0.0, &[at])[0] > 0.0;
-    let [low, high] = closed_ends.first().copied()?;
+    let [low, high] = source.closed_ends.first().copied()?;
     if !((low || pushes_in(axis.from(), 1.0)) && (high || pushes_in(axis.to(), -1.0))) {
         return None;
     }
-    let found = one_axis(system, axis).filter(|found| found.error < LARGEST_ERROR)?;
-    let masses = &found.masses;
-    let mut reporter = Reporter::new(method, space);
+    one_axis(system, axis).filter(|found| found.error < LARGEST_ERROR)
+}
+
+/// The solution at a value.
+pub(super) fn solution<'session>(
+    source: &'session GeneratorSource,
+    value: f64,
+    system: &dyn System,
+    found: &OneAxis,
+) -> Result<Solution<'session>, MethodError> {
+    let (space, masses) = (source.problem.space(), &found.masses);
+    let mut reporter = Reporter::new(METHOD, space);
     reporter.report.residual = 0.0;
     reporter.report.solver_error = found.error;
-    reporter.edge_mass(masses, closed_ends);
+    reporter.edge_mass(masses, &source.closed_ends);
     let difference: Vec<f64> = masses.iter().map(|mass| mass * found.error).collect();
-    let densities = problem.observables().iter().map(|&observable| {
+    let densities = source.problem.observables().iter().map(|&observable| {
         let mut estimated = estimate_from_difference(space, observable, masses, &difference)?;
-        estimated.structure = structure(system, space, masses, observable, kinked);
+        estimated.structure = structure(system, space, masses, observable, &source.kinked);
         estimated.negligible = 0.0;
         Ok(estimated)
     });
     let densities: Result<Vec<_>, MethodError> = densities.collect();
-    let mass = Arc::new(masses.clone());
-    let point = trail::Solved {
-        value,
-        mass: mass.clone(),
-        difference,
-    };
     let moments = Moments {
         mean: found.moments.0,
         standard_deviation: found.moments.1.max(0.0).sqrt(),
     };
-    Some(densities.map(|densities| Solution {
+    Ok(Solution {
         report: reporter.report,
         moments: vec![moments],
-        densities,
-        state: Some(State {
-            mass,
-            trail: Trail::default().with(point, None),
-        }),
-    }))
+        densities: densities?,
+        sensitivity: Some(Box::new(QuadratureSensitivity { source, value })),
+    })
+}
+
+/// How densities by quadrature answer to parameters: by differences, which the quadrature's digits allow.
+struct QuadratureSensitivity<'session> {
+    source: &'session GeneratorSource,
+    value: f64,
+}
+
+impl Sensitivity for QuadratureSensitivity<'_> {
+    fn to_parameter(&mut self, name: &str) -> Result<Vec<Vec<f64>>, SourceError> {
+        let family = self.source.problem.family();
+        let model = family.model();
+        let values = family.values_at(self.value).map_err(MethodError::from)?;
+        let index = model.parameter_index(name).map_err(MethodError::from)?;
+        let at = |value: f64| Ok(model.system(&model.with(&values, name, value)?));
+        Ok(self.of(at, values.as_slice()[index])?)
+    }
+
+    fn along_path(&mut self) -> Result<Vec<Vec<f64>>, SourceError> {
+        let family = self.source.problem.family();
+        Ok(self.of(|value| family.at(value), self.value)?)
+    }
+}
+
+impl QuadratureSensitivity<'_> {
+    /// Of systems that depend on one number, at its value.
+    fn of(
+        &self,
+        system_at: impl Fn(f64) -> Result<Arc<dyn System>, SystemError>,
+        value: f64,
+    ) -> Result<Vec<Vec<f64>>, MethodError> {
+        let step = STEP * value.abs().max(LEAST);
+        let problem = &self.source.problem;
+        let mut sum = vec![0.0; problem.space().n_cells()];
+        for (steps, weight) in [(2.0, -1.0), (1.0, 8.0), (-1.0, -8.0), (-2.0, 1.0)] {
+            let system = system_at(value + steps * step)?;
+            let found = masses(self.source, system.as_ref()).ok_or(MethodError::NoSensitivity)?;
+            for (slot, mass) in sum.iter_mut().zip(found.masses) {
+                *slot += weight / (12.0 * step) * mass;
+            }
+        }
+        let density = |&observable| {
+            let projection = Projection::new(problem.space(), observable)?;
+            Ok(projection.density(&sum)?.values)
+        };
+        problem.observables().iter().map(density).collect()
+    }
 }

@@ -1,5 +1,6 @@
 //! Settings of the generator method and their defaults.
 
+use crate::continuation::CellCheck;
 use crate::generator::AdvectiveScheme;
 use crate::method::options::ESCAPE_LIMIT;
 
@@ -15,6 +16,11 @@ pub struct GeneratorMethodOptions {
     /// Largest share of the mass that may leave Ω within one relaxation time before there is said to be no
     /// steady state.
     pub escape_limit: f64,
+}
+
+impl GeneratorMethodOptions {
+    /// On finer cells: a scheme of high order shows there what the cells do.
+    pub const CELL_CHECK: CellCheck = CellCheck::OnFinerCells;
 }
 
 impl Default for GeneratorMethodOptions {

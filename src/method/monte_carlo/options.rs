@@ -1,5 +1,6 @@
 //! Settings of Monte Carlo and their defaults.
 
+use crate::continuation::CellCheck;
 use crate::method::StepChoice;
 use crate::method::options::ESCAPE_LIMIT;
 use crate::sampling::Integrator;
@@ -48,6 +49,11 @@ pub struct MonteCarloOptions {
     /// Largest share of the time outside Ω, or of the trajectories that run away within one autocorrelation time, before
     /// there is said to be no steady state.
     pub escape_limit: f64,
+}
+
+impl MonteCarloOptions {
+    /// It need not be checked: cells only count.
+    pub const CELL_CHECK: CellCheck = CellCheck::Needless;
 }
 
 impl Default for MonteCarloOptions {

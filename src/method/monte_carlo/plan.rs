@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::{Estimator, MonteCarloOptions};
+use crate::cancellation::{Cancellation, Cancelled};
 use crate::method::time_step::time_step;
 use crate::monte_carlo::{ErgodicRun, Relaxation, StepBias};
 use crate::space::CellSpace;
@@ -47,19 +48,24 @@ impl MonteCarloPlan {
     }
 
     /// Chooses what is left to the program, for some systems along a sweep and how they relax.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
     pub(super) fn choose(
         systems: &[Arc<dyn System>],
         space: &CellSpace,
         relaxed: &[Relaxation],
         options: &MonteCarloOptions,
-    ) -> Self {
+        cancellation: &Cancellation,
+    ) -> Result<Self, Cancelled> {
         let (time_step, bias) = time_step(
             (systems, relaxed),
             space,
             options.time_step,
             BIAS_SHARE * options.error,
             (options.integrator, options.seed),
-        );
+            cancellation,
+        )?;
         let relaxation_time = relaxed.iter().map(|one| one.time).fold(0.0, f64::max);
         let strides = relaxed.iter().map(|one| ErgodicRun::stride(one, time_step));
         let stride = strides.min().unwrap_or(2);
@@ -67,7 +73,7 @@ impl MonteCarloPlan {
             Estimator::Ergodic => ergodic(options, relaxed, stride as f64 * time_step),
             Estimator::Ensemble => ensemble(options, relaxed),
         };
-        Self {
+        Ok(Self {
             time_step,
             bias,
             relaxation_time,
@@ -77,7 +83,7 @@ impl MonteCarloPlan {
             length: amount.length,
             stride,
             error: amount.error,
-        }
+        })
     }
 
     /// The plan in words.

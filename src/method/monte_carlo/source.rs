@@ -1,16 +1,13 @@
 //! Free trajectories as a source of densities: the reference that shares neither cells' transitions nor solver with the
 //! other methods.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use super::{Estimator, MonteCarloOptions, MonteCarloPlan};
-use crate::continuation::{DensitySource, Finding, Solution, SourceError, Subject};
+use crate::cancellation::Cancellation;
+use crate::continuation::{DensitySource, Finding, Session, Solution, Subject};
 use crate::density::{EstimatedDensity, Moments, Observable, estimate};
-use crate::method::generator::Trail;
 use crate::method::report::Reporter;
 use crate::method::structure::{closed_ends, kinked_surfaces, structure};
-use crate::method::{MethodError, Problem, State, autonomous};
+use crate::method::{MethodError, Problem, autonomous};
 use crate::monte_carlo::{
     EnsembleRun, ErgodicRun, Estimate, MonteCarloError, Relaxation, ensemble, ergodic, relaxation,
 };
@@ -28,27 +25,30 @@ pub struct MonteCarloSource {
     starts: Vec<Vec<f64>>,
     closed_ends: Vec<[bool; 2]>,
     kinked: Vec<SwitchingSurface>,
-    cancelled: Arc<AtomicBool>,
 }
 
 impl MonteCarloSource {
     /// Prepares a source: measures relaxation and time step at both ends and in the middle of the sweep, and
-    /// chooses what is left to the program. Setting `cancelled` makes a running solve return
-    /// [`SourceError::Interrupted`].
+    /// chooses what is left to the program.
     ///
     /// # Errors
     /// [`MethodError`].
     pub fn new(
         problem: &Problem,
         options: &MonteCarloOptions,
-        cancelled: Arc<AtomicBool>,
+        cancellation: &Cancellation,
     ) -> Result<Self, MethodError> {
         let (systems, space) = (problem.family().along()?, problem.space());
         autonomous(&systems)?;
-        let relaxed: Vec<Relaxation> = systems
-            .iter()
-            .map(|system| relaxation(system.as_ref(), space, options.seed))
-            .collect();
+        let mut relaxed: Vec<Relaxation> = Vec::new();
+        for system in &systems {
+            relaxed.push(relaxation(
+                system.as_ref(),
+                space,
+                options.seed,
+                cancellation,
+            )?);
+        }
         // Where everything runs away there is nothing to be planned for, unless it does so all along the sweep.
         let stays = |relaxed: &Relaxation| !relaxed.settled().is_empty();
         let somewhere = relaxed.iter().any(stays);
@@ -58,9 +58,9 @@ impl MonteCarloSource {
             .zip(relaxed)
             .filter(|(_, relaxed)| stays(relaxed) || !somewhere)
             .unzip();
-        let plan = MonteCarloPlan::choose(&planned, space, &relaxed, options);
+        let plan = MonteCarloPlan::choose(&planned, space, &relaxed, options, cancellation)?;
         Ok(Self {
-            problem: problem.clone(),
+            problem: problem.checked_by(MonteCarloOptions::CELL_CHECK),
             options: options.clone(),
             plan,
             starts: relaxed
@@ -69,7 +69,6 @@ impl MonteCarloSource {
                 .collect(),
             closed_ends: closed_ends(&systems, space),
             kinked: kinked_surfaces(&systems, space),
-            cancelled,
         })
     }
 
@@ -91,9 +90,12 @@ impl MonteCarloSource {
         self.plan.describe(self.options.estimator)
     }
 
-    fn run(&self, system: &dyn System) -> Result<Estimate, MonteCarloError> {
-        let cancelled = || self.cancelled.load(Ordering::Relaxed);
-        let (plan, options) = (&self.plan, &self.options);
+    fn run(
+        &self,
+        system: &dyn System,
+        cancellation: &Cancellation,
+    ) -> Result<Estimate, MonteCarloError> {
+        let (plan, options, space) = (&self.plan, &self.options, self.problem.space());
         match options.estimator {
             Estimator::Ergodic => {
                 let run = ErgodicRun {
@@ -105,7 +107,7 @@ impl MonteCarloSource {
                     length: plan.length,
                     stride: plan.stride,
                 };
-                ergodic(system, self.problem.space(), &self.starts, &run, &cancelled)
+                ergodic(system, space, &self.starts, &run, cancellation)
             }
             Estimator::Ensemble => {
                 let run = EnsembleRun {
@@ -116,7 +118,7 @@ impl MonteCarloSource {
                     time: plan.burn_in,
                     start: Vec::new(),
                 };
-                ensemble(system, self.problem.space(), &run, &cancelled)
+                ensemble(system, space, &run, cancellation)
             }
         }
     }
@@ -125,9 +127,13 @@ impl MonteCarloSource {
     ///
     /// # Errors
     /// [`MethodError`] when the value is not allowed or the run was cancelled.
-    pub fn estimate(&self, value: f64) -> Result<(Solution<State>, Estimate), MethodError> {
+    pub fn estimate(
+        &self,
+        value: f64,
+        cancellation: &Cancellation,
+    ) -> Result<(Solution<'static>, Estimate), MethodError> {
         let system = self.problem.family().at(value)?;
-        let found = self.run(system.as_ref())?;
+        let found = self.run(system.as_ref(), cancellation)?;
         Ok((self.solution(system.as_ref(), &found)?, found))
     }
 
@@ -149,7 +155,7 @@ impl MonteCarloSource {
         &self,
         system: &dyn System,
         found: &Estimate,
-    ) -> Result<Solution<State>, MethodError> {
+    ) -> Result<Solution<'static>, MethodError> {
         let plan = &self.plan;
         let mut reporter = Reporter::new(METHOD, self.problem.space());
         // Steps of one trajectory: the iterations of the integrator.
@@ -183,32 +189,25 @@ impl MonteCarloSource {
                 })
                 .collect(),
             densities: self.densities(system, found)?,
-            state: Some(State {
-                mass: Arc::new(found.mass.clone()),
-                trail: Trail::default(),
-            }),
+            sensitivity: None,
         })
     }
 }
 
 impl DensitySource for MonteCarloSource {
-    type State = State;
+    fn method(&self) -> &'static str {
+        METHOD
+    }
 
     fn subject(&self) -> &Subject {
         self.problem.subject()
     }
 
-    fn solve(&self, value: f64, _start: Option<&State>) -> Result<Solution<State>, SourceError> {
-        match self.estimate(value) {
-            Err(MethodError::MonteCarlo(MonteCarloError::Cancelled)) => {
-                Err(SourceError::Interrupted)
-            }
-            Err(error) => Err(SourceError::Method(error.into())),
-            Ok((solution, _)) => Ok(solution),
-        }
-    }
-
-    fn state_bytes(&self, state: &State) -> usize {
-        state.bytes()
+    fn open(&self, cancellation: &Cancellation) -> Box<dyn Session> {
+        let (source, cancellation) = (self.clone(), cancellation.clone());
+        Box::new(move |value: f64| {
+            let (solution, _) = source.estimate(value, &cancellation)?;
+            Ok(solution)
+        })
     }
 }

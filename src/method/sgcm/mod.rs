@@ -1,7 +1,9 @@
-//! Stochastic generalized cell mapping: its settings, what a point costs, the choice of its steps, the slope correction, the source.
+//! Stochastic generalized cell mapping: its settings, what a point costs, the choice of its steps, the slope
+//! correction, the source, its session.
 
 mod cost;
 mod options;
+mod session;
 mod slope_correction;
 mod source;
 mod steps;

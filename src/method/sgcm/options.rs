@@ -1,5 +1,6 @@
 //! Settings of stochastic generalized cell mapping and their defaults.
 
+use crate::continuation::CellCheck;
 use crate::method::StepChoice;
 use crate::method::options::ESCAPE_LIMIT;
 use crate::sampling::Integrator;
@@ -51,6 +52,11 @@ pub struct SgcmOptions {
     /// Largest share of the mass that may leave Ω within one relaxation time before there is said to be no
     /// steady state.
     pub escape_limit: f64,
+}
+
+impl SgcmOptions {
+    /// Not at all: cells add diffusion of their own, which moves what is found, and the noise of other cells is another.
+    pub const CELL_CHECK: CellCheck = CellCheck::Impossible;
 }
 
 impl Default for SgcmOptions {

@@ -2,20 +2,20 @@
 //! steady state from the neighbour's, estimate the sampling error by leaving out groups of samples.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
+use super::session::SgcmSession;
 use super::slope_correction::{Corrected, solve_by};
 use super::steps::{Steps, choose_steps};
 use super::{Correction, SgcmOptions};
 use crate::MAX_DIMENSION;
-use crate::continuation::{DensitySource, Finding, Solution, SourceError, Subject};
+use crate::cancellation::{Cancellation, Cancelled};
+use crate::continuation::{DensitySource, Finding, Session, Solution, Subject};
 use crate::density::{EstimatedDensity, estimate, moments};
-use crate::method::generator::Trail;
 use crate::method::report::Reporter;
 use crate::method::structure::structure;
-use crate::method::{MethodError, Problem, State};
+use crate::method::{MethodError, Problem};
 use crate::sampling::{
     SampledTransitions, SamplingError, SamplingOptions, TransitionMatrix, sample_transitions,
 };
@@ -37,13 +37,15 @@ const REPLICATE_CHANGE: f64 = 1e-4;
 const NO_ESCAPE: f64 = 1e-12;
 
 /// Densities along one parameter by SGCM.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct SgcmSource {
     problem: Problem,
     options: SgcmOptions,
     steps: Steps,
-    cancelled: Arc<AtomicBool>,
 }
+
+/// A solution, and the masses of all cells where there is a steady state.
+type Found = (Solution<'static>, Option<Vec<f64>>);
 
 /// The sampled cell map at one parameter value, to be solved with either [`Correction`].
 pub struct SampledPoint {
@@ -60,21 +62,20 @@ impl SampledPoint {
 
 impl SgcmSource {
     /// Prepares a source; steps left to the program are chosen here, once, so that the transition matrix varies
-    /// smoothly along the sweep. Setting `cancelled` makes a running solve return [`SourceError::Interrupted`].
+    /// smoothly along the sweep.
     ///
     /// # Errors
     /// [`MethodError`].
     pub fn new(
         problem: &Problem,
         options: &SgcmOptions,
-        cancelled: Arc<AtomicBool>,
+        cancellation: &Cancellation,
     ) -> Result<Self, MethodError> {
-        let steps = choose_steps(problem, options)?;
+        let steps = choose_steps(problem, options, cancellation)?;
         Ok(Self {
-            problem: problem.clone(),
+            problem: problem.checked_by(SgcmOptions::CELL_CHECK),
             options: options.clone(),
             steps,
-            cancelled,
         })
     }
 
@@ -83,7 +84,8 @@ impl SgcmSource {
     /// # Errors
     /// [`MethodError`] when the cells have another number of axes.
     pub fn on(&self, space: &CellSpace) -> Result<Self, MethodError> {
-        let problem = self.problem.on(space.clone())?;
+        let check = self.problem.subject().cell_check;
+        let problem = self.problem.on(space.clone())?.checked_by(check);
         let mut steps = self.steps.clone();
         // Cells to grow from; all others that hold mass are reached from them.
         let centres = steps
@@ -98,8 +100,12 @@ impl SgcmSource {
             problem,
             options: self.options.clone(),
             steps,
-            cancelled: self.cancelled.clone(),
         })
+    }
+
+    /// What the density inside a cell is taken for.
+    pub(super) fn correction(&self) -> Correction {
+        self.options.correction
     }
 
     /// Time one transition spans.
@@ -116,6 +122,7 @@ impl SgcmSource {
         &self,
         system: &dyn System,
         start: Option<&[f64]>,
+        cancellation: &Cancellation,
     ) -> Result<SampledTransitions, SamplingError> {
         let options = SamplingOptions {
             map_step: self.steps.map_step,
@@ -131,18 +138,22 @@ impl SgcmSource {
         if let Some(mass) = start {
             seeds.extend((0..mass.len()).filter(|&cell| mass[cell] > 0.0));
         }
-        let cancelled = || self.cancelled.load(Ordering::Relaxed);
-        sample_transitions(system, self.problem.space(), &seeds, &options, &cancelled)
+        sample_transitions(system, self.problem.space(), &seeds, &options, cancellation)
     }
 
     /// Steady states without one group of samples each; fewer than asked for when one of them has none.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
     fn replicates(
         &self,
         correction: Correction,
         transitions: &SampledTransitions,
         full: &SteadyState,
-    ) -> Vec<Vec<f64>> {
+        cancellation: &Cancellation,
+    ) -> Result<Vec<Vec<f64>>, Cancelled> {
         let options = Options::new(self.options.solver, REPLICATE_TOLERANCE);
+        let options = options.cancelled_by(cancellation);
         let replicate = |group: usize| {
             let start = Some(full.mass.as_slice());
             let solved = solve_by(
@@ -154,14 +165,16 @@ impl SgcmSource {
                 (&options, REPLICATE_CHANGE),
             );
             match solved.map(|solved| solved.outcome) {
-                Ok(Outcome::Steady(steady)) => Some(steady.mass),
-                _ => None,
+                Ok(Outcome::Steady(steady)) => Ok(Some(steady.mass)),
+                Err(MethodError::Cancelled(cancelled)) => Err(cancelled),
+                _ => Ok(None),
             }
         };
-        (0..transitions.groups())
+        let replicates: Result<Vec<Option<Vec<f64>>>, Cancelled> = (0..transitions.groups())
             .into_par_iter()
-            .filter_map(replicate)
-            .collect()
+            .map(replicate)
+            .collect();
+        Ok(replicates?.into_iter().flatten().collect())
     }
 
     fn densities(
@@ -169,8 +182,9 @@ impl SgcmSource {
         (system, transitions): (&dyn System, &SampledTransitions),
         correction: Correction,
         steady: &SteadyState,
+        cancellation: &Cancellation,
     ) -> Result<(Vec<EstimatedDensity>, usize), MethodError> {
-        let replicates = self.replicates(correction, transitions, steady);
+        let replicates = self.replicates(correction, transitions, steady, cancellation)?;
         let usable: &[Vec<f64>] = if replicates.len() < 2 {
             &[]
         } else {
@@ -194,16 +208,17 @@ impl SgcmSource {
 
     fn solved(
         &self,
-        (system, transitions): (&dyn System, &SampledTransitions),
+        point: &SampledPoint,
         correction: Correction,
-        matrix: &TransitionMatrix,
-        slopes: &[[f64; MAX_DIMENSION]],
+        (matrix, slopes): (&TransitionMatrix, &[[f64; MAX_DIMENSION]]),
         steady: SteadyState,
-    ) -> Result<Solution<State>, MethodError> {
+        cancellation: &Cancellation,
+    ) -> Result<Found, MethodError> {
+        let transitions = &point.transitions;
         let info = &steady.info;
         let escape_rate = escape_rate(info.escape_per_step, self.steps.map_step);
         let relaxation_time = if info.escape_per_step > NO_ESCAPE {
-            second_eigenvalue(matrix, &steady)?.relaxation_time
+            second_eigenvalue(matrix, &steady, cancellation)?.relaxation_time
         } else {
             None
         };
@@ -214,7 +229,7 @@ impl SgcmSource {
         reporter.report.solver_error = info.error_estimate;
         let limit = self.options.escape_limit;
         let Some(share) = reporter.escaping_share(relaxation_time, limit) else {
-            return Ok(Solution::without_density(reporter.report));
+            return Ok((Solution::without_density(reporter.report), None));
         };
         let moments = moments(self.problem.space(), &steady.mass)?;
         reporter.edge_mass(&steady.mass, &self.steps.closed_ends);
@@ -226,17 +241,16 @@ impl SgcmSource {
         if !info.converged {
             reporter.not_converged(info.error_estimate);
         }
-        let (densities, replicates) = self.densities((system, transitions), correction, &steady)?;
+        let sampled = (point.system.as_ref(), transitions);
+        let (densities, replicates) = self.densities(sampled, correction, &steady, cancellation)?;
         reporter.replicates(replicates, transitions.groups());
-        Ok(Solution {
+        let solution = Solution {
             report: reporter.report,
             moments,
             densities,
-            state: Some(State {
-                mass: Arc::new(steady.mass),
-                trail: Trail::default(),
-            }),
-        })
+            sensitivity: None,
+        };
+        Ok((solution, Some(steady.mass)))
     }
 
     /// Diffusion that the cells add, one value an axis.
@@ -274,27 +288,30 @@ impl SgcmSource {
         &self,
         value: f64,
         start: Option<&[f64]>,
+        cancellation: &Cancellation,
     ) -> Result<SampledPoint, MethodError> {
         let system = self.problem.family().at(value)?;
-        let transitions = self.sample(system.as_ref(), start)?;
+        let transitions = self.sample(system.as_ref(), start, cancellation)?;
         Ok(SampledPoint {
             system,
             transitions,
         })
     }
 
-    /// Solves a sampled cell map, with the correction of one's choice: the same samples serve both. `start` has one mass a cell.
+    /// Solves a sampled cell map, with the correction of one's choice: the same samples serve both. `start` has one mass a cell, and so
+    /// has what is found beside the solution, where there is a steady state.
     ///
     /// # Errors
-    /// [`MethodError`] when the samples cannot be solved.
+    /// [`MethodError`] when the samples cannot be solved, or the solve was cancelled.
     pub fn solve_sampled(
         &self,
         point: &SampledPoint,
         correction: Correction,
         start: Option<&[f64]>,
-    ) -> Result<Solution<State>, MethodError> {
-        let (system, transitions) = (point.system.as_ref(), &point.transitions);
+        cancellation: &Cancellation,
+    ) -> Result<Found, MethodError> {
         let options = Options::new(self.options.solver, self.options.solver_tolerance);
+        let options = options.cancelled_by(cancellation);
         let Corrected {
             outcome,
             matrix,
@@ -302,7 +319,7 @@ impl SgcmSource {
             ..
         } = solve_by(
             correction,
-            transitions,
+            &point.transitions,
             self.problem.space(),
             start,
             None,
@@ -310,45 +327,36 @@ impl SgcmSource {
         )?;
         match outcome {
             Outcome::Steady(steady) => {
-                let sampled = (system, transitions);
-                self.solved(sampled, correction, &matrix, &slopes, steady)
+                let solved = (&matrix, slopes.as_slice());
+                self.solved(point, correction, solved, steady, cancellation)
             }
             Outcome::SeveralClasses { classes, .. } => {
                 let mut reporter = self.reporter();
                 reporter.several_classes(&classes);
-                Ok(Solution::without_density(reporter.report))
+                Ok((Solution::without_density(reporter.report), None))
             }
             Outcome::NoneInside { escape_per_step } => {
                 let mut reporter = self.reporter();
                 let rate = escape_rate(escape_per_step, self.steps.map_step);
                 reporter.report.escape_rate = rate;
                 reporter.no_steady_state(Finding::LeavesAtOnce { rate });
-                Ok(Solution::without_density(reporter.report))
+                Ok((Solution::without_density(reporter.report), None))
             }
         }
     }
 }
 
 impl DensitySource for SgcmSource {
-    type State = State;
+    fn method(&self) -> &'static str {
+        METHOD
+    }
 
     fn subject(&self) -> &Subject {
         self.problem.subject()
     }
 
-    fn solve(&self, value: f64, start: Option<&State>) -> Result<Solution<State>, SourceError> {
-        let start = start.map(|state| state.mass.as_slice());
-        let solved = self
-            .sample_at(value, start)
-            .and_then(|point| self.solve_sampled(&point, self.options.correction, start));
-        match solved {
-            Err(MethodError::Sampling(SamplingError::Cancelled)) => Err(SourceError::Interrupted),
-            other => other.map_err(|error| SourceError::Method(error.into())),
-        }
-    }
-
-    fn state_bytes(&self, state: &State) -> usize {
-        state.bytes()
+    fn open(&self, cancellation: &Cancellation) -> Box<dyn Session> {
+        Box::new(SgcmSession::new(self, cancellation))
     }
 }
 

@@ -2,6 +2,7 @@
 //! serves the whole sweep, so that the transition matrix varies smoothly with the parameter.
 
 use super::SgcmOptions;
+use crate::cancellation::Cancellation;
 use crate::method::structure::{closed_ends, kinked_surfaces};
 use crate::method::time_step::time_step;
 use crate::method::{MethodError, Problem, autonomous};
@@ -28,24 +29,27 @@ pub(super) struct Steps {
     pub(super) kinked: Vec<SwitchingSurface>,
 }
 
-pub(super) fn choose_steps(problem: &Problem, options: &SgcmOptions) -> Result<Steps, MethodError> {
+pub(super) fn choose_steps(
+    problem: &Problem,
+    options: &SgcmOptions,
+    cancellation: &Cancellation,
+) -> Result<Steps, MethodError> {
     let (systems, space) = (problem.family().along()?, problem.space());
     autonomous(&systems)?;
-    let pilots: Vec<Pilot> = systems
-        .iter()
-        .map(|system| pilot(system.as_ref(), space, options.seed))
-        .collect();
-    let relaxed: Vec<Relaxation> = systems
-        .iter()
-        .map(|system| relaxation(system.as_ref(), space, options.seed))
-        .collect();
+    let (mut pilots, mut relaxed) = (Vec::<Pilot>::new(), Vec::<Relaxation>::new());
+    for system in &systems {
+        let (system, seed) = (system.as_ref(), options.seed);
+        pilots.push(pilot(system, space, seed, cancellation)?);
+        relaxed.push(relaxation(system, space, seed, cancellation)?);
+    }
     let (time_step, bias) = time_step(
         (&systems, &relaxed),
         space,
         options.time_step,
         TOLERATED_BIAS,
         (options.integrator, options.seed),
-    );
+        cancellation,
+    )?;
     let longest = || largest(&pilots, |pilot| pilot.automatic_map_step(time_step));
     let map_step = options.map_step.or(longest);
     let mut cells: Vec<usize> = pilots

@@ -1,6 +1,7 @@
 //! Properties of sampled transitions, and the exact density of the damped oscillator.
 
 use super::*;
+use crate::cancellation::{Cancellation, Cancelled};
 use crate::sampling::{TransitionMatrix, pilot};
 use crate::space::Axis;
 use crate::system::{Lanes, registry};
@@ -42,7 +43,7 @@ fn sample(
     seeds: &[usize],
     options: &SamplingOptions,
 ) -> SampledTransitions {
-    sample_transitions(system, space, seeds, options, &|| false).unwrap()
+    sample_transitions(system, space, seeds, options, &Cancellation::new()).unwrap()
 }
 
 fn column_sums(transitions: &TransitionMatrix) -> Vec<f64> {
@@ -96,7 +97,7 @@ fn total_variation(system: &dyn System, space: &CellSpace, cells: &[usize], mass
 #[test]
 fn the_exact_density_of_the_oscillator_comes_out_within_three_per_cent() {
     let (system, space) = (coulomb(0.0), square(3.0, 50));
-    let pilot = pilot(&*system, &space, 1);
+    let pilot = pilot(&*system, &space, 1, &Cancellation::new()).unwrap();
     let time_step = pilot.automatic_time_step(Integrator::StochasticHeun);
     let map_step = pilot.automatic_map_step(time_step);
     let options = SamplingOptions {
@@ -227,7 +228,11 @@ fn states_that_overflow_are_counted_in_the_sink() {
 fn bad_settings_are_refused_and_a_stop_is_heeded() {
     let (system, space) = (coulomb(0.0), square(3.0, 10));
     let run = |options: &SamplingOptions, seeds: &[usize], stop: bool| {
-        sample_transitions(&*system, &space, seeds, options, &|| stop).unwrap_err()
+        let cancellation = Cancellation::new();
+        if stop {
+            cancellation.cancel();
+        }
+        sample_transitions(&*system, &space, seeds, options, &cancellation).unwrap_err()
     };
     let with = |change: &dyn Fn(&mut SamplingOptions)| {
         let mut changed = options();
@@ -258,9 +263,13 @@ fn bad_settings_are_refused_and_a_stop_is_heeded() {
         run(&options(), &[100], false),
         SamplingError::Seed { cell: 100, .. }
     ));
-    assert_eq!(run(&options(), &[0], true), SamplingError::Cancelled);
+    assert_eq!(
+        run(&options(), &[0], true),
+        SamplingError::Cancelled(Cancelled)
+    );
     let line = CellSpace::new(vec![Axis::uniform(0.0, 1.0, 4).unwrap()]).unwrap();
-    let error = sample_transitions(&*system, &line, &[0], &options(), &|| false).unwrap_err();
+    let error =
+        sample_transitions(&*system, &line, &[0], &options(), &Cancellation::new()).unwrap_err();
     assert_eq!(
         error,
         SamplingError::Dimension {

@@ -2,6 +2,7 @@
 //! lanes are nodes of a Gauss-Hermite rule, which integrates polynomials up to degree five exactly.
 
 use super::*;
+use crate::cancellation::Cancellation;
 use crate::sampling::random::StreamKey;
 
 /// Nodes and weights of the three-point Gauss-Hermite rule for the standard normal law.
@@ -75,7 +76,7 @@ fn one_step(stepper: &Stepper<'_>, state: &[f64]) -> [(f64, Vec<f64>); 3] {
 /// E x and E x² at time 1 from x = 1 for a scalar linear system. A step maps moments linearly:
 /// E x' = m E x and E x'² = q E x² + s.
 fn scalar_moments(system: &Linear, integrator: Integrator, steps: usize) -> (f64, f64) {
-    let stepper = Stepper::new(system, integrator, 1.0 / steps as f64);
+    let stepper = Stepper::new(system, integrator, 1.0 / steps as f64, &Cancellation::new());
     let moment = |from: f64, power: i32| -> f64 {
         let ends = one_step(&stepper, &[from]);
         ends.iter()
@@ -132,7 +133,7 @@ fn multiplicative_noise_is_read_in_the_sense_of_ito() {
 /// of second moments, found from single steps.
 fn steady_energy(omega: f64, damping: f64, integrator: Integrator, step: f64) -> f64 {
     let system = Linear::oscillator(omega, damping, 1.0);
-    let stepper = Stepper::new(&system, integrator, step);
+    let stepper = Stepper::new(&system, integrator, step, &Cancellation::new());
     let moments = |state: &[f64]| {
         let mut sums = nalgebra::Vector3::zeros();
         for (weight, end) in one_step(&stepper, state) {
@@ -170,7 +171,7 @@ fn energy_of_an_undamped_oscillator_grows_as_theory_says() {
     let system = Linear::oscillator(omega, 0.0, 0.0);
     let quiet = vec![[0.0; LANES]; steps];
     let growth = |integrator| {
-        let stepper = Stepper::new(&system, integrator, step);
+        let stepper = Stepper::new(&system, integrator, step, &Cancellation::new());
         let mut states = [[1.0; LANES], [0.0; LANES]];
         stepper.advance_with(&mut states, 0, steps, &quiet);
         let energy = states[0][5].powi(2) + (states[1][5] / omega).powi(2);
@@ -188,7 +189,12 @@ fn energy_of_an_undamped_oscillator_grows_as_theory_says() {
 #[test]
 fn a_run_may_be_cut_into_even_pieces() {
     let system = Linear::oscillator(1.0, 0.1, 0.3);
-    let stepper = Stepper::new(&system, Integrator::StochasticHeun, 0.05);
+    let stepper = Stepper::new(
+        &system,
+        Integrator::StochasticHeun,
+        0.05,
+        &Cancellation::new(),
+    );
     let key = StreamKey {
         seed: 1,
         cell: 2,
@@ -199,7 +205,9 @@ fn a_run_may_be_cut_into_even_pieces() {
         let mut states = [[0.5; LANES]; 2];
         let mut first = 0;
         for &steps in pieces {
-            stepper.advance(&mut states, first, steps, &mut stream);
+            stepper
+                .advance(&mut states, first, steps, &mut stream)
+                .unwrap();
             first += steps;
         }
         states

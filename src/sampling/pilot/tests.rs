@@ -1,6 +1,7 @@
 //! A pilot of systems whose spread and rates are known.
 
 use super::*;
+use crate::cancellation::Cancellation;
 use crate::space::Axis;
 use crate::system::registry;
 
@@ -18,7 +19,7 @@ fn a_linear_oscillator_is_measured_and_gets_its_steps() {
         .system_with(&values)
         .unwrap();
     let space = square(3.0, 50);
-    let pilot = pilot(&*system, &space, 1);
+    let pilot = pilot(&*system, &space, 1, &Cancellation::new()).unwrap();
     assert!((pilot.frequency - 1.0).abs() < 1e-6, "{pilot:?}");
     assert!((pilot.damping - 0.02).abs() < 1e-8, "{pilot:?}");
     // 256 trajectories for at least 10/γ: 2560 correlation times, a standard error of 2 % with the start's.
@@ -59,7 +60,7 @@ fn visited_cells_hold_the_mass_on_any_number_of_threads() {
             .num_threads(threads)
             .build()
             .unwrap();
-        pool.install(|| pilot(&*system, &space, 5))
+        pool.install(|| pilot(&*system, &space, 5, &Cancellation::new()).unwrap())
     };
     let pilot = run(1);
     assert_eq!(pilot, run(2));
@@ -87,7 +88,7 @@ fn a_system_that_runs_away_leaves_the_centre() {
         .unwrap();
     let axis = Axis::uniform(-2.5, 2.5, 10).unwrap();
     let space = CellSpace::new(vec![axis.clone(), axis.clone(), axis]).unwrap();
-    let pilot = pilot(&*system, &space, 1);
+    let pilot = pilot(&*system, &space, 1, &Cancellation::new()).unwrap();
     assert!(pilot.share_inside < 0.05, "{}", pilot.share_inside);
     assert!(!pilot.cells.is_empty());
     let time_step = pilot.automatic_time_step(Integrator::StochasticHeun);

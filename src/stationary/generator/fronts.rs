@@ -15,6 +15,7 @@ use faer::linalg::triangular_solve::{
 use faer::{Accum, MatMut, MatRef, Par};
 
 use super::symbolic::{Front, Symbolic};
+use crate::cancellation::{Cancellation, Cancelled};
 
 /// Numbers a factorisation is made of: `f64`, or `f32` at half the memory and twice the speed.
 pub(super) trait Number: faer::traits::RealField + Copy + Send + Sync + 'static {
@@ -86,21 +87,27 @@ pub(super) fn allocate<T: Number>(symbolic: &Symbolic) -> Vec<Factor<T>> {
 }
 
 /// Factorises: `values` are the rates in the order of the matrix's data, scaled to about one, zero in the row and column of the
-/// unknown that is held (its place in the elimination order), which gets a one on the diagonal.
+/// unknown that is held (its place in the elimination order), which gets a one on the diagonal. Cancelled factors are worth nothing.
+///
+/// # Errors
+/// [`Cancelled`].
 pub(super) fn factorise<T: Number>(
     symbolic: &Symbolic,
     values: &[f64],
     held: usize,
     factors: &mut [Factor<T>],
-) {
+    cancellation: &Cancellation,
+) -> Result<(), Cancelled> {
     if let Some(root) = symbolic.fronts.len().checked_sub(1) {
         let task = Task {
             symbolic,
             values,
             held,
+            cancellation,
         };
-        task.subtree(root, factors);
+        task.subtree(root, factors)?;
     }
+    cancellation.check()
 }
 
 /// What every front needs.
@@ -108,15 +115,20 @@ struct Task<'a> {
     symbolic: &'a Symbolic,
     values: &'a [f64],
     held: usize,
+    cancellation: &'a Cancellation,
 }
 
 impl Task<'_> {
     /// Factorises a subtree (`factors` are those of its nodes); gives the m × m update of its top.
-    fn subtree<T: Number>(&self, top: usize, factors: &mut [Factor<T>]) -> Vec<T> {
+    fn subtree<T: Number>(
+        &self,
+        top: usize,
+        factors: &mut [Factor<T>],
+    ) -> Result<Vec<T>, Cancelled> {
         let fronts = &self.symbolic.fronts;
         let front = &fronts[top];
         let Some((factor, below)) = factors.split_last_mut() else {
-            return Vec::new();
+            return Ok(Vec::new());
         };
         let updates = front.node.children.map(|[left, right]| {
             let (of_left, of_right) = below.split_at_mut(left + 1 - front.node.first);
@@ -125,15 +137,16 @@ impl Task<'_> {
                 || self.subtree(right, of_right),
             )
         });
+        self.cancellation.check()?;
         let m = front.boundary;
         let mut update = vec![T::from_rate(0.0); m * m];
         self.assemble(front, factor);
         if let (Some([left, right]), Some((of_left, of_right))) = (front.node.children, updates) {
-            extend(&fronts[left], of_left, front, factor, &mut update);
-            extend(&fronts[right], of_right, front, factor, &mut update);
+            extend(&fronts[left], of_left?, front, factor, &mut update);
+            extend(&fronts[right], of_right?, front, factor, &mut update);
         }
-        eliminate(front, factor, &mut update);
-        update
+        eliminate(front, factor, &mut update, self.cancellation);
+        Ok(update)
     }
 
     /// Puts the matrix's own entries into the front.
@@ -193,12 +206,18 @@ fn extend<T: Number>(
     }
 }
 
-/// Eliminates the own cells of an assembled front; `update` becomes the Schur complement.
-fn eliminate<T: Number>(front: &Front, factor: &mut Factor<T>, update: &mut [T]) {
+/// Eliminates the own cells of an assembled front; `update` becomes the Schur complement. Cancelled, it leaves things half done:
+/// the largest fronts alone take seconds.
+fn eliminate<T: Number>(
+    front: &Front,
+    factor: &mut Factor<T>,
+    update: &mut [T],
+    cancellation: &Cancellation,
+) {
     let (k, m) = (front.node.own.len(), front.boundary);
     let minus = T::from_rate(-1.0);
     let upper = MatMut::from_column_major_slice_mut(&mut factor.upper, k, k + m);
-    factorise_rows(upper, &mut factor.rows);
+    factorise_rows(upper, &mut factor.rows, cancellation);
     if m == 0 {
         return;
     }
@@ -208,19 +227,29 @@ fn eliminate<T: Number>(front: &Front, factor: &mut Factor<T>, update: &mut [T])
     let lower = MatMut::from_column_major_slice_mut(&mut factor.lower, m, k);
     let above = own.transpose();
     by_columns(lower.transpose_mut(), 0, &|_, mut rows: Block<'_, T>| {
+        if cancellation.is_cancelled() {
+            return;
+        }
         solve_lower_triangular_in_place(above, rows.as_mut(), Par::Seq);
         drop_small(rows);
     });
     let lower = MatRef::from_column_major_slice(&factor.lower, m, k);
     let update = MatMut::from_column_major_slice_mut(update, m, m);
     by_columns(update.as_dyn_stride_mut(), 0, &|start, columns| {
+        if cancellation.is_cancelled() {
+            return;
+        }
         let outward = outward.subcols(start, columns.ncols());
         matmul(columns, Accum::Add, lower, outward, minus, Par::Seq);
     });
 }
 
 /// Blocked LU of the k rows of own cells: rows exchanged among all of them, panel by panel.
-fn factorise_rows<T: Number>(mut upper: MatMut<'_, T>, rows: &mut [u32]) {
+fn factorise_rows<T: Number>(
+    mut upper: MatMut<'_, T>,
+    rows: &mut [u32],
+    cancellation: &Cancellation,
+) {
     let (k, columns) = upper.shape();
     let minus = T::from_rate(-1.0);
     for (place, row) in rows.iter_mut().enumerate() {
@@ -230,6 +259,9 @@ fn factorise_rows<T: Number>(mut upper: MatMut<'_, T>, rows: &mut [u32]) {
     let mut memory = MemBuffer::new(scratch);
     let (mut forward, mut inverse) = (vec![0u32; k], vec![0u32; k]);
     for from in (0..k).step_by(PANEL) {
+        if cancellation.is_cancelled() {
+            return;
+        }
         let width = PANEL.min(k - from);
         let left = k - from;
         let (before, rest) = upper

@@ -5,6 +5,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::cancellation::{Cancellation, Cancelled};
+
 /// What a run of GMRES gave.
 pub(super) struct Outcome {
     /// x with M⁻¹ A x ≈ start.
@@ -56,8 +58,9 @@ fn add_scaled(y: &mut [f64], factor: f64, x: &[f64]) {
 pub(super) fn gmres(
     start: Vec<f64>,
     limits: Limits,
+    cancellation: &Cancellation,
     mut operator: impl FnMut(&[f64]) -> Vec<f64>,
-) -> Outcome {
+) -> Result<Outcome, Cancelled> {
     let size = dot(&start, &start).sqrt();
     let mut outcome = Outcome {
         solution: vec![0.0; start.len()],
@@ -66,12 +69,13 @@ pub(super) fn gmres(
         reached: size == 0.0,
     };
     if !(size > 0.0 && size.is_finite()) {
-        return outcome;
+        return Ok(outcome);
     }
     let mut basis = vec![start];
     basis[0].iter_mut().for_each(|value| *value /= size);
     let mut triangle = Triangle::new(size);
     while !outcome.reached && outcome.iterations < limits.iterations {
+        cancellation.check()?;
         let mut next = operator(&basis[outcome.iterations]);
         outcome.iterations += 1;
         let mut column = vec![0.0; basis.len()];
@@ -86,7 +90,7 @@ pub(super) fn gmres(
         let length = dot(&next, &next).sqrt();
         if !length.is_finite() {
             outcome.iterations = limits.iterations;
-            return outcome;
+            return Ok(outcome);
         }
         let remaining = triangle.push(column, length) / size;
         outcome.reached = remaining <= limits.reduction;
@@ -105,7 +109,7 @@ pub(super) fn gmres(
     for (weight, vector) in weights.iter().zip(&basis) {
         add_scaled(&mut outcome.solution, *weight, vector);
     }
-    outcome
+    Ok(outcome)
 }
 
 /// The Hessenberg matrix, made triangular by rotations as it grows.

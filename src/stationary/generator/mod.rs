@@ -131,6 +131,9 @@ pub enum RateError {
     /// The factorisation at hand did not solve for the sensitivity within the iterations allowed.
     #[error("the sensitivity did not converge")]
     Sensitivity,
+    /// The caller asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] crate::cancellation::Cancelled),
     /// A sensitivity was asked for before any steady state was found.
     #[error("no steady state has been solved yet")]
     NoSteadyState,

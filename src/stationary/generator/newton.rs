@@ -6,6 +6,7 @@
 use super::balance::Balance;
 use super::krylov::{Limits, gmres};
 use super::preconditioner::Preconditioner;
+use crate::cancellation::{Cancellation, Cancelled};
 
 /// Contraction per iteration below which plain refinement needs no GMRES.
 const FAST: f64 = 0.1;
@@ -39,15 +40,24 @@ pub(super) struct Newton<'a> {
     pub(super) fresh: bool,
     /// Whether the factors are those of a stand-in of reach one.
     pub(super) narrow: bool,
+    pub(super) cancellation: &'a Cancellation,
 }
 
 impl Newton<'_> {
     /// Improves `mass` until converged, stalled or out of iterations; gives the iterations used.
-    pub(super) fn run(&self, mass: &mut [f64], progress: &mut Progress) -> usize {
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn run(
+        &self,
+        mass: &mut [f64],
+        progress: &mut Progress,
+    ) -> Result<usize, Cancelled> {
         let (mut used, mut smallest, mut previous) = (0, 1.0f64, f64::INFINITY);
         let (mut rounds, mut stalls) = (0, 0);
         progress.converged = false;
         while used < self.limit {
+            self.cancellation.check()?;
             let mut step = self.kept.apply(&self.balance.residual(mass));
             used += 1;
             step.iter_mut().for_each(|value| *value = -*value);
@@ -73,9 +83,9 @@ impl Newton<'_> {
             }
             let limits = self.limits(progress.error, rounds, self.limit - used);
             let jacobian = self.balance.jacobian(mass);
-            let outcome = gmres(step, limits, |vector| {
+            let outcome = gmres(step, limits, self.cancellation, |vector| {
                 self.kept.apply(&jacobian.apply(vector))
-            });
+            })?;
             used += outcome.iterations;
             // Newton's first steps may pass by a singular matrix that says nothing of the solution.
             let early = self.balance.leaks() && rounds <= 2;
@@ -86,7 +96,7 @@ impl Newton<'_> {
             }
         }
         progress.iterations += used;
-        used
+        Ok(used)
     }
 
     fn limits(&self, error: f64, rounds: usize, left: usize) -> Limits {
@@ -103,17 +113,22 @@ impl Newton<'_> {
 
 /// Solves F'(mass) x = source from a start that is zero at the held cell, restarted until the correction is small
 /// against x; gives x and the iterations used, `None` when it is not after `limit` of them.
+///
+/// # Errors
+/// [`Cancelled`].
 pub(super) fn linear(
     balance: &Balance<'_>,
     kept: &Preconditioner,
     mass: &[f64],
     (source, start): (&[f64], Option<Vec<f64>>),
     (tolerance, limit): (f64, usize),
-) -> Option<(Vec<f64>, usize)> {
+    cancellation: &Cancellation,
+) -> Result<Option<(Vec<f64>, usize)>, Cancelled> {
     let jacobian = balance.jacobian(mass);
     let mut solution = start.unwrap_or_else(|| vec![0.0; source.len()]);
     let mut used = 0;
     while used < limit {
+        cancellation.check()?;
         let mut rest = source.to_vec();
         if norm(&solution) > 0.0 {
             let product = jacobian.apply(&solution);
@@ -124,7 +139,7 @@ pub(super) fn linear(
         let (size, total) = (norm(&correction), norm(&solution));
         if size <= tolerance * total || size == 0.0 {
             add(&mut solution, &correction);
-            return Some((solution, used));
+            return Ok(Some((solution, used)));
         }
         // Without a start the first correction is itself of the size of x.
         let wanted = UNSEEN * tolerance * if total > 0.0 { total } else { size };
@@ -133,18 +148,18 @@ pub(super) fn linear(
             iterations: (limit - used).min(BASIS),
             give_up_early: false,
         };
-        let outcome = gmres(correction, limits, |vector| {
+        let outcome = gmres(correction, limits, cancellation, |vector| {
             kept.apply(&jacobian.apply(vector))
-        });
+        })?;
         used += outcome.iterations;
         add(&mut solution, &outcome.solution);
         // GMRES knows its residual, which a look at it confirms; two digits need no look.
         let left = limits.reduction * size;
         if outcome.reached && tolerance >= ROUGH && left <= tolerance * norm(&solution) {
-            return Some((solution, used));
+            return Ok(Some((solution, used)));
         }
     }
-    None
+    Ok(None)
 }
 
 fn add(mass: &mut [f64], step: &[f64]) {

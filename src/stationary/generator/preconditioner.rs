@@ -9,6 +9,7 @@ use super::narrowing::narrow;
 use super::prediction::{Prediction, predict};
 use super::symbolic::Symbolic;
 use super::triangular;
+use crate::cancellation::{Cancellation, Cancelled};
 use crate::space::CellSpace;
 
 /// Largest leaf of the dissection, in cells; measured (`benches/rates.rs`): 60 to 200 make no difference.
@@ -142,6 +143,9 @@ pub(super) struct Preconditioner {
 
 impl Preconditioner {
     /// Factorises; takes over the structure and memory of `old` when the pattern is the same.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
     pub(super) fn new(
         space: &CellSpace,
         reach: &[usize],
@@ -149,7 +153,8 @@ impl Preconditioner {
         matrix: &CsMat<f64>,
         held: usize,
         old: Option<Self>,
-    ) -> Self {
+        cancellation: &Cancellation,
+    ) -> Result<Self, Cancelled> {
         let narrowed = method.is_narrow().then(|| narrow(space, matrix));
         let matrix = narrowed.as_ref().unwrap_or(matrix);
         let starts = matrix.indptr();
@@ -175,11 +180,15 @@ impl Preconditioner {
             }
         });
         this.held = held;
-        this.factorise(matrix);
-        this
+        this.factorise(matrix, cancellation)?;
+        Ok(this)
     }
 
-    fn factorise(&mut self, matrix: &CsMat<f64>) {
+    fn factorise(
+        &mut self,
+        matrix: &CsMat<f64>,
+        cancellation: &Cancellation,
+    ) -> Result<(), Cancelled> {
         let starts = matrix.indptr();
         let starts = starts.raw_storage();
         let largest = matrix
@@ -201,9 +210,10 @@ impl Preconditioner {
         let held = self.held as u32;
         let place = self.symbolic.order.iter().position(|&cell| cell == held);
         let place = place.unwrap_or(0);
+        let symbolic = &self.symbolic;
         match &mut self.numbers {
-            Numbers::Double(factors) => factorise(&self.symbolic, &values, place, factors),
-            Numbers::Single(factors) => factorise(&self.symbolic, &values, place, factors),
+            Numbers::Double(factors) => factorise(symbolic, &values, place, factors, cancellation),
+            Numbers::Single(factors) => factorise(symbolic, &values, place, factors, cancellation),
         }
     }
 

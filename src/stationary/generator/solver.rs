@@ -7,6 +7,7 @@ use super::narrowing;
 use super::newton::{Newton, Progress, linear};
 use super::preconditioner::{Estimate, Preconditioner, estimate};
 use super::{RateError, RateInfo, RateMethod, RateOptions, RateSteadyState};
+use crate::cancellation::{Cancellation, Cancelled};
 use crate::space::CellSpace;
 
 /// Iterations that a factorisation takes the time of: so many for moving every number of the factors about, and so many
@@ -32,6 +33,7 @@ pub struct RateSolver {
     /// Iterations that the solve took for which the factorisation was made.
     baseline: usize,
     last: Option<(CsMat<f64>, Vec<f64>)>,
+    cancellation: Cancellation,
 }
 
 impl RateSolver {
@@ -45,6 +47,17 @@ impl RateSolver {
             excess: 0,
             baseline: 0,
             last: None,
+            cancellation: Cancellation::new(),
+        }
+    }
+
+    /// The solver with a token that is looked at in every front of a factorisation and in every iteration.
+    #[must_use]
+    pub fn cancelled_by(self, cancellation: &Cancellation) -> Self {
+        let cancellation = cancellation.clone();
+        Self {
+            cancellation,
+            ..self
         }
     }
 
@@ -52,7 +65,7 @@ impl RateSolver {
     /// cell j, summing to -`escape[j]`. `guess` is a neighbour's mass vector, or one predicted from it.
     ///
     /// # Errors
-    /// [`RateError`] when the input is no generator or the memory does not suffice.
+    /// [`RateError`] when the input is no generator, the memory does not suffice, or the solve is cancelled.
     pub fn solve(
         &mut self,
         matrix: &CsMat<f64>,
@@ -77,7 +90,7 @@ impl RateSolver {
         for _ in 0..4 {
             if fresh {
                 held = self.better_held(held, &mass);
-                self.factorise(matrix, held, &plan);
+                self.factorise(matrix, held, &plan)?;
                 progress.factorisations += 1;
             }
             if mass.is_empty() || !mass.iter().sum::<f64>().is_finite() {
@@ -89,7 +102,7 @@ impl RateSolver {
                 escape,
                 held,
             };
-            self.iterate(&balance, &mut mass, &mut progress, fresh, &plan);
+            self.iterate(&balance, &mut mass, &mut progress, fresh, &plan)?;
             // The sign is arbitrary: on a grid too coarse, wiggles may make the held cell's mass negative.
             if mass.iter().sum::<f64>() < 0.0 {
                 mass.iter_mut().for_each(|value| *value = -*value);
@@ -128,7 +141,7 @@ impl RateSolver {
     ///
     /// # Errors
     /// [`RateError::NoSteadyState`] before the first solve, [`RateError::Shape`] for wrong sizes,
-    /// [`RateError::Sensitivity`] when the iterations do not suffice.
+    /// [`RateError::Sensitivity`] when the iterations do not suffice, [`RateError::Cancelled`].
     pub fn sensitivity(
         &mut self,
         derivative: &CsMat<f64>,
@@ -199,7 +212,8 @@ impl RateSolver {
         });
         let start = start.filter(|start| start.iter().all(|value| value.is_finite()));
         let effort = (tolerance, self.options.max_iterations);
-        let response = linear(&balance, kept, mass, (&source, start), effort);
+        let cancellation = &self.cancellation;
+        let response = linear(&balance, kept, mass, (&source, start), effort, cancellation)?;
         let (mut response, used) = response.ok_or(RateError::Sensitivity)?;
         self.excess += used.saturating_sub(FRESH_RESPONSE);
         let excess: f64 = response.iter().sum::<f64>() / total;
@@ -291,12 +305,19 @@ impl RateSolver {
         }
     }
 
-    fn factorise(&mut self, matrix: &CsMat<f64>, held: usize, plan: &Estimate) {
+    fn factorise(
+        &mut self,
+        matrix: &CsMat<f64>,
+        held: usize,
+        plan: &Estimate,
+    ) -> Result<(), Cancelled> {
         let reach = self.plan.as_ref().map_or(&[][..], |(reach, _)| reach);
         let old = self.preconditioner.take();
-        let new = Preconditioner::new(&self.space, reach, plan.method, matrix, held, old);
+        let (space, method, cancellation) = (&self.space, plan.method, &self.cancellation);
+        let new = Preconditioner::new(space, reach, method, matrix, held, old, cancellation)?;
         self.preconditioner = Some(new);
         self.excess = 0;
+        Ok(())
     }
 
     fn iterate(
@@ -306,9 +327,9 @@ impl RateSolver {
         progress: &mut Progress,
         fresh: bool,
         plan: &Estimate,
-    ) {
+    ) -> Result<(), Cancelled> {
         let Some(kept) = &self.preconditioner else {
-            return;
+            return Ok(());
         };
         let worth = if fresh {
             usize::MAX
@@ -322,12 +343,14 @@ impl RateSolver {
             limit: worth.min(self.options.max_iterations),
             fresh,
             narrow: plan.method.is_narrow(),
+            cancellation: &self.cancellation,
         };
-        let used = newton.run(mass, progress);
+        let used = newton.run(mass, progress)?;
         if fresh {
             self.baseline = used;
         }
         self.excess += used.saturating_sub(self.baseline);
+        Ok(())
     }
 
     fn finish(

@@ -2,6 +2,7 @@
 
 use super::chain::Checked;
 use super::classes::ClassShare;
+use crate::cancellation::{Cancellation, Cancelled};
 use crate::space::CellSpace;
 
 /// Transient mass that is left to be shared out in proportion to the latest flows.
@@ -20,7 +21,8 @@ pub(super) fn shares(
     space: &CellSpace,
     classes: &[(f64, Vec<usize>)],
     initial: &[f64],
-) -> (Vec<ClassShare>, f64) {
+    cancellation: &Cancellation,
+) -> Result<(Vec<ClassShare>, f64), Cancelled> {
     let mut class_of = vec![TRANSIENT; matrix.len()];
     for (class, (_, rows)) in classes.iter().enumerate() {
         rows.iter().for_each(|&row| class_of[row] = class);
@@ -36,6 +38,7 @@ pub(super) fn shares(
     }
     let mut left: f64 = transient.iter().sum();
     for _ in 0..MOST_STEPS {
+        cancellation.check()?;
         if left < REMAINDER {
             break;
         }
@@ -50,7 +53,7 @@ pub(super) fn shares(
         describe(matrix, space, rows, absorbed[class], *leak)
     };
     let found = classes.iter().enumerate().map(describe).collect();
-    (found, absorbed[sink])
+    Ok((found, absorbed[sink]))
 }
 
 /// One map step: the transient mass that is left, and in `flow` what the classes and, last, the sink absorb.

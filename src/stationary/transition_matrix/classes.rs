@@ -15,6 +15,7 @@
 use super::LARGEST_ESCAPE;
 use super::chain::Checked;
 use super::components::Components;
+use crate::cancellation::{Cancellation, Cancelled};
 
 /// Ratio of leaks up to which two classes live about equally long.
 const SIMILAR: f64 = 10.0;
@@ -61,12 +62,15 @@ struct Candidate {
 }
 
 /// Decides which cells carry the steady state.
-pub(super) fn carrier(matrix: &Checked<'_>) -> Carrier {
+pub(super) fn carrier(
+    matrix: &Checked<'_>,
+    cancellation: &Cancellation,
+) -> Result<Carrier, Cancelled> {
     let components = Components::of(matrix);
     let leaks = leak_of_cells(matrix, &components);
     let mut candidates = candidates(&components, &leaks);
     if candidates.len() > 1 {
-        refine(matrix, &components, &leaks, &mut candidates);
+        refine(matrix, &components, &leaks, &mut candidates, cancellation)?;
     }
     candidates.sort_by(|a, b| {
         a.leak
@@ -74,10 +78,10 @@ pub(super) fn carrier(matrix: &Checked<'_>) -> Carrier {
             .then(a.component.cmp(&b.component))
     });
     let Some(first) = candidates.first() else {
-        return Carrier::None(1.0);
+        return Ok(Carrier::None(1.0));
     };
     if first.leak > LARGEST_ESCAPE {
-        return Carrier::None(first.leak);
+        return Ok(Carrier::None(first.leak));
     }
     let limit = (SIMILAR * first.leak).clamp(SLOW, LARGEST_ESCAPE);
     let links = Links::of(matrix, &components);
@@ -99,13 +103,14 @@ pub(super) fn carrier(matrix: &Checked<'_>) -> Carrier {
     };
     if counted.len() == 1 {
         let reached = links.downstream(first.component);
-        return Carrier::One(rows_where(&|component| reached[component as usize]));
+        let rows = rows_where(&|component| reached[component as usize]);
+        return Ok(Carrier::One(rows));
     }
     let class = |candidate: &Candidate| {
         let rows = rows_where(&|component| component == candidate.component);
         (candidate.leak, rows)
     };
-    Carrier::Several(counted.iter().map(class).collect())
+    Ok(Carrier::Several(counted.iter().map(class).collect()))
 }
 
 /// Probability to leave its component in one step, for each cell.
@@ -147,7 +152,8 @@ fn refine(
     components: &Components,
     leaks: &[f64],
     candidates: &mut [Candidate],
-) {
+    cancellation: &Cancellation,
+) -> Result<(), Cancelled> {
     let mut slot = vec![usize::MAX; components.count];
     for (index, candidate) in candidates.iter().enumerate() {
         if !candidate.exact {
@@ -160,6 +166,7 @@ fn refine(
     let mut mass: Vec<f64> = vec![0.0; matrix.len()];
     rows.iter().for_each(|&row| mass[row] = 1.0);
     for _ in 0..LEAK_STEPS {
+        cancellation.check()?;
         let mut totals = vec![(0.0, 0.0); candidates.len()];
         for &row in &rows {
             let (total, lost) = &mut totals[slot[components.of[row] as usize]];
@@ -175,7 +182,7 @@ fn refine(
             }
         }
         if settled || is_decided(candidates) {
-            return;
+            return Ok(());
         }
         let mut next = vec![0.0; matrix.len()];
         for &row in &rows {
@@ -188,6 +195,7 @@ fn refine(
         }
         mass = next;
     }
+    Ok(())
 }
 
 /// Whether one class lives so much longer than the others that better estimates change nothing.

@@ -21,6 +21,8 @@ mod solve;
 #[cfg(test)]
 mod tests;
 
+use crate::cancellation::Cancellation;
+
 pub use classes::ClassShare;
 pub use second_eigenvalue::{SecondEigenvalue, second_eigenvalue};
 pub use solve::solve;
@@ -48,7 +50,7 @@ impl Solver {
 }
 
 /// Settings of [`solve`].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Options {
     /// The solver.
     pub solver: Solver,
@@ -57,6 +59,8 @@ pub struct Options {
     pub tolerance: f64,
     /// Largest number of cycles (multilevel) or steps (power iteration).
     pub max_iterations: usize,
+    /// Is looked at in every cycle or step.
+    pub cancellation: Cancellation,
 }
 
 impl Options {
@@ -70,6 +74,17 @@ impl Options {
             solver,
             tolerance,
             max_iterations,
+            cancellation: Cancellation::new(),
+        }
+    }
+
+    /// The settings with a token that ends the solve.
+    #[must_use]
+    pub fn cancelled_by(self, cancellation: &Cancellation) -> Self {
+        let cancellation = cancellation.clone();
+        Self {
+            cancellation,
+            ..self
         }
     }
 }
@@ -166,6 +181,9 @@ pub enum StationaryError {
         /// Number of cells of the space.
         cells: usize,
     },
+    /// The caller asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] crate::cancellation::Cancelled),
     /// A tolerance outside (0, 1).
     #[error("solver tolerance {tolerance} is not between 0 and 1")]
     Tolerance {

@@ -8,11 +8,13 @@
 
 use rayon::prelude::*;
 
+use super::Options;
 use super::acceleration::Acceleration;
 use super::chain::{Chain, distance, normalise};
 use super::convergence::Contraction;
 use super::elimination::Eliminated;
 use super::hierarchy::{Level, levels};
+use crate::cancellation::{Cancellation, Cancelled};
 
 /// Masses are kept above this: a zero could never be corrected by a factor.
 const SMALLEST_MASS: f64 = 1e-200;
@@ -39,9 +41,8 @@ pub(super) fn solve(
     keys: Vec<u128>,
     axes: usize,
     guess: Vec<f64>,
-    tolerance: f64,
-    max_iterations: usize,
-) -> Iterate {
+    options: &Options,
+) -> Result<Iterate, Cancelled> {
     let mut levels = levels(chain.clone(), keys, axes);
     let mut contraction = Contraction::new(1);
     let mut acceleration = Acceleration::new(WINDOW);
@@ -53,8 +54,8 @@ pub(super) fn solve(
         converged: false,
     };
     levels[0].mass.copy_from_slice(&result.mass);
-    while result.iterations < max_iterations && !result.converged {
-        result.matrix_passes += cycle(&mut levels);
+    while result.iterations < options.max_iterations && !result.converged {
+        result.matrix_passes += cycle(&mut levels, &options.cancellation)?;
         result.iterations += 1;
         acceleration.step(&result.mass, &mut levels[0].mass);
         normalise(&mut levels[0].mass, SMALLEST_MASS);
@@ -62,26 +63,27 @@ pub(super) fn solve(
         result.mass.copy_from_slice(&levels[0].mass);
         result.error_estimate = contraction.observe(change);
         // The first change alone shows no contraction.
-        result.converged = result.iterations > 1 && result.error_estimate <= tolerance;
+        result.converged = result.iterations > 1 && result.error_estimate <= options.tolerance;
     }
-    result
+    Ok(result)
 }
 
 /// One W-cycle; returns the passes over the finest chain.
-fn cycle(levels: &mut [Level]) -> usize {
+fn cycle(levels: &mut [Level], cancellation: &Cancellation) -> Result<usize, Cancelled> {
+    cancellation.check()?;
     let Some((fine, coarser)) = levels.split_first_mut() else {
-        return 0;
+        return Ok(0);
     };
     let Some(lumping) = &fine.lumping else {
         eliminate(fine);
-        return 1;
+        return Ok(1);
     };
     smooth(&fine.chain, &mut fine.mass);
     lumping.project(&fine.chain, &fine.mass, &mut coarser[0]);
     let before = coarser[0].mass.clone();
-    cycle(coarser);
+    cycle(coarser, cancellation)?;
     if coarser.len() > 1 {
-        cycle(coarser);
+        cycle(coarser, cancellation)?;
     }
     for (lump, (new, old)) in coarser[0].mass.iter().zip(&before).enumerate() {
         let states = lumping.members[lump]..lumping.members[lump + 1];
@@ -90,7 +92,7 @@ fn cycle(levels: &mut [Level]) -> usize {
             .for_each(|mass| *mass *= new / old);
     }
     smooth(&fine.chain, &mut fine.mass);
-    3
+    Ok(3)
 }
 
 /// Solves the coarsest chain.

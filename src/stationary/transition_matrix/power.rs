@@ -3,7 +3,8 @@
 use super::chain::{Chain, distance, normalise};
 use super::convergence::Contraction;
 use super::multilevel::Iterate;
-use super::second_eigenvalue;
+use super::{Options, second_eigenvalue};
+use crate::cancellation::Cancelled;
 
 /// Steps over which the contraction is observed.
 const WINDOW: usize = 20;
@@ -18,9 +19,9 @@ const PATIENCE: usize = 2000;
 pub(super) fn solve(
     chain: &Chain,
     mass: Vec<f64>,
-    tolerance: f64,
-    max_iterations: usize,
-) -> Iterate {
+    options: &Options,
+) -> Result<Iterate, Cancelled> {
+    let tolerance = options.tolerance;
     let mut contraction = Contraction::new(WINDOW);
     let mut result = Iterate {
         mass,
@@ -32,7 +33,8 @@ pub(super) fn solve(
     let mut next = vec![0.0; chain.len()];
     let mut verified = false;
     let mut milestone = f64::INFINITY;
-    while result.iterations < max_iterations && !result.converged {
+    while result.iterations < options.max_iterations && !result.converged {
+        options.cancellation.check()?;
         chain.apply(&result.mass, &mut next);
         normalise(&mut next, 0.0);
         result.iterations += 1;
@@ -41,7 +43,7 @@ pub(super) fn solve(
         std::mem::swap(&mut next, &mut result.mass);
         result.error_estimate = contraction.observe(change);
         if result.error_estimate <= tolerance && !verified {
-            let second = second_eigenvalue::of_chain(chain, &result.mass);
+            let second = second_eigenvalue::of_chain(chain, &result.mass, &options.cancellation)?;
             result.matrix_passes += second.products;
             contraction.set_known(second.modulus / (1.0 - chain.escaping(&result.mass)));
             result.error_estimate = contraction.estimate(change);
@@ -55,5 +57,5 @@ pub(super) fn solve(
             milestone = change;
         }
     }
-    result
+    Ok(result)
 }

@@ -8,6 +8,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use super::chain::{Chain, Checked};
 use super::{StationaryError, SteadyState};
+use crate::cancellation::{Cancellation, Cancelled};
 use crate::sampling::TransitionMatrix;
 
 /// Applications of P per Krylov vector in the first sweep; each restart doubles them.
@@ -45,10 +46,11 @@ pub struct SecondEigenvalue {
 /// The second eigenvalue on the cells that carry a steady state found by [`super::solve`].
 ///
 /// # Errors
-/// As for [`super::solve`], from the transition matrix.
+/// As for [`super::solve`], from the transition matrix; [`StationaryError::Cancelled`].
 pub fn second_eigenvalue(
     matrix: &TransitionMatrix,
     steady: &SteadyState,
+    cancellation: &Cancellation,
 ) -> Result<SecondEigenvalue, StationaryError> {
     let checked = Checked::new(matrix, steady.mass.len())?;
     let mass_of = |row: &usize| steady.mass[checked.cells[*row]];
@@ -57,7 +59,7 @@ pub fn second_eigenvalue(
         .collect();
     let mass: Vec<f64> = rows.iter().map(mass_of).collect();
     let chain = checked.restricted(&rows);
-    let found = of_chain(&chain, &mass);
+    let found = of_chain(&chain, &mass, cancellation)?;
     let ratio = found.modulus / (1.0 - chain.escaping(&mass));
     let relaxation_time = (ratio < 1.0).then(|| -matrix.map_step / ratio.ln());
     Ok(SecondEigenvalue {
@@ -67,15 +69,20 @@ pub fn second_eigenvalue(
 }
 
 /// The second eigenvalue of a chain with steady state `mass`; the relaxation time is left out.
-pub(super) fn of_chain(chain: &Chain, mass: &[f64]) -> SecondEigenvalue {
+pub(super) fn of_chain(
+    chain: &Chain,
+    mass: &[f64],
+    cancellation: &Cancellation,
+) -> Result<SecondEigenvalue, Cancelled> {
     let mut krylov = Krylov {
         chain,
         mass,
+        cancellation,
         kept: 1.0 - chain.escaping(mass),
         power: FIRST_POWER,
         products: 0,
     };
-    let mut start = krylov.first_vector();
+    let mut start = krylov.first_vector()?;
     let mut best = SecondEigenvalue {
         modulus: 0.0,
         residual: 0.0,
@@ -83,7 +90,7 @@ pub(super) fn of_chain(chain: &Chain, mass: &[f64]) -> SecondEigenvalue {
         relaxation_time: None,
     };
     for _ in 0..SWEEPS {
-        let Some((modulus, residual, next)) = krylov.sweep(start) else {
+        let Some((modulus, residual, next)) = krylov.sweep(start)? else {
             break;
         };
         let power = krylov.power as f64;
@@ -97,12 +104,16 @@ pub(super) fn of_chain(chain: &Chain, mass: &[f64]) -> SecondEigenvalue {
         start = next;
     }
     best.products = krylov.products;
-    best
+    Ok(best)
 }
+
+/// Modulus of the dominant Ritz value, its residual relative to the modulus, and a vector to start again from.
+type Swept = (f64, f64, DVector<f64>);
 
 struct Krylov<'a> {
     chain: &'a Chain,
     mass: &'a [f64],
+    cancellation: &'a Cancellation,
     /// λ₁.
     kept: f64,
     /// Applications of P per Krylov vector.
@@ -112,10 +123,11 @@ struct Krylov<'a> {
 
 impl Krylov<'_> {
     /// (P - λ₁ p 1ᵀ)^power v.
-    fn apply(&mut self, vector: &DVector<f64>) -> DVector<f64> {
+    fn apply(&mut self, vector: &DVector<f64>) -> Result<DVector<f64>, Cancelled> {
         let mut current = vector.clone();
         let mut next = DVector::zeros(vector.len());
         for _ in 0..self.power {
+            self.cancellation.check()?;
             let total = self.kept * current.sum();
             self.chain.apply(current.as_slice(), next.as_mut_slice());
             for (value, mass) in next.iter_mut().zip(self.mass) {
@@ -124,11 +136,11 @@ impl Krylov<'_> {
             std::mem::swap(&mut current, &mut next);
         }
         self.products += self.power;
-        current
+        Ok(current)
     }
 
     /// A vector with a part in every mode: the masses with scattered signs, smoothed.
-    fn first_vector(&mut self) -> DVector<f64> {
+    fn first_vector(&mut self) -> Result<DVector<f64>, Cancelled> {
         let scatter = |state: usize| {
             let hash = (state as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
             (hash >> 11) as f64 / (1u64 << 52) as f64 - 1.0
@@ -141,19 +153,18 @@ impl Krylov<'_> {
         self.apply(&rough)
     }
 
-    /// One Arnoldi factorisation: modulus of the dominant Ritz value of the power, its residual relative to
-    /// the modulus, and a vector to start again from. `None` when the start vanishes: no second eigenvalue.
-    fn sweep(&mut self, start: DVector<f64>) -> Option<(f64, f64, DVector<f64>)> {
+    /// One Arnoldi factorisation of the power. `None` when the start vanishes: no second eigenvalue.
+    fn sweep(&mut self, start: DVector<f64>) -> Result<Option<Swept>, Cancelled> {
         let size = KRYLOV.min(self.mass.len().saturating_sub(1));
         let norm = start.norm();
         if size == 0 || norm.is_nan() || norm <= NOTHING {
-            return None;
+            return Ok(None);
         }
         let mut basis = vec![start / norm];
         let mut hessenberg = DMatrix::zeros(size + 1, size);
         let mut used = size;
         for step in 0..size {
-            let mut next = self.apply(&basis[step]);
+            let mut next = self.apply(&basis[step])?;
             let length = next.norm();
             // Twice is enough (Kahan): the second pass removes what rounding left.
             for _ in 0..2 {
@@ -174,8 +185,12 @@ impl Krylov<'_> {
         }
         let coupling = hessenberg[(used, used - 1)];
         let square = hessenberg.view((0, 0), (used, used)).into_owned();
-        let ritz = ritz_pairs(&square)?;
-        let (value, first) = ritz.first()?;
+        let Some(ritz) = ritz_pairs(&square) else {
+            return Ok(None);
+        };
+        let Some((value, first)) = ritz.first() else {
+            return Ok(None);
+        };
         let modulus = value.norm();
         let residual = coupling * first[used - 1].norm() / modulus.max(f64::MIN_POSITIVE);
         let mut next = DVector::zeros(self.mass.len());
@@ -184,7 +199,8 @@ impl Krylov<'_> {
                 next.axpy(coefficient.re + coefficient.im, vector, 1.0);
             }
         }
-        Some((modulus, if modulus > 0.0 { residual } else { 0.0 }, next))
+        let residual = if modulus > 0.0 { residual } else { 0.0 };
+        Ok(Some((modulus, residual, next)))
     }
 }
 

@@ -6,6 +6,7 @@ use super::hierarchy::morton;
 use super::multilevel::{self, Iterate};
 use super::{Info, LARGEST_ESCAPE, Options, Outcome, Solver, StationaryError, SteadyState};
 use super::{absorption, power};
+use crate::cancellation::Cancelled;
 use crate::sampling::TransitionMatrix;
 use crate::space::CellSpace;
 
@@ -38,15 +39,17 @@ pub fn solve(
         return Err(StationaryError::Guess { cells });
     }
     let checked = Checked::new(matrix, cells)?;
-    match classes::carrier(&checked) {
+    let cancellation = &options.cancellation;
+    match classes::carrier(&checked, cancellation)? {
         Carrier::None(escape_per_step) => Ok(Outcome::NoneInside { escape_per_step }),
         Carrier::Several(classes) => {
             let all: Vec<usize> = (0..checked.len()).collect();
             let initial = initial(&checked, &all, guess, 0.0);
-            let (classes, escaped) = absorption::shares(&checked, space, &classes, &initial);
+            let (classes, escaped) =
+                absorption::shares(&checked, space, &classes, &initial, cancellation)?;
             Ok(Outcome::SeveralClasses { classes, escaped })
         }
-        Carrier::One(rows) => Ok(solve_on(&checked, space, rows, guess, options)),
+        Carrier::One(rows) => Ok(solve_on(&checked, space, rows, guess, options)?),
     }
 }
 
@@ -76,7 +79,7 @@ fn solve_on(
     rows: Vec<usize>,
     guess: Option<&[f64]>,
     options: &Options,
-) -> Outcome {
+) -> Result<Outcome, Cancelled> {
     let mut placed: Vec<(u128, usize)> = rows
         .iter()
         .map(|&row| (morton(space, matrix.cells[row]), row))
@@ -85,7 +88,6 @@ fn solve_on(
     let (keys, rows): (Vec<u128>, Vec<usize>) = placed.into_iter().unzip();
     let chain = matrix.restricted(&rows);
     let start = initial(matrix, &rows, guess, FLOOR);
-    let (tolerance, most) = (options.tolerance, options.max_iterations);
     let Iterate {
         mass,
         iterations,
@@ -94,13 +96,13 @@ fn solve_on(
         converged,
     } = match options.solver {
         Solver::MultilevelAggregation => {
-            multilevel::solve(&chain, keys, space.dimension(), start, tolerance, most)
+            multilevel::solve(&chain, keys, space.dimension(), start, options)?
         }
-        Solver::PowerIteration => power::solve(&chain, start, tolerance, most),
+        Solver::PowerIteration => power::solve(&chain, start, options)?,
     };
     let escape_per_step = chain.escaping(&mass);
     if converged && escape_per_step > LARGEST_ESCAPE {
-        return Outcome::NoneInside { escape_per_step };
+        return Ok(Outcome::NoneInside { escape_per_step });
     }
     let info = Info {
         solver: options.solver,
@@ -117,5 +119,5 @@ fn solve_on(
     for (&row, value) in rows.iter().zip(mass) {
         all[matrix.cells[row]] = value;
     }
-    Outcome::Steady(SteadyState { mass: all, info })
+    Ok(Outcome::Steady(SteadyState { mass: all, info }))
 }

@@ -1,6 +1,7 @@
 //! Settings from a text: defaults, the resolved file, conditions between keys.
 
 use super::*;
+use crate::cancellation::Cancellation;
 use crate::continuation::evenly_spaced;
 use crate::method::MethodOptions;
 use crate::sweep_file::{SweepFile, keys};
@@ -222,7 +223,7 @@ fn what_is_left_to_the_program_stays_open_and_is_written_so() {
     assert_eq!(parse(&text, &[]).unwrap().axes, settings.axes);
     let said = settings.clone().fixed().unwrap_err().to_string();
     assert!(said.contains("axis `x` is left to the program"), "{said}");
-    let sweep = settings.prepare().unwrap();
+    let sweep = settings.prepare(&Cancellation::new()).unwrap();
     assert!(sweep.settings.axes.iter().all(|axis| axis.range.is_some()));
     assert!(matches!(sweep.settings.axes[1].grade, Grade::Toward(_)));
     let again = parse(&sweep.to_toml(), &[]).unwrap().fixed().unwrap();

@@ -3,6 +3,7 @@
 #![allow(clippy::panic, reason = "a test that cannot be set up should stop")]
 
 use super::solve_corrected;
+use crate::cancellation::Cancellation;
 use crate::sampling::{Integrator, SampledTransitions, SamplingOptions, sample_transitions};
 use crate::space::{Axis, CellSpace};
 use crate::stationary::{Options, Outcome, Solver, SteadyState};
@@ -77,8 +78,14 @@ fn without_friction() -> (CellSpace, SampledTransitions, Vec<f64>) {
     let axis = Axis::uniform(-3.0, 3.0, 50).unwrap();
     let space = CellSpace::new(vec![axis.clone(), axis]).unwrap();
     let seed = space.find(&[0.1, 0.1]).unwrap();
-    let transitions =
-        sample_transitions(&*system, &space, &[seed], &options(1.0, 2000), &|| false).unwrap();
+    let transitions = sample_transitions(
+        &*system,
+        &space,
+        &[seed],
+        &options(1.0, 2000),
+        &Cancellation::new(),
+    )
+    .unwrap();
     let exact = exact(&*system, &space);
     (space, transitions, exact)
 }
@@ -168,8 +175,14 @@ fn cells_no_longer_widen_a_density() {
             time_step: 0.02,
             ..options(map_step, 100_000)
         };
-        let transitions =
-            sample_transitions(&OrnsteinUhlenbeck, &space, &[40], &options, &|| false).unwrap();
+        let transitions = sample_transitions(
+            &OrnsteinUhlenbeck,
+            &space,
+            &[40],
+            &options,
+            &Cancellation::new(),
+        )
+        .unwrap();
         let variance = |mass: &[f64], slopes: &dyn Fn(usize) -> f64| -> f64 {
             let cells = || mass.iter().enumerate();
             let centre = |cell: usize| space.centre(cell)[0];
@@ -201,8 +214,14 @@ fn several_closed_classes_stay_several() {
         .unwrap();
     let space = CellSpace::new(vec![Axis::uniform(-2.0, 2.0, 40).unwrap()]).unwrap();
     let seeds = [space.find(&[-1.0]).unwrap(), space.find(&[1.0]).unwrap()];
-    let transitions =
-        sample_transitions(&*system, &space, &seeds, &options(1.0, 200), &|| false).unwrap();
+    let transitions = sample_transitions(
+        &*system,
+        &space,
+        &seeds,
+        &options(1.0, 200),
+        &Cancellation::new(),
+    )
+    .unwrap();
     let solver = Options::new(Solver::MultilevelAggregation, 1e-10);
     let found = solve_corrected(&transitions, &space, None, None, &solver, 1e-6).unwrap();
     let Outcome::SeveralClasses { classes, .. } = found.outcome else {

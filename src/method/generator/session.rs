@@ -1,0 +1,286 @@
+//! The generator at work: assemble Q, solve Q u = 0 with the neighbour's factorisation, and state the error of the grid as the
+//! difference to a second scheme.
+//!
+//! The slope du/dθ, which predicts the neighbour, and the difference to the second scheme come from the factorisation
+//! that is there: Q du = -(dQ/dθ) u, and with the second scheme's Q' = Q + δQ to first order Q δu = -(δQ) u. After the
+//! first point a polynomial through the last few points replaces the tangent: it predicts better and costs nothing.
+//! The difference is predicted likewise, and iterated only as far as the prediction is not good enough.
+
+use std::sync::Arc;
+
+use super::GeneratorSource;
+use super::one_axis;
+use super::relaxation::Relaxation;
+use super::sensitivity::GeneratorSensitivity;
+use super::source::METHOD;
+use super::trail::{self, Trail};
+use crate::cancellation::Cancellation;
+use crate::continuation::{Session, Solution, SourceError};
+use crate::density::{EstimatedDensity, Moments, Observable, estimate_from_difference};
+use crate::generator::{
+    AdvectiveScheme, Generator, GeneratorOptions, assemble_derivative, cell_masses, resolution,
+    unknown_moments,
+};
+use crate::method::MethodError;
+use crate::method::neighbours::Neighbours;
+use crate::method::report::{QUIET_ESCAPE, Reporter};
+use crate::method::structure::structure;
+use crate::space::CellSpace;
+use crate::stationary::generator::{RateError, RateInfo, RateSolver, RateSteadyState};
+use crate::system::System;
+
+/// Escape per unit time below which mass is said to stay in Ω, and relaxation is not looked at.
+const NO_ESCAPE: f64 = 1e-12;
+
+/// Relative error of slopes, which predict, and of differences between schemes, which estimate errors.
+const ROUGH: f64 = 1e-2;
+
+/// Owns the factorisation and what the solved points say of the next one.
+pub(super) struct GeneratorSession {
+    source: GeneratorSource,
+    solver: RateSolver,
+    /// Every solved point with those before it.
+    trails: Neighbours<Trail>,
+    cancellation: Cancellation,
+}
+
+/// What was solved at one point.
+struct Solved {
+    value: f64,
+    system: Arc<dyn System>,
+    steady: RateSteadyState,
+    /// The generator by the second scheme.
+    second: Generator,
+}
+
+/// A solution, and the trail that leads on from it where there is one.
+type Judged = (Solution<'static>, Option<Trail>);
+
+impl Session for GeneratorSession {
+    fn solve(&mut self, value: f64) -> Result<Solution<'_>, SourceError> {
+        Ok(self.solve_from_nearest(value)?)
+    }
+}
+
+impl GeneratorSession {
+    pub(super) fn new(source: &GeneratorSource, cancellation: &Cancellation) -> Self {
+        Self {
+            source: source.clone(),
+            solver: source.solver(cancellation),
+            trails: Neighbours::default(),
+            cancellation: cancellation.clone(),
+        }
+    }
+
+    fn solve_from_nearest(&mut self, value: f64) -> Result<Solution<'_>, MethodError> {
+        self.cancellation.check()?;
+        let system = self.source.problem.family().at(value)?;
+        if let Some(found) = one_axis::masses(&self.source, system.as_ref()) {
+            return one_axis::solution(&self.source, value, system.as_ref(), &found);
+        }
+        let before = self.trails.nearest(value).cloned();
+        let guess = before.as_ref().and_then(|trail| trail.mass_at(value));
+        let solved = self.solved(value, system, guess.as_deref())?;
+        let (mut solution, trail) = self.judge(&solved, before.as_ref())?;
+        let Some(mut trail) = trail else {
+            return Ok(solution);
+        };
+        if before.is_none() {
+            trail.slope = self.slope(&solved)?.map(Arc::new);
+        }
+        // The masses, and as many differences between schemes.
+        let unknowns = Arc::new(solved.steady.mass);
+        let bytes = 2 * size_of_val(unknowns.as_slice());
+        self.trails.keep(value, trail, bytes);
+        solution.sensitivity = Some(Box::new(GeneratorSensitivity {
+            source: &self.source,
+            solver: &mut self.solver,
+            value,
+            system: solved.system,
+            unknowns,
+        }));
+        Ok(solution)
+    }
+
+    fn solved(
+        &mut self,
+        value: f64,
+        system: Arc<dyn System>,
+        guess: Option<&[f64]>,
+    ) -> Result<Solved, MethodError> {
+        let (source, solver) = (&self.source, &mut self.solver);
+        let generator = source.assemble(system.as_ref(), source.options.scheme)?;
+        // The solve leaves a core idle most of the time.
+        let (steady, second) = rayon::join(
+            || solver.solve(&generator.matrix, &generator.escape, guess),
+            || source.assemble(system.as_ref(), companion(source.options.scheme)),
+        );
+        Ok(Solved {
+            value,
+            system,
+            steady: steady?,
+            second: second?,
+        })
+    }
+
+    /// Judges a solution and turns it into densities.
+    fn judge(&mut self, solved: &Solved, before: Option<&Trail>) -> Result<Judged, MethodError> {
+        let info = &solved.steady.info;
+        let unknowns = &solved.steady.mass;
+        let space = self.source.problem.space().clone();
+        let mut reporter = reporter(&space, info);
+        let finite = unknowns.iter().all(|value| value.is_finite());
+        if !info.converged || !finite {
+            reporter.not_converged(info.error_estimate);
+        }
+        if !finite {
+            return Ok((Solution::without_density(reporter.report), None));
+        }
+        let relaxation = relaxation(&mut self.solver, solved, before);
+        let time = relaxation.as_ref().map(|known| known.time);
+        let Some(share) = reporter.escaping_share(time, self.source.options.escape_limit) else {
+            return Ok((Solution::without_density(reporter.report), None));
+        };
+        reporter.escaping(share);
+        let masses = cell_masses(solved.system.as_ref(), &space, unknowns);
+        reporter.edge_mass(&masses, &self.source.closed_ends);
+        for judged in resolution(solved.system.as_ref(), &space, &masses) {
+            reporter.resolution(&judged);
+        }
+        let expected = before.and_then(|trail| trail.difference_at(solved.value));
+        let (densities, difference) = self.densities(solved, &masses, expected.as_deref())?;
+        let watched = densities
+            .iter()
+            .map(|one| negative_mass(&one.density.masses()));
+        reporter.negative_mass(negative_mass(&masses), watched.fold(0.0, f64::max));
+        let solution = Solution {
+            report: reporter.report,
+            moments: moments_of(&space, unknowns),
+            densities,
+            sensitivity: None,
+        };
+        Ok((
+            solution,
+            Some(trail_after(solved, difference, relaxation, before)),
+        ))
+    }
+
+    /// Densities with the difference to the second scheme as their error, and that difference of the unknowns.
+    fn densities(
+        &mut self,
+        solved: &Solved,
+        masses: &[f64],
+        expected: Option<&[f64]>,
+    ) -> Result<(Vec<EstimatedDensity>, Vec<f64>), MethodError> {
+        let problem = &self.source.problem;
+        let (system, space) = (solved.system.as_ref(), problem.space());
+        let (unknowns, second) = (&solved.steady.mass, &solved.second.matrix);
+        let change = self
+            .solver
+            .sensitivity_within(second, unknowns, expected, ROUGH)?;
+        let changed: Vec<f64> = unknowns.iter().zip(&change).map(|(u, du)| u + du).collect();
+        let changed = cell_masses(system, space, &changed);
+        let difference: Vec<f64> = changed.iter().zip(masses).map(|(b, a)| b - a).collect();
+        let kinked = &self.source.kinked;
+        let estimate = |&observable: &Observable| {
+            let mut estimated = estimate_from_difference(space, observable, masses, &difference)?;
+            estimated.structure = structure(system, space, masses, observable, kinked);
+            Ok::<_, MethodError>(estimated)
+        };
+        let densities: Result<Vec<_>, MethodError> =
+            problem.observables().iter().map(estimate).collect();
+        Ok((densities?, change))
+    }
+
+    /// du/dθ at the solution; `None` where Q cannot be varied (at an end of the parameter's range) or the
+    /// solve fails: the neighbour then starts without a prediction.
+    fn slope(&mut self, solved: &Solved) -> Result<Option<Vec<f64>>, MethodError> {
+        let problem = &self.source.problem;
+        let options = GeneratorOptions {
+            scheme: self.source.options.scheme,
+        };
+        let at = |value: f64| problem.family().at(value);
+        let derivative = assemble_derivative(at, solved.value, problem.space(), &options);
+        let Ok(derivative) = derivative else {
+            return Ok(None);
+        };
+        let (matrix, mass) = (&derivative.matrix, &solved.steady.mass);
+        match self.solver.sensitivity_within(matrix, mass, None, ROUGH) {
+            Ok(slope) => Ok(Some(slope)),
+            Err(RateError::Cancelled(cancelled)) => Err(cancelled.into()),
+            Err(_) => Ok(None),
+        }
+    }
+}
+
+/// The numbers of a solve.
+fn reporter<'a>(space: &'a CellSpace, info: &RateInfo) -> Reporter<'a> {
+    let mut reporter = Reporter::new(METHOD, space);
+    let report = &mut reporter.report;
+    report.iterations = info.iterations;
+    report.residual = info.residual;
+    report.solver_error = info.error_estimate;
+    report.escape_rate = info.escape_rate.max(0.0);
+    report.own.factorisations = info.factorisations;
+    report.own.negative_mass = info.negative_mass;
+    reporter
+}
+
+/// The time in which deviations die out, where mass escapes: a neighbour's where it will do.
+fn relaxation(
+    solver: &mut RateSolver,
+    solved: &Solved,
+    before: Option<&Trail>,
+) -> Option<Relaxation> {
+    let rate = solved.steady.info.escape_rate;
+    let neighbour = before.and_then(|trail| trail.relaxation.as_deref());
+    if rate <= NO_ESCAPE {
+        return None;
+    }
+    neighbour
+        .and_then(|known| Relaxation::carried(known, rate, QUIET_ESCAPE))
+        .or_else(|| Relaxation::compute(solver, &solved.steady.mass, neighbour))
+}
+
+/// What a point leaves for its neighbour, with the points before.
+fn trail_after(
+    solved: &Solved,
+    difference: Vec<f64>,
+    relaxation: Option<Relaxation>,
+    before: Option<&Trail>,
+) -> Trail {
+    let point = trail::Solved {
+        value: solved.value,
+        mass: Arc::new(solved.steady.mass.clone()),
+        difference,
+    };
+    // What has not converged is no start for an extrapolation.
+    let trail = before.filter(|_| solved.steady.info.converged).cloned();
+    trail
+        .unwrap_or_default()
+        .with(point, relaxation.map(Arc::new))
+}
+
+/// Σ |min(mass, 0)|.
+fn negative_mass(masses: &[f64]) -> f64 {
+    masses.iter().map(|mass| (-mass).max(0.0)).sum()
+}
+
+/// Moments from the unknowns, which are free of the h²/6 that moments of cell masses have.
+fn moments_of(space: &CellSpace, unknowns: &[f64]) -> Vec<Moments> {
+    unknown_moments(space, unknowns)
+        .into_iter()
+        .map(|(mean, variance)| Moments {
+            mean,
+            standard_deviation: variance.max(0.0).sqrt(),
+        })
+        .collect()
+}
+
+/// The scheme whose difference to the given one stands for its error.
+fn companion(scheme: AdvectiveScheme) -> AdvectiveScheme {
+    match scheme {
+        AdvectiveScheme::Upwind5 | AdvectiveScheme::Central6 => AdvectiveScheme::Central4,
+        AdvectiveScheme::Central4 => AdvectiveScheme::Central6,
+    }
+}
