@@ -220,12 +220,21 @@ fn assert_interrupted(source: &dyn DensitySource) {
 
 #[test]
 fn a_cancelled_factorisation_ends() {
-    // 1.4 million unknowns: the fronts of the last separators alone take minutes.
-    let options = GeneratorMethodOptions {
-        memory_limit: 1e3,
-        ..GeneratorMethodOptions::default()
-    };
-    let source = GeneratorSource::new(&coulomb("f_c", 1200), &options).unwrap();
+    // 72 000 unknowns in three dimensions: the fronts of the last separators alone take a minute.
+    let model = registry::find("dahl").unwrap();
+    let fixed = [
+        ("kappa", 0.02),
+        ("mu", 1.0),
+        ("lambda", 0.06),
+        ("f_c", 0.05),
+        ("sigma2", 0.02),
+    ];
+    let family = Family::new(model, &fixed, Path::parameter("alpha", 0.0, 1.0)).unwrap();
+    let axes = [(2.5, 60), (2.5, 60), (0.05 / 0.06, 20)];
+    let axes = axes.map(|(half, count)| Axis::uniform(-half, half, count).unwrap());
+    let space = CellSpace::new(axes.to_vec()).unwrap();
+    let problem = Problem::new(family, space, vec![Observable::Marginal(0)]).unwrap();
+    let source = GeneratorSource::new(&problem, &GeneratorMethodOptions::default()).unwrap();
     assert_interrupted(&source);
 }
 

@@ -283,3 +283,22 @@ proptest! {
         prop_assert!((escapes[0] - escapes[1]).abs() < 1e-12);
     }
 }
+
+#[test]
+fn no_solve_goes_on_once_cancelled() {
+    let (matrix, space, _) = product_walk(&[12, 12]);
+    let cancellation = Cancellation::new();
+    let options = |solver| Options::new(solver, 1e-10).cancelled_by(&cancellation);
+    let found = solve(&matrix, &space, None, &options(Solver::ALL[0])).unwrap();
+    let Outcome::Steady(found) = found else {
+        panic!("one steady state");
+    };
+    cancellation.cancel();
+    let stopped = StationaryError::Cancelled(crate::cancellation::Cancelled);
+    for solver in Solver::ALL {
+        let again = solve(&matrix, &space, None, &options(solver));
+        assert_eq!(again.unwrap_err(), stopped);
+    }
+    let second = second_eigenvalue(&matrix, &found, &cancellation);
+    assert_eq!(second.unwrap_err(), stopped);
+}
