@@ -12,6 +12,8 @@ const SLOPE: f64 = 1.8;
 const FARTHEST: f64 = 0.25;
 /// The next candidate must be this many times as far away for a link to be beyond doubt.
 const CLEAR: f64 = 2.0;
+/// A step that no eye sees, as a share of the window.
+const STILL: f64 = 0.005;
 
 /// A branch: one or more places, in ascending parameter.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,8 +51,22 @@ fn link(at: f64, candidates: &[f64], farthest: f64) -> Option<usize> {
     (distance <= farthest && clear).then_some(index)
 }
 
-/// Follows the features of one kind of a marginal. A link is mutual, short and beyond doubt; branches end
-/// where features jump, split or merge, and at points without a density.
+/// For each feature the one of the point before that it continues. A link is mutual, short and beyond doubt. As many features as
+/// before that all but stand still are linked in their order, however near each other they are: a pair just born.
+fn links(last: &[f64], found: &[f64], farthest: f64, still: f64) -> Vec<Option<usize>> {
+    let moved = || last.iter().zip(found).map(|(a, b)| (a - b).abs());
+    if last.len() == found.len() && moved().all(|step| step <= still) {
+        return (0..found.len()).map(Some).collect();
+    }
+    let mutual = |(index, &position): (usize, &f64)| {
+        let back = link(position, last, farthest);
+        back.filter(|&branch| link(last[branch], found, farthest) == Some(index))
+    };
+    found.iter().enumerate().map(mutual).collect()
+}
+
+/// Follows the features of one kind of a marginal. Branches end where features jump, split or merge, and at points without
+/// a density.
 pub(super) fn branches(
     points: &[Point],
     observable: usize,
@@ -61,46 +77,32 @@ pub(super) fn branches(
         (Some(first), Some(last)) if last.value > first.value => last.value - first.value,
         _ => f64::INFINITY,
     };
+    let height = window.1 - window.0;
     let mut before = points.first().map_or(0.0, |first| first.value);
     let mut finished: Vec<Branch> = Vec::new();
     let mut open: Vec<Branch> = Vec::new();
     for point in points {
         let spacing = (point.value - before) / range;
         before = point.value;
-        let farthest = (SLOPE * spacing).clamp(JUMP, FARTHEST) * (window.1 - window.0);
+        let farthest = (SLOPE * spacing).clamp(JUMP, FARTHEST) * height;
         let Some(found) = positions(point, observable, kind) else {
             finished.append(&mut open);
             continue;
         };
-        let last: Vec<f64> = open
-            .iter()
-            .filter_map(|branch| branch.places.last())
-            .map(|place| place.1)
-            .collect();
-        let mut next: Vec<Branch> = Vec::new();
-        let mut continued = vec![false; open.len()];
-        for (index, &position) in found.iter().enumerate() {
-            let back = link(position, &last, farthest);
-            let mutual = back.filter(|&branch| link(last[branch], &found, farthest) == Some(index));
-            let mut branch = match mutual {
-                Some(branch) => {
-                    continued[branch] = true;
-                    open[branch].clone()
-                }
-                None => Branch {
-                    kind,
-                    places: Vec::new(),
-                },
-            };
+        let places = open.iter().filter_map(|branch| branch.places.last());
+        let last: Vec<f64> = places.map(|place| place.1).collect();
+        let links = links(&last, &found, farthest, STILL * height);
+        let mut earlier: Vec<Option<Branch>> = open.drain(..).map(Some).collect();
+        for (&position, link) in found.iter().zip(links) {
+            let continued = link.and_then(|branch| earlier[branch].take());
+            let mut branch = continued.unwrap_or_else(|| Branch {
+                kind,
+                places: Vec::new(),
+            });
             branch.places.push((point.value, position));
-            next.push(branch);
+            open.push(branch);
         }
-        let ended = open
-            .into_iter()
-            .zip(continued)
-            .filter(|(_, continued)| !continued);
-        finished.extend(ended.map(|(branch, _)| branch));
-        open = next;
+        finished.extend(earlier.into_iter().flatten());
     }
     finished.append(&mut open);
     finished
@@ -122,6 +124,11 @@ mod tests {
             "a symmetric split has no favourite"
         );
         assert_eq!(link(0.0, &[], 0.2), None);
+        // A pair that is nearer to its mirror image than to where it was.
+        let (last, found) = ([-0.006, 0.006], [-0.001, 0.001]);
+        assert_eq!(links(&last, &found, 0.2, 0.004), [None, None]);
+        assert_eq!(links(&last, &found, 0.2, 0.01), [Some(0), Some(1)]);
+        assert_eq!(links(&last, &[0.0], 0.2, 0.01), [None]);
     }
 
     /// A point with peaks at the given places; without a density for `None`.

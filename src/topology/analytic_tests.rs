@@ -1,7 +1,7 @@
 //! The detector on densities whose features are known exactly.
 
 use super::*;
-use crate::density::{Density, Observable};
+use crate::density::{Density, Kink, Observable};
 use crate::space::{Axis, Grading};
 
 /// Gauss points and weights on [-1, 1] for averages over a cell: exact to degree 5.
@@ -425,5 +425,97 @@ fn a_rim_that_is_nearly_level_has_its_peaks() {
             (second.position[1].abs() - expected).abs() < 1e-5,
             "{second:?}"
         );
+    }
+}
+
+/// Peaks and valleys that are present, by place.
+fn present(detection: &Detection, kind: FeatureKind) -> Vec<f64> {
+    let features = detection.features.iter();
+    let wanted = features.filter(|one| one.kind == kind && one.verdict == Verdict::Present);
+    let mut places: Vec<f64> = wanted.map(|one| one.position[0]).collect();
+    places.sort_by(f64::total_cmp);
+    places
+}
+
+#[test]
+fn a_pair_is_followed_to_its_birth_without_a_seam() {
+    // dx = (ax - x³)dt + σdW: peaks at ±√a, from far outside of a cell of the centre down to a twentieth of one.
+    let sigma2 = 0.25;
+    let grading = Grading {
+        at: vec![0.0],
+        smallest: 0.02,
+    };
+    for axis in [
+        uniform(2.5, 100),
+        Axis::graded(-2.5, 2.5, 100, &grading).unwrap(),
+    ] {
+        let width = axis.width(50);
+        for step in 0..400 {
+            let x = 0.05 * width + 0.0025 * f64::from(step);
+            let a = x * x;
+            let p = |x: f64| (2.0 / sigma2 * (0.5 * a * x * x - 0.25 * x.powi(4))).exp();
+            let mut estimated = marginal(&axis, p);
+            estimated.structure.centre = Some(vec![0.0]);
+            let detection = detect(&estimated);
+            let peaks = present(&detection, FeatureKind::Peak);
+            assert_eq!(peaks.len(), 2, "{x}: {peaks:?}");
+            let valleys = present(&detection, FeatureKind::Valley);
+            assert!(
+                valleys.len() == 1 && valleys[0].abs() < 1e-9,
+                "{x}: {valleys:?}"
+            );
+            // What is off is the curvature at the centre, a small part of σ²: √a moves fast near the birth, a does not.
+            let error = (peaks[1] * peaks[1] - a).abs();
+            assert!(error < 4e-6 + 5e-5 * a, "{x}: {error:e}");
+            assert!((peaks[0] + peaks[1]).abs() < 1e-9, "{x}: {peaks:?}");
+        }
+    }
+}
+
+#[test]
+fn at_the_birth_itself_a_lone_peak_stands_on_the_centre() {
+    let axis = uniform(2.5, 100);
+    for a in [0.0, 1e-7, -1e-7] {
+        let p = |x: f64| (8.0 * (0.5 * a * x * x - 0.25 * x.powi(4))).exp();
+        let mut estimated = marginal(&axis, p);
+        estimated.structure.centre = Some(vec![0.0]);
+        let detection = detect(&estimated);
+        assert_eq!(present(&detection, FeatureKind::Peak), [0.0], "{a}");
+        let peak = detection.ranked(FeatureKind::Peak, 0).unwrap();
+        // p = 1 - 2x⁴ + 2x⁸ …: eight cells of width h miss the last term, 2 (0.5 · 1.5 · 2.5 · 3.5)² h⁸ = 3e-9.
+        let error = peak.density / p(0.0) * integral(2.5, p) - 1.0;
+        assert!(error.abs() < 1e-6, "{a}: {error:e}");
+    }
+}
+
+#[test]
+fn a_pair_at_a_kink_is_followed_to_its_birth_and_the_notch_is_the_kink() {
+    // p ∝ exp(s|y| - y²/2): peaks at ±s, a notch at 0, and for s < 0 a tip there.
+    let grading = Grading {
+        at: vec![0.0],
+        smallest: 0.005,
+    };
+    let axis = Axis::graded(-4.0, 4.0, 100, &grading).unwrap();
+    for step in -20..200 {
+        let s = 0.0021 * f64::from(step) + 0.0005;
+        let mut estimated = marginal(&axis, |y: f64| (s * y.abs() - 0.5 * y * y).exp());
+        estimated.structure.centre = Some(vec![0.0]);
+        estimated.structure.kinks = vec![Kink {
+            axis: 0,
+            at: 0.0,
+            jump: vec![2.0 * s],
+        }];
+        let detection = detect(&estimated);
+        let peaks = present(&detection, FeatureKind::Peak);
+        let valleys = present(&detection, FeatureKind::Valley);
+        if s < 0.0 {
+            assert_eq!((peaks.as_slice(), valleys.len()), (&[0.0][..], 0), "{s}");
+            continue;
+        }
+        assert_eq!(valleys, [0.0], "{s}");
+        assert_eq!(peaks.len(), 2, "{s}: {peaks:?}");
+        let error = (peaks[1] - s).abs().max((peaks[0] + s).abs());
+        let h = axis.width(axis.find(s).unwrap());
+        assert!(error < 1e-4 * h, "{s}: {error:e} {h}");
     }
 }

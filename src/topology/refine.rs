@@ -7,11 +7,12 @@
 //! which the quadratic is not curved the right way it stays at the cell's centre.
 //!
 //! On a smooth density the position is off by O(h²), the height by O(h³) (in practice h⁴); at a kink
-//! by O(h).
+//! by O(h). Marginals without noise are known better: from here `extremum` goes on to a high order.
 
 use std::ops::Range;
 
 use super::FeatureKind;
+use super::extremum::{Place, extremum};
 use super::quadratic::{Scale, basis, fit, principal_directions};
 use crate::density::EstimatedDensity;
 use crate::space::Axis;
@@ -25,15 +26,6 @@ const LARGEST_REACH: usize = 8;
 /// Longest step along a principal direction, in half lengths of the window.
 const FARTHEST: f64 = 1.5;
 
-/// A refined place.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Place {
-    /// One coordinate an axis.
-    pub(super) position: Vec<f64>,
-    /// Density there.
-    pub(super) density: f64,
-}
-
 /// Refines the feature whose cell is given. One or two axes; one value and one error a cell.
 pub(super) fn refine(estimated: &EstimatedDensity, cell: usize, kind: FeatureKind) -> Place {
     let axes = &estimated.density.axes;
@@ -45,14 +37,15 @@ pub(super) fn refine(estimated: &EstimatedDensity, cell: usize, kind: FeatureKin
     let windows: Vec<Range<usize>> = (0..axes.len())
         .map(|axis| window(estimated, &at, axis))
         .collect();
-    stationary_point(estimated, &at, &windows, kind).unwrap_or_else(|| Place {
+    let place = stationary_point(estimated, &at, &windows, kind).unwrap_or_else(|| Place {
         position: axes
             .iter()
             .zip(&at)
             .map(|(axis, &i)| axis.centre(i))
             .collect(),
         density: estimated.density.values[cell],
-    })
+    });
+    extremum(estimated, cell, place.position[0], kind).unwrap_or(place)
 }
 
 /// Cells of one axis that the fit around the cell `at` takes in.

@@ -1,106 +1,39 @@
 //! The peaks and the valley about a centre of symmetry that the indicator proves, when they are too near each other for
 //! persistence: features of a marginal then say what its signature says.
 //!
-//! About the centre p/p(c) = 1 + g u²/2 + k u⁴/24 with g = p''/p and k = p''''/p: for g > 0 > k two peaks stand at
-//! u² = -6 g/k, by p g u²/4 above the valley between.
+//! The peak that persistence sees in their place is refined to one of them; the other is its mirror image. About the centre
+//! p/p(c) = 1 + g u²/2 + k u⁴/24 with g = p''/p and k = p''''/p: peaks at ±u stand by p g u²/4 above the valley between.
 
 use super::window::around;
 use super::{Indicator, IndicatorKind};
 use crate::density::EstimatedDensity;
-use crate::topology::reconstruction::interpolating;
+use crate::topology::extremum::density_at;
 use crate::topology::{Feature, FeatureKind, Verdict};
 
-/// Cells on either side of the centre within which peaks belong to it, and the expansion holds.
+/// Cells on either side of the centre within which peaks belong to it.
 const REACH: usize = 4;
 
-/// Puts the features about the centre of a marginal right, if the sign of its indicator is beyond doubt.
+/// Puts the features about the centre of a marginal right, where the sign of its indicator is beyond doubt; elsewhere a peak
+/// that stands there alone is moved onto it.
 pub(crate) fn put_right(
     estimated: &EstimatedDensity,
     indicators: &[Indicator],
     doubt: f64,
     features: &mut Vec<Feature>,
 ) {
-    let ([axis], [indicator]) = (estimated.density.axes.as_slice(), indicators) else {
+    let Some(centre) = Centre::of(estimated, indicators) else {
         return;
     };
-    let (Some(split), &[centre]) = (indicator.sign(doubt), indicator.place.as_slice()) else {
+    let Some(split) = centre.indicator.sign(doubt) else {
+        return centre.hold_alone(features);
+    };
+    let Some(seen) = centre.to_put_right(features, split) else {
         return;
     };
-    let Some(cells) = around(axis, centre, REACH) else {
-        return;
-    };
-    let reach = axis.edges()[cells.end] - centre;
-    let near = |feature: &Feature| (feature.position[0] - centre).abs() <= reach;
-    let present = |feature: &&Feature| feature.verdict == Verdict::Present;
-    let peaks = |features: &[Feature]| {
-        let peaks = features.iter().filter(|one| one.kind == FeatureKind::Peak);
-        peaks.filter(present).count()
-    };
-    let seen: Vec<&Feature> = features
-        .iter()
-        .filter(|one| near(one))
-        .filter(present)
-        .collect();
-    let complete = peaks(features).is_multiple_of(2) == split;
-    if complete
-        && (seen.is_empty()
-            || (split && seen.len() > 1 && expansion(estimated, indicator, reach).is_none()))
-    {
-        return;
-    }
-    let Some(highest) = (features.iter().filter(present))
-        .find(|one| one.kind == FeatureKind::Peak)
-        .cloned()
-    else {
-        return;
-    };
-    let nearest = (features.iter().filter(present))
-        .filter(|one| one.kind == FeatureKind::Peak)
-        .map(|one| (one.position[0] - centre).abs())
-        .fold(f64::INFINITY, f64::min);
-    let offset = expansion(estimated, indicator, reach).unwrap_or(nearest);
-    if offset > reach && complete {
-        return;
-    }
-    let (density, rise) = at_centre(estimated, indicator, centre, offset);
-    let significance = indicator.value.abs() / indicator.systematic_error.max(f64::MIN_POSITIVE);
-    let feature = |kind, place: f64, density: f64, persistence: f64| Feature {
-        kind,
-        position: vec![place],
-        density,
-        persistence,
-        standard_error: 0.0,
-        significance: significance.min(1e9),
-        verdict: Verdict::Present,
-        partner: (split && kind == FeatureKind::Peak).then(|| vec![centre]),
-    };
-    let limit = offset.max(reach);
-    features.retain(|one| {
-        (one.position[0] - centre).abs() > limit || !matches!(one.verdict, Verdict::Present)
-    });
-    let top = if near(&highest) {
-        highest.persistence
-    } else {
-        rise
-    };
-    let mut made = Vec::new();
-    if split {
-        made.push(feature(
-            FeatureKind::Peak,
-            centre - offset,
-            density + rise,
-            top,
-        ));
-        made.push(feature(
-            FeatureKind::Peak,
-            centre + offset,
-            density + rise,
-            rise,
-        ));
-        made.push(feature(FeatureKind::Valley, centre, density, rise));
-    } else {
-        made.push(feature(FeatureKind::Peak, centre, density, top));
-    }
+    let mut made = centre.proven(&seen, split);
+    let limit = seen.offset.max(centre.reach);
+    // What was in doubt there is what is now proven.
+    features.retain(|one| centre.distance(one) > limit || one.verdict == Verdict::Absent);
     made.append(features);
     made.sort_by(|a, b| {
         a.kind
@@ -110,35 +43,131 @@ pub(crate) fn put_right(
     *features = made;
 }
 
-/// Distance of the two peaks from the centre by the expansion, where it holds.
-fn expansion(estimated: &EstimatedDensity, indicator: &Indicator, reach: f64) -> Option<f64> {
-    if indicator.kind != IndicatorKind::Curvature || indicator.sampling_error > 0.0 {
-        return None;
-    }
-    let axis = &estimated.density.axes[0];
-    let centre = indicator.place[0];
-    let lines = interpolating(axis, around(axis, centre, REACH)?, centre, 5)?;
-    let values = &estimated.density.values;
-    let fourth = lines[4].apply(values) / lines[0].apply(values);
-    let square = -6.0 * indicator.value / fourth;
-    (square > 0.0 && square.sqrt() <= reach).then(|| square.sqrt())
+/// A centre of symmetry.
+struct Centre<'a> {
+    estimated: &'a EstimatedDensity,
+    indicator: &'a Indicator,
+    at: f64,
+    /// Distance within which peaks belong to it.
+    reach: f64,
 }
 
-/// Density at the centre, and the height of the peaks above it.
-fn at_centre(
-    estimated: &EstimatedDensity,
-    indicator: &Indicator,
-    centre: f64,
+/// What persistence saw.
+struct Seen {
+    highest: Feature,
+    /// The peak nearest to the centre.
+    nearest: Feature,
+    /// Its distance.
     offset: f64,
-) -> (f64, f64) {
-    let axis = &estimated.density.axes[0];
-    let cell = axis.find(centre).unwrap_or(0);
-    let density =
-        0.5 * (estimated.density.values[cell] + estimated.density.values[cell.saturating_sub(1)]);
-    let rise = match indicator.kind {
-        IndicatorKind::Curvature => 0.25 * density * indicator.value * offset * offset,
-        // From the kink up: half the slope's rise to the top.
-        _ => 0.5 * density * indicator.value * offset,
-    };
-    (density, rise.max(0.0))
+}
+
+impl<'a> Centre<'a> {
+    /// The centre of a marginal.
+    fn of(estimated: &'a EstimatedDensity, indicators: &'a [Indicator]) -> Option<Self> {
+        let ([axis], [indicator]) = (estimated.density.axes.as_slice(), indicators) else {
+            return None;
+        };
+        let &at = indicator.place.first()?;
+        let cells = around(axis, at, REACH)?;
+        Some(Self {
+            estimated,
+            indicator,
+            at,
+            reach: axis.edges()[cells.end] - at,
+        })
+    }
+
+    fn distance(&self, feature: &Feature) -> f64 {
+        (feature.position[0] - self.at).abs()
+    }
+
+    /// A peak without a mirror image stands on the centre, as far as can be told. In noise it stays where it was seen.
+    fn hold_alone(&self, features: &mut [Feature]) {
+        let mut peaks: Vec<&mut Feature> = features
+            .iter_mut()
+            .filter(|one| one.kind == FeatureKind::Peak && one.verdict == Verdict::Present)
+            .collect();
+        if let ([peak], Some(density)) = (peaks.as_mut_slice(), density_at(self.estimated, self.at))
+            && self.distance(peak) <= self.reach
+        {
+            peak.position = vec![self.at];
+            peak.density = density;
+        }
+    }
+
+    /// What persistence saw, unless it agrees with the indicator that the centre is a valley between two peaks, or a peak.
+    fn to_put_right(&self, features: &[Feature], split: bool) -> Option<Seen> {
+        let present = features
+            .iter()
+            .filter(|one| one.verdict == Verdict::Present);
+        let near = present
+            .clone()
+            .filter(|one| self.distance(one) <= self.reach)
+            .count();
+        let peaks = present.filter(|one| one.kind == FeatureKind::Peak);
+        // By symmetry other peaks come in pairs.
+        let complete = peaks.clone().count().is_multiple_of(2) == split;
+        if complete && (near == 0 || (split && near > 1)) {
+            return None;
+        }
+        let highest = peaks.clone().next()?.clone();
+        let nearest = peaks.min_by(|a, b| self.distance(a).total_cmp(&self.distance(b)))?;
+        let offset = self.distance(nearest);
+        (offset <= self.reach || !complete).then(|| Seen {
+            highest,
+            nearest: nearest.clone(),
+            offset,
+        })
+    }
+
+    /// The features that the indicator proves.
+    fn proven(&self, seen: &Seen, split: bool) -> Vec<Feature> {
+        let indicator = self.indicator;
+        let significance =
+            indicator.value.abs() / indicator.systematic_error.max(f64::MIN_POSITIVE);
+        let feature = |kind, place: f64, density: f64, persistence: f64| Feature {
+            kind,
+            position: vec![place],
+            density,
+            persistence,
+            standard_error: 0.0,
+            significance: significance.min(1e9),
+            verdict: Verdict::Present,
+            partner: (split && kind == FeatureKind::Peak).then(|| vec![self.at]),
+        };
+        let known = density_at(self.estimated, self.at);
+        let density = known.unwrap_or_else(|| beside(self.estimated, self.at));
+        let rise = self.rise(density, seen.offset);
+        let top = match self.distance(&seen.highest) <= self.reach {
+            true => seen.highest.persistence,
+            false => rise,
+        };
+        if !split {
+            return vec![feature(FeatureKind::Peak, self.at, density, top)];
+        }
+        let height = known.map_or(density + rise, |_| seen.nearest.density);
+        let (left, right) = (self.at - seen.offset, self.at + seen.offset);
+        vec![
+            feature(FeatureKind::Peak, left, height, top),
+            feature(FeatureKind::Peak, right, height, rise),
+            feature(FeatureKind::Valley, self.at, density, rise),
+        ]
+    }
+
+    /// Height of peaks at a distance from the centre above it.
+    fn rise(&self, density: f64, offset: f64) -> f64 {
+        let rise = match self.indicator.kind {
+            IndicatorKind::Curvature => 0.25 * density * self.indicator.value * offset * offset,
+            // From the kink up: half the slope's rise to the top.
+            _ => 0.5 * density * self.indicator.value * offset,
+        };
+        rise.max(0.0)
+    }
+}
+
+/// Mean of the cells beside a place.
+fn beside(estimated: &EstimatedDensity, place: f64) -> f64 {
+    let (axis, values) = (&estimated.density.axes[0], &estimated.density.values);
+    let cells = axis.cells_beside(place);
+    cells.map_or(0.0, |[below, above]| 0.5 * (values[above] + values[below]))
 }
