@@ -213,6 +213,9 @@ fn wrong_kinds_and_ranges() {
         ("[cells]", "[method]\nseed = -1\n[cells]", "an integer, 0 or more"),
         ("[cells]", "[detect]\nconfidence = 1.0\n[cells]", "between 0 and 1"),
         ("[cells]", "[figures]\nformats = [\"svgg\"]\n[cells]", "did you mean `svg`?"),
+        ("[cells]", "[figures]\nformats = \"svg\"\n[cells]", "did you mean `[\"svg\"]`?"),
+        // A backspace, then "eta".
+        ("\"trial\"", "\"$\\beta$\"", "a backslash between `\"` begins a code"),
     ];
     for (old, new, words) in cases {
         assert_refused(old, new, &[words, "a.toml:"]);

@@ -101,13 +101,19 @@ pub fn list<S: AsRef<str>>(names: &[S]) -> String {
     quoted.join(", ")
 }
 
-/// A text as a message may quote it: the beginning alone of a long one.
+/// A text as a message may quote it: the beginning alone of a long one, signs in place of what a terminal would obey.
 pub(super) fn quotable(text: &str) -> String {
     const MOST: usize = 60;
-    match text.char_indices().nth(MOST) {
-        Some((end, _)) => format!("{}…", &text[..end]),
-        None => text.to_owned(),
+    let sign = |c: char| match c as u32 {
+        code @ 0..0x20 => char::from_u32(0x2400 + code).unwrap_or(c),
+        _ if c.is_control() || is_invisible(c) => char::REPLACEMENT_CHARACTER,
+        _ => c,
+    };
+    let mut shown: String = text.chars().take(MOST).map(sign).collect();
+    if text.chars().nth(MOST).is_some() {
+        shown.push('…');
     }
+    shown
 }
 
 #[cfg(test)]
@@ -151,5 +157,6 @@ mod tests {
         assert_eq!(quotable("short"), "short");
         let cut = quotable(&"µ".repeat(100));
         assert_eq!(cut.chars().count(), 61);
+        assert_eq!(quotable("\u{8}eta\u{1b}[31m\u{202e}"), "␈eta␛[31m\u{fffd}");
     }
 }

@@ -205,9 +205,12 @@ fn value_of(key: &Key, path: &[&str], node: &Node) -> Result<Plain, Box<Diagnost
     let diagnostic = Diagnostic::new(title)
         .at(&blamed.place, format!("this is {}", blamed.value.kind()))
         .allowed(key.allowed());
-    Err(Box::new(match meant(kind, blamed) {
-        Some(words) => diagnostic.remedy(format!("did you mean `{words}`?")),
-        None => diagnostic,
+    Err(Box::new(match (kind, &blamed.value, meant(kind, blamed)) {
+        (_, _, Some(words)) => diagnostic.remedy(format!("did you mean `{words}`?")),
+        (Kind::Printable, Value::Text(_), _) => diagnostic.remedy(
+            "a backslash between `\"` begins a code: write `\\\\`, or put the text between `'`",
+        ),
+        _ => diagnostic,
     }))
 }
 

@@ -34,11 +34,18 @@ pub(super) const UP_TO_ONE: Condition = Condition {
     holds: |value| value > 0.0 && value <= 1.0,
 };
 
+/// Whether XML, and with it a figure, can hold a character.
+fn is_printable(c: char) -> bool {
+    matches!(c, '\t' | '\n' | '\r') || !(c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}'))
+}
+
 /// Kind of value a key takes.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::sweep_file) enum Kind {
     /// A string.
     Text,
+    /// A string that can be printed, and stand in a figure.
+    Printable,
     /// A finite number.
     Number(Condition),
     /// An integer from the first to the second value.
@@ -58,6 +65,7 @@ impl Kind {
     pub(in crate::sweep_file) fn words(self) -> String {
         match self {
             Self::Text => "a string".to_owned(),
+            Self::Printable => "a string without control characters".to_owned(),
             Self::Number(condition) => format!("a finite number{}", condition.words),
             Self::Integer(least, most) if most == i128::from(i64::MAX) => {
                 format!("an integer, {least} or more, at most {most}")
@@ -82,6 +90,9 @@ impl Kind {
     pub(in crate::sweep_file) fn holds(self, plain: &Plain) -> bool {
         match self {
             Self::Text => plain.text().is_some(),
+            Self::Printable => plain
+                .text()
+                .is_some_and(|text| text.chars().all(is_printable)),
             Self::Number(condition) => plain.number().is_some_and(condition.holds),
             Self::Integer(least, most) => {
                 matches!(plain, Plain::Integer(value) if (least..=most).contains(value))

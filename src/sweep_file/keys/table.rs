@@ -36,7 +36,7 @@ use KeyDefault::{OfOptions, Required, Rule};
 /// The order is the one in which a file is best read, and in which it is written.
 #[rustfmt::skip]
 pub(in crate::sweep_file) static KEYS: &[Key] = &[
-    key("title", Kind::Text, Rule("the model's title and the swept parameter"), optional!(title),
+    key("title", Kind::Printable, Rule("the model's title and the swept parameter"), optional!(title),
         "Title of the run, used in tables and figures."),
     key("system.model", Kind::Choice(models), Required, optional!(model),
         "The model; `pbif systems` lists them, `pbif systems NAME` shows one."),

@@ -27,7 +27,12 @@ fn the_documentation_holds_the_table() {
         std::fs::write(path, fresh).unwrap();
         return;
     }
-    assert_eq!(table, markdown());
+    // Row by row, so that a failure shows the row.
+    let fresh = markdown();
+    for (written, row) in table.lines().zip(fresh.lines()) {
+        assert_eq!(written, row);
+    }
+    assert_eq!(table.lines().count(), fresh.lines().count());
 }
 
 #[test]
@@ -102,7 +107,7 @@ fn example(key: &Key) -> crate::sweep_file::value::Plain {
     use crate::sweep_file::value::Plain;
     let text = |text: &str| Plain::Text(text.to_owned());
     let of = |kind: Kind| match kind {
-        Kind::Text => text("y"),
+        Kind::Text | Kind::Printable => text("y"),
         Kind::Number(_) => Plain::Number(0.625),
         Kind::Integer(..) => Plain::Integer(77),
         Kind::Step => Plain::Number(0.375),
