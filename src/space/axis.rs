@@ -246,7 +246,8 @@ impl Axis {
         self.find(at).is_some() && !self.has_face_at(at)
     }
 
-    /// The cells below and above `at`: both the same where it lies inside a cell or on an end, `None` outside the range.
+    /// The cells below and above `at`: both the same where it lies inside a cell or on an end, `None` outside the
+    /// range.
     pub fn cells_beside(&self, at: f64) -> Option<[usize; 2]> {
         let cell = self.find(at)?;
         Some(match self.face_at(at) {

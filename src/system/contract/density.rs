@@ -7,8 +7,8 @@ use super::trial::Trial;
 const STEP: f64 = 2.5e-5;
 
 /// What the equation may leave, relative to the sum of its terms' magnitudes there and their mean over all states. The
-/// differences err by STEP² times third and fourth derivatives over the box, 1e-7 for what changes by e some ten times across it,
-/// and by rounding, 1e-16/STEP² = 2e-7 of log p.
+/// differences err by STEP² times third and fourth derivatives over the box, 1e-7 for what changes by e some ten times
+/// across it, and by rounding, 1e-16/STEP² = 2e-7 of log p.
 const TOLERANCE: f64 = 1e-5;
 
 /// What the equation leaves at a state, and the sum of its terms' magnitudes.
@@ -18,8 +18,8 @@ struct Balance<'a> {
     terms: f64,
 }
 
-/// Checks Σ_i ∂_i(a_i p) = ½ Σ_i ∂_i²(B_i p), B_i the noise intensity on axis i, at every state where p = exp(φ) is known.
-/// A system that depends on time has no such density.
+/// Checks Σ_i ∂_i(a_i p) = ½ Σ_i ∂_i²(B_i p), B_i the noise intensity on axis i, at every state where p = exp(φ) is
+/// known. A system that depends on time has no such density.
 pub(super) fn check(trial: &Trial<'_>) -> Result<(), ContractViolation> {
     if trial.system.period().is_some() {
         return Ok(());
@@ -42,8 +42,8 @@ pub(super) fn check(trial: &Trial<'_>) -> Result<(), ContractViolation> {
     })
 }
 
-/// The equation divided by p, by central differences: ∂a + a φ' - ½ (B'' + 2 B' φ' + B (φ'' + φ'²)) summed over the axes. `None`
-/// where the density is not known, next to a switching surface, and at a bound.
+/// The equation divided by p, by central differences: ∂a + a φ' - ½ (B'' + 2 B' φ' + B (φ'' + φ'²)) summed over the
+/// axes. `None` where the density is not known, next to a switching surface, and at a bound.
 fn balance<'a>(trial: &Trial<'_>, state: &'a [f64]) -> Option<Balance<'a>> {
     let log_density = |state: &[f64]| trial.system.exact_log_density(state);
     let surfaces = trial.system.switching_surfaces();

@@ -1,14 +1,15 @@
 //! The contract of a [`System`]: whether what it declares holds for its drift and its noise.
 //!
-//! Methods trust declarations: walls carry no flux, a centre of symmetry decides signatures, grids have faces on switching surfaces. A
-//! declaration that does not hold gives a wrong density without a word. [`verify`] tries all of them at random states:
+//! Methods trust declarations: walls carry no flux, a centre of symmetry decides signatures, grids have faces on
+//! switching surfaces. A declaration that does not hold gives a wrong density without a word. [`verify`] tries all of
+//! them at random states:
 //!
 //! | declared | tried |
 //! | --- | --- |
 //! | dimension, noise axes, bounds, surfaces, symmetry, period | they fit each other |
 //! | drift and noise | finite; a batch gives each lane what the state gives alone; constant amplitudes are constant |
 //! | [`System::period`] | drift and noise repeat after it; without one they do not change with time |
-//! | [`System::symmetry`] | the image of a state has the image of its drift, its noise intensity and its exact density |
+//! | [`System::symmetry`] | the image of a state has the image of its drift, its noise and its exact density |
 //! | [`System::bounds`] | at a bound the drift points inward or along, and noise does not act across |
 //! | [`System::exact_log_density`] | solves the stationary Fokker-Planck equation (central differences) |
 //! | [`System::switching_surfaces`] | drift or its slope jumps there |
@@ -30,8 +31,8 @@ use std::collections::HashSet;
 use super::{Model, ParameterValues, System};
 use trial::Trial;
 
-/// Whether what a system declares holds at random states of the box `ranges` (one range an axis, those of the domain Ω for
-/// example; within the system's own bounds).
+/// Whether what a system declares holds at random states of the box `ranges` (one range an axis, those of the domain Ω
+/// for example; within the system's own bounds).
 ///
 /// A surface across which the drift is smooth is found last, and does no harm: a friction law declares its surface at a
 /// friction level of zero too. Who allows that passes over [`ContractViolation::SmoothSurface`].

@@ -33,8 +33,8 @@ fn jumps(trial: &Trial<'_>, surface: SwitchingSurface, state: &[f64]) -> bool {
         .any(|((value, bend), size)| value.abs().max(bend.abs()) > NO_JUMP * size)
 }
 
-/// 2h times the jump of the slope of every component. The slopes over [h, 2h] on both sides differ by 3h times the curvature where
-/// the drift is smooth, which is taken off by looking twice as far.
+/// 2h times the jump of the slope of every component. The slopes over [h, 2h] on both sides differ by 3h times the
+/// curvature where the drift is smooth, which is taken off by looking twice as far.
 fn bend(trial: &Trial<'_>, surface: SwitchingSurface, state: &[f64], distance: f64) -> Vec<f64> {
     let mut state = state.to_vec();
     let mut at = |offset: f64| {

@@ -6,7 +6,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use super::super::{LANES, Lanes, System};
 use super::{ContractViolation, Quantity};
 
-/// Difference that is rounding, in units of the root mean square of the drift (or of the noise intensity) on its axis.
+/// Difference that is rounding, in units of the root mean square of the drift (or of the mean noise intensity) on its axis.
 const ROUNDING: f64 = 1e-9;
 
 /// Times at which a system without a period is looked at beside time zero, and shares of the period of one with.
@@ -22,6 +22,8 @@ pub(super) struct Trial<'a> {
     pub(super) states: Vec<Vec<f64>>,
     /// Root mean square of the drift, one value an axis.
     pub(super) drift_size: Vec<f64>,
+    /// Mean noise intensity, one value an axis.
+    noise_size: Vec<f64>,
     /// Times to look at.
     times: Vec<f64>,
 }
@@ -50,6 +52,7 @@ impl<'a> Trial<'a> {
         let mut trial = Self {
             system,
             drift_size: vec![0.0; ranges.len()],
+            noise_size: vec![0.0; ranges.len()],
             ranges,
             states,
             times,
@@ -57,13 +60,13 @@ impl<'a> Trial<'a> {
         for &time in &trial.times {
             trial.check_batch(time)?;
         }
-        for state in &trial.states {
-            for (size, drift) in trial.drift_size.iter_mut().zip(system.drift_at(0.0, state)) {
-                *size += drift * drift / LANES as f64;
-            }
-        }
-        for size in &mut trial.drift_size {
-            *size = size.sqrt();
+        for axis in 0..trial.dimension() {
+            let mean = |value: &dyn Fn(&Vec<f64>) -> f64| {
+                trial.states.iter().map(value).sum::<f64>() / LANES as f64
+            };
+            let drift = mean(&|state| system.drift_at(0.0, state)[axis].powi(2)).sqrt();
+            let noise = mean(&|state| trial.intensity(0.0, state, axis));
+            (trial.drift_size[axis], trial.noise_size[axis]) = (drift, noise);
         }
         Ok(trial)
     }
@@ -137,7 +140,12 @@ impl<'a> Trial<'a> {
                             drift(to),
                             self.drift_size[axis],
                         ),
-                        (Quantity::Noise(axis), noise.0, noise.1, noise.0),
+                        (
+                            Quantity::Noise(axis),
+                            noise.0,
+                            noise.1,
+                            self.noise_size[axis],
+                        ),
                     ] {
                         if !same(first, second, size) {
                             return Err(ContractViolation::Time {
@@ -194,7 +202,12 @@ impl<'a> Trial<'a> {
                     )?;
                     let noise = self.intensity(time, state, axis);
                     let mirrored = self.intensity(time, &image, axis);
-                    check(Quantity::Noise(axis), noise, mirrored, noise)?;
+                    check(
+                        Quantity::Noise(axis),
+                        noise,
+                        mirrored,
+                        self.noise_size[axis],
+                    )?;
                 }
             }
             let log_density = |state: &[f64]| self.system.exact_log_density(state);
@@ -234,8 +247,9 @@ impl<'a> Trial<'a> {
                         speed,
                     });
                 }
-                let amplitude = self.intensity(time, &state, axis).sqrt();
-                if amplitude != 0.0 {
+                let intensity = self.intensity(time, &state, axis);
+                if intensity.is_nan() || intensity > ROUNDING * self.noise_size[axis] {
+                    let amplitude = intensity.sqrt();
                     return Err(ContractViolation::BoundNoise {
                         axis,
                         bound,
