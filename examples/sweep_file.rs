@@ -28,8 +28,9 @@ fn solved() -> Result<String, Box<dyn Error>> {
     let mut file = SweepFile::read(Path::new("sweeps/bistable.toml"))?;
     file.set("sweep.points", "21").set("cells.x.count", "120");
     // Everything is checked, and nothing was run so far; ranges that are left to the program take some trajectories.
-    let sweep = file.validate()?.prepare(&Cancellation::new())?;
-    let found = sweep.run(&Cancellation::new(), &mut ())?;
+    let never = Cancellation::new();
+    let sweep = file.validate()?.prepare(&never)?;
+    let found = sweep.run(&never, &mut ())?;
     print(&found);
     println!("{}", sweep.to_toml());
     Ok(sweep.to_toml())

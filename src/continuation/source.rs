@@ -142,6 +142,7 @@ impl From<Cancelled> for SourceError {
 ///         density: Density { axes: vec![axis], values: values.iter().map(|p| p / mass).collect() },
 ///         variants: Variants::None,
 ///         structure: Structure { centre: Some(vec![0.0]), kinks: Vec::new() },
+///         negligible: 0.0,
 ///     }
 /// }
 ///

@@ -2,8 +2,8 @@
 //! p ∝ (1/b²) exp ∫ (2a/b²) dx, with drift a and noise intensity b².
 //!
 //! Every cell is correct to many digits *of its own value*, however deep the valleys between: where barriers are many times the
-//! noise, weights of wells that no linear solver can tell from rounding come out of a quadrature. Polynomials through Gauss-Legendre points on panels of each cell give the
-//! exponent and its integral.
+//! noise, weights of wells that no linear solver can tell from rounding come out of a quadrature. Polynomials through
+//! Gauss-Legendre points on panels of each cell give the exponent and its integral.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
