@@ -66,6 +66,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     (
         "sweep_file",
         &[
+            "formula",
             "cancellation",
             "system",
             "space",

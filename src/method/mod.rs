@@ -21,7 +21,7 @@ pub use monte_carlo::{
 };
 pub use options::{MethodOptions, StepChoice};
 pub use problem::Problem;
-pub use range::{RangeError, automatic_ranges};
+pub use range::{PILOT_BOX, RangeError, automatic_ranges};
 pub use sgcm::{
     Corrected, Correction, SampledPoint, SgcmCost, SgcmOptions, SgcmSource, solve_corrected,
 };

@@ -8,6 +8,8 @@ use crate::sampling::pilot;
 use crate::space::{Axis, CellSpace};
 use crate::system::System;
 
+/// Where trajectories start along an axis of which nothing is known.
+pub const PILOT_BOX: (f64, f64) = (-1.0, 1.0);
 /// Cells an axis of the box in which visits are counted.
 const CELLS: usize = 64;
 /// Share of the recorded states that must lie in the box.
@@ -69,7 +71,7 @@ fn ranges_of(
     seed: u64,
     cancellation: &Cancellation,
 ) -> Result<Vec<(f64, f64)>, RangeError> {
-    let mut ranges: Vec<(f64, f64)> = known.iter().map(|k| k.unwrap_or((-1.0, 1.0))).collect();
+    let mut ranges: Vec<(f64, f64)> = known.iter().map(|k| k.unwrap_or(PILOT_BOX)).collect();
     for _ in 0..MOST_CHANGES {
         let axes: Result<Vec<Axis>, _> = ranges
             .iter()

@@ -55,6 +55,11 @@ impl Sources {
         Some((self.names.get(source)?, self.texts.get(source)?))
     }
 
+    /// A text by its number.
+    pub(super) fn text(&self, source: usize) -> Option<&str> {
+        self.get(source).map(|(_, text)| text)
+    }
+
     /// File, line and column of a place's beginning; `None` for a place of other sources.
     pub fn locate(&self, place: &Place) -> Option<Location> {
         let (name, text) = self.get(place.source)?;

@@ -10,6 +10,7 @@ use super::report::Report;
 use super::syntax;
 use super::text::{Text, too_large};
 use super::value::{Entry, Node, Value};
+use crate::formula::language::canonical_name;
 
 /// Most parts of a key that is set; no key has as many.
 const MOST_PARTS: usize = 16;
@@ -127,6 +128,11 @@ fn put(node: &mut Node, path: &[(String, Place)], value: Node) {
         return;
     };
     let known = entries.iter().position(|entry| entry.key == *key);
+    // A name that the file spells in another way is the same name.
+    let known = known.or_else(|| {
+        let is_same = |entry: &Entry| canonical_name(&entry.key) == canonical_name(key);
+        entries.iter().position(is_same)
+    });
     let index = known.unwrap_or(entries.len());
     if known.is_none() {
         entries.push(Entry {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::continuation::LocateOptions;
 use crate::figure::Format;
 use crate::method::{GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions};
-use crate::system::Model;
+use crate::system::{Interpretation, Model};
 use crate::topology::DetectOptions;
 
 /// The chosen method, and the settings of all, so that a file can hold them all and one word switches.
@@ -87,11 +87,28 @@ pub(super) struct AxisDraft {
     pub(super) grade_smallest: Option<f64>,
 }
 
+/// Equations as the file has them, each list in the order given.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct EquationsDraft {
+    pub(super) title: Option<String>,
+    /// Axes and right sides.
+    pub(super) drift: Vec<(String, String)>,
+    /// Axes and the amplitudes of their noises.
+    pub(super) noise: Vec<(String, Vec<String>)>,
+    pub(super) interpretation: Option<Interpretation>,
+    /// Names and formulas.
+    pub(super) define: Vec<(String, String)>,
+    /// Axes, lower and upper bounds.
+    pub(super) bounds: Vec<(String, [String; 2])>,
+}
+
 /// What the file says.
 #[derive(Debug, Clone)]
 pub(super) struct Draft {
     pub(super) title: Option<String>,
     pub(super) model: Option<Arc<Model>>,
+    /// Equations in place of a built-in model.
+    pub(super) equations: EquationsDraft,
     /// Values of parameters by their names, in the order given.
     pub(super) parameters: Vec<(String, f64)>,
     pub(super) parameter: Option<String>,
@@ -114,6 +131,7 @@ impl Default for Draft {
         Self {
             title: None,
             model: None,
+            equations: EquationsDraft::default(),
             parameters: Vec::new(),
             parameter: None,
             from: None,

@@ -11,7 +11,7 @@ use super::settings::{Grade, Settings, at_cells, cell_space};
 use super::sweep::Sweep;
 use crate::cancellation::Cancellation;
 use crate::generator::automatic_grading;
-use crate::method::{Problem, RangeError, SgcmOptions, automatic_ranges};
+use crate::method::{PILOT_BOX, Problem, RangeError, SgcmOptions, automatic_ranges};
 use crate::space::Grading;
 use crate::system::System;
 
@@ -24,6 +24,7 @@ impl Settings {
     pub fn prepare(mut self, cancellation: &Cancellation) -> Result<Sweep, Report> {
         self.check_memory()?;
         self.find_cells(cancellation)?;
+        self.check_equations()?;
         let sweep = self.fixed()?;
         sweep.settings.check_factors(&sweep)?;
         Ok(sweep)
@@ -90,6 +91,14 @@ impl Settings {
             return Ok(given);
         }
         let found = automatic_ranges(ends, &known, SgcmOptions::default().seed, cancellation);
+        if let (Err(RangeError::RunsAway), Some(typed)) = (&found, self.family.model().typed()) {
+            let start: Vec<(f64, f64)> = known.iter().map(|one| one.unwrap_or(PILOT_BOX)).collect();
+            self.check_finite(
+                typed,
+                &start,
+                "where the trajectories that look for a range start",
+            )?;
+        }
         found.map_err(|error| {
             let diagnostic = Diagnostic::new(error.to_string());
             self.refuse_cells(match error {

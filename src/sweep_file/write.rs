@@ -44,6 +44,10 @@ fn names<'d>(key: &Key, draft: &'d Draft) -> Vec<&'d str> {
     match key.parts().find(|part| is_stand_in(part)) {
         None => vec![""],
         Some("<axis>") => draft.axes.iter().map(|axis| axis.name.as_str()).collect(),
+        Some("<name>") => {
+            let definitions = draft.equations.define.iter();
+            definitions.map(|(name, _)| name.as_str()).collect()
+        }
         Some(_) => {
             let parameters = draft.parameters.iter();
             parameters.map(|(name, _)| name.as_str()).collect()
@@ -76,8 +80,10 @@ fn put(entries: &mut Vec<Entry>, path: &[(&str, bool)], toml: String) {
 fn write(text: &mut String, path: &str, entries: &[Entry]) {
     for entry in entries {
         match &entry.value {
-            Value::Plain(toml) => *text += &format!("{} = {toml}\n", entry.key),
-            Value::Table(below, true) => *text += &format!("{} = {}\n", entry.key, inline(below)),
+            Value::Plain(toml) => *text += &format!("{} = {toml}\n", quoted(&entry.key)),
+            Value::Table(below, true) => {
+                *text += &format!("{} = {}\n", quoted(&entry.key), inline(below));
+            }
             Value::Table(_, false) => {}
         }
     }
@@ -90,6 +96,15 @@ fn write(text: &mut String, path: &str, entries: &[Entry]) {
             *text += &format!("\n[{path}]\n");
             write(text, &path, below);
         }
+    }
+}
+
+/// A key as TOML has it: in quotes where it has letters beyond ASCII.
+fn quoted(key: &str) -> String {
+    let is_bare = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
+    match !key.is_empty() && key.chars().all(is_bare) {
+        true => key.to_owned(),
+        false => toml::Value::String(key.to_owned()).to_string(),
     }
 }
 

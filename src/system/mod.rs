@@ -33,7 +33,9 @@ pub use oscillator::{
 };
 pub use path::Path;
 pub use symmetry::proved_symmetry;
-pub use typed::{FormulaPlace, Interpretation, TypedModel, TypedModelError};
+pub use typed::{
+    FormulaHazard, FormulaPlace, Interpretation, TypedEquations, TypedModel, TypedModelError,
+};
 
 /// An Itô equation dX = a(X, t) dt + Σ_k b_k(X, t) e_{axis(k)} dW_k with bound parameters.
 ///

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::System;
+use super::{System, TypedEquations};
 
 /// One axis of a model's state.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -166,6 +166,7 @@ pub struct Model {
     /// Anything a user should know, one paragraph a string.
     pub notes: Vec<String>,
     bind: Box<Binding>,
+    typed: Option<Box<TypedEquations>>,
 }
 
 impl std::fmt::Debug for Model {
@@ -253,7 +254,19 @@ impl Model {
             source: String::new(),
             notes: Vec::new(),
             bind: Box::new(bind),
+            typed: None,
         }
+    }
+
+    /// The equations as formulas, where the model is made of them.
+    pub fn typed(&self) -> Option<&TypedEquations> {
+        self.typed.as_deref()
+    }
+
+    /// The model with the formulas that it is made of.
+    pub(super) fn with_typed(self, typed: TypedEquations) -> Self {
+        let typed = Some(Box::new(typed));
+        Self { typed, ..self }
     }
 
     /// The model with its equations, one a line, as a person writes them.

@@ -9,7 +9,7 @@ use crate::generator::AdvectiveScheme;
 use crate::method::{Correction, Estimator, StepChoice};
 use crate::sampling::Integrator;
 use crate::stationary::Solver;
-use crate::system::{Model, registry};
+use crate::system::{Interpretation, Model, registry};
 
 /// Getter and setter of a key. The second argument is the name that `<…>` stands for in the key's path.
 #[derive(Debug, Clone, Copy)]
@@ -66,6 +66,68 @@ macro_rules! integers {
     )+};
 }
 integers!(usize, u64);
+
+/// The text of a formula; one that is a number alone need not be quoted.
+fn formula(plain: &Plain) -> Option<String> {
+    match plain {
+        Plain::Text(text) => Some(text.clone()),
+        Plain::Integer(_) | Plain::Number(_) => Some(plain.to_toml()),
+        Plain::List(_) => None,
+    }
+}
+
+/// What the file says of a name in one of its tables of formulas.
+pub(super) trait Formulas: Clone {
+    fn written(&self) -> Plain;
+    fn read(plain: &Plain) -> Option<Self>;
+}
+
+impl Formulas for String {
+    fn written(&self) -> Plain {
+        Plain::Text(self.clone())
+    }
+
+    fn read(plain: &Plain) -> Option<Self> {
+        formula(plain)
+    }
+}
+
+impl Formulas for Vec<String> {
+    fn written(&self) -> Plain {
+        Plain::List(self.iter().map(Formulas::written).collect())
+    }
+
+    fn read(plain: &Plain) -> Option<Self> {
+        match plain.items() {
+            Some(items) => items.iter().map(formula).collect(),
+            None => Some(vec![formula(plain)?]),
+        }
+    }
+}
+
+impl Formulas for [String; 2] {
+    fn written(&self) -> Plain {
+        Plain::List(self.iter().map(Formulas::written).collect())
+    }
+
+    fn read(plain: &Plain) -> Option<Self> {
+        Vec::read(plain)?.try_into().ok()
+    }
+}
+
+/// The entry of a name.
+pub(super) fn formulas_of<T: Formulas>(entries: &[(String, T)], name: &str) -> Option<Plain> {
+    let entry = entries.iter().find(|(known, _)| known == name)?;
+    Some(entry.1.written())
+}
+
+/// Takes the entry of a name.
+pub(super) fn set_formulas<T: Formulas>(entries: &mut Vec<(String, T)>, name: &str, plain: &Plain) {
+    if let Some(value) = T::read(plain) {
+        entries.retain(|(known, _)| known != name);
+        entries.push((name.to_owned(), value));
+    }
+}
 
 /// Booleans are words.
 pub(super) const SWITCH: [&str; 2] = ["on", "off"];
@@ -181,6 +243,7 @@ named!(
     Estimator,
     Format,
     Integrator,
+    Interpretation,
     MethodKind,
     Solver
 );
@@ -219,6 +282,18 @@ macro_rules! of_axis {
     };
 }
 
+/// A table of formulas by names.
+macro_rules! formulas {
+    ($field:ident) => {
+        Field {
+            get: |draft, name| super::field::formulas_of(&draft.equations.$field, name),
+            set: |draft, name, plain| {
+                super::field::set_formulas(&mut draft.equations.$field, name, plain)
+            },
+        }
+    };
+}
+
 /// A field of the settings of some methods: set for all of them, got from the chosen one.
 macro_rules! of_methods {
     ($field:ident: $($kind:ident $method:ident),+) => {
@@ -237,4 +312,4 @@ macro_rules! of_methods {
     };
 }
 
-pub(super) use {always, of_axis, of_methods, optional};
+pub(super) use {always, formulas, of_axis, of_methods, optional};

@@ -56,6 +56,12 @@ pub(in crate::sweep_file) enum Kind {
     Choice(fn() -> Vec<&'static str>),
     /// Two strings.
     Pair,
+    /// A formula: a string, or a number.
+    Formula,
+    /// A formula, or a list of formulas.
+    Formulas,
+    /// Two formulas.
+    FormulaPair,
     /// A list of values of one kind.
     List(&'static Self),
 }
@@ -74,6 +80,11 @@ impl Kind {
             Self::Step => "a finite number greater than zero, or `\"auto\"`".to_owned(),
             Self::Choice(names) => format!("a string: {}", list(&names())),
             Self::Pair => "a pair of strings, such as `[\"x\", \"y\"]`".to_owned(),
+            Self::Formula => "a formula, such as `\"-k x + 2 y^3\"`".to_owned(),
+            Self::Formulas => {
+                "a formula, such as `\"sqrt(2 D)\"`, or a list of formulas".to_owned()
+            }
+            Self::FormulaPair => "two formulas, such as `[\"-a\", \"a\"]`".to_owned(),
             Self::List(Self::Number(_)) => {
                 "a list of finite numbers, such as `[0.5, 1.0]`".to_owned()
             }
@@ -104,6 +115,14 @@ impl Kind {
             Self::Choice(names) => plain.text().is_some_and(|text| names().contains(&text)),
             Self::Pair => plain.items().is_some_and(|items| {
                 items.len() == 2 && items.iter().all(|item| item.text().is_some())
+            }),
+            Self::Formula => matches!(plain, Plain::Text(_)) || plain.number().is_some(),
+            Self::Formulas => match plain.items() {
+                Some(items) => items.iter().all(|item| Self::Formula.holds(item)),
+                None => Self::Formula.holds(plain),
+            },
+            Self::FormulaPair => plain.items().is_some_and(|items| {
+                items.len() == 2 && items.iter().all(|item| Self::Formula.holds(item))
             }),
             Self::List(kind) => plain
                 .items()

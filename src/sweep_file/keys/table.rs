@@ -1,6 +1,6 @@
 //! Every key of a sweep file, declared once: path, kind of value, default, meaning, and where the value lives.
 
-use super::field::{Field, InFile, Named, SWITCH, always, of_axis, of_methods, optional};
+use super::field::{Field, InFile, Named, SWITCH, always, formulas, of_axis, of_methods, optional};
 use super::kind::{ANY, Kind, OPEN_UNIT, POSITIVE, SHARE, UP_TO_ONE};
 use super::{Key, KeyDefault};
 use crate::figure::Format;
@@ -9,7 +9,7 @@ use crate::method::{Correction, Estimator};
 use crate::sampling::Integrator;
 use crate::stationary::Solver;
 use crate::sweep_file::draft::MethodKind;
-use crate::system::registry;
+use crate::system::{Interpretation, registry};
 
 /// Most cells an axis may have: edges are stored, so a slip of the pen must not fill the memory.
 const MOST_CELLS: i128 = 1_000_000;
@@ -38,14 +38,26 @@ use KeyDefault::{OfOptions, Required, Rule};
 pub(in crate::sweep_file) static KEYS: &[Key] = &[
     key("title", Kind::Printable, Rule("the model's title and the swept parameter"), optional!(title),
         "Title of the run, used in tables and figures."),
-    key("system.model", Kind::Choice(models), Required, optional!(model),
-        "The model; `pbif systems` lists them, `pbif systems NAME` shows one."),
+    key("system.model", Kind::Choice(models), Rule("equations of your own, in `system.equations`"), optional!(model),
+        "A built-in model; `pbif systems` lists them, `pbif systems NAME` shows one."),
+    key("system.title", Kind::Printable, Rule("`title`"), optional!(equations.title),
+        "Name of a system of your own, in words."),
+    key("system.equations.<axis>", Kind::Formula, Rule("a built-in model, by `system.model`"), formulas!(drift),
+        "Right side of the equation of an axis, without noise; one an axis, 1 to 4 of them, which also gives their order. docs/formulas.md has the language."),
+    key("system.noise.interpretation", Kind::Choice(Interpretation::words), Rule("to be given where it makes a difference"), optional!(equations.interpretation),
+        "How noise is read whose amplitude depends on the axis that it drives."),
+    key("system.noise.<axis>", Kind::Formulas, Rule("no noise on the axis"), formulas!(noise),
+        "Amplitudes of independent white noises on the equation of an axis: the roots of their intensities."),
+    key("system.define.<name>", Kind::Formula, Rule("nothing"), formulas!(define),
+        "A formula that others may use by this name."),
+    key("system.bounds.<axis>", Kind::FormulaPair, Rule("none"), formulas!(bounds),
+        "Lower and upper value that an axis never leaves, as formulas of parameters."),
     key("system.parameters.<parameter>", Kind::Number(ANY), Rule("the model's default, where it has one"),
         Field {
             get: |draft, name| draft.parameters.iter().find(|(known, _)| known == name).map(|(_, value)| value.to_plain()),
             set: |draft, name, plain| if let Some(value) = plain.number() { draft.set_parameter(name, value); },
         },
-        "Value of a parameter of the model. The swept parameter is left out."),
+        "Value of a parameter of the model. The swept parameter is left out; with equations of your own it may stay."),
     key("sweep.parameter", Kind::Text, Required, optional!(parameter),
         "Name of the parameter that is swept."),
     key("sweep.from", Kind::Number(ANY), Required, optional!(from),

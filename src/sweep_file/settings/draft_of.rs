@@ -2,7 +2,8 @@
 
 use super::{AxisSettings, Grade, Settings};
 use crate::density::Observable;
-use crate::sweep_file::draft::{Auto, AxisDraft, Draft};
+use crate::sweep_file::draft::{Auto, AxisDraft, Draft, EquationsDraft};
+use crate::system::Model;
 
 impl Settings {
     /// What a complete file says.
@@ -10,12 +11,21 @@ impl Settings {
         let model = self.family.model();
         let parameter = self.family.parameter();
         let (from, to) = self.family.ends();
-        let parameters = self.family.fixed();
-        let parameters = parameters.map(|(name, value)| (name.to_owned(), value));
+        let is_typed = model.typed().is_some();
+        // The swept parameter of a file's own equations keeps the value that it may have beside the sweep.
+        let parameters = model.parameters.iter().filter_map(|one| {
+            let mut fixed = self.family.fixed();
+            let value = fixed
+                .find(|(name, _)| *name == one.name)
+                .map(|(_, value)| value);
+            let value = value.or(one.default.filter(|_| is_typed))?;
+            Some((one.name.clone(), value))
+        });
         let axes = model.axes.iter().zip(&self.axes);
         Draft {
             title: Some(self.title.clone()),
-            model: Some(model.clone()),
+            model: (!is_typed).then(|| model.clone()),
+            equations: equations_draft(model),
             parameters: parameters.collect(),
             parameter: Some(parameter.to_owned()),
             from: Some(from),
@@ -54,6 +64,32 @@ impl Settings {
             }
         });
         names.collect()
+    }
+}
+
+/// The equations of a model that is made of some.
+fn equations_draft(model: &Model) -> EquationsDraft {
+    let Some(typed) = model.typed() else {
+        return EquationsDraft::default();
+    };
+    let source = typed.source();
+    let mut noise: Vec<(String, Vec<String>)> = Vec::new();
+    for (axis, amplitude) in source.processes().iter().flatten() {
+        match noise.iter_mut().find(|(known, _)| known == axis) {
+            Some((_, amplitudes)) => amplitudes.push(amplitude.clone()),
+            None => noise.push((axis.clone(), vec![amplitude.clone()])),
+        }
+    }
+    let bounds = source.bounds().iter().cloned();
+    EquationsDraft {
+        title: Some(model.title.clone()),
+        drift: source.equations().to_vec(),
+        noise,
+        interpretation: source.interpretation(),
+        define: source.definitions().to_vec(),
+        bounds: bounds
+            .map(|(axis, lower, upper)| (axis, [lower, upper]))
+            .collect(),
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod axes;
 mod draft_of;
+mod equations;
 mod figures;
 mod method;
 mod system;
@@ -17,11 +18,13 @@ use crate::topology::DetectOptions;
 
 pub use axes::{AxisSettings, Grade};
 pub(super) use axes::{at_cells, cell_space};
+pub(super) use equations::value_place as formula_place;
 
 use super::document::Document;
 use super::draft::MethodSettings;
 use super::reader::Reader;
 use super::report::Report;
+use super::respell;
 use super::write;
 
 /// What is swept and how: every number is checked, every default filled in. What takes work is still open: ranges and gradings that
@@ -63,11 +66,12 @@ impl Settings {
         if let Some(broken) = document.broken() {
             return Err(broken);
         }
+        let document = &respell::respelled(document);
         let (mut reader, draft) = Reader::new(document);
         method::check(&mut reader, &draft.method);
-        let model = draft.model.as_deref();
-        let swept = draft
-            .model
+        let known = equations::model(&mut reader, &draft);
+        let model = known.as_deref();
+        let swept = known
             .as_ref()
             .and_then(|model| system::read(&mut reader, &draft, model));
         let family = swept.as_ref().map(|swept| &swept.family);

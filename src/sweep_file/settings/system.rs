@@ -90,6 +90,10 @@ fn read_parameters<'m>(
             continue;
         };
         let mut given = draft.parameters.iter();
+        if Some(parameter.name.as_str()) == swept && model.typed().is_some() {
+            // Which of the parameters of a file's own equations is swept is changed more easily where all have values.
+            continue;
+        }
         if Some(parameter.name.as_str()) == swept {
             let title = format!("parameter `{}` is swept and also given", parameter.name);
             let diagnostic = Diagnostic::new(title)

@@ -101,15 +101,45 @@ fn the_resolved_file_gives_the_same_sweep() {
     }
 }
 
+const EQUATIONS: &str = r#"
+[system]
+title = "by hand"
+[system.equations]
+y = "-kappa force"
+[system.noise]
+y = "sqrt(2 D) y"
+interpretation = "ito"
+[system.define]
+force = "y + y^3"
+[system.bounds]
+y = ["-9", 9]
+[system.parameters]
+kappa = 1
+[sweep]
+parameter = "D"
+from = 0.1
+to = 0.2
+points = 3
+[cells]
+y = { count = 10 }
+"#;
+
 #[test]
 fn the_resolved_file_holds_every_key() {
-    // Between them the resolved files of all methods; `range` has become numbers.
+    // Between them the resolved files of all methods, and of equations; `range` has become numbers.
     let texts = MethodOptions::KINDS.map(|kind| {
         let kind = format!("method.kind={kind}");
         parse(FILE, &[&kind, "locate.tolerance=1e-3"])
             .unwrap()
             .to_toml()
     });
+    let [generator, sgcm, monte_carlo] = texts;
+    let texts = [
+        generator,
+        sgcm,
+        monte_carlo,
+        parse(EQUATIONS, &[]).unwrap().to_toml(),
+    ];
     let text = texts.join("\n# next\n");
     let tables = texts.map(|text| text.parse::<toml::Table>().unwrap());
     let keys = keys::keys().iter();
@@ -117,7 +147,8 @@ fn the_resolved_file_holds_every_key() {
         let named = key
             .path()
             .replace("<parameter>", "kappa")
-            .replace("<axis>", "y");
+            .replace("<axis>", "y")
+            .replace("<name>", "force");
         let (first, rest) = named.split_once('.').unwrap_or((&named, ""));
         let found = tables.iter().any(|table| {
             let mut value = table.get(first);

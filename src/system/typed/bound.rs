@@ -42,12 +42,12 @@ impl Typed {
             parameters: &self.values,
             time: f64::NAN,
         };
-        self.reading.graph.evaluate(expression, &point)
+        self.reading.scope.graph().evaluate(expression, &point)
     }
 
     /// A reflection about the origin under which drift, noise and bounds stay as they are.
     fn find_symmetry(&self) -> Option<Symmetry> {
-        let mut graph = self.reading.graph.clone();
+        let mut graph = self.reading.scope.graph().clone();
         let (drift, noise) = (&self.reading.drift_expressions, &self.reading.noise);
         let centre = vec![0.0; drift.len()];
         let found = graph.find_reflection(drift, noise, &centre, &self.values);

@@ -8,6 +8,7 @@
 //! `error` says what can be wrong. The language is described in [`crate::formula`].
 
 mod bound;
+mod equations;
 mod error;
 mod read;
 
@@ -16,6 +17,7 @@ use std::sync::Arc;
 use super::{AxisDescription, Model, ParameterDescription};
 use crate::formula::language::typeset_name;
 
+pub use equations::{FormulaHazard, TypedEquations};
 pub use error::{FormulaPlace, TypedModelError};
 
 /// How a stochastic integral is read where the amplitude of a noise depends on the state that it drives.
@@ -26,6 +28,19 @@ pub enum Interpretation {
     /// The equation is a Stratonovich equation, the limit of noise with a short memory. Its Itô drift, which is what every
     /// method uses, has ½ Σ_k b_k ∂b_k/∂x_i more on axis i.
     Stratonovich,
+}
+
+impl Interpretation {
+    /// Both readings.
+    pub const ALL: [Self; 2] = [Self::Ito, Self::Stratonovich];
+
+    /// Name used in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ito => "ito",
+            Self::Stratonovich => "stratonovich",
+        }
+    }
 }
 
 /// A stochastic differential equation as text, from which [`TypedModel::build`] makes a [`Model`].
@@ -84,6 +99,7 @@ pub struct TypedModel {
     notes: Vec<String>,
 }
 
+/// How a model is typed.
 impl TypedModel {
     /// A model with its axes, in the order of the state; a name will do for an axis.
     pub fn new<A: Into<AxisDescription>>(
@@ -206,18 +222,35 @@ impl TypedModel {
     /// # Errors
     /// The first [`TypedModelError`] that is found.
     pub fn build(self) -> Result<Arc<Model>, TypedModelError> {
+        let all = self.build_or_all_errors();
+        all.map_err(|errors| {
+            errors
+                .into_iter()
+                .next()
+                .unwrap_or(TypedModelError::TooLarge)
+        })
+    }
+
+    /// As [`TypedModel::build`], with everything that is wrong.
+    ///
+    /// # Errors
+    /// Every name, equation, noise, definition and bound that is wrong; never empty.
+    pub fn build_or_all_errors(self) -> Result<Arc<Model>, Vec<TypedModelError>> {
         let (reading, found) = read::read(&self)?;
         let reading = Arc::new(reading);
         let lines = self.lines();
-        let bind = move |values: &[f64]| bound::bind(&reading, values);
-        let notes = self.notes.into_iter().chain(found);
-        let model = Model::new(self.name, self.title, bind)
+        let bound = Arc::clone(&reading);
+        let bind = move |values: &[f64]| bound::bind(&bound, values);
+        let notes = self.notes.iter().cloned().chain(found);
+        let model = Model::new(self.name.as_str(), self.title.as_str(), bind)
             .with_equations(lines)
-            .with_axes(self.axes)
-            .with_parameters(self.parameters)
-            .with_source(self.source)
+            .with_axes(self.axes.clone())
+            .with_parameters(self.parameters.clone())
+            .with_source(self.source.as_str())
             .with_notes(notes);
-        Ok(Arc::new(model))
+        Ok(Arc::new(
+            model.with_typed(TypedEquations::new(self, reading)),
+        ))
     }
 
     /// The equations as they were typed, one a line.
@@ -247,6 +280,34 @@ impl TypedModel {
             lines.push(format!("E[ξ_i(t) ξ_j(t+τ)] = δ_ij δ(τ){read}"));
         }
         lines
+    }
+}
+
+/// What was typed, to write it down again.
+impl TypedModel {
+    /// Axes and the right sides of their equations, in the order typed.
+    pub fn equations(&self) -> &[(String, String)] {
+        &self.equations
+    }
+
+    /// Wiener processes in the order typed, each with the axes that it drives and its amplitudes there.
+    pub fn processes(&self) -> &[Vec<(String, String)>] {
+        &self.processes
+    }
+
+    /// How the noise is read, where it was said.
+    pub fn interpretation(&self) -> Option<Interpretation> {
+        self.interpretation
+    }
+
+    /// Names and formulas of the definitions.
+    pub fn definitions(&self) -> &[(String, String)] {
+        &self.definitions
+    }
+
+    /// Axes with their lower and upper bounds.
+    pub fn bounds(&self) -> &[(String, String, String)] {
+        &self.bounds
     }
 }
 

@@ -3,20 +3,26 @@
 use super::{FormulaPlace, Interpretation, TypedModel, TypedModelError};
 use crate::MAX_DIMENSION;
 use crate::formula::analysis::KinkPlace;
-use crate::formula::graph::{Expression, Graph, Symbol, TooLarge};
-use crate::formula::scope::{DefinitionFault, Scope, Symbols};
+use crate::formula::graph::{Expression, Symbol, TooLarge};
+use crate::formula::scope::{DefinitionError, DefinitionFault, Scope, SymbolError, Symbols};
 use crate::formula::tape::{BindError, Program};
 
 /// Axes and the coordinates on them that are constant on planes.
 type Planes = Vec<(usize, Expression)>;
 
 /// Everything of a typed model but the values of its parameters.
+#[derive(Debug)]
 pub(super) struct Reading {
-    pub(super) graph: Graph,
+    /// All names and expressions.
+    pub(super) scope: Scope,
+    /// Drift as it was typed, one expression an axis.
+    pub(super) typed_drift: Vec<Expression>,
     /// Itô drift, one expression an axis.
     pub(super) drift_expressions: Vec<Expression>,
     /// Amplitude of each Wiener process on each axis: `noise[process][axis]`.
     pub(super) noise: Vec<Vec<Expression>>,
+    /// Number of each of these processes among all that were typed, those without effect included.
+    pub(super) typed_processes: Vec<usize>,
     pub(super) drift: Program,
     /// One program of one formula a Wiener process.
     pub(super) amplitudes: Vec<Program>,
@@ -31,39 +37,27 @@ pub(super) struct Reading {
 }
 
 /// Reads a model; with it, sentences on what was found and cannot be declared.
-pub(super) fn read(model: &TypedModel) -> Result<(Reading, Vec<String>), TypedModelError> {
-    let scope = scope(model)?;
-    let mut reader = Reader { model, scope };
-    let typed = reader.drift()?;
-    let (noise, noise_axes) = reader.noise()?;
-    let bounds = reader.bounds()?;
-    let period = reader.period(&typed, &noise)?;
-    let drift_expressions = reader.ito_drift(&typed, &noise)?;
-    let (surfaces, notes) = reader.surfaces(&drift_expressions)?;
-    let scope = reader.scope;
-    let own = noise.iter().zip(&noise_axes);
-    let amplitudes = own.map(|(process, &axis)| scope.compile(&process[axis..=axis]));
-    let amplitudes: Vec<Program> = amplitudes.collect();
-    let drift = scope.compile(&drift_expressions);
-    for program in amplitudes.iter().chain([&drift]) {
-        // Any values will do: more is worked out beforehand only for special ones.
-        let values = vec![std::f64::consts::FRAC_1_SQRT_2; program.parameters()];
-        if let Err(BindError::TooWide) = program.bind(&values) {
-            return Err(TypedModelError::TooWide);
-        }
-    }
-    let reading = Reading {
-        graph: scope.graph().clone(),
-        drift_expressions,
-        noise,
-        drift,
-        amplitudes,
-        noise_axes,
-        surfaces,
-        bounds,
-        period,
+///
+/// # Errors
+/// All that is wrong with its names and formulas; what does not fit together is looked for where these are right.
+pub(super) fn read(model: &TypedModel) -> Result<(Reading, Vec<String>), Vec<TypedModelError>> {
+    let mut errors = Vec::new();
+    let Some(scope) = scope(model, &mut errors) else {
+        return Err(errors);
     };
-    Ok((reading, notes))
+    let mut reader = Reader {
+        model,
+        scope,
+        errors,
+    };
+    let (drift, noise, bounds) = (reader.drift(), reader.noise(), reader.bounds());
+    match (drift, noise, bounds) {
+        (Some(drift), Some(noise), Some(bounds)) if reader.errors.is_empty() => {
+            let found = reader.join(drift, noise, bounds);
+            found.map_err(|error| vec![error])
+        }
+        _ => Err(reader.errors),
+    }
 }
 
 impl From<TooLarge> for TypedModelError {
@@ -72,41 +66,54 @@ impl From<TooLarge> for TypedModelError {
     }
 }
 
-/// The names and the definitions.
-fn scope(model: &TypedModel) -> Result<Scope, TypedModelError> {
+/// The names and the definitions; `None` where the names alone are wrong. A definition that is wrong counts as zero after
+/// that, so that the formulas with it can be read.
+fn scope(model: &TypedModel, errors: &mut Vec<TypedModelError>) -> Option<Scope> {
     let given = model.axes.len();
     if !(1..=MAX_DIMENSION).contains(&given) {
-        return Err(TypedModelError::Axes { given });
+        errors.push(TypedModelError::Axes { given });
     }
     let mut symbols = Symbols::default();
-    for axis in &model.axes {
-        symbols.add_state(&axis.name)?;
+    let mut refused: Vec<SymbolError> = Vec::new();
+    // Far more axes than a model has would only be complained about one by one.
+    for axis in model.axes.iter().take(2 * MAX_DIMENSION) {
+        refused.extend(symbols.add_state(&axis.name).err());
     }
     for parameter in &model.parameters {
-        symbols.add_parameter(&parameter.name)?;
+        refused.extend(symbols.add_parameter(&parameter.name).err());
         let outside = |value: &f64| !parameter.range.contains(*value);
         if let Some(value) = parameter.default.filter(outside) {
-            return Err(TypedModelError::Default {
+            errors.push(TypedModelError::Default {
                 parameter: parameter.name.clone(),
                 value,
                 allowed: parameter.range.words(),
             });
         }
     }
+    let names = symbols.clone();
     for (name, formula) in &model.definitions {
-        symbols.define(name, formula)?;
+        refused.extend(symbols.define(name, formula).err());
     }
-    Scope::new(symbols).map_err(|errors| definition_error(model, errors))
+    errors.extend(refused.into_iter().map(TypedModelError::Name));
+    if !errors.is_empty() {
+        return None;
+    }
+    let wrong = match Scope::new(symbols) {
+        Ok(scope) => return Some(scope),
+        Err(wrong) => wrong,
+    };
+    let mut symbols = names;
+    for (name, formula) in &model.definitions {
+        let is_wrong = wrong.iter().any(|error| error.name == *name);
+        let formula = if is_wrong { "0" } else { formula };
+        symbols.define(name, formula).ok()?;
+    }
+    let found = wrong.into_iter();
+    errors.extend(found.map(|error| definition_error(model, error)));
+    Scope::new(symbols).ok()
 }
 
-/// The first of the errors.
-fn definition_error(
-    model: &TypedModel,
-    errors: Vec<crate::formula::scope::DefinitionError>,
-) -> TypedModelError {
-    let Some(error) = errors.into_iter().next() else {
-        return TypedModelError::TooLarge;
-    };
+fn definition_error(model: &TypedModel, error: DefinitionError) -> TypedModelError {
     let place = FormulaPlace::Definition {
         name: error.name.clone(),
     };
@@ -128,50 +135,103 @@ fn definition_error(
     }
 }
 
-/// A model and the expressions that have been read of it.
+/// A model, the expressions that have been read of it, and what was found wrong.
 struct Reader<'a> {
     model: &'a TypedModel,
     scope: Scope,
+    errors: Vec<TypedModelError>,
 }
 
+/// Amplitudes of each Wiener process on each axis, the axis that it drives, and its number among those that were typed.
+type Noise = (Vec<Vec<Expression>>, Vec<usize>, Vec<usize>);
+
 impl Reader<'_> {
-    /// The equation of each axis.
-    fn drift(&mut self) -> Result<Vec<Expression>, TypedModelError> {
-        let mut drift = vec![None; self.model.axes.len()];
-        for (name, text) in &self.model.equations {
-            let place = FormulaPlace::Equation { axis: name.clone() };
-            let axis = self.axis(name, &place)?;
-            let read = self.formula(text, &place)?;
-            if drift[axis].replace(read).is_some() {
-                return Err(TypedModelError::Doubled { place });
+    /// What follows from expressions that are all there.
+    fn join(
+        mut self,
+        typed_drift: Vec<Expression>,
+        (noise, noise_axes, typed_processes): Noise,
+        bounds: Vec<Option<(Expression, Expression)>>,
+    ) -> Result<(Reading, Vec<String>), TypedModelError> {
+        let period = self.period(&typed_drift, &noise)?;
+        let drift_expressions = self.ito_drift(&typed_drift, &noise)?;
+        let (surfaces, notes) = self.surfaces(&drift_expressions)?;
+        let scope = self.scope;
+        let own = noise.iter().zip(&noise_axes);
+        let amplitudes = own.map(|(process, &axis)| scope.compile(&process[axis..=axis]));
+        let amplitudes: Vec<Program> = amplitudes.collect();
+        let drift = scope.compile(&drift_expressions);
+        for program in amplitudes.iter().chain([&drift]) {
+            // Any values will do: more is worked out beforehand only for special ones.
+            let values = vec![std::f64::consts::FRAC_1_SQRT_2; program.parameters()];
+            if let Err(BindError::TooWide) = program.bind(&values) {
+                return Err(TypedModelError::TooWide);
             }
         }
-        let equations = drift.into_iter().zip(&self.model.axes);
-        let complete = equations.map(|(read, axis)| {
-            let axis = axis.name.clone();
-            read.ok_or(TypedModelError::MissingEquation { axis })
-        });
-        complete.collect()
+        let reading = Reading {
+            scope,
+            typed_drift,
+            drift_expressions,
+            noise,
+            typed_processes,
+            drift,
+            amplitudes,
+            noise_axes,
+            surfaces,
+            bounds,
+            period,
+        };
+        Ok((reading, notes))
     }
 
-    /// `noise[process][axis]`, and the axis that each process drives.
-    fn noise(&mut self) -> Result<(Vec<Vec<Expression>>, Vec<usize>), TypedModelError> {
+    /// The equation of each axis.
+    fn drift(&mut self) -> Option<Vec<Expression>> {
+        let model = self.model;
+        let mut drift = vec![None; model.axes.len()];
+        let mut given = vec![false; model.axes.len()];
+        for (name, text) in &model.equations {
+            let place = FormulaPlace::Equation { axis: name.clone() };
+            let read = self.formula(text, &place);
+            let Some(axis) = self.axis(name, &place) else {
+                continue;
+            };
+            if std::mem::replace(&mut given[axis], true) {
+                self.errors.push(TypedModelError::Doubled { place });
+            } else {
+                drift[axis] = read;
+            }
+        }
+        for (axis, _) in model.axes.iter().zip(given).filter(|(_, given)| !given) {
+            let axis = axis.name.clone();
+            self.errors.push(TypedModelError::MissingEquation { axis });
+        }
+        drift.into_iter().collect()
+    }
+
+    /// The Wiener processes that act somewhere.
+    fn noise(&mut self) -> Option<Noise> {
         let zero = self
             .scope
             .graph_mut()
-            .build(|builder| builder.constant(0.0))?;
-        let (mut noise, mut driven) = (Vec::new(), Vec::new());
-        for (process, amplitudes) in self.model.processes.iter().enumerate() {
-            let mut read = vec![None; self.model.axes.len()];
+            .build(|builder| builder.constant(0.0))
+            .ok()?;
+        let model = self.model;
+        let (mut noise, mut driven, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
+        for (process, amplitudes) in model.processes.iter().enumerate() {
+            let mut read = vec![None; model.axes.len()];
             for (name, text) in amplitudes {
                 let place = FormulaPlace::Noise {
                     axis: name.clone(),
                     process,
                 };
-                let axis = self.axis(name, &place)?;
-                let amplitude = self.formula(text, &place)?;
-                if read[axis].replace(amplitude).is_some() {
-                    return Err(TypedModelError::Doubled { place });
+                let amplitude = self.formula(text, &place);
+                let Some(axis) = self.axis(name, &place) else {
+                    continue;
+                };
+                if read[axis].is_some() {
+                    self.errors.push(TypedModelError::Doubled { place });
+                } else {
+                    read[axis] = amplitude;
                 }
             }
             let read: Vec<Expression> = read.into_iter().map(|one| one.unwrap_or(zero)).collect();
@@ -182,33 +242,37 @@ impl Reader<'_> {
                 [] => continue,
                 [axis] => driven.push(axis),
                 _ => {
-                    let name = |&axis: &usize| format!("`{}`", self.model.axes[axis].name);
-                    return Err(TypedModelError::SharedNoise {
+                    let name = |&axis: &usize| format!("`{}`", model.axes[axis].name);
+                    self.errors.push(TypedModelError::SharedNoise {
                         process,
                         axes: axes.iter().map(name).collect(),
                     });
+                    continue;
                 }
             }
             noise.push(read);
+            numbers.push(process);
         }
-        Ok((noise, driven))
+        Some((noise, driven, numbers))
     }
 
     /// Bounds of each axis.
-    fn bounds(&mut self) -> Result<Vec<Option<(Expression, Expression)>>, TypedModelError> {
-        let mut bounds = vec![None; self.model.axes.len()];
-        for (name, lower, upper) in &self.model.bounds {
+    fn bounds(&mut self) -> Option<Vec<Option<(Expression, Expression)>>> {
+        let model = self.model;
+        let mut bounds = vec![None; model.axes.len()];
+        for (name, lower, upper) in &model.bounds {
             let place = FormulaPlace::Bound { axis: name.clone() };
-            let axis = self.axis(name, &place)?;
-            let ends = (
-                self.of_parameters(lower, &place)?,
-                self.of_parameters(upper, &place)?,
-            );
-            if bounds[axis].replace(ends).is_some() {
-                return Err(TypedModelError::Doubled { place });
+            let ends = [lower, upper].map(|end| self.of_parameters(end, &place));
+            let Some(axis) = self.axis(name, &place) else {
+                continue;
+            };
+            if let [Some(lower), Some(upper)] = ends
+                && bounds[axis].replace((lower, upper)).is_some()
+            {
+                self.errors.push(TypedModelError::Doubled { place });
             }
         }
-        Ok(bounds)
+        Some(bounds)
     }
 
     /// The period, where anything depends on time.
@@ -217,10 +281,14 @@ impl Reader<'_> {
         drift: &[Expression],
         noise: &[Vec<Expression>],
     ) -> Result<Option<Expression>, TypedModelError> {
-        let period = match &self.model.period {
-            Some(text) => Some(self.of_parameters(text, &FormulaPlace::Period)?),
-            None => None,
-        };
+        let model = self.model;
+        let mut period = None;
+        if let Some(text) = &model.period {
+            period = self.of_parameters(text, &FormulaPlace::Period);
+            if let Some(error) = self.errors.pop() {
+                return Err(error);
+            }
+        }
         let graph = self.scope.graph();
         let moves = |expression: Expression| graph.contains(expression, Symbol::Time);
         let name = |axis: usize| self.model.axes[axis].name.clone();
@@ -308,40 +376,41 @@ impl Reader<'_> {
         Ok((surfaces, notes))
     }
 
-    fn axis(&self, name: &str, place: &FormulaPlace) -> Result<usize, TypedModelError> {
+    fn axis(&mut self, name: &str, place: &FormulaPlace) -> Option<usize> {
         let mut axes = self.model.axes.iter();
         let found = axes.position(|axis| axis.name == name);
-        found.ok_or_else(|| TypedModelError::UnknownAxis {
-            place: place.clone(),
-            known: self.scope.symbols().states().to_vec(),
-        })
+        if found.is_none() {
+            self.errors.push(TypedModelError::UnknownAxis {
+                place: place.clone(),
+                known: self.scope.symbols().states().to_vec(),
+            });
+        }
+        found
     }
 
-    fn formula(&mut self, text: &str, place: &FormulaPlace) -> Result<Expression, TypedModelError> {
+    fn formula(&mut self, text: &str, place: &FormulaPlace) -> Option<Expression> {
         let read = self.scope.formula(text);
-        read.map_err(|error| TypedModelError::Formula {
+        let refused = |error| TypedModelError::Formula {
             place: place.clone(),
             text: text.to_owned(),
             error: Box::new(error),
-        })
+        };
+        read.map_err(|error| self.errors.push(refused(error))).ok()
     }
 
     /// A formula without states and time.
-    fn of_parameters(
-        &mut self,
-        text: &str,
-        place: &FormulaPlace,
-    ) -> Result<Expression, TypedModelError> {
+    fn of_parameters(&mut self, text: &str, place: &FormulaPlace) -> Option<Expression> {
         let read = self.formula(text, place)?;
         let dependence = self.scope.graph().dependence(read);
         let states = dependence.states.iter().map(|&state| Symbol::State(state));
         let time = dependence.time.then_some(Symbol::Time);
-        match states.chain(time).next() {
-            None => Ok(read),
-            Some(symbol) => Err(TypedModelError::NotOfParameters {
-                place: place.clone(),
-                symbol: self.scope.symbols().name(symbol).to_owned(),
-            }),
-        }
+        let Some(symbol) = states.chain(time).next() else {
+            return Some(read);
+        };
+        self.errors.push(TypedModelError::NotOfParameters {
+            place: place.clone(),
+            symbol: self.scope.symbols().name(symbol).to_owned(),
+        });
+        None
     }
 }

@@ -1,0 +1,79 @@
+//! One spelling for each name of a file's own equations: `α` is `alpha` in formulas, and so it is in the rest of the file.
+//!
+//! Axes are spelled as in `system.equations`, parameters as in `system.parameters`. Names of built-in models are left as they are.
+
+use super::document::Document;
+use super::value::{Node, Value};
+use crate::formula::language::{canonical_name, check_name};
+
+/// The document with the names of its equations spelled alike everywhere.
+pub(super) fn respelled(document: &Document) -> Document {
+    let mut document = document.clone();
+    let names = |path: &[&str]| -> Vec<String> {
+        let entries = document.root.find(path).map(|entry| entry.node.entries());
+        let entries = entries.unwrap_or_default().iter();
+        entries.map(|entry| entry.key.clone()).collect()
+    };
+    let axes = names(&["system", "equations"]);
+    let parameters = names(&["system", "parameters"]);
+    if axes.is_empty() {
+        return document;
+    }
+    let root = &mut document.root;
+    for table in [&["system", "noise"][..], &["system", "bounds"], &["cells"]] {
+        for_node(root, table, &mut |node| respell_keys(node, &axes));
+    }
+    for key in ["marginals", "joint"] {
+        for_node(root, &["detect", key], &mut |node| {
+            respell_texts(node, &axes);
+        });
+    }
+    for_node(root, &["sweep", "parameter"], &mut |node| {
+        respell_texts(node, &parameters);
+    });
+    document
+}
+
+fn for_node(node: &mut Node, path: &[&str], change: &mut dyn FnMut(&mut Node)) {
+    let Some((first, rest)) = path.split_first() else {
+        return change(node);
+    };
+    if let Value::Table(entries) = &mut node.value {
+        for entry in entries.iter_mut().filter(|entry| entry.key == *first) {
+            for_node(&mut entry.node, rest, change);
+        }
+    }
+}
+
+/// The name among `known` that is the same in another spelling.
+fn spelled<'n>(name: &str, known: &'n [String]) -> Option<&'n String> {
+    if known.iter().any(|known| known == name) || !check_name(name) {
+        return None;
+    }
+    let canonical = canonical_name(name);
+    known
+        .iter()
+        .find(|known| canonical_name(known) == canonical)
+}
+
+fn respell_keys(node: &mut Node, known: &[String]) {
+    if let Value::Table(entries) = &mut node.value {
+        for entry in entries {
+            if let Some(name) = spelled(&entry.key, known) {
+                entry.key.clone_from(name);
+            }
+        }
+    }
+}
+
+fn respell_texts(node: &mut Node, known: &[String]) {
+    match &mut node.value {
+        Value::Text(text) => {
+            if let Some(name) = spelled(text, known) {
+                text.clone_from(name);
+            }
+        }
+        Value::Array(items) => items.iter_mut().for_each(|item| respell_texts(item, known)),
+        _ => {}
+    }
+}

@@ -1,0 +1,377 @@
+//! The model: a built-in one by its name, or the equations of the file, read with their places so that everything wrong with them is
+//! shown where it stands.
+
+use std::sync::Arc;
+
+use crate::formula::scope::SymbolError;
+use crate::sweep_file::diagnostic::{Diagnostic, Place};
+use crate::sweep_file::document::Document;
+use crate::sweep_file::draft::{Draft, EquationsDraft};
+use crate::sweep_file::formula_place::inside;
+use crate::sweep_file::names::{list, nearest_name, quotable};
+use crate::sweep_file::reader::Reader;
+use crate::sweep_file::value::{Entry, Value};
+use crate::system::{FormulaPlace, Model, ParameterDescription, TypedModel, TypedModelError};
+
+/// Name of a model made of a file's equations, in messages and in stored runs.
+const NAME: &str = "equations";
+/// The tables of equations, without the values of parameters.
+const TABLES: [&str; 5] = ["equations", "noise", "define", "bounds", "title"];
+
+/// The model that the file means; `None` where it means none, or something is wrong with it.
+pub(super) fn model(reader: &mut Reader<'_>, draft: &Draft) -> Option<Arc<Model>> {
+    let has_model = reader.entry(&["system", "model"]);
+    let mut tables = TABLES.iter();
+    let given = tables.find_map(|table| reader.entry(&["system", table]));
+    match (has_model, given) {
+        (Some(_), None) => draft.model.clone(),
+        (Some(model), Some(given)) => {
+            let title = format!("a built-in model, and `system.{}` too", given.key);
+            let diagnostic = Diagnostic::new(title)
+                .at(&given.key_place, "equations of your own")
+                .allowed("`system.model`, or equations in `system.equations`")
+                .remedy(match model.key_place.is_set() {
+                    true => "the equations of the file cannot be exchanged for a built-in model: write another file",
+                    false => "remove `model`, or the equations",
+                });
+            reader.report(diagnostic);
+            None
+        }
+        (None, Some(_)) => typed(reader, draft),
+        (None, None) => {
+            missing(reader);
+            None
+        }
+    }
+}
+
+/// Says that there is neither a model nor an equation.
+fn missing(reader: &mut Reader<'_>) {
+    if reader.document().cut.is_some() {
+        return;
+    }
+    let table = reader.entry(&["system"]);
+    let place = match table {
+        Some(entry) => &entry.key_place,
+        None => &reader.document().root.place,
+    };
+    let diagnostic = Diagnostic::new("missing key `system.model`, or equations")
+        .at(place, "which system is meant?")
+        .allowed("a built-in model (`pbif systems` lists them), or equations of your own")
+        .remedy("add `model = \"…\"`, or a table [system.equations] with a line such as `x = \"y\"` an axis");
+    reader.report(diagnostic);
+}
+
+/// The model made of the file's equations.
+fn typed(reader: &mut Reader<'_>, draft: &Draft) -> Option<Arc<Model>> {
+    let equations = &draft.equations;
+    if reader.entry(&["system", "equations"]).is_none() {
+        let entry = reader.entry(&["system"])?;
+        let diagnostic = Diagnostic::new("missing table `system.equations`")
+            .at(&entry.key_place, "a system without equations")
+            .remedy("add a table [system.equations] with a line such as `x = \"y\"` for each axis");
+        reader.report(diagnostic);
+        return None;
+    }
+    // Formulas that are no formulas are reported already; what is left would look incomplete.
+    let complete = reader.is_clean();
+    if !complete && equations.drift.len() < reader.entries(&["system", "equations"]).len() {
+        return None;
+    }
+    let parameters = parameters(draft);
+    let source = source(draft, equations, parameters);
+    match source.build_or_all_errors() {
+        Ok(model) => {
+            check_use(reader, draft, &model);
+            check_noise(reader, &model);
+            Some(model)
+        }
+        Err(errors) => {
+            let mut found: Vec<Diagnostic> = Vec::new();
+            for error in errors {
+                let diagnostic = diagnostic(reader, equations, error);
+                // Several noises on an axis without equation are one mistake.
+                if !found.contains(&diagnostic) {
+                    found.push(diagnostic);
+                }
+            }
+            found
+                .into_iter()
+                .for_each(|diagnostic| reader.report(diagnostic));
+            check_swept_name(reader, draft);
+            None
+        }
+    }
+}
+
+/// The parameters that are given, and the swept one. What is given is the default, so that any of them can be swept.
+fn parameters(draft: &Draft) -> Vec<ParameterDescription> {
+    let given = draft.parameters.iter();
+    let given =
+        given.map(|(name, value)| ParameterDescription::from(name.as_str()).with_default(*value));
+    let mut parameters: Vec<ParameterDescription> = given.collect();
+    if let Some(swept) = &draft.parameter {
+        let known = draft.parameters.iter().any(|(name, _)| name == swept);
+        if !known {
+            parameters.push(ParameterDescription::from(swept.as_str()));
+        }
+    }
+    parameters
+}
+
+fn source(
+    draft: &Draft,
+    equations: &EquationsDraft,
+    parameters: Vec<ParameterDescription>,
+) -> TypedModel {
+    let title = equations.title.as_ref().or(draft.title.as_ref());
+    let title = title.map_or("equations of a sweep file", String::as_str);
+    let axes = equations.drift.iter().map(|(axis, _)| axis.as_str());
+    let mut model = TypedModel::new(NAME, title, axes).with_parameters(parameters);
+    for (axis, drift) in &equations.drift {
+        model = model.with_equation(axis, drift);
+    }
+    for (axis, amplitudes) in &equations.noise {
+        model = model.with_noise(axis, amplitudes.iter());
+    }
+    for (name, formula) in &equations.define {
+        model = model.with_definition(name, formula);
+    }
+    for (axis, [lower, upper]) in &equations.bounds {
+        model = model.with_bounds(axis, lower, upper);
+    }
+    match equations.interpretation {
+        Some(interpretation) => model.with_interpretation(interpretation),
+        None => model,
+    }
+}
+
+/// Where other names are unknown, a swept parameter that no formula has is perhaps one of them.
+fn check_swept_name(reader: &mut Reader<'_>, draft: &Draft) {
+    let Some(swept) = draft.parameter.as_deref() else {
+        return;
+    };
+    let equations = &draft.equations;
+    let drift = equations.drift.iter().chain(&equations.define);
+    let noise = equations
+        .noise
+        .iter()
+        .flat_map(|(_, amplitudes)| amplitudes);
+    let mut texts = drift.map(|(_, text)| text).chain(noise);
+    let given = draft.parameters.iter().any(|(name, _)| name == swept);
+    if given || texts.any(|text| text.contains(swept)) {
+        return;
+    }
+    let title = format!(
+        "the swept parameter `{}` is in no equation or noise",
+        quotable(swept)
+    );
+    if let Some(place) = reader.place(&["sweep", "parameter"]) {
+        let diagnostic = Diagnostic::new(title).at(place, "sweeping it changes nothing");
+        reader.report(diagnostic);
+    }
+}
+
+/// A swept parameter that is in no formula is a mistake, and so is one that is set there; others are perhaps left over.
+fn check_use(reader: &mut Reader<'_>, draft: &Draft, model: &Model) {
+    let Some(typed) = model.typed() else {
+        return;
+    };
+    let unused = typed.unused_parameters();
+    let used: Vec<&str> = model
+        .parameters
+        .iter()
+        .map(|one| one.name.as_str())
+        .collect();
+    let used: Vec<&str> = used
+        .into_iter()
+        .filter(|name| !unused.contains(name))
+        .collect();
+    for name in unused {
+        let path = ["system", "parameters", name];
+        let shown = quotable(name);
+        if draft.parameter.as_deref() == Some(name) {
+            let title = format!("the swept parameter `{shown}` is in no equation, noise or bound");
+            let diagnostic = Diagnostic::new(title).nearest(name, used.iter().copied());
+            let place = reader.place(&["sweep", "parameter"]);
+            reader.report(match place {
+                Some(place) => diagnostic.at(place, "sweeping it changes nothing"),
+                None => diagnostic,
+            });
+        } else if let Some(entry) = reader.entry(&path) {
+            let title = format!("parameter `{shown}` is in no equation, noise or bound");
+            let near = nearest_name(name, used.iter().copied());
+            let advise = |diagnostic: Diagnostic| match near {
+                Some(near) => diagnostic.remedy(format!("did you mean `{near}`?")),
+                None => diagnostic,
+            };
+            if entry.key_place.is_set() {
+                let diagnostic = Diagnostic::new(title).at(&entry.key_place, "set here");
+                reader.report(advise(diagnostic.allowed(list(&used))));
+            } else {
+                let diagnostic = Diagnostic::warning(title).at(&entry.key_place, "not used");
+                reader.warn(advise(diagnostic));
+            }
+        }
+    }
+}
+
+/// Without noise there is no density to speak of.
+fn check_noise(reader: &mut Reader<'_>, model: &Model) {
+    if model.typed().is_none_or(|typed| !typed.noises().is_empty()) {
+        return;
+    }
+    let diagnostic = Diagnostic::new("no equation has noise, so that there is no stationary density")
+        .remedy("add a table [system.noise] with the amplitudes of white noises, such as `y = \"sqrt(2 D)\"`");
+    let place = table_place(reader, "noise").or_else(|| table_place(reader, "equations"));
+    reader.report(match place {
+        Some(place) => diagnostic.at(&place, "no noise"),
+        None => diagnostic,
+    });
+}
+
+/// What the model says, at its place in the file.
+fn diagnostic(
+    reader: &Reader<'_>,
+    equations: &EquationsDraft,
+    error: TypedModelError,
+) -> Diagnostic {
+    let value = |place: &FormulaPlace| value_place(reader.document(), equations, place);
+    let words = error.to_string();
+    let plain = |label: &str, place: Option<Place>| {
+        let diagnostic = Diagnostic::new(words.clone());
+        match place.or_else(|| table_place(reader, "equations")) {
+            Some(place) => diagnostic.at(&place, label),
+            None => diagnostic,
+        }
+    };
+    match &error {
+        TypedModelError::Formula {
+            place,
+            error: fault,
+            ..
+        } => {
+            let mut diagnostic = Diagnostic::new(format!("{place}: {fault}"));
+            if let Some(value) = value(place) {
+                let part = inside(&reader.document().sources, &value, &fault.span);
+                diagnostic = diagnostic.at(&part, "here");
+            }
+            if let Some(allowed) = fault.allowed() {
+                diagnostic = diagnostic.allowed(allowed);
+            }
+            match fault.remedy() {
+                Some(remedy) => diagnostic.remedy(remedy),
+                None => diagnostic,
+            }
+        }
+        TypedModelError::Circle { place, span, .. } => {
+            let value = value(place);
+            let part = value.map(|value| inside(&reader.document().sources, &value, span));
+            plain("needed here", part).remedy("write one of them without the others")
+        }
+        TypedModelError::UnknownAxis { place, known } => {
+            let (table, axis) = table_and_name(place);
+            let entry = reader.entry(&["system", table, axis]);
+            let key = entry.map(|entry| entry.key_place.clone());
+            let title = format!(
+                "`system.{table}.{}`: no equation is of that name",
+                quotable(axis)
+            );
+            let diagnostic = Diagnostic::new(title)
+                .remedy(format!(
+                    "add a line `{} = …` to [system.equations]",
+                    quotable(axis)
+                ))
+                .nearest(axis, known.iter().map(String::as_str));
+            match key {
+                Some(key) => diagnostic.at(&key, "unknown axis"),
+                None => diagnostic,
+            }
+        }
+        TypedModelError::Name(error) => {
+            let place = name_entry(reader, error).map(|entry| entry.key_place.clone());
+            plain("this name", place).remedy("give it another name")
+        }
+        TypedModelError::Doubled { place } => plain("a second time", value(place)),
+        TypedModelError::Interpretation { axis } => {
+            let entry = reader.entry(&["system", "noise", axis]);
+            let place = entry.map(|entry| entry.node.place.clone());
+            plain("this noise", place)
+                .allowed("`interpretation = \"ito\"` or `interpretation = \"stratonovich\"`")
+                .remedy("add one of them to [system.noise]; noise of a physical system is mostly meant as Stratonovich")
+        }
+        TypedModelError::JumpingNoise { .. } => plain("these noises", table_place(reader, "noise")),
+        TypedModelError::TimeWithoutPeriod { place } => {
+            let title = format!("{place} contains the time `t`");
+            let diagnostic = Diagnostic::new(title).remedy(
+                "stationary densities are of systems that do not change with time: a forcing can be made an axis of its own, a phase",
+            );
+            match value(place) {
+                Some(place) => diagnostic.at(&place, "depends on time"),
+                None => diagnostic,
+            }
+        }
+        TypedModelError::NotOfParameters { place, .. } => plain("a bound", value(place)),
+        TypedModelError::Axes { .. } => plain("these equations", None)
+            .remedy("leave out what the others do not need, or write two equations as one"),
+        TypedModelError::MissingEquation { .. }
+        | TypedModelError::SharedNoise { .. }
+        | TypedModelError::Default { .. }
+        | TypedModelError::TooLarge
+        | TypedModelError::TooWide => plain("these equations", None),
+    }
+}
+
+fn table_place(reader: &Reader<'_>, table: &str) -> Option<Place> {
+    let entry = reader.entry(&["system", table])?;
+    Some(entry.key_place.clone())
+}
+
+/// The table that a formula stands in, and its key there.
+fn table_and_name(place: &FormulaPlace) -> (&'static str, &str) {
+    match place {
+        FormulaPlace::Equation { axis } => ("equations", axis),
+        FormulaPlace::Noise { axis, .. } => ("noise", axis),
+        FormulaPlace::Definition { name } => ("define", name),
+        FormulaPlace::Bound { axis } => ("bounds", axis),
+        FormulaPlace::Period => ("equations", ""),
+    }
+}
+
+/// Where the value of a formula stands.
+pub(in crate::sweep_file) fn value_place(
+    document: &Document,
+    equations: &EquationsDraft,
+    place: &FormulaPlace,
+) -> Option<Place> {
+    let (table, name) = table_and_name(place);
+    let node = &document.root.find(&["system", table, name])?.node;
+    let node = match (place, &node.value) {
+        (FormulaPlace::Noise { process, .. }, Value::Array(items)) => {
+            let mut first = 0;
+            for (axis, amplitudes) in &equations.noise {
+                if axis == name {
+                    break;
+                }
+                first += amplitudes.len();
+            }
+            items.get(process.checked_sub(first)?)?
+        }
+        _ => node,
+    };
+    Some(node.place.clone())
+}
+
+/// The key that a name that is refused was given by: the last of those that have it.
+fn name_entry<'d>(reader: &Reader<'d>, error: &SymbolError) -> Option<&'d Entry> {
+    let (SymbolError::Malformed { name }
+    | SymbolError::Reserved { name, .. }
+    | SymbolError::Taken { name, .. }) = error
+    else {
+        return None;
+    };
+    let tables = ["define", "parameters", "equations"];
+    tables
+        .iter()
+        .find_map(|table| reader.entry(&["system", table, name]))
+}

@@ -1,0 +1,136 @@
+//! What is tried of a file's own equations once the domain is known: whether every formula is finite on it, and whether what was read
+//! off the formulas holds.
+
+use super::diagnostic::Diagnostic;
+use super::document::Document;
+use super::report::Report;
+use super::settings::{Settings, at_cells, formula_place};
+use crate::system::contract::{self, ContractViolation};
+use crate::system::{FormulaHazard, FormulaPlace, TypedEquations};
+
+impl Settings {
+    /// Refuses equations that are not finite somewhere on the domain, at some value along the sweep, and declarations that do not
+    /// hold. Built-in models are tried in their tests.
+    ///
+    /// # Errors
+    /// A report with a state at which it shows.
+    pub(super) fn check_equations(&self) -> Result<(), Report> {
+        let Some(typed) = self.family.model().typed() else {
+            return Ok(());
+        };
+        let ranges: Option<Vec<(f64, f64)>> = self.axes.iter().map(|axis| axis.range).collect();
+        let Some(ranges) = ranges else {
+            return Ok(());
+        };
+        self.check_finite(typed, &ranges, "on the domain")?;
+        self.check_contract(&ranges)
+    }
+
+    /// Refuses formulas that are not finite somewhere in a box of states.
+    pub(super) fn check_finite(
+        &self,
+        typed: &TypedEquations,
+        ranges: &[(f64, f64)],
+        which: &str,
+    ) -> Result<(), Report> {
+        let hazards = typed.hazards(ranges, &self.parameter_ranges());
+        let mut shown: Vec<FormulaPlace> = Vec::new();
+        let mut found = Vec::new();
+        for hazard in hazards.iter().filter(|hazard| hazard.certain) {
+            if !shown.contains(&hazard.place) {
+                shown.push(hazard.place.clone());
+                found.push(self.not_finite(hazard, which));
+            }
+        }
+        match found.is_empty() {
+            true => Ok(()),
+            false => Err(Report::new(self.document.sources.clone(), found, 0)),
+        }
+    }
+
+    /// What each parameter takes along the sweep.
+    fn parameter_ranges(&self) -> Vec<(f64, f64)> {
+        let (from, to) = self.family.ends();
+        let at = |end: f64| {
+            let values = self.family.values_at(end);
+            values.map_or(Vec::new(), |values| values.as_slice().to_vec())
+        };
+        at(from).into_iter().zip(at(to)).collect()
+    }
+
+    fn not_finite(&self, hazard: &FormulaHazard, which: &str) -> Diagnostic {
+        let axes = hazard.state.iter().enumerate();
+        let axes = axes.map(|(axis, value)| (self.family.axis(axis), *value));
+        let swept = self.family.parameter();
+        let parameters = self
+            .family
+            .model()
+            .parameters
+            .iter()
+            .zip(&hazard.parameters);
+        let swept = parameters.filter(|(parameter, _)| parameter.name == swept);
+        let swept = swept.map(|(parameter, value)| (parameter.name.as_str(), *value));
+        let values: Vec<String> = axes
+            .chain(swept)
+            .map(|(name, value)| format!("{name} = {}", short(value)))
+            .collect();
+        let title = format!(
+            "{} is not finite {which}: {} in {} at {}",
+            hazard.place,
+            hazard.kind.words(),
+            hazard.part,
+            values.join(", ")
+        );
+        let diagnostic = Diagnostic::new(title)
+            .allowed("formulas that are finite for every state of the domain and every value of the sweep")
+            .remedy("change the formula, or leave that state out by `from` and `to` in [cells]");
+        let place = formula_place(&self.document, &self.draft().equations, &hazard.place);
+        match place {
+            Some(place) => diagnostic.at(&place, hazard.kind.words()),
+            None => diagnostic,
+        }
+    }
+
+    /// The contract of built-in models, at both ends of the sweep.
+    fn check_contract(&self, ranges: &[(f64, f64)]) -> Result<(), Report> {
+        let (from, to) = self.family.ends();
+        for end in [from, to] {
+            let Ok(values) = self.family.values_at(end) else {
+                continue;
+            };
+            let tried = contract::verify_model(self.family.model(), &values, ranges);
+            match tried {
+                Ok(()) | Err(ContractViolation::SmoothSurface { .. }) => {}
+                Err(violation) => {
+                    let title = format!(
+                        "the equations do not keep what was read off them, at {} = {end}: {violation}",
+                        self.family.parameter()
+                    );
+                    let diagnostic = at_system(&self.document, Diagnostic::new(title));
+                    let found = vec![diagnostic.remedy(
+                        "bounds in [system.bounds] must hold for the drift, and no noise may act across them; a smaller domain may do",
+                    )];
+                    return Err(Report::new(self.document.sources.clone(), found, 0));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A finding about the file's equations.
+fn at_system(document: &Document, diagnostic: Diagnostic) -> Diagnostic {
+    let tables = [["system", "bounds"], ["system", "equations"]];
+    let entry = tables.iter().find_map(|path| document.root.find(path));
+    match entry {
+        Some(entry) => diagnostic.at(&entry.key_place, "here"),
+        None => at_cells(document, diagnostic),
+    }
+}
+
+/// A number with as many digits as tell where it is.
+fn short(value: f64) -> String {
+    let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
+    // Zero of either sign is zero.
+    (rounded + 0.0).to_string()
+}

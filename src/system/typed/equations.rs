@@ -1,0 +1,201 @@
+//! What is known of a model because its equations are formulas: they can be written for people, and searched for operations that
+//! fail somewhere.
+
+use std::sync::Arc;
+
+use super::read::Reading;
+use super::{FormulaPlace, Interpretation, TypedModel};
+use crate::formula::analysis::{Domain, HazardKind, Interval};
+use crate::formula::graph::{Expression, Symbol};
+use crate::formula::language::typeset_name;
+
+/// The typed equations of a model, as they were typed and as they were read.
+#[derive(Debug)]
+pub struct TypedEquations {
+    model: TypedModel,
+    reading: Arc<Reading>,
+}
+
+/// An operation of a formula that fails somewhere: a division by zero, the root of a negative number, an overflow.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FormulaHazard {
+    /// The formula.
+    pub place: FormulaPlace,
+    /// How the operation fails.
+    pub kind: HazardKind,
+    /// The operation, typeset.
+    pub part: String,
+    /// A state at or next to which it fails.
+    pub state: Vec<f64>,
+    /// Values of the parameters there, in the model's order.
+    pub parameters: Vec<f64>,
+    /// Whether it surely fails there; otherwise that could not be excluded.
+    pub certain: bool,
+}
+
+impl TypedEquations {
+    pub(super) fn new(model: TypedModel, reading: Arc<Reading>) -> Self {
+        Self { model, reading }
+    }
+
+    /// What was typed.
+    pub fn source(&self) -> &TypedModel {
+        &self.model
+    }
+
+    /// The equations in Unicode for people, one a line, with their noises `ξ₁`, `ξ₂` …; then the definitions, and the Itô drift
+    /// where it is not what was typed.
+    pub fn typeset(&self) -> Vec<String> {
+        let (scope, reading) = (&self.reading.scope, &self.reading);
+        let axes = scope.symbols().states();
+        let mut lines = Vec::new();
+        for (axis, name) in axes.iter().enumerate() {
+            let mut line = format!("{}' = ", typeset_name(name));
+            line += &scope.typeset(reading.typed_drift[axis]);
+            for (process, amplitudes) in reading.noise.iter().enumerate() {
+                if reading.noise_axes[process] == axis {
+                    let amplitude = factor(&scope.typeset(amplitudes[axis]));
+                    line += &format!(" + {amplitude} ξ{}(t)", subscript(process + 1));
+                }
+            }
+            lines.push(line);
+        }
+        for (name, defined) in scope.definitions() {
+            let name = typeset_name(name);
+            lines.push(format!("{name} = {}", scope.typeset(defined)));
+        }
+        let drifts = reading.typed_drift.iter().zip(&reading.drift_expressions);
+        for (name, (_, ito)) in axes.iter().zip(drifts).filter(|(_, (a, b))| a != b) {
+            let (name, ito) = (typeset_name(name), scope.typeset(*ito));
+            lines.push(format!("Itô drift of {name}: {ito}"));
+        }
+        lines
+    }
+
+    /// Noises in words: which axis each drives, and whether its amplitude depends on the state.
+    pub fn noises(&self) -> Vec<String> {
+        let (scope, reading) = (&self.reading.scope, &self.reading);
+        let axes = scope.symbols().states();
+        let channels = reading.noise.iter().zip(&reading.noise_axes).enumerate();
+        let words = channels.map(|(process, (amplitudes, &axis))| {
+            let amplitude = amplitudes[axis];
+            let states = scope.graph().dependence(amplitude).states;
+            let kind = match states.is_empty() {
+                true => "additive".to_owned(),
+                false => {
+                    let names: Vec<String> =
+                        states.iter().map(|&s| typeset_name(&axes[s])).collect();
+                    format!("multiplicative in {}", names.join(", "))
+                }
+            };
+            let (number, axis) = (subscript(process + 1), typeset_name(&axes[axis]));
+            format!(
+                "ξ{number} on {axis}, {kind}: amplitude {}",
+                scope.typeset(amplitude)
+            )
+        });
+        let mut words: Vec<String> = words.collect();
+        if let Some(read) = self.model.interpretation().filter(|_| !words.is_empty()) {
+            let name = match read {
+                Interpretation::Ito => "Itô",
+                Interpretation::Stratonovich => "Stratonovich",
+            };
+            words.push(format!("read as {name} noise"));
+        }
+        words
+    }
+
+    /// Parameters that no equation, noise or bound contains, by name.
+    pub fn unused_parameters(&self) -> Vec<&str> {
+        let reading = &self.reading;
+        let mut all: Vec<Expression> = reading.typed_drift.clone();
+        all.extend(reading.noise.iter().flatten());
+        let bounds = reading.bounds.iter().flatten();
+        all.extend(bounds.flat_map(|&(lower, upper)| [lower, upper]));
+        let graph = reading.scope.graph();
+        let names = reading.scope.symbols().parameters().iter().enumerate();
+        let unused = names.filter(|(number, _)| {
+            let symbol = Symbol::Parameter(*number);
+            !all.iter().any(|&one| graph.contains(one, symbol))
+        });
+        unused.map(|(_, name)| name.as_str()).collect()
+    }
+
+    /// Operations of drift and noise that fail, or may fail, somewhere in a box of states and of parameters: one range each.
+    pub fn hazards(&self, states: &[(f64, f64)], parameters: &[(f64, f64)]) -> Vec<FormulaHazard> {
+        let reading = &self.reading;
+        let interval = |&(low, high): &(f64, f64)| Interval::new(low, high);
+        let domain = Domain {
+            states: states.iter().map(interval).collect(),
+            parameters: parameters.iter().map(interval).collect(),
+            time: Interval::point(0.0),
+        };
+        let mut found = Vec::new();
+        for (place, expression) in self.formulas() {
+            for hazard in reading.scope.graph().hazards(expression, &domain) {
+                found.push(FormulaHazard {
+                    place: place.clone(),
+                    kind: hazard.kind,
+                    part: reading.scope.typeset(hazard.part),
+                    state: hazard.state,
+                    parameters: hazard.parameters,
+                    certain: hazard.certain,
+                });
+            }
+        }
+        found
+    }
+
+    /// Drift of the Itô equation and amplitudes, with their places.
+    fn formulas(&self) -> Vec<(FormulaPlace, Expression)> {
+        let reading = &self.reading;
+        let name = |axis: usize| reading.scope.symbols().states()[axis].clone();
+        let drift = reading.drift_expressions.iter().enumerate();
+        let drift = drift.map(|(axis, &drift)| {
+            let place = FormulaPlace::Equation { axis: name(axis) };
+            (place, drift)
+        });
+        let processes = reading.noise.iter().zip(&reading.typed_processes);
+        let noise = processes.zip(&reading.noise_axes);
+        let noise = noise.map(|((amplitudes, &process), &axis)| {
+            let axis_name = name(axis);
+            let place = FormulaPlace::Noise {
+                axis: axis_name,
+                process,
+            };
+            (place, amplitudes[axis])
+        });
+        drift.chain(noise).collect()
+    }
+}
+
+/// A typeset formula as a factor: in parentheses where it is a sum or begins with a sign.
+fn factor(text: &str) -> String {
+    let mut depth = 0_usize;
+    let mut before = ' ';
+    let mut is_sum = text.starts_with(['-', '−']);
+    for c in text.chars() {
+        match c {
+            '(' => depth += 1,
+            ')' => depth = depth.saturating_sub(1),
+            '+' | '-' | '−' | '<' | '>' | '=' => is_sum |= depth == 0 && before == ' ',
+            _ => {}
+        }
+        before = c;
+    }
+    if is_sum {
+        format!("({text})")
+    } else {
+        text.to_owned()
+    }
+}
+
+/// A number in lowered digits.
+fn subscript(number: usize) -> String {
+    let digits = number.to_string();
+    let lowered = digits.chars().filter_map(|c| {
+        let digit = c.to_digit(10)?;
+        char::from_u32('₀' as u32 + digit)
+    });
+    lowered.collect()
+}
