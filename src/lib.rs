@@ -19,6 +19,7 @@
 //! | draw | [`figure`] |
 //! | read, check and write sweep files | [`sweep_file`] |
 //! | write tables and arrays, and read them back | [`run`] |
+//! | put a sweep into one page that slides along it | [`explore`] |
 //! | the program `pbif` | [`cli`] |
 //!
 //! Modules depend on those above them in this table, never the other way.
@@ -28,6 +29,7 @@ pub mod cli;
 pub mod compare;
 pub mod continuation;
 pub mod density;
+pub mod explore;
 pub mod figure;
 pub mod formula;
 pub mod generator;

@@ -93,6 +93,19 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "explore",
+        &[
+            "cancellation",
+            "system",
+            "space",
+            "density",
+            "topology",
+            "continuation",
+            "sweep_file",
+            "run",
+        ],
+    ),
+    (
         "cli",
         &[
             "cancellation",
@@ -110,6 +123,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "run",
             "figure",
             "sweep_file",
+            "explore",
         ],
     ),
 ];

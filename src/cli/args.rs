@@ -16,6 +16,7 @@ Examples:
   pbif compare sweeps/coulomb_fc.toml                          the methods side by side
   pbif detect output/coulomb_fc --set detect.confidence=0.99   detect again, without solving
   pbif plot output/coulomb_fc        draw again
+  pbif explore output/coulomb_fc     one page that slides through the densities of the run
 
 Exit status: 0 done; 1 finished, but some row is unresolved, did not converge or has no steady state;
 2 bad usage or input, nothing written; 130 interrupted.";
@@ -50,6 +51,13 @@ const PLOT_EXAMPLES: &str = "\
 Examples:
   pbif plot output/coulomb_fc
   pbif plot output/coulomb_fc --set 'figures.at=[0.0, 0.005]' --out more_figures";
+
+const EXPLORE_EXAMPLES: &str = "\
+Examples:
+  pbif explore output/coulomb_fc
+  pbif explore output/coulomb_fc --html coulomb.html
+
+The page is one file that needs no network and nothing installed but a browser: open it, send it, put it beside a paper.";
 
 /// Finds where the steady-state density of a noisy oscillator changes its topology (P-bifurcations).
 #[derive(Debug, Parser)]
@@ -103,6 +111,13 @@ pub(super) enum Command {
         /// What to draw.
         #[command(flatten)]
         run: PlotArguments,
+    },
+    /// Write one page in which a browser slides through a stored run: densities, what was found in them, where they change
+    #[command(after_help = EXPLORE_EXAMPLES)]
+    Explore {
+        /// What to show.
+        #[command(flatten)]
+        run: ExploreArguments,
     },
     /// List the models, or show one: equations, axes, parameters, domain, source
     #[command(after_help = "Examples:\n  pbif systems\n  pbif systems dahl")]
@@ -189,6 +204,19 @@ pub(crate) struct PlotArguments {
     /// Folder for the figures [default: RUN/figures]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// No progress and no warnings on stderr, results alone
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+/// A stored run that is put into a page.
+#[derive(Debug, Args)]
+pub(crate) struct ExploreArguments {
+    /// Folder of a run, as `pbif sweep` left it
+    pub(crate) run: PathBuf,
+    /// File of the page; one that is there is replaced [default: RUN/explorer.html]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) html: Option<PathBuf>,
     /// No progress and no warnings on stderr, results alone
     #[arg(long)]
     pub(crate) quiet: bool,

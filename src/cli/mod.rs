@@ -4,6 +4,7 @@ mod args;
 mod check;
 mod compare;
 mod detect;
+mod explore;
 mod output;
 mod plot;
 mod stored;
@@ -67,6 +68,9 @@ pub(crate) enum CommandError {
     /// A figure cannot be drawn.
     #[error(transparent)]
     Figure(#[from] crate::figure::FigureError),
+    /// A page cannot be made.
+    #[error(transparent)]
+    Explore(#[from] crate::explore::ExploreError),
     /// The threads cannot be made.
     #[error("cannot start the threads: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -125,6 +129,7 @@ fn dispatch(command: &Command) -> Result<Outcome, CommandError> {
         }
         Command::Detect { run } => detect::run(run),
         Command::Plot { run } => plot::run(run),
+        Command::Explore { run } => explore::run(run),
         Command::Systems { name: None } => print(&systems::list()),
         Command::Systems { name: Some(name) } => print(&systems::describe(name)?),
     }

@@ -7,7 +7,7 @@ use super::RunError;
 
 /// Writes a file so that a killed program leaves either the old content or the new. Missing folders on the
 /// way are made.
-pub(super) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
+pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
     let failed = |source| RunError::Write {
         path: path.to_owned(),
         source,

@@ -28,6 +28,7 @@ mod stored_tests;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use atomic::write_atomically;
 pub use bifurcations::{
     bifurcations_csv, bifurcations_json, bifurcations_markdown, bifurcations_tex,
 };

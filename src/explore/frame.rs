@@ -1,0 +1,129 @@
+//! What the page is told of one value of the parameter: how the solve went, and what the detector found. Arrays stand elsewhere.
+
+use serde::Serialize;
+
+use crate::continuation::{Point, SolveReport};
+use crate::density::{EstimatedDensity, Moments, Variants};
+use crate::run::finding_in_words;
+use crate::system::Family;
+use crate::topology::{Detection, Feature, FeatureKind, Verdict};
+
+/// One value of the parameter without its arrays. Numbers are those of `points.csv` and `features.csv`.
+#[derive(Debug, Serialize)]
+pub(super) struct Frame {
+    pub(super) value: f64,
+    status: &'static str,
+    method: &'static str,
+    iterations: usize,
+    residual: f64,
+    solver_error: f64,
+    escape_rate: f64,
+    negative_mass: f64,
+    edge_mass: f64,
+    /// Hellinger distance to the value below.
+    distance: Option<f64>,
+    seconds: f64,
+    /// What must be known of this value, in sentences.
+    findings: Vec<String>,
+    /// Mean and standard deviation of every axis.
+    moments: Vec<(f64, f64)>,
+    /// Of every watched density; empty where there is none.
+    found: Vec<Found>,
+}
+
+/// What was found in one density.
+#[derive(Debug, Serialize)]
+struct Found {
+    /// Counts in words.
+    words: String,
+    /// Whether all that the words count was seen.
+    seen: bool,
+    features: Vec<Mark>,
+}
+
+/// A peak, valley, crater or ring that is there, or may be.
+#[derive(Debug, Serialize)]
+struct Mark {
+    kind: &'static str,
+    at: Vec<f64>,
+    density: f64,
+    persistence: f64,
+    certain: bool,
+}
+
+impl Frame {
+    pub(super) fn new(point: &Point, family: &Family) -> Self {
+        let report = &point.report;
+        let moments = |of: &Moments| (of.mean, of.standard_deviation);
+        Self {
+            value: point.value,
+            status: report.status.word(),
+            method: report.method,
+            iterations: report.iterations,
+            residual: report.residual,
+            solver_error: report.solver_error,
+            escape_rate: report.escape_rate,
+            negative_mass: report.own.negative_mass,
+            edge_mass: report.edge_mass.iter().sum(),
+            distance: point.distance,
+            seconds: point.seconds,
+            findings: sentences(report, family),
+            moments: point.moments.iter().map(moments).collect(),
+            found: point.detections.iter().map(Found::new).collect(),
+        }
+    }
+}
+
+fn sentences(report: &SolveReport, family: &Family) -> Vec<String> {
+    let findings = report.findings.iter();
+    findings
+        .map(|finding| finding_in_words(family, finding))
+        .collect()
+}
+
+impl Found {
+    fn new(detection: &Detection) -> Self {
+        let shown = |feature: &&Feature| feature.verdict != Verdict::Absent;
+        let features = detection.features.iter().filter(shown);
+        Self {
+            words: detection.signature.to_string(),
+            seen: detection.is_seen,
+            features: features.map(Mark::new).collect(),
+        }
+    }
+}
+
+impl Mark {
+    fn new(feature: &Feature) -> Self {
+        Self {
+            kind: match feature.kind {
+                FeatureKind::Peak => "peak",
+                FeatureKind::Valley => "valley",
+                FeatureKind::Crater => "crater",
+                FeatureKind::Ring => "ring",
+            },
+            at: feature.position.clone(),
+            density: feature.density,
+            persistence: feature.persistence,
+            certain: feature.verdict == Verdict::Present,
+        }
+    }
+}
+
+/// Half-width of the band that is drawn around a density, one value a cell, and what it is in words: two standard errors of sampling, or
+/// what a second discretisation differs by; nothing where the method states neither.
+pub(super) fn band(density: &EstimatedDensity) -> Option<(Vec<f64>, &'static str)> {
+    if density.is_noisy() {
+        let twice = density.standard_error.iter().map(|error| 2.0 * error);
+        return Some((twice.collect(), "± 2 standard errors of sampling"));
+    }
+    let Variants::Scheme(second) = &density.variants else {
+        return None;
+    };
+    let values = density.density.values.iter().zip(second);
+    let difference = values.map(|(value, second)| (value - second).abs());
+    Some((
+        difference.collect(),
+        "± the difference to a second discretisation on the same cells",
+    ))
+}

@@ -1,0 +1,80 @@
+//! The page as one file: its sources put together, its data in blocks. It refers to nothing outside itself, and its content security
+//! policy lets it run its own script and nothing else.
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use sha2::{Digest as _, Sha256};
+
+const FRAME: &str = include_str!("page/page.html");
+const STYLE: &str = include_str!("page/page.css");
+
+/// The parts of the script in the order in which they need each other.
+const SCRIPT: [&str; 12] = [
+    include_str!("page/inflate.js"),
+    include_str!("page/unpack.js"),
+    include_str!("page/numbers.js"),
+    include_str!("page/colours.js"),
+    include_str!("page/pens.js"),
+    include_str!("page/contours.js"),
+    include_str!("page/plots.js"),
+    include_str!("page/data.js"),
+    include_str!("page/panels.js"),
+    include_str!("page/words.js"),
+    include_str!("page/state.js"),
+    include_str!("page/page.js"),
+];
+
+/// The page with this title, this deflated scene and these blocks of packed values.
+pub(super) fn page(title: &str, scene: &[u8], blocks: &[Vec<u8>]) -> String {
+    let script = format!("(() => {{\n\"use strict\";\n{}}})();\n", SCRIPT.concat());
+    let policy = format!(
+        "default-src 'none'; script-src '{}'; style-src '{}'; img-src data: blob:; base-uri 'none'; form-action 'none'",
+        hash(&script),
+        hash(STYLE)
+    );
+    let title = escaped(title);
+    let mut data = block("scene", scene);
+    for (number, bytes) in blocks.iter().enumerate() {
+        data += &block(&format!("block-{number}"), bytes);
+    }
+    // What is filled in is searched for in the frame alone, never in what was filled in before.
+    let mut html = String::with_capacity(data.len() + script.len() + STYLE.len() + FRAME.len());
+    for piece in FRAME.split_inclusive("-->") {
+        let (before, mark) = match piece.rfind("<!--") {
+            Some(at) => piece.split_at(at),
+            None => (piece, ""),
+        };
+        html += before;
+        html += match mark {
+            "<!--policy-->" => &policy,
+            "<!--title-->" => &title,
+            "<!--style-->" => STYLE,
+            "<!--data-->" => &data,
+            "<!--script-->" => &script,
+            other => other,
+        };
+    }
+    html
+}
+
+/// What a content security policy calls a script or style that it lets run.
+fn hash(text: &str) -> String {
+    format!("sha256-{}", STANDARD.encode(Sha256::digest(text.as_bytes())))
+}
+
+/// Bytes in a script that no browser runs.
+fn block(id: &str, bytes: &[u8]) -> String {
+    let text = STANDARD.encode(bytes);
+    format!("<script type=\"application/octet-stream\" id=\"{id}\">{text}</script>\n")
+}
+
+fn escaped(text: &str) -> String {
+    let letter = |c: char| match c {
+        '&' => "&amp;".to_owned(),
+        '<' => "&lt;".to_owned(),
+        '>' => "&gt;".to_owned(),
+        '"' => "&quot;".to_owned(),
+        c => c.to_string(),
+    };
+    text.chars().map(letter).collect()
+}

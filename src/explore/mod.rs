@@ -1,0 +1,41 @@
+//! The explorer: one page that slides along a parameter and shows the densities, what was found in them and where it changes.
+//!
+//! [`StoredPage`] puts a finished sweep into one file that needs no network: its densities are packed ([`Packed`]) and stand in
+//! the page itself. The sources of the page are the files in `page/`; they are put together here and run nowhere else.
+//!
+//! ```
+//! use pbif::cancellation::Cancellation;
+//! use pbif::explore::StoredPage;
+//! use pbif::sweep_file::SweepFile;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let mut file = SweepFile::parse("bistable.toml", include_str!("../../sweeps/bistable.toml"));
+//! file.set("sweep.points", "11").set("cells.x.count", "60");
+//! let never = Cancellation::new();
+//! let sweep = file.validate()?.prepare(&never)?;
+//! let result = sweep.run(&never, &mut ())?;
+//! let page = StoredPage::new(&sweep, &result)?;
+//! assert!(page.html().starts_with("<!doctype html>"));
+//! # Ok(())
+//! # }
+//! ```
+
+mod frame;
+mod html;
+mod pack;
+mod scene;
+mod stored;
+
+pub use pack::{PackError, Packed, Scale};
+pub use stored::StoredPage;
+
+/// Why a page could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum ExploreError {
+    /// Values cannot be packed.
+    #[error(transparent)]
+    Pack(#[from] PackError),
+    /// What the page is told cannot be written.
+    #[error("cannot compose the page: {0}")]
+    Compose(#[from] serde_json::Error),
+}

@@ -1,0 +1,278 @@
+// The panels of the page: joint density, marginals, diagram. Each draws itself with any pen into any size.
+
+/** Shares of the largest value at which contours are drawn. */
+const LEVELS = [0.1, 0.3, 0.5, 0.7, 0.9];
+/** Logarithmic contours: powers of ten below the largest value. */
+const LOG_LEVELS = [0.1, 1e-2, 1e-3, 1e-4, 1e-5];
+
+const EMPTY_WORDS = {
+  "no-steady-state": "no steady state in Ω",
+  "several-classes": "several steady states",
+};
+
+/** What stands where a density would, in words. */
+const drawEmpty = (pen, rect, theme, size, words) => {
+  const { left, top, width, height } = rect;
+  pen.clipped(rect, () => {
+    for (let x = -height; x < width; x += 12) {
+      pen.line([[left + x, top + height], [left + x + height, top]], { colour: theme.empty, width: 1 });
+    }
+  });
+  pen.text(left + 0.5 * width, top + 0.5 * height, words, { colour: theme.ink, size: 1.3 * size, halo: theme.paper });
+};
+
+const emptyWords = (frame) => (frame ? EMPTY_WORDS[frame.status] ?? "no density" : "waiting for the first density");
+
+/** The image of a joint density over a plot. */
+const drawHeat = (plot, observable, values, colours) => {
+  const { edges } = observable;
+  const rows = edges[1].length - 1;
+  const palette = coloursOf(colours).pixels;
+  const share = shareOf(colours);
+  plot.pen.image(plot.rect, (image, columns, lines) => {
+    const { left, top, width, height } = plot.rect;
+    const across = Array.from({ length: columns }, (_, c) => cellOf(edges[0], plot.x.from(left + ((c + 0.5) / columns) * width)));
+    const up = Array.from({ length: lines }, (_, l) => cellOf(edges[1], plot.y.from(top + ((l + 0.5) / lines) * height)));
+    const shades = new Uint32Array(values.length);
+    for (let i = 0; i < values.length; i++) shades[i] = palette[Math.round(255 * clamp(share(values[i]), 0, 1))];
+    for (let line = 0; line < lines; line++) {
+      for (let column = 0; column < columns; column++) {
+        const inside = across[column] >= 0 && up[line] >= 0;
+        image[line * columns + column] = inside ? shades[across[column] * rows + up[line]] : 0;
+      }
+    }
+  });
+};
+
+/** Joint density of two axes as heat map with contours, or its difference to the pinned one. */
+const drawJoint = (pen, width, height, view, size) => {
+  const { source, frame, pinned, k, theme, options } = view;
+  const observable = source.observables[k];
+  const density = frame?.densities[k];
+  const values = density?.values;
+  const against = options.difference && pinned?.densities[k]?.values;
+  const shown = values && against ? values.map((value, i) => value - against[i]) : values;
+  const top = against && shown ? Math.max(largest(shown), largest(shown.map((value) => -value)))
+    : options.lock || (values ? largest(values) : 1);
+  const colours = { kind: against ? "difference" : options.log ? "log" : "linear", top };
+  const [x, y] = [view.window(k, 0), view.window(k, 1)];
+  const inner = height - roomBelow(size) - 1.8 * size;
+  const left = marginFor(y, inner, size);
+  const rect = { left, top: 1.8 * size, width: Math.max(40, width - left - roomForBar(colours, inner, size)), height: inner };
+  const plot = new Plot(pen, rect, x, y, theme, size);
+  if (!shown) drawEmpty(pen, rect, theme, size, emptyWords(frame));
+  else {
+    drawHeat(plot, observable, shown, colours);
+    if (options.contours) drawContours(plot, observable, shown, colours, largest(values));
+    if (options.marks) plot.clipped(() => drawMarks(plot, frame.found[k], size));
+    colourBar(pen, rect, colours, theme, size, against ? `Δ${observable.title}` : observable.title);
+  }
+  if (view.section !== null && shown) {
+    const level = plot.y.to(view.section);
+    plot.clipped(() => {
+      pen.line([[rect.left, level], [rect.left + rect.width, level]], { colour: "#000", width: 3.5, alpha: 0.6 });
+      pen.line([[rect.left, level], [rect.left + rect.width, level]], { colour: "#fff", width: 1.5 });
+    });
+  }
+  plot.axes(observable.symbols[0], observable.symbols[1]);
+  return plot;
+};
+
+const drawContours = (plot, observable, values, colours, top) => {
+  if (colours.kind === "difference") {
+    plot.clipped(() => plot.pen.segments(crossings(plot, observable, values, 0), { colour: "#555", width: 0.8 }));
+    return;
+  }
+  plot.clipped(() => {
+    for (const level of colours.kind === "log" ? LOG_LEVELS : LEVELS) {
+      const shade = shareOf(colours)(level * top);
+      const colour = shade > 0.55 ? "#000" : "#fff";
+      plot.pen.segments(crossings(plot, observable, values, level * top), { colour, width: 0.8 });
+    }
+  });
+};
+
+const crossings = (plot, { centres: [xs, ys] }, values, level) =>
+  contour(values, xs.map(plot.x.to), ys.map(plot.y.to), level);
+
+const drawMarks = (plot, found, size) => {
+  for (const mark of found?.features ?? []) {
+    const [x, y] = plot.place(mark.at);
+    drawMark(plot.pen, mark.kind, x, y, { colour: "#fff", halo: "#000", radius: 0.34 * size, alpha: mark.certain ? 1 : 0.5 });
+  }
+};
+
+/** A density of one variable as line with its band, features marked, and the pinned one dashed. */
+const drawMarginal = (pen, width, height, view, size) => {
+  const { source, frame, pinned, k, theme, options } = view;
+  const observable = source.observables[k];
+  const density = frame?.densities[k];
+  const x = view.window(k, 0);
+  const heights = [density, pinned?.densities[k]].map((one) => (one ? largest(one.values) : 0));
+  // Locked colours lock the heights too: states can then be compared by eye.
+  const y = [0, roundUp(1.05 * ((options.lock ? source.tops[k] : Math.max(...heights)) || 1))];
+  const left = marginFor(y, height - roomBelow(size), size);
+  const rect = { left, top: 0.8 * size, width: width - left - 0.8 * size, height: height - roomBelow(size) - 0.8 * size };
+  const plot = new Plot(pen, rect, x, y, theme, size);
+  plot.axes(observable.symbols[0], observable.title, { grid: true });
+  if (!density) drawEmpty(pen, rect, theme, size, emptyWords(frame));
+  plot.clipped(() => {
+    if (density) drawBand(plot, observable, density);
+    const other = pinned?.densities[k];
+    if (other) pen.line(curve(plot, observable, other.values), { colour: theme.pinned, width: 1.8, dash: [6, 4] });
+    if (density) pen.line(curve(plot, observable, density.values), { colour: theme.line, width: 2 });
+    if (!options.marks || !density) return;
+    for (const mark of frame.found[k]?.features ?? []) {
+      const [px, py] = plot.place([mark.at[0], mark.density]);
+      drawMark(pen, mark.kind, px, py, { colour: theme.mark, halo: theme.paper, radius: 0.34 * size, alpha: mark.certain ? 1 : 0.45 });
+    }
+  });
+  return plot;
+};
+
+const curve = (plot, observable, values) => observable.centres[0].map((x, i) => plot.place([x, values[i]]));
+
+const drawBand = (plot, observable, { values, band }) => {
+  if (!band) return;
+  const xs = observable.centres[0];
+  const above = xs.map((x, i) => plot.place([x, values[i] + band[i]]));
+  const below = xs.map((x, i) => plot.place([x, values[i] - band[i]]));
+  plot.pen.area([...above, ...below.reverse()], { colour: plot.theme.line, alpha: 0.25 });
+};
+
+/** The section of a joint density along its first axis, through `view.section` of the second. */
+const drawSection = (pen, width, height, view, size) => {
+  const { source, frame, pinned, k, theme } = view;
+  const observable = source.observables[k];
+  const row = cellOf(observable.edges[1], view.section);
+  const cut = (of) => {
+    const values = of?.densities[k]?.values;
+    const rows = observable.centres[1].length;
+    return values && row >= 0 ? observable.centres[0].map((_, i) => values[i * rows + row]) : null;
+  };
+  const [here, there] = [cut(frame), cut(pinned)];
+  const top = Math.max(here ? largest(here) : 0, there ? largest(there) : 0, 1e-300);
+  const y = [0, roundUp(1.05 * top)];
+  const left = marginFor(y, height - roomBelow(size), size);
+  const rect = { left, top: 0.8 * size, width: width - left - 0.8 * size, height: height - roomBelow(size) - 0.8 * size };
+  const plot = new Plot(pen, rect, view.window(k, 0), y, theme, size);
+  plot.axes(observable.symbols[0], `p(${observable.symbols[0]}, ${number(view.section, 3)})`, { grid: true });
+  if (!here) drawEmpty(pen, rect, theme, size, emptyWords(frame));
+  plot.clipped(() => {
+    if (there) pen.line(curve(plot, observable, there), { colour: theme.pinned, width: 1.8, dash: [6, 4] });
+    if (here) pen.line(curve(plot, observable, here), { colour: theme.line, width: 2 });
+  });
+  return plot;
+};
+
+/** Ends of the columns of the diagram: half-way between neighbouring values. */
+const columnEdges = (values) => {
+  if (values.length < 2) return [values[0] - 0.5, values[0] + 0.5];
+  const between = values.slice(1).map((value, i) => 0.5 * (value + values[i]));
+  return [values[0], ...between, values[values.length - 1]];
+};
+
+/** The diagram of a marginal over the parameter, without the cursor. */
+const drawDiagram = (pen, width, height, view, size) => {
+  const { source, k, theme, scene, options } = view;
+  const observable = source.observables[k];
+  const frames = source.frames;
+  const y = view.window(k, 0);
+  const colours = { kind: options.log ? "log" : "linear", top: source.tops[k] || 1 };
+  const top = 2 + 1.5 * size * labelRows(view);
+  const inner = height - roomBelow(size) - top;
+  const left = marginFor(y, inner, size);
+  const rect = { left, top, width: width - left - roomForBar(colours, inner, size), height: inner };
+  const plot = new Plot(pen, rect, view.range, y, theme, size);
+  drawColumns(plot, frames, observable, k, colours);
+  plot.clipped(() => drawBranches(plot, frames, k, size));
+  drawLabels(plot, view, size);
+  plot.axes(scene.swept.symbol, observable.symbols[0]);
+  colourBar(pen, rect, colours, theme, size, observable.title);
+  return plot;
+};
+
+const drawColumns = (plot, frames, observable, k, colours) => {
+  if (!frames.length) return;
+  const edges = columnEdges(frames.map((frame) => frame.value));
+  const palette = coloursOf(colours).pixels;
+  const share = shareOf(colours);
+  const { left, top, width, height } = plot.rect;
+  const shades = frames.map((frame) => {
+    const values = frame.densities[k]?.values;
+    return values && Uint32Array.from(values, (value) => palette[Math.round(255 * clamp(share(value), 0, 1))]);
+  });
+  plot.pen.image(plot.rect, (image, columns, lines) => {
+    const up = Array.from({ length: lines }, (_, l) => cellOf(observable.edges[0], plot.y.from(top + ((l + 0.5) / lines) * height)));
+    for (let column = 0; column < columns; column++) {
+      const shade = shades[cellOf(edges, plot.x.from(left + ((column + 0.5) / columns) * width))];
+      if (!shade) continue;
+      for (let line = 0; line < lines; line++) if (up[line] >= 0) image[line * columns + column] = shade[up[line]];
+    }
+  });
+};
+
+/** Peaks as dots, valleys as small circles. */
+const drawBranches = (plot, frames, k, size) => {
+  let before = -Infinity;
+  for (const frame of frames) {
+    const x = plot.x.to(frame.value);
+    // Values that lie closer together than a dot is wide are drawn once.
+    if (x - before < 0.12 * size) continue;
+    before = x;
+    for (const mark of frame.found[k]?.features ?? []) {
+      if (!mark.certain) continue;
+      const y = plot.y.to(mark.at[0]);
+      const r = 0.16 * size;
+      const dot = Array.from({ length: 9 }, (_, i) => [x + r * Math.cos((i * Math.PI) / 4), y + r * Math.sin((i * Math.PI) / 4)]);
+      if (mark.kind === "peak") plot.pen.area(dot, { colour: "#e8453c" });
+      else plot.pen.line(dot, { colour: "#fff", width: 1.2 });
+    }
+  }
+};
+
+/** Located changes, each with the row in which its name stands so that names do not overlap. */
+const placedLabels = (view) => {
+  const changes = view.scene.labels.filter((label) => label.kind === "bifurcation");
+  const ends = [];
+  return changes.map((label) => {
+    const x = (label.value - view.range[0]) / (view.range[1] - view.range[0]);
+    let row = ends.findIndex((end) => end < x);
+    if (row < 0) row = ends.length;
+    ends[row] = x + 0.055;
+    return { label, row };
+  });
+};
+const labelRows = (view) => Math.max(1, ...placedLabels(view).map(({ row }) => row + 1));
+
+const drawLabels = (plot, view, size) => {
+  const { pen, rect, theme } = plot;
+  const bottom = rect.top + rect.height;
+  for (const { label, row } of placedLabels(view)) {
+    const own = label.observable === view.k;
+    const [x, low, high] = [label.value, label.lower, label.upper].map(plot.x.to);
+    plot.clipped(() => {
+      if (high - low > 1) pen.area([[low, rect.top], [high, rect.top], [high, bottom], [low, bottom]], { colour: theme.cursor, alpha: 0.3 });
+      pen.line([[x, rect.top], [x, bottom]], { colour: "#000", width: 3, alpha: own ? 0.5 : 0.25 });
+      pen.line([[x, rect.top], [x, bottom]], { colour: "#fff", width: 1.4, dash: own ? [] : [3, 4] });
+    });
+    const y = rect.top - 0.45 * size - 1.4 * size * row;
+    pen.line([[x, rect.top], [x, y + 2]], { colour: theme.faint, width: 1 });
+    pen.text(x, y, label.label, { colour: own ? theme.ink : theme.faint, size: 0.95 * size, halo: theme.paper });
+  }
+};
+
+/** The cursor of the diagram, and where the pinned value stands. */
+const drawCursor = (plot, view) => {
+  const { pen, rect, theme } = plot;
+  const bottom = rect.top + rect.height;
+  const line = (value, colour, dash) => {
+    const x = plot.x.to(value);
+    pen.line([[x, rect.top], [x, bottom]], { colour: theme.paper, width: 4, alpha: 0.7 });
+    pen.line([[x, rect.top], [x, bottom]], { colour, width: 2, dash });
+    pen.area([[x - 6, bottom + 8], [x + 6, bottom + 8], [x, bottom]], { colour });
+  };
+  if (view.pinned) line(view.pinned.value, theme.pinned, [6, 4]);
+  if (view.frame) line(view.frame.value, theme.cursor, []);
+};
+

@@ -1,0 +1,101 @@
+// What the page says in words: counts, status, numbers, the table of located changes, the facts of the model.
+
+const make = (tag, attributes = {}, ...children) => {
+  const node = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith("on")) node.addEventListener(name.slice(2), value);
+    else if (value === true) node.setAttribute(name, "");
+    else if (value !== false && value !== null && value !== undefined) node.setAttribute(name, value);
+  }
+  node.append(...children.flat());
+  return node;
+};
+const fill = (node, ...children) => node.replaceChildren(...children.flat());
+
+const STATUS_WORDS = {
+  solved: "Steady state found.",
+  escaping: "Mass leaves Ω: the density is quasi-stationary, conditioned on staying.",
+  "not-converged": "The solver stopped before its tolerance: what is shown is its last iterate.",
+  "no-steady-state": "No steady state in Ω.",
+  "several-classes": "Several steady states: which one is reached depends on the start.",
+};
+const isSound = (status) => status === "solved" || status === "escaping";
+
+/** One sentence of what is seen at a frame, for people who listen and for the line above the panels. */
+const sentence = (scene, source, frame) => {
+  const at = `${plain(scene.swept.symbol)} = ${plainNumber(frame.value, 6)}`;
+  if (!frame.densities.length) return `${at}: ${STATUS_WORDS[frame.status] ?? frame.status}`;
+  const counts = source.observables.map((one, k) => `${plain(one.title)} ${countWords(frame.found[k])}`);
+  return `${at}: ${counts.join("; ")}${isSound(frame.status) ? "" : `. ${STATUS_WORDS[frame.status]}`}`;
+};
+const countWords = (found) => (found ? found.words + (found.seen ? "" : " (its rim is not all seen on these cells)") : "–");
+
+/** Counts, findings and numbers of a frame. */
+const reading = ({ scene, source, frame, pinned }) => {
+  const counts = source.observables.map((one, k) => [
+    make("dt", {}, nodes(one.title)), make("dd", {}, countWords(frame.found[k])),
+  ]);
+  const notices = frame.findings.map((finding) => make("p", { class: "notice" }, `${finding}.`));
+  if (!isSound(frame.status)) notices.unshift(make("p", { class: "notice" }, STATUS_WORDS[frame.status] ?? frame.status));
+  const parts = [make("dl", { class: "counts" }, counts.flat()), ...notices];
+  if (frame.moments.length) parts.push(momentsTable(scene, frame));
+  if (pinned) parts.push(comparison(source, frame, pinned, scene));
+  parts.push(numbersTable(frame));
+  return parts;
+};
+
+const row = (name, ...values) =>
+  make("tr", {}, make("th", { scope: "row" }, name), values.map((value) => make("td", { class: "number" }, nodes(value))));
+
+const momentsTable = (scene, frame) => make("table", {},
+  make("thead", {}, make("tr", {}, make("th", { scope: "col" }, "axis"),
+    make("th", { scope: "col", class: "number" }, "mean"), make("th", { scope: "col", class: "number" }, "standard deviation"))),
+  make("tbody", {}, frame.moments.map(([mean, deviation], axis) => {
+    // A mean that is rounding of the solver beside the width is zero to the eye.
+    const shown = Math.abs(mean) < 1e-9 * deviation ? 0 : mean;
+    return row(nodes(scene.axes[axis].symbol), number(shown, 5), number(deviation, 5));
+  })));
+
+const comparison = (source, frame, pinned, scene) => {
+  const rows = source.observables.map((one, k) => {
+    const [p, q] = [frame.densities[k]?.values, pinned.densities[k]?.values];
+    return row(nodes(one.title), p && q ? number(hellinger(p, q, one.volumes), 4) : "–");
+  });
+  return make("table", {}, make("caption", {}, "Hellinger distance to the state pinned at ", nodes(scene.swept.symbol),
+    ` = ${plainNumber(pinned.value, 6)} (0 the same, 1 nothing in common)`), make("tbody", {}, rows));
+};
+
+const numbersTable = (frame) => {
+  const rows = [["residual", frame.residual], ["solver's error", frame.solver_error], ["escape rate", frame.escape_rate],
+    ["negative mass", frame.negative_mass], ["mass at the edges", frame.edge_mass], ["distance to the value below", frame.distance]];
+  const shown = rows.filter(([, value]) => value !== null && value !== undefined);
+  return make("details", {}, make("summary", {}, "Numbers of the solve"),
+    make("table", {}, make("tbody", {}, row("method", frame.method), row("iterations", String(frame.iterations)),
+      shown.map(([name, value]) => row(name, number(value, 4))))));
+};
+
+/** The table of located changes, ends and failures; `go` is what a click does. */
+const changesTable = (scene, source, go) => {
+  if (!scene.labels.some(({ kind }) => kind !== "end")) return [make("p", {}, "No change of topology was located on this sweep.")];
+  const head = ["", "value", "of", "from … to", "status"].map((name) => make("th", { scope: "col" }, name));
+  const rows = scene.labels.filter(({ kind }) => kind !== "end").map((label) => make("tr", { "data-at": label.value },
+    make("td", {}, make("button", { type: "button", onclick: () => go(label.value), title: `Go to ${label.label}` }, label.label)),
+    make("td", {}, withError(label.value, label.error)),
+    make("td", {}, label.observable === null ? "" : nodes(source.observables[label.observable].title)),
+    make("td", {}, label.kind === "failure" ? "no density to rely on" : `${label.before} → ${label.after}`,
+      label.change ? make("div", { class: "hint" }, label.change) : ""),
+    make("td", {}, label.status ?? "")));
+  return [make("table", {}, make("thead", {}, make("tr", {}, head)), make("tbody", {}, rows))];
+};
+
+/** Equations, parameters and the sweep file. */
+const facts = (scene) => [
+  make("h3", {}, scene.model.title),
+  make("pre", {}, scene.model.equations.join("\n")),
+  make("table", {}, make("tbody", {}, scene.parameters.map((parameter) => make("tr", {},
+    make("th", { scope: "row" }, nodes(parameter.symbol)), make("td", {}, parameter.meaning),
+    make("td", {}, parameter.value === null ? "swept" : plainNumber(parameter.value, 6)))))),
+  make("p", { class: "hint" }, `Source: ${scene.model.source}`),
+  make("pre", { tabindex: "0", "aria-label": "Sweep file" }, scene.sweep_file),
+];
+

@@ -1,0 +1,175 @@
+//! What the page is told once: the model, its parameters, what is watched, what was located.
+
+use serde::Serialize;
+
+use crate::continuation::{LabelledPoint, PointType, Subject};
+use crate::density::Observable;
+use crate::sweep_file::Sweep;
+use crate::system::Family;
+
+/// The part of a page's data that does not change along the sweep.
+#[derive(Debug, Serialize)]
+pub(super) struct Scene {
+    pub(super) program: String,
+    title: String,
+    model: Model,
+    swept: Swept,
+    parameters: Vec<Parameter>,
+    axes: Vec<Axis>,
+    observables: Vec<Watched>,
+    /// The complete sweep file.
+    sweep_file: String,
+    pub(super) labels: Vec<Label>,
+}
+
+#[derive(Debug, Serialize)]
+struct Model {
+    name: String,
+    title: String,
+    equations: Vec<String>,
+    source: String,
+}
+
+/// The path's coordinate.
+#[derive(Debug, Serialize)]
+struct Swept {
+    name: String,
+    symbol: String,
+    from: f64,
+    to: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct Parameter {
+    name: String,
+    symbol: String,
+    meaning: String,
+    allowed: &'static str,
+    /// `None` where the path moves it.
+    value: Option<f64>,
+}
+
+#[derive(Debug, Serialize)]
+struct Axis {
+    name: String,
+    symbol: String,
+    meaning: String,
+}
+
+/// A watched density.
+#[derive(Debug, Serialize)]
+struct Watched {
+    name: String,
+    /// The axes of the state that it keeps, in its order.
+    axes: Vec<usize>,
+}
+
+/// A located bifurcation, an end or a failure.
+#[derive(Debug, Serialize)]
+pub(super) struct Label {
+    label: String,
+    kind: &'static str,
+    value: f64,
+    error: f64,
+    lower: f64,
+    upper: f64,
+    /// Number among the observables.
+    observable: Option<usize>,
+    before: Option<String>,
+    after: Option<String>,
+    status: Option<&'static str>,
+    change: &'static str,
+    method: &'static str,
+}
+
+impl Scene {
+    /// What is said of a sweep, with the rows that were found on it.
+    pub(super) fn new(sweep: &Sweep, labels: &[LabelledPoint]) -> Self {
+        let subject = sweep.problem.subject();
+        let family = &subject.family;
+        let (from, to) = family.ends();
+        let watched = |observable: &Observable| Watched {
+            name: observable.name(family),
+            axes: observable.axes(),
+        };
+        Self {
+            program: concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION")).to_owned(),
+            title: sweep.settings.title.clone(),
+            model: model(family),
+            swept: Swept {
+                name: family.parameter().to_owned(),
+                symbol: family.symbol().to_owned(),
+                from,
+                to,
+            },
+            parameters: parameters(family),
+            axes: axes(family),
+            observables: subject.observables.iter().map(watched).collect(),
+            sweep_file: sweep.to_toml(),
+            labels: labels.iter().map(|row| Label::new(row, subject)).collect(),
+        }
+    }
+}
+
+fn model(family: &Family) -> Model {
+    let model = family.model();
+    Model {
+        name: model.name.clone(),
+        title: model.title.clone(),
+        equations: model.equations.clone(),
+        source: model.source.clone(),
+    }
+}
+
+fn parameters(family: &Family) -> Vec<Parameter> {
+    let value = |name: &str| {
+        let mut fixed = family.fixed();
+        fixed.find(|fixed| fixed.0 == name).map(|fixed| fixed.1)
+    };
+    let described = family.model().parameters.iter();
+    let parameter = described.map(|parameter| Parameter {
+        name: parameter.name.clone(),
+        symbol: parameter.symbol.clone(),
+        meaning: parameter.meaning.clone(),
+        allowed: parameter.range.words(),
+        value: value(&parameter.name),
+    });
+    parameter.collect()
+}
+
+fn axes(family: &Family) -> Vec<Axis> {
+    let axes = family.model().axes.iter();
+    let axis = axes.map(|axis| Axis {
+        name: axis.name.clone(),
+        symbol: axis.symbol.clone(),
+        meaning: axis.meaning.clone(),
+    });
+    axis.collect()
+}
+
+impl Label {
+    pub(super) fn new(row: &LabelledPoint, subject: &Subject) -> Self {
+        let number = |wanted: Observable| {
+            let mut observables = subject.observables.iter();
+            observables.position(|&observable| observable == wanted)
+        };
+        Self {
+            label: row.label.clone(),
+            kind: match row.kind {
+                PointType::Bifurcation => "bifurcation",
+                PointType::EndPoint => "end",
+                PointType::NoConvergence => "failure",
+            },
+            value: row.value,
+            error: row.error,
+            lower: row.lower,
+            upper: row.upper,
+            observable: row.observable.and_then(number),
+            before: row.before.map(|signature| signature.to_string()),
+            after: row.after.map(|signature| signature.to_string()),
+            status: row.status.map(|status| status.word()),
+            change: row.change,
+            method: row.method,
+        }
+    }
+}
