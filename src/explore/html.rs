@@ -59,7 +59,10 @@ pub(super) fn page(title: &str, scene: &[u8], blocks: &[Vec<u8>]) -> String {
 
 /// What a content security policy calls a script or style that it lets run.
 fn hash(text: &str) -> String {
-    format!("sha256-{}", STANDARD.encode(Sha256::digest(text.as_bytes())))
+    format!(
+        "sha256-{}",
+        STANDARD.encode(Sha256::digest(text.as_bytes()))
+    )
 }
 
 /// Bytes in a script that no browser runs.
@@ -77,4 +80,65 @@ fn escaped(text: &str) -> String {
         c => c.to_string(),
     };
     text.chars().map(letter).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_page_refers_to_nothing_outside_itself() {
+        let page = page("A title", b"scene", &[b"first".to_vec()]);
+        // Names of namespaces are no references.
+        let text = page.replace("http://www.w3.org/2000/svg", "");
+        for outside in [
+            "http:", "https:", "src=", "@import", "url(", "<link", "//cdn", "fetch(", "import(",
+        ] {
+            let found: Vec<&str> = text.lines().filter(|line| line.contains(outside)).collect();
+            let own = |line: &&str| line.contains("url(#");
+            assert!(found.iter().all(own), "{outside}: {found:?}");
+        }
+        assert_eq!(page.matches("<!doctype html>").count(), 1);
+        assert!(page.contains("id=\"block-0\">Zmlyc3Q=<"));
+        assert!(!page.contains("<!--"));
+    }
+
+    #[test]
+    fn the_policy_lets_this_script_run_and_no_other() {
+        let page = page("A title", b"", &[]);
+        let policy = page.split("content=\"default-src").nth(1).unwrap();
+        let policy = policy.split('"').next().unwrap();
+        assert!(
+            policy.starts_with(" 'none';") && !policy.contains("unsafe"),
+            "{policy}"
+        );
+        let script = page
+            .split("<script>")
+            .nth(1)
+            .unwrap()
+            .split("</script>")
+            .next()
+            .unwrap();
+        let style = page
+            .split("<style>")
+            .nth(1)
+            .unwrap()
+            .split("</style>")
+            .next()
+            .unwrap();
+        assert!(policy.contains(&hash(script)) && policy.contains(&hash(style)));
+        // Handlers and styles within tags would be refused by it.
+        let words = || FRAME.split_whitespace();
+        assert!(words().all(|word| !word.starts_with("style=")));
+        assert!(words().all(|word| !(word.starts_with("on") && word.contains('='))));
+    }
+
+    #[test]
+    fn a_title_is_text_whatever_it_holds() {
+        let title = "</title><script>alert(1)</script><!--data--> & \"x\"";
+        let page = page(title, b"scene", &[]);
+        assert!(!page.contains("alert(1)</script>"));
+        assert_eq!(page.matches("id=\"scene\"").count(), 1);
+        assert!(page.contains("&lt;!--data--&gt; &amp; &quot;x&quot;"));
+    }
 }

@@ -268,10 +268,16 @@ mod tests {
             let mut largest = 0.0f64;
             for (value, back) in frames.iter().flatten().zip(back.iter().flatten()) {
                 let error = (value - back).abs();
-                assert!(error <= packed.error_at(*value), "{scale:?} {bits}: {value} {back}");
+                assert!(
+                    error <= packed.error_at(*value),
+                    "{scale:?} {bits}: {value} {back}"
+                );
                 largest = largest.max(error / packed.error_at(*value));
             }
-            assert!(largest > 0.5, "the stated error is not far from the largest: {largest}");
+            assert!(
+                largest > 0.5,
+                "the stated error is not far from the largest: {largest}"
+            );
         }
     }
 
@@ -294,7 +300,12 @@ mod tests {
         assert_eq!(zeros.unpack(&[0.0]).unwrap(), [[0.0; 3]]);
         // Alternating extremes at even steps are as far from the line as can be.
         let (up, down) = (&[1.0][..], &[-1.0][..]);
-        let wild = Packed::new(&[up, down, up, down], &[0.0, 1.0, 3.0, 7.0], Scale::Linear, 28);
+        let wild = Packed::new(
+            &[up, down, up, down],
+            &[0.0, 1.0, 3.0, 7.0],
+            Scale::Linear,
+            28,
+        );
         let back = wild.unwrap().unpack(&[0.0, 1.0, 3.0, 7.0]).unwrap();
         assert_eq!(back, [[1.0], [-1.0], [1.0], [-1.0]]);
     }
@@ -306,6 +317,9 @@ mod tests {
         broken.bytes.truncate(3);
         assert!(matches!(broken.unpack(&[0.0]), Err(PackError::Damaged(_))));
         let short = Packed { cells: 3, ..packed };
-        assert!(matches!(short.unpack(&[0.0]), Err(PackError::Length { .. })));
+        assert!(matches!(
+            short.unpack(&[0.0]),
+            Err(PackError::Length { .. })
+        ));
     }
 }

@@ -74,7 +74,11 @@ impl StoredPage {
         let has_joint = observables
             .iter()
             .any(|observable| matches!(observable, Observable::Joint(..)));
-        let ladder = if has_joint { &JOINT_BITS[..] } else { &JOINT_BITS[..1] };
+        let ladder = if has_joint {
+            &JOINT_BITS[..]
+        } else {
+            &JOINT_BITS[..1]
+        };
         let mut smallest = None;
         for &bits in ladder {
             let html = compose(sweep, result, bits)?;
@@ -143,7 +147,11 @@ fn pack<'a>(
     blocks: &mut Vec<Vec<u8>>,
 ) -> Result<Arrays<'a>, ExploreError> {
     let at: Vec<f64> = points.iter().map(|point| point.value).collect();
-    let densities = || points.iter().filter_map(|point| point.densities.get(observable));
+    let densities = || {
+        points
+            .iter()
+            .filter_map(|point| point.densities.get(observable))
+    };
     let mut add = |frames: &[&[f64]], scale: Scale, bits: u32| -> Result<Stated, ExploreError> {
         let packed = Packed::new(frames, &at, scale, bits)?;
         blocks.push(packed.bytes);
@@ -155,7 +163,9 @@ fn pack<'a>(
             cells: packed.cells,
         })
     };
-    let frames: Vec<&[f64]> = densities().map(|one| one.density.values.as_slice()).collect();
+    let frames: Vec<&[f64]> = densities()
+        .map(|one| one.density.values.as_slice())
+        .collect();
     let Some(first) = densities().next() else {
         return Ok(Arrays {
             frames: &[],
@@ -169,7 +179,10 @@ fn pack<'a>(
     let is_marginal = matches!(first.observable, Observable::Marginal(_));
     let bands: Option<Vec<_>> = densities().map(band).collect();
     let bands = bands.filter(|_| is_marginal);
-    let band_is = bands.as_ref().and_then(|bands| bands.first()).map(|one| one.1);
+    let band_is = bands
+        .as_ref()
+        .and_then(|bands| bands.first())
+        .map(|one| one.1);
     let band = bands.map(|bands| {
         let frames: Vec<&[f64]> = bands.iter().map(|one| one.0.as_slice()).collect();
         add(&frames, Scale::Root, BAND_BITS)
@@ -183,4 +196,128 @@ fn pack<'a>(
         band: band.transpose()?,
         band_is,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cancellation::Cancellation;
+    use crate::sweep_file::SweepFile;
+    use base64::Engine as _;
+    use serde_json::Value;
+    use std::io::Read as _;
+
+    fn swept(settings: &[(&str, &str)]) -> (Sweep, SweepResult) {
+        let text = include_str!("../../sweeps/coulomb_fc.toml");
+        let mut file = SweepFile::parse("coulomb_fc.toml", text);
+        file.set("locate.grid_check", "off");
+        for (key, value) in settings {
+            file.set(key, value);
+        }
+        let never = Cancellation::new();
+        let sweep = file.validate().unwrap().prepare(&never).unwrap();
+        let result = sweep.run(&never, &mut ()).unwrap();
+        (sweep, result)
+    }
+
+    const SMALL: [(&str, &str); 4] = [
+        ("sweep.points", "5"),
+        ("cells.x.count", "30"),
+        ("cells.y.count", "30"),
+        ("locate.tolerance", "0.01"),
+    ];
+
+    fn block(html: &str, id: &str) -> Vec<u8> {
+        let mark = format!("id=\"{id}\">");
+        let text = html.split(&mark).nth(1).unwrap();
+        let text = text.split("</script>").next().unwrap();
+        base64::engine::general_purpose::STANDARD
+            .decode(text)
+            .unwrap()
+    }
+
+    fn told(html: &str) -> Value {
+        let mut json = Vec::new();
+        let bytes = block(html, "scene");
+        flate2::read::ZlibDecoder::new(bytes.as_slice())
+            .read_to_end(&mut json)
+            .unwrap();
+        serde_json::from_slice(&json).unwrap()
+    }
+
+    fn packed(html: &str, stated: &Value, frames: usize) -> Packed {
+        Packed {
+            top: stated["top"].as_f64().unwrap(),
+            levels: stated["levels"].as_u64().unwrap() as u32,
+            scale: match stated["scale"].as_str() {
+                Some("root") => Scale::Root,
+                _ => Scale::Linear,
+            },
+            cells: stated["cells"].as_u64().unwrap() as usize,
+            frames,
+            bytes: block(html, &format!("block-{}", stated["block"])),
+        }
+    }
+
+    #[test]
+    fn a_page_holds_the_densities_and_what_was_found_in_them() {
+        let (sweep, result) = swept(&SMALL);
+        let page = StoredPage::new(&sweep, &result).unwrap();
+        let told = told(page.html());
+        assert_eq!(page.joint_bits(), Some(14));
+        assert_eq!(told["swept"]["name"], "f_c");
+        assert_eq!(told["sweep_file"], sweep.to_toml());
+        assert_eq!(
+            told["labels"].as_array().unwrap().len(),
+            result.labels.len()
+        );
+        let with_density = || (result.points.iter()).filter(|point| !point.densities.is_empty());
+        let at: Vec<f64> = with_density().map(|point| point.value).collect();
+        assert!(at.len() > 3);
+        for (number, point) in result.points.iter().enumerate() {
+            let frame = &told["frames"][number];
+            assert_eq!(frame["value"], point.value);
+            assert_eq!(frame["residual"], point.report.residual);
+            for (found, detection) in
+                (frame["found"].as_array().unwrap().iter()).zip(&point.detections)
+            {
+                assert_eq!(found["words"], detection.signature.to_string());
+            }
+        }
+        for (k, arrays) in told["arrays"].as_array().unwrap().iter().enumerate() {
+            let packed = packed(page.html(), &arrays["values"], at.len());
+            let frames = packed.unpack(&at).unwrap();
+            for (frame, point) in frames.iter().zip(with_density()) {
+                let stored = &point.densities[k].density;
+                let edges: Vec<f64> = serde_json::from_value(arrays["edges"][0].clone()).unwrap();
+                assert_eq!(edges, stored.axes[0].edges());
+                for (value, stored) in frame.iter().zip(&stored.values) {
+                    assert!((value - stored).abs() <= packed.error_at(*stored));
+                }
+            }
+        }
+        let bands = told["arrays"][0]["band_is"].as_str().unwrap();
+        assert!(bands.contains("second discretisation"), "{bands}");
+    }
+
+    #[test]
+    fn values_without_a_steady_state_have_a_frame_and_no_density() {
+        // Friction that feeds energy in, on a range that does not hold it.
+        let mut settings = SMALL.to_vec();
+        settings.extend([
+            ("cells.x.from", "-1.0"),
+            ("cells.x.to", "1.0"),
+            ("cells.y.from", "-1.0"),
+            ("cells.y.to", "1.0"),
+            ("method.escape_limit", "1e-3"),
+        ]);
+        let (sweep, result) = swept(&settings);
+        assert!(result.points[0].densities.is_empty());
+        let told = told(StoredPage::new(&sweep, &result).unwrap().html());
+        assert_eq!(told["frames"][0]["status"], "no-steady-state");
+        let words = told["frames"][0]["findings"][0].as_str().unwrap();
+        assert!(words.starts_with("no steady state in Ω"), "{words}");
+        let frames = told["arrays"][0]["frames"].as_array().unwrap();
+        assert!(frames.iter().all(|number| number != 0));
+    }
 }

@@ -61,6 +61,11 @@ class StoredSource {
     };
   }
 
+  /** What the band of a marginal is, in words; nothing where it has none. */
+  bandIs(k) {
+    return this.arrays[k].bandIs;
+  }
+
   /** The values of one density, computed when first asked for. */
   lazily(arrays, row) {
     let kept = null;
@@ -89,6 +94,16 @@ class StoredSource {
     return Math.abs(this.values[low] - value) <= Math.abs(this.values[high] - value) ? low : high;
   }
 }
+
+/** The part of an axis outside of which a density is nearly empty; computed once. */
+const windowOfFrame = (frame, k, axis) => {
+  const density = frame.densities[k];
+  density.windows ??= [];
+  return density.windows[axis] ??= windowOf({ observables: { [k]: density.grid }, tops: { [k]: largest(density.values) }, frames: [frame] }, k, axis);
+};
+
+/** The cells on which a frame has a watched density. */
+const gridOf = (source, frame, k) => frame?.densities[k]?.grid ?? source.observables[k];
 
 /** The part of an axis of a watched density outside of which all frames are nearly empty. */
 const windowOf = (source, k, axis) => {

@@ -20,8 +20,13 @@ class Page {
     return {
       scene: this.scene, source: this.source, frame: this.frame, pinned: this.pinned, theme: this.theme, range: this.range,
       options: { ...this.options, difference: this.options.difference && this.pinned !== null }, section: this.section, k,
-      window: (observable, axis) => this.windows[`${observable} ${axis}`] ??= windowOf(this.source, observable, axis),
+      window: (observable, axis) => this.windowOf(observable, axis),
     };
+  }
+
+  /** The part of an axis of a watched density that is worth looking at along the whole sweep. */
+  windowOf(k, axis) {
+    return this.windows[`${k} ${axis}`] ??= windowOf(this.source, k, axis);
   }
 
   /** Shows the frame nearest to a value. */
@@ -37,6 +42,18 @@ class Page {
 
   step(by) {
     this.show(this.frame.index + by);
+  }
+
+  slide(place) {
+    this.show(place);
+  }
+
+  home() {
+    this.show(0);
+  }
+
+  end() {
+    this.show(this.source.frames.length - 1);
   }
 
   /** To the next located change on either side. */
@@ -57,6 +74,10 @@ class Page {
         else this.step(1);
       }, Math.max(30, 9000 / (last + 1)));
     }
+    this.writePlay(on);
+  }
+
+  writePlay(on) {
     $("play").setAttribute("aria-pressed", String(on));
     $("play").textContent = on ? "Stop" : "Play";
     // A list of every value that passes would only be noise to who listens.
@@ -155,18 +176,36 @@ class Page {
     const { frame, scene, source } = this;
     const says = sentence(scene, source, frame);
     if ($("says").textContent !== says) $("says").textContent = says;
-    const slide = $("slide");
-    slide.max = String(source.frames.length - 1);
-    slide.value = String(frame.index);
-    slide.setAttribute("aria-valuetext", says);
-    if (document.activeElement !== $("typed")) $("typed").value = String(frame.value);
+    $("slide").setAttribute("aria-valuetext", says);
+    this.writeControls();
     fill($("words"), reading(this.view(0)));
     for (const row of $("table").querySelectorAll("tr[data-at]")) {
-      row.classList.toggle("here", source.nearest(Number(row.dataset.at)) === frame.index);
+      row.classList.toggle("here", this.isHere(Number(row.dataset.at)));
     }
     $("joint-legend").textContent = this.options.difference && this.pinned
-      ? `This density less that pinned at ${plainNumber(this.pinned.value, 6)}; grey lines where they are equal.`
+      ? `This density less that pinned at ${plainNumber(this.pinned.value, 6)}; lines at 10 and 50 % of the largest difference.`
       : "Disc: peak. Cross: saddle between peaks. Circle: crater. Double circle: ring. Pale: not certain.";
+  }
+
+  /** Whether a value is the one that is shown. */
+  isHere(value) {
+    return this.frame.index >= 0 && this.source.nearest(value) === this.frame.index;
+  }
+
+  writeControls() {
+    $("slide").max = String(this.source.frames.length - 1);
+    $("slide").value = String(this.frame.index);
+    if (document.activeElement !== $("typed")) $("typed").value = String(this.frame.value);
+  }
+
+  /** The table of located changes. */
+  tabulate() {
+    fill($("table"), changesTable(this.scene, this.source, (value) => this.go(value)));
+  }
+
+  async copySweepFile() {
+    await copy(this.scene.sweep_file);
+    flash("toml", "Copied");
   }
 
   state() {
@@ -183,7 +222,7 @@ class Page {
 
   /** Shows what an address says; what it does not say, or says wrongly, stays as it is. */
   restore(state) {
-    const { scene, source } = this;
+    const { source } = this;
     const numeric = (text) => (text !== undefined && text.trim() !== "" && Number.isFinite(Number(text)) ? Number(text) : null);
     for (const [panel, all] of [["joint", this.joints], ["diagram", this.singles]]) {
       const found = all.find((k) => source.observables[k].name === state[panel]);
@@ -201,10 +240,16 @@ class Page {
     $("lock").checked = this.options.lock !== null;
     $("section").value = this.section ?? "";
     for (const panel of ["joint", "diagram"]) $(`${panel}-choice`).value = this.k[panel] ?? "";
-    const pinned = numeric(state.pin);
-    this.pin(pinned === null ? null : source.frames[source.nearest(pinned)]);
     this.theme = themeColours();
     this.drawn = {};
+    this.restorePlace(state, numeric);
+  }
+
+  /** The part of that which says where along the sweep. */
+  restorePlace(state, numeric) {
+    const { scene, source } = this;
+    const pinned = numeric(state.pin);
+    this.pin(pinned === null ? null : source.frames[source.nearest(pinned)]);
     this.go(numeric(state[scene.swept.name]) ?? source.frames[Math.floor(source.frames.length / 2)].value);
   }
 
@@ -252,11 +297,19 @@ const exportButtons = (page, panel, name) => ["SVG", "PNG", "CSV"].map((format) 
   type: "button", "aria-label": `Save ${name} as ${format}`, onclick: () => page.export(panel, format.toLowerCase()),
 }, format));
 
+/** What is swept, and what is held. */
+const subtitle = (scene) => {
+  const { swept, parameters } = scene;
+  const held = parameters.filter(({ value }) => value !== null)
+    .flatMap(({ symbol, value }) => [", ", ...nodes(symbol), ` = ${plainNumber(value, 6)}`]).slice(1);
+  return [...nodes(swept.symbol), ` from ${plainNumber(swept.from, 6)} to ${plainNumber(swept.to, 6)}`, held.length ? "; " : "", ...held];
+};
+
 /** The parts of the page that depend on what is watched. */
 const build = (page) => {
   const { scene, source } = page;
   $("title").textContent = scene.title;
-  fill($("model"), scene.model.title);
+  fill($("model"), subtitle(scene));
   fill($("swept"), nodes(scene.swept.symbol));
   fill($("made"), `Made by ${scene.program}. ${source.note ?? ""}`);
   for (const [panel, all] of [["joint", page.joints], ["diagram", page.singles]]) {
@@ -266,28 +319,29 @@ const build = (page) => {
   }
   const figures = page.singles.map((k) => {
     const title = source.observables[k].title;
-    const band = source.arrays?.[k]?.bandIs;
     return make("figure", { "aria-label": `Marginal ${plain(title)}` },
-      make("div", { class: "head" }, make("h2", {}, nodes(title)), make("span", { class: "hint" }, band ? `band: ${band}` : ""),
+      make("div", { class: "head" }, make("h2", {}, nodes(title)),
         make("span", { class: "exports" }, exportButtons(page, `marginal-${k}`, plain(title)))),
       make("div", { class: "drawing" }, make("canvas", { id: `marginal-${k}`, role: "img" })));
   });
   const section = make("figure", { id: "section-figure", hidden: true, "aria-label": "Section" },
     make("div", { class: "head" }, make("h2", {}, "Section"), make("span", { class: "exports" }, exportButtons(page, "section", "the section"))),
     make("div", { class: "drawing" }, make("canvas", { id: "section-canvas", role: "img" })));
-  fill($("marginals"), figures, section);
+  const bands = page.singles.map((k) => source.bandIs(k)).filter((band) => band);
+  const caption = bands.length ? make("p", { class: "hint" }, `Bands: ${bands[0]}.`) : [];
+  fill($("marginals"), figures, caption, section);
   for (const place of document.querySelectorAll(".exports[data-of]")) {
     fill(place, exportButtons(page, place.dataset.of, place.dataset.of === "joint" ? "the joint density" : "the diagram"));
   }
   if (page.k.joint !== undefined) fill($("section-axis"), nodes(source.observables[page.k.joint].symbols[1]));
-  fill($("table"), changesTable(scene, source, (value) => page.go(value)));
+  page.tabulate();
   fill($("facts"), facts(scene));
 };
 
 /** What the controls do. */
 const connect = (page) => {
   const on = (id, event, act) => $(id).addEventListener(event, act);
-  on("slide", "input", () => page.show(Number($("slide").value)));
+  on("slide", "input", () => page.slide(Number($("slide").value)));
   on("previous", "click", () => page.step(-1));
   on("next", "click", () => page.step(1));
   on("play", "click", () => page.play());
@@ -297,13 +351,13 @@ const connect = (page) => {
   for (const name of ["log", "contours", "marks", "difference"]) on(name, "change", () => page.set(name, $(name).checked));
   on("lock", "change", () => page.lock());
   on("typed", "change", () => page.type($("typed").value));
-  on("typed", "blur", () => { if (!$("refused").textContent) $("typed").value = String(page.frame.value); });
+  on("typed", "blur", () => { if (page.frame && !$("refused").textContent) page.writeControls(); });
   on("section", "change", () => setSection(page, $("section").value.trim() === "" ? null : Number($("section").value.replace("−", "-"))));
   on("joint-choice", "change", () => { page.k.joint = Number($("joint-choice").value); page.options.lock = null; page.later(); });
   on("diagram-choice", "change", () => { page.k.diagram = Number($("diagram-choice").value); delete page.drawn.diagram; page.later(); });
   on("theme", "change", () => setTheme(page, $("theme").value));
   on("link", "click", () => copy(location.href).then(() => flash("link", "Copied")));
-  on("toml", "click", () => copy(page.scene.sweep_file).then(() => flash("toml", "Copied")));
+  on("toml", "click", () => page.copySweepFile());
   on("print", "click", () => window.print());
   on("help", "click", () => $("keys").showModal());
   drag($("cursor-canvas"), (x) => page.drawn.diagram && page.go(clamp(page.drawn.diagram.x.from(x), ...page.range)));
@@ -358,19 +412,18 @@ const press = (page, event) => {
   const writes = target.matches("input[type=text], select, textarea");
   const acts = target.matches("button, summary, input[type=checkbox], a");
   if (writes || (acts && [" ", "Enter"].includes(event.key))) return;
-  const last = page.source.frames.length - 1;
-  const acts_of = {
+  const actions = {
     ArrowLeft: () => page.step(-1), ArrowRight: () => page.step(1), PageDown: () => page.step(-10), PageUp: () => page.step(10),
-    Home: () => page.show(0), End: () => page.show(last), b: () => page.jump(-1), n: () => page.jump(1), " ": () => page.play(),
+    Home: () => page.home(), End: () => page.end(), b: () => page.jump(-1), n: () => page.jump(1), " ": () => page.play(),
     p: () => page.pin(), d: () => page.pinned && page.set("difference"), l: () => page.set("log"), k: () => page.lock(),
     c: () => page.set("contours"), m: () => page.set("marks"), "?": () => $("keys").showModal(),
   };
   // Up and down belong to the page's scrolling, except on the two sliders.
   if (target === $("cursor-canvas") || target === $("slide")) {
-    acts_of.ArrowUp = acts_of.ArrowRight;
-    acts_of.ArrowDown = acts_of.ArrowLeft;
+    actions.ArrowUp = actions.ArrowRight;
+    actions.ArrowDown = actions.ArrowLeft;
   }
-  const act = acts_of[event.key];
+  const act = actions[event.key];
   if (!act) return;
   event.preventDefault();
   act();
@@ -378,12 +431,11 @@ const press = (page, event) => {
 
 const start = async () => {
   const told = JSON.parse(new TextDecoder().decode(await readBlock("scene")));
-  const source = await StoredSource.load(told);
-  const page = new Page(told, source);
+  const page = told.live ? new LivePage(told, new LiveSource(told)) : new Page(told, await StoredSource.load(told));
   build(page);
+  if (told.live) buildParameters(page);
   connect(page);
   page.restore(readAddress());
-  window.pbif = page;
   document.documentElement.dataset.ready = "true";
 };
 

@@ -47,10 +47,10 @@ const drawHeat = (plot, observable, values, colours) => {
 /** Joint density of two axes as heat map with contours, or its difference to the pinned one. */
 const drawJoint = (pen, width, height, view, size) => {
   const { source, frame, pinned, k, theme, options } = view;
-  const observable = source.observables[k];
-  const density = frame?.densities[k];
-  const values = density?.values;
-  const against = options.difference && pinned?.densities[k]?.values;
+  const observable = gridOf(source, frame, k);
+  const values = frame?.densities[k]?.values;
+  const same = gridOf(source, pinned, k) === observable;
+  const against = options.difference && same && pinned?.densities[k]?.values;
   const shown = values && against ? values.map((value, i) => value - against[i]) : values;
   const top = against && shown ? Math.max(largest(shown), largest(shown.map((value) => -value)))
     : options.lock || (values ? largest(values) : 1);
@@ -80,7 +80,8 @@ const drawJoint = (pen, width, height, view, size) => {
 
 const drawContours = (plot, observable, values, colours, top) => {
   if (colours.kind === "difference") {
-    plot.clipped(() => plot.pen.segments(crossings(plot, observable, values, 0), { colour: "#555", width: 0.8 }));
+    plot.clipped(() => [-0.5, -0.1, 0.1, 0.5].forEach((share) =>
+      plot.pen.segments(crossings(plot, observable, values, share * colours.top), { colour: "#444", width: 0.8 })));
     return;
   }
   plot.clipped(() => {
@@ -105,7 +106,7 @@ const drawMarks = (plot, found, size) => {
 /** A density of one variable as line with its band, features marked, and the pinned one dashed. */
 const drawMarginal = (pen, width, height, view, size) => {
   const { source, frame, pinned, k, theme, options } = view;
-  const observable = source.observables[k];
+  const observable = gridOf(source, frame, k);
   const density = frame?.densities[k];
   const x = view.window(k, 0);
   const heights = [density, pinned?.densities[k]].map((one) => (one ? largest(one.values) : 0));
@@ -119,7 +120,7 @@ const drawMarginal = (pen, width, height, view, size) => {
   plot.clipped(() => {
     if (density) drawBand(plot, observable, density);
     const other = pinned?.densities[k];
-    if (other) pen.line(curve(plot, observable, other.values), { colour: theme.pinned, width: 1.8, dash: [6, 4] });
+    if (other) pen.line(curve(plot, gridOf(source, pinned, k), other.values), { colour: theme.pinned, width: 1.8, dash: [6, 4] });
     if (density) pen.line(curve(plot, observable, density.values), { colour: theme.line, width: 2 });
     if (!options.marks || !density) return;
     for (const mark of frame.found[k]?.features ?? []) {
@@ -144,11 +145,11 @@ const drawBand = (plot, observable, { values, band }) => {
 const drawSection = (pen, width, height, view, size) => {
   const { source, frame, pinned, k, theme } = view;
   const observable = source.observables[k];
-  const row = cellOf(observable.edges[1], view.section);
   const cut = (of) => {
+    const { edges, centres: [xs, ys] } = gridOf(source, of, k);
+    const row = cellOf(edges[1], view.section);
     const values = of?.densities[k]?.values;
-    const rows = observable.centres[1].length;
-    return values && row >= 0 ? observable.centres[0].map((_, i) => values[i * rows + row]) : null;
+    return values && row >= 0 ? xs.map((_, i) => values[i * ys.length + row]) : null;
   };
   const [here, there] = [cut(frame), cut(pinned)];
   const top = Math.max(here ? largest(here) : 0, there ? largest(there) : 0, 1e-300);
@@ -159,8 +160,8 @@ const drawSection = (pen, width, height, view, size) => {
   plot.axes(observable.symbols[0], `p(${observable.symbols[0]}, ${number(view.section, 3)})`, { grid: true });
   if (!here) drawEmpty(pen, rect, theme, size, emptyWords(frame));
   plot.clipped(() => {
-    if (there) pen.line(curve(plot, observable, there), { colour: theme.pinned, width: 1.8, dash: [6, 4] });
-    if (here) pen.line(curve(plot, observable, here), { colour: theme.line, width: 2 });
+    if (there) pen.line(curve(plot, gridOf(source, pinned, k), there), { colour: theme.pinned, width: 1.8, dash: [6, 4] });
+    if (here) pen.line(curve(plot, gridOf(source, frame, k), here), { colour: theme.line, width: 2 });
   });
   return plot;
 };
@@ -179,7 +180,7 @@ const drawDiagram = (pen, width, height, view, size) => {
   const frames = source.frames;
   const y = view.window(k, 0);
   const colours = { kind: options.log ? "log" : "linear", top: source.tops[k] || 1 };
-  const top = 2 + 1.5 * size * labelRows(view);
+  const top = 4 + 1.3 * size * (labelRows(view, 0.85 * width, size) + 0.2);
   const inner = height - roomBelow(size) - top;
   const left = marginFor(y, inner, size);
   const rect = { left, top, width: width - left - roomForBar(colours, inner, size), height: inner };
@@ -203,10 +204,17 @@ const drawColumns = (plot, frames, observable, k, colours) => {
     return values && Uint32Array.from(values, (value) => palette[Math.round(255 * clamp(share(value), 0, 1))]);
   });
   plot.pen.image(plot.rect, (image, columns, lines) => {
-    const up = Array.from({ length: lines }, (_, l) => cellOf(observable.edges[0], plot.y.from(top + ((l + 0.5) / lines) * height)));
+    const cells = new Map();
+    const upAlong = (grid) => {
+      const cell = (_, line) => cellOf(grid.edges[0], plot.y.from(top + ((line + 0.5) / lines) * height));
+      if (!cells.has(grid)) cells.set(grid, Array.from({ length: lines }, cell));
+      return cells.get(grid);
+    };
     for (let column = 0; column < columns; column++) {
-      const shade = shades[cellOf(edges, plot.x.from(left + ((column + 0.5) / columns) * width))];
+      const number = cellOf(edges, plot.x.from(left + ((column + 0.5) / columns) * width));
+      const shade = shades[number];
       if (!shade) continue;
+      const up = upAlong(frames[number].densities[k].grid ?? observable);
       for (let line = 0; line < lines; line++) if (up[line] >= 0) image[line * columns + column] = shade[up[line]];
     }
   });
@@ -232,23 +240,24 @@ const drawBranches = (plot, frames, k, size) => {
 };
 
 /** Located changes, each with the row in which its name stands so that names do not overlap. */
-const placedLabels = (view) => {
+const placedLabels = (view, width, size) => {
   const changes = view.scene.labels.filter((label) => label.kind === "bifurcation");
   const ends = [];
   return changes.map((label) => {
     const x = (label.value - view.range[0]) / (view.range[1] - view.range[0]);
     let row = ends.findIndex((end) => end < x);
     if (row < 0) row = ends.length;
-    ends[row] = x + 0.055;
+    ends[row] = x + (2.9 * size) / Math.max(width, 1);
     return { label, row };
   });
 };
-const labelRows = (view) => Math.max(1, ...placedLabels(view).map(({ row }) => row + 1));
+const labelRows = (view, width, size) => Math.max(1, ...placedLabels(view, width, size).map(({ row }) => row + 1));
 
 const drawLabels = (plot, view, size) => {
   const { pen, rect, theme } = plot;
   const bottom = rect.top + rect.height;
-  for (const { label, row } of placedLabels(view)) {
+  const placed = placedLabels(view, rect.width, size);
+  for (const { label, row } of placed) {
     const own = label.observable === view.k;
     const [x, low, high] = [label.value, label.lower, label.upper].map(plot.x.to);
     plot.clipped(() => {
@@ -256,9 +265,13 @@ const drawLabels = (plot, view, size) => {
       pen.line([[x, rect.top], [x, bottom]], { colour: "#000", width: 3, alpha: own ? 0.5 : 0.25 });
       pen.line([[x, rect.top], [x, bottom]], { colour: "#fff", width: 1.4, dash: own ? [] : [3, 4] });
     });
-    const y = rect.top - 0.45 * size - 1.4 * size * row;
-    pen.line([[x, rect.top], [x, y + 2]], { colour: theme.faint, width: 1 });
-    pen.text(x, y, label.label, { colour: own ? theme.ink : theme.faint, size: 0.95 * size, halo: theme.paper });
+    pen.line([[x, rect.top], [x, rect.top - 0.3 * size - 1.3 * size * row]], { colour: theme.faint, width: 1 });
+  }
+  // Names over all lines, so that none is struck through.
+  for (const { label, row } of placed) {
+    const own = label.observable === view.k;
+    const place = [plot.x.to(label.value), rect.top - 0.45 * size - 1.3 * size * row];
+    pen.text(...place, label.label, { colour: own ? theme.ink : theme.faint, size: 0.95 * size, halo: theme.paper });
   }
 };
 
@@ -267,12 +280,14 @@ const drawCursor = (plot, view) => {
   const { pen, rect, theme } = plot;
   const bottom = rect.top + rect.height;
   const line = (value, colour, dash) => {
+    // A typed value may lie beyond the diagram.
+    if (value < plot.ranges.x[0] || value > plot.ranges.x[1]) return;
     const x = plot.x.to(value);
     pen.line([[x, rect.top], [x, bottom]], { colour: theme.paper, width: 4, alpha: 0.7 });
     pen.line([[x, rect.top], [x, bottom]], { colour, width: 2, dash });
     pen.area([[x - 6, bottom + 8], [x + 6, bottom + 8], [x, bottom]], { colour });
   };
   if (view.pinned) line(view.pinned.value, theme.pinned, [6, 4]);
-  if (view.frame) line(view.frame.value, theme.cursor, []);
+  if (view.frame) line(view.at ?? view.frame.value, theme.cursor, []);
 };
 

@@ -18,6 +18,9 @@ const layOut = (markup, size) => {
 const textWidth = (markup, size) => layOut(markup, size).width;
 const anchorShift = (align, width) => (align === "right" ? -width : align === "left" ? 0 : -0.5 * width);
 
+/** Pixels of an image at most: more take longer to compute than a picture of the screen lasts. */
+const MOST_PIXELS = 600000;
+
 class CanvasPen {
   constructor(canvas, width, height, scale) {
     canvas.width = Math.max(1, Math.round(width * scale));
@@ -105,10 +108,11 @@ class CanvasPen {
     context.restore();
   }
 
-  /** An image whose pixels `fill` computes: as many as the screen has. */
+  /** An image whose pixels `fill` computes: as many as the screen has, unless those are more than an eye tells apart. */
   image(rect, fill) {
-    const columns = Math.max(1, Math.round(rect.width * this.scale));
-    const rows = Math.max(1, Math.round(rect.height * this.scale));
+    const dense = Math.min(this.scale, Math.sqrt(MOST_PIXELS / Math.max(rect.width * rect.height, 1)));
+    const columns = Math.max(1, Math.round(rect.width * dense));
+    const rows = Math.max(1, Math.round(rect.height * dense));
     const canvas = pixels(columns, rows, fill);
     this.context.imageSmoothingEnabled = false;
     this.context.drawImage(canvas, rect.left, rect.top, rect.width, rect.height);

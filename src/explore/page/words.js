@@ -35,7 +35,8 @@ const reading = ({ scene, source, frame, pinned }) => {
   const counts = source.observables.map((one, k) => [
     make("dt", {}, nodes(one.title)), make("dd", {}, countWords(frame.found[k])),
   ]);
-  const notices = frame.findings.map((finding) => make("p", { class: "notice" }, `${finding}.`));
+  const notices = frame.preview ? [make("p", { class: "hint" }, "Preview on half as many cells an axis; refined when the slider rests.")] : [];
+  notices.push(...frame.findings.map((finding) => make("p", { class: "notice" }, `${finding}.`)));
   if (!isSound(frame.status)) notices.unshift(make("p", { class: "notice" }, STATUS_WORDS[frame.status] ?? frame.status));
   const parts = [make("dl", { class: "counts" }, counts.flat()), ...notices];
   if (frame.moments.length) parts.push(momentsTable(scene, frame));
@@ -59,7 +60,8 @@ const momentsTable = (scene, frame) => make("table", {},
 const comparison = (source, frame, pinned, scene) => {
   const rows = source.observables.map((one, k) => {
     const [p, q] = [frame.densities[k]?.values, pinned.densities[k]?.values];
-    return row(nodes(one.title), p && q ? number(hellinger(p, q, one.volumes), 4) : "–");
+    const same = gridOf(source, frame, k) === gridOf(source, pinned, k);
+    return row(nodes(one.title), p && q && same ? number(hellinger(p, q, gridOf(source, frame, k).volumes), 4) : "–");
   });
   return make("table", {}, make("caption", {}, "Hellinger distance to the state pinned at ", nodes(scene.swept.symbol),
     ` = ${plainNumber(pinned.value, 6)} (0 the same, 1 nothing in common)`), make("tbody", {}, rows));
@@ -76,7 +78,10 @@ const numbersTable = (frame) => {
 
 /** The table of located changes, ends and failures; `go` is what a click does. */
 const changesTable = (scene, source, go) => {
-  if (!scene.labels.some(({ kind }) => kind !== "end")) return [make("p", {}, "No change of topology was located on this sweep.")];
+  if (!scene.labels.some(({ kind }) => kind !== "end")) {
+    return [make("p", {}, scene.live ? "None yet: “Locate here” narrows the change nearest to the cursor."
+      : "No change of topology was located on this sweep.")];
+  }
   const head = ["", "value", "of", "from … to", "status"].map((name) => make("th", { scope: "col" }, name));
   const rows = scene.labels.filter(({ kind }) => kind !== "end").map((label) => make("tr", { "data-at": label.value },
     make("td", {}, make("button", { type: "button", onclick: () => go(label.value), title: `Go to ${label.label}` }, label.label)),
