@@ -1,6 +1,8 @@
 //! Detection and location repeated on the points of a finished sweep, without solving.
 
-use super::grid::{Checked, FinerIndicator, GridCheck, check, known};
+use super::grid::{
+    Checked, CheckedBy, CheckedIndicator, Checks, GridCheck, Leak, Seen, check, known, leak,
+};
 use super::span::Span;
 use super::sweep::fill_distances;
 use super::{Goal, LocateOptions, Point, Subject, SweepResult, locate::label_points};
@@ -9,14 +11,14 @@ use crate::topology::Detector;
 /// Detects and locates again on all points there are, those that once refined brackets included, of a sweep with `given` given
 /// values. What the points held of detections and distances is replaced; points without a density stay as they are.
 ///
-/// Located values are checked against `finer`, what a sweep saw on its finer grid ([`SweepResult::finer`]). With unchanged
+/// Located values are checked against `checks`, what a sweep saw in its checks ([`SweepResult::checks`]). With unchanged
 /// settings that is the same check. Other settings may ask for values that were not solved: the zero then comes from those that were,
 /// and a change near which there are none is unconfirmed.
 pub fn detect_again(
     (subject, given): (Subject, usize),
     detector: &dyn Detector,
     mut points: Vec<Point>,
-    finer: Option<Vec<FinerIndicator>>,
+    checks: Option<Vec<CheckedIndicator>>,
     options: &LocateOptions,
 ) -> SweepResult {
     points.sort_by(|a, b| a.value.total_cmp(&b.value));
@@ -30,42 +32,62 @@ pub fn detect_again(
     }
     let span = Span::new(&subject, given);
     let options = &options.goal(span.length());
-    let seen = finer.as_deref().filter(|_| options.grid_check);
-    let mut on_finer =
-        |checked: &Checked<'_>| seen.and_then(|seen| repeat(seen, checked, span, options));
-    let labels = label_points(
-        &points,
-        &subject.observables,
-        detector,
+    let mut repeated = Repeated {
+        seen: checks.as_deref().filter(|_| options.grid_check),
+        span,
         options,
-        &mut on_finer,
-    );
+    };
+    let labels = label_points(&points, &subject, detector, options, &mut repeated);
     SweepResult {
         subject,
         points,
         labels,
-        finer,
+        checks,
         interrupted: false,
     }
 }
 
-/// The check by what was seen.
-fn repeat(
-    seen: &[FinerIndicator],
-    checked: &Checked<'_>,
+/// The checks by what was seen.
+struct Repeated<'a> {
+    seen: Option<&'a [CheckedIndicator]>,
     span: Span,
-    options: &Goal,
-) -> Option<GridCheck> {
-    let mut evaluate = |value: f64| known(seen, checked, value);
-    let same = check(&mut evaluate, checked, span, options.tolerance);
-    same.or_else(|| Some(nearest_zero(seen, checked, span)))
+    options: &'a Goal,
+}
+
+impl Checks for Repeated<'_> {
+    fn on_finer_cells(&mut self, checked: &Checked<'_>) -> Option<GridCheck> {
+        let seen = self.seen?;
+        let mut evaluate = |value: f64| known(seen, CheckedBy::FinerCells, checked, value);
+        let same = check(&mut evaluate, checked, self.span, self.options.tolerance);
+        same.or_else(|| {
+            let zero = nearest_zero(seen, CheckedBy::FinerCells, checked, self.span);
+            Some(zero.map_or(GridCheck::Unconfirmed, GridCheck::Confirmed))
+        })
+    }
+
+    fn between_closed_ends(&mut self, checked: &Checked<'_>) -> Option<Leak> {
+        let seen = self.seen?;
+        let same = known(seen, CheckedBy::ClosedEnds, checked, checked.root.value);
+        match same {
+            Seen::Unknown => {
+                let zero = nearest_zero(seen, CheckedBy::ClosedEnds, checked, self.span);
+                zero.map(|zero| Leak::Moves((zero - checked.root.value).abs()))
+            }
+            same => leak(same, checked),
+        }
+    }
 }
 
 /// The zero nearest to the one sought, of those that earlier checks went to; none farther than a step of the sweep.
-fn nearest_zero(seen: &[FinerIndicator], checked: &Checked<'_>, span: Span) -> GridCheck {
-    let alike = seen
-        .iter()
-        .filter(|one| one.observable == checked.observable && one.kind == checked.kind.name());
+fn nearest_zero(
+    seen: &[CheckedIndicator],
+    by: CheckedBy,
+    checked: &Checked<'_>,
+    span: Span,
+) -> Option<f64> {
+    let alike = seen.iter().filter(|one| {
+        one.by == by && one.observable == checked.observable && one.kind == checked.kind
+    });
     let known = alike.filter_map(|one| Some((one.value, one.indicator?)));
     let sought = checked.root.value;
     // The nearer a value to its zero, the less the slope matters, which is the one at the zero sought.
@@ -74,8 +96,5 @@ fn nearest_zero(seen: &[FinerIndicator], checked: &Checked<'_>, span: Span) -> G
         ((zero - value).abs(), zero)
     });
     let near = zeros.filter(|(_, zero)| (zero - sought).abs() <= span.step);
-    let best = near.min_by(|a, b| a.0.total_cmp(&b.0));
-    best.map_or(GridCheck::Unconfirmed, |(_, zero)| {
-        GridCheck::Confirmed(zero)
-    })
+    near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|best| best.1)
 }

@@ -14,8 +14,10 @@ use crate::topology::{Detector, FeatureKind, Indicator, IndicatorKind, Signature
 pub(super) struct Change {
     /// Place of the observable among those that are watched.
     pub(super) observable: usize,
-    /// The point below; the next one is the point above.
+    /// The point below.
     pub(super) left: usize,
+    /// The point above: the next one, or the next whose signature was seen whole.
+    pub(super) right: usize,
     pub(super) before: Signature,
     pub(super) after: Signature,
     pub(super) found: Found,
@@ -30,6 +32,9 @@ pub(super) enum Found {
     Crossing(Crossing),
     /// An indicator is lost between the point with this index and the next one: values between would show more.
     Lost(usize),
+    /// An indicator says that the feature is there up to the end of the sweep, beyond the point with this index and the next one,
+    /// though too low to be counted: it was born before.
+    Beyond(usize),
     /// Only persistence tells.
     Persistence,
 }
@@ -117,6 +122,7 @@ fn between(
     let change = |found: Found, event: Option<Event>| Change {
         observable,
         left,
+        right,
         before: signature(left),
         after: signature(right),
         found,
@@ -128,7 +134,7 @@ fn between(
         .filter_map(|index| at_centre(points, observable, index))
         .collect();
     if centre.is_empty() {
-        centre.extend(doubtful_centre(points, detector, observable, left));
+        centre.extend(doubtful_centre(points, detector, observable, (left, right)));
     }
     if !centre.is_empty() {
         take_those_of_centre(&mut events, &signature(left), &signature(right));
@@ -144,6 +150,7 @@ fn between(
                 found.push(change(Found::Crossing(crossing), Some(event)))
             }
             Some(Followed::Lost(gap)) => found.push(change(Found::Lost(gap), Some(event))),
+            Some(Followed::Beyond(gap)) => found.push(change(Found::Beyond(gap), Some(event))),
             None => {}
         }
     }
@@ -191,7 +198,7 @@ fn doubtful_centre(
     points: &[&Point],
     detector: &dyn Detector,
     observable: usize,
-    left: usize,
+    (left, right): (usize, usize),
 ) -> Option<Crossing> {
     let doubtful = |index: usize| {
         let indicators = &points[index].detections[observable].indicators;
@@ -199,7 +206,7 @@ fn doubtful_centre(
         indicators.iter().any(unsure)
     };
     let below = (0..=left).rev().take_while(|&index| doubtful(index));
-    let above = (left + 1..points.len()).take_while(|&index| doubtful(index));
+    let above = (right..points.len()).take_while(|&index| doubtful(index));
     let below = below.filter_map(|index| at_centre(points, observable, index.checked_sub(1)?));
     let above = above.filter_map(|index| at_centre(points, observable, index));
     below

@@ -14,6 +14,8 @@ pub(super) enum Followed {
     Crossing(Crossing),
     /// It is lost between the point with this index and the next one, before it changes sign.
     Lost(usize),
+    /// It keeps its sign up to the end of the sweep, the point with this index or the next one.
+    Beyond(usize),
 }
 
 /// Follows the indicator of an event between two points toward the side where the feature is absent; `None` where the event has none.
@@ -62,7 +64,13 @@ pub(super) fn follow(
         last = next;
         last_index = index;
     }
-    None
+    let certain = last.sign(detector.doubt()) == Some(true);
+    let end = if event.above {
+        0
+    } else {
+        points.len().checked_sub(2)?
+    };
+    certain.then_some(Followed::Beyond(end))
 }
 
 /// The zero lies on the side where the feature was seen: noise of the cells showed it too early.

@@ -1,4 +1,4 @@
-//! The check of a located value on a finer grid.
+//! The checks of a located value: on a finer grid, and between ends of Ω that let nothing out.
 //!
 //! The indicator's zero on the finer grid is found by a secant that starts with the slope known from the coarser one. The
 //! finer value is the better one and is kept. With r times as many cells an axis and order p its error is 1/(rᵖ - 1) of the
@@ -17,56 +17,112 @@ const MOST_SOLVES: usize = 4;
 const SMALL: f64 = 0.02;
 
 /// What a finer grid says of a value.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) enum GridCheck {
     /// The change lies here.
     Confirmed(f64),
     /// There is none near.
     Unconfirmed,
+    /// It could not be asked, for this reason.
+    Failed(String),
 }
 
-/// The indicator on the finer grid at one value.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// What the mass that leaves Ω does to a value.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Leak {
+    /// It moves the value so far.
+    Moves(f64),
+    /// It could not be asked, for this reason.
+    Failed(String),
+}
+
+/// How located values are checked: by solves, or by what earlier solves saw. `None` where there is nothing to check with, or the
+/// sweep is to end.
+pub(super) trait Checks {
+    /// On finer cells.
+    fn on_finer_cells(&mut self, checked: &Checked<'_>) -> Option<GridCheck>;
+    /// Between closed ends of Ω.
+    fn between_closed_ends(&mut self, checked: &Checked<'_>) -> Option<Leak>;
+}
+
+/// The indicator of a check at one value.
+#[derive(Debug, Clone, PartialEq)]
 pub(super) enum Seen {
     /// Its value.
     Value(f64),
-    /// There is no such indicator, or no density.
+    /// There is no such indicator.
     Absent,
+    /// The solve failed, for this reason.
+    Failed(String),
     /// The source was asked to stop, or it is not known.
     Unknown,
 }
 
 impl Seen {
     /// What is kept of it.
-    pub(super) fn record(self, checked: &Checked<'_>, value: f64) -> Option<FinerIndicator> {
-        let indicator = match self {
-            Self::Value(indicator) => Some(indicator),
-            Self::Absent => None,
+    pub(super) fn record(
+        &self,
+        by: CheckedBy,
+        checked: &Checked<'_>,
+        value: f64,
+    ) -> Option<CheckedIndicator> {
+        let (indicator, failure) = match self {
+            Self::Value(indicator) => (Some(*indicator), None),
+            Self::Absent => (None, None),
+            Self::Failed(reason) => (None, Some(reason.clone())),
             Self::Unknown => return None,
         };
-        Some(FinerIndicator {
+        Some(CheckedIndicator {
+            by,
             value,
             observable: checked.observable,
-            kind: checked.kind.name().to_owned(),
+            kind: checked.kind,
             place: checked.place.to_vec(),
             indicator,
+            failure,
         })
     }
 }
 
-/// An indicator that was seen on the finer grid, from which the check is repeated without solving.
+/// What a located value is checked by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum CheckedBy {
+    /// The same source on finer cells.
+    FinerCells,
+    /// The same source between ends of Ω that let nothing out.
+    ClosedEnds,
+}
+
+impl CheckedBy {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::FinerCells, Self::ClosedEnds];
+
+    /// The words used in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::FinerCells => "finer cells",
+            Self::ClosedEnds => "closed ends",
+        }
+    }
+}
+
+/// An indicator that was seen in a check of a located value, from which the check is repeated without solving.
 #[derive(Debug, Clone, PartialEq)]
-pub struct FinerIndicator {
+pub struct CheckedIndicator {
+    /// What it was checked by.
+    pub by: CheckedBy,
     /// The parameter's value.
     pub value: f64,
     /// Place of the observable in [`super::Subject::observables`].
     pub observable: usize,
-    /// Name of the indicator.
-    pub kind: String,
+    /// The indicator.
+    pub kind: IndicatorKind,
     /// Where it was looked for, one coordinate an axis of the density.
     pub place: Vec<f64>,
     /// Its value; `None` if there was none.
     pub indicator: Option<f64>,
+    /// Why the solve failed; `None` if it did not.
+    pub failure: Option<String>,
 }
 
 /// What is checked.
@@ -80,34 +136,61 @@ pub(super) struct Checked<'a> {
 
 /// What was seen of an indicator at a value before. Several rows may ask for the same, and a solve from another start differs
 /// by rounding.
-pub(super) fn known(seen: &[FinerIndicator], checked: &Checked<'_>, value: f64) -> Seen {
+pub(super) fn known(
+    seen: &[CheckedIndicator],
+    by: CheckedBy,
+    checked: &Checked<'_>,
+    value: f64,
+) -> Seen {
     let found = seen.iter().find(|one| {
-        one.value == value
+        one.by == by
+            && one.value == value
             && one.observable == checked.observable
-            && one.kind == checked.kind.name()
+            && one.kind == checked.kind
             && one.place == checked.place
     });
-    found.map_or(Seen::Unknown, |one| {
-        one.indicator.map_or(Seen::Absent, Seen::Value)
-    })
+    let Some(one) = found else {
+        return Seen::Unknown;
+    };
+    match (&one.failure, one.indicator) {
+        (Some(reason), _) => Seen::Failed(reason.clone()),
+        (None, Some(indicator)) => Seen::Value(indicator),
+        (None, None) => Seen::Absent,
+    }
 }
 
-/// Solves on the finer grid.
+/// Solves in the session of a check.
 pub(super) fn solve(
-    finer: &mut dyn Session,
+    session: &mut dyn Session,
     detector: &dyn Detector,
     checked: &Checked<'_>,
     value: f64,
 ) -> Seen {
-    let solution = match finer.solve(value) {
+    let solution = match session.solve(value) {
         Ok(solution) => solution,
         Err(SourceError::Interrupted) => return Seen::Unknown,
-        Err(SourceError::Method(_)) => return Seen::Absent,
+        Err(SourceError::Method(error)) => return Seen::Failed(error.to_string()),
     };
+    let status = solution.report.status;
+    if !status.is_resolved() {
+        return Seen::Failed(status.word().to_owned());
+    }
     let density = solution.densities.get(checked.observable);
     let indicator =
         density.and_then(|density| detector.indicator(density, checked.kind, checked.place));
     indicator.map_or(Seen::Absent, |indicator| Seen::Value(indicator.value))
+}
+
+/// How far the mass that leaves Ω moves a value: the indicator at the zero, when nothing leaves, over its slope.
+pub(super) fn leak(seen: Seen, checked: &Checked<'_>) -> Option<Leak> {
+    match seen {
+        Seen::Value(indicator) => Some(Leak::Moves((indicator / checked.root.slope).abs())),
+        Seen::Absent => Some(Leak::Failed(
+            "no such indicator when nothing leaves".to_owned(),
+        )),
+        Seen::Failed(reason) => Some(Leak::Failed(reason)),
+        Seen::Unknown => None,
+    }
 }
 
 /// Looks for the zero on the finer grid, within the range of the sweep. `None` when asked to stop.
@@ -124,6 +207,7 @@ pub(super) fn check(
         let indicator = match evaluate(value) {
             Seen::Value(indicator) => indicator,
             Seen::Absent => return Some(GridCheck::Unconfirmed),
+            Seen::Failed(reason) => return Some(GridCheck::Failed(reason)),
             Seen::Unknown => return None,
         };
         if let Some((before, then)) = last {

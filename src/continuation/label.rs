@@ -33,9 +33,11 @@ pub enum BifurcationStatus {
     Located,
     /// The data cannot tell where in the bracket it lies.
     Unresolved,
-    /// A finer grid does not show it there, or there is none to check a cell map that adds diffusion of its own, or, where only persistence tells, its feature is nowhere more than a few
-    /// cells from another: it may be an effect of the cells.
+    /// A finer grid does not show it there, or there is none to check a cell map that adds diffusion of its own, or, where
+    /// only persistence tells, its feature is nowhere more than a few cells from another: it may be an effect of the cells.
     Unconfirmed,
+    /// A check failed: [`LabelledPoint::reason`] says why. The value may be right.
+    Unchecked,
 }
 
 impl BifurcationStatus {
@@ -45,6 +47,7 @@ impl BifurcationStatus {
             Self::Located => "located",
             Self::Unresolved => "unresolved",
             Self::Unconfirmed => "unconfirmed",
+            Self::Unchecked => "unchecked",
         }
     }
 }
@@ -80,6 +83,12 @@ pub struct LabelledPoint {
     pub indicator: Option<IndicatorKind>,
     /// Whether the indicator rises through its zero.
     pub rises: bool,
+    /// Why it is not located, where a sentence is known.
+    pub reason: Option<String>,
+    /// Where the indicator is, one coordinate an axis of the density; empty without one.
+    pub place: Vec<f64>,
+    /// Change of the indicator per unit of the parameter at its zero.
+    pub slope: Option<f64>,
     /// Parts of the error; `None` where persistence alone gives a band, and for end points and failures.
     pub parts: Option<ErrorParts>,
 }
@@ -125,6 +134,9 @@ fn unplaced(kind: PointType, lower: f64, upper: f64) -> LabelledPoint {
         parts: None,
         indicator: None,
         rises: false,
+        reason: None,
+        place: Vec::new(),
+        slope: None,
     }
 }
 

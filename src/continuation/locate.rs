@@ -1,15 +1,12 @@
 //! The rows of a sweep: every change of signature with its value, error, bracket and status.
 
 use super::change::{Change, Found, changes};
-use super::grid::{Checked, GridCheck, SHARE_OF_DISTANCE};
+use super::grid::{Checked, Checks, GridCheck, Leak, SHARE_OF_DISTANCE};
 use super::label::{self, BifurcationStatus, LabelledPoint, PointType};
 use super::root::{Root, root};
-use super::{Goal, Point, PointStatus, persistence, words};
+use super::{Goal, Point, PointStatus, Subject, persistence, words};
 use crate::density::Observable;
 use crate::topology::{Detector, IndicatorKind};
-
-/// The check on a finer grid: takes what is checked, `None` when there is no finer grid.
-pub(super) type Check<'a> = &'a mut dyn FnMut(&Checked<'_>) -> Option<GridCheck>;
 
 /// So many rows in a row that are not located are one.
 const FLICKER: usize = 3;
@@ -17,11 +14,12 @@ const FLICKER: usize = 3;
 /// All labelled points of a sweep, in ascending parameter. `points` must be ascending.
 pub(super) fn label_points(
     points: &[Point],
-    observables: &[Observable],
+    subject: &Subject,
     detector: &dyn Detector,
     options: &Goal,
-    check: Check<'_>,
+    checks: &mut dyn Checks,
 ) -> Vec<LabelledPoint> {
+    let observables = &subject.observables;
     let mut labels = label::end_points(points);
     labels.extend(label::failures(points));
     let solved: Vec<&Point> = points.iter().filter(|p| !p.detections.is_empty()).collect();
@@ -31,9 +29,11 @@ pub(super) fn label_points(
         let found = gap.iter().map(|change| {
             let row = match &change.found {
                 Found::Crossing(_) => {
-                    by_indicator(&solved, observables, change, detector, options, check)
+                    by_indicator(&solved, subject, change, detector, options, checks)
                 }
-                Found::Lost(at) => by_bracket(&solved, observables, change, *at),
+                Found::Lost(at) | Found::Beyond(at) => {
+                    by_bracket(&solved, observables, change, *at)
+                }
                 Found::Persistence => by_persistence(&solved, observables, change, options),
             };
             (row, change)
@@ -110,6 +110,9 @@ fn without_flicker(rows: Vec<LabelledPoint>) -> Vec<LabelledPoint> {
             method: "persistence",
             indicator: None,
             parts: None,
+            reason: None,
+            place: Vec::new(),
+            slope: None,
             ..first.clone()
         });
     }
@@ -144,6 +147,9 @@ fn blank(observables: &[Observable], change: &Change) -> LabelledPoint {
         parts: None,
         indicator: kind,
         rises,
+        reason: None,
+        place: crossing.map_or(Vec::new(), |crossing| crossing.ends[0].place.clone()),
+        slope: None,
     }
 }
 
@@ -156,7 +162,7 @@ fn by_bracket(
 ) -> LabelledPoint {
     let (lost, gap) = (
         (points[at].value, points[at + 1].value),
-        (points[change.left].value, points[change.left + 1].value),
+        (points[change.left].value, points[change.right].value),
     );
     let (lower, upper) = (lost.0.min(gap.0), lost.1.max(gap.1));
     LabelledPoint {
@@ -179,11 +185,16 @@ fn by_persistence(
     // Counting follows what the cells show, and nothing says how far that is from the truth, but for noise.
     let is_noisy = points[change.left].densities[change.observable].is_noisy();
     let located = is_noisy && band.upper - band.lower <= options.tolerance * (1.0 + 1e-9);
+    // Signatures that were not seen whole say nothing of where in between.
+    let upper = match change.right == change.left + 1 {
+        true => band.upper,
+        false => band.upper.max(points[change.right].value),
+    };
     LabelledPoint {
         value: band.value,
-        error: (band.value - band.lower).max(band.upper - band.value),
+        error: (band.value - band.lower).max(upper - band.value),
         lower: band.lower,
-        upper: band.upper,
+        upper,
         status: Some(match (band.resolved_by_cells, located) {
             (false, _) => BifurcationStatus::Unconfirmed,
             (true, true) => BifurcationStatus::Located,
@@ -195,31 +206,47 @@ fn by_persistence(
 
 fn by_indicator(
     points: &[&Point],
-    observables: &[Observable],
+    subject: &Subject,
     change: &Change,
     detector: &dyn Detector,
     options: &Goal,
-    check: Check<'_>,
+    checks: &mut dyn Checks,
 ) -> LabelledPoint {
-    let mut row = blank(observables, change);
+    let mut row = blank(&subject.observables, change);
     let Some(crossing) = change.crossing() else {
         return row;
     };
     let mut found: Root = root(points, crossing, detector.confidence());
-    let bracket = (points[crossing.left].value, points[crossing.left + 1].value);
+    let (a, b) = (points[crossing.left], points[crossing.left + 1]);
+    let bracket = (a.value, b.value);
     // The slope at a kink follows from the equations: no grid takes part.
-    let checked = match crossing.kind() {
-        IndicatorKind::KinkSlope => None,
-        kind => check(&Checked {
-            observable: change.observable,
-            kind,
-            place: &crossing.ends[0].place,
-            root: found,
-        }),
+    let depends_on_cells = crossing.kind() != IndicatorKind::KinkSlope;
+    let checked = Checked {
+        observable: change.observable,
+        kind: crossing.kind(),
+        place: &crossing.ends[0].place,
+        root: found,
     };
-    if let Some(GridCheck::Confirmed(value)) = checked {
-        found.error.grid = SHARE_OF_DISTANCE * (value - found.value).abs();
-        found.value = value;
+    let mut failed = None;
+    let on_finer = depends_on_cells
+        .then(|| checks.on_finer_cells(&checked))
+        .flatten();
+    match &on_finer {
+        Some(GridCheck::Confirmed(value)) => {
+            found.error.grid = SHARE_OF_DISTANCE * (value - found.value).abs();
+            found.value = *value;
+        }
+        Some(GridCheck::Failed(reason)) => failed = Some(format!("on finer cells: {reason}")),
+        _ => {}
+    }
+    if depends_on_cells && edge_mass(a).max(edge_mass(b)) > QUIET {
+        match checks.between_closed_ends(&checked) {
+            Some(Leak::Moves(distance)) => found.error.leak = distance,
+            Some(Leak::Failed(reason)) => {
+                failed.get_or_insert(format!("with closed ends: {reason}"));
+            }
+            None => {}
+        }
     }
     let error = found.error.total();
     let narrow = bracket.1 - bracket.0 <= options.tolerance * (1.0 + 1e-9);
@@ -228,23 +255,54 @@ fn by_indicator(
     row.lower = bracket.0.min(found.value - error);
     row.upper = bracket.1.max(found.value + error);
     row.parts = Some(found.error);
+    row.slope = Some(found.slope);
     // The diffusion that the cells of a sampled map add moves values; without a finer grid nobody knows by how much.
-    let diffused = !points[crossing.left]
-        .report
-        .own
-        .numerical_diffusion
-        .is_empty();
-    let depends_on_cells = crossing.kind() != IndicatorKind::KinkSlope;
+    let diffused = !a.report.own.numerical_diffusion.is_empty();
     // What holds of a density that leaks away, or has not converged, is not what holds of the steady state.
-    let is_sound = |index: usize| points[index].report.status == PointStatus::Solved;
-    let sound = is_sound(crossing.left) && is_sound(crossing.left + 1);
-    row.status = Some(match checked {
+    let unsound = [a, b]
+        .into_iter()
+        .find(|one| one.report.status != PointStatus::Solved);
+    row.status = Some(match on_finer {
         Some(GridCheck::Unconfirmed) => BifurcationStatus::Unconfirmed,
-        _ if !sound || !narrow || error > options.tolerance => BifurcationStatus::Unresolved,
+        _ if failed.is_some() => BifurcationStatus::Unchecked,
+        _ if unsound.is_some() || !narrow || error > options.tolerance => {
+            BifurcationStatus::Unresolved
+        }
         None if diffused && depends_on_cells => BifurcationStatus::Unconfirmed,
         _ => BifurcationStatus::Located,
     });
+    row.reason = failed
+        .or_else(|| unsound.map(|point| point.report.status.word().to_owned()))
+        .or_else(|| leaks(&found, error, options, subject, [a, b]));
     row
+}
+
+/// The sentence for a value that what leaves Ω makes uncertain, with the axis along which most of it leaves.
+fn leaks(
+    found: &Root,
+    error: f64,
+    options: &Goal,
+    subject: &Subject,
+    points: [&Point; 2],
+) -> Option<String> {
+    if error <= options.tolerance || found.error.leak < 0.5 * error {
+        return None;
+    }
+    let masses = points.map(|point| &point.report.edge_mass);
+    let axes = (0..masses[0].len()).max_by(|&a, &b| masses[0][a].total_cmp(&masses[0][b]));
+    let axis = axes.and_then(|axis| subject.family.model().axes.get(axis))?;
+    Some(format!(
+        "what leaves Ω moves it by {:.1e}: a wider range of {} is needed",
+        found.error.leak, axis.name
+    ))
+}
+
+/// Mass in the outermost cells below which what leaves Ω matters nowhere.
+const QUIET: f64 = 1e-11;
+
+/// The largest mass in the outermost cells of an axis.
+fn edge_mass(point: &Point) -> f64 {
+    point.report.edge_mass.iter().copied().fold(0.0, f64::max)
 }
 
 /// Whether two changes of one observable follow each other so closely that the stage between them is not certain.

@@ -11,6 +11,7 @@ mod finding;
 mod follow;
 mod grid;
 mod label;
+mod live;
 mod locate;
 mod observer;
 mod persistence;
@@ -25,7 +26,7 @@ pub use again::detect_again;
 #[cfg(test)]
 pub(crate) use finding::every_finding;
 pub use finding::{Finding, ShiftedQuantity, SteadyClass};
-pub use grid::FinerIndicator;
+pub use grid::{CheckedBy, CheckedIndicator};
 pub use label::{BifurcationStatus, LabelledPoint, PointType};
 pub use observer::Observer;
 pub use report::{MethodPart, PointStatus, SolveReport};
@@ -114,8 +115,8 @@ pub struct SweepResult {
     pub points: Vec<Point>,
     /// Labelled points in ascending parameter: end points `EP`, changes `PB`, failures `MX`.
     pub labels: Vec<LabelledPoint>,
-    /// What was seen on the finer grid that checks located values; `None` where there was no check.
-    pub finer: Option<Vec<FinerIndicator>>,
+    /// What was seen in the checks of located values; `None` where there was none.
+    pub checks: Option<Vec<CheckedIndicator>>,
     /// Whether the sweep was interrupted before it was complete.
     pub interrupted: bool,
 }

@@ -15,16 +15,19 @@ pub enum PointStatus {
     NoSteadyState,
     /// The cell map has several closed classes: several steady states; no densities.
     SeveralClasses,
+    /// The source refused the value, or the solver gave up; no densities. A finding says why.
+    Failed,
 }
 
 impl PointStatus {
     /// All of them.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Solved,
         Self::Escaping,
         Self::NotConverged,
         Self::NoSteadyState,
         Self::SeveralClasses,
+        Self::Failed,
     ];
 
     /// The word used in tables.
@@ -35,6 +38,7 @@ impl PointStatus {
             Self::NotConverged => "not-converged",
             Self::NoSteadyState => "no-steady-state",
             Self::SeveralClasses => "several-classes",
+            Self::Failed => "failed",
         }
     }
 

@@ -5,7 +5,7 @@
 
 use super::Point;
 use super::change::Crossing;
-use crate::topology::{Indicator, two_sided_limit};
+use crate::topology::{Detector, Indicator, two_sided_limit};
 
 /// The parts of the error of a P-bifurcation's value, in units of the parameter; each bounds its part at the
 /// confidence of detection.
@@ -17,12 +17,14 @@ pub struct ErrorParts {
     pub grid: f64,
     /// Sampling.
     pub sampling: f64,
+    /// Mass that leaves Ω: how far the value moves when nothing leaves.
+    pub leak: f64,
 }
 
 impl ErrorParts {
     /// The error: the sum of the parts.
     pub fn total(&self) -> f64 {
-        self.solver + self.grid + self.sampling
+        self.solver + self.grid + self.sampling + self.leak
     }
 }
 
@@ -50,6 +52,7 @@ pub(super) fn root(points: &[&Point], crossing: &Crossing, confidence: f64) -> R
         solver: solver + interpolation(points, crossing, value),
         grid: mix(|indicator| indicator.systematic_error) / slope.abs(),
         sampling: sampling(a.value, b.value, crossing, value, slope, confidence),
+        leak: 0.0,
     };
     Root {
         value,
@@ -123,6 +126,42 @@ fn sampling(a: f64, b: f64, crossing: &Crossing, value: f64, slope: f64, confide
 
 fn limit_or_zero(limit: f64, error: f64) -> f64 {
     if error > 0.0 { limit * error } else { 0.0 }
+}
+
+/// A value beside a zero that is narrowed, where the sign of its indicator is beyond doubt, on a side that has none so near: what is
+/// there just before and just after the change shows only so, and pairs that are born shortly before it.
+pub(super) fn beyond_doubt(
+    points: &[&Point],
+    crossing: &Crossing,
+    detector: &dyn Detector,
+    tolerance: f64,
+) -> Option<f64> {
+    let root = root(points, crossing, detector.confidence());
+    let away = (0.5 * tolerance).max(2.0 * root.error.total());
+    let is_sure = |index: usize| {
+        let indicators = &points[index].detections[crossing.observable].indicators;
+        let same = indicators.iter().find(|one| one.kind == crossing.kind());
+        same.is_some_and(|one| one.sign(detector.doubt()).is_some())
+    };
+    // A value that was solved there and is in doubt all the same would not be mended by another.
+    let is_near = |index: usize| {
+        let distance = (points[index].value - root.value).abs();
+        distance <= 2.5 * away && (is_sure(index) || distance >= 0.9 * away)
+    };
+    let below = (0..=crossing.left).any(is_near);
+    let above = (crossing.left + 1..points.len()).any(is_near);
+    let (from, to) = (points[0].value, points[points.len() - 1].value);
+    let inside = |value: f64| (from < value && value < to).then_some(value);
+    let lower = if below {
+        None
+    } else {
+        inside(root.value - away)
+    };
+    lower.or(if above {
+        None
+    } else {
+        inside(root.value + away)
+    })
 }
 
 /// Where to solve next to narrow the bracket of a crossing to `tolerance`; `None` when it is that narrow, or when the

@@ -188,6 +188,11 @@ pub trait DensitySource: Send + Sync {
     fn finer(&self) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
         Ok(None)
     }
+
+    /// The same source with ends of Ω that let nothing out, to tell what the mass that leaves does; `None` where there is none.
+    fn enclosed(&self) -> Option<Box<dyn DensitySource>> {
+        None
+    }
 }
 
 /// A source at work. It chooses its own start for every solve, from what it solved before: values are best asked for in an order

@@ -5,13 +5,14 @@ use std::time::Instant;
 
 use super::bracket::is_settled;
 use super::change::{Found, changes, crossings_at_centre, dip};
-use super::grid::{Checked, FinerIndicator, Seen, check, known, solve};
+use super::grid::CheckedIndicator;
+use super::live::Live;
 use super::locate::label_points;
-use super::root::{next_value, root};
+use super::root::{beyond_doubt, next_value, root};
 use super::span::Span;
 use super::{
-    CellCheck, DensitySource, Goal, LabelledPoint, LocateOptions, Observer, Point, Session,
-    SourceError, SweepResult,
+    CellCheck, DensitySource, Finding, Goal, LabelledPoint, LocateOptions, Observer, Point,
+    PointStatus, Session, Solution, SolveReport, SourceError, SweepResult,
 };
 use crate::cancellation::Cancellation;
 use crate::density::hellinger;
@@ -94,12 +95,12 @@ pub fn sweep(
         previous = Some(value);
     }
     run.narrow()?;
-    let (labels, finer) = run.labels();
+    let (labels, checks) = run.labels();
     Ok(SweepResult {
         subject: subject.clone(),
         points: run.points,
         labels,
-        finer,
+        checks,
         interrupted: run.interrupted,
     })
 }
@@ -136,6 +137,13 @@ impl Run<'_> {
             Err(SourceError::Interrupted) => {
                 self.interrupted = true;
                 return Ok(());
+            }
+            // One value that fails takes nothing from the others; a first one that does is a mistake.
+            Err(SourceError::Method(error)) if !self.points.is_empty() => {
+                let mut report = SolveReport::solved(self.source.method());
+                report.status = PointStatus::Failed;
+                report.findings = vec![Finding::Told(error.to_string())];
+                Solution::without_density(report)
             }
             Err(source) => {
                 return Err(SweepError::Source {
@@ -221,6 +229,7 @@ impl Run<'_> {
                 let middle = 0.5 * (a + b);
                 (b - a > tolerance && middle > a && middle < b).then_some(middle)
             }
+            Found::Beyond(_) => None,
             Found::Persistence => {
                 let (a, b) = (solved[change.left], solved[change.left + 1]);
                 let middle = 0.5 * (a.value + b.value);
@@ -247,44 +256,34 @@ impl Run<'_> {
                 let seen = solved.iter().any(|point| inside.contains(&point.value));
                 (4.0 * quarter > tolerance && !seen).then_some(0.5 * (pair[0] + pair[1]))
             };
-            narrower.or_else(|| roots.windows(2).find_map(unseen))
+            let beside = || {
+                let mut settled = crossings.iter();
+                settled.find_map(|one| beyond_doubt(solved, one, self.detector, tolerance))
+            };
+            narrower
+                .or_else(|| roots.windows(2).find_map(unseen))
+                .or_else(beside)
         })
     }
 
-    /// The rows, each checked on a finer grid where the source has one, and what was seen there.
-    fn labels(&mut self) -> (Vec<LabelledPoint>, Option<Vec<FinerIndicator>>) {
+    /// The rows, each checked where the source can be, and what was seen in the checks.
+    fn labels(&mut self) -> (Vec<LabelledPoint>, Option<Vec<CheckedIndicator>>) {
         let wanted = self.options.grid_check && !self.interrupted;
-        let open = || {
-            let finer = self.source.finer().ok().flatten();
-            finer.map(|finer| finer.open(self.cancellation))
-        };
-        let mut session: Option<Option<Box<dyn Session>>> = (!wanted).then_some(None);
-        let mut seen = Vec::new();
-        let span = self.span;
-        let mut on_finer = |checked: &Checked<'_>| {
-            let session = session.get_or_insert_with(open).as_mut()?;
-            let mut evaluate = |value: f64| {
-                let before = known(&seen, checked, value);
-                if before != Seen::Unknown {
-                    return before;
-                }
-                let found = solve(session.as_mut(), self.detector, checked, value);
-                seen.extend(found.record(checked, value));
-                found
-            };
-            check(&mut evaluate, checked, span, self.options.tolerance)
-        };
-        let observables = &self.source.subject().observables;
+        let mut checks = Live::new(
+            wanted.then_some(self.source),
+            self.detector,
+            self.cancellation,
+            (self.span, self.options.tolerance),
+        );
         let labels = label_points(
             &self.points,
-            observables,
+            self.source.subject(),
             self.detector,
             &self.options,
-            &mut on_finer,
+            &mut checks,
         );
         let can_check = self.source.subject().cell_check == CellCheck::OnFinerCells;
-        let has_finer = can_check && session.is_none_or(|one| one.is_some());
-        (labels, has_finer.then_some(seen))
+        (labels, checks.seen().filter(|_| can_check))
     }
 }
 

@@ -27,6 +27,7 @@ fn stroke(status: BifurcationStatus) -> Stroke {
         BifurcationStatus::Located => &[],
         BifurcationStatus::Unresolved => &[6.0, 3.0],
         BifurcationStatus::Unconfirmed => &[2.0, 3.0],
+        BifurcationStatus::Unchecked => &[8.0, 2.0, 2.0, 2.0],
     };
     Stroke {
         dash,
@@ -177,6 +178,7 @@ impl<'a> Labels<'a> {
             (BifurcationStatus::Located, "P-bifurcation"),
             (BifurcationStatus::Unresolved, "P-bifurcation, unresolved"),
             (BifurcationStatus::Unconfirmed, "P-bifurcation, unconfirmed"),
+            (BifurcationStatus::Unchecked, "P-bifurcation, unchecked"),
         ];
         let own = || self.placed.iter().filter(|label| label.own);
         let shown = words

@@ -75,4 +75,8 @@ impl DensitySource for MethodSource {
     fn finer(&self) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
         self.source().finer()
     }
+
+    fn enclosed(&self) -> Option<Box<dyn DensitySource>> {
+        self.source().enclosed()
+    }
 }

@@ -35,6 +35,8 @@ fn columns<'a>(family: &'a Family) -> Columns<'a, LabelledPoint> {
         optional("error_sampling", |row: &Row| {
             row.parts.map(|parts| parts.sampling)
         }),
+        optional("error_leak", |row: &Row| row.parts.map(|parts| parts.leak)),
+        word("reason", |row: &Row| row.reason.clone().unwrap_or_default()),
     ])
 }
 

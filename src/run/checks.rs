@@ -1,17 +1,19 @@
-//! `checks.csv`: the indicators that were seen on the finer grid on which located values are checked.
+//! `checks.csv`: the indicators that were seen in the checks of located values, on finer cells and between closed ends of Ω.
 //!
-//! With them `pbif detect` repeats the check without solving. A row without a `value` says that there was no such indicator.
+//! With them `pbif detect` repeats the checks without solving. A row without a `value` says that there was no such indicator, or
+//! why the solve failed.
 
 use std::path::Path;
 
 use super::RunError;
 use super::columns::{Columns, number, optional, word};
-use crate::continuation::{FinerIndicator, Subject};
+use crate::continuation::{CheckedBy, CheckedIndicator, Subject};
 use crate::density::Observable;
 use crate::system::Family;
+use crate::topology::IndicatorKind;
 
 /// The table's columns. An observable that is not watched has a number beyond all of those that are.
-fn columns<'a>(family: &'a Family, observables: &'a [Observable]) -> Columns<'a, FinerIndicator> {
+fn columns<'a>(family: &'a Family, observables: &'a [Observable]) -> Columns<'a, CheckedIndicator> {
     let name = move |number: usize| {
         let observable = observables.get(number);
         observable.map_or(String::new(), |&one| one.name(family))
@@ -21,25 +23,41 @@ fn columns<'a>(family: &'a Family, observables: &'a [Observable]) -> Columns<'a,
         let number = known.position(|&one| one.name(family) == text);
         number.unwrap_or(observables.len())
     };
-    let coordinate = |axis: usize| move |one: &FinerIndicator| one.place.get(axis).copied();
+    let coordinate = |axis: usize| move |one: &CheckedIndicator| one.place.get(axis).copied();
     Columns(vec![
-        number(family.parameter(), |one: &FinerIndicator| one.value)
+        number(family.parameter(), |one: &CheckedIndicator| one.value)
             .read(|cell| cell.number(), |one, value| one.value = value),
-        word("observable", move |one: &FinerIndicator| {
+        word("observable", move |one: &CheckedIndicator| {
             name(one.observable)
         })
         .read(
             move |cell| Ok(numbered(cell.text)),
             |one, number| one.observable = number,
         ),
-        word("indicator", |one: &FinerIndicator| one.kind.clone())
-            .read(|cell| Ok(cell.text.to_owned()), |one, kind| one.kind = kind),
+        word("by", |one: &CheckedIndicator| one.by.name().to_owned()).read(
+            |cell| cell.choice(&CheckedBy::ALL, CheckedBy::name),
+            |one, by| one.by = by,
+        ),
+        word("indicator", |one: &CheckedIndicator| {
+            one.kind.code().to_owned()
+        })
+        .read(
+            |cell| cell.choice(&IndicatorKind::ALL, IndicatorKind::code),
+            |one, kind| one.kind = kind,
+        ),
         optional("position", coordinate(0))
             .read(|cell| cell.optional(), |one, value| one.place.extend(value)),
         optional("position_2", coordinate(1))
             .read(|cell| cell.optional(), |one, value| one.place.extend(value)),
-        optional("value", |one: &FinerIndicator| one.indicator)
+        optional("value", |one: &CheckedIndicator| one.indicator)
             .read(|cell| cell.optional(), |one, value| one.indicator = value),
+        word("failure", |one: &CheckedIndicator| {
+            one.failure.clone().unwrap_or_default()
+        })
+        .read(
+            |cell| Ok(Some(cell.text.to_owned()).filter(|text| !text.is_empty())),
+            |one, failure| one.failure = failure,
+        ),
     ])
 }
 
@@ -47,7 +65,7 @@ fn columns<'a>(family: &'a Family, observables: &'a [Observable]) -> Columns<'a,
 ///
 /// # Errors
 /// [`RunError::Table`].
-pub(super) fn checks_csv(subject: &Subject, seen: &[FinerIndicator]) -> Result<String, RunError> {
+pub(super) fn checks_csv(subject: &Subject, seen: &[CheckedIndicator]) -> Result<String, RunError> {
     let Subject {
         family,
         observables,
@@ -61,18 +79,23 @@ pub(super) fn checks_csv(subject: &Subject, seen: &[FinerIndicator]) -> Result<S
 ///
 /// # Errors
 /// [`RunError::Read`], [`RunError::Column`], [`RunError::Row`].
-pub(super) fn read_checks(path: &Path, subject: &Subject) -> Result<Vec<FinerIndicator>, RunError> {
+pub(super) fn read_checks(
+    path: &Path,
+    subject: &Subject,
+) -> Result<Vec<CheckedIndicator>, RunError> {
     let Subject {
         family,
         observables,
         ..
     } = subject;
-    let blank = || FinerIndicator {
+    let blank = || CheckedIndicator {
         value: f64::NAN,
         observable: observables.len(),
-        kind: String::new(),
+        by: CheckedBy::FinerCells,
+        kind: IndicatorKind::Curvature,
         place: Vec::new(),
         indicator: None,
+        failure: None,
     };
     let mut seen = columns(family, observables).read(path, blank)?;
     seen.retain(|one| one.observable < observables.len());

@@ -110,8 +110,8 @@ impl RunFolder {
         self.points.close();
         self.features.close();
         self.write_tables(result)?;
-        if let Some(finer) = &result.finer {
-            let text = checks::checks_csv(&result.subject, finer)?;
+        if let Some(checks) = &result.checks {
+            let text = checks::checks_csv(&result.subject, checks)?;
             self.write("checks.csv", &text)?;
         }
         let densities: Vec<(f64, &[EstimatedDensity])> = result

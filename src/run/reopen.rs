@@ -20,10 +20,10 @@ impl StoredRun {
     pub fn detect(&self, sweep: &Sweep) -> Result<SweepResult, RunError> {
         let (subject, space) = (sweep.problem.subject(), sweep.problem.space());
         let points = self.points(subject, space, &MethodKind::ALL.map(MethodKind::name))?;
-        let finer = self.finer(subject)?;
+        let checks = self.checks(subject)?;
         let swept = (subject.clone(), sweep.settings.points);
         let (detector, locate) = (sweep.detector(), &sweep.settings.locate);
-        let mut result = detect_again(swept, &detector, points, finer, locate);
+        let mut result = detect_again(swept, &detector, points, checks, locate);
         result.interrupted = self.ending() != Ending::Complete;
         Ok(result)
     }

@@ -9,7 +9,7 @@ use super::checks::read_checks;
 use super::points_table::read_points;
 use super::stored_densities::StoredDensities;
 use super::{Ending, PhaseSeconds, RunError};
-use crate::continuation::{FinerIndicator, Point, Subject};
+use crate::continuation::{CheckedIndicator, Point, Subject};
 use crate::space::CellSpace;
 
 /// The folder of a run that is read.
@@ -113,7 +113,7 @@ impl StoredRun {
     ///
     /// # Errors
     /// [`RunError::Read`], [`RunError::Column`] and [`RunError::Row`].
-    pub fn finer(&self, subject: &Subject) -> Result<Option<Vec<FinerIndicator>>, RunError> {
+    pub fn checks(&self, subject: &Subject) -> Result<Option<Vec<CheckedIndicator>>, RunError> {
         let path = self.path.join("checks.csv");
         let there = path.is_file();
         there.then(|| read_checks(&path, subject)).transpose()

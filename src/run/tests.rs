@@ -105,7 +105,7 @@ fn result(points: Vec<Point>) -> SweepResult {
         subject: subject(),
         points,
         labels: Vec::new(),
-        finer: None,
+        checks: None,
         interrupted: false,
     }
 }
@@ -243,6 +243,9 @@ fn tables_for_people_round_to_the_error() {
         method: "curvature at the centre",
         indicator: None,
         rises: false,
+        reason: None,
+        place: Vec::new(),
+        slope: None,
         parts: None,
     };
     let end = LabelledPoint {
@@ -273,7 +276,7 @@ fn tables_for_people_round_to_the_error() {
     let csv = bifurcations_csv(&coulomb(), &rows).unwrap();
     assert_eq!(
         csv.lines().next().unwrap(),
-        "label,parameter,value,error,lower,upper,observable,before,after,status,change,method,error_solver,error_grid,error_sampling"
+        "label,parameter,value,error,lower,upper,observable,before,after,status,change,method,error_solver,error_grid,error_sampling,error_leak,reason"
     );
     assert!(
         csv.contains("PB1,f_c,-0.012345678,0.00045,-0.0127,-0.0119,y,2 peaks,1 peak,unresolved")

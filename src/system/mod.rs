@@ -8,6 +8,7 @@
 
 mod bistable;
 pub mod contract;
+mod enclosed;
 #[cfg(test)]
 pub(crate) mod examples;
 mod facts;
@@ -23,6 +24,7 @@ mod symmetry;
 mod typed;
 
 pub use crate::formula::{LANES, Lanes};
+pub(crate) use enclosed::Enclosed;
 pub use facts::{PeriodicDrift, SwitchingSurface, Symmetry};
 pub use family::Family;
 pub use model::{

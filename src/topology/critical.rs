@@ -16,6 +16,8 @@ const FARTHEST: f64 = 2.5;
 const FLAT: f64 = 0.02;
 /// A flat direction is followed all the same where a rougher reconstruction agrees on its curvature to this share.
 const CERTAIN: f64 = 0.3;
+/// Up to so many cells from each other two points share their errors; from twice as many on they share none.
+const ONE_ERROR: f64 = 4.0;
 /// A step that is a smaller share of a cell ends the search.
 const SETTLED: f64 = 1e-6;
 
@@ -30,6 +32,8 @@ pub(super) struct Critical {
     pinned: Vec<bool>,
     /// Widths of the cell, in units of the axes.
     cell: [f64; 2],
+    /// The same in units of the coordinates.
+    width: [f64; 2],
     fine: Stencil,
     rough: Stencil,
 }
@@ -74,15 +78,17 @@ impl Critical {
             }
         }
         let fine = field.stencil(&position, 0)?;
-        let mut cell = [0.0; 2];
+        let (mut cell, mut width) = ([0.0; 2], [0.0; 2]);
         let mut pinned = pinned;
         for (k, axis) in field.axes().iter().enumerate() {
             cell[k] = field.cell_width(k, centre[k]);
+            width[k] = cell[k] * field.unit(k);
             // At an end of the range the density need not be level.
             pinned[k] |= position[k] <= axis.from() || position[k] >= axis.to();
         }
         Some(Self {
             cell,
+            width,
             jet: fine.jet(values),
             rough: field.stencil(&position, 1)?,
             fine,
@@ -132,6 +138,27 @@ impl Critical {
     /// Value of another variant of the density at the same place.
     fn value(&self, values: &[f64]) -> f64 {
         self.fine.value(values)
+    }
+
+    /// What a rougher reconstruction and the second discretisation change of the value.
+    fn error(&self, estimated: &EstimatedDensity) -> f64 {
+        let values = &estimated.density.values;
+        let scheme = estimated.variants.second_scheme();
+        let scheme = scheme.map_or(0.0, |second| {
+            (self.value(second) - self.value(values)).abs()
+        });
+        self.roughness(values).abs() + scheme
+    }
+
+    /// Distance to another in cells; zero on one axis.
+    fn cells_from(&self, other: &Self) -> f64 {
+        let [first, second] = self.position[..] else {
+            return 0.0;
+        };
+        let apart = [first - other.position[0], second - other.position[1]];
+        (0..2)
+            .map(|k| (apart[k] / self.width[k]).abs())
+            .fold(0.0, f64::max)
     }
 
     /// What the rougher reconstruction changes of the value.
@@ -213,6 +240,8 @@ fn step(
 }
 
 /// Height of one critical point above another with its error: what a rougher reconstruction and the second discretisation change.
+/// Points within a few cells of each other share much of their errors; of those that are far apart the errors may cancel by chance only,
+/// as along a level moat.
 pub(super) fn height_above(
     high: &Critical,
     low: &Critical,
@@ -224,5 +253,8 @@ pub(super) fn height_above(
     let rough = (high.roughness(values) - low.roughness(values)).abs();
     let scheme = estimated.variants.second_scheme();
     let scheme = scheme.map_or(0.0, |values| (height(values) - found).abs());
-    (found, rough + scheme)
+    let far = high.cells_from(low);
+    let far = ((far - ONE_ERROR) / ONE_ERROR).clamp(0.0, 1.0);
+    let each = high.error(estimated) + low.error(estimated);
+    (found, (rough + scheme).max(far * each))
 }

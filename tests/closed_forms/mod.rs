@@ -81,6 +81,9 @@ fn bifurcation(
         method: "",
         indicator: None,
         rises: false,
+        reason: None,
+        place: Vec::new(),
+        slope: None,
         parts: None,
     }
 }
@@ -156,7 +159,7 @@ pub(crate) fn bistable() -> SweepResult {
             Observable::Marginal(0),
             unresolved,
         )],
-        finer: None,
+        checks: None,
         interrupted: false,
     }
 }
@@ -225,7 +228,7 @@ pub(crate) fn rayleigh((model, parameter): (&str, &str), scale: f64, y: &Axis) -
         },
         points,
         labels,
-        finer: None,
+        checks: None,
         interrupted: false,
     }
 }

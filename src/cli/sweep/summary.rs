@@ -71,7 +71,11 @@ fn table(family: &Family, rows: &[&LabelledPoint]) -> String {
     }
     let lines = table.to_string();
     let trimmed: Vec<&str> = lines.lines().map(str::trim_end).collect();
-    trimmed.join("\n") + "\n"
+    let reasons = rows.iter().filter_map(|row| {
+        let reason = row.reason.as_ref()?;
+        Some(format!(" {}: {reason}\n", row.label))
+    });
+    trimmed.join("\n") + "\n" + &reasons.collect::<String>()
 }
 
 /// The signatures at both ends of the sweep.

@@ -74,7 +74,7 @@ impl GeneratorSession {
 
     fn solve_from_nearest(&mut self, value: f64) -> Result<Solution<'_>, MethodError> {
         self.cancellation.check()?;
-        let system = self.source.problem.family().at(value)?;
+        let system = self.source.system_at(value)?;
         if let Some(found) = one_axis::masses(&self.source, system.as_ref()) {
             return one_axis::solution(&self.source, value, system.as_ref(), &found);
         }
@@ -199,7 +199,7 @@ impl GeneratorSession {
         let options = GeneratorOptions {
             scheme: self.source.options.scheme,
         };
-        let at = |value: f64| problem.family().at(value);
+        let at = |value: f64| self.source.system_at(value);
         let derivative = assemble_derivative(at, solved.value, problem.space(), &options);
         let Ok(derivative) = derivative else {
             return Ok(None);

@@ -1,5 +1,7 @@
 //! The generator as a source of densities: what is prepared once for a sweep, and finer cells to check with.
 
+use std::sync::Arc;
+
 use super::GeneratorMethodOptions;
 use super::session::GeneratorSession;
 use crate::cancellation::Cancellation;
@@ -9,7 +11,7 @@ use crate::method::structure::{closed_ends, kinked_surfaces};
 use crate::method::{MethodError, Problem, autonomous};
 use crate::space::CellSpace;
 use crate::stationary::generator::{RateOptions, RateSolver};
-use crate::system::{SwitchingSurface, System};
+use crate::system::{Enclosed, SwitchingSurface, System, SystemError};
 
 /// Name of the method in tables.
 pub(super) const METHOD: &str = "generator";
@@ -24,6 +26,8 @@ pub struct GeneratorSource {
     pub(super) options: GeneratorMethodOptions,
     pub(super) closed_ends: Vec<[bool; 2]>,
     pub(super) kinked: Vec<SwitchingSurface>,
+    /// Whether nothing leaves Ω, whatever the system does there.
+    pub(super) enclosed: bool,
 }
 
 impl GeneratorSource {
@@ -39,7 +43,22 @@ impl GeneratorSource {
             options: options.clone(),
             closed_ends: closed_ends(&systems, space),
             kinked: kinked_surfaces(&systems, space),
+            enclosed: false,
         })
+    }
+
+    /// The system at a value of the path's coordinate.
+    ///
+    /// # Errors
+    /// [`SystemError`].
+    pub(super) fn system_at(&self, value: f64) -> Result<Arc<dyn System>, SystemError> {
+        let system = self.problem.family().at(value)?;
+        if !self.enclosed {
+            return Ok(system);
+        }
+        let axes = self.problem.space().axes().iter();
+        let ranges = axes.map(|axis| (axis.from(), axis.to())).collect();
+        Ok(Arc::new(Enclosed { system, ranges }))
     }
 
     /// The same on finer cells.
@@ -87,5 +106,14 @@ impl DensitySource for GeneratorSource {
 
     fn finer(&self) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
         Ok(Some(Box::new(self.refined()?)))
+    }
+
+    fn enclosed(&self) -> Option<Box<dyn DensitySource>> {
+        let closed_ends = vec![[true; 2]; self.closed_ends.len()];
+        Some(Box::new(Self {
+            enclosed: true,
+            closed_ends,
+            ..self.clone()
+        }))
     }
 }

@@ -72,6 +72,28 @@ impl IndicatorKind {
             Self::Ring => "slope to the ring",
         }
     }
+
+    /// All of them.
+    pub const ALL: [Self; 9] = [
+        Self::Curvature,
+        Self::KinkSlope,
+        Self::CurvatureAlongKink,
+        Self::LowerCurvature,
+        Self::UpperCurvature,
+        Self::Shoulder { rising: true },
+        Self::Shoulder { rising: false },
+        Self::Fold,
+        Self::Ring,
+    ];
+
+    /// Words that no other indicator has, for files that are read again.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::Shoulder { rising: true } => "slope at the rising inflection",
+            Self::Shoulder { rising: false } => "slope at the falling inflection",
+            kind => kind.name(),
+        }
+    }
 }
 
 /// An indicator at one parameter value.

@@ -1,0 +1,118 @@
+//! The checks of located values by solves: on finer cells, and between ends of Ω that let nothing out.
+
+use super::grid::{
+    Checked, CheckedBy, CheckedIndicator, Checks, GridCheck, Leak, Seen, check, known, leak, solve,
+};
+use super::span::Span;
+use super::{DensitySource, Session, SourceError};
+use crate::cancellation::Cancellation;
+use crate::topology::Detector;
+
+/// A session that is opened when it is first asked.
+enum Opened {
+    NotYet,
+    Open(Box<dyn Session>),
+    /// There is no such source.
+    None,
+    Failed(String),
+}
+
+/// The checks of a sweep.
+pub(super) struct Live<'a> {
+    /// `None` where no check is wanted.
+    source: Option<&'a dyn DensitySource>,
+    detector: &'a dyn Detector,
+    cancellation: &'a Cancellation,
+    span: Span,
+    tolerance: f64,
+    finer: Opened,
+    enclosed: Opened,
+    seen: Vec<CheckedIndicator>,
+}
+
+impl<'a> Live<'a> {
+    pub(super) fn new(
+        source: Option<&'a dyn DensitySource>,
+        detector: &'a dyn Detector,
+        cancellation: &'a Cancellation,
+        (span, tolerance): (Span, f64),
+    ) -> Self {
+        Self {
+            source,
+            detector,
+            cancellation,
+            span,
+            tolerance,
+            finer: Opened::NotYet,
+            enclosed: Opened::NotYet,
+            seen: Vec::new(),
+        }
+    }
+
+    /// What was seen; `None` where there was nothing to check with.
+    pub(super) fn seen(self) -> Option<Vec<CheckedIndicator>> {
+        let wanted = self.source.is_some() && !matches!(self.finer, Opened::None);
+        wanted.then_some(self.seen)
+    }
+
+    fn open(&self, by: CheckedBy) -> Opened {
+        let Some(source) = self.source else {
+            return Opened::None;
+        };
+        let found = match by {
+            CheckedBy::FinerCells => source.finer(),
+            CheckedBy::ClosedEnds => Ok(source.enclosed()),
+        };
+        match found {
+            Ok(Some(source)) => Opened::Open(source.open(self.cancellation)),
+            Ok(None) | Err(SourceError::Interrupted) => Opened::None,
+            Err(SourceError::Method(error)) => Opened::Failed(error.to_string()),
+        }
+    }
+
+    /// The indicator at a value, by a solve unless it was seen there before; `None` where there is nothing to check with.
+    fn evaluate(&mut self, by: CheckedBy, checked: &Checked<'_>, value: f64) -> Option<Seen> {
+        let before = known(&self.seen, by, checked, value);
+        if before != Seen::Unknown {
+            return Some(before);
+        }
+        let slot = match by {
+            CheckedBy::FinerCells => &self.finer,
+            CheckedBy::ClosedEnds => &self.enclosed,
+        };
+        if matches!(slot, Opened::NotYet) {
+            let opened = self.open(by);
+            match by {
+                CheckedBy::FinerCells => self.finer = opened,
+                CheckedBy::ClosedEnds => self.enclosed = opened,
+            }
+        }
+        let slot = match by {
+            CheckedBy::FinerCells => &mut self.finer,
+            CheckedBy::ClosedEnds => &mut self.enclosed,
+        };
+        let found = match slot {
+            Opened::NotYet | Opened::None => return None,
+            Opened::Failed(reason) => Seen::Failed(reason.clone()),
+            Opened::Open(session) => solve(session.as_mut(), self.detector, checked, value),
+        };
+        self.seen.extend(found.record(by, checked, value));
+        Some(found)
+    }
+}
+
+impl Checks for Live<'_> {
+    fn on_finer_cells(&mut self, checked: &Checked<'_>) -> Option<GridCheck> {
+        let (span, tolerance) = (self.span, self.tolerance);
+        let mut evaluate = |value: f64| {
+            let seen = self.evaluate(CheckedBy::FinerCells, checked, value);
+            seen.unwrap_or(Seen::Unknown)
+        };
+        check(&mut evaluate, checked, span, tolerance)
+    }
+
+    fn between_closed_ends(&mut self, checked: &Checked<'_>) -> Option<Leak> {
+        let seen = self.evaluate(CheckedBy::ClosedEnds, checked, checked.root.value)?;
+        leak(seen, checked)
+    }
+}
