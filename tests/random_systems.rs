@@ -164,7 +164,7 @@ fn drift_polynomial(dice: &mut Dice, degrees: &[usize], symmetric: bool) -> Poly
 /// dx = (polynomial + θ x^k) dt + b dW, with b² = σ² (1 + r x²).
 fn one_axis(seed: u64) -> Option<Case> {
     let mut dice = Dice::new(seed);
-    let symmetric = seed % 2 == 0;
+    let symmetric = seed.is_multiple_of(2);
     let state_dependent = seed % 4 >= 2;
     let drift = drift_polynomial(&mut dice, &[3, 5, 7, 9], symmetric);
     let power = if symmetric { 1 } else { dice.one_of([0, 0, 1]) };
@@ -290,7 +290,7 @@ fn energy(seed: u64) -> Option<Case> {
 /// x'' + κ x' = force(x) + θ x^k + σ ξ.
 fn potential(seed: u64) -> Option<Case> {
     let mut dice = Dice::new(seed);
-    let symmetric = seed % 2 == 0;
+    let symmetric = seed.is_multiple_of(2);
     let force = drift_polynomial(&mut dice, &[3, 5], symmetric);
     let power = usize::from(symmetric);
     let kappa = dice.between(0.3, 1.5);
