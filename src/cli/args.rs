@@ -50,7 +50,13 @@ The keys of a sweep file: pbif sweep --help";
 const PLOT_EXAMPLES: &str = "\
 Examples:
   pbif plot output/coulomb_fc
-  pbif plot output/coulomb_fc --set 'figures.at=[0.0, 0.005]' --out more_figures";
+  pbif plot output/coulomb_fc --only diagram_x,joint --at -0.01,0 --style single --format pdf --out paper
+  pbif plot output/coulomb_fc --style slide,dark,cividis --out talk
+  pbif plot output/coulomb_fc --set 'figures.at=[0.0, 0.005]' --out more_figures
+
+--style takes, in any order, a width (single, one-and-a-half, double, slide, own, or a number of millimetres),
+a typeface (sans, serif), colours (viridis, cividis, magma, grey), a ground (light, dark), and no-title, no-letters.
+The figures themselves, and every key of their style: docs/figures.md";
 
 const EXPLORE_EXAMPLES: &str = "\
 Examples:
@@ -198,6 +204,23 @@ pub(crate) struct DetectArguments {
 pub(crate) struct PlotArguments {
     /// Folder of a run, as `pbif sweep` left it
     pub(crate) run: PathBuf,
+    /// Figures to draw, by name or kind, such as diagram_x,joint; all for every one
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub(crate) only: Vec<String>,
+    /// Values to draw at; the run must have densities there
+    #[arg(
+        long,
+        value_name = "VALUES",
+        value_delimiter = ',',
+        allow_hyphen_values = true
+    )]
+    pub(crate) at: Vec<String>,
+    /// Style: a width, and words such as serif, grey, dark, no-title
+    #[arg(long, value_name = "WORDS", value_delimiter = ',')]
+    pub(crate) style: Vec<String>,
+    /// File formats: svg, png, pdf
+    #[arg(long, value_name = "FORMATS", value_delimiter = ',')]
+    pub(crate) format: Vec<String>,
     /// Override a key of the run's sweep under figures, such as figures.formats=["svg"] (repeatable; the last one counts)
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,

@@ -77,7 +77,9 @@ fn carry_out(
     let folder = CompareFolder::new(path)?;
     folder.write(&run)?;
     progress.say("drawing");
-    let figures = Figures::of_comparison(&comparison, &spec.settings.title).draw_all()?;
+    let figures = Figures::of_comparison(&comparison, &spec.settings.title)
+        .with_style(&spec.settings.figure_style)
+        .draw_all()?;
     write_figures(&figures, &spec.settings.figure_formats, &folder.figures())?;
     let files = folder.take_place()?;
     progress.finish();

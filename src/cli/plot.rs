@@ -1,22 +1,32 @@
-//! `pbif plot`: the figures of a stored run, drawn again.
+//! `pbif plot`: the figures of a stored run, drawn again: which, where, how.
 
 use super::args::PlotArguments;
 use super::output::OutputFolder;
 use super::stored::Stored;
 use super::sweep::draw;
 use super::{CommandError, Outcome};
+use crate::continuation::SweepResult;
+use crate::figure::{ColourMap, FigureError, FigureWidth, Figures, Ground, Typeface};
+use crate::run::format_number;
+use crate::sweep_file::{Diagnostic, list};
+
+/// Share of the swept range within which a value is one of the run's.
+const SAME: f64 = 1e-6;
+/// Computed values that are offered for one that is not there.
+const OFFERED: usize = 3;
 
 /// Draws into the run's `figures/` or another folder and prints the files.
 ///
 /// # Errors
 /// [`CommandError`] when the run cannot be read or a figure not be drawn.
 pub(super) fn run(arguments: &PlotArguments) -> Result<Outcome, CommandError> {
-    let stored = Stored::read(
-        &arguments.run,
-        &arguments.overrides,
-        &["figures"],
-        arguments.quiet,
-    )?;
+    let mut overrides = overrides(arguments)?;
+    overrides.extend(arguments.overrides.iter().cloned());
+    let stored = Stored::read(&arguments.run, &overrides, &["figures"], arguments.quiet)?;
+    if !arguments.at.is_empty() {
+        check_values(&stored.result, &stored.spec.settings.figures_at)?;
+    }
+    check_names(&stored)?;
     let figures = arguments.run.join("figures");
     let output = OutputFolder::prepare(arguments.out.as_deref().unwrap_or(&figures))?;
     let files = draw(&stored.spec, &stored.result, output.path())?;
@@ -25,4 +35,110 @@ pub(super) fn run(arguments: &PlotArguments) -> Result<Outcome, CommandError> {
     }
     let lines = files.iter().map(|file| format!("  {}\n", file.display()));
     super::print(&format!("files\n{}", lines.collect::<String>()))
+}
+
+/// Refuses names that no figure of this run has, such as one at a value that was not computed.
+fn check_names(stored: &Stored) -> Result<(), CommandError> {
+    let settings = &stored.spec.settings;
+    let figures = Figures::of_sweep(&stored.result, &settings.title, &settings.figures_at);
+    match figures.unknown(&settings.figures_drawn) {
+        None => Ok(()),
+        Some(name) => Err(FigureError::Unknown {
+            name: name.to_owned(),
+            known: figures.names(),
+        }
+        .into()),
+    }
+}
+
+/// The short options as keys.
+fn overrides(arguments: &PlotArguments) -> Result<Vec<String>, CommandError> {
+    let mut keys = Vec::new();
+    let texts = |words: &[String]| {
+        let quoted = words.iter().map(|word| format!("{:?}", word.trim()));
+        quoted.collect::<Vec<_>>().join(", ")
+    };
+    if !arguments.only.is_empty() {
+        keys.push(format!("figures.draw=[{}]", texts(&arguments.only)));
+    }
+    if !arguments.format.is_empty() {
+        keys.push(format!("figures.formats=[{}]", texts(&arguments.format)));
+    }
+    if !arguments.at.is_empty() {
+        keys.push(format!("figures.at=[{}]", arguments.at.join(", ")));
+    }
+    for word in &arguments.style {
+        keys.push(style_key(word.trim())?);
+    }
+    Ok(keys)
+}
+
+/// The key that a word of `--style` sets.
+fn style_key(word: &str) -> Result<String, CommandError> {
+    let is_name = |names: &[&str]| names.contains(&word);
+    let widths: Vec<&str> = FigureWidth::NAMED
+        .into_iter()
+        .filter_map(FigureWidth::name)
+        .collect();
+    let fonts = Typeface::ALL.map(Typeface::name);
+    let colours = ColourMap::ALL.map(ColourMap::name);
+    let grounds = Ground::ALL.map(Ground::name);
+    let switches = ["no-title", "no-letters"];
+    if word.parse::<f64>().is_ok() {
+        return Ok(format!("figures.style.width={word}"));
+    }
+    let of = |key: &str| Ok(format!("figures.style.{key}={word:?}"));
+    match () {
+        () if is_name(&widths) => of("width"),
+        () if is_name(&fonts) => of("font"),
+        () if is_name(&colours) => of("colours"),
+        () if is_name(&grounds) => of("ground"),
+        () if is_name(&switches) => Ok(format!(
+            "figures.style.{}=\"off\"",
+            word.trim_start_matches("no-")
+        )),
+        () => {
+            let known: Vec<&str> = widths
+                .into_iter()
+                .chain(fonts)
+                .chain(colours)
+                .chain(grounds)
+                .chain(switches)
+                .collect();
+            let report = Diagnostic::new(format!("`--style` knows no word {word:?}"))
+                .nearest(word, known.iter().copied())
+                .allowed(format!("a number of millimetres, {}", list(&known)))
+                .remedy("finer settings are keys: `--set figures.style.text=7`");
+            Err(CommandError::Input(report.into()))
+        }
+    }
+}
+
+/// Refuses values at which the run has no densities; offers the nearest.
+fn check_values(result: &SweepResult, values: &[f64]) -> Result<(), CommandError> {
+    let parameter = result.subject.family.parameter();
+    let (low, high) = result.subject.family.range();
+    let solved: Vec<f64> = result
+        .points
+        .iter()
+        .filter(|point| !point.densities.is_empty())
+        .map(|point| point.value)
+        .collect();
+    for &wanted in values {
+        let mut nearest = solved.clone();
+        nearest.sort_by(|a, b| (a - wanted).abs().total_cmp(&(b - wanted).abs()));
+        let is_there = |value: &f64| (value - wanted).abs() <= SAME * (high - low);
+        if nearest.first().is_some_and(is_there) {
+            continue;
+        }
+        nearest.truncate(OFFERED);
+        nearest.sort_by(f64::total_cmp);
+        let offered: Vec<String> = nearest.into_iter().map(format_number).collect();
+        let title = format!("the run has no densities at {parameter} = {wanted}");
+        let report = Diagnostic::new(title)
+            .allowed(format!("the nearest that it has: {}", offered.join(", ")))
+            .remedy("`--set figures.at=[…]` takes the nearest value by itself");
+        return Err(CommandError::Input(report.into()));
+    }
+    Ok(())
 }

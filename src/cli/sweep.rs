@@ -145,12 +145,11 @@ pub(super) fn draw(
     result: &SweepResult,
     folder: &Path,
 ) -> Result<Vec<PathBuf>, CommandError> {
-    let figures = Figures::of_sweep(result, &spec.settings.title, &spec.settings.figures_at);
-    Ok(write_figures(
-        &figures.draw_all()?,
-        &spec.settings.figure_formats,
-        folder,
-    )?)
+    let settings = &spec.settings;
+    let figures = Figures::of_sweep(result, &settings.title, &settings.figures_at)
+        .with_style(&settings.figure_style);
+    let drawn = figures.draw_named(&settings.figures_drawn)?;
+    Ok(write_figures(&drawn, &settings.figure_formats, folder)?)
 }
 
 /// Writes every point as soon as it is done, and shows how far the sweep is.

@@ -1,14 +1,14 @@
 //! Located and unresolved bifurcations over a diagram: lines, bands, and labels that do not overlap.
 
-use plotters_backend::BackendColor;
 use plotters_backend::text_anchor::HPos;
 
 use crate::continuation::{BifurcationStatus, LabelledPoint, PointType, SweepResult};
 use crate::density::Observable;
 
 use super::canvas::legend::Sample;
+use super::canvas::look::Look;
 use super::canvas::page::{Page, Panel, Rectangle, Shape, lettering};
-use super::canvas::style::{BIFURCATION, GREY, Stroke, TICK_TEXT, WHITE};
+use super::canvas::style::{self, BIFURCATION, Colour, GREY, PAPER, Stroke, TICK_TEXT, WHITE};
 use super::canvas::{DrawError, render, symbols};
 
 /// Height of a row of labels.
@@ -16,10 +16,7 @@ const ROW: f64 = 16.0;
 /// Gap between the map and the lowest row.
 const GAP: f64 = 4.0;
 /// Shade of the band in which an unresolved bifurcation lies.
-const BAND: BackendColor = BackendColor {
-    alpha: 0.45,
-    rgb: (255, 255, 255),
-};
+const BAND: Colour = WHITE.at(0.45);
 
 /// The line of a bifurcation of the given status.
 fn stroke(status: BifurcationStatus) -> Stroke {
@@ -62,8 +59,9 @@ impl<'a> Labels<'a> {
     /// # Errors
     /// [`DrawError::Svg`].
     pub(super) fn new(
+        look: &Look,
         result: &'a SweepResult,
-        watched: Observable,
+        watched: Option<Observable>,
         range: (f64, f64),
         (left, width): (f64, f64),
     ) -> Result<Self, DrawError> {
@@ -71,12 +69,12 @@ impl<'a> Labels<'a> {
             point.kind == PointType::Bifurcation && point.value >= range.0 && point.value <= range.1
         };
         let mut points: Vec<&LabelledPoint> = result.labels.iter().filter(inside).collect();
-        points.sort_by_key(|point| point.observable != Some(watched));
+        points.sort_by_key(|point| watched.is_none() || point.observable != watched);
         let mut placed = Vec::new();
         let mut rows: Vec<Vec<(f64, f64)>> = Vec::new();
         for point in points {
-            let own = point.observable == Some(watched);
-            let half = 0.5 * render::text_width(&point.label, TICK_TEXT, own)?;
+            let own = watched.is_some() && point.observable == watched;
+            let half = 0.5 * render::text_width(look, &point.label, TICK_TEXT, own)?;
             let share = (point.value - range.0) / (range.1 - range.0);
             let middle = (left + share * width).clamp(left + half, left + width - half);
             let (from, to) = (middle - half - 3.0, middle + half + 3.0);
@@ -113,6 +111,7 @@ impl<'a> Labels<'a> {
     /// [`DrawError::Layout`].
     pub(super) fn draw_lines(
         &self,
+        look: &Look,
         panel: &Panel,
         (from, to): (f64, f64),
     ) -> Result<(), DrawError> {
@@ -121,10 +120,7 @@ impl<'a> Labels<'a> {
             let line = [(point.value, from), (point.value, to)];
             if !label.own {
                 let faint = Stroke {
-                    colour: BackendColor {
-                        alpha: 0.7,
-                        ..WHITE
-                    },
+                    colour: style::on_heat(look, 0.0).at(0.7),
                     width: 0.9,
                     dash: &[1.5, 3.0],
                 };
@@ -139,6 +135,40 @@ impl<'a> Labels<'a> {
             }
             panel.draw(&line, Shape::Line(Stroke::solid(WHITE, 3.2)))?;
             panel.draw(&line, Shape::Line(stroke(status)))?;
+        }
+        Ok(())
+    }
+
+    /// Draws bands and lines on the ground of a panel: strongly for the own observable, faintly for others.
+    ///
+    /// # Errors
+    /// [`DrawError::Layout`].
+    pub(super) fn draw_plain(
+        &self,
+        panel: &Panel,
+        (from, to): (f64, f64),
+    ) -> Result<(), DrawError> {
+        for label in self.placed.iter().rev() {
+            let point = label.point;
+            let line = [(point.value, from), (point.value, to)];
+            let status = point.status.unwrap_or(BifurcationStatus::Located);
+            let a = point.lower.max(self.range.0);
+            let b = point.upper.min(self.range.1);
+            if label.own && b > a {
+                let band = BIFURCATION.at(0.12);
+                panel.draw(&[(a, from), (b, from), (b, to), (a, to)], Shape::Area(band))?;
+            }
+            let stroke = match label.own {
+                true => Stroke {
+                    width: 1.1,
+                    ..stroke(status)
+                },
+                false => Stroke {
+                    dash: &[1.5, 3.0],
+                    ..Stroke::solid(GREY, 0.9)
+                },
+            };
+            panel.draw(&line, Shape::Line(stroke))?;
         }
         Ok(())
     }
@@ -158,11 +188,11 @@ impl<'a> Labels<'a> {
         }
         for label in &self.placed {
             let (x, y) = (label.middle, middle_of(label.row));
-            // A white ground keeps leaders from striking the lower labels through.
+            // A ground of its own keeps leaders from striking the lower labels through.
             let (left, right) = (x - label.half - 1.0, x + label.half + 1.0);
             let (top, bottom) = (y - 0.45 * ROW, y + 0.45 * ROW);
             let corners = [(left, top), (right, top), (right, bottom), (left, bottom)];
-            page.draw(&corners, Shape::Area(WHITE))?;
+            page.draw(&corners, Shape::Area(PAPER))?;
             let mut text = lettering(symbols::plain(&label.point.label), HPos::Center);
             text.size = TICK_TEXT;
             text.colour = if label.own { BIFURCATION } else { GREY };

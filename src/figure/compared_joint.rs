@@ -7,6 +7,7 @@ use crate::system::Family;
 use super::canvas::DrawError;
 use super::canvas::colour_bar::ColourBar;
 use super::canvas::frame::Scale;
+use super::canvas::look::Look;
 use super::canvas::page::{Heading, Page, Rectangle};
 use super::canvas::style::{MARGIN, TEXT};
 use super::joint::{Found, draw_map, windows, write_above};
@@ -15,6 +16,9 @@ use super::{names, select};
 
 /// Side of a map, in pixels.
 const SIDE: f64 = 165.0;
+/// Narrowest and widest map where the page is given.
+const SMALLEST: f64 = 124.0;
+const TALLEST: f64 = 230.0;
 /// Gaps between maps.
 const BETWEEN: (f64, f64) = (12.0, 12.0);
 /// Room of the line above a map.
@@ -48,7 +52,7 @@ pub(super) fn sketches<'a>(scene: &'a ComparisonScene<'a>) -> Vec<Sketch<'a>> {
 
 /// The figure; `None` if there is nothing to draw. Maps of a row share their colours, all share their windows.
 fn draw(scene: &ComparisonScene<'_>, observable: Observable) -> Result<Option<Page>, DrawError> {
-    let (family, title) = (scene.family(), scene.title);
+    let family = scene.family();
     let rows: Vec<Vec<(Method, Found<'_>)>> = scene
         .comparison
         .values
@@ -71,53 +75,105 @@ fn draw(scene: &ComparisonScene<'_>, observable: Observable) -> Result<Option<Pa
     let Some((x, y)) = window else {
         return Ok(None);
     };
-    let across = Scale::horizontal(x, SIDE, &names::axis(family, first))?;
-    let up = Scale::vertical(y, SIDE, &names::axis(family, second))?;
+    let look = &scene.look;
+    let rough = ColourBar::new(look, 1.0, SIDE, &names::density(family, observable))?;
+    let left = MARGIN + Scale::vertical(look, y, SIDE, &names::axis(family, second))?.left();
+    let most = rows.iter().map(Vec::len).max().unwrap_or(1);
+    let (columns, side) = arrangement(look, most, left + rough.width() + 12.0 + MARGIN);
+    let across = Scale::horizontal(look, x, side, &names::axis(family, first))?;
+    let up = Scale::vertical(look, y, side, &names::axis(family, second))?;
     let mut bars = Vec::new();
     for row in &rows {
         let largest = select::largest(row.iter().map(|(_, found)| found.density()));
-        bars.push((
-            largest,
-            ColourBar::new(largest, SIDE, &names::density(family, observable))?,
-        ));
+        let title = names::density(family, observable);
+        bars.push((largest, ColourBar::new(look, largest, side, &title)?));
     }
     let widest = bars.iter().map(|(_, bar)| bar.width()).fold(0.0, f64::max);
-    let left = MARGIN + up.left();
-    let step = (SIDE + BETWEEN.0, ABOVE + SIDE + BETWEEN.1);
-    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
-    let width = left + columns as f64 * step.0 - BETWEEN.0 + widest + MARGIN;
-    let heading = Heading::new(title, width)?;
-    let height = heading.height() + rows.len() as f64 * step.1 + Scale::below() + MARGIN;
-    let page = Page::new(width, height);
+    // On a narrow page the value has a line of its own.
+    let above = if look.page.is_some() {
+        2.0 * ABOVE
+    } else {
+        ABOVE
+    };
+    let step = (side + BETWEEN.0, above + side + BETWEEN.1);
+    let own = left + columns as f64 * step.0 - BETWEEN.0 + widest + MARGIN;
+    let width = look.page.unwrap_or(own);
+    let heading = Heading::new(look, scene.title, width)?;
+    let lines: usize = rows.iter().map(|row| row.len().div_ceil(columns)).sum();
+    let height = heading.height() + lines as f64 * step.1 + Scale::below() + MARGIN;
+    let page = Page::new(look, width, height);
     heading.draw(&page)?;
-    for (number, (row, (largest, bar))) in rows.iter().zip(&bars).enumerate() {
-        for (column, (method, found)) in row.iter().enumerate() {
-            let map = Rectangle {
-                left: left + column as f64 * step.0,
-                top: heading.height() + ABOVE + number as f64 * step.1,
-                width: SIDE,
-                height: SIDE,
-            };
-            write_above(&page, map, above(*method, found.value, column, family))?;
-            draw_map(&page, map, found, (x, y), *largest)?;
-            across.draw_below(&page, map, number + 1 == rows.len())?;
-            up.draw_left(&page, map, column == 0)?;
-            if column + 1 == row.len() {
-                bar.draw(&page, map, &[])?;
+    let mut line = 0;
+    for (row, (largest, bar)) in rows.iter().zip(&bars) {
+        for (part, maps) in row.chunks(columns).enumerate() {
+            for (column, (method, found)) in maps.iter().enumerate() {
+                let map = Rectangle {
+                    left: left + column as f64 * step.0,
+                    top: heading.height() + above + line as f64 * step.1,
+                    width: side,
+                    height: side,
+                };
+                let is_first = column == 0 && part == 0;
+                write_lines(&page, map, (*method, is_first), found.value, family)?;
+                draw_map(&page, map, found, (x, y), *largest)?;
+                across.draw_below(&page, map, line + 1 == lines)?;
+                up.draw_left(&page, map, column == 0)?;
+                if column + 1 == maps.len() {
+                    bar.draw(&page, map, &[])?;
+                }
             }
+            line += 1;
         }
     }
     Ok(Some(page))
 }
 
+/// Columns, and the side of a map: all methods side by side, as far as they fit on a given page.
+fn arrangement(look: &Look, methods: usize, beside: f64) -> (usize, f64) {
+    if look.page.is_none() {
+        return (methods, SIDE);
+    }
+    let side = |columns: usize| {
+        let gaps = (columns - 1) as f64 * BETWEEN.0;
+        look.fill(SIDE, beside + gaps) / columns as f64
+    };
+    let fitting = (1..=methods)
+        .rev()
+        .find(|&columns| side(columns) >= SMALLEST);
+    let columns = fitting.unwrap_or(1);
+    (columns, side(columns).min(TALLEST))
+}
+
+/// Writes what stands above a map: the method, and the value at the head of a row.
+fn write_lines(
+    page: &Page,
+    map: Rectangle,
+    (method, is_first): (Method, bool),
+    value: f64,
+    family: &Family,
+) -> Result<(), DrawError> {
+    if page.look().page.is_none() {
+        return write_above(page, map, above(method, value, is_first, family));
+    }
+    write_above(page, map, above(method, value, false, family))?;
+    if is_first {
+        let higher = Rectangle {
+            top: map.top - 1.3 * TEXT,
+            ..map
+        };
+        write_above(page, higher, names::at(family, value))?;
+    }
+    Ok(())
+}
+
 /// The line above a map: the value at the head of a row, and the method.
-fn above(method: Method, value: f64, column: usize, family: &Family) -> String {
+fn above(method: Method, value: f64, is_first: bool, family: &Family) -> String {
     let title = match method {
         Method::SgcmSlope => "SGCM, corrected",
         method => method.title(),
     };
-    match column {
-        0 => format!("{}: {title}", names::at(family, value)),
-        _ => title.to_owned(),
+    match is_first {
+        true => format!("{}: {title}", names::at(family, value)),
+        false => title.to_owned(),
     }
 }

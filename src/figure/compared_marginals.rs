@@ -3,7 +3,7 @@
 
 use plotters_backend::text_anchor::HPos;
 
-use crate::compare::{ComparedValue, Comparison, Method};
+use crate::compare::{ComparedValue, Method};
 use crate::density::{Density, EstimatedDensity, Observable};
 use crate::system::Family;
 
@@ -11,13 +11,18 @@ use super::canvas::DrawError;
 use super::canvas::frame::{self, Scale};
 use super::canvas::legend::{self, Legend, Sample};
 use super::canvas::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
-use super::canvas::style::{BLACK, ERROR_LINE, MARGIN, Stroke, TEXT};
+use super::canvas::style::{ERROR_LINE, INK, MARGIN, Stroke, TEXT};
+use super::joint::lettered;
 use super::marginals::{cells, curve};
 use super::sketch::{ComparisonScene, Sketch};
 use super::{names, select};
 
 /// Size of a panel, in pixels.
 const PANEL: (f64, f64) = (270.0, 165.0);
+/// Narrowest panel beside another where the page is given.
+const NARROWEST: f64 = 180.0;
+/// Room right of the last panel, for half a label of its axis.
+const BESIDE: f64 = 10.0;
 /// Gaps between panels; above each stands its value.
 const BETWEEN: (f64, f64) = (20.0, 12.0);
 /// Room of the line above a panel.
@@ -35,7 +40,8 @@ pub(super) fn stroke(method: Method) -> Stroke {
 struct Laid<'a> {
     value: &'a ComparedValue,
     observable: Observable,
-    across: Scale,
+    axis: usize,
+    window: (f64, f64),
     up: Scale,
 }
 
@@ -46,7 +52,7 @@ pub(super) fn sketches<'a>(scene: &'a ComparisonScene<'a>) -> Vec<Sketch<'a>> {
 
 /// The figure; `None` if there is nothing to draw.
 fn draw(scene: &ComparisonScene<'_>) -> Result<Option<Page>, DrawError> {
-    let (comparison, family, title) = (scene.comparison, scene.family(), scene.title);
+    let (comparison, family, look) = (scene.comparison, scene.family(), &scene.look);
     let is_marginal = |one: &Observable| matches!(one, Observable::Marginal(_));
     let watched: Vec<Observable> = comparison
         .subject
@@ -57,42 +63,57 @@ fn draw(scene: &ComparisonScene<'_>) -> Result<Option<Page>, DrawError> {
         .collect();
     let has_density = |value: &&ComparedValue| value.solved.iter().any(|s| !s.densities.is_empty());
     let values: Vec<&ComparedValue> = comparison.values.iter().filter(has_density).collect();
-    let mut rows: Vec<Vec<Laid<'_>>> = Vec::new();
+    let mut all: Vec<Laid<'_>> = Vec::new();
     for &value in &values {
-        let mut row = Vec::new();
         for &observable in &watched {
-            row.extend(lay_out(comparison, value, observable, family)?);
+            all.extend(lay_out(scene, value, observable)?);
         }
-        rows.push(row);
     }
-    if rows.iter().all(Vec::is_empty) {
+    if all.is_empty() {
         return Ok(None);
     }
-    let left_of = |laid: &Laid<'_>| laid.up.left();
-    let room = rows.iter().flatten().map(left_of).fold(0.0, f64::max);
-    let step = (room + PANEL.0 + BETWEEN.0, ABOVE + PANEL.1 + BETWEEN.1);
-    let page_width = MARGIN + watched.len() as f64 * step.0 - BETWEEN.0 + 10.0 + MARGIN;
-    let heading = Heading::new(title, page_width)?;
-    let legend = Legend::new(entries(), page_width - 2.0 * MARGIN)?;
+    let room = all.iter().map(|laid| laid.up.left()).fold(0.0, f64::max);
+    let width = |columns: usize| {
+        let beside = 2.0 * MARGIN + BESIDE + columns as f64 * (room + BETWEEN.0) - BETWEEN.0;
+        look.fill(PANEL.0 * columns as f64, beside) / columns as f64
+    };
+    let fitting = (1..=watched.len())
+        .rev()
+        .find(|&columns| width(columns) >= NARROWEST);
+    let columns = fitting.unwrap_or(1);
+    let wide = width(columns);
+    let rows = all.len().div_ceil(columns);
+    let step = (room + wide + BETWEEN.0, ABOVE + PANEL.1 + BETWEEN.1);
+    let page_width = 2.0 * MARGIN + columns as f64 * step.0 - BETWEEN.0 + BESIDE;
+    let heading = Heading::new(look, scene.title, page_width)?;
+    let legend = Legend::new(look, entries(), page_width - 2.0 * MARGIN)?;
     let top = heading.height() + legend.height();
-    let height = top + rows.len() as f64 * step.1 + Scale::below() + MARGIN;
-    let page = Page::new(page_width, height);
+    // Panels of one axis stand below each other only where every axis has a column.
+    let labelled_below = |number: usize| columns < watched.len() || number + columns >= all.len();
+    let step = match columns < watched.len() {
+        true => (step.0, step.1 + Scale::below()),
+        false => step,
+    };
+    let below = if columns < watched.len() {
+        0.0
+    } else {
+        Scale::below()
+    };
+    let height = top + rows as f64 * step.1 + below + MARGIN;
+    let page = Page::new(look, page_width, height);
     heading.draw(&page)?;
     legend.draw(&page, 0.5 * page_width, heading.height())?;
-    for (number, row) in rows.iter().enumerate() {
-        for (column, laid) in row.iter().enumerate() {
-            let rect = Rectangle {
-                left: MARGIN + room + column as f64 * step.0,
-                top: top + ABOVE + number as f64 * step.1,
-                width: PANEL.0,
-                height: PANEL.1,
-            };
-            let letter = char::from(b'a' + ((number * row.len() + column) % 26) as u8);
-            let above = format!("({letter})  {}", names::at(family, laid.value.value));
-            let place = (rect.left, rect.top - 0.7 * TEXT);
-            page.text(place, lettering(above, HPos::Left))?;
-            draw_panel(&page, laid, rect, number + 1 == rows.len())?;
-        }
+    for (number, laid) in all.iter().enumerate() {
+        let rect = Rectangle {
+            left: MARGIN + room + (number % columns) as f64 * step.0,
+            top: top + ABOVE + (number / columns) as f64 * step.1,
+            width: wide,
+            height: PANEL.1,
+        };
+        let above = lettered(look, number, names::at(family, laid.value.value));
+        let place = (rect.left, rect.top - 0.7 * TEXT);
+        page.text(place, lettering(above, HPos::Left))?;
+        draw_panel(&page, laid, rect, labelled_below(number), family)?;
     }
     Ok(Some(page))
 }
@@ -100,7 +121,7 @@ fn draw(scene: &ComparisonScene<'_>) -> Result<Option<Page>, DrawError> {
 fn entries() -> Vec<(Sample, String)> {
     let entry = |method: &Method| {
         let sample = match method {
-            Method::MonteCarlo => Sample::Symbol(BLACK),
+            Method::MonteCarlo => Sample::Symbol(INK),
             method => Sample::Curve(stroke(*method)),
         };
         let text = match method {
@@ -114,17 +135,17 @@ fn entries() -> Vec<(Sample, String)> {
 
 /// Lays out the panel of one marginal at one value; all values share the window of an axis.
 fn lay_out<'a>(
-    comparison: &Comparison,
+    scene: &ComparisonScene<'a>,
     value: &'a ComparedValue,
     observable: Observable,
-    family: &Family,
 ) -> Result<Option<Laid<'a>>, DrawError> {
     let Observable::Marginal(axis) = observable else {
         return Ok(None);
     };
     let at = |value: &'a ComparedValue| densities(value, observable).map(|(_, one)| &one.density);
     let own: Vec<&Density> = at(value).collect();
-    let all: Vec<&Density> = comparison
+    let all: Vec<&Density> = scene
+        .comparison
         .values
         .iter()
         .flat_map(|value| densities(value, observable).map(|(_, one)| &one.density))
@@ -136,15 +157,13 @@ fn lay_out<'a>(
     if highest <= 0.0 {
         return Ok(None);
     }
+    let title = names::density(scene.family(), observable);
     Ok(Some(Laid {
         value,
         observable,
-        across: Scale::horizontal(window, PANEL.0, &names::axis(family, axis))?,
-        up: Scale::vertical(
-            (0.0, 1.08 * highest),
-            PANEL.1,
-            &names::density(family, observable),
-        )?,
+        axis,
+        window,
+        up: Scale::vertical(&scene.look, (0.0, 1.08 * highest), PANEL.1, &title)?,
     }))
 }
 
@@ -163,21 +182,24 @@ fn draw_panel(
     laid: &Laid<'_>,
     rect: Rectangle,
     labels: bool,
+    family: &Family,
 ) -> Result<(), DrawError> {
-    let panel = page.panel(rect, laid.across.range, laid.up.range);
+    let title = names::axis(family, laid.axis);
+    let across = Scale::horizontal(page.look(), laid.window, rect.width, &title)?;
+    let panel = page.panel(rect, laid.window, laid.up.range);
     let drawn = |method: Method| laid.value.density(method, laid.observable);
     // Symbols lie over the lines, and the generator's line over those of SGCM.
     for method in [Method::Sgcm, Method::SgcmSlope, Method::Generator] {
         if let Some(estimated) = drawn(method) {
-            let line = curve(&estimated.density, laid.across.range, laid.up.range);
+            let line = curve(&estimated.density, laid.window, laid.up.range);
             panel.draw(&line, Shape::Line(stroke(method)))?;
         }
     }
     if let Some(estimated) = drawn(Method::MonteCarlo) {
-        draw_symbols(&panel, estimated, laid.across.range, laid.up.range)?;
+        draw_symbols(&panel, estimated, laid.window, laid.up.range)?;
     }
     frame::border(page, rect)?;
-    laid.across.draw_below(page, rect, labels)?;
+    across.draw_below(page, rect, labels)?;
     laid.up.draw_left(page, rect, true)
 }
 
@@ -193,9 +215,9 @@ fn draw_symbols(
         let (value, error) = (density.values[cell], estimated.standard_error[cell]);
         let end = |sign: f64| (value + sign * ERRORS * error).clamp(range.0, range.1);
         let bar = [(centre, end(-1.0)), (centre, end(1.0))];
-        panel.draw(&bar, Shape::Line(Stroke::solid(BLACK, ERROR_LINE)))?;
+        panel.draw(&bar, Shape::Line(Stroke::solid(INK, ERROR_LINE)))?;
         let place = (centre, value.clamp(range.0, range.1));
-        legend::symbol(|points, shape| panel.draw(points, shape), 0, place, BLACK)?;
+        legend::symbol(|points, shape| panel.draw(points, shape), 0, place, INK)?;
     }
     Ok(())
 }

@@ -6,6 +6,7 @@ use crate::density::{Density, Observable};
 use crate::space::Axis;
 use crate::topology::FeatureKind;
 
+use super::along::parameter_range;
 use super::bifurcations::Labels;
 use super::branches::{Branch, branches};
 use super::canvas::colour_bar::ColourBar;
@@ -18,8 +19,9 @@ use super::canvas::{DrawError, hatch};
 use super::sketch::{Sketch, SweepScene};
 use super::{names, select};
 
-/// Size of the map, in pixels.
+/// Size of the map on a page of its own width, in pixels, and that width.
 const MAP: (f64, f64) = (380.0, 250.0);
+const USUAL: f64 = 505.0;
 
 /// A diagram an observed marginal.
 pub(super) fn sketches<'a>(scene: &'a SweepScene<'a>) -> Vec<Sketch<'a>> {
@@ -35,7 +37,7 @@ pub(super) fn sketches<'a>(scene: &'a SweepScene<'a>) -> Vec<Sketch<'a>> {
 
 /// The diagram of the marginal with the given number among the observables; `None` without any density.
 fn draw(scene: &SweepScene<'_>, observable: usize) -> Result<Option<Page>, DrawError> {
-    let (result, family, title) = (scene.result, scene.family(), scene.title);
+    let (result, family, look) = (scene.result, scene.family(), &scene.look);
     let Some(&watched @ Observable::Marginal(axis)) = result.subject.observables.get(observable)
     else {
         return Ok(None);
@@ -49,31 +51,40 @@ fn draw(scene: &SweepScene<'_>, observable: usize) -> Result<Option<Page>, DrawE
     };
     let largest = select::largest(densities.iter().copied());
     let range = parameter_range(&result.points);
-    let across = Scale::horizontal(range, MAP.0, &names::parameter(family))?;
-    let up = Scale::vertical(window, MAP.1, &names::axis(family, axis))?;
-    let bar = ColourBar::new(largest, MAP.1, &names::density(family, watched))?;
-    let width = MARGIN + up.left() + MAP.0 + bar.width() + MARGIN;
-    let heading = Heading::new(title, width)?;
+    let high = look.height(MAP.1, USUAL);
+    let up = Scale::vertical(look, window, high, &names::axis(family, axis))?;
+    let bar = ColourBar::new(look, largest, high, &names::density(family, watched))?;
     let left = MARGIN + up.left();
-    let labels = Labels::new(result, watched, range, (left, MAP.0))?;
+    let wide = look.fill(MAP.0, left + bar.width() + MARGIN);
+    let across = Scale::horizontal(look, range, wide, &names::parameter(family))?;
+    let width = left + wide + bar.width() + MARGIN;
+    let heading = Heading::new(look, scene.title, width)?;
+    let labels = Labels::new(look, result, Some(watched), range, (left, wide))?;
     let map = Rectangle {
         left,
         top: heading.height() + labels.height().max(ColourBar::above()),
-        width: MAP.0,
-        height: MAP.1,
+        width: wide,
+        height: high,
     };
     let followed = [FeatureKind::Peak, FeatureKind::Valley]
         .map(|kind| branches(&result.points, observable, kind, window));
     let legend = Legend::new(
+        look,
         entries(result, observable, &followed, &labels),
         width - 2.0 * MARGIN,
     )?;
     let below = map.bottom() + Scale::below();
-    let page = Page::new(width, below + legend.height() + MARGIN);
+    let page = Page::new(look, width, below + legend.height() + MARGIN);
     heading.draw(&page)?;
     let panel = page.panel(map, range, window);
-    draw_map(&page, &panel, result, observable, (range, window, largest))?;
-    labels.draw_lines(&panel, window)?;
+    draw_map(
+        &page,
+        (&panel, map),
+        result,
+        observable,
+        (range, window, largest),
+    )?;
+    labels.draw_lines(look, &panel, window)?;
     draw_branches(&panel, &followed, window)?;
     frame::border(&page, map)?;
     labels.draw_texts(&page, map)?;
@@ -92,19 +103,6 @@ fn densities(result: &SweepResult, observable: usize) -> Vec<Option<&Density>> {
         .collect()
 }
 
-/// First and last parameter value; widened if they are the same.
-fn parameter_range(points: &[Point]) -> (f64, f64) {
-    let values = points.iter().map(|point| point.value);
-    let (from, to) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(from, to), value| {
-        (from.min(value), to.max(value))
-    });
-    if from < to {
-        return (from, to);
-    }
-    let half = if from == 0.0 { 0.5 } else { 0.1 * from.abs() };
-    (from - half, from + half)
-}
-
 /// Ends of the columns: half-way between neighbouring values, and the ends of the range.
 fn column_edges(points: &[Point], range: (f64, f64)) -> Vec<f64> {
     let mut edges = vec![range.0];
@@ -120,7 +118,7 @@ fn column_edges(points: &[Point], range: (f64, f64)) -> Vec<f64> {
 /// Hatches the ground of columns without density and draws the others' heat map.
 fn draw_map(
     page: &Page,
-    panel: &Panel,
+    (panel, map): (&Panel, Rectangle),
     result: &SweepResult,
     observable: usize,
     (range, window, largest): ((f64, f64), (f64, f64), f64),
@@ -141,8 +139,8 @@ fn draw_map(
         .flatten()
         .map(|density| &density.axes[0])
         .collect();
-    let columns = (MAP.0 * PNG_SCALE).round() as usize;
-    let rows = select::resolution(&axes, window, MAP.1);
+    let columns = (map.width * PNG_SCALE).round() as usize;
+    let rows = select::resolution(&axes, window, map.height);
     let point_of = heat::nearest(&edges, range, columns);
     let picture = Picture::new((columns, rows), |column, row| {
         let density = densities[point_of[column]]?;
@@ -151,7 +149,7 @@ fn draw_map(
         Some(density.values[cell] / largest)
     });
     let corners = [(range.0, window.0), (range.1, window.1)];
-    panel.draw(&corners, Shape::Image(picture.png()?))
+    panel.draw(&corners, Shape::Image(picture.png(page.look())?))
 }
 
 /// Draws valleys, then peaks, as far as they lie in the window.

@@ -1,17 +1,29 @@
 //! The figures of a sweep or a comparison as values: listed by name, drawn one by one or all.
 
-use super::canvas::{DrawError, render};
+use super::canvas::{DrawError, pdf, render};
 use super::select;
 use super::sketch::{ComparisonScene, Sketch, SweepScene};
+use super::style::FigureStyle;
 use super::{
-    FigureError, compared_joint, compared_marginals, diagram, joint, marginals, time_to_accuracy,
+    FigureError, compared_joint, compared_marginals, diagram, health, indicator, joint, marginals,
+    pairs, peaks, surface, time_to_accuracy,
 };
 use crate::compare::Comparison;
-use crate::continuation::SweepResult;
+use crate::continuation::{CellCheck, Subject, SweepResult};
+use crate::density::Observable;
+use crate::system::Family;
 
 /// The kinds of figures of a sweep, in the order in which they are drawn: a new kind is one line here.
-const OF_SWEEPS: [for<'a> fn(&'a SweepScene<'a>) -> Vec<Sketch<'a>>; 3] =
-    [diagram::sketches, marginals::sketches, joint::sketches];
+const OF_SWEEPS: [for<'a> fn(&'a SweepScene<'a>) -> Vec<Sketch<'a>>; 8] = [
+    diagram::sketches,
+    marginals::sketches,
+    joint::sketches,
+    surface::sketches,
+    pairs::sketches,
+    peaks::sketches,
+    indicator::sketches,
+    health::sketches,
+];
 
 /// The kinds of figures of a comparison.
 const OF_COMPARISONS: [for<'a> fn(&'a ComparisonScene<'a>) -> Vec<Sketch<'a>>; 3] = [
@@ -20,12 +32,50 @@ const OF_COMPARISONS: [for<'a> fn(&'a ComparisonScene<'a>) -> Vec<Sketch<'a>>; 3
     time_to_accuracy::sketches,
 ];
 
+/// The kinds of figures of a sweep: what the names of all figures of a kind begin with.
+pub const KINDS: [&str; 8] = [
+    "diagram",
+    "marginals",
+    "joint",
+    "surface",
+    "pairs",
+    "peaks",
+    "indicator",
+    "health",
+];
+/// The kinds that are drawn where none is named.
+pub const USUAL_KINDS: [&str; 3] = ["diagram", "marginals", "joint"];
+
+/// Whether a word names a figure: its whole name, the beginning of it up to a `_` (`joint` names `joint_xy_0.5`), or `all`.
+pub fn matches_figure(word: &str, figure: &str) -> bool {
+    let rest = figure.strip_prefix(word);
+    word == "all" || rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
+}
+
+/// Names of the figures that a sweep can have at no value in particular.
+pub fn sweep_figures(family: &Family, observables: &[Observable]) -> Vec<String> {
+    let nothing = SweepResult {
+        subject: Subject {
+            family: family.clone(),
+            observables: observables.to_vec(),
+            cell_check: CellCheck::Needless,
+        },
+        points: Vec::new(),
+        labels: Vec::new(),
+        finer: None,
+        interrupted: false,
+    };
+    Figures::of_sweep(&nothing, "", &[]).names()
+}
+
 /// A figure: an SVG document with a name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
     /// Name of its file without the extension, such as `diagram_x`.
     pub name: String,
     svg: String,
+    /// Pixels of a PNG to the inch.
+    dpi: f64,
 }
 
 impl Figure {
@@ -34,12 +84,20 @@ impl Figure {
         &self.svg
     }
 
-    /// The figure as a PNG: 8-bit RGB on white, three pixels to a figure pixel (288 to the inch).
+    /// The figure as a PNG: 8-bit RGB, with as many pixels to the inch as its style says, which is written into it.
     ///
     /// # Errors
     /// [`DrawError`].
     pub fn png(&self) -> Result<Vec<u8>, DrawError> {
-        render::png(&self.svg)
+        render::png(&self.svg, self.dpi)
+    }
+
+    /// The figure as a PDF of one page, in its size, with its fonts embedded and its text as text; equal figures give equal bytes.
+    ///
+    /// # Errors
+    /// [`DrawError`].
+    pub fn pdf(&self) -> Result<Vec<u8>, DrawError> {
+        pdf::pdf(&self.svg, &self.name)
     }
 }
 
@@ -63,6 +121,7 @@ impl<'a> Figures<'a> {
         Self(Scene::Sweep(SweepScene {
             result,
             title,
+            look: FigureStyle::default().look(),
             chosen: select::nearest(result, at),
         }))
     }
@@ -70,7 +129,27 @@ impl<'a> Figures<'a> {
     /// The figures of a comparison of methods: marginals by every method (`marginals`), joint densities side by side (`joint_xy`), and
     /// the error against time (`time_to_accuracy`).
     pub fn of_comparison(comparison: &'a Comparison, title: &'a str) -> Self {
-        Self(Scene::Comparison(ComparisonScene { comparison, title }))
+        Self(Scene::Comparison(ComparisonScene {
+            comparison,
+            title,
+            look: FigureStyle::default().look(),
+        }))
+    }
+
+    /// The same figures in a style of their own.
+    pub fn with_style(mut self, style: &FigureStyle) -> Self {
+        match &mut self.0 {
+            Scene::Sweep(scene) => scene.look = style.look(),
+            Scene::Comparison(scene) => scene.look = style.look(),
+        }
+        self
+    }
+
+    fn dpi(&self) -> f64 {
+        match &self.0 {
+            Scene::Sweep(scene) => scene.look.dpi,
+            Scene::Comparison(scene) => scene.look.dpi,
+        }
     }
 
     /// Names of all figures, in their order. Some may turn out to have nothing to show.
@@ -86,12 +165,42 @@ impl<'a> Figures<'a> {
     pub fn draw(&self, name: &str) -> Result<Option<Figure>, FigureError> {
         let sketches = self.sketches();
         match sketches.iter().find(|sketch| sketch.name == name) {
-            Some(sketch) => Ok(drawn(sketch)?),
+            Some(sketch) => Ok(drawn(sketch, self.dpi())?),
             None => Err(FigureError::Unknown {
                 name: name.to_owned(),
                 known: self.names(),
             }),
         }
+    }
+
+    /// The first of some words that names no figure there is; a kind may have none.
+    pub fn unknown<'w, S: AsRef<str>>(&self, words: &'w [S]) -> Option<&'w str> {
+        let names = self.names();
+        let is_known = |word: &&str| {
+            *word == "all"
+                || KINDS.contains(word)
+                || names.iter().any(|name| matches_figure(word, name))
+        };
+        let mut words = words.iter().map(AsRef::as_ref);
+        words.find(|word| !is_known(word))
+    }
+
+    /// Draws the figures that some words name (see [`matches_figure`]), in their order; those without any density are left out, and words
+    /// that name none are passed over.
+    ///
+    /// # Errors
+    /// [`FigureError::Draw`].
+    pub fn draw_named<S: AsRef<str>>(&self, words: &[S]) -> Result<Vec<Figure>, FigureError> {
+        let sketches = self.sketches();
+        let is_wanted = |sketch: &&Sketch<'_>| {
+            let mut words = words.iter().map(AsRef::as_ref);
+            words.any(|word| matches_figure(word, &sketch.name))
+        };
+        let mut figures = Vec::new();
+        for sketch in sketches.iter().filter(is_wanted) {
+            figures.extend(drawn(sketch, self.dpi())?);
+        }
+        Ok(figures)
     }
 
     /// Draws all figures, in their order; those without any density are left out.
@@ -101,7 +210,7 @@ impl<'a> Figures<'a> {
     pub fn draw_all(&self) -> Result<Vec<Figure>, FigureError> {
         let mut figures = Vec::new();
         for sketch in self.sketches() {
-            figures.extend(drawn(&sketch)?);
+            figures.extend(drawn(&sketch, self.dpi())?);
         }
         Ok(figures)
     }
@@ -116,10 +225,11 @@ impl<'a> Figures<'a> {
     }
 }
 
-fn drawn(sketch: &Sketch<'_>) -> Result<Option<Figure>, DrawError> {
+fn drawn(sketch: &Sketch<'_>, dpi: f64) -> Result<Option<Figure>, DrawError> {
     let page = sketch.draw()?;
     Ok(page.map(|page| Figure {
         name: sketch.name.clone(),
         svg: page.svg(),
+        dpi,
     }))
 }

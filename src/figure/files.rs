@@ -11,19 +11,24 @@ use super::error::FigureError;
 pub enum Format {
     /// Scalable vector graphics; heat maps are embedded pictures.
     Svg,
-    /// Pixels, three to a figure pixel (288 to the inch).
+    /// Pixels, as many to the inch as the style says.
     Png,
+    /// A page of the figure's size, with fonts embedded and text kept as text.
+    Pdf,
 }
 
 impl Format {
     /// All formats.
-    pub const ALL: [Self; 2] = [Self::Svg, Self::Png];
+    pub const ALL: [Self; 3] = [Self::Svg, Self::Png, Self::Pdf];
+    /// Those that are written where none is named.
+    pub const USUAL: [Self; 2] = [Self::Svg, Self::Png];
 
     /// Name used in sweep files, and extension of the files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Svg => "svg",
             Self::Png => "png",
+            Self::Pdf => "pdf",
         }
     }
 
@@ -37,7 +42,7 @@ impl Format {
 /// made. Files of the same names are replaced.
 ///
 /// # Errors
-/// [`FigureError::Draw`] for a PNG, [`FigureError::Write`]; files made before stay.
+/// [`FigureError::Draw`] for a PNG or a PDF, [`FigureError::Write`]; files made before stay.
 pub fn write_figures(
     figures: &[Figure],
     formats: &[Format],
@@ -58,6 +63,7 @@ fn write(figure: &Figure, format: Format, folder: &Path) -> Result<PathBuf, Figu
     let bytes = match format {
         Format::Svg => figure.svg().as_bytes().to_vec(),
         Format::Png => figure.png()?,
+        Format::Pdf => figure.pdf()?,
     };
     let write = || -> std::io::Result<()> {
         std::fs::create_dir_all(folder)?;

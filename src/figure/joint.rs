@@ -11,6 +11,7 @@ use super::canvas::contour::Grid;
 use super::canvas::frame::{self, Scale};
 use super::canvas::heat::Picture;
 use super::canvas::legend::{self, Legend, Sample};
+use super::canvas::look::Look;
 use super::canvas::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
 use super::canvas::style::{self, MARGIN, Stroke, TEXT};
 use super::canvas::{DrawError, symbols};
@@ -23,6 +24,11 @@ const LEVELS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 const SINGLE: f64 = 290.0;
 /// Side of a map on a sheet.
 const SMALL: f64 = 190.0;
+/// Narrowest map on a sheet, where the page is given, and the highest one.
+const SMALLEST: f64 = 104.0;
+const TALLEST_SMALL: f64 = 230.0;
+/// Highest map of a single figure.
+const TALLEST: f64 = 420.0;
 /// Gap between maps on a sheet.
 const BETWEEN: f64 = 14.0;
 /// The densities of a sheet share their scale unless the largest values differ by more than this factor.
@@ -36,7 +42,8 @@ pub(super) struct Found<'a> {
 }
 
 impl<'a> Found<'a> {
-    fn new(point: &'a Point, observable: usize) -> Option<Self> {
+    /// The joint density with that number among the observables at a point; `None` where there is none.
+    pub(super) fn new(point: &'a Point, observable: usize) -> Option<Self> {
         let estimated = select::density(point, observable)?;
         let detection = point.detections.get(observable);
         Some(Self {
@@ -73,13 +80,14 @@ pub(super) fn windows(found: &[Found<'_>]) -> Option<((f64, f64), (f64, f64))> {
 /// Opens a page with heading and legend, and room for maps of the given size that begins `left`
 /// pixels from the left; returns the rectangle of the maps.
 fn open_page(
+    look: &Look,
     found: &[Found<'_>],
     title: &str,
     (left, page_width): (f64, f64),
     (width, height): (f64, f64),
 ) -> Result<(Page, Rectangle), DrawError> {
-    let heading = Heading::new(title, page_width)?;
-    let legend = Legend::new(entries(found), page_width - 2.0 * MARGIN)?;
+    let heading = Heading::new(look, title, page_width)?;
+    let legend = Legend::new(look, entries(found), page_width - 2.0 * MARGIN)?;
     let maps = Rectangle {
         left,
         top: heading.height() + ColourBar::above(),
@@ -87,7 +95,7 @@ fn open_page(
         height,
     };
     let below = maps.bottom() + Scale::below();
-    let page = Page::new(page_width, below + legend.height() + MARGIN);
+    let page = Page::new(look, page_width, below + legend.height() + MARGIN);
     heading.draw(&page)?;
     legend.draw(&page, left + 0.5 * width, below)?;
     Ok((page, maps))
@@ -129,13 +137,18 @@ fn draw_single(
     let Some((x, y)) = windows(&found) else {
         return Ok(None);
     };
+    let look = &scene.look;
     let largest = select::largest([found[0].density()]);
-    let across = Scale::horizontal(x, SINGLE, &names::axis(family, first))?;
-    let up = Scale::vertical(y, SINGLE, &names::axis(family, second))?;
-    let bar = ColourBar::new(largest, SINGLE, &names::density(family, watched))?;
+    let high = look
+        .page
+        .map_or(SINGLE, |page| (0.68 * page).clamp(170.0, TALLEST));
+    let up = Scale::vertical(look, y, high, &names::axis(family, second))?;
+    let bar = ColourBar::new(look, largest, high, &names::density(family, watched))?;
     let left = MARGIN + up.left();
-    let width = left + SINGLE + bar.width() + MARGIN;
-    let (page, map) = open_page(&found, scene.title, (left, width), (SINGLE, SINGLE))?;
+    let wide = look.fill(SINGLE, left + bar.width() + MARGIN);
+    let across = Scale::horizontal(look, x, wide, &names::axis(family, first))?;
+    let width = left + wide + bar.width() + MARGIN;
+    let (page, map) = open_page(look, &found, scene.title, (left, width), (wide, high))?;
     write_above(&page, map, names::at(family, point.value))?;
     draw_map(&page, map, &found[0], (x, y), largest)?;
     across.draw_below(&page, map, true)?;
@@ -147,6 +160,8 @@ fn draw_single(
 /// How the maps of a sheet are arranged and coloured.
 struct Sheet {
     columns: usize,
+    /// Width and height of a map, in pixels.
+    side: (f64, f64),
     /// Distance between neighbouring maps, in pixels.
     step: (f64, f64),
     /// Size of all maps together, in pixels.
@@ -158,13 +173,27 @@ struct Sheet {
 }
 
 impl Sheet {
-    fn new(found: &[Found<'_>]) -> Self {
-        let columns = match found.len() {
+    /// Arranges maps in as many columns as there is room for between what stands left and right of them all, `beside` pixels.
+    fn new(look: &Look, found: &[Found<'_>], beside: f64) -> Self {
+        let own_columns = match found.len() {
             2 | 4 => 2,
             _ => 3,
         };
+        let width = |columns: usize| {
+            let gaps = (columns - 1) as f64 * BETWEEN;
+            look.fill(SMALL * columns as f64, beside + gaps) / columns as f64
+        };
+        let columns = match look.page {
+            None => own_columns,
+            Some(_) => {
+                let most = if found.len() % 3 == 0 { 3 } else { 4 };
+                let fits = |columns: &usize| width(*columns) >= SMALLEST;
+                (1..=most.min(found.len())).rev().find(fits).unwrap_or(1)
+            }
+        };
+        let side = (width(columns), width(columns).min(TALLEST_SMALL));
         let rows = found.len().div_ceil(columns);
-        let step = (SMALL + BETWEEN, SMALL + BETWEEN + 1.4 * TEXT);
+        let step = (side.0 + BETWEEN, side.1 + BETWEEN + 1.4 * TEXT);
         let own: Vec<f64> = found
             .iter()
             .map(|found| select::largest([found.density()]))
@@ -173,10 +202,11 @@ impl Sheet {
         let comparable = own.iter().all(|&own| own * COMPARABLE >= largest);
         Self {
             columns,
+            side,
             step,
             whole: (
-                (columns - 1) as f64 * step.0 + SMALL,
-                (rows - 1) as f64 * step.1 + SMALL,
+                (columns - 1) as f64 * step.0 + side.0,
+                (rows - 1) as f64 * step.1 + side.1,
             ),
             tops: if comparable {
                 vec![largest; own.len()]
@@ -193,23 +223,23 @@ impl Sheet {
         Rectangle {
             left: all.left + column as f64 * self.step.0,
             top: all.top + row as f64 * self.step.1,
-            width: SMALL,
-            height: SMALL,
+            width: self.side.0,
+            height: self.side.1,
         }
     }
 
     /// The colour bar of all maps.
-    fn bar(&self, density: &str) -> Result<ColourBar, DrawError> {
+    fn bar(&self, look: &Look, density: &str) -> Result<ColourBar, DrawError> {
         match self.common {
-            Some(largest) => ColourBar::new(largest, self.whole.1, density),
-            None => ColourBar::new(1.0, self.whole.1, &format!("{density} / max")),
+            Some(largest) => ColourBar::new(look, largest, self.whole.1, density),
+            None => ColourBar::new(look, 1.0, self.whole.1, &format!("{density} / max")),
         }
     }
 }
 
 /// All maps of a pair on one sheet, with the same windows; `None` for fewer than two densities.
 fn draw_sheet(scene: &SweepScene<'_>, observable: usize) -> Result<Option<Page>, DrawError> {
-    let family = scene.family();
+    let (family, look) = (scene.family(), &scene.look);
     let watched = scene.result.subject.observables[observable];
     let found: Vec<Found<'_>> = scene
         .chosen
@@ -222,20 +252,27 @@ fn draw_sheet(scene: &SweepScene<'_>, observable: usize) -> Result<Option<Page>,
     if found.len() < 2 {
         return Ok(None);
     }
-    let sheet = Sheet::new(&found);
-    let across = Scale::horizontal(x, SMALL, &names::axis(family, first))?;
-    let up = Scale::vertical(y, SMALL, &names::axis(family, second))?;
-    let bar = sheet.bar(&names::density(family, watched))?;
+    let density = names::density(family, watched);
+    let vertical = |high: f64| Scale::vertical(look, y, high, &names::axis(family, second));
+    // The bar and the labels of the ordinate hardly depend on how high the maps are: a first sheet measures them.
+    let first_sheet = Sheet::new(look, &found, 140.0);
+    let bar_width = first_sheet.bar(look, &density)?.width();
+    let left = MARGIN + vertical(first_sheet.side.1)?.left();
+    let sheet = Sheet::new(look, &found, left + bar_width + MARGIN);
+    let bar = sheet.bar(look, &density)?;
+    let across = Scale::horizontal(look, x, sheet.side.0, &names::axis(family, first))?;
+    let up = vertical(sheet.side.1)?;
     let left = MARGIN + up.left();
-    let width = left + sheet.whole.0 + bar.width() + MARGIN;
-    let (page, all) = open_page(&found, scene.title, (left, width), sheet.whole)?;
+    let width = look
+        .page
+        .unwrap_or(left + sheet.whole.0 + bar.width() + MARGIN);
+    let (page, all) = open_page(look, &found, scene.title, (left, width), sheet.whole)?;
     for (number, (found, &top)) in found.iter().zip(&sheet.tops).enumerate() {
         let map = sheet.map(all, number);
-        let letter = char::from(b'a' + (number % 26) as u8);
         write_above(
             &page,
             map,
-            format!("({letter})  {}", names::at(family, found.value)),
+            lettered(look, number, names::at(family, found.value)),
         )?;
         draw_map(&page, map, found, (x, y), top)?;
         // A map with none below it carries the labels of its column.
@@ -245,6 +282,15 @@ fn draw_sheet(scene: &SweepScene<'_>, observable: usize) -> Result<Option<Page>,
     let marks: &[f64] = if sheet.common.is_some() { &[] } else { &LEVELS };
     bar.draw(&page, all, marks)?;
     Ok(Some(page))
+}
+
+/// A line above a panel, with the panel's letter where panels have letters.
+pub(super) fn lettered(look: &Look, number: usize, line: String) -> String {
+    let letter = char::from(b'a' + (number % 26) as u8);
+    match look.has_letters {
+        true => format!("({letter})  {line}"),
+        false => line,
+    }
 }
 
 /// Writes a line above a map.
@@ -290,13 +336,20 @@ pub(super) fn draw_map(
     let middle = |window: (f64, f64), pixel: usize, count: usize| {
         window.0 + (window.1 - window.0) * (pixel as f64 + 0.5) / count as f64
     };
+    let columns: Vec<Option<usize>> = (0..size.0)
+        .map(|column| across.find(middle(x, column, size.0)))
+        .collect();
+    let rows: Vec<Option<usize>> = (0..size.1)
+        .map(|row| up.find(middle(y, row, size.1)))
+        .collect();
     let picture = Picture::new(size, |column, row| {
-        let i = across.find(middle(x, column, size.0))?;
-        let j = up.find(middle(y, row, size.1))?;
-        Some(density.values[i * up.count() + j] / largest)
+        Some(density.values[columns[column]? * up.count() + rows[row]?] / largest)
     });
-    panel.draw(&[(x.0, y.0), (x.1, y.1)], Shape::Image(picture.png()?))?;
-    draw_contours(&panel, density, (x, y), largest)?;
+    panel.draw(
+        &[(x.0, y.0), (x.1, y.1)],
+        Shape::Image(picture.png(page.look())?),
+    )?;
+    draw_contours(page.look(), &panel, density, (x, y), largest)?;
     let inside = |&(px, py): &(f64, f64)| px >= x.0 && px <= x.1 && py >= y.0 && py <= y.1;
     for place in found.present(FeatureKind::Peak).filter(inside) {
         legend::plus(|points, shape| panel.draw(points, shape), place)?;
@@ -309,6 +362,7 @@ pub(super) fn draw_map(
 
 /// Draws the contours at [`LEVELS`] of the density's own maximum, through the centres of cells in the window.
 fn draw_contours(
+    look: &Look,
     panel: &Panel,
     density: &Density,
     (x, y): ((f64, f64), (f64, f64)),
@@ -337,7 +391,7 @@ fn draw_contours(
     };
     let own = select::largest([density]);
     for share in LEVELS {
-        let colour = style::on_heat(share * own / largest);
+        let colour = style::on_heat(look, share * own / largest);
         for line in grid.contour(share * own) {
             panel.draw(&line, Shape::Line(Stroke::solid(colour, 0.8)))?;
         }

@@ -1,32 +1,42 @@
 //! Marginal densities at several parameter values, overlaid: a panel an axis, side by side.
 
-use plotters_backend::BackendColor;
-
-use crate::continuation::{Point, SweepResult};
+use crate::continuation::Point;
 use crate::density::{Density, EstimatedDensity, Observable};
-use crate::system::Family;
 
 use super::canvas::DrawError;
 use super::canvas::frame::{self, Scale};
 use super::canvas::legend::{Legend, Sample};
+use super::canvas::look::Look;
 use super::canvas::page::{Heading, Page, Rectangle, Shape};
 use super::canvas::style::{MARGIN, Stroke};
 use super::sketch::{Sketch, SweepScene};
 use super::{names, select};
 
-/// Height of a panel, in pixels.
+/// Height of a panel on a page of its own width, in pixels, and that width.
 const HEIGHT: f64 = 210.0;
+const USUAL: f64 = 620.0;
 /// Gap between panels.
 const BETWEEN: f64 = 18.0;
 /// Opacity of the band of two standard errors.
 const BAND: f64 = 0.18;
 
+/// Narrowest panel beside another where the page is given.
+const NARROWEST: f64 = 165.0;
+/// Room right of the last panel, for half a label of its axis.
+const BESIDE: f64 = 10.0;
+
+/// The densities of one marginal.
+struct Watched<'a> {
+    axis: usize,
+    densities: Vec<(usize, &'a EstimatedDensity)>,
+    window: (f64, f64),
+    up: Scale,
+}
+
 /// One panel laid out.
 struct Laid<'a> {
-    densities: Vec<(usize, &'a EstimatedDensity)>,
+    watched: &'a Watched<'a>,
     across: Scale,
-    up: Scale,
-    left: f64,
 }
 
 /// The figure of all observed marginals.
@@ -34,38 +44,52 @@ pub(super) fn sketches<'a>(scene: &'a SweepScene<'a>) -> Vec<Sketch<'a>> {
     vec![Sketch::new("marginals", || draw(scene))]
 }
 
-/// The figure of all observed marginals at the chosen points; `None` if there is nothing to draw.
-fn draw(scene: &SweepScene<'_>) -> Result<Option<Page>, DrawError> {
-    let (result, family, title) = (scene.result, scene.family(), scene.title);
-    let chosen = scene.chosen.as_slice();
-    let is_marginal =
-        |(_, observable): &(usize, &Observable)| matches!(observable, Observable::Marginal(_));
-    let watched: Vec<usize> = result
-        .subject
-        .observables
-        .iter()
-        .enumerate()
-        .filter(is_marginal)
-        .map(|(i, _)| i)
-        .collect();
-    let width = match watched.len() {
+/// How panels are arranged: columns, and the width of a panel.
+fn arrangement(look: &Look, panels: usize, room: f64) -> (usize, f64) {
+    let own = match panels {
         0 | 1 => 380.0,
         2 => 235.0,
         _ => 215.0,
     };
-    let mut panels = Vec::new();
-    let mut left = MARGIN;
-    for observable in watched {
-        if let Some(panel) = lay_out(result, observable, chosen, family, (left, width))? {
-            left = panel.left + width + BETWEEN;
-            panels.push(panel);
-        }
+    if look.page.is_none() {
+        return (panels, own);
     }
-    if panels.is_empty() {
+    let width = |columns: usize| {
+        let gaps = BETWEEN * (columns - 1) as f64 + BESIDE + 2.0 * MARGIN;
+        look.fill(own, columns as f64 * room + gaps) / columns as f64
+    };
+    let fitting = (1..=panels.max(1))
+        .rev()
+        .find(|&columns| width(columns) >= NARROWEST);
+    let columns = fitting.unwrap_or(1);
+    (columns, width(columns))
+}
+
+/// The figure of all observed marginals at the chosen points; `None` if there is nothing to draw.
+fn draw(scene: &SweepScene<'_>) -> Result<Option<Page>, DrawError> {
+    let (family, look) = (scene.family(), &scene.look);
+    let high = look.height(HEIGHT, USUAL);
+    let mut all = Vec::new();
+    for observable in 0..scene.result.subject.observables.len() {
+        all.extend(watched(scene, observable, high)?);
+    }
+    if all.is_empty() {
         return Ok(None);
     }
-    let page_width = left - BETWEEN + 10.0 + MARGIN;
-    let heading = Heading::new(title, page_width)?;
+    let room = all.iter().map(|one| one.up.left()).fold(0.0, f64::max);
+    let (columns, wide) = arrangement(look, all.len(), room);
+    let rows = all.len().div_ceil(columns);
+    // Panels of one row need only their own room each.
+    let lefts: Vec<f64> = match rows {
+        1 => all.iter().map(|one| one.up.left()).collect(),
+        _ => vec![room; columns],
+    };
+    let together = lefts.iter().sum::<f64>() + columns as f64 * wide;
+    let gaps = BETWEEN * (columns - 1) as f64 + BESIDE + 2.0 * MARGIN;
+    let page_width = look.page.unwrap_or(together + gaps);
+    // What rooms of their own leave over goes to the panels.
+    let wide = (page_width - gaps - lefts.iter().sum::<f64>()) / columns as f64;
+    let heading = Heading::new(look, scene.title, page_width)?;
     let entry = |(number, point): (usize, &&Point)| {
         (
             Sample::Curve(Stroke::curve(number)),
@@ -73,41 +97,52 @@ fn draw(scene: &SweepScene<'_>) -> Result<Option<Page>, DrawError> {
         )
     };
     let legend = Legend::new(
-        chosen.iter().enumerate().map(entry).collect(),
+        look,
+        scene.chosen.iter().enumerate().map(entry).collect(),
         page_width - 2.0 * MARGIN,
     )?;
     let top = heading.height() + legend.height() + 6.0;
-    let page = Page::new(page_width, top + HEIGHT + Scale::below() + MARGIN);
+    let step = high + Scale::below() + MARGIN;
+    let page = Page::new(look, page_width, top + rows as f64 * step);
     heading.draw(&page)?;
     legend.draw(&page, 0.5 * page_width, heading.height())?;
-    for panel in &panels {
+    for (number, one) in all.iter().enumerate() {
+        let (row, column) = (number / columns, number % columns);
+        let before: f64 = lefts[..=column].iter().sum();
         let rect = Rectangle {
-            left: panel.left,
-            top,
-            width,
-            height: HEIGHT,
+            left: MARGIN + before + column as f64 * (wide + BETWEEN),
+            top: top + row as f64 * step,
+            width: wide,
+            height: high,
         };
-        draw_panel(&page, panel, rect)?;
+        let title = names::axis(family, one.axis);
+        let laid = Laid {
+            watched: one,
+            across: Scale::horizontal(look, one.window, wide, &title)?,
+        };
+        draw_panel(&page, &laid, rect)?;
     }
     Ok(Some(page))
 }
 
-/// Lays out the panel of one marginal, from `from` pixels on.
-fn lay_out<'a>(
-    result: &SweepResult,
-    observable: usize,
-    chosen: &[&'a Point],
-    family: &Family,
-    (from, width): (f64, f64),
-) -> Result<Option<Laid<'a>>, DrawError> {
-    let watched = result.subject.observables[observable];
-    let Observable::Marginal(axis) = watched else {
+/// The densities of one marginal at the chosen points.
+fn watched<'a>(
+    scene: &SweepScene<'a>,
+    number: usize,
+    high: f64,
+) -> Result<Option<Watched<'a>>, DrawError> {
+    let observable = scene.result.subject.observables[number];
+    let Observable::Marginal(axis) = observable else {
         return Ok(None);
     };
     let drawable =
-        |(number, point): (usize, &&'a Point)| Some((number, select::density(point, observable)?));
-    let densities: Vec<(usize, &EstimatedDensity)> =
-        chosen.iter().enumerate().filter_map(drawable).collect();
+        |(place, point): (usize, &&'a Point)| Some((place, select::density(point, number)?));
+    let densities: Vec<(usize, &EstimatedDensity)> = scene
+        .chosen
+        .iter()
+        .enumerate()
+        .filter_map(drawable)
+        .collect();
     let bare: Vec<&Density> = densities
         .iter()
         .map(|(_, estimated)| &estimated.density)
@@ -116,39 +151,32 @@ fn lay_out<'a>(
         return Ok(None);
     };
     let highest = select::largest(bare.iter().copied());
-    let up = Scale::vertical(
-        (0.0, 1.06 * highest),
-        HEIGHT,
-        &names::density(family, watched),
-    )?;
-    Ok(Some(Laid {
+    let title = names::density(scene.family(), observable);
+    Ok(Some(Watched {
+        axis,
         densities,
-        across: Scale::horizontal(window, width, &names::axis(family, axis))?,
-        left: from + up.left(),
-        up,
+        window,
+        up: Scale::vertical(&scene.look, (0.0, 1.06 * highest), high, &title)?,
     }))
 }
 
 fn draw_panel(page: &Page, laid: &Laid<'_>, rect: Rectangle) -> Result<(), DrawError> {
-    let panel = page.panel(rect, laid.across.range, laid.up.range);
-    for (number, estimated) in &laid.densities {
+    let panel = page.panel(rect, laid.across.range, laid.watched.up.range);
+    for (number, estimated) in &laid.watched.densities {
         let stroke = Stroke::curve(*number);
-        let band = band(estimated, laid.across.range, laid.up.range);
+        let band = band(estimated, laid.across.range, laid.watched.up.range);
         if !band.is_empty() {
-            let fill = BackendColor {
-                alpha: BAND,
-                ..stroke.colour
-            };
+            let fill = stroke.colour.at(BAND);
             panel.draw(&band, Shape::Area(fill))?;
         }
     }
-    for (number, estimated) in &laid.densities {
-        let curve = curve(&estimated.density, laid.across.range, laid.up.range);
+    for (number, estimated) in &laid.watched.densities {
+        let curve = curve(&estimated.density, laid.across.range, laid.watched.up.range);
         panel.draw(&curve, Shape::Line(Stroke::curve(*number)))?;
     }
     frame::border(page, rect)?;
     laid.across.draw_below(page, rect, true)?;
-    laid.up.draw_left(page, rect, true)
+    laid.watched.up.draw_left(page, rect, true)
 }
 
 /// Numbers and centres of the cells inside a window.

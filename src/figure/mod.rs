@@ -1,13 +1,14 @@
-//! Figures of a sweep as a journal prints them: SVG, and PNG made from the same SVG.
+//! Figures of a sweep as a journal prints them: SVG, and PNG and PDF made from the same SVG.
 //!
 //! Drawing gives [`Figure`]s as values, all or one by name; writing them to files is another step:
 //!
 //! ```no_run
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! # let result: pbif::continuation::SweepResult = unimplemented!();
-//! use pbif::figure::{Figures, Format, write_figures};
+//! use pbif::figure::{FigureStyle, FigureWidth, Figures, Format, write_figures};
 //!
-//! let figures = Figures::of_sweep(&result, "Coulomb friction", &[-0.02, 0.01]);
+//! let column = FigureStyle { width: FigureWidth::Single, ..FigureStyle::default() };
+//! let figures = Figures::of_sweep(&result, "Coulomb friction", &[-0.02, 0.01]).with_style(&column);
 //! if let Some(diagram) = figures.draw("diagram_x")? {
 //!     println!("{}", diagram.svg());
 //! }
@@ -19,6 +20,7 @@
 //! `canvas` is what draws. A new kind of figure is one file like `diagram`, which lists what it can draw of a sweep or a
 //! comparison, and one line in `drawn`.
 
+mod along;
 mod bifurcations;
 mod branches;
 mod canvas;
@@ -28,14 +30,21 @@ mod diagram;
 mod drawn;
 mod error;
 mod files;
+mod health;
+mod indicator;
 mod joint;
 mod marginals;
 mod names;
+mod pairs;
+mod peaks;
 mod select;
 mod sketch;
+mod style;
+mod surface;
 mod time_to_accuracy;
 
 pub use canvas::DrawError;
-pub use drawn::{Figure, Figures};
+pub use drawn::{Figure, Figures, KINDS, USUAL_KINDS, matches_figure, sweep_figures};
 pub use error::FigureError;
 pub use files::{Format, write_figures};
+pub use style::{ColourMap, FigureStyle, FigureWidth, Ground, Typeface};

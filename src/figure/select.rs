@@ -8,6 +8,8 @@ use super::canvas::style::PNG_SCALE;
 
 /// Share of the largest density below which a cell counts as empty.
 const EMPTY: f64 = 1e-3;
+/// Most pixels of an embedded map along a side: more than are seen, however wide the page.
+const MOST_PIXELS: f64 = 1200.0;
 /// Share of a window that is added at either end.
 const BORDER: f64 = 0.04;
 
@@ -102,7 +104,7 @@ pub(super) fn window(densities: &[&Density], axis: usize) -> Option<(f64, f64)> 
 
 /// Pixels for a window of axes: one a cell where all are alike and uniform, else as many as a PNG shows.
 pub(super) fn resolution(axes: &[&Axis], window: (f64, f64), length: f64) -> usize {
-    let most = (length * PNG_SCALE).round().max(1.0) as usize;
+    let most = (length * PNG_SCALE).round().clamp(1.0, MOST_PIXELS) as usize;
     match axes {
         [first, rest @ ..] if first.is_uniform() && rest.iter().all(|axis| axis == first) => {
             let cells = (window.1 - window.0) / first.width(0);

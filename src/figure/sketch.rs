@@ -1,6 +1,7 @@
 //! What figures are drawn from, and figures that are not drawn yet.
 
 use super::canvas::DrawError;
+use super::canvas::look::Look;
 use super::canvas::page::Page;
 use crate::compare::Comparison;
 use crate::continuation::{Point, SweepResult};
@@ -12,6 +13,8 @@ pub(super) struct SweepScene<'a> {
     pub(super) result: &'a SweepResult,
     /// Stands above each figure; plain text, may be empty.
     pub(super) title: &'a str,
+    /// How it looks.
+    pub(super) look: Look,
     /// The points at which marginals and joint densities are drawn.
     pub(super) chosen: Vec<&'a Point>,
 }
@@ -29,6 +32,8 @@ pub(super) struct ComparisonScene<'a> {
     pub(super) comparison: &'a Comparison,
     /// Stands above each figure; plain text, may be empty.
     pub(super) title: &'a str,
+    /// How it looks.
+    pub(super) look: Look,
 }
 
 impl<'a> ComparisonScene<'a> {

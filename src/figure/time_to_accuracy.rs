@@ -5,7 +5,7 @@ use crate::compare::{Accuracy, AccuracyPoint, Method, Reference};
 use super::canvas::frame::{self, Scale};
 use super::canvas::legend::{self, Legend, Sample};
 use super::canvas::page::{Heading, Page, Rectangle, Shape};
-use super::canvas::style::{BLACK, ERROR_LINE, MARGIN, Stroke};
+use super::canvas::style::{ERROR_LINE, INK, MARGIN, Stroke};
 use super::canvas::{DrawError, symbols};
 use super::compared_marginals::stroke;
 use super::names;
@@ -40,7 +40,7 @@ pub(super) fn sketches<'a>(scene: &'a ComparisonScene<'a>) -> Vec<Sketch<'a>> {
 
 /// The figure; `None` if nothing was measured.
 fn draw(scene: &ComparisonScene<'_>) -> Result<Option<Page>, DrawError> {
-    let (family, title) = (scene.family(), scene.title);
+    let (family, title, look) = (scene.family(), scene.title, &scene.look);
     let Some(accuracy) = &scene.comparison.accuracy else {
         return Ok(None);
     };
@@ -51,16 +51,23 @@ fn draw(scene: &ComparisonScene<'_>) -> Result<Option<Page>, DrawError> {
     let x = range(accuracy.points.iter().map(|point| place(point).0));
     let y = range(accuracy.points.iter().map(|point| place(point).1));
     let density = names::density(family, accuracy.observable);
-    let across = Scale::logarithmic(x, "seconds")?;
-    let up = Scale::logarithmic(y, &format!("total variation to {} {density}", by(accuracy)))?;
+    let up = Scale::logarithmic(
+        look,
+        y,
+        PANEL.1,
+        &format!("total variation to {} {density}", by(accuracy)),
+    )?;
     let left = MARGIN + up.left();
-    let width = left + PANEL.0 + 12.0 + MARGIN;
+    let wide = look.fill(PANEL.0, left + 12.0 + MARGIN);
+    let across = Scale::logarithmic(look, x, wide, "seconds")?;
+    let width = left + wide + 12.0 + MARGIN;
     let title = match title {
         "" => String::new(),
         title => format!("{title}; "),
     };
     let value = symbols::rounded(accuracy.value);
     let heading = Heading::new(
+        look,
         &format!("{title}at {} = {value}", family.parameter()),
         width,
     )?;
@@ -72,14 +79,14 @@ fn draw(scene: &ComparisonScene<'_>) -> Result<Option<Page>, DrawError> {
         let sample = Sample::Marked(line(method), number);
         (sample, method.title().to_owned())
     });
-    let legend = Legend::new(entries.collect(), width - 2.0 * MARGIN)?;
+    let legend = Legend::new(look, entries.collect(), width - 2.0 * MARGIN)?;
     let rect = Rectangle {
         left,
         top: heading.height() + legend.height() + 6.0,
-        width: PANEL.0,
+        width: wide,
         height: PANEL.1,
     };
-    let page = Page::new(width, rect.bottom() + Scale::below() + MARGIN);
+    let page = Page::new(look, width, rect.bottom() + Scale::below() + MARGIN);
     heading.draw(&page)?;
     legend.draw(&page, 0.5 * width, heading.height())?;
     let panel = page.panel(rect, x, y);
@@ -114,7 +121,7 @@ fn draw(scene: &ComparisonScene<'_>) -> Result<Option<Page>, DrawError> {
 fn line(method: Method) -> Stroke {
     match method {
         Method::MonteCarlo => Stroke {
-            colour: BLACK,
+            colour: INK,
             ..stroke(method)
         },
         method => stroke(method),

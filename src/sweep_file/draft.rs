@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use crate::continuation::LocateOptions;
-use crate::figure::Format;
+use crate::figure::{FigureStyle, Format, USUAL_KINDS};
 use crate::method::{GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions};
 use crate::system::{Interpretation, Model};
 use crate::topology::DetectOptions;
@@ -124,6 +124,8 @@ pub(super) struct Draft {
     pub(super) locate: LocateOptions,
     pub(super) figures_at: Option<Vec<f64>>,
     pub(super) figure_formats: Vec<Format>,
+    pub(super) figures_drawn: Vec<String>,
+    pub(super) figure_style: FigureStyle,
 }
 
 impl Default for Draft {
@@ -144,7 +146,9 @@ impl Default for Draft {
             detect: DetectOptions::default(),
             locate: LocateOptions::default(),
             figures_at: None,
-            figure_formats: Format::ALL.to_vec(),
+            figure_formats: Format::USUAL.to_vec(),
+            figures_drawn: USUAL_KINDS.map(str::to_owned).to_vec(),
+            figure_style: FigureStyle::default(),
         }
     }
 }

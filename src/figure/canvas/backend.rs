@@ -14,7 +14,8 @@ use plotters_backend::{
     FontTransform,
 };
 
-use super::style::{Stroke, UNITS};
+use super::look::Look;
+use super::style::{Colour, PAPER, Stroke, UNITS};
 use super::symbols::{self, Script};
 
 /// Result of a drawing operation on a [`Canvas`].
@@ -28,7 +29,7 @@ pub(in crate::figure) struct Lettering {
     /// Height of the letters' body, in pixels.
     pub(in crate::figure) size: f64,
     /// Colour.
-    pub(in crate::figure) colour: BackendColor,
+    pub(in crate::figure) colour: Colour,
     /// Which end stands at the given point.
     pub(in crate::figure) anchor: HPos,
     /// Whether the text runs upward.
@@ -40,20 +41,9 @@ pub(in crate::figure) struct Lettering {
 /// A page that collects SVG elements. Clones share the page.
 #[derive(Debug, Clone)]
 pub(super) struct Canvas {
+    look: Look,
     size: (u32, u32),
     elements: Rc<RefCell<String>>,
-}
-
-/// `rgb` as a colour of SVG, with opacity where it is not one.
-fn paint(property: &str, colour: BackendColor) -> String {
-    let (r, g, b) = colour.rgb;
-    if colour.alpha < 1.0 {
-        return format!(
-            " {property}=\"#{r:02x}{g:02x}{b:02x}\" {property}-opacity=\"{}\"",
-            colour.alpha
-        );
-    }
-    format!(" {property}=\"#{r:02x}{g:02x}{b:02x}\"")
 }
 
 /// A length in canvas units, as written.
@@ -74,8 +64,9 @@ fn points_attribute(points: &[BackendCoord]) -> String {
 
 impl Canvas {
     /// An empty page; size in figure pixels.
-    pub(super) fn new(width: f64, height: f64) -> Self {
+    pub(super) fn new(look: Look, width: f64, height: f64) -> Self {
         Self {
+            look,
             size: (units(width).max(1) as u32, units(height).max(1) as u32),
             elements: Rc::default(),
         }
@@ -84,14 +75,44 @@ impl Canvas {
     /// The page as an SVG document.
     pub(super) fn document(&self) -> String {
         let (width, height) = self.size;
+        let length = |units: u32| {
+            let pixels = f64::from(units) / UNITS;
+            match self.look.is_usual_size() {
+                true => pixels.to_string(),
+                false => format!("{:.4}mm", self.look.millimetres(pixels)),
+            }
+        };
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" \
-             viewBox=\"0 0 {width} {height}\" font-family=\"'DejaVu Sans', Verdana, sans-serif\" \
-             xml:space=\"preserve\">\n<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{}</svg>\n",
-            f64::from(width) / UNITS,
-            f64::from(height) / UNITS,
+             viewBox=\"0 0 {width} {height}\" font-family=\"{}\" \
+             xml:space=\"preserve\">\n<rect width=\"{width}\" height=\"{height}\"{}/>\n{}</svg>\n",
+            length(width),
+            length(height),
+            self.look.typeface.families(),
+            self.paint("fill", PAPER),
             self.elements.borrow()
         )
+    }
+
+    /// The look of everything that is drawn.
+    pub(super) fn look(&self) -> &Look {
+        &self.look
+    }
+
+    /// A colour as a property of SVG, with opacity where it is not one.
+    fn paint(&self, property: &str, colour: Colour) -> String {
+        let ((r, g, b), alpha) = self.look.resolve(colour);
+        if alpha < 1.0 {
+            return format!(
+                " {property}=\"#{r:02x}{g:02x}{b:02x}\" {property}-opacity=\"{alpha}\""
+            );
+        }
+        format!(" {property}=\"#{r:02x}{g:02x}{b:02x}\"")
+    }
+
+    /// The width of a line, as written.
+    fn weight(&self, stroke: &Stroke) -> i64 {
+        units(stroke.width * self.look.lines)
     }
 
     fn push(&self, element: &str) {
@@ -114,25 +135,45 @@ impl Canvas {
         self.push(&format!(
             "<polyline{} fill=\"none\"{} stroke-width=\"{}\" stroke-linejoin=\"round\"{dash}/>",
             points_attribute(points),
-            paint("stroke", stroke.colour),
-            units(stroke.width)
+            self.paint("stroke", stroke.colour),
+            self.weight(stroke)
         ));
     }
 
     /// A filled polygon.
-    pub(super) fn area(&self, points: &[BackendCoord], fill: BackendColor) {
+    pub(super) fn area(&self, points: &[BackendCoord], fill: Colour) {
         let points = points_attribute(points);
-        self.push(&format!("<polygon{points}{}/>", paint("fill", fill)));
+        self.push(&format!("<polygon{points}{}/>", self.paint("fill", fill)));
+    }
+
+    /// Filled quadrilaterals of one colour, each with a thin rim of the same colour.
+    pub(super) fn facets(&self, facets: &[[BackendCoord; 4]], fill: Colour) {
+        let mut path = String::new();
+        for [first, rest @ ..] in facets {
+            path.push_str(&format!("M{} {}", first.0, first.1));
+            let mut last = *first;
+            for &corner in rest {
+                path.push_str(&format!("l{} {}", corner.0 - last.0, corner.1 - last.1));
+                last = corner;
+            }
+            path.push('z');
+        }
+        self.push(&format!(
+            "<path d=\"{path}\"{}{} stroke-width=\"{}\" stroke-linejoin=\"round\"/>",
+            self.paint("fill", fill),
+            self.paint("stroke", fill),
+            units(0.4)
+        ));
     }
 
     /// A disc with a rim; radius and rim in pixels.
-    pub(super) fn dot(&self, (x, y): BackendCoord, radius: f64, fill: BackendColor, rim: &Stroke) {
+    pub(super) fn dot(&self, (x, y): BackendCoord, radius: f64, fill: Colour, rim: &Stroke) {
         self.push(&format!(
             "<circle cx=\"{x}\" cy=\"{y}\" r=\"{}\"{}{} stroke-width=\"{}\"/>",
             units(radius),
-            paint("fill", fill),
-            paint("stroke", rim.colour),
-            units(rim.width)
+            self.paint("fill", fill),
+            self.paint("stroke", rim.colour),
+            self.weight(rim)
         ));
     }
 
@@ -172,7 +213,7 @@ impl Canvas {
             "<text x=\"{x}\" y=\"{}\" font-size=\"{}\" text-anchor=\"{anchor}\"{weight}{}{turn}>{}</text>",
             y + below,
             units(text.size),
-            paint("fill", text.colour),
+            self.paint("fill", text.colour),
             spans(&text.markup, size)
         ));
     }
@@ -209,8 +250,16 @@ fn spans(markup: &str, size: f64) -> String {
     written
 }
 
+/// A colour of plotters' own elements.
+fn colour_of(colour: BackendColor) -> Colour {
+    Colour::fixed(colour.rgb).at(colour.alpha)
+}
+
 fn stroke_of<S: BackendStyle>(style: &S) -> Stroke {
-    Stroke::solid(style.color(), f64::from(style.stroke_width()) / UNITS)
+    Stroke::solid(
+        colour_of(style.color()),
+        f64::from(style.stroke_width()) / UNITS,
+    )
 }
 
 impl DrawingBackend for Canvas {
@@ -229,7 +278,10 @@ impl DrawingBackend for Canvas {
     }
 
     fn draw_pixel(&mut self, (x, y): BackendCoord, colour: BackendColor) -> Drawn {
-        self.area(&[(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)], colour);
+        self.area(
+            &[(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)],
+            colour_of(colour),
+        );
         Ok(())
     }
 
@@ -258,7 +310,7 @@ impl DrawingBackend for Canvas {
             (left, top),
         ];
         match fill {
-            true => self.area(&corners[..4], style.color()),
+            true => self.area(&corners[..4], colour_of(style.color())),
             false => self.line(&corners, &stroke_of(style)),
         }
         Ok(())
@@ -286,7 +338,8 @@ impl DrawingBackend for Canvas {
         } else {
             style.color().mix(0.0)
         };
-        self.dot(center, f64::from(radius) / UNITS, inside, &stroke_of(style));
+        let radius = f64::from(radius) / UNITS;
+        self.dot(center, radius, colour_of(inside), &stroke_of(style));
         Ok(())
     }
 
@@ -296,7 +349,7 @@ impl DrawingBackend for Canvas {
         style: &S,
     ) -> Drawn {
         let points: Vec<BackendCoord> = vert.into_iter().collect();
-        self.area(&points, style.color());
+        self.area(&points, colour_of(style.color()));
         Ok(())
     }
 
@@ -311,7 +364,7 @@ impl DrawingBackend for Canvas {
         let lettering = Lettering {
             markup: text.to_owned(),
             size,
-            colour: style.color(),
+            colour: colour_of(style.color()),
             anchor: style.anchor().h_pos,
             upward: matches!(style.transform(), FontTransform::Rotate270),
             bold: false,
@@ -336,7 +389,7 @@ mod tests {
     #[test]
     fn stock_elements_of_plotters_draw_on_the_canvas() {
         use plotters::prelude::*;
-        let canvas = Canvas::new(10.0, 5.0);
+        let canvas = Canvas::new(Look::default(), 10.0, 5.0);
         let root = canvas.clone().into_drawing_area();
         root.draw(&PathElement::new(vec![(0, 0), (7, 3)], BLACK))
             .unwrap();

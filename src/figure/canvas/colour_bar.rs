@@ -5,6 +5,7 @@ use plotters_backend::text_anchor::HPos;
 use super::DrawError;
 use super::frame::{self, Scale};
 use super::heat::Picture;
+use super::look::Look;
 use super::page::{Page, Rectangle, Shape, lettering};
 use super::render;
 use super::style::{self, Stroke, TEXT};
@@ -26,12 +27,13 @@ impl ColourBar {
     /// # Errors
     /// [`DrawError::Svg`].
     pub(in crate::figure) fn new(
+        look: &Look,
         largest: f64,
         height: f64,
         title: &str,
     ) -> Result<Self, DrawError> {
-        let scale = Scale::vertical((0.0, largest), height, title)?;
-        let title_width = render::text_width(scale.title(), TEXT, false)?;
+        let scale = Scale::vertical(look, (0.0, largest), height, title)?;
+        let title_width = render::text_width(look, scale.title(), TEXT, false)?;
         Ok(Self { scale, title_width })
     }
 
@@ -60,12 +62,12 @@ impl ColourBar {
             width: WIDTH,
             ..map
         };
-        let ramp = Picture::new((1, 255), |_, row| Some(row as f64 / 254.0)).png()?;
+        let ramp = Picture::new((1, 255), |_, row| Some(row as f64 / 254.0)).png(page.look())?;
         let corners = [(bar.left, bar.top), (bar.right(), bar.bottom())];
         page.draw(&corners, Shape::Image(ramp))?;
         for &share in marks {
             let y = bar.bottom() - share * bar.height;
-            let stroke = Stroke::solid(style::on_heat(share), 1.0);
+            let stroke = Stroke::solid(style::on_heat(page.look(), share), 1.0);
             page.draw(&[(bar.left, y), (bar.right(), y)], Shape::Line(stroke))?;
         }
         frame::border(page, bar)?;

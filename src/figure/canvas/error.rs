@@ -24,4 +24,7 @@ pub enum DrawError {
     /// A PNG could not be encoded.
     #[error("cannot encode a PNG: {0}")]
     Png(#[from] png::EncodingError),
+    /// A PDF could not be written.
+    #[error("cannot write a PDF: {0}")]
+    Pdf(String),
 }

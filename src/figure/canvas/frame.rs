@@ -4,13 +4,17 @@ use plotters_backend::text_anchor::HPos;
 
 use super::DrawError;
 use super::backend::Lettering;
+use super::look::Look;
 use super::page::{Page, Rectangle, Shape, lettering};
 use super::render;
-use super::style::{BLACK, FRAME_LINE, MINOR_TICK, Stroke, TEXT, TICK, TICK_TEXT};
+use super::style::{FRAME_LINE, INK, MINOR_TICK, Stroke, TEXT, TICK, TICK_TEXT};
 use super::ticks::{Ticks, decades, ticks};
 
 /// Gap between ticks, labels and titles, in pixels.
 const GAP: f64 = 4.0;
+
+/// An axis with fewer labels than these gets more, nearer to each other, if they have room.
+const FEW: usize = 3;
 
 /// An axis laid out on a given length.
 #[derive(Debug, Clone)]
@@ -28,13 +32,60 @@ impl Scale {
     /// # Errors
     /// [`DrawError::Svg`].
     pub(in crate::figure) fn horizontal(
+        look: &Look,
         range: (f64, f64),
         length: f64,
         title: &str,
     ) -> Result<Self, DrawError> {
+        let wide = Self::spaced(look, range, length, title, 14.0)?;
+        if wide.ticks.major.len() >= FEW {
+            return Ok(wide);
+        }
+        // A short axis is better with labels close to each other than with a single one.
+        let close = Self::spaced(look, range, length, title, 4.0)?;
+        Ok(if close.ticks.major.len() > wide.ticks.major.len() {
+            close
+        } else {
+            wide
+        })
+    }
+
+    /// Lays out an axis that runs aslant, so far across and so far down: labels stand beside or below each other.
+    ///
+    /// # Errors
+    /// [`DrawError::Svg`].
+    pub(super) fn slanted(
+        look: &Look,
+        range: (f64, f64),
+        (across, down): (f64, f64),
+        title: &str,
+    ) -> Result<Self, DrawError> {
         let mut most = 7;
         loop {
-            let scale = Self::with(range, most, title)?;
+            let scale = Self::with(look, range, most, title)?;
+            let step = match &scale.ticks.major[..] {
+                [first, second, ..] => (second.value - first.value) / (range.1 - range.0),
+                _ => 1.0,
+            };
+            let is_apart = step * down >= 1.15 * TICK_TEXT || step * across >= scale.widest + 6.0;
+            if is_apart || most <= 2 {
+                return Ok(scale);
+            }
+            most -= 1;
+        }
+    }
+
+    /// Lays out a horizontal axis with as many labels as have that gap between them.
+    fn spaced(
+        look: &Look,
+        range: (f64, f64),
+        length: f64,
+        title: &str,
+        gap: f64,
+    ) -> Result<Self, DrawError> {
+        let mut most = 7;
+        loop {
+            let scale = Self::with(look, range, most, title)?;
             let apart = match &scale.ticks.major[..] {
                 [first, .., last] => {
                     let span = (last.value - first.value) / (range.1 - range.0) * length;
@@ -42,7 +93,7 @@ impl Scale {
                 }
                 _ => length,
             };
-            if apart >= scale.widest + 14.0 || most <= 2 {
+            if apart >= scale.widest + gap || most <= 2 {
                 return Ok(scale);
             }
             most -= 1;
@@ -54,33 +105,42 @@ impl Scale {
     /// # Errors
     /// [`DrawError::Svg`].
     pub(in crate::figure) fn vertical(
+        look: &Look,
         range: (f64, f64),
         length: f64,
         title: &str,
     ) -> Result<Self, DrawError> {
-        let most = (length / (2.6 * TICK_TEXT)) as usize;
-        Self::with(range, most.clamp(2, 7), title)
+        let most = |apart: f64| ((length / (apart * TICK_TEXT)) as usize).clamp(2, 7);
+        let scale = Self::with(look, range, most(2.6), title)?;
+        if scale.ticks.major.len() >= FEW {
+            return Ok(scale);
+        }
+        Self::with(look, range, most(1.6), title)
     }
 
-    /// Lays out an axis of logarithms to base ten, labelled at powers of ten: `range` and what is drawn are exponents.
+    /// Lays out an axis of logarithms to base ten, labelled at as many powers of ten as its length has room for: `range` and what is drawn
+    /// are exponents.
     ///
     /// # Errors
     /// [`DrawError::Svg`].
     pub(in crate::figure) fn logarithmic(
+        look: &Look,
         range: (f64, f64),
+        length: f64,
         title: &str,
     ) -> Result<Self, DrawError> {
-        Self::of(range, decades(range.0, range.1), title)
+        let most = ((length / (2.2 * TICK_TEXT)) as usize).clamp(2, 9);
+        Self::of(look, range, decades(range.0, range.1, most), title)
     }
 
-    fn with(range: (f64, f64), most: usize, title: &str) -> Result<Self, DrawError> {
-        Self::of(range, ticks(range.0, range.1, most), title)
+    fn with(look: &Look, range: (f64, f64), most: usize, title: &str) -> Result<Self, DrawError> {
+        Self::of(look, range, ticks(range.0, range.1, most), title)
     }
 
-    fn of(range: (f64, f64), ticks: Ticks, title: &str) -> Result<Self, DrawError> {
+    fn of(look: &Look, range: (f64, f64), ticks: Ticks, title: &str) -> Result<Self, DrawError> {
         let mut widest: f64 = 0.0;
         for tick in &ticks.major {
-            widest = widest.max(render::text_width(&tick.label, TICK_TEXT, false)?);
+            widest = widest.max(render::text_width(look, &tick.label, TICK_TEXT, false)?);
         }
         let power = format!(
             "10^{{{}}}",
@@ -102,6 +162,17 @@ impl Scale {
     /// The title, with the power of ten that the labels leave out.
     pub(in crate::figure) fn title(&self) -> &str {
         &self.title
+    }
+
+    /// Labelled ticks: share of the way, and label.
+    pub(super) fn labels(&self) -> impl Iterator<Item = (f64, &str)> + '_ {
+        let ticks = self.ticks.major.iter();
+        ticks.map(|tick| (self.share(tick.value), tick.label.as_str()))
+    }
+
+    /// Shares of the way at which there are labelled ticks.
+    pub(super) fn labelled(&self) -> impl Iterator<Item = f64> + '_ {
+        self.labels().map(|(share, _)| share)
     }
 
     /// Width of ticks and labels beside a vertical axis.
@@ -155,7 +226,7 @@ impl Scale {
             let end = bottom + if labelled { TICK } else { MINOR_TICK };
             page.draw(
                 &[(x, bottom), (x, end)],
-                Shape::Line(Stroke::solid(BLACK, FRAME_LINE)),
+                Shape::Line(Stroke::solid(INK, FRAME_LINE)),
             )?;
         }
         if !labels {
@@ -185,18 +256,12 @@ impl Scale {
             let y = rect.bottom() - share * rect.height;
             let end = rect.left - if labelled { TICK } else { MINOR_TICK };
             let points = [(rect.left, y), (end, y)];
-            page.draw(&points, Shape::Line(Stroke::solid(BLACK, FRAME_LINE)))?;
+            page.draw(&points, Shape::Line(Stroke::solid(INK, FRAME_LINE)))?;
         }
         if !labels {
             return Ok(());
         }
-        for tick in &self.ticks.major {
-            let y = rect.bottom() - self.share(tick.value) * rect.height;
-            page.text(
-                (rect.left - TICK - GAP, y),
-                tick_label(&tick.label, HPos::Right),
-            )?;
-        }
+        self.write_labels_left(page, rect)?;
         let title = Lettering {
             upward: true,
             ..lettering(self.title.as_str(), HPos::Center)
@@ -207,6 +272,28 @@ impl Scale {
             (rect.left - self.label_width() - GAP - 0.6 * TEXT, middle),
             title,
         )
+    }
+
+    /// Draws ticks and labels left of a rectangle, and no title.
+    ///
+    /// # Errors
+    /// [`DrawError::Layout`].
+    pub(in crate::figure) fn draw_labels_left(
+        &self,
+        page: &Page,
+        rect: Rectangle,
+    ) -> Result<(), DrawError> {
+        self.draw_left(page, rect, false)?;
+        self.write_labels_left(page, rect)
+    }
+
+    fn write_labels_left(&self, page: &Page, rect: Rectangle) -> Result<(), DrawError> {
+        for tick in &self.ticks.major {
+            let y = rect.bottom() - self.share(tick.value) * rect.height;
+            let place = (rect.left - TICK - GAP, y);
+            page.text(place, tick_label(&tick.label, HPos::Right))?;
+        }
+        Ok(())
     }
 
     /// Draws ticks and labels right of a rectangle (a colour bar).
@@ -221,7 +308,7 @@ impl Scale {
         let right = rect.right();
         for tick in &self.ticks.major {
             let y = rect.bottom() - self.share(tick.value) * rect.height;
-            let stroke = Stroke::solid(BLACK, FRAME_LINE);
+            let stroke = Stroke::solid(INK, FRAME_LINE);
             page.draw(&[(right, y), (right + TICK - 1.0, y)], Shape::Line(stroke))?;
             page.text(
                 (right + TICK + GAP - 1.0, y),
@@ -252,7 +339,7 @@ pub(in crate::figure) fn border(page: &Page, rect: Rectangle) -> Result<(), Draw
         (left, bottom),
         (left, top),
     ];
-    page.draw(&corners, Shape::Line(Stroke::solid(BLACK, FRAME_LINE)))
+    page.draw(&corners, Shape::Line(Stroke::solid(INK, FRAME_LINE)))
 }
 
 #[cfg(test)]
@@ -262,7 +349,7 @@ mod tests {
     #[test]
     fn labels_of_a_short_axis_stand_apart() {
         for length in [60.0, 100.0, 200.0, 400.0] {
-            let scale = Scale::horizontal((-0.02, 0.01), length, "x").unwrap();
+            let scale = Scale::horizontal(&Look::default(), (-0.02, 0.01), length, "x").unwrap();
             let places: Vec<f64> = scale
                 .ticks
                 .major
@@ -285,10 +372,12 @@ mod tests {
 
     #[test]
     fn a_power_of_ten_goes_into_the_title() {
-        let scale = Scale::vertical((0.0, 4e-7), 200.0, "$D$").unwrap();
+        let scale = Scale::vertical(&Look::default(), (0.0, 4e-7), 200.0, "$D$").unwrap();
         assert_eq!(scale.title(), "$D$ (10^{−7})");
         assert_eq!(
-            Scale::vertical((0.0, 4.0), 200.0, "$D$").unwrap().title(),
+            Scale::vertical(&Look::default(), (0.0, 4.0), 200.0, "$D$")
+                .unwrap()
+                .title(),
             "$D$"
         );
     }

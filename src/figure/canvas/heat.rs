@@ -2,7 +2,7 @@
 //! 500² cells stays small. Resampled by nearest cell where cells differ in width.
 
 use super::DrawError;
-use super::style;
+use super::look::Look;
 
 /// Palette entry of places without a value; it is transparent.
 const NOTHING: u8 = 255;
@@ -43,10 +43,10 @@ impl Picture {
     ///
     /// # Errors
     /// [`DrawError::Png`].
-    pub(in crate::figure) fn png(&self) -> Result<Vec<u8>, DrawError> {
+    pub(in crate::figure) fn png(&self, look: &Look) -> Result<Vec<u8>, DrawError> {
         let mut palette = Vec::with_capacity(3 * COLOURS + 3);
         for colour in 0..COLOURS {
-            let (r, g, b) = style::heat(colour as f64 / (COLOURS - 1) as f64);
+            let (r, g, b) = look.colours.colour(colour as f64 / (COLOURS - 1) as f64);
             palette.extend([r, g, b]);
         }
         palette.extend([255, 255, 255]);
@@ -98,16 +98,17 @@ mod tests {
         };
         let picture = Picture::new((2, 2), share);
         assert_eq!(picture.indices, [NOTHING, 254, 0, NOTHING]);
-        let png = picture.png().unwrap();
+        let look = Look::default();
+        let png = picture.png(&look).unwrap();
         let mut decoder = png::Decoder::new(std::io::Cursor::new(&png));
         decoder.set_transformations(png::Transformations::EXPAND);
         let mut reader = decoder.read_info().unwrap();
         let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
         reader.next_frame(&mut pixels).unwrap();
         assert_eq!(pixels[3], 0);
-        let (r, g, b) = style::heat(1.0);
+        let (r, g, b) = look.colours.colour(1.0);
         assert_eq!(pixels[4..8], [r, g, b, 255]);
-        let (r, g, b) = style::heat(0.0);
+        let (r, g, b) = look.colours.colour(0.0);
         assert_eq!(pixels[8..12], [r, g, b, 255]);
     }
 

@@ -1,12 +1,14 @@
 //! Legends: samples with their meaning, in rows outside of the panels, so that no data are covered.
 
-use plotters_backend::BackendColor;
 use plotters_backend::text_anchor::HPos;
 
 use super::DrawError;
+use super::look::Look;
 use super::page::{Page, Shape, lettering};
 use super::render;
-use super::style::{BLACK, CURVE_LINE, ERROR_LINE, Stroke, TEXT, TICK_TEXT, WHITE, heat};
+use super::style::{
+    BLACK, CURVE_LINE, Colour, ERROR_LINE, MARGIN, PAPER, Stroke, TEXT, TICK_TEXT, WHITE,
+};
 
 /// Length of a sample, in pixels.
 const SAMPLE: f64 = 30.0;
@@ -23,7 +25,7 @@ pub(in crate::figure) enum Sample {
     /// A curve.
     Curve(Stroke),
     /// A symbol with an error bar.
-    Symbol(BackendColor),
+    Symbol(Colour),
     /// A line through symbols: line, place in the list of symbols.
     Marked(Stroke, usize),
     /// The line of a branch of peaks.
@@ -51,13 +53,14 @@ impl Legend {
     /// # Errors
     /// [`DrawError::Svg`].
     pub(in crate::figure) fn new(
+        look: &Look,
         entries: Vec<(Sample, String)>,
         width: f64,
     ) -> Result<Self, DrawError> {
         let mut rows: Vec<f64> = Vec::new();
         let mut placed = Vec::new();
         for (sample, text) in entries {
-            let entry = SAMPLE + GAP + render::text_width(&text, TICK_TEXT, false)?;
+            let entry = SAMPLE + GAP + render::text_width(look, &text, TICK_TEXT, false)?;
             let left = match rows.last_mut() {
                 Some(row) if *row + BETWEEN + entry <= width => {
                     let left = *row + BETWEEN;
@@ -82,7 +85,7 @@ impl Legend {
         ROW * self.rows.len() as f64
     }
 
-    /// Draws it with its rows centred on `middle`, from `top` down.
+    /// Draws it from `top` down, its rows centred on `middle` as far as the page's margins let them.
     ///
     /// # Errors
     /// [`DrawError::Layout`].
@@ -93,7 +96,8 @@ impl Legend {
         top: f64,
     ) -> Result<(), DrawError> {
         for (sample, text, left, row) in &self.entries {
-            let x = middle - 0.5 * self.rows[*row] + left;
+            let most = page.width() - MARGIN - self.rows[*row];
+            let x = (middle - 0.5 * self.rows[*row]).min(most).max(MARGIN) + left;
             let y = top + (*row as f64 + 0.5) * ROW;
             draw_sample(page, *sample, (x, y))?;
             let mut text = lettering(text.as_str(), HPos::Left);
@@ -114,10 +118,8 @@ fn draw_sample(page: &Page, sample: Sample, (x, y): (f64, f64)) -> Result<(), Dr
         (x, y + half),
     ];
     let ground = |share: f64| {
-        Shape::Area(BackendColor {
-            alpha: 1.0,
-            rgb: heat(share),
-        })
+        let colour = page.look().colours.colour(share);
+        Shape::Area(Colour::fixed(colour))
     };
     let middle = (x + 0.5 * SAMPLE, y);
     match sample {
@@ -191,18 +193,18 @@ pub(in crate::figure) fn symbol(
     draw: impl Fn(&[(f64, f64)], Shape) -> Result<(), DrawError>,
     number: usize,
     place: (f64, f64),
-    colour: BackendColor,
+    colour: Colour,
 ) -> Result<(), DrawError> {
     let rim = Stroke::solid(colour, 1.2);
     match number % 4 {
         0 => draw(&[place], Shape::Dot(2.0, colour, rim)),
-        1 => draw(&[place], Shape::Dot(3.6, WHITE, rim)),
+        1 => draw(&[place], Shape::Dot(3.6, PAPER, rim)),
         2 => {
-            draw(&[place], Shape::Dot(4.4, WHITE, rim))?;
+            draw(&[place], Shape::Dot(4.4, PAPER, rim))?;
             draw(&[place], Shape::Plus(4.4, rim))
         }
         _ => {
-            draw(&[place], Shape::Plus(5.0, Stroke::solid(WHITE, 4.0)))?;
+            draw(&[place], Shape::Plus(5.0, Stroke::solid(PAPER, 4.0)))?;
             draw(&[place], Shape::Plus(4.6, Stroke::solid(colour, 2.2)))
         }
     }
@@ -222,10 +224,7 @@ pub(in crate::figure) fn ring(
     draw: impl Fn(&[(f64, f64)], Shape) -> Result<(), DrawError>,
     place: (f64, f64),
 ) -> Result<(), DrawError> {
-    let clear = BackendColor {
-        alpha: 0.0,
-        rgb: (255, 255, 255),
-    };
+    let clear = WHITE.at(0.0);
     draw(&[place], Shape::Dot(4.0, clear, Stroke::solid(BLACK, 3.2)))?;
     draw(&[place], Shape::Dot(4.0, clear, Stroke::solid(WHITE, 1.5)))
 }

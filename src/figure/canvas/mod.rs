@@ -2,7 +2,7 @@
 //! knows nothing of sweeps and densities.
 //!
 //! plotters lays the data out on a canvas of its own making (`backend`), with sub-pixel places, real subscripts,
-//! and heat maps as one embedded picture. Lettering is DejaVu Sans, which comes with the program; no font of the
+//! and heat maps as one embedded picture. Lettering is DejaVu Sans or Serif, which comes with the program; no font of the
 //! machine is used, and equal drawings give equal bytes.
 
 mod backend;
@@ -13,8 +13,11 @@ pub(super) mod frame;
 pub(super) mod hatch;
 pub(super) mod heat;
 pub(super) mod legend;
+pub(super) mod look;
 pub(super) mod page;
+pub(super) mod pdf;
 pub(super) mod render;
+pub(super) mod space;
 pub(super) mod style;
 pub(super) mod symbols;
 mod ticks;

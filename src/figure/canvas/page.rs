@@ -6,12 +6,13 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::element::{Drawable, PointCollection};
 use plotters::prelude::{Cartesian2d, CoordTranslate, DrawingArea, IntoDrawingArea};
 use plotters_backend::text_anchor::HPos;
-use plotters_backend::{BackendColor, BackendCoord};
+use plotters_backend::{BackendCoord, DrawingBackend as _};
 
 use super::DrawError;
 use super::backend::{Canvas, Drawn, Lettering};
+use super::look::Look;
 use super::render;
-use super::style::{BLACK, GREY, MARGIN, Stroke, TEXT, TITLE_TEXT, UNITS};
+use super::style::{Colour, GREY, INK, MARGIN, Stroke, TEXT, TITLE_TEXT, UNITS};
 use super::symbols;
 
 /// A rectangle on the page, in pixels from the upper left.
@@ -39,9 +40,9 @@ pub(in crate::figure) enum Shape {
     /// A polyline through the points.
     Line(Stroke),
     /// The polygon of the points.
-    Area(BackendColor),
+    Area(Colour),
     /// A disc about the first point: radius in pixels, inside, rim.
-    Dot(f64, BackendColor, Stroke),
+    Dot(f64, Colour, Stroke),
     /// A `+` about the first point: half its length in pixels, line.
     Plus(f64, Stroke),
     /// A PNG over the rectangle between two opposite corners.
@@ -110,12 +111,22 @@ pub(in crate::figure) struct Panel {
 
 impl Page {
     /// An empty page; size in pixels.
-    pub(in crate::figure) fn new(width: f64, height: f64) -> Self {
-        let canvas = Canvas::new(width, height);
+    pub(in crate::figure) fn new(look: &Look, width: f64, height: f64) -> Self {
+        let canvas = Canvas::new(*look, width, height);
         Self {
             area: canvas.clone().into_drawing_area(),
             canvas,
         }
+    }
+
+    /// How everything on it looks.
+    pub(in crate::figure) fn look(&self) -> &Look {
+        self.canvas.look()
+    }
+
+    /// Its width in pixels.
+    pub(in crate::figure) fn width(&self) -> f64 {
+        f64::from(self.canvas.get_size().0) / UNITS
     }
 
     /// Draws at points given in pixels.
@@ -128,6 +139,21 @@ impl Page {
             |&(x, y): &(f64, f64)| ((x * UNITS).round() as i32, (y * UNITS).round() as i32);
         let points = points.iter().map(on_canvas).collect();
         Ok(self.area.draw(&Mark { points, shape })?)
+    }
+
+    /// Fills neighbouring facets, in this order; corners in pixels. Rims in their own colours leave no seams between them.
+    pub(in crate::figure) fn facets(&self, facets: &[([(f64, f64); 4], Colour)]) {
+        let on_canvas =
+            |(x, y): (f64, f64)| ((x * UNITS).round() as i32, (y * UNITS).round() as i32);
+        for run in facets.chunk_by(|a, b| a.1 == b.1) {
+            let corners: Vec<[BackendCoord; 4]> = run
+                .iter()
+                .map(|(corners, _)| corners.map(on_canvas))
+                .collect();
+            if let Some((_, colour)) = run.first() {
+                self.canvas.facets(&corners, *colour);
+            }
+        }
     }
 
     /// Writes a text whose end `anchor` stands at a point, centred on it in height.
@@ -171,12 +197,12 @@ impl Panel {
     }
 }
 
-/// Black lettering of the usual size.
+/// Lettering of the usual size.
 pub(in crate::figure) fn lettering(markup: impl Into<String>, anchor: HPos) -> Lettering {
     Lettering {
         markup: markup.into(),
         size: TEXT,
-        colour: BLACK,
+        colour: INK,
         anchor,
         upward: false,
         bold: false,
@@ -193,8 +219,14 @@ impl Heading {
     ///
     /// # Errors
     /// [`DrawError::Svg`].
-    pub(in crate::figure) fn new(title: &str, width: f64) -> Result<Self, DrawError> {
-        let lines = render::wrap(&symbols::plain(title), TITLE_TEXT, width - 2.0 * MARGIN)?;
+    pub(in crate::figure) fn new(look: &Look, title: &str, width: f64) -> Result<Self, DrawError> {
+        let title = if look.has_title { title } else { "" };
+        let lines = render::wrap(
+            look,
+            &symbols::plain(title),
+            TITLE_TEXT,
+            width - 2.0 * MARGIN,
+        )?;
         Ok(Self { lines })
     }
 
@@ -227,7 +259,7 @@ mod tests {
 
     #[test]
     fn panels_put_the_data_where_they_belong() {
-        let page = Page::new(100.0, 50.0);
+        let page = Page::new(&Look::default(), 100.0, 50.0);
         let rect = Rectangle {
             left: 10.0,
             top: 5.0,

@@ -8,9 +8,10 @@ use resvg::usvg::{self, fontdb};
 
 use super::DrawError;
 use super::backend::{Canvas, Lettering};
-use super::style::{BLACK, PNG_SCALE};
+use super::look::Look;
+use super::style::BLACK;
 
-/// DejaVu Sans alone: no font of the machine, so that figures are the same everywhere.
+/// DejaVu alone: no font of the machine, so that figures are the same everywhere.
 fn options() -> usvg::Options<'static> {
     static FONTS: OnceLock<Arc<fontdb::Database>> = OnceLock::new();
     let fonts = FONTS.get_or_init(|| {
@@ -20,11 +21,16 @@ fn options() -> usvg::Options<'static> {
             dejavu::sans::oblique(),
             dejavu::sans::bold(),
             dejavu::sans::bold_oblique(),
+            dejavu::serif::regular(),
+            dejavu::serif::italic(),
+            dejavu::serif::bold(),
+            dejavu::serif::bold_italic(),
         ];
         for face in faces {
             fonts.load_font_source(fontdb::Source::Binary(Arc::new(face)));
         }
         fonts.set_sans_serif_family("DejaVu Sans");
+        fonts.set_serif_family("DejaVu Serif");
         Arc::new(fonts)
     });
     usvg::Options {
@@ -34,13 +40,22 @@ fn options() -> usvg::Options<'static> {
     }
 }
 
-/// An SVG as a PNG of 8-bit RGB on white, [`PNG_SCALE`] pixels to a figure pixel.
+/// An SVG read back, its text laid out.
+///
+/// # Errors
+/// [`DrawError::Svg`].
+pub(super) fn tree(svg: &str) -> Result<usvg::Tree, DrawError> {
+    Ok(usvg::Tree::from_str(svg, &options())?)
+}
+
+/// An SVG as a PNG of 8-bit RGB, with that many pixels to the inch, which is written into it.
 ///
 /// # Errors
 /// [`DrawError::Svg`], [`DrawError::Raster`] or [`DrawError::Png`].
-pub(in crate::figure) fn png(svg: &str) -> Result<Vec<u8>, DrawError> {
-    let tree = usvg::Tree::from_str(svg, &options())?;
-    let scale = PNG_SCALE as f32;
+pub(in crate::figure) fn png(svg: &str, dpi: f64) -> Result<Vec<u8>, DrawError> {
+    let tree = tree(svg)?;
+    // Lengths of the tree are 1/96 inch.
+    let scale = (dpi / 96.0) as f32;
     let width = (tree.size().width() * scale).round() as u32;
     let height = (tree.size().height() * scale).round() as u32;
     let mut pixels = Pixmap::new(width, height).ok_or(DrawError::Raster { width, height })?;
@@ -60,8 +75,7 @@ pub(in crate::figure) fn png(svg: &str) -> Result<Vec<u8>, DrawError> {
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::High);
-    // 96 figure pixels to the inch.
-    let pixels_a_metre = (96.0 * PNG_SCALE / 0.0254).round() as u32;
+    let pixels_a_metre = (dpi / 0.0254).round() as u32;
     encoder.set_pixel_dims(Some(png::PixelDimensions {
         xppu: pixels_a_metre,
         yppu: pixels_a_metre,
@@ -77,11 +91,21 @@ pub(in crate::figure) fn png(svg: &str) -> Result<Vec<u8>, DrawError> {
 ///
 /// # Errors
 /// [`DrawError::Svg`].
-pub(in crate::figure) fn text_width(markup: &str, size: f64, bold: bool) -> Result<f64, DrawError> {
+pub(in crate::figure) fn text_width(
+    look: &Look,
+    markup: &str,
+    size: f64,
+    bold: bool,
+) -> Result<f64, DrawError> {
     if markup.is_empty() {
         return Ok(0.0);
     }
-    let canvas = Canvas::new(1.0, 1.0);
+    // Measured at the usual size: lengths of the tree are then figure pixels.
+    let look = Look {
+        typeface: look.typeface,
+        ..Look::default()
+    };
+    let canvas = Canvas::new(look, 1.0, 1.0);
     let lettering = Lettering {
         markup: markup.to_owned(),
         size,
@@ -91,7 +115,7 @@ pub(in crate::figure) fn text_width(markup: &str, size: f64, bold: bool) -> Resu
         bold,
     };
     canvas.text((0, 0), &lettering);
-    let tree = usvg::Tree::from_str(&canvas.document(), &options())?;
+    let tree = tree(&canvas.document())?;
     // The text is the node beside the background.
     let width = tree
         .root()
@@ -116,6 +140,7 @@ fn text_right(node: &usvg::Node) -> f64 {
 /// # Errors
 /// [`DrawError::Svg`].
 pub(in crate::figure) fn wrap(
+    look: &Look,
     markup: &str,
     size: f64,
     width: f64,
@@ -126,7 +151,7 @@ pub(in crate::figure) fn wrap(
             Some(line) => format!("{line} {word}"),
             None => word.to_owned(),
         };
-        let fits = text_width(&longer, size, false)? <= width;
+        let fits = text_width(look, &longer, size, false)? <= width;
         match lines.last_mut() {
             Some(line) if fits => *line = longer,
             _ => lines.push(word.to_owned()),
@@ -137,41 +162,49 @@ pub(in crate::figure) fn wrap(
 
 #[cfg(test)]
 mod tests {
+    use super::super::look::Typeface;
     use super::*;
 
     #[test]
     fn widths_are_those_of_the_font() {
         // Advance of a DejaVu Sans digit: 1303 of 2048 units an em.
-        let digits = text_width("00000", 20.0, false).unwrap();
+        let digits = text_width(&Look::default(), "00000", 20.0, false).unwrap();
         assert!(
             (digits - 5.0 * 20.0 * 1303.0 / 2048.0).abs() < 0.3,
             "{digits}"
         );
-        let lowered = text_width("0_{0}", 20.0, false).unwrap();
+        let lowered = text_width(&Look::default(), "0_{0}", 20.0, false).unwrap();
         assert!(
             (lowered / (1.72 * 20.0 * 1303.0 / 2048.0) - 1.0).abs() < 0.02,
             "{lowered}"
         );
-        assert_eq!(text_width("", 20.0, false).unwrap(), 0.0);
+        assert_eq!(text_width(&Look::default(), "", 20.0, false).unwrap(), 0.0);
     }
 
     #[test]
     fn every_symbol_of_the_models_has_a_glyph() {
-        let width = |letter: char| text_width(&format!("${letter}$"), 1000.0, false).unwrap();
-        // What stands for a letter that no font has; no letter below happens to be as wide.
-        let missing = width('\u{16a0}');
-        for letter in "ẋẏżxyzaακμλσ".chars() {
-            assert!((width(letter) - missing).abs() > 1.0, "{letter}");
+        for typeface in Typeface::ALL {
+            let look = Look {
+                typeface,
+                ..Look::default()
+            };
+            let width =
+                |letter: char| text_width(&look, &format!("${letter}$"), 1000.0, false).unwrap();
+            // What stands for a letter that no font has; no letter below happens to be as wide.
+            let missing = width('\u{16a0}');
+            for letter in "ẋẏżxyzaακμλσ".chars() {
+                assert!((width(letter) - missing).abs() > 1.0, "{letter}");
+            }
         }
     }
 
     #[test]
     fn long_titles_are_cut_at_spaces() {
-        let lines = wrap("one two three four", 12.0, 60.0).unwrap();
+        let lines = wrap(&Look::default(), "one two three four", 12.0, 60.0).unwrap();
         assert!(lines.len() > 1);
         assert_eq!(lines.join(" "), "one two three four");
         for line in lines {
-            assert!(text_width(&line, 12.0, false).unwrap() <= 60.0);
+            assert!(text_width(&Look::default(), &line, 12.0, false).unwrap() <= 60.0);
         }
     }
 }

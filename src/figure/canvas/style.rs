@@ -1,14 +1,14 @@
-//! How figures look: sizes, colours, dashes. Everything that makes them one family stands here.
+//! How figures look: sizes, colours, dashes. Everything that makes them one family stands here; what a style changes of it
+//! is in [`look`](super::look).
 //!
-//! Lengths are in figure pixels (1/96 inch). A figure one text column wide, about 480 px, shrinks to the
-//! 90 mm of a journal's column with lettering of about 7.5 pt.
+//! Lengths are in figure pixels. Left to itself a figure is printed at 96 of them to the inch; with a width or a size of text asked for, a
+//! figure pixel is what makes the lettering of that size, and the layout has as many of them as the page is then wide.
 
-use plotters::style::colors::colormaps::{ColorMap, ViridisRGB};
-use plotters_backend::BackendColor;
+use super::look::Look;
 
 /// Sub-pixel units in a figure pixel: plotters places everything on whole units.
 pub(in crate::figure) const UNITS: f64 = 20.0;
-/// Pixels of a PNG to a figure pixel.
+/// Pixels of an embedded heat map to a figure pixel, where cells are not pixels themselves.
 pub(in crate::figure) const PNG_SCALE: f64 = 3.0;
 
 /// Lettering of axis titles and legends.
@@ -31,30 +31,63 @@ pub(in crate::figure) const CURVE_LINE: f64 = 1.7;
 /// Width of error bars.
 pub(in crate::figure) const ERROR_LINE: f64 = 0.9;
 
-const fn colour(rgb: (u8, u8, u8), alpha: f64) -> BackendColor {
-    BackendColor { alpha, rgb }
+/// A colour, on light and on dark ground.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::figure) struct Colour {
+    /// Red, green, blue on light ground.
+    pub(in crate::figure) light: (u8, u8, u8),
+    /// The same on dark ground.
+    pub(in crate::figure) dark: (u8, u8, u8),
+    /// Opacity.
+    pub(in crate::figure) alpha: f64,
 }
 
-pub(in crate::figure) const BLACK: BackendColor = colour((0, 0, 0), 1.0);
-pub(in crate::figure) const WHITE: BackendColor = colour((255, 255, 255), 1.0);
+impl Colour {
+    /// A colour that does not depend on the ground.
+    pub(in crate::figure) const fn fixed(rgb: (u8, u8, u8)) -> Self {
+        Self::new(rgb, rgb)
+    }
+
+    const fn new(light: (u8, u8, u8), dark: (u8, u8, u8)) -> Self {
+        Self {
+            light,
+            dark,
+            alpha: 1.0,
+        }
+    }
+
+    /// The same colour, let through.
+    pub(in crate::figure) const fn at(self, alpha: f64) -> Self {
+        Self { alpha, ..self }
+    }
+}
+
+/// Lettering, frames, and whatever stands on the page.
+pub(in crate::figure) const INK: Colour = Colour::new((0, 0, 0), (236, 236, 236));
+/// The page.
+pub(in crate::figure) const PAPER: Colour = Colour::new((255, 255, 255), (20, 22, 26));
+/// Black on any ground: marks on maps.
+pub(in crate::figure) const BLACK: Colour = Colour::fixed((0, 0, 0));
+/// White on any ground: marks on maps.
+pub(in crate::figure) const WHITE: Colour = Colour::fixed((255, 255, 255));
 /// Lettering that stands back.
-pub(in crate::figure) const GREY: BackendColor = colour((95, 95, 95), 1.0);
+pub(in crate::figure) const GREY: Colour = Colour::new((95, 95, 95), (165, 165, 165));
 /// Ground where there is no density.
-pub(in crate::figure) const BLANK: BackendColor = colour((240, 240, 240), 1.0);
+pub(in crate::figure) const BLANK: Colour = Colour::new((240, 240, 240), (44, 46, 50));
 /// Hatching of that ground.
-pub(in crate::figure) const HATCH: BackendColor = colour((150, 150, 150), 1.0);
+pub(in crate::figure) const HATCH: Colour = Colour::new((150, 150, 150), (110, 110, 110));
 /// Located bifurcations: a red that no colour of the map comes near.
-pub(in crate::figure) const BIFURCATION: BackendColor = colour((214, 20, 20), 1.0);
+pub(in crate::figure) const BIFURCATION: Colour = Colour::new((214, 20, 20), (255, 90, 80));
 
 /// Colours of curves, after Okabe and Ito (told apart with any colour vision), without their yellow.
-const CURVES: [(u8, u8, u8); 7] = [
-    (0, 114, 178),
-    (213, 94, 0),
-    (0, 158, 115),
-    (204, 121, 167),
-    (0, 0, 0),
-    (86, 180, 233),
-    (230, 159, 0),
+const CURVES: [Colour; 7] = [
+    Colour::new((0, 114, 178), (64, 156, 214)),
+    Colour::fixed((213, 94, 0)),
+    Colour::fixed((0, 158, 115)),
+    Colour::fixed((204, 121, 167)),
+    INK,
+    Colour::fixed((86, 180, 233)),
+    Colour::fixed((230, 159, 0)),
 ];
 
 /// Dashes of curves, in pixels; a different number from that of the colours, so that pairs repeat late.
@@ -70,7 +103,7 @@ const DASHES: [&[f64]; 5] = [
 #[derive(Clone, Copy)]
 pub(in crate::figure) struct Stroke {
     /// Its colour.
-    pub(in crate::figure) colour: BackendColor,
+    pub(in crate::figure) colour: Colour,
     /// Its width, in pixels.
     pub(in crate::figure) width: f64,
     /// Lengths of dashes and gaps, in pixels; empty for a solid line.
@@ -79,7 +112,7 @@ pub(in crate::figure) struct Stroke {
 
 impl Stroke {
     /// A solid line.
-    pub(in crate::figure) const fn solid(colour: BackendColor, width: f64) -> Self {
+    pub(in crate::figure) const fn solid(colour: Colour, width: f64) -> Self {
         Self {
             colour,
             width,
@@ -90,52 +123,54 @@ impl Stroke {
     /// The line of the curve with the given number.
     pub(in crate::figure) fn curve(number: usize) -> Self {
         Self {
-            colour: colour(CURVES[number % CURVES.len()], 1.0),
+            colour: CURVES[number % CURVES.len()],
             width: CURVE_LINE,
             dash: DASHES[number % DASHES.len()],
         }
     }
 }
 
-/// The colour of a share (0 to 1) of the largest value: viridis, perceptually uniform and readable in grey.
-pub(in crate::figure) fn heat(share: f64) -> (u8, u8, u8) {
-    let colour = ViridisRGB.get_color(share.clamp(0.0, 1.0) as f32);
-    (colour.0, colour.1, colour.2)
+/// Black or white, whichever is seen better on the colour of a share (0 to 1) of the largest value.
+pub(in crate::figure) fn on_heat(look: &Look, share: f64) -> Colour {
+    let ground = luminance(look.colours.colour(share));
+    // Against white the contrast is 3.3 to one here; thin white lines are seen better than thin black ones.
+    if ground > 0.27 { BLACK } else { WHITE }
 }
 
-/// Black or white, whichever is seen better on the colour of a share.
-pub(in crate::figure) fn on_heat(share: f64) -> BackendColor {
-    if share > 0.55 { BLACK } else { WHITE }
+/// Relative luminance of an sRGB colour (WCAG 2).
+pub(super) fn luminance((r, g, b): (u8, u8, u8)) -> f64 {
+    let linear = |value: u8| (f64::from(value) / 255.0).powf(2.2);
+    0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::look::ColourMap;
     use super::*;
-
-    /// Relative luminance of an sRGB colour (WCAG 2).
-    fn luminance((r, g, b): (u8, u8, u8)) -> f64 {
-        let linear = |value: u8| (f64::from(value) / 255.0).powf(2.2);
-        0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b)
-    }
-
-    #[test]
-    fn heat_grows_lighter_all_along() {
-        let values: Vec<f64> = (0..=100)
-            .map(|i| luminance(heat(f64::from(i) / 100.0)))
-            .collect();
-        assert!(values.windows(2).all(|pair| pair[1] > pair[0] - 2e-3));
-        assert_eq!(heat(-1.0), heat(0.0));
-        assert_eq!(heat(2.0), heat(1.0));
-    }
 
     #[test]
     fn marks_on_heat_keep_a_contrast_of_three() {
-        for step in 0..=100 {
-            let share = f64::from(step) / 100.0;
-            let ground = luminance(heat(share)) + 0.05;
-            let mark = luminance(on_heat(share).rgb) + 0.05;
-            let contrast = (ground / mark).max(mark / ground);
-            assert!(contrast > 3.0, "{share}: {contrast}");
+        for colours in ColourMap::ALL {
+            let look = Look {
+                colours,
+                ..Look::default()
+            };
+            for step in 0..=100 {
+                let share = f64::from(step) / 100.0;
+                let ground = luminance(colours.colour(share)) + 0.05;
+                let mark = luminance(on_heat(&look, share).light) + 0.05;
+                let contrast = (ground / mark).max(mark / ground);
+                assert!(contrast > 3.0, "{share}: {contrast}");
+            }
+        }
+    }
+
+    #[test]
+    fn lettering_is_read_on_both_grounds() {
+        for colour in [INK, GREY, BIFURCATION] {
+            let light = (luminance(PAPER.light) + 0.05) / (luminance(colour.light) + 0.05);
+            let dark = (luminance(colour.dark) + 0.05) / (luminance(PAPER.dark) + 0.05);
+            assert!(light > 4.5 && dark > 4.5, "{colour:?}: {light}, {dark}");
         }
     }
 
@@ -144,7 +179,7 @@ mod tests {
         let key = |number| {
             let stroke = Stroke::curve(number);
             (
-                stroke.colour.rgb,
+                stroke.colour.light,
                 stroke.dash.len(),
                 stroke.dash.first().map(|d| *d as i64),
             )

@@ -56,14 +56,30 @@ pub(super) fn ticks(from: f64, to: f64, most: usize) -> Ticks {
     }
 }
 
-/// Ticks at the powers of ten between two exponents, small ones at 2 to 9 times each.
-pub(super) fn decades(from: f64, to: f64) -> Ticks {
+/// Ticks at the powers of ten between two exponents, small ones at 2 to 9 times each; where there are more than `most` powers, every
+/// second, third, … is labelled and the others are the small ticks.
+pub(super) fn decades(from: f64, to: f64, most: usize) -> Ticks {
     let slack = 1e-9;
     let inside = |exponent: f64| exponent >= from - slack && exponent <= to + slack;
     let powers = from.floor() as i32..=to.ceil() as i32;
-    let major = powers.clone().map(f64::from).filter(|&power| inside(power));
-    let minor =
-        powers.flat_map(|power| (2..10).map(move |n| f64::from(power) + f64::from(n).log10()));
+    let count = powers
+        .clone()
+        .filter(|&power| inside(f64::from(power)))
+        .count();
+    let every = count.div_ceil(most.max(1)).max(1) as i32;
+    let (major, others): (Vec<i32>, Vec<i32>) = powers
+        .clone()
+        .partition(|power| power.rem_euclid(every) == 0);
+    let major = major
+        .into_iter()
+        .map(f64::from)
+        .filter(|&power| inside(power));
+    let minor: Vec<f64> = match every {
+        1 => powers
+            .flat_map(|power| (2..10).map(move |n| f64::from(power) + f64::from(n).log10()))
+            .collect(),
+        _ => others.into_iter().map(f64::from).collect(),
+    };
     Ticks {
         major: major
             .map(|value| Tick {
@@ -71,7 +87,10 @@ pub(super) fn decades(from: f64, to: f64) -> Ticks {
                 label: format!("10^{{{}}}", symbols::fixed(value, 0)),
             })
             .collect(),
-        minor: minor.filter(|&exponent| inside(exponent)).collect(),
+        minor: minor
+            .into_iter()
+            .filter(|&exponent| inside(exponent))
+            .collect(),
         exponent: 0,
     }
 }
@@ -143,7 +162,7 @@ mod tests {
 
     #[test]
     fn decades_are_labelled_and_divided() {
-        let ticks = decades(-2.1, 1.0);
+        let ticks = decades(-2.1, 1.0, 7);
         let labels: Vec<&str> = ticks.major.iter().map(|tick| tick.label.as_str()).collect();
         assert_eq!(labels, ["10^{−2}", "10^{−1}", "10^{0}", "10^{1}"]);
         // 0.008 and 0.009 below 10⁻², and eight in each of three decades.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::super::draft::{Auto, Draft, MethodKind};
 use super::super::value::Plain;
-use crate::figure::Format;
+use crate::figure::{ColourMap, FigureWidth, Format, Ground, Typeface};
 use crate::generator::AdvectiveScheme;
 use crate::method::{Correction, Estimator, StepChoice};
 use crate::sampling::Integrator;
@@ -171,6 +171,22 @@ impl InFile for StepChoice {
     }
 }
 
+impl InFile for FigureWidth {
+    fn to_plain(&self) -> Plain {
+        match (self.name(), self.millimetres()) {
+            (Some(name), _) => Plain::Text(name.to_owned()),
+            (None, width) => Plain::Number(width.unwrap_or_default()),
+        }
+    }
+
+    fn from_plain(plain: &Plain) -> Option<Self> {
+        match plain.number() {
+            Some(width) => Some(Self::Millimetres(width)),
+            None => Self::parse(plain.text()?),
+        }
+    }
+}
+
 impl<T: InFile> InFile for Vec<T> {
     fn to_plain(&self) -> Plain {
         Plain::List(self.iter().map(T::to_plain).collect())
@@ -239,13 +255,16 @@ macro_rules! named {
 }
 named!(
     AdvectiveScheme,
+    ColourMap,
     Correction,
     Estimator,
     Format,
+    Ground,
     Integrator,
     Interpretation,
     MethodKind,
-    Solver
+    Solver,
+    Typeface
 );
 
 /// A field of the draft that may be missing.

@@ -3,6 +3,7 @@
 use super::super::names::list;
 use super::super::value::Plain;
 use super::field::AUTO;
+use crate::figure::FigureWidth;
 
 /// Condition on a number, in words and as a test. Numbers are always finite.
 #[derive(Debug, Clone, Copy)]
@@ -29,6 +30,18 @@ pub(super) const SHARE: Condition = Condition {
     words: " from 0 to below 1",
     holds: |value| (0.0..1.0).contains(&value),
 };
+pub(super) const TEXT: Condition = Condition {
+    words: " from 4 to 72",
+    holds: |value| (4.0..=72.0).contains(&value),
+};
+pub(super) const LINE: Condition = Condition {
+    words: " from 0.1 to 10",
+    holds: |value| (0.1..=10.0).contains(&value),
+};
+pub(super) const DPI: Condition = Condition {
+    words: " from 36 to 1200",
+    holds: |value| (36.0..=1200.0).contains(&value),
+};
 pub(super) const UP_TO_ONE: Condition = Condition {
     words: " above 0, at most 1",
     holds: |value| value > 0.0 && value <= 1.0,
@@ -37,6 +50,14 @@ pub(super) const UP_TO_ONE: Condition = Condition {
 /// Whether XML, and with it a figure, can hold a character.
 fn is_printable(c: char) -> bool {
     matches!(c, '\t' | '\n' | '\r') || !(c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}'))
+}
+
+/// The names of widths of figures.
+fn widths() -> Vec<&'static str> {
+    FigureWidth::NAMED
+        .into_iter()
+        .filter_map(FigureWidth::name)
+        .collect()
 }
 
 /// Kind of value a key takes.
@@ -52,6 +73,8 @@ pub(in crate::sweep_file) enum Kind {
     Integer(i128, i128),
     /// A number greater than zero, or "auto".
     Step,
+    /// Millimetres, or the name of a width of figures.
+    Width,
     /// One of some strings.
     Choice(fn() -> Vec<&'static str>),
     /// Two strings.
@@ -79,6 +102,10 @@ impl Kind {
             Self::Integer(least, most) => format!("an integer from {least} to {most}"),
             Self::Step => "a finite number greater than zero, or `\"auto\"`".to_owned(),
             Self::Choice(names) => format!("a string: {}", list(&names())),
+            Self::Width => format!(
+                "a number of millimetres greater than zero, or a string: {}",
+                list(&widths())
+            ),
             Self::Pair => "a pair of strings, such as `[\"x\", \"y\"]`".to_owned(),
             Self::Formula => "a formula, such as `\"-k x + 2 y^3\"`".to_owned(),
             Self::Formulas => {
@@ -111,6 +138,10 @@ impl Kind {
             Self::Step => match plain.number() {
                 Some(value) => value > 0.0,
                 None => plain.text() == Some(AUTO),
+            },
+            Self::Width => match plain.number() {
+                Some(value) => value > 0.0 && value.is_finite(),
+                None => plain.text().is_some_and(|text| widths().contains(&text)),
             },
             Self::Choice(names) => plain.text().is_some_and(|text| names().contains(&text)),
             Self::Pair => plain.items().is_some_and(|items| {

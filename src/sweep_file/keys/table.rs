@@ -1,9 +1,9 @@
 //! Every key of a sweep file, declared once: path, kind of value, default, meaning, and where the value lives.
 
 use super::field::{Field, InFile, Named, SWITCH, always, formulas, of_axis, of_methods, optional};
-use super::kind::{ANY, Kind, OPEN_UNIT, POSITIVE, SHARE, UP_TO_ONE};
+use super::kind::{ANY, DPI, Kind, LINE, OPEN_UNIT, POSITIVE, SHARE, TEXT, UP_TO_ONE};
 use super::{Key, KeyDefault};
-use crate::figure::Format;
+use crate::figure::{ColourMap, Format, Ground, Typeface};
 use crate::generator::AdvectiveScheme;
 use crate::method::{Correction, Estimator};
 use crate::sampling::Integrator;
@@ -136,6 +136,26 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
         "Parameter values at which joint densities and marginals are drawn, inside the sweep."),
     key("figures.formats", Kind::List(&Kind::Choice(Format::words)), OfOptions, always!(figure_formats),
         "File formats of the figures."),
+    key("figures.draw", Kind::List(&Kind::Text), OfOptions, always!(figures_drawn),
+        "Figures that are drawn: kinds, such as `diagram`, or single ones, such as `diagram_x`; `all` for every one."),
+    key("figures.style.width", Kind::Width, OfOptions, always!(figure_style.width),
+        "Width of every figure in millimetres, or by name: one column of a journal (84), one and a half (129), two (174), a slide (254); `own` leaves it to each figure."),
+    key("figures.style.text", Kind::Number(TEXT), Rule("8 where a width is given, 18 on slides, else 10.5"), optional!(figure_style.text),
+        "Size of axis titles in points; tick labels have nine tenths of it."),
+    key("figures.style.line", Kind::Number(LINE), Rule("in proportion to the text, 1 for 8 points"), optional!(figure_style.line),
+        "Width of curves in points, other lines in proportion."),
+    key("figures.style.dpi", Kind::Number(DPI), OfOptions, always!(figure_style.dpi),
+        "Pixels of a PNG to the inch, written into the file."),
+    key("figures.style.font", Kind::Choice(Typeface::words), OfOptions, always!(figure_style.font),
+        "Typeface: DejaVu Sans or DejaVu Serif."),
+    key("figures.style.colours", Kind::Choice(ColourMap::words), OfOptions, always!(figure_style.colours),
+        "Colours of maps and surfaces: perceptually uniform, and safe for colour-blind readers; `grey` runs from white to black."),
+    key("figures.style.ground", Kind::Choice(Ground::words), OfOptions, always!(figure_style.ground),
+        "Light for print, dark for screens."),
+    key("figures.style.title", Kind::Choice(switch), OfOptions, always!(figure_style.title),
+        "Whether the title of the run stands above each figure; journals want it in the caption."),
+    key("figures.style.letters", Kind::Choice(switch), OfOptions, always!(figure_style.letters),
+        "Whether the panels of a sheet have letters: (a), (b)."),
 ];
 
 fn switch() -> Vec<&'static str> {

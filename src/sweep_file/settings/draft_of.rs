@@ -41,6 +41,8 @@ impl Settings {
             locate: self.locate.clone(),
             figures_at: Some(self.figures_at.clone()),
             figure_formats: self.figure_formats.clone(),
+            figures_drawn: self.figures_drawn.clone(),
+            figure_style: self.figure_style,
         }
     }
 

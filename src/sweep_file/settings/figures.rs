@@ -1,13 +1,15 @@
-//! Where figures are drawn, and in which formats.
+//! Which figures are drawn, where, in which formats and in what style.
 
 use super::system::Swept;
 use crate::continuation::evenly_spaced;
-use crate::figure::Format;
+use crate::density::Observable;
+use crate::figure::{FigureStyle, Format, matches_figure, sweep_figures};
 use crate::sweep_file::diagnostic::{Diagnostic, Place};
 use crate::sweep_file::draft::Draft;
-use crate::sweep_file::names::list;
+use crate::sweep_file::names::{list, quotable};
 use crate::sweep_file::reader::Reader;
 use crate::sweep_file::value::Node;
+use crate::system::Family;
 
 /// Checks `figures.at`; left out, it is both ends and two of the sweep's values between.
 ///
@@ -73,4 +75,58 @@ pub(super) fn each_once(listed: &[Format]) -> Vec<Format> {
     let mut formats = Format::ALL.to_vec();
     formats.retain(|format| listed.contains(format));
     formats
+}
+
+/// Refuses names in `figures.draw` that no figure of this sweep can have.
+pub(super) fn check_drawn(
+    reader: &mut Reader<'_>,
+    draft: &Draft,
+    family: &Family,
+    observables: &[Observable],
+) {
+    let known = sweep_figures(family, observables);
+    let items = reader.items(&["figures", "draw"]);
+    for (name, item) in draft.figures_drawn.iter().zip(items) {
+        // A figure at one value is named after one that there is: `joint_xy_0.5`.
+        let is_known =
+            |figure: &String| matches_figure(name, figure) || matches_figure(figure, name);
+        if known.iter().any(is_known) {
+            continue;
+        }
+        let kinds: Vec<&str> = crate::figure::KINDS.to_vec();
+        let diagnostic = Diagnostic::new(format!("there is no figure `{}`", quotable(name)))
+            .at(&item.place, "unknown figure")
+            .nearest(
+                name,
+                known
+                    .iter()
+                    .map(String::as_str)
+                    .chain(kinds.iter().copied()),
+            )
+            .allowed(format!(
+                "kinds of figures ({}), or one figure of a kind: {}",
+                list(&kinds),
+                list(&known)
+            ));
+        reader.report(diagnostic);
+    }
+}
+
+/// Refuses a width that has no room for the text.
+pub(super) fn check_style(reader: &mut Reader<'_>, style: &FigureStyle) {
+    let Some(width) = style.width.millimetres().filter(|_| !style.has_room()) else {
+        return;
+    };
+    let (least, most) = style.widths();
+    let text = style.text_points();
+    let title = format!("figures {width} mm wide have no room for text of {text} points");
+    let key = |name| reader.place(&["figures", "style", name]);
+    let diagnostic = Diagnostic::new(title)
+        .allowed(format!("with such text, from {least:.0} to {most:.0} mm"))
+        .remedy("choose another `figures.style.width`, or another `figures.style.text`");
+    let diagnostic = match key("width").or_else(|| key("text")) {
+        Some(place) => diagnostic.at(place, "no room"),
+        None => diagnostic,
+    };
+    reader.report(diagnostic);
 }

@@ -12,7 +12,7 @@ mod watched;
 
 use crate::continuation::LocateOptions;
 use crate::density::Observable;
-use crate::figure::Format;
+use crate::figure::{FigureStyle, Format};
 use crate::system::Family;
 use crate::topology::DetectOptions;
 
@@ -51,6 +51,10 @@ pub struct Settings {
     pub figures_at: Vec<f64>,
     /// Formats of the figures.
     pub figure_formats: Vec<Format>,
+    /// The figures that are drawn: names, or the beginnings that several share.
+    pub figures_drawn: Vec<String>,
+    /// How figures look.
+    pub figure_style: FigureStyle,
     /// What a user should know.
     pub warnings: Report,
     /// Where it was read: findings of later stages point there.
@@ -80,6 +84,10 @@ impl Settings {
         let figures_at = swept
             .as_ref()
             .map(|swept| figures::read_at(&mut reader, &draft, swept));
+        if let (Some(family), Some(observables)) = (family, &observables) {
+            figures::check_drawn(&mut reader, &draft, family, observables);
+        }
+        figures::check_style(&mut reader, &draft.figure_style);
         let (Some(swept), Some(axes), Some(observables), Some(figures_at), true) =
             (swept, axes, observables, figures_at, reader.is_clean())
         else {
@@ -98,6 +106,8 @@ impl Settings {
             locate: draft.locate,
             figures_at,
             figure_formats: figures::each_once(&draft.figure_formats),
+            figures_drawn: draft.figures_drawn,
+            figure_style: draft.figure_style,
             warnings: reader.into_warnings(),
             document: document.clone(),
         })

@@ -1,0 +1,403 @@
+//! A box seen from above and aside, for surfaces: parallel projection, axes with titles, and facets drawn from the far end to the near one,
+//! so that near parts hide far ones.
+
+use plotters_backend::text_anchor::HPos;
+
+use super::DrawError;
+use super::backend::Lettering;
+use super::frame::Scale;
+use super::look::Look;
+use super::page::{Page, Rectangle, Shape, lettering};
+use super::render;
+use super::style::{Colour, FRAME_LINE, GREY, INK, Stroke, TEXT, TICK, TICK_TEXT};
+
+/// Angle between the abscissa and the picture plane, in degrees: MATLAB's habit.
+const AZIMUTH: f64 = 37.5;
+/// Angle of the view above the floor, in degrees.
+const ELEVATION: f64 = 32.0;
+/// Height of the box, as a share of its sides.
+const HEIGHT: f64 = 0.62;
+/// Gap between ticks and labels, in pixels.
+const GAP: f64 = 4.0;
+/// How far the title of the heights reaches beyond their axis, to the right.
+const TITLE_BEYOND: f64 = 4.0;
+/// Facets that are bent more than this share of the box are drawn as two triangles.
+const BENT: f64 = 0.004;
+/// Where the light comes from: from the left, the front, above. Not of unit length.
+const LIGHT: [f64; 3] = [-0.45, -0.35, 0.85];
+/// Share of a colour that is left in full shadow.
+const AMBIENT: f64 = 0.52;
+/// Width of the lines of the mesh, in pixels.
+const MESH: f64 = 0.35;
+
+/// Heights over a rectilinear grid, all in shares of the box: abscissas and ordinates ascending from 0 to 1, heights the ordinate fastest.
+pub(in crate::figure) struct Heights {
+    /// Abscissas.
+    pub(in crate::figure) x: Vec<f64>,
+    /// Ordinates.
+    pub(in crate::figure) y: Vec<f64>,
+    /// Heights.
+    pub(in crate::figure) z: Vec<f64>,
+}
+
+impl Heights {
+    fn at(&self, i: usize, j: usize) -> [f64; 3] {
+        [self.x[i], self.y[j], self.z[i * self.y.len() + j]]
+    }
+}
+
+/// A box laid out, with its three axes.
+pub(in crate::figure) struct Space {
+    /// Pixels from the upper left of the page to the middle of the floor.
+    middle: (f64, f64),
+    /// Pixels of a side of the box.
+    side: f64,
+    axes: [Scale; 3],
+}
+
+/// Sine and cosine of both angles: azimuth, elevation.
+fn angles() -> ((f64, f64), (f64, f64)) {
+    (
+        AZIMUTH.to_radians().sin_cos(),
+        ELEVATION.to_radians().sin_cos(),
+    )
+}
+
+/// Place of a point of the unit box on a picture whose unit is a side of the box, from the middle of the floor; downward positive.
+fn project([x, y, z]: [f64; 3]) -> (f64, f64) {
+    let ((sin_a, cos_a), (sin_e, cos_e)) = angles();
+    let (u, v, w) = (x - 0.5, y - 0.5, z * HEIGHT);
+    let away = v * cos_a - u * sin_a;
+    (u * cos_a + v * sin_a, -(w * cos_e + away * sin_e))
+}
+
+impl Space {
+    /// Height of what a box with its labels takes on `width` pixels, when its axes have these labels' widths beside it.
+    pub(in crate::figure) fn height(
+        look: &Look,
+        width: f64,
+        ranges: Ranges<'_>,
+    ) -> Result<f64, DrawError> {
+        let (side, _) = Self::lay_out(look, width, ranges)?;
+        Ok(Self::above(side) + side * project([1.0, 0.0, 0.0]).1 + Self::below())
+    }
+
+    /// Room from the top to the middle of the floor.
+    fn above(side: f64) -> f64 {
+        1.9 * TEXT - side * project([0.0, 1.0, 1.0]).1
+    }
+
+    /// Room below the near corner.
+    fn below() -> f64 {
+        TICK + GAP + 1.1 * TICK_TEXT
+    }
+
+    /// Room left of the box: labels of the heights, and their title, which ends above the axis.
+    fn left(look: &Look, axes: &[Scale; 3]) -> Result<f64, DrawError> {
+        let title = render::text_width(look, axes[2].title(), TEXT, false)?;
+        Ok((axes[2].label_width() + GAP).max(title - TITLE_BEYOND))
+    }
+
+    /// Side of the box, and its axes.
+    fn lay_out(
+        look: &Look,
+        width: f64,
+        ranges: Ranges<'_>,
+    ) -> Result<(f64, [Scale; 3]), DrawError> {
+        let wide = project([1.0, 1.0, 0.0]).0 - project([0.0, 0.0, 0.0]).0;
+        // Labels take about a fifth.
+        let rough = 0.8 * width / wide;
+        let floor = |(range, title): ((f64, f64), &str), end: [f64; 3]| {
+            let (from, to) = (project([0.0, 0.0, 0.0]), project(end));
+            let (across, down) = ((to.0 - from.0).abs(), (to.1 - from.1).abs());
+            Scale::slanted(look, range, (rough * across, rough * down), title)
+        };
+        let high = Scale::vertical(look, ranges.z.0, 0.42 * rough, ranges.z.1)?;
+        let axes = [
+            floor(ranges.x, [1.0, 0.0, 0.0])?,
+            floor(ranges.y, [0.0, 1.0, 0.0])?,
+            high,
+        ];
+        let right = 0.5 * axes[1].label_width();
+        let left = Self::left(look, &axes)?;
+        Ok((((width - left - right) / wide).max(30.0), axes))
+    }
+
+    /// Lays a box out in a rectangle that is [`Space::height`] high.
+    ///
+    /// # Errors
+    /// [`DrawError::Svg`].
+    pub(in crate::figure) fn new(
+        look: &Look,
+        rect: Rectangle,
+        ranges: Ranges<'_>,
+    ) -> Result<Self, DrawError> {
+        let (side, axes) = Self::lay_out(look, rect.width, ranges)?;
+        let left = Self::left(look, &axes)?;
+        let middle = rect.left + left - side * project([0.0, 0.0, 0.0]).0;
+        Ok(Self {
+            middle: (middle, rect.top + Self::above(side)),
+            side,
+            axes,
+        })
+    }
+
+    /// Place of a point of the unit box on the page, in pixels.
+    fn place(&self, point: [f64; 3]) -> (f64, f64) {
+        let (x, y) = project(point);
+        (self.middle.0 + self.side * x, self.middle.1 + self.side * y)
+    }
+
+    /// Draws floor and far walls with faint lines at the ticks, the surface, and the axes.
+    ///
+    /// # Errors
+    /// [`DrawError::Layout`].
+    pub(in crate::figure) fn draw(&self, page: &Page, heights: &Heights) -> Result<(), DrawError> {
+        self.draw_walls(page)?;
+        self.draw_surface(page, heights)?;
+        self.draw_axes(page)
+    }
+
+    fn line(&self, page: &Page, points: &[[f64; 3]], stroke: Stroke) -> Result<(), DrawError> {
+        let places: Vec<(f64, f64)> = points.iter().map(|&point| self.place(point)).collect();
+        page.draw(&places, Shape::Line(stroke))
+    }
+
+    fn draw_walls(&self, page: &Page) -> Result<(), DrawError> {
+        let faint = Stroke::solid(GREY.at(0.3), 0.6);
+        for share in self.axes[0].labelled() {
+            self.line(
+                page,
+                &[[share, 0.0, 0.0], [share, 1.0, 0.0], [share, 1.0, 1.0]],
+                faint,
+            )?;
+        }
+        for share in self.axes[1].labelled() {
+            self.line(
+                page,
+                &[[1.0, share, 0.0], [0.0, share, 0.0], [0.0, share, 1.0]],
+                faint,
+            )?;
+        }
+        for share in self.axes[2].labelled() {
+            self.line(
+                page,
+                &[[0.0, 0.0, share], [0.0, 1.0, share], [1.0, 1.0, share]],
+                faint,
+            )?;
+        }
+        let edge = Stroke::solid(GREY.at(0.6), 0.8);
+        self.line(page, &[[0.0, 1.0, 0.0], [0.0, 1.0, 1.0]], edge)?;
+        self.line(
+            page,
+            &[[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]],
+            edge,
+        )?;
+        self.line(
+            page,
+            &[
+                [0.0, 0.0, 1.0],
+                [0.0, 1.0, 1.0],
+                [1.0, 1.0, 1.0],
+                [1.0, 1.0, 0.0],
+            ],
+            edge,
+        )
+    }
+
+    /// Strips of facets from the far end to the near one, each from left to right, which is toward the viewer too.
+    fn draw_surface(&self, page: &Page, heights: &Heights) -> Result<(), DrawError> {
+        let (n, m) = (heights.x.len(), heights.y.len());
+        let colours = page.look().colours;
+        for j in (0..m.saturating_sub(1)).rev() {
+            let mut facets = Vec::with_capacity(n);
+            for i in 0..n.saturating_sub(1) {
+                let corners = [
+                    heights.at(i, j),
+                    heights.at(i + 1, j),
+                    heights.at(i + 1, j + 1),
+                    heights.at(i, j + 1),
+                ];
+                for facet in parts(corners) {
+                    let height = facet.iter().map(|corner| corner[2]).sum::<f64>() / 4.0;
+                    let colour = shaded(colours.colour(height), brightness(&facet));
+                    facets.push((
+                        facet.map(|corner| self.place(corner)),
+                        Colour::fixed(colour),
+                    ));
+                }
+            }
+            page.facets(&facets);
+            self.draw_mesh(page, heights, j)?;
+        }
+        Ok(())
+    }
+
+    /// The lines of the mesh in the strip with that number.
+    fn draw_mesh(&self, page: &Page, heights: &Heights, j: usize) -> Result<(), DrawError> {
+        let stroke = Stroke::solid(super::style::BLACK.at(0.4), MESH);
+        let every = |count: usize| count.div_ceil(26).max(1);
+        let (n, m) = (heights.x.len(), heights.y.len());
+        for i in (0..n).step_by(every(n)) {
+            self.line(page, &[heights.at(i, j), heights.at(i, j + 1)], stroke)?;
+        }
+        if j % every(m) == 0 {
+            let along: Vec<[f64; 3]> = (0..n).map(|i| heights.at(i, j)).collect();
+            self.line(page, &along, stroke)?;
+        }
+        Ok(())
+    }
+
+    fn draw_axes(&self, page: &Page) -> Result<(), DrawError> {
+        let ink = Stroke::solid(INK, FRAME_LINE);
+        self.line(
+            page,
+            &[
+                [0.0, 0.0, 1.0],
+                [0.0, 0.0, 0.0],
+                [1.0, 0.0, 0.0],
+                [1.0, 1.0, 0.0],
+            ],
+            ink,
+        )?;
+        let [across, along, up] = &self.axes;
+        // Ticks continue the lines of the floor; that of the ordinate points left.
+        let ((sin_a, cos_a), (sin_e, _)) = angles();
+        let axes: [(&Scale, fn(f64) -> [f64; 3], (f64, f64), HPos); 3] = [
+            (
+                across,
+                |share| [share, 0.0, 0.0],
+                (-sin_a, cos_a * sin_e),
+                HPos::Right,
+            ),
+            (
+                along,
+                |share| [1.0, share, 0.0],
+                (cos_a, sin_a * sin_e),
+                HPos::Left,
+            ),
+            (up, |share| [0.0, 0.0, share], (-1.0, 0.0), HPos::Right),
+        ];
+        let first = across.labelled().next().unwrap_or(1.0);
+        let first_below = self.place([first, 0.0, 0.0]).1 + 0.6 * TICK_TEXT;
+        for (scale, point, (dx, dy), anchor) in axes {
+            let length = (dx * dx + dy * dy).sqrt();
+            let (dx, dy) = (dx / length, dy / length);
+            for (share, label) in scale.labels() {
+                let (x, y) = self.place(point(share));
+                page.draw(&[(x, y), (x + TICK * dx, y + TICK * dy)], Shape::Line(ink))?;
+                // The first label of the abscissa leaves no room for the one of the floor.
+                if dy == 0.0
+                    && first_below > y - 1.1 * TICK_TEXT
+                    && first_below < y + 1.1 * TICK_TEXT
+                {
+                    continue;
+                }
+                let text = Lettering {
+                    size: TICK_TEXT,
+                    ..lettering(label, anchor)
+                };
+                let down = if dy > 0.0 { 0.35 * TICK_TEXT } else { 0.0 };
+                page.text((x + (TICK + GAP) * dx, y + TICK * dy + down), text)?;
+            }
+        }
+        self.write_titles(page)
+    }
+
+    /// Titles beside the middle of their axes, beyond the labels; that of the heights above its axis.
+    fn write_titles(&self, page: &Page) -> Result<(), DrawError> {
+        let [across, along, up] = &self.axes;
+        let (x, y) = self.place([0.5, 0.0, 0.0]);
+        let place = (x - across.label_width() - 0.6 * TEXT, y + 1.7 * TEXT);
+        page.text(place, lettering(across.title(), HPos::Right))?;
+        let (x, y) = self.place([1.0, 0.5, 0.0]);
+        let place = (x + along.label_width() + 0.6 * TEXT, y + 1.7 * TEXT);
+        page.text(place, lettering(along.title(), HPos::Left))?;
+        let (x, y) = self.place([0.0, 0.0, 1.0]);
+        page.text(
+            (x + TITLE_BEYOND, y - 0.9 * TEXT),
+            lettering(up.title(), HPos::Right),
+        )
+    }
+}
+
+/// Ranges of the three axes with their titles.
+#[derive(Clone, Copy)]
+pub(in crate::figure) struct Ranges<'a> {
+    /// Abscissa.
+    pub(in crate::figure) x: ((f64, f64), &'a str),
+    /// Ordinate.
+    pub(in crate::figure) y: ((f64, f64), &'a str),
+    /// Height.
+    pub(in crate::figure) z: ((f64, f64), &'a str),
+}
+
+/// A facet as it is drawn: whole where it is nearly flat, else cut along the diagonal that keeps a ridge. Of a triangle the last corner stands
+/// twice; the parts follow each other toward the viewer.
+fn parts(corners: [[f64; 3]; 4]) -> Vec<[[f64; 3]; 4]> {
+    let [a, b, c, d] = corners;
+    let bend = a[2] + c[2] - b[2] - d[2];
+    if bend.abs() < BENT {
+        return vec![corners];
+    }
+    match bend > 0.0 {
+        true => vec![[a, c, d, d], [a, b, c, c]],
+        false => vec![[b, c, d, d], [a, b, d, d]],
+    }
+}
+
+/// How a facet faces the light: 0 away from it, 1 toward it.
+fn brightness(corners: &[[f64; 3]; 4]) -> f64 {
+    let [a, b, c, d] = corners;
+    let along = |p: &[f64; 3], q: &[f64; 3]| [q[0] - p[0], q[1] - p[1], HEIGHT * (q[2] - p[2])];
+    // The diagonals of a quadrilateral; of a triangle two of its sides.
+    let (u, v) = (along(a, c), along(b, d));
+    let normal = [
+        u[1] * v[2] - u[2] * v[1],
+        u[2] * v[0] - u[0] * v[2],
+        u[0] * v[1] - u[1] * v[0],
+    ];
+    let length = |v: &[f64; 3]| v.iter().map(|part| part * part).sum::<f64>().sqrt();
+    let product: f64 = normal.iter().zip(&LIGHT).map(|(n, l)| n * l).sum();
+    let cosine = product / (length(&normal) * length(&LIGHT)).max(f64::MIN_POSITIVE);
+    cosine.clamp(0.0, 1.0)
+}
+
+/// A colour under light; in 32 steps, so that neighbours share theirs.
+fn shaded((r, g, b): (u8, u8, u8), brightness: f64) -> (u8, u8, u8) {
+    let factor = AMBIENT + (1.0 - AMBIENT) * (32.0 * brightness).round() / 32.0;
+    // A flat floor keeps its colour; what faces the light is lighter still.
+    let flat = AMBIENT + (1.0 - AMBIENT) * 0.83;
+    let shade = |value: u8| (f64::from(value) * factor / flat).min(255.0).round() as u8;
+    (shade(r), shade(g), shade(b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nearer_corners_are_lower_on_the_page() {
+        let (near, far) = (project([1.0, 0.0, 0.0]), project([0.0, 1.0, 0.0]));
+        assert!(near.1 > far.1);
+        // Right-handed: the abscissa and the ordinate both lead to the right, heights up.
+        let origin = project([0.0, 0.0, 0.0]);
+        assert!(project([1.0, 0.0, 0.0]).0 > origin.0 && project([0.0, 1.0, 0.0]).0 > origin.0);
+        assert!(project([0.0, 0.0, 1.0]).1 < origin.1);
+    }
+
+    #[test]
+    fn what_faces_the_light_is_brighter() {
+        let facet = |left: f64, right: f64| {
+            brightness(&[
+                [0.0, 0.0, left],
+                [0.1, 0.0, right],
+                [0.1, 0.1, right],
+                [0.0, 0.1, left],
+            ])
+        };
+        // The light comes from the left: a slope that rises to the right faces it.
+        assert!(facet(0.0, 0.1) > facet(0.0, 0.0) && facet(0.0, 0.0) > facet(0.1, 0.0));
+        assert!((facet(0.0, 0.0) - 0.83).abs() < 0.01, "{}", facet(0.0, 0.0));
+    }
+}

@@ -1,0 +1,237 @@
+//! The style of figures: the size a journal asks for, lettering, lines, colours.
+
+pub use super::canvas::look::{ColourMap, Typeface};
+
+use super::canvas::look::{Look, POINTS_A_MILLIMETRE};
+use super::canvas::style::CURVE_LINE;
+
+/// Size of axis titles where a figure has its own width, in points.
+const TEXT_OF_OWN_WIDTH: f64 = 10.5;
+/// The same where a width is given: what journals ask for.
+const TEXT_OF_JOURNALS: f64 = 8.0;
+/// The same on slides.
+const TEXT_OF_SLIDES: f64 = 18.0;
+/// The narrowest page that every figure can be laid out on, in sizes of its text.
+const LEAST_WIDTH: f64 = 22.0;
+/// The widest, in the same unit.
+const MOST_WIDTH: f64 = 200.0;
+
+/// How wide figures are.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum FigureWidth {
+    /// Each figure as wide as its content takes, about 130 to 170 mm.
+    #[default]
+    Own,
+    /// One column of a journal: 84 mm.
+    Single,
+    /// One and a half columns: 129 mm.
+    OneAndAHalf,
+    /// Two columns: 174 mm.
+    Double,
+    /// A slide: 254 mm, with lettering for a room.
+    Slide,
+    /// So many millimetres.
+    Millimetres(f64),
+}
+
+impl FigureWidth {
+    /// Those that have a name.
+    pub const NAMED: [Self; 5] = [
+        Self::Own,
+        Self::Single,
+        Self::OneAndAHalf,
+        Self::Double,
+        Self::Slide,
+    ];
+
+    /// Name used in sweep files; `None` for millimetres.
+    pub fn name(self) -> Option<&'static str> {
+        match self {
+            Self::Own => Some("own"),
+            Self::Single => Some("single"),
+            Self::OneAndAHalf => Some("one-and-a-half"),
+            Self::Double => Some("double"),
+            Self::Slide => Some("slide"),
+            Self::Millimetres(_) => None,
+        }
+    }
+
+    /// The width of that name.
+    pub fn parse(name: &str) -> Option<Self> {
+        Self::NAMED
+            .into_iter()
+            .find(|width| width.name() == Some(name))
+    }
+
+    /// In millimetres; `None` where every figure has its own.
+    pub fn millimetres(self) -> Option<f64> {
+        match self {
+            Self::Own => None,
+            Self::Single => Some(84.0),
+            Self::OneAndAHalf => Some(129.0),
+            Self::Double => Some(174.0),
+            Self::Slide => Some(254.0),
+            Self::Millimetres(width) => Some(width),
+        }
+    }
+}
+
+/// The ground figures stand on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Ground {
+    /// White, for print.
+    #[default]
+    Light,
+    /// Nearly black, for screens.
+    Dark,
+}
+
+impl Ground {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Light, Self::Dark];
+
+    /// Name used in sweep files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Light => "light",
+            Self::Dark => "dark",
+        }
+    }
+}
+
+/// How figures look. The default is a figure for the screen; with a width it is one for a journal.
+///
+/// ```
+/// use pbif::figure::{FigureStyle, FigureWidth};
+///
+/// let column = FigureStyle { width: FigureWidth::Single, ..FigureStyle::default() };
+/// assert_eq!(column.text_points(), 8.0);
+/// assert!(column.has_room());
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FigureStyle {
+    /// Width of every figure; panels, ticks and legends are laid out for it.
+    pub width: FigureWidth,
+    /// Size of axis titles in points, of tick labels nine tenths of it; `None` for 8 where a width is given, 18 on slides, else 10.5.
+    pub text: Option<f64>,
+    /// Width of curves in points, other lines in proportion; `None` for a width that suits the text.
+    pub line: Option<f64>,
+    /// Pixels of a PNG to the inch, which is written into the file.
+    pub dpi: f64,
+    /// The typeface.
+    pub font: Typeface,
+    /// Colours of maps and surfaces.
+    pub colours: ColourMap,
+    /// Light or dark ground.
+    pub ground: Ground,
+    /// Whether the title of the run stands above each figure.
+    pub title: bool,
+    /// Whether panels of a sheet have letters.
+    pub letters: bool,
+}
+
+impl Default for FigureStyle {
+    fn default() -> Self {
+        let look = Look::default();
+        Self {
+            width: FigureWidth::default(),
+            text: None,
+            line: None,
+            dpi: look.dpi,
+            font: look.typeface,
+            colours: look.colours,
+            ground: Ground::default(),
+            title: look.has_title,
+            letters: look.has_letters,
+        }
+    }
+}
+
+impl FigureStyle {
+    /// Size of axis titles, in points.
+    pub fn text_points(&self) -> f64 {
+        self.text.unwrap_or(match self.width {
+            FigureWidth::Own => TEXT_OF_OWN_WIDTH,
+            FigureWidth::Slide => TEXT_OF_SLIDES,
+            _ => TEXT_OF_JOURNALS,
+        })
+    }
+
+    /// The widths at which text of this size and a figure around it both have room, in millimetres.
+    pub fn widths(&self) -> (f64, f64) {
+        let text = self.text_points() / POINTS_A_MILLIMETRE;
+        (LEAST_WIDTH * text, MOST_WIDTH * text)
+    }
+
+    /// Whether the width lies within [`FigureStyle::widths`]. Outside of them figures are drawn at the nearest of the two.
+    pub fn has_room(&self) -> bool {
+        let (least, most) = self.widths();
+        self.width
+            .millimetres()
+            .is_none_or(|width| (least..=most).contains(&width))
+    }
+
+    pub(super) fn look(&self) -> Look {
+        let usable = |value: f64, usual: f64, (least, most): (f64, f64)| match value.is_nan() {
+            true => usual,
+            false => value.clamp(least, most),
+        };
+        let text = usable(self.text_points(), TEXT_OF_OWN_WIDTH, (1.0, 1000.0));
+        let points = Look::points_for(text);
+        let bounds = (LEAST_WIDTH * text, MOST_WIDTH * text);
+        let page = self.width.millimetres().map(|width| {
+            let width = usable(width * POINTS_A_MILLIMETRE, bounds.0, bounds);
+            width / points
+        });
+        let line = self
+            .line
+            .map(|line| usable(line, 1.0, (0.01, 100.0)) / (CURVE_LINE * points));
+        Look {
+            page,
+            points,
+            lines: line.unwrap_or(1.0),
+            dpi: usable(self.dpi, Look::default().dpi, (20.0, 2400.0)),
+            typeface: self.font,
+            colours: self.colours,
+            is_dark: self.ground == Ground::Dark,
+            has_title: self.title,
+            has_letters: self.letters,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_is_the_usual_look() {
+        assert_eq!(FigureStyle::default().look(), Look::default());
+    }
+
+    #[test]
+    fn pages_are_as_wide_as_asked_for() {
+        for width in FigureWidth::NAMED {
+            let style = FigureStyle {
+                width,
+                ..FigureStyle::default()
+            };
+            assert!(style.has_room());
+            let look = style.look();
+            let given = look
+                .page
+                .map(|page| page * look.points / POINTS_A_MILLIMETRE);
+            match (given, width.millimetres()) {
+                (Some(page), Some(wanted)) => assert!((page - wanted).abs() < 1e-9),
+                (page, wanted) => assert_eq!(page, wanted),
+            }
+            assert_eq!(width.name().and_then(FigureWidth::parse), Some(width));
+        }
+        let style = FigureStyle {
+            width: FigureWidth::Millimetres(f64::INFINITY),
+            text: Some(f64::NAN),
+            ..FigureStyle::default()
+        };
+        assert!(!style.has_room() && style.look().page.is_some_and(f64::is_finite));
+    }
+}

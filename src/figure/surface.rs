@@ -1,0 +1,279 @@
+//! Joint densities of two axes as surfaces: one figure a parameter value, and a sheet of all. Heights are those of the cells' middles;
+//! where there are more cells than can be seen, lines of cells are left out, but never those beside a kink or through the summit.
+
+use crate::continuation::Point;
+use crate::density::{EstimatedDensity, Observable};
+use crate::space::Axis;
+
+use super::canvas::look::Look;
+use super::canvas::page::{Heading, Page, Rectangle};
+use super::canvas::space::{Heights, Ranges, Space};
+use super::canvas::style::{MARGIN, TEXT};
+use super::canvas::{DrawError, symbols};
+use super::joint::{Found, lettered, windows, write_above};
+use super::sketch::{Sketch, SweepScene};
+use super::{names, select};
+
+/// Width of a single surface with its axes, in pixels.
+const SINGLE: f64 = 470.0;
+/// The same on a sheet, and the narrowest one beside another where the page is given.
+const SMALL: f64 = 330.0;
+const NARROWEST: f64 = 250.0;
+/// The widest one, however wide the page.
+const WIDEST: f64 = 560.0;
+/// Room of the line above a surface.
+const ABOVE: f64 = 1.5 * TEXT;
+/// Lines of cells of a single surface, and of one on a sheet.
+pub(super) const FINE: usize = 90;
+pub(super) const COARSE: usize = 60;
+
+/// A sheet an observed pair of axes, then its surfaces one by one.
+pub(super) fn sketches<'a>(scene: &'a SweepScene<'a>) -> Vec<Sketch<'a>> {
+    let mut sketches = Vec::new();
+    for (number, &observable) in scene.result.subject.observables.iter().enumerate() {
+        if !matches!(observable, Observable::Joint(..)) {
+            continue;
+        }
+        let name = format!("surface_{}", names::file(scene.family(), observable));
+        sketches.push(Sketch::new(&name, move || draw_sheet(scene, number)));
+        for &point in &scene.chosen {
+            let value = select::safe(&symbols::rounded(point.value).to_string());
+            let draw = move || draw_single(scene, number, point);
+            sketches.push(Sketch::new(format!("{name}_{value}"), draw));
+        }
+    }
+    sketches
+}
+
+/// What surfaces of one pair of axes share.
+pub(super) struct Frame {
+    x: (f64, f64),
+    y: (f64, f64),
+    titles: [String; 3],
+}
+
+impl Frame {
+    /// The windows and titles of some densities of a pair; `None` where there is nothing to see.
+    pub(super) fn new(
+        scene: &SweepScene<'_>,
+        observable: Observable,
+        found: &[Found<'_>],
+    ) -> Option<Self> {
+        let Observable::Joint(first, second) = observable else {
+            return None;
+        };
+        let (x, y) = windows(found)?;
+        let family = scene.family();
+        Some(Self {
+            x,
+            y,
+            titles: [
+                names::axis(family, first),
+                names::axis(family, second),
+                names::density(family, observable),
+            ],
+        })
+    }
+
+    /// The axes of a surface whose heights go up to `top`.
+    pub(super) fn ranges(&self, top: f64) -> Ranges<'_> {
+        Ranges {
+            x: (self.x, &self.titles[0]),
+            y: (self.y, &self.titles[1]),
+            z: ((0.0, top), &self.titles[2]),
+        }
+    }
+
+    /// Draws a surface into a rectangle as high as [`Space::height`] says.
+    pub(super) fn draw(
+        &self,
+        page: &Page,
+        rect: Rectangle,
+        (found, top, most): (&Found<'_>, f64, usize),
+    ) -> Result<(), DrawError> {
+        let space = Space::new(page.look(), rect, self.ranges(top))?;
+        match heights(found.estimated, (self.x, self.y), top, most) {
+            Some(heights) => space.draw(page, &heights),
+            None => Ok(()),
+        }
+    }
+}
+
+/// One surface at one point; `None` without a density.
+fn draw_single(
+    scene: &SweepScene<'_>,
+    observable: usize,
+    point: &Point,
+) -> Result<Option<Page>, DrawError> {
+    let watched = scene.result.subject.observables[observable];
+    let Some(found) = Found::new(point, observable) else {
+        return Ok(None);
+    };
+    let found = [found];
+    let Some(frame) = Frame::new(scene, watched, &found) else {
+        return Ok(None);
+    };
+    let look = &scene.look;
+    let top = select::largest([found[0].density()]);
+    let width = look.page.unwrap_or(SINGLE + 2.0 * MARGIN);
+    let wide = (width - 2.0 * MARGIN).min(WIDEST);
+    let high = Space::height(look, wide, frame.ranges(top))?;
+    let heading = Heading::new(look, scene.title, width)?;
+    let page = Page::new(look, width, heading.height() + ABOVE + high + MARGIN);
+    heading.draw(&page)?;
+    let rect = Rectangle {
+        left: 0.5 * (width - wide),
+        top: heading.height() + ABOVE,
+        width: wide,
+        height: high,
+    };
+    write_above(&page, rect, names::at(scene.family(), point.value))?;
+    frame.draw(&page, rect, (&found[0], top, FINE))?;
+    Ok(Some(page))
+}
+
+/// All surfaces of a pair on one sheet, with the same windows, each with heights of its own; `None` for fewer than two densities.
+fn draw_sheet(scene: &SweepScene<'_>, observable: usize) -> Result<Option<Page>, DrawError> {
+    let (family, look) = (scene.family(), &scene.look);
+    let watched = scene.result.subject.observables[observable];
+    let found: Vec<Found<'_>> = scene
+        .chosen
+        .iter()
+        .filter_map(|point| Found::new(point, observable))
+        .collect();
+    let (true, Some(frame)) = (found.len() > 1, Frame::new(scene, watched, &found)) else {
+        return Ok(None);
+    };
+    let (columns, wide) = arrangement(look, found.len());
+    let width = look.page.unwrap_or(columns as f64 * wide + 2.0 * MARGIN);
+    let tops: Vec<f64> = found
+        .iter()
+        .map(|found| select::largest([found.density()]))
+        .collect();
+    let mut high: f64 = 0.0;
+    for &top in &tops {
+        high = high.max(Space::height(look, wide - MARGIN, frame.ranges(top))?);
+    }
+    let heading = Heading::new(look, scene.title, width)?;
+    let rows = found.len().div_ceil(columns);
+    let step = ABOVE + high + MARGIN;
+    let page = Page::new(look, width, heading.height() + rows as f64 * step);
+    heading.draw(&page)?;
+    let margin = 0.5 * (width - columns as f64 * wide);
+    for (number, (found, &top)) in found.iter().zip(&tops).enumerate() {
+        let rect = Rectangle {
+            left: margin + (number % columns) as f64 * wide,
+            top: heading.height() + ABOVE + (number / columns) as f64 * step,
+            width: wide - MARGIN,
+            height: high,
+        };
+        let line = lettered(look, number, names::at(family, found.value));
+        write_above(&page, rect, line)?;
+        frame.draw(&page, rect, (found, top, COARSE))?;
+    }
+    Ok(Some(page))
+}
+
+/// Columns of a sheet, and the width of each.
+fn arrangement(look: &Look, surfaces: usize) -> (usize, f64) {
+    let most = match surfaces {
+        2 | 4 => 2,
+        _ => 3,
+    };
+    let width = |columns: usize| look.fill(SMALL * columns as f64, 2.0 * MARGIN) / columns as f64;
+    let fits = |columns: &usize| look.page.is_none() || width(*columns) >= NARROWEST;
+    let columns = (1..=most).rev().find(fits).unwrap_or(1);
+    (columns, width(columns).min(WIDEST))
+}
+
+/// The middles of the cells of a window, of which at most about `most` are kept: evenly, with those in `wanted` always.
+fn lines(axis: &Axis, window: (f64, f64), most: usize, wanted: &[usize]) -> Vec<usize> {
+    let centres = axis.centres();
+    let inside = |&cell: &usize| centres[cell] > window.0 && centres[cell] < window.1;
+    let cells: Vec<usize> = (0..axis.count()).filter(inside).collect();
+    if cells.len() <= most {
+        return cells;
+    }
+    let apart = (window.1 - window.0) / most as f64;
+    let mut kept: Vec<usize> = Vec::new();
+    let mut next = f64::NEG_INFINITY;
+    for &cell in &cells {
+        if centres[cell] >= next || wanted.contains(&cell) || cells.last() == Some(&cell) {
+            kept.push(cell);
+            next = centres[cell] + 0.999 * apart;
+        }
+    }
+    kept
+}
+
+/// The surface of a density over a window, in shares of the window and of `top`; `None` where there is too little of it.
+fn heights(
+    estimated: &EstimatedDensity,
+    (x, y): ((f64, f64), (f64, f64)),
+    top: f64,
+    most: usize,
+) -> Option<Heights> {
+    let density = &estimated.density;
+    let [across, along] = &density.axes[..] else {
+        return None;
+    };
+    let values = density.values.iter().enumerate();
+    let (summit, _) = values.max_by(|a, b| a.1.total_cmp(b.1))?;
+    let summit = [summit / along.count(), summit % along.count()];
+    let wanted = |number: usize, axis: &Axis| {
+        let mut cells = vec![summit[number]];
+        for kink in estimated
+            .structure
+            .kinks
+            .iter()
+            .filter(|kink| kink.axis == number)
+        {
+            let face = axis.edges().partition_point(|&edge| edge < kink.at);
+            cells.extend([face.saturating_sub(1), face]);
+        }
+        cells
+    };
+    let i = lines(across, x, most, &wanted(0, across));
+    let j = lines(along, y, most, &wanted(1, along));
+    if i.len() < 2 || j.len() < 2 || top <= 0.0 {
+        return None;
+    }
+    let shares = |axis: &Axis, cells: &[usize], (from, to): (f64, f64)| -> Vec<f64> {
+        let centres = axis.centres();
+        let share = |&cell: &usize| (centres[cell] - from) / (to - from);
+        let mut shares: Vec<f64> = cells.iter().map(share).collect();
+        // The outermost cells reach to the ends of the window.
+        shares[0] = 0.0;
+        if let Some(last) = shares.last_mut() {
+            *last = 1.0;
+        }
+        shares
+    };
+    let height = |value: f64| match value.is_finite() {
+        true => (value / top).clamp(0.0, 1.0),
+        false => 0.0,
+    };
+    let cells = i
+        .iter()
+        .flat_map(|i| j.iter().map(move |j| i * along.count() + j));
+    Some(Heights {
+        x: shares(across, &i, x),
+        y: shares(along, &j, y),
+        z: cells.map(|cell| height(density.values[cell])).collect(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_of_cells_are_even_and_keep_what_is_wanted() {
+        let axis = Axis::uniform(-1.0, 1.0, 400).unwrap();
+        let kept = lines(&axis, (-1.0, 1.0), 50, &[199, 200, 333]);
+        assert!([199, 200, 333, 399].iter().all(|cell| kept.contains(cell)));
+        assert!((50..56).contains(&kept.len()), "{}", kept.len());
+        let few = lines(&axis, (-0.1, 0.1), 50, &[]);
+        assert_eq!(few.len(), 40, "all cells of a small window");
+    }
+}
