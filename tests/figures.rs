@@ -8,7 +8,7 @@ mod closed_forms;
 use std::path::{Path, PathBuf};
 
 use pbif::continuation::SweepResult;
-use pbif::figure::{FigureError, Figures, Format, write_figures};
+use pbif::figure::{FigureError, Figures, Format, USUAL_KINDS, write_figures};
 use pbif::space::Axis;
 
 use closed_forms::{bistable, rayleigh, uniform};
@@ -25,7 +25,7 @@ fn folder(name: &str) -> (Option<tempfile::TempDir>, PathBuf) {
     }
 }
 
-/// Draws every figure of a sweep into a folder; returns the files.
+/// Draws the figures that are drawn where none is named into a folder; returns the files.
 fn draw_all(
     result: &SweepResult,
     title: &str,
@@ -34,7 +34,7 @@ fn draw_all(
     folder: &Path,
 ) -> Vec<PathBuf> {
     let figures = Figures::of_sweep(result, title, at);
-    write_figures(&figures.draw_all().unwrap(), formats, folder).unwrap()
+    write_figures(&figures.draw_named(&USUAL_KINDS).unwrap(), formats, folder).unwrap()
 }
 
 fn names(files: &[PathBuf]) -> Vec<String> {
@@ -77,7 +77,13 @@ fn pixels(path: &Path) -> (u32, u32, Vec<u8>) {
 fn a_bistable_sweep_gives_its_diagram_and_marginals() {
     let (_kept, folder) = folder("bistable");
     let at = [-0.5, 0.0, 0.5, 1.0];
-    let files = draw_all(&bistable(), "Bistable, a title", &at, &Format::ALL, &folder);
+    let files = draw_all(
+        &bistable(),
+        "Bistable, a title",
+        &at,
+        &Format::USUAL,
+        &folder,
+    );
     assert_eq!(
         names(&files),
         [
@@ -116,7 +122,7 @@ fn every_svg_parses_and_every_png_has_its_size_three_times() {
     let (_kept, folder) = folder("rayleigh");
     let result = rayleigh(("rayleigh", "a"), 1.0, &uniform());
     let at = [-1.0, -0.5, 0.25, 1.0];
-    let files = draw_all(&result, "", &at, &Format::ALL, &folder);
+    let files = draw_all(&result, "", &at, &Format::USUAL, &folder);
     assert!(
         names(&files).contains(&"joint_xy_-0.5.png".to_owned()),
         "{files:?}"
@@ -159,7 +165,7 @@ fn symbols_and_values_are_those_of_the_model() {
     let graded = Axis::graded(-3.0, 3.0, 60, &grading).unwrap();
     let result = rayleigh(("coulomb", "f_c"), 0.02, &graded);
     let title = "Duffing oscillator with Coulomb friction: a title too long for one line of a figure & <more>";
-    let files = draw_all(&result, title, &[-0.02, 0.0, 0.02], &Format::ALL, &folder);
+    let files = draw_all(&result, title, &[-0.02, 0.0, 0.02], &Format::USUAL, &folder);
     let svg = std::fs::read_to_string(&files[0]).unwrap();
     let lowered =
         "<tspan font-style=\"oblique\">f</tspan><tspan dy=\"61\" font-size=\"202\">c</tspan>";
@@ -229,14 +235,42 @@ fn a_figure_is_drawn_by_its_name() {
             "diagram_y",
             "marginals",
             "joint_xy",
+            "multiples_xy",
             "joint_xy_-0.5",
-            "joint_xy_0.5"
+            "joint_xy_0.5",
+            "surface_xy",
+            "surface_xy_-0.5",
+            "surface_xy_0.5",
+            "pairs_xy",
+            "peaks_x",
+            "peaks_y",
+            "indicator_x",
+            "indicator_y",
+            "indicator_xy",
+            "health"
         ]
     );
     let all = figures.draw_all().unwrap();
-    for (name, figure) in names.iter().zip(&all) {
-        assert_eq!(figures.draw(name).unwrap().as_ref(), Some(figure));
+    assert!(all.len() > 12);
+    for name in &names {
+        let drawn = all.iter().find(|figure| figure.name == *name);
+        assert_eq!(figures.draw(name).unwrap().as_ref(), drawn);
     }
+    // A word names a kind, a whole name, or the beginning of names.
+    let of = |words: &[&str]| {
+        let drawn = figures.draw_named(words).unwrap().into_iter();
+        drawn.map(|figure| figure.name).collect::<Vec<_>>()
+    };
+    assert_eq!(
+        of(&["diagram", "joint_xy_0.5"]),
+        ["diagram_x", "diagram_y", "joint_xy_0.5"]
+    );
+    assert_eq!(of(&["surface_xy"]).len(), 3);
+    assert_eq!(of(&["all"]).len(), all.len());
+    assert_eq!(
+        figures.unknown(&["all", "joint", "joint_xy_0.7"]),
+        Some("joint_xy_0.7")
+    );
     let error = figures.draw("diagram_z").unwrap_err();
     assert!(
         matches!(&error, FigureError::Unknown { known, .. } if *known == names),

@@ -218,7 +218,7 @@ pub(crate) struct PlotArguments {
     /// Style: a width, and words such as serif, grey, dark, no-title
     #[arg(long, value_name = "WORDS", value_delimiter = ',')]
     pub(crate) style: Vec<String>,
-    /// File formats: svg, png, pdf
+    /// File formats: svg, png, pdf; csv for the numbers behind a figure, txt for its caption
     #[arg(long, value_name = "FORMATS", value_delimiter = ',')]
     pub(crate) format: Vec<String>,
     /// Override a key of the run's sweep under figures, such as figures.formats=["svg"] (repeatable; the last one counts)

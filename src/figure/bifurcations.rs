@@ -155,7 +155,7 @@ impl<'a> Labels<'a> {
             let a = point.lower.max(self.range.0);
             let b = point.upper.min(self.range.1);
             if label.own && b > a {
-                let band = BIFURCATION.at(0.12);
+                let band = BIFURCATION.at(0.08);
                 panel.draw(&[(a, from), (b, from), (b, to), (a, to)], Shape::Area(band))?;
             }
             let stroke = match label.own {

@@ -17,6 +17,7 @@ use super::canvas::page::{Heading, Page, Panel, Rectangle, Shape};
 use super::canvas::style::{MARGIN, PNG_SCALE};
 use super::canvas::{DrawError, hatch};
 use super::sketch::{Sketch, SweepScene};
+use super::told::Shows;
 use super::{names, select};
 
 /// Size of the map on a page of its own width, in pixels, and that width.
@@ -30,7 +31,7 @@ pub(super) fn sketches<'a>(scene: &'a SweepScene<'a>) -> Vec<Sketch<'a>> {
         .filter(|(_, observable)| matches!(observable, Observable::Marginal(_)))
         .map(|(number, &observable)| {
             let name = format!("diagram_{}", names::file(scene.family(), observable));
-            Sketch::new(name, move || draw(scene, number))
+            Sketch::new(name, move || draw(scene, number)).showing(Shows::Diagram(number))
         })
         .collect()
 }

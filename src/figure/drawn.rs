@@ -4,10 +4,12 @@ use super::canvas::{DrawError, pdf, render};
 use super::select;
 use super::sketch::{ComparisonScene, Sketch, SweepScene};
 use super::style::FigureStyle;
+use super::told::Shows;
 use super::{
     FigureError, compared_joint, compared_marginals, diagram, health, indicator, joint, marginals,
     pairs, peaks, surface, time_to_accuracy,
 };
+use super::{caption, data};
 use crate::compare::Comparison;
 use crate::continuation::{CellCheck, Subject, SweepResult};
 use crate::density::Observable;
@@ -33,10 +35,11 @@ const OF_COMPARISONS: [for<'a> fn(&'a ComparisonScene<'a>) -> Vec<Sketch<'a>>; 3
 ];
 
 /// The kinds of figures of a sweep: what the names of all figures of a kind begin with.
-pub const KINDS: [&str; 8] = [
+pub const KINDS: [&str; 9] = [
     "diagram",
     "marginals",
     "joint",
+    "multiples",
     "surface",
     "pairs",
     "peaks",
@@ -73,6 +76,11 @@ pub fn sweep_figures(family: &Family, observables: &[Observable]) -> Vec<String>
 pub struct Figure {
     /// Name of its file without the extension, such as `diagram_x`.
     pub name: String,
+    /// What is to be printed below it: what is seen, of which system, by which method, what is marked. Empty for figures of a comparison,
+    /// whose tables tell.
+    pub caption: String,
+    /// The numbers it was drawn from, as CSV with a header; empty for figures of a comparison, which have tables of their own.
+    pub data: String,
     svg: String,
     /// Pixels of a PNG to the inch.
     dpi: f64,
@@ -145,11 +153,24 @@ impl<'a> Figures<'a> {
         self
     }
 
-    fn dpi(&self) -> f64 {
-        match &self.0 {
-            Scene::Sweep(scene) => scene.look.dpi,
-            Scene::Comparison(scene) => scene.look.dpi,
-        }
+    fn drawn(&self, sketch: &Sketch<'_>) -> Result<Option<Figure>, DrawError> {
+        let Some(page) = sketch.draw()? else {
+            return Ok(None);
+        };
+        let (look, result) = match &self.0 {
+            Scene::Sweep(scene) => (&scene.look, Some(scene.result)),
+            Scene::Comparison(scene) => (&scene.look, None),
+        };
+        let told = |tell: fn(&SweepResult, &Shows<'_>) -> String| {
+            result.map_or_else(String::new, |result| tell(result, &sketch.shows))
+        };
+        Ok(Some(Figure {
+            name: sketch.name.clone(),
+            caption: told(caption::caption),
+            data: told(data::table),
+            svg: page.svg(),
+            dpi: look.dpi,
+        }))
     }
 
     /// Names of all figures, in their order. Some may turn out to have nothing to show.
@@ -165,7 +186,7 @@ impl<'a> Figures<'a> {
     pub fn draw(&self, name: &str) -> Result<Option<Figure>, FigureError> {
         let sketches = self.sketches();
         match sketches.iter().find(|sketch| sketch.name == name) {
-            Some(sketch) => Ok(drawn(sketch, self.dpi())?),
+            Some(sketch) => Ok(self.drawn(sketch)?),
             None => Err(FigureError::Unknown {
                 name: name.to_owned(),
                 known: self.names(),
@@ -198,7 +219,7 @@ impl<'a> Figures<'a> {
         };
         let mut figures = Vec::new();
         for sketch in sketches.iter().filter(is_wanted) {
-            figures.extend(drawn(sketch, self.dpi())?);
+            figures.extend(self.drawn(sketch)?);
         }
         Ok(figures)
     }
@@ -210,7 +231,7 @@ impl<'a> Figures<'a> {
     pub fn draw_all(&self) -> Result<Vec<Figure>, FigureError> {
         let mut figures = Vec::new();
         for sketch in self.sketches() {
-            figures.extend(drawn(&sketch, self.dpi())?);
+            figures.extend(self.drawn(&sketch)?);
         }
         Ok(figures)
     }
@@ -223,13 +244,4 @@ impl<'a> Figures<'a> {
             }
         }
     }
-}
-
-fn drawn(sketch: &Sketch<'_>, dpi: f64) -> Result<Option<Figure>, DrawError> {
-    let page = sketch.draw()?;
-    Ok(page.map(|page| Figure {
-        name: sketch.name.clone(),
-        svg: page.svg(),
-        dpi,
-    }))
 }

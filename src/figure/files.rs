@@ -15,11 +15,15 @@ pub enum Format {
     Png,
     /// A page of the figure's size, with fonts embedded and text kept as text.
     Pdf,
+    /// The numbers it was drawn from, as a table.
+    Csv,
+    /// Its caption, as plain text.
+    Txt,
 }
 
 impl Format {
     /// All formats.
-    pub const ALL: [Self; 3] = [Self::Svg, Self::Png, Self::Pdf];
+    pub const ALL: [Self; 5] = [Self::Svg, Self::Png, Self::Pdf, Self::Csv, Self::Txt];
     /// Those that are written where none is named.
     pub const USUAL: [Self; 2] = [Self::Svg, Self::Png];
 
@@ -29,6 +33,8 @@ impl Format {
             Self::Svg => "svg",
             Self::Png => "png",
             Self::Pdf => "pdf",
+            Self::Csv => "csv",
+            Self::Txt => "txt",
         }
     }
 
@@ -51,20 +57,25 @@ pub fn write_figures(
     let mut paths = Vec::new();
     for figure in figures {
         for &format in formats {
-            paths.push(write(figure, format, folder)?);
+            paths.extend(write(figure, format, folder)?);
         }
     }
     Ok(paths)
 }
 
-/// Writes a figure under a temporary name and renames it.
-fn write(figure: &Figure, format: Format, folder: &Path) -> Result<PathBuf, FigureError> {
+/// Writes a figure under a temporary name and renames it; nothing where it has nothing in this format.
+fn write(figure: &Figure, format: Format, folder: &Path) -> Result<Option<PathBuf>, FigureError> {
     let path = folder.join(format!("{}.{}", figure.name, format.name()));
     let bytes = match format {
         Format::Svg => figure.svg().as_bytes().to_vec(),
         Format::Png => figure.png()?,
         Format::Pdf => figure.pdf()?,
+        Format::Csv => figure.data.as_bytes().to_vec(),
+        Format::Txt => figure.caption.as_bytes().to_vec(),
     };
+    if bytes.is_empty() {
+        return Ok(None);
+    }
     let write = || -> std::io::Result<()> {
         std::fs::create_dir_all(folder)?;
         let mut builder = tempfile::Builder::new();
@@ -80,5 +91,5 @@ fn write(figure: &Figure, format: Format, folder: &Path) -> Result<PathBuf, Figu
         path: path.clone(),
         source,
     })?;
-    Ok(path)
+    Ok(Some(path))
 }

@@ -8,6 +8,7 @@ use super::canvas::DrawError;
 use super::canvas::page::Page;
 use super::canvas::style::Stroke;
 use super::sketch::{Sketch, SweepScene};
+use super::told::Shows;
 
 /// Height of a panel, in pixels.
 const HEIGHT: f64 = 92.0;
@@ -33,7 +34,7 @@ const NUMBERS: [Number; 6] = [
 
 /// The figure of a sweep.
 pub(super) fn sketches<'a>(scene: &'a SweepScene<'a>) -> Vec<Sketch<'a>> {
-    vec![Sketch::new("health", || draw(scene))]
+    vec![Sketch::new("health", || draw(scene)).showing(Shows::Health)]
 }
 
 /// Whether a point has a density to speak of.

@@ -9,6 +9,7 @@ use super::canvas::page::Page;
 use super::canvas::style::Stroke;
 use super::names;
 use super::sketch::{Sketch, SweepScene};
+use super::told::Shows;
 
 /// Height of a panel, in pixels.
 const HEIGHT: f64 = 170.0;
@@ -21,7 +22,7 @@ pub(super) fn sketches<'a>(scene: &'a SweepScene<'a>) -> Vec<Sketch<'a>> {
     observables
         .map(|(number, &observable)| {
             let name = format!("indicator_{}", names::file(scene.family(), observable));
-            Sketch::new(name, move || draw(scene, number))
+            Sketch::new(name, move || draw(scene, number)).showing(Shows::Indicators(number))
         })
         .collect()
 }

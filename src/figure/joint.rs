@@ -1,8 +1,8 @@
-//! Joint densities of two axes as heat maps with contours: one figure a parameter value, and a sheet of all.
+//! Joint densities of two axes as heat maps with contours: one figure a parameter value, and a sheet of all (`joint_sheet`).
 
 use plotters_backend::text_anchor::HPos;
 
-use crate::continuation::Point;
+use crate::continuation::{Point, SweepResult, evenly_spaced};
 use crate::density::{Density, EstimatedDensity, Observable};
 use crate::topology::{Feature, FeatureKind, Verdict};
 
@@ -16,23 +16,19 @@ use super::canvas::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
 use super::canvas::style::{self, MARGIN, Stroke, TEXT};
 use super::canvas::{DrawError, symbols};
 use super::sketch::{Sketch, SweepScene};
-use super::{names, select};
+use super::told::Shows;
+use super::{joint_sheet, names, select};
 
 /// Contours are drawn at these shares of the largest density.
-const LEVELS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
+pub(super) const LEVELS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
+/// What a map is, for captions.
+const WAY: &str = "as a map with contours at 10, 30, 50, 70 and 90 % of its maximum";
+/// Small multiples of a sweep: one to so many values of the parameter.
+const MULTIPLES: usize = 12;
 /// Side of the map of a single figure, in pixels.
 const SINGLE: f64 = 290.0;
-/// Side of a map on a sheet.
-const SMALL: f64 = 190.0;
-/// Narrowest map on a sheet, where the page is given, and the highest one.
-const SMALLEST: f64 = 104.0;
-const TALLEST_SMALL: f64 = 230.0;
 /// Highest map of a single figure.
 const TALLEST: f64 = 420.0;
-/// Gap between maps on a sheet.
-const BETWEEN: f64 = 14.0;
-/// The densities of a sheet share their scale unless the largest values differ by more than this factor.
-const COMPARABLE: f64 = 3.0;
 
 /// A joint density with what was found in it.
 pub(super) struct Found<'a> {
@@ -79,7 +75,7 @@ pub(super) fn windows(found: &[Found<'_>]) -> Option<((f64, f64), (f64, f64))> {
 
 /// Opens a page with heading and legend, and room for maps of the given size that begins `left`
 /// pixels from the left; returns the rectangle of the maps.
-fn open_page(
+pub(super) fn open_page(
     look: &Look,
     found: &[Found<'_>],
     title: &str,
@@ -109,16 +105,40 @@ pub(super) fn sketches<'a>(scene: &'a SweepScene<'a>) -> Vec<Sketch<'a>> {
             let name = format!("joint_{}", names::file(scene.family(), observable));
             let single = |&point: &&'a Point| {
                 let value = select::safe(&symbols::rounded(point.value).to_string());
-                Sketch::new(format!("{name}_{value}"), move || {
+                let single = Sketch::new(format!("{name}_{value}"), move || {
                     draw_single(scene, number, point)
-                })
+                });
+                single.showing(Shows::Joint(number, vec![point], WAY))
             };
             let singles = scene.chosen.iter().map(single);
-            sketches.push(Sketch::new(&name, move || draw_sheet(scene, number)));
+            let sheet = Sketch::new(&name, move || {
+                joint_sheet::draw(scene, number, &scene.chosen)
+            });
+            sketches.push(sheet.showing(Shows::Joint(number, scene.chosen.clone(), WAY)));
+            let several = several(scene.result, number);
+            let shows = Shows::Joint(number, several.clone(), WAY);
+            let multiples = Sketch::new(
+                format!("multiples_{}", &name["joint_".len()..]),
+                move || joint_sheet::draw(scene, number, &several),
+            );
+            sketches.push(multiples.showing(shows));
             sketches.extend(singles);
         }
     }
     sketches
+}
+
+/// Points spread evenly over a sweep that have a density of an observable, for small multiples.
+fn several(result: &SweepResult, observable: usize) -> Vec<&Point> {
+    let ends = [result.points.first(), result.points.last()];
+    let [Some(first), Some(last)] = ends.map(|end| end.map(|point| point.value)) else {
+        return Vec::new();
+    };
+    let wanted = evenly_spaced((first, last), MULTIPLES);
+    let points = select::nearest(result, &wanted).into_iter();
+    points
+        .filter(|point| select::density(point, observable).is_some())
+        .collect()
 }
 
 /// One map at one point; `None` without a density.
@@ -154,133 +174,6 @@ fn draw_single(
     across.draw_below(&page, map, true)?;
     up.draw_left(&page, map, true)?;
     bar.draw(&page, map, &LEVELS)?;
-    Ok(Some(page))
-}
-
-/// How the maps of a sheet are arranged and coloured.
-struct Sheet {
-    columns: usize,
-    /// Width and height of a map, in pixels.
-    side: (f64, f64),
-    /// Distance between neighbouring maps, in pixels.
-    step: (f64, f64),
-    /// Size of all maps together, in pixels.
-    whole: (f64, f64),
-    /// The density at the upper end of the colours, one a map.
-    tops: Vec<f64>,
-    /// That density where all maps share it.
-    common: Option<f64>,
-}
-
-impl Sheet {
-    /// Arranges maps in as many columns as there is room for between what stands left and right of them all, `beside` pixels.
-    fn new(look: &Look, found: &[Found<'_>], beside: f64) -> Self {
-        let own_columns = match found.len() {
-            2 | 4 => 2,
-            _ => 3,
-        };
-        let width = |columns: usize| {
-            let gaps = (columns - 1) as f64 * BETWEEN;
-            look.fill(SMALL * columns as f64, beside + gaps) / columns as f64
-        };
-        let columns = match look.page {
-            None => own_columns,
-            Some(_) => {
-                let most = if found.len() % 3 == 0 { 3 } else { 4 };
-                let fits = |columns: &usize| width(*columns) >= SMALLEST;
-                (1..=most.min(found.len())).rev().find(fits).unwrap_or(1)
-            }
-        };
-        let side = (width(columns), width(columns).min(TALLEST_SMALL));
-        let rows = found.len().div_ceil(columns);
-        let step = (side.0 + BETWEEN, side.1 + BETWEEN + 1.4 * TEXT);
-        let own: Vec<f64> = found
-            .iter()
-            .map(|found| select::largest([found.density()]))
-            .collect();
-        let largest = own.iter().copied().fold(0.0, f64::max);
-        let comparable = own.iter().all(|&own| own * COMPARABLE >= largest);
-        Self {
-            columns,
-            side,
-            step,
-            whole: (
-                (columns - 1) as f64 * step.0 + side.0,
-                (rows - 1) as f64 * step.1 + side.1,
-            ),
-            tops: if comparable {
-                vec![largest; own.len()]
-            } else {
-                own
-            },
-            common: comparable.then_some(largest),
-        }
-    }
-
-    /// The rectangle of a map.
-    fn map(&self, all: Rectangle, number: usize) -> Rectangle {
-        let (row, column) = (number / self.columns, number % self.columns);
-        Rectangle {
-            left: all.left + column as f64 * self.step.0,
-            top: all.top + row as f64 * self.step.1,
-            width: self.side.0,
-            height: self.side.1,
-        }
-    }
-
-    /// The colour bar of all maps.
-    fn bar(&self, look: &Look, density: &str) -> Result<ColourBar, DrawError> {
-        match self.common {
-            Some(largest) => ColourBar::new(look, largest, self.whole.1, density),
-            None => ColourBar::new(look, 1.0, self.whole.1, &format!("{density} / max")),
-        }
-    }
-}
-
-/// All maps of a pair on one sheet, with the same windows; `None` for fewer than two densities.
-fn draw_sheet(scene: &SweepScene<'_>, observable: usize) -> Result<Option<Page>, DrawError> {
-    let (family, look) = (scene.family(), &scene.look);
-    let watched = scene.result.subject.observables[observable];
-    let found: Vec<Found<'_>> = scene
-        .chosen
-        .iter()
-        .filter_map(|point| Found::new(point, observable))
-        .collect();
-    let (Observable::Joint(first, second), Some((x, y))) = (watched, windows(&found)) else {
-        return Ok(None);
-    };
-    if found.len() < 2 {
-        return Ok(None);
-    }
-    let density = names::density(family, watched);
-    let vertical = |high: f64| Scale::vertical(look, y, high, &names::axis(family, second));
-    // The bar and the labels of the ordinate hardly depend on how high the maps are: a first sheet measures them.
-    let first_sheet = Sheet::new(look, &found, 140.0);
-    let bar_width = first_sheet.bar(look, &density)?.width();
-    let left = MARGIN + vertical(first_sheet.side.1)?.left();
-    let sheet = Sheet::new(look, &found, left + bar_width + MARGIN);
-    let bar = sheet.bar(look, &density)?;
-    let across = Scale::horizontal(look, x, sheet.side.0, &names::axis(family, first))?;
-    let up = vertical(sheet.side.1)?;
-    let left = MARGIN + up.left();
-    let width = look
-        .page
-        .unwrap_or(left + sheet.whole.0 + bar.width() + MARGIN);
-    let (page, all) = open_page(look, &found, scene.title, (left, width), sheet.whole)?;
-    for (number, (found, &top)) in found.iter().zip(&sheet.tops).enumerate() {
-        let map = sheet.map(all, number);
-        write_above(
-            &page,
-            map,
-            lettered(look, number, names::at(family, found.value)),
-        )?;
-        draw_map(&page, map, found, (x, y), top)?;
-        // A map with none below it carries the labels of its column.
-        across.draw_below(&page, map, number + sheet.columns >= sheet.tops.len())?;
-        up.draw_left(&page, map, number % sheet.columns == 0)?;
-    }
-    let marks: &[f64] = if sheet.common.is_some() { &[] } else { &LEVELS };
-    bar.draw(&page, all, marks)?;
     Ok(Some(page))
 }
 

@@ -10,6 +10,7 @@ use super::canvas::look::Look;
 use super::canvas::page::{Heading, Page, Rectangle, Shape};
 use super::canvas::style::{MARGIN, Stroke};
 use super::sketch::{Sketch, SweepScene};
+use super::told::Shows;
 use super::{names, select};
 
 /// Height of a panel on a page of its own width, in pixels, and that width.
@@ -41,7 +42,8 @@ struct Laid<'a> {
 
 /// The figure of all observed marginals.
 pub(super) fn sketches<'a>(scene: &'a SweepScene<'a>) -> Vec<Sketch<'a>> {
-    vec![Sketch::new("marginals", || draw(scene))]
+    let shows = Shows::Marginals(scene.chosen.clone());
+    vec![Sketch::new("marginals", || draw(scene)).showing(shows)]
 }
 
 /// How panels are arranged: columns, and the width of a panel.

@@ -12,6 +12,7 @@ use super::canvas::style::{MARGIN, TEXT};
 use super::joint::{Found, draw_map, lettered, windows, write_above};
 use super::sketch::{Sketch, SweepScene};
 use super::surface::{COARSE, Frame};
+use super::told::Shows;
 use super::{names, select};
 
 /// Width of a surface with its axes on a page of its own width, in pixels.
@@ -32,7 +33,8 @@ pub(super) fn sketches<'a>(scene: &'a SweepScene<'a>) -> Vec<Sketch<'a>> {
         .filter(|(_, observable)| matches!(observable, Observable::Joint(..)))
         .map(|(number, &observable)| {
             let name = format!("pairs_{}", names::file(scene.family(), observable));
-            Sketch::new(name, move || draw(scene, number))
+            let shows = Shows::Joint(number, scene.chosen.clone(), "as a surface and as a map");
+            Sketch::new(name, move || draw(scene, number)).showing(shows)
         })
         .collect()
 }

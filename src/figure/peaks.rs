@@ -9,6 +9,7 @@ use super::canvas::DrawError;
 use super::canvas::page::Page;
 use super::canvas::style::Stroke;
 use super::sketch::{Sketch, SweepScene};
+use super::told::Shows;
 use super::{names, select};
 
 /// Height of a panel, in pixels.
@@ -23,7 +24,7 @@ pub(super) fn sketches<'a>(scene: &'a SweepScene<'a>) -> Vec<Sketch<'a>> {
         .filter(|(_, observable)| matches!(observable, Observable::Marginal(_)))
         .map(|(number, &observable)| {
             let name = format!("peaks_{}", names::file(scene.family(), observable));
-            Sketch::new(name, move || draw(scene, number))
+            Sketch::new(name, move || draw(scene, number)).showing(Shows::Peaks(number))
         })
         .collect()
 }

@@ -3,6 +3,7 @@
 use super::canvas::DrawError;
 use super::canvas::look::Look;
 use super::canvas::page::Page;
+use super::told::Shows;
 use crate::compare::Comparison;
 use crate::continuation::{Point, SweepResult};
 use crate::system::Family;
@@ -51,6 +52,8 @@ pub(super) struct Sketch<'a> {
     /// Its name: that of its file without the extension.
     pub(super) name: String,
     draw: Box<Draw<'a>>,
+    /// What it shows.
+    pub(super) shows: Shows<'a>,
 }
 
 impl<'a> Sketch<'a> {
@@ -62,7 +65,13 @@ impl<'a> Sketch<'a> {
         Self {
             name: name.into(),
             draw: Box::new(draw),
+            shows: Shows::Nothing,
         }
+    }
+
+    /// The same figure, which shows this.
+    pub(super) fn showing(self, shows: Shows<'a>) -> Self {
+        Self { shows, ..self }
     }
 
     /// Draws it; `None` where there is nothing to see.

@@ -12,6 +12,7 @@ use super::canvas::style::{MARGIN, TEXT};
 use super::canvas::{DrawError, symbols};
 use super::joint::{Found, lettered, windows, write_above};
 use super::sketch::{Sketch, SweepScene};
+use super::told::Shows;
 use super::{names, select};
 
 /// Width of a single surface with its axes, in pixels.
@@ -24,8 +25,8 @@ const WIDEST: f64 = 560.0;
 /// Room of the line above a surface.
 const ABOVE: f64 = 1.5 * TEXT;
 /// Lines of cells of a single surface, and of one on a sheet.
-pub(super) const FINE: usize = 90;
-pub(super) const COARSE: usize = 60;
+pub(super) const FINE: usize = 100;
+pub(super) const COARSE: usize = 90;
 
 /// A sheet an observed pair of axes, then its surfaces one by one.
 pub(super) fn sketches<'a>(scene: &'a SweepScene<'a>) -> Vec<Sketch<'a>> {
@@ -35,11 +36,14 @@ pub(super) fn sketches<'a>(scene: &'a SweepScene<'a>) -> Vec<Sketch<'a>> {
             continue;
         }
         let name = format!("surface_{}", names::file(scene.family(), observable));
-        sketches.push(Sketch::new(&name, move || draw_sheet(scene, number)));
+        let shows = |points| Shows::Joint(number, points, "as a surface");
+        let sheet = Sketch::new(&name, move || draw_sheet(scene, number));
+        sketches.push(sheet.showing(shows(scene.chosen.clone())));
         for &point in &scene.chosen {
             let value = select::safe(&symbols::rounded(point.value).to_string());
             let draw = move || draw_single(scene, number, point);
-            sketches.push(Sketch::new(format!("{name}_{value}"), draw));
+            let single = Sketch::new(format!("{name}_{value}"), draw);
+            sketches.push(single.showing(shows(vec![point])));
         }
     }
     sketches

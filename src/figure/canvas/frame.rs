@@ -115,7 +115,9 @@ impl Scale {
         if scale.ticks.major.len() >= FEW {
             return Ok(scale);
         }
-        Self::with(look, range, most(1.6), title)
+        // Three labels stand on anything longer than three lines.
+        let least = if length >= 3.2 * TICK_TEXT { 3 } else { 2 };
+        Self::with(look, range, most(1.6).max(least), title)
     }
 
     /// Lays out an axis of logarithms to base ten, labelled at as many powers of ten as its length has room for: `range` and what is drawn

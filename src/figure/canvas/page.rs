@@ -5,8 +5,8 @@ use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::element::{Drawable, PointCollection};
 use plotters::prelude::{Cartesian2d, CoordTranslate, DrawingArea, IntoDrawingArea};
+use plotters_backend::BackendCoord;
 use plotters_backend::text_anchor::HPos;
-use plotters_backend::{BackendCoord, DrawingBackend as _};
 
 use super::DrawError;
 use super::backend::{Canvas, Drawn, Lettering};
@@ -126,7 +126,7 @@ impl Page {
 
     /// Its width in pixels.
     pub(in crate::figure) fn width(&self) -> f64 {
-        f64::from(self.canvas.get_size().0) / UNITS
+        f64::from(self.canvas.size().0) / UNITS
     }
 
     /// Draws at points given in pixels.

@@ -5,6 +5,7 @@ use plotters_backend::text_anchor::HPos;
 
 use super::DrawError;
 use super::backend::Lettering;
+use super::facets::{HEIGHT, brightness, parts, shaded};
 use super::frame::Scale;
 use super::look::Look;
 use super::page::{Page, Rectangle, Shape, lettering};
@@ -15,18 +16,12 @@ use super::style::{Colour, FRAME_LINE, GREY, INK, Stroke, TEXT, TICK, TICK_TEXT}
 const AZIMUTH: f64 = 37.5;
 /// Angle of the view above the floor, in degrees.
 const ELEVATION: f64 = 32.0;
-/// Height of the box, as a share of its sides.
-const HEIGHT: f64 = 0.62;
 /// Gap between ticks and labels, in pixels.
 const GAP: f64 = 4.0;
 /// How far the title of the heights reaches beyond their axis, to the right.
 const TITLE_BEYOND: f64 = 4.0;
-/// Facets that are bent more than this share of the box are drawn as two triangles.
-const BENT: f64 = 0.004;
-/// Where the light comes from: from the left, the front, above. Not of unit length.
-const LIGHT: [f64; 3] = [-0.45, -0.35, 0.85];
-/// Share of a colour that is left in full shadow.
-const AMBIENT: f64 = 0.52;
+/// What is lower than this share of the box lies on its floor, for the eye.
+const FLAT: f64 = 0.002;
 /// Width of the lines of the mesh, in pixels.
 const MESH: f64 = 0.35;
 
@@ -45,6 +40,9 @@ impl Heights {
         [self.x[i], self.y[j], self.z[i * self.y.len() + j]]
     }
 }
+
+/// An axis, the point at a share of its way, the direction of its ticks on the page, and where its labels end.
+type Axis<'a> = (&'a Scale, fn(f64) -> [f64; 3], (f64, f64), HPos);
 
 /// A box laid out, with its three axes.
 pub(in crate::figure) struct Space {
@@ -112,7 +110,7 @@ impl Space {
             let (across, down) = ((to.0 - from.0).abs(), (to.1 - from.1).abs());
             Scale::slanted(look, range, (rough * across, rough * down), title)
         };
-        let high = Scale::vertical(look, ranges.z.0, 0.42 * rough, ranges.z.1)?;
+        let high = Scale::vertical(look, ranges.z.0, 0.52 * rough, ranges.z.1)?;
         let axes = [
             floor(ranges.x, [1.0, 0.0, 0.0])?,
             floor(ranges.y, [0.0, 1.0, 0.0])?,
@@ -211,21 +209,30 @@ impl Space {
         let colours = page.look().colours;
         for j in (0..m.saturating_sub(1)).rev() {
             let mut facets = Vec::with_capacity(n);
-            for i in 0..n.saturating_sub(1) {
+            let is_flat = |i: usize| {
+                let corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)];
+                corners.iter().all(|&(i, j)| heights.at(i, j)[2] < FLAT)
+            };
+            let mut from = 0;
+            while from + 1 < n {
+                // Neighbours on the floor are one facet.
+                let mut to = from + 1;
+                while is_flat(from) && to + 1 < n && is_flat(to) {
+                    to += 1;
+                }
                 let corners = [
-                    heights.at(i, j),
-                    heights.at(i + 1, j),
-                    heights.at(i + 1, j + 1),
-                    heights.at(i, j + 1),
+                    heights.at(from, j),
+                    heights.at(to, j),
+                    heights.at(to, j + 1),
+                    heights.at(from, j + 1),
                 ];
                 for facet in parts(corners) {
                     let height = facet.iter().map(|corner| corner[2]).sum::<f64>() / 4.0;
                     let colour = shaded(colours.colour(height), brightness(&facet));
-                    facets.push((
-                        facet.map(|corner| self.place(corner)),
-                        Colour::fixed(colour),
-                    ));
+                    let places = facet.map(|corner| self.place(corner));
+                    facets.push((places, Colour::fixed(colour)));
                 }
+                from = to;
             }
             page.facets(&facets);
             self.draw_mesh(page, heights, j)?;
@@ -241,7 +248,7 @@ impl Space {
         for i in (0..n).step_by(every(n)) {
             self.line(page, &[heights.at(i, j), heights.at(i, j + 1)], stroke)?;
         }
-        if j % every(m) == 0 {
+        if j.is_multiple_of(every(m)) {
             let along: Vec<[f64; 3]> = (0..n).map(|i| heights.at(i, j)).collect();
             self.line(page, &along, stroke)?;
         }
@@ -263,7 +270,7 @@ impl Space {
         let [across, along, up] = &self.axes;
         // Ticks continue the lines of the floor; that of the ordinate points left.
         let ((sin_a, cos_a), (sin_e, _)) = angles();
-        let axes: [(&Scale, fn(f64) -> [f64; 3], (f64, f64), HPos); 3] = [
+        let axes: [Axis<'_>; 3] = [
             (
                 across,
                 |share| [share, 0.0, 0.0],
@@ -315,7 +322,7 @@ impl Space {
         page.text(place, lettering(along.title(), HPos::Left))?;
         let (x, y) = self.place([0.0, 0.0, 1.0]);
         page.text(
-            (x + TITLE_BEYOND, y - 0.9 * TEXT),
+            (x + TITLE_BEYOND, y - 1.15 * TEXT),
             lettering(up.title(), HPos::Right),
         )
     }
@@ -332,46 +339,6 @@ pub(in crate::figure) struct Ranges<'a> {
     pub(in crate::figure) z: ((f64, f64), &'a str),
 }
 
-/// A facet as it is drawn: whole where it is nearly flat, else cut along the diagonal that keeps a ridge. Of a triangle the last corner stands
-/// twice; the parts follow each other toward the viewer.
-fn parts(corners: [[f64; 3]; 4]) -> Vec<[[f64; 3]; 4]> {
-    let [a, b, c, d] = corners;
-    let bend = a[2] + c[2] - b[2] - d[2];
-    if bend.abs() < BENT {
-        return vec![corners];
-    }
-    match bend > 0.0 {
-        true => vec![[a, c, d, d], [a, b, c, c]],
-        false => vec![[b, c, d, d], [a, b, d, d]],
-    }
-}
-
-/// How a facet faces the light: 0 away from it, 1 toward it.
-fn brightness(corners: &[[f64; 3]; 4]) -> f64 {
-    let [a, b, c, d] = corners;
-    let along = |p: &[f64; 3], q: &[f64; 3]| [q[0] - p[0], q[1] - p[1], HEIGHT * (q[2] - p[2])];
-    // The diagonals of a quadrilateral; of a triangle two of its sides.
-    let (u, v) = (along(a, c), along(b, d));
-    let normal = [
-        u[1] * v[2] - u[2] * v[1],
-        u[2] * v[0] - u[0] * v[2],
-        u[0] * v[1] - u[1] * v[0],
-    ];
-    let length = |v: &[f64; 3]| v.iter().map(|part| part * part).sum::<f64>().sqrt();
-    let product: f64 = normal.iter().zip(&LIGHT).map(|(n, l)| n * l).sum();
-    let cosine = product / (length(&normal) * length(&LIGHT)).max(f64::MIN_POSITIVE);
-    cosine.clamp(0.0, 1.0)
-}
-
-/// A colour under light; in 32 steps, so that neighbours share theirs.
-fn shaded((r, g, b): (u8, u8, u8), brightness: f64) -> (u8, u8, u8) {
-    let factor = AMBIENT + (1.0 - AMBIENT) * (32.0 * brightness).round() / 32.0;
-    // A flat floor keeps its colour; what faces the light is lighter still.
-    let flat = AMBIENT + (1.0 - AMBIENT) * 0.83;
-    let shade = |value: u8| (f64::from(value) * factor / flat).min(255.0).round() as u8;
-    (shade(r), shade(g), shade(b))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -384,20 +351,5 @@ mod tests {
         let origin = project([0.0, 0.0, 0.0]);
         assert!(project([1.0, 0.0, 0.0]).0 > origin.0 && project([0.0, 1.0, 0.0]).0 > origin.0);
         assert!(project([0.0, 0.0, 1.0]).1 < origin.1);
-    }
-
-    #[test]
-    fn what_faces_the_light_is_brighter() {
-        let facet = |left: f64, right: f64| {
-            brightness(&[
-                [0.0, 0.0, left],
-                [0.1, 0.0, right],
-                [0.1, 0.1, right],
-                [0.0, 0.1, left],
-            ])
-        };
-        // The light comes from the left: a slope that rises to the right faces it.
-        assert!(facet(0.0, 0.1) > facet(0.0, 0.0) && facet(0.0, 0.0) > facet(0.1, 0.0));
-        assert!((facet(0.0, 0.0) - 0.83).abs() < 0.01, "{}", facet(0.0, 0.0));
     }
 }

@@ -135,7 +135,7 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
     key("figures.at", Kind::List(&Kind::Number(ANY)), Rule("both ends of the sweep and two points between"), optional!(figures_at),
         "Parameter values at which joint densities and marginals are drawn, inside the sweep."),
     key("figures.formats", Kind::List(&Kind::Choice(Format::words)), OfOptions, always!(figure_formats),
-        "File formats of the figures."),
+        "File formats of the figures; `csv` writes the numbers behind each, `txt` its caption."),
     key("figures.draw", Kind::List(&Kind::Text), OfOptions, always!(figures_drawn),
         "Figures that are drawn: kinds, such as `diagram`, or single ones, such as `diagram_x`; `all` for every one."),
     key("figures.style.width", Kind::Width, OfOptions, always!(figure_style.width),

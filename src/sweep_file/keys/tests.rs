@@ -111,6 +111,7 @@ fn example(key: &Key) -> crate::sweep_file::value::Plain {
         Kind::Number(_) => Plain::Number(0.625),
         Kind::Integer(..) => Plain::Integer(77),
         Kind::Step => Plain::Number(0.375),
+        Kind::Width => text("slide"),
         Kind::Choice(names) => text(names().last().unwrap()),
         Kind::Pair => Plain::List(vec![text("x"), text("y")]),
         Kind::Formula => text("2 x"),

@@ -1,0 +1,101 @@
+//! Facets of a surface: how they are cut, and their colour under one light.
+
+/// Height of the box, as a share of its sides.
+pub(super) const HEIGHT: f64 = 0.62;
+/// Facets that are bent more than this share of the box are drawn as two triangles.
+const BENT: f64 = 0.012;
+/// Where the light comes from: from the left, the front, above. Not of unit length.
+const LIGHT: [f64; 3] = [-0.45, -0.35, 0.85];
+/// Share of a colour that is left in full shadow.
+const AMBIENT: f64 = 0.52;
+
+/// A facet as it is drawn: whole where it is nearly flat, else cut along the diagonal that keeps a ridge. Of a triangle the last corner stands
+/// twice; the parts follow each other toward the viewer.
+pub(super) fn parts(corners: [[f64; 3]; 4]) -> Vec<[[f64; 3]; 4]> {
+    let [a, b, c, d] = corners;
+    let bend = a[2] + c[2] - b[2] - d[2];
+    if bend.abs() < BENT {
+        return vec![corners];
+    }
+    match bend > 0.0 {
+        true => vec![[a, c, d, d], [a, b, c, c]],
+        false => vec![[b, c, d, d], [a, b, d, d]],
+    }
+}
+
+/// How a facet faces the light: 0 away from it, 1 toward it.
+pub(super) fn brightness(corners: &[[f64; 3]; 4]) -> f64 {
+    let [a, b, c, d] = corners;
+    let along = |p: &[f64; 3], q: &[f64; 3]| [q[0] - p[0], q[1] - p[1], HEIGHT * (q[2] - p[2])];
+    // The diagonals of a quadrilateral; of a triangle two of its sides.
+    let (u, v) = (along(a, c), along(b, d));
+    let normal = [
+        u[1] * v[2] - u[2] * v[1],
+        u[2] * v[0] - u[0] * v[2],
+        u[0] * v[1] - u[1] * v[0],
+    ];
+    let length = |v: &[f64; 3]| v.iter().map(|part| part * part).sum::<f64>().sqrt();
+    let product: f64 = normal.iter().zip(&LIGHT).map(|(n, l)| n * l).sum();
+    let cosine = product / (length(&normal) * length(&LIGHT)).max(f64::MIN_POSITIVE);
+    cosine.clamp(0.0, 1.0)
+}
+
+/// A colour under light; in 32 steps, so that neighbours share theirs.
+pub(super) fn shaded((r, g, b): (u8, u8, u8), brightness: f64) -> (u8, u8, u8) {
+    let factor = AMBIENT + (1.0 - AMBIENT) * (32.0 * brightness).round() / 32.0;
+    // A flat floor keeps its colour; what faces the light is lighter still.
+    let flat = AMBIENT + (1.0 - AMBIENT) * 0.83;
+    let shade = |value: u8| (f64::from(value) * factor / flat).min(255.0).round() as u8;
+    (shade(r), shade(g), shade(b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_faces_the_light_is_brighter() {
+        let facet = |left: f64, right: f64| {
+            brightness(&[
+                [0.0, 0.0, left],
+                [0.1, 0.0, right],
+                [0.1, 0.1, right],
+                [0.0, 0.1, left],
+            ])
+        };
+        // The light comes from the left: a slope that rises to the right faces it.
+        assert!(facet(0.0, 0.1) > facet(0.0, 0.0) && facet(0.0, 0.0) > facet(0.1, 0.0));
+        assert!((facet(0.0, 0.0) - 0.83).abs() < 0.01, "{}", facet(0.0, 0.0));
+    }
+
+    #[test]
+    fn bent_facets_keep_ridges_and_cover_the_whole() {
+        let flat = [
+            [0.0, 0.0, 0.1],
+            [1.0, 0.0, 0.1],
+            [1.0, 1.0, 0.1],
+            [0.0, 1.0, 0.1],
+        ];
+        assert_eq!(parts(flat), [flat]);
+        let mut ridge = flat;
+        (ridge[0][2], ridge[2][2]) = (0.5, 0.5);
+        let area = |[a, b, c, d]: &[[f64; 3]; 4]| {
+            let (u, v) = ([c[0] - a[0], c[1] - a[1]], [d[0] - b[0], d[1] - b[1]]);
+            0.5 * (u[0] * v[1] - u[1] * v[0])
+        };
+        let cut = parts(ridge);
+        assert!(
+            cut.iter()
+                .all(|part| part.contains(&ridge[0]) && part.contains(&ridge[2]))
+        );
+        assert!((cut.iter().map(area).sum::<f64>() - 1.0).abs() < 1e-12);
+        let mut other = flat;
+        (other[1][2], other[3][2]) = (0.5, 0.5);
+        let cut = parts(other);
+        assert!(
+            cut.iter()
+                .all(|part| part.contains(&other[1]) && part.contains(&other[3]))
+        );
+        assert!((cut.iter().map(area).sum::<f64>() - 1.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,175 @@
+//! The caption of a figure of a sweep, ready to be pasted: what is seen, of which system, by which method, what is marked.
+
+use crate::continuation::{BifurcationStatus, LabelledPoint, Point, PointType, SweepResult};
+use crate::density::Observable;
+use crate::space::Axis;
+
+use super::canvas::symbols;
+use super::told::Shows;
+
+/// The caption of a figure; empty for one that has none.
+pub(super) fn caption(result: &SweepResult, shows: &Shows<'_>) -> String {
+    let seen = seen(result, shows);
+    if seen.is_empty() {
+        return seen;
+    }
+    let parts = [seen, system(result), method(result), marked(result, shows)];
+    let parts: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+    let version = env!("CARGO_PKG_VERSION");
+    format!("{} Computed with pbif {version}.\n", parts.join(" "))
+}
+
+/// `p(x, y)`.
+fn density(result: &SweepResult, observable: usize) -> String {
+    let observable = result.subject.observables[observable];
+    format!(
+        "p({})",
+        observable.symbols(&result.subject.family).join(", ")
+    )
+}
+
+fn number(value: f64) -> String {
+    let value = symbols::rounded(value);
+    match value == 0.0 || (1e-4..1e6).contains(&value.abs()) {
+        true => format!("{value}"),
+        false => format!("{value:e}"),
+    }
+}
+
+/// ` at f_c = -0.02, 0 and 0.01`.
+fn at(result: &SweepResult, points: &[&Point]) -> String {
+    let values: Vec<String> = points.iter().map(|point| number(point.value)).collect();
+    let values = match values.as_slice() {
+        [] => return String::new(),
+        [rest @ .., last] if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
+        all => all.join(", "),
+    };
+    format!(" at {} = {values}", result.subject.family.parameter())
+}
+
+/// What the figure shows.
+fn seen(result: &SweepResult, shows: &Shows<'_>) -> String {
+    let parameter = result.subject.family.parameter();
+    match shows {
+        Shows::Nothing => String::new(),
+        Shows::Diagram(observable) => format!(
+            "Steady-state marginal density {} over {parameter} (colours), with its peaks (solid) and valleys (dashed).",
+            density(result, *observable)
+        ),
+        Shows::Marginals(points) => {
+            format!("Steady-state marginal densities{}.", at(result, points))
+        }
+        Shows::Joint(observable, points, way) => format!(
+            "Steady-state joint density {}{}, {way}.",
+            density(result, *observable),
+            at(result, points)
+        ),
+        Shows::Peaks(observable) => format!(
+            "Places and heights of the peaks (solid) and valleys (dashed) of the steady-state marginal density {} over {parameter}.",
+            density(result, *observable)
+        ),
+        Shows::Indicators(observable) => format!(
+            "Indicators of P-bifurcations of the steady-state density {} over {parameter}; a P-bifurcation is where one is zero, bands are \
+             systematic errors and two standard errors of sampling.",
+            density(result, *observable)
+        ),
+        Shows::Health => format!(
+            "How well each value of {parameter} was solved: what is left of the equation, what leaves the domain, and the Hellinger \
+             distance between neighbouring densities."
+        ),
+    }
+}
+
+/// The system with its parameters.
+fn system(result: &SweepResult) -> String {
+    let family = &result.subject.family;
+    let model = family.model();
+    let equations = model.equations.join("; ");
+    let fixed: Vec<String> = family
+        .fixed()
+        .map(|(name, value)| format!("{name} = {}", number(value)))
+        .collect();
+    let fixed = match fixed.is_empty() {
+        true => String::new(),
+        false => format!(", with {}", fixed.join(", ")),
+    };
+    format!("System: {} ({equations}){fixed}.", model.title)
+}
+
+/// The method and the cells.
+fn method(result: &SweepResult) -> String {
+    let Some(solved) = result
+        .points
+        .iter()
+        .find(|point| !point.densities.is_empty())
+    else {
+        return String::new();
+    };
+    let family = &result.subject.family;
+    let mut axes: Vec<(usize, &Axis)> = Vec::new();
+    for estimated in &solved.densities {
+        let numbers = match estimated.observable {
+            Observable::Marginal(axis) => vec![axis],
+            Observable::Joint(first, second) => vec![first, second],
+        };
+        for (number, axis) in numbers.into_iter().zip(&estimated.density.axes) {
+            if axes.iter().all(|(known, _)| *known != number) {
+                axes.push((number, axis));
+            }
+        }
+    }
+    axes.sort_by_key(|(number, _)| *number);
+    let cells = axes.iter().map(|(number, axis)| {
+        let (from, to) = (self::number(axis.from()), self::number(axis.to()));
+        format!(
+            "{} of {} in [{from}, {to}]",
+            axis.count(),
+            family.axis(*number)
+        )
+    });
+    let cells: Vec<String> = cells.collect();
+    format!(
+        "Method: {}; cells: {}.",
+        solved.report.method,
+        cells.join(", ")
+    )
+}
+
+/// The P-bifurcations that are marked.
+fn marked(result: &SweepResult, shows: &Shows<'_>) -> String {
+    if matches!(shows, Shows::Nothing | Shows::Marginals(_)) {
+        return String::new();
+    }
+    if let Shows::Joint(_, _, way) = shows {
+        return match way.contains("map") {
+            true => "Marked are peaks (+) and craters (o).".to_owned(),
+            false => String::new(),
+        };
+    }
+    let family = &result.subject.family;
+    let words = |row: &LabelledPoint| {
+        let status = match row.status {
+            Some(BifurcationStatus::Located) | None => String::new(),
+            Some(status) => format!(", {}", status.word()),
+        };
+        let observable = row
+            .observable
+            .map(|one| one.name(family))
+            .unwrap_or_default();
+        let error = format!("{:.1e}", row.error);
+        format!(
+            "{} at {} ± {error} ({observable}{status})",
+            row.label,
+            number(row.value)
+        )
+    };
+    let rows = result
+        .labels
+        .iter()
+        .filter(|row| row.kind == PointType::Bifurcation);
+    let rows: Vec<String> = rows.map(words).collect();
+    match rows.is_empty() {
+        true => String::new(),
+        false => format!("P-bifurcations: {}.", rows.join("; ")),
+    }
+}

@@ -1,0 +1,214 @@
+//! The numbers behind a figure of a sweep, as CSV: one row a number that is drawn, with everything that places it.
+
+use crate::continuation::{Point, SweepResult};
+use crate::density::{EstimatedDensity, Observable};
+
+use super::select;
+use super::told::Shows;
+
+/// A table as it grows.
+struct Table {
+    text: String,
+}
+
+impl Table {
+    fn new(columns: &[&str]) -> Self {
+        Self {
+            text: columns.join(",") + "\n",
+        }
+    }
+
+    fn row(&mut self, cells: &[String]) {
+        self.text.push_str(&cells.join(","));
+        self.text.push('\n');
+    }
+}
+
+/// The shortest text that reads back as the same number; empty for values that are none.
+fn number(value: f64) -> String {
+    match value {
+        value if !value.is_finite() => String::new(),
+        0.0 => "0".to_owned(),
+        value if (1e-4..1e15).contains(&value.abs()) => format!("{value}"),
+        value => format!("{value:e}"),
+    }
+}
+
+/// The table of a figure; empty for one that has none.
+pub(super) fn table(result: &SweepResult, shows: &Shows<'_>) -> String {
+    let every: Vec<&Point> = result.points.iter().collect();
+    match shows {
+        Shows::Nothing => String::new(),
+        Shows::Diagram(observable) => marginals(result, &[*observable], &every),
+        Shows::Marginals(points) => {
+            let observables = result.subject.observables.iter().enumerate();
+            let numbers: Vec<usize> = observables
+                .filter(|(_, observable)| matches!(observable, Observable::Marginal(_)))
+                .map(|(number, _)| number)
+                .collect();
+            marginals(result, &numbers, points)
+        }
+        Shows::Joint(observable, points, _) => joint(result, *observable, points),
+        Shows::Peaks(observable) => peaks(result, *observable),
+        Shows::Indicators(observable) => indicators(result, *observable),
+        Shows::Health => health(result),
+    }
+}
+
+/// The standard error of a cell; empty for densities without sampling.
+fn error(estimated: &EstimatedDensity, cell: usize) -> String {
+    match estimated.standard_error.get(cell) {
+        Some(&error) if error > 0.0 => number(error),
+        _ => String::new(),
+    }
+}
+
+fn marginals(result: &SweepResult, observables: &[usize], points: &[&Point]) -> String {
+    let family = &result.subject.family;
+    let parameter = family.parameter();
+    let mut table = Table::new(&[parameter, "axis", "coordinate", "density", "standard_error"]);
+    for point in points {
+        for &observable in observables {
+            let (Some(estimated), Observable::Marginal(axis)) = (
+                select::density(point, observable),
+                result.subject.observables[observable],
+            ) else {
+                continue;
+            };
+            let centres = estimated.density.axes[0].centres().into_iter();
+            for (cell, (centre, &value)) in centres.zip(&estimated.density.values).enumerate() {
+                table.row(&[
+                    number(point.value),
+                    family.axis(axis).to_owned(),
+                    number(centre),
+                    number(value),
+                    error(estimated, cell),
+                ]);
+            }
+        }
+    }
+    table.text
+}
+
+fn joint(result: &SweepResult, observable: usize, points: &[&Point]) -> String {
+    let family = &result.subject.family;
+    let Observable::Joint(first, second) = result.subject.observables[observable] else {
+        return String::new();
+    };
+    let (first, second) = (family.axis(first), family.axis(second));
+    let mut table = Table::new(&[
+        family.parameter(),
+        first,
+        second,
+        "density",
+        "standard_error",
+    ]);
+    for point in points {
+        let Some(estimated) = select::density(point, observable) else {
+            continue;
+        };
+        let [across, along] = &estimated.density.axes[..] else {
+            continue;
+        };
+        let (across, along) = (across.centres(), along.centres());
+        for (cell, &value) in estimated.density.values.iter().enumerate() {
+            table.row(&[
+                number(point.value),
+                number(across[cell / along.len()]),
+                number(along[cell % along.len()]),
+                number(value),
+                error(estimated, cell),
+            ]);
+        }
+    }
+    table.text
+}
+
+fn peaks(result: &SweepResult, observable: usize) -> String {
+    let parameter = result.subject.family.parameter();
+    let columns = [
+        parameter,
+        "kind",
+        "position",
+        "density",
+        "persistence",
+        "significance",
+    ];
+    let mut table = Table::new(&columns);
+    for point in &result.points {
+        let Some(detection) = point.detections.get(observable) else {
+            continue;
+        };
+        let present = |feature: &&crate::topology::Feature| {
+            feature.verdict == crate::topology::Verdict::Present
+        };
+        for feature in detection.features.iter().filter(present) {
+            table.row(&[
+                number(point.value),
+                format!("{:?}", feature.kind).to_lowercase(),
+                feature
+                    .position
+                    .first()
+                    .copied()
+                    .map(number)
+                    .unwrap_or_default(),
+                number(feature.density),
+                number(feature.persistence),
+                number(feature.significance),
+            ]);
+        }
+    }
+    table.text
+}
+
+fn indicators(result: &SweepResult, observable: usize) -> String {
+    let parameter = result.subject.family.parameter();
+    let columns = [
+        parameter,
+        "indicator",
+        "value",
+        "systematic_error",
+        "sampling_error",
+    ];
+    let mut table = Table::new(&columns);
+    for point in &result.points {
+        let detection = point.detections.get(observable);
+        for one in detection.iter().flat_map(|detection| &detection.indicators) {
+            table.row(&[
+                number(point.value),
+                one.kind.name().to_owned(),
+                number(one.value),
+                number(one.systematic_error),
+                number(one.sampling_error),
+            ]);
+        }
+    }
+    table.text
+}
+
+fn health(result: &SweepResult) -> String {
+    let mut table = Table::new(&[
+        result.subject.family.parameter(),
+        "status",
+        "residual",
+        "solver_error",
+        "escape_rate",
+        "negative_mass",
+        "edge_mass",
+        "distance",
+    ]);
+    for point in &result.points {
+        let report = &point.report;
+        table.row(&[
+            number(point.value),
+            report.status.word().to_owned(),
+            number(report.residual),
+            number(report.solver_error),
+            number(report.escape_rate),
+            number(report.own.negative_mass),
+            number(report.edge_mass.iter().copied().fold(0.0, f64::max)),
+            point.distance.map(number).unwrap_or_default(),
+        ]);
+    }
+    table.text
+}
