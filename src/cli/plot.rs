@@ -106,9 +106,9 @@ fn style_key(word: &str) -> Result<String, CommandError> {
                 .chain(switches)
                 .collect();
             let report = Diagnostic::new(format!("`--style` knows no word {word:?}"))
-                .nearest(word, known.iter().copied())
                 .allowed(format!("a number of millimetres, {}", list(&known)))
-                .remedy("finer settings are keys: `--set figures.style.text=7`");
+                .remedy("finer settings are keys: `--set figures.style.text=7`")
+                .nearest(word, known.iter().copied());
             Err(CommandError::Input(report.into()))
         }
     }

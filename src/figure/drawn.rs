@@ -65,7 +65,7 @@ pub fn sweep_figures(family: &Family, observables: &[Observable]) -> Vec<String>
         },
         points: Vec::new(),
         labels: Vec::new(),
-        finer: None,
+        checks: Default::default(),
         interrupted: false,
     };
     Figures::of_sweep(&nothing, "", &[]).names()

@@ -8,6 +8,7 @@ use super::canvas::colour_bar::ColourBar;
 use super::canvas::frame::Scale;
 use super::canvas::look::Look;
 use super::canvas::page::{Page, Rectangle};
+use super::canvas::render;
 use super::canvas::style::{MARGIN, TEXT};
 use super::joint::{Found, LEVELS, draw_map, lettered, open_page, windows, write_above};
 use super::sketch::SweepScene;
@@ -39,8 +40,9 @@ struct Sheet {
 }
 
 impl Sheet {
-    /// Arranges maps in as many columns as there is room for between what stands left and right of them all, `beside` pixels.
-    fn new(look: &Look, found: &[Found<'_>], beside: f64) -> Self {
+    /// Arranges maps in as many columns as there is room for between what stands left and right of them all, `beside` pixels;
+    /// on a given page none is narrower than `least`.
+    fn new(look: &Look, found: &[Found<'_>], beside: f64, least: f64) -> Self {
         let own_columns = match found.len() {
             2 | 4 => 2,
             10.. => 4,
@@ -58,7 +60,7 @@ impl Sheet {
                 } else {
                     4
                 };
-                let fits = |columns: &usize| width(*columns) >= SMALLEST;
+                let fits = |columns: &usize| width(*columns) >= least.max(SMALLEST);
                 (1..=most.min(found.len())).rev().find(fits).unwrap_or(1)
             }
         };
@@ -127,12 +129,21 @@ pub(super) fn draw(
         return Ok(None);
     }
     let density = names::density(family, watched);
+    let line = |(number, found): (usize, &Found<'_>)| {
+        lettered(look, number, names::at(family, found.value))
+    };
+    let lines: Vec<String> = found.iter().enumerate().map(line).collect();
+    // Lines above neighbouring maps must not touch.
+    let mut least: f64 = 0.0;
+    for line in &lines {
+        least = least.max(render::text_width(look, line, TEXT, false)? + 4.0 - BETWEEN / 2.0);
+    }
     let vertical = |high: f64| Scale::vertical(look, y, high, &names::axis(family, second));
     // The bar and the labels of the ordinate hardly depend on how high the maps are: a first sheet measures them.
-    let first_sheet = Sheet::new(look, &found, 140.0);
+    let first_sheet = Sheet::new(look, &found, 140.0, least);
     let bar_width = first_sheet.bar(look, &density)?.width();
     let left = MARGIN + vertical(first_sheet.side.1)?.left();
-    let sheet = Sheet::new(look, &found, left + bar_width + MARGIN);
+    let sheet = Sheet::new(look, &found, left + bar_width + MARGIN, least);
     let bar = sheet.bar(look, &density)?;
     let across = Scale::horizontal(look, x, sheet.side.0, &names::axis(family, first))?;
     let up = vertical(sheet.side.1)?;
@@ -143,11 +154,7 @@ pub(super) fn draw(
     let (page, all) = open_page(look, &found, scene.title, (left, width), sheet.whole)?;
     for (number, (found, &top)) in found.iter().zip(&sheet.tops).enumerate() {
         let map = sheet.map(all, number);
-        write_above(
-            &page,
-            map,
-            lettered(look, number, names::at(family, found.value)),
-        )?;
+        write_above(&page, map, lines[number].clone())?;
         draw_map(&page, map, found, (x, y), top)?;
         // A map with none below it carries the labels of its column.
         across.draw_below(&page, map, number + sheet.columns >= sheet.tops.len())?;

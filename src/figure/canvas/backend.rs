@@ -156,7 +156,10 @@ impl Canvas {
             let mut last = *first;
             for (number, &corner) in rest.iter().enumerate() {
                 let lead = if number == 0 { "l" } else { "" };
-                for (part, step) in [corner.0 - last.0, corner.1 - last.1].into_iter().enumerate() {
+                for (part, step) in [corner.0 - last.0, corner.1 - last.1]
+                    .into_iter()
+                    .enumerate()
+                {
                     // A sign separates numbers, and nothing follows a letter.
                     let is_apart = step < 0 || (number == 0 && part == 0);
                     let gap = if is_apart { "" } else { " " };
