@@ -162,8 +162,8 @@ fn unchanged_settings_change_no_byte() {
             "in place",
         );
         // The version before is a complete run, the manifest differs in its seconds alone.
-        assert_same(&files(&run.join("previous")), &before, "previous");
-        let (mut now, mut then) = (manifest(&run), manifest(&run.join("previous")));
+        assert_same(&files(&run.join("previous/1")), &before, "previous");
+        let (mut now, mut then) = (manifest(&run), manifest(&run.join("previous/1")));
         assert!(now["seconds"]["detect"].as_f64().unwrap() > 0.0);
         assert_eq!(now["seconds"]["sweep"], then["seconds"]["sweep"]);
         (now["seconds"], then["seconds"]) = Default::default();

@@ -19,7 +19,10 @@ Examples:
   pbif explore output/coulomb_fc     one page that slides through the densities of the run
 
 Exit status: 0 done; 1 finished, but some row is unresolved, did not converge or has no steady state;
-2 bad usage or input, nothing written; 130 interrupted.";
+2 bad usage or input, or a folder that cannot be written to; 130 interrupted.
+
+Results are never overwritten: an earlier run in the same folder is kept in its folder previous/1,
+previous/2, and so on.";
 
 const DETECT_EXAMPLES: &str = "\
 Examples:
@@ -27,7 +30,7 @@ Examples:
   pbif detect output/coulomb_fc --set detect.floor=0.01 --out stricter
 
 Tables, figures and run.json are written anew, the densities stay. Without --out they take the
-place of those of the run, whose earlier version is kept in its folder previous/; with --out the
+place of those of the run, whose earlier version is kept below its folder previous/; with --out the
 run is left as it is.
 
 Exit status: 0 done; 1 finished, but some row is unresolved, did not converge or has no steady
@@ -41,7 +44,7 @@ Examples:
 Methods are compared at the values of figures.at: the generator with the settings of the file; SGCM as the
 paper has it (50 x 50 cells of equal width, method.samples samples a cell, map step 1, densities flat in the
 cells); the same samples with slope correction; and Monte Carlo to the relative error method.error. Tables
-and figures go to output/NAME-compare/ or --out; what was there before is kept in its folder previous/.
+and figures go to output/NAME-compare/ or --out; earlier comparisons are kept below its folder previous/.
 
 Exit status: 0 done; 1 finished, but generator and Monte Carlo disagree beyond their uncertainties, or a
 method did not converge or has no steady state; 2 bad usage or input, nothing written; 130 interrupted.

@@ -24,5 +24,6 @@ pub(super) fn run(arguments: &PlotArguments) -> Result<Outcome, CommandError> {
         return super::print("no steady state in Ω at any value: nothing to draw\n");
     }
     let lines = files.iter().map(|file| format!("  {}\n", file.display()));
-    super::print(&format!("files\n{}", lines.collect::<String>()))
+    let text = format!("files\n{}", lines.collect::<String>());
+    super::conclude(&text, Outcome::Complete, output.path())
 }

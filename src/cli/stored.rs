@@ -80,6 +80,10 @@ pub(super) fn diagnostic(error: &RunError) -> Diagnostic {
         RunError::NotARun { .. } => {
             finding.remedy("give the folder that `pbif sweep` wrote, such as `output/coulomb_fc`")
         }
+        RunError::InUse { .. } => {
+            finding.remedy("wait until it has ended, or give another folder with `--out DIR`")
+        }
+        RunError::NotOurs { .. } => finding.remedy("give another folder with `--out DIR`"),
         RunError::NotStored { stored, .. } => finding
             .allowed(format!("observables of {}", list(stored)))
             .remedy("`pbif sweep FILE --set detect.marginals=…` or `detect.joint=…` solves and stores more"),

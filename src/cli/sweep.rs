@@ -71,7 +71,9 @@ impl<'a> Run<'a> {
         let threads = rayon::current_num_threads();
         let manifest = Manifest::start(&resolved, spec.settings.method.chosen().seed(), threads)?;
         let folder = RunFolder::create(path)?;
-        folder.write_manifest(&manifest)?;
+        folder
+            .write_manifest(&manifest)
+            .map_err(|error| CommandError::from(error).after(written(path, 0)))?;
         Ok(Self {
             spec,
             source,
@@ -83,7 +85,20 @@ impl<'a> Run<'a> {
         })
     }
 
+    /// Does everything; what went wrong on the way comes with what there is all the same.
     fn carry_out(mut self) -> Result<Outcome, CommandError> {
+        self.say_what_is_kept();
+        let result = self.solve_and_write();
+        self.progress.finish();
+        let path = self.folder.path();
+        let result = result.map_err(|error| error.after(written(path, self.folder.points())))?;
+        if !self.quiet {
+            self.progress.warn(&self.manifest.warnings);
+        }
+        super::conclude(&summary::text(&result, path), outcome(&result), path)
+    }
+
+    fn solve_and_write(&mut self) -> Result<SweepResult, CommandError> {
         let clock = Instant::now();
         let result = self.sweep()?;
         self.manifest.seconds.sweep = clock.elapsed().as_secs_f64();
@@ -103,12 +118,15 @@ impl<'a> Run<'a> {
             Ending::Complete
         };
         self.folder.write_manifest(&self.manifest)?;
-        self.progress.finish();
-        if !self.quiet {
-            self.progress.warn(&self.manifest.warnings);
+        Ok(result)
+    }
+
+    fn say_what_is_kept(&self) {
+        if let Some(kept) = self.folder.kept() {
+            let kept = kept.display();
+            self.progress
+                .say(&format!("the earlier run is kept in {kept}"));
         }
-        super::print(&summary::text(&result, self.folder.path()))?;
-        Ok(outcome(&result))
     }
 
     fn sweep(&mut self) -> Result<SweepResult, CommandError> {
@@ -126,13 +144,21 @@ impl<'a> Run<'a> {
             &self.cancellation,
             &mut recorder,
         )
-        .map_err(|error| match error {
-            SweepError::Observer(error) => match error.downcast::<RunError>() {
+        .map_err(
+            |SweepError::Observer(error)| match error.downcast::<RunError>() {
                 Ok(error) => CommandError::Run(*error),
                 Err(error) => CommandError::Sweep(SweepError::Observer(error)),
             },
-            error => CommandError::Sweep(error),
-        })
+        )
+    }
+}
+
+/// What there is in a folder whose run did not come to its end.
+fn written(folder: &Path, points: usize) -> String {
+    let folder = folder.display();
+    match points {
+        0 => format!("no point was done; {folder} holds run.json alone"),
+        points => format!("{points} points that were done are kept in {folder}"),
     }
 }
 

@@ -2,16 +2,17 @@
 
 use std::path::{Path, PathBuf};
 
+use super::atomic::{sync_all_below, write_atomically, write_durably};
 use super::growing::GrowingTable;
 use super::{
-    DensityStore, Manifest, RunError, atomic::write_atomically, bifurcations, checks,
-    features_table, points_table, staging::Staging,
+    DensityStore, Ending, Manifest, RunError, bifurcations, checks, features_table,
+    lock::FolderLock, points_table, staging::Staging,
 };
 use crate::continuation::{Point, Subject, SweepResult};
 use crate::density::EstimatedDensity;
 
-/// Everything a run may leave in its folder.
-pub(super) const ENTRIES: [&str; 10] = [
+/// Everything a run may leave in its folder, the file that marks it as one first.
+pub(super) const ENTRIES: [&str; 12] = [
     "run.json",
     "points.csv",
     "features.csv",
@@ -20,6 +21,8 @@ pub(super) const ENTRIES: [&str; 10] = [
     "bifurcations.tex",
     "bifurcations.json",
     "densities.zarr",
+    "densities.zarr.new",
+    "densities.zarr.old",
     "checks.csv",
     "figures",
 ];
@@ -31,22 +34,31 @@ pub struct RunFolder {
     store: DensityStore,
     points: GrowingTable,
     features: GrowingTable,
+    /// Points that were added.
+    added: usize,
+    kept: Option<PathBuf>,
+    /// Keeps other processes away while the run is written.
+    _lock: Option<FolderLock>,
 }
 
 impl RunFolder {
-    /// Prepares a folder: makes it if need be, and moves the files of an earlier run into `previous/`, in place of
-    /// what was there. Files that are not a run's are left alone.
+    /// Prepares a folder: makes it if need be, and moves the files of an earlier run to `previous/1`, or the next number that is
+    /// free. Files that are not a run's are left alone. Until it is dropped, no other process writes to the folder.
     ///
     /// # Errors
-    /// [`RunError::Write`].
+    /// [`RunError::InUse`], [`RunError::NotOurs`], [`RunError::Read`], [`RunError::Write`]; then the folder is as it was.
     pub fn create(path: &Path) -> Result<Self, RunError> {
         std::fs::create_dir_all(path).map_err(|source| RunError::Write {
             path: path.to_owned(),
             source,
         })?;
         // A run is written as it goes on, so that a reader sees how far it is: only the earlier one is staged.
-        Staging::new(path, &ENTRIES)?.take_place(&[])?;
-        Ok(Self::fresh(path))
+        let placed = Staging::new(path, &ENTRIES)?.take_place(&[])?;
+        Ok(Self {
+            kept: placed.kept,
+            _lock: Some(placed.lock),
+            ..Self::fresh(path)
+        })
     }
 
     /// A folder that is written beside its place, in which nothing was before.
@@ -56,7 +68,15 @@ impl RunFolder {
             store: DensityStore::new(&path.join("densities.zarr")),
             points: GrowingTable::new(&path.join("points.csv")),
             features: GrowingTable::new(&path.join("features.csv")),
+            added: 0,
+            kept: None,
+            _lock: None,
         }
+    }
+
+    /// Where the earlier run is kept that was in the folder.
+    pub fn kept(&self) -> Option<&Path> {
+        self.kept.as_deref()
     }
 
     /// The folder.
@@ -69,13 +89,16 @@ impl RunFolder {
         self.path.join("figures")
     }
 
-    /// Writes `run.json`.
+    /// Writes `run.json`. One that says that the run has ended waits until everything else is on the disk.
     ///
     /// # Errors
     /// [`RunError::Json`] or [`RunError::Write`].
     pub fn write_manifest(&self, manifest: &Manifest) -> Result<(), RunError> {
+        if manifest.ending != Ending::Running {
+            sync_all_below(&self.path)?;
+        }
         let text = serde_json::to_string_pretty(manifest)? + "\n";
-        self.write("run.json", &text)
+        write_durably(&self.path.join("run.json"), text.as_bytes())
     }
 
     /// Stores a point's densities and adds its rows to the tables. What this costs does not depend on how many points there
@@ -99,7 +122,14 @@ impl RunFolder {
             .add(|| columns.header(), &columns.lines(&rows)?)?;
         let columns = points_table::columns(family, observables, &[]);
         self.points
-            .add(|| columns.header(), &columns.lines([point])?)
+            .add(|| columns.header(), &columns.lines([point])?)?;
+        self.added += 1;
+        Ok(())
+    }
+
+    /// How many points were added so far.
+    pub fn points(&self) -> usize {
+        self.added
     }
 
     /// Writes all tables of a finished sweep and puts the stored densities in ascending order.

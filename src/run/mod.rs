@@ -1,6 +1,7 @@
 //! What a run leaves on disk: tables, stored densities, manifest. Every file appears whole or not at all, and is read back as
 //! it was.
 
+mod archive;
 mod arrays;
 mod atomic;
 mod bifurcations;
@@ -8,11 +9,13 @@ mod cell;
 mod checks;
 mod columns;
 mod compare;
+mod exchange;
 mod features_table;
 mod findings;
 mod folder;
 mod growing;
 mod latex;
+mod lock;
 mod manifest;
 mod number;
 mod points_table;
@@ -27,6 +30,7 @@ mod stored_run;
 mod stored_tests;
 #[cfg(test)]
 mod tests;
+mod tree;
 
 pub(crate) use atomic::write_atomically;
 pub use bifurcations::{
@@ -73,6 +77,22 @@ pub enum RunError {
     /// A value cannot be written as JSON.
     #[error("cannot compose JSON: {0}")]
     Json(#[from] serde_json::Error),
+    /// Another process writes to the folder.
+    #[error("`{}` is being written to by {holder}", path.display())]
+    InUse {
+        /// The folder.
+        path: PathBuf,
+        /// Process and machine.
+        holder: String,
+    },
+    /// A file or folder stands where a run's would, without the file that marks a run.
+    #[error("`{}` is there, but no {mark} beside it: it was not left by pbif, and is not touched", path.display())]
+    NotOurs {
+        /// What stands there.
+        path: PathBuf,
+        /// The file that would mark it.
+        mark: &'static str,
+    },
     /// A folder without a manifest.
     #[error("`{}` is not the folder of a run: it has no run.json", path.display())]
     NotARun {

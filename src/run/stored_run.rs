@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 use super::checks::read_checks;
 use super::points_table::read_points;
 use super::stored_densities::StoredDensities;
-use super::{Ending, PhaseSeconds, RunError};
+use super::{Ending, PhaseSeconds, RunError, exchange};
 use crate::continuation::{CheckedIndicator, Point, Subject};
 use crate::space::CellSpace;
 
@@ -138,7 +138,7 @@ impl StoredRun {
         if points.iter().all(|point| point.moments.is_empty()) {
             return Ok(points);
         }
-        let path = self.path.join("densities.zarr");
+        let path = exchange::standing(&self.path.join("densities.zarr"), "zarr.json");
         let stored = StoredDensities::open(&path, subject, space)?;
         for point in points.iter_mut().filter(|point| !point.moments.is_empty()) {
             point.densities = stored.at(point.value)?.ok_or_else(|| RunError::NoDensity {
