@@ -71,7 +71,7 @@ impl Staging {
         let is_there = |entry: &&str| self.home.join(entry).exists();
         let mut made = None;
         let mut kept = None;
-        if self.entries.iter().any(|entry| is_there(entry)) {
+        if self.entries.iter().any(&is_there) {
             kept = archive::kept_already(&self.home, self.entries);
             if kept.is_none() {
                 made = Some(archive::keep(&self.home, self.entries, self.room.path())?);
@@ -80,8 +80,11 @@ impl Staging {
         }
         // A file is replaced in one step; folders, and what is not there any more, make room first.
         let leaving = self.entries.iter().copied().filter(|entry| {
-            let replaced = is_new(entry) && !self.home.join(entry).is_dir();
-            is_there(entry) && !replaced && !(staying.contains(entry) && !is_new(entry))
+            let stays = match is_new(entry) {
+                true => !self.home.join(entry).is_dir(),
+                false => staying.contains(entry),
+            };
+            is_there(entry) && !stays
         });
         if let Err(error) = archive::take_away(&self.home, &leaving.collect::<Vec<_>>(), &gone) {
             if let Some(made) = &made {
