@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 /// The modules that each module may use. The order is the one of the table in `src/lib.rs`.
 const ALLOWED: &[(&str, &[&str])] = &[
     ("cancellation", &[]),
+    ("bytes", &[]),
     ("formula", &[]),
     ("system", &["formula"]),
     ("space", &[]),
@@ -18,12 +19,22 @@ const ALLOWED: &[(&str, &[&str])] = &[
         &["cancellation", "system", "space", "sampling"],
     ),
     ("generator", &["system", "space"]),
-    ("stationary", &["cancellation", "space", "sampling"]),
+    (
+        "stationary",
+        &["cancellation", "space", "sampling", "bytes"],
+    ),
     ("density", &["system", "space"]),
     ("topology", &["space", "density"]),
     (
         "continuation",
-        &["cancellation", "system", "space", "density", "topology"],
+        &[
+            "cancellation",
+            "system",
+            "space",
+            "density",
+            "topology",
+            "bytes",
+        ],
     ),
     (
         "method",
@@ -37,6 +48,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "stationary",
             "density",
             "continuation",
+            "bytes",
         ],
     ),
     (
@@ -90,6 +102,9 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "continuation",
             "compare",
             "sweep_file",
+            "bytes",
+            "cancellation",
+            "method",
         ],
     ),
     (

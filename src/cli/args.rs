@@ -12,6 +12,7 @@ Examples:
   pbif systems coulomb               show one: equations, parameters, source
   pbif check sweeps/coulomb_fc.toml  what would be run, and what it costs
   pbif sweep sweeps/coulomb_fc.toml  run it; results go to output/coulomb_fc/
+  pbif sweep sweeps/coulomb_fc.toml --resume   go on with it after an interrupt, a kill or a full disk
   pbif sweep sweeps/coulomb_fc.toml --set sweep.points=11 --set cells.x.count=30 --out trial
   pbif compare sweeps/coulomb_fc.toml                          the methods side by side
   pbif detect output/coulomb_fc --set detect.confidence=0.99   detect again, without solving
@@ -157,6 +158,9 @@ pub(crate) struct SweepArguments {
     /// Folder for the results [default: output/NAME, after the sweep file]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Go on with the run in the folder that was interrupted or killed; a complete one is not run again
+    #[arg(long)]
+    pub(crate) resume: bool,
     /// Threads to use, all if left out; results do not depend on it
     #[arg(long, value_name = "N", value_parser = threads)]
     pub(crate) threads: Option<usize>,

@@ -84,6 +84,11 @@ pub(super) fn diagnostic(error: &RunError) -> Diagnostic {
             finding.remedy("wait until it has ended, or give another folder with `--out DIR`")
         }
         RunError::NotOurs { .. } => finding.remedy("give another folder with `--out DIR`"),
+        RunError::NoJournal { .. } | RunError::Journal { .. } | RunError::JournalOrder { .. } => {
+            finding.remedy("leave `--resume` out: the run begins anew, and what is there is kept in its folder previous/")
+        }
+        RunError::OtherSweep { .. } => finding
+            .remedy("give the settings of that run, or leave `--resume` out: it is then kept in the folder previous/"),
         RunError::NotStored { stored, .. } => finding
             .allowed(format!("observables of {}", list(stored)))
             .remedy("`pbif sweep FILE --set detect.marginals=…` or `detect.joint=…` solves and stores more"),

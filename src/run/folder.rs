@@ -5,15 +5,16 @@ use std::path::{Path, PathBuf};
 use super::atomic::{sync_all_below, write_atomically, write_durably};
 use super::growing::GrowingTable;
 use super::{
-    DensityStore, Ending, Manifest, RunError, bifurcations, checks, features_table,
+    DensityStore, Ending, Manifest, RunError, bifurcations, checks, features_table, journal,
     lock::FolderLock, points_table, staging::Staging,
 };
 use crate::continuation::{Point, Subject, SweepResult};
 use crate::density::EstimatedDensity;
 
 /// Everything a run may leave in its folder, the file that marks it as one first.
-pub(super) const ENTRIES: [&str; 12] = [
+pub(super) const ENTRIES: [&str; 13] = [
     "run.json",
+    journal::NAME,
     "points.csv",
     "features.csv",
     "bifurcations.csv",
@@ -61,6 +62,18 @@ impl RunFolder {
         })
     }
 
+    /// Opens the folder of an unfinished run to go on with it. What is there is replaced whole, when the points of the run are
+    /// [added](RunFolder::add_points) again.
+    ///
+    /// # Errors
+    /// [`RunError::InUse`], [`RunError::Write`].
+    pub fn reopen(path: &Path) -> Result<Self, RunError> {
+        Ok(Self {
+            _lock: Some(FolderLock::take(path)?),
+            ..Self::fresh(path)
+        })
+    }
+
     /// A folder that is written beside its place, in which nothing was before.
     pub(super) fn fresh(path: &Path) -> Self {
         Self {
@@ -101,6 +114,15 @@ impl RunFolder {
         write_durably(&self.path.join("run.json"), text.as_bytes())
     }
 
+    /// Writes how far a run is into `run.json`, without waiting for the disk.
+    ///
+    /// # Errors
+    /// [`RunError::Json`] or [`RunError::Write`].
+    pub fn write_progress(&self, manifest: &Manifest) -> Result<(), RunError> {
+        let text = serde_json::to_string_pretty(manifest)? + "\n";
+        self.write("run.json", &text)
+    }
+
     /// Stores a point's densities and adds its rows to the tables. What this costs does not depend on how many points there
     /// are: until [`RunFolder::finish`], rows stand in the order in which the points came.
     ///
@@ -127,6 +149,40 @@ impl RunFolder {
         Ok(())
     }
 
+    /// The same of several points at once, the first of the run: whatever was there of the tables and the store is replaced.
+    ///
+    /// # Errors
+    /// As [`RunFolder::add_point`].
+    pub fn add_points(&mut self, subject: &Subject, points: &[Point]) -> Result<(), RunError> {
+        let family = &subject.family;
+        self.store.replace(family, &with_densities(points))?;
+        let observables = &subject.observables;
+        let found = points
+            .iter()
+            .flat_map(|point| features_table::found(observables, point));
+        let rows: Vec<_> = found.collect();
+        let columns = features_table::columns(family);
+        self.features
+            .add(|| columns.header(), &columns.lines(&rows)?)?;
+        let columns = points_table::columns(family, observables, &[]);
+        self.points
+            .add(|| columns.header(), &columns.lines(points)?)?;
+        self.added += points.len();
+        Ok(())
+    }
+
+    /// Removes the journal of a run that is complete.
+    ///
+    /// # Errors
+    /// [`RunError::Write`].
+    pub fn close_journal(&self) -> Result<(), RunError> {
+        let path = self.path.join(journal::NAME);
+        match std::fs::remove_file(&path) {
+            Err(source) if path.exists() => Err(RunError::Write { path, source }),
+            _ => Ok(()),
+        }
+    }
+
     /// How many points were added so far.
     pub fn points(&self) -> usize {
         self.added
@@ -144,12 +200,7 @@ impl RunFolder {
             let text = checks::checks_csv(&result.subject, checks)?;
             self.write("checks.csv", &text)?;
         }
-        let densities: Vec<(f64, &[EstimatedDensity])> = result
-            .points
-            .iter()
-            .filter(|point| !point.densities.is_empty())
-            .map(|point| (point.value, point.densities.as_slice()))
-            .collect();
+        let densities = with_densities(&result.points);
         self.store.replace(&result.subject.family, &densities)
     }
 
@@ -187,4 +238,12 @@ impl RunFolder {
     fn write(&self, name: &str, text: &str) -> Result<(), RunError> {
         write_atomically(&self.path.join(name), text.as_bytes())
     }
+}
+
+/// The densities of those points that have some.
+fn with_densities(points: &[Point]) -> Vec<(f64, &[EstimatedDensity])> {
+    let solved = points.iter().filter(|point| !point.densities.is_empty());
+    solved
+        .map(|point| (point.value, point.densities.as_slice()))
+        .collect()
 }

@@ -14,6 +14,7 @@ mod features_table;
 mod findings;
 mod folder;
 mod growing;
+mod journal;
 mod latex;
 mod lock;
 mod manifest;
@@ -39,6 +40,7 @@ pub use bifurcations::{
 pub use compare::{CompareFolder, CompareTable, ComparedRun, compare_tables};
 pub use features_table::features_csv;
 pub use folder::RunFolder;
+pub use journal::{Journal, JournalledSource};
 pub use manifest::{Ending, Manifest, PhaseSeconds};
 pub use number::{format_number, format_with_error};
 pub use points_table::points_csv;
@@ -92,6 +94,36 @@ pub enum RunError {
         path: PathBuf,
         /// The file that would mark it.
         mark: &'static str,
+    },
+    /// An unfinished run without a journal.
+    #[error("the run in {} has no journal.bin to go on from", path.display())]
+    NoJournal {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A journal that cannot be read.
+    #[error("{} is not the journal of this run, or is damaged", path.display())]
+    Journal {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A journal whose values are not those that the sweep asks for.
+    #[error("{} has {stored} where the sweep asks for {wanted}", path.display())]
+    JournalOrder {
+        /// The file.
+        path: PathBuf,
+        /// The value in the journal.
+        stored: f64,
+        /// The value that the sweep asks for.
+        wanted: f64,
+    },
+    /// An unfinished run of another sweep.
+    #[error("the unfinished run in {} is of another sweep: {}", path.display(), differences.join("; "))]
+    OtherSweep {
+        /// The folder.
+        path: PathBuf,
+        /// What differs, key by key.
+        differences: Vec<String>,
     },
     /// A folder without a manifest.
     #[error("`{}` is not the folder of a run: it has no run.json", path.display())]

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::staging::Staging;
 use super::tree::link_tree;
-use super::{RunError, RunFolder, exchange, folder};
+use super::{RunError, RunFolder, exchange, folder, journal};
 
 /// What a sweep solved for: it stays when the run is detected again.
 const SOLVED: [&str; 2] = ["densities.zarr", "checks.csv"];
@@ -52,7 +52,9 @@ impl StagedRun {
     /// # Errors
     /// [`RunError::Read`] or [`RunError::Write`].
     pub fn take_place(self) -> Result<Vec<PathBuf>, RunError> {
-        let staying: &[&str] = if self.same { &SOLVED } else { &[] };
+        // A run that goes on needs its journal, which cannot be shared with another folder.
+        let staying = [&SOLVED[..], &[journal::NAME]].concat();
+        let staying: &[&str] = if self.same { &staying } else { &[] };
         Ok(self.staging.take_place(staying)?.files)
     }
 }

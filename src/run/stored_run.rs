@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 use super::checks::read_checks;
 use super::points_table::read_points;
 use super::stored_densities::StoredDensities;
-use super::{Ending, PhaseSeconds, RunError, exchange};
+use super::{Ending, PhaseSeconds, RunError, exchange, journal};
 use crate::continuation::{CheckedIndicator, Point, Subject};
 use crate::space::CellSpace;
 
@@ -87,6 +87,21 @@ impl StoredRun {
     /// How the run ended.
     pub fn ending(&self) -> Ending {
         self.manifest.ending
+    }
+
+    /// Refuses a sweep that is not the one that was run; titles and figures may differ.
+    ///
+    /// # Errors
+    /// [`RunError::OtherSweep`].
+    pub fn check_sweep(&self, resolved: &str) -> Result<(), RunError> {
+        let differences = journal::different_keys(&self.resolved, resolved);
+        match differences.is_empty() {
+            true => Ok(()),
+            false => Err(RunError::OtherSweep {
+                path: self.path.clone(),
+                differences,
+            }),
+        }
     }
 
     /// Seed of the random streams.
