@@ -108,7 +108,7 @@ fn files(run: &Path) -> BTreeMap<String, Vec<u8>> {
             let name = path.strip_prefix(run).unwrap().to_str().unwrap().to_owned();
             if path.is_dir() {
                 open.push(path);
-            } else if name != "run.json" {
+            } else if name != "run.json" && name != "checksums.sha256" {
                 found.insert(name, std::fs::read(path).unwrap());
             }
         }

@@ -123,6 +123,15 @@ pub(super) enum Command {
         #[command(flatten)]
         run: ExploreArguments,
     },
+    /// Check that every file of a run is as the run left it
+    #[command(
+        after_help = "Examples:\n  pbif verify output/coulomb_fc\n\nExit status: 0 every file is; 1 one is not, or the run has no checksums yet."
+    )]
+    Verify {
+        /// What to check.
+        #[command(flatten)]
+        run: VerifyArguments,
+    },
     /// List the models, or show one: equations, axes, parameters, domain, source
     #[command(after_help = "Examples:\n  pbif systems\n  pbif systems dahl")]
     Systems {
@@ -198,6 +207,13 @@ pub(crate) struct DetectArguments {
     /// No progress and no warnings on stderr, results alone
     #[arg(long)]
     pub(crate) quiet: bool,
+}
+
+/// A stored run that is checked.
+#[derive(Debug, Args)]
+pub(crate) struct VerifyArguments {
+    /// Folder of a run, as `pbif sweep` left it
+    pub(crate) run: PathBuf,
 }
 
 /// A stored run that is drawn again.

@@ -11,6 +11,7 @@ mod plot;
 mod stored;
 mod sweep;
 mod systems;
+mod verify;
 mod warnings;
 
 use std::io::{self, IsTerminal as _, Write as _};
@@ -153,6 +154,7 @@ fn dispatch(command: &Command) -> Result<Outcome, CommandError> {
         Command::Detect { run } => detect::run(run),
         Command::Plot { run } => plot::run(run),
         Command::Explore { run } => explore::run(run),
+        Command::Verify { run } => verify::run(run),
         Command::Systems { name: None } => print(&systems::list()),
         Command::Systems { name: Some(name) } => print(&systems::describe(name)?),
     }

@@ -23,6 +23,9 @@ pub(super) fn run(arguments: &PlotArguments) -> Result<Outcome, CommandError> {
     if files.is_empty() {
         return super::print("no steady state in Ω at any value: nothing to draw\n");
     }
+    if arguments.out.is_none() {
+        stored.run.renew_figures()?;
+    }
     let lines = files.iter().map(|file| format!("  {}\n", file.display()));
     let text = format!("files\n{}", lines.collect::<String>());
     super::conclude(&text, Outcome::Complete, output.path())

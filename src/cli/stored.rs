@@ -102,7 +102,11 @@ pub(super) fn diagnostic(error: &RunError) -> Diagnostic {
         | RunError::Row { .. }
         | RunError::ReadStore { .. }
         | RunError::Cells { .. }
-        | RunError::NoDensity { .. } => {
+        | RunError::NoDensity { .. }
+        | RunError::Checksums { .. }
+        | RunError::Damaged { .. }
+        | RunError::Rows { .. }
+        | RunError::NotFinite { .. } => {
             finding.remedy(format!("the run was changed or is not complete; {solve}"))
         }
         _ => finding,

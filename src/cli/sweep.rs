@@ -151,6 +151,7 @@ impl<'a> Run<'a> {
             Ending::Complete
         };
         self.folder.write_manifest(&self.manifest)?;
+        self.folder.seal()?;
         if !result.interrupted {
             self.folder.close_journal()?;
         }

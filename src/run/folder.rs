@@ -5,15 +5,16 @@ use std::path::{Path, PathBuf};
 use super::atomic::{sync_all_below, write_atomically, write_durably};
 use super::growing::GrowingTable;
 use super::{
-    DensityStore, Ending, Manifest, RunError, bifurcations, checks, features_table, journal,
-    lock::FolderLock, points_table, staging::Staging,
+    DensityStore, Ending, Manifest, RunError, bifurcations, checks, checksums, features_table,
+    journal, lock::FolderLock, points_table, staging::Staging,
 };
 use crate::continuation::{Point, Subject, SweepResult};
 use crate::density::EstimatedDensity;
 
 /// Everything a run may leave in its folder, the file that marks it as one first.
-pub(super) const ENTRIES: [&str; 13] = [
+pub(super) const ENTRIES: [&str; 14] = [
     "run.json",
+    checksums::NAME,
     journal::NAME,
     "points.csv",
     "features.csv",
@@ -68,8 +69,11 @@ impl RunFolder {
     /// # Errors
     /// [`RunError::InUse`], [`RunError::Write`].
     pub fn reopen(path: &Path) -> Result<Self, RunError> {
+        let lock = FolderLock::take(path)?;
+        // They are of what is now replaced.
+        let _ = std::fs::remove_file(path.join(checksums::NAME));
         Ok(Self {
-            _lock: Some(FolderLock::take(path)?),
+            _lock: Some(lock),
             ..Self::fresh(path)
         })
     }
@@ -169,6 +173,14 @@ impl RunFolder {
             .add(|| columns.header(), &columns.lines(points)?)?;
         self.added += points.len();
         Ok(())
+    }
+
+    /// Writes the checksums of all files of a run that has ended, see `docs/run-folder.md`.
+    ///
+    /// # Errors
+    /// [`RunError::Read`] or [`RunError::Write`].
+    pub fn seal(&self) -> Result<(), RunError> {
+        checksums::write(&self.path)
     }
 
     /// Removes the journal of a run that is complete.

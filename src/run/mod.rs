@@ -7,6 +7,7 @@ mod atomic;
 mod bifurcations;
 mod cell;
 mod checks;
+mod checksums;
 mod columns;
 mod compare;
 mod exchange;
@@ -37,6 +38,7 @@ pub(crate) use atomic::write_atomically;
 pub use bifurcations::{
     bifurcations_csv, bifurcations_json, bifurcations_markdown, bifurcations_tex,
 };
+pub use checksums::{Checked, Damage};
 pub use compare::{CompareFolder, CompareTable, ComparedRun, compare_tables};
 pub use features_table::features_csv;
 pub use folder::RunFolder;
@@ -94,6 +96,44 @@ pub enum RunError {
         path: PathBuf,
         /// The file that would mark it.
         mark: &'static str,
+    },
+    /// A line of the checksums that is none.
+    #[error("{}, line {line}: not a checksum and a name", path.display())]
+    Checksums {
+        /// The file.
+        path: PathBuf,
+        /// The line, counted from 1.
+        line: usize,
+    },
+    /// A file that is not as the run left it.
+    #[error("{} is {}: it is not what the run left", path.display(), damage.word())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What became of it.
+        damage: Damage,
+    },
+    /// A table with other rows than the run has points.
+    #[error("{} has {found} rows; the run left {wanted}", path.display())]
+    Rows {
+        /// The table.
+        path: PathBuf,
+        /// How many it has.
+        found: usize,
+        /// How many the run left.
+        wanted: usize,
+    },
+    /// A stored density that is not finite.
+    #[error("{}: the density of `{observable}` at {parameter} = {value} has values that are missing or no numbers", path.display())]
+    NotFinite {
+        /// The store.
+        path: PathBuf,
+        /// The observable.
+        observable: String,
+        /// The swept parameter.
+        parameter: String,
+        /// Its value.
+        value: f64,
     },
     /// An unfinished run without a journal.
     #[error("the run in {} has no journal.bin to go on from", path.display())]

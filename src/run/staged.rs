@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::staging::Staging;
 use super::tree::link_tree;
-use super::{RunError, RunFolder, exchange, folder, journal};
+use super::{RunError, RunFolder, checksums, exchange, folder, journal};
 
 /// What a sweep solved for: it stays when the run is detected again.
 const SOLVED: [&str; 2] = ["densities.zarr", "checks.csv"];
@@ -55,7 +55,10 @@ impl StagedRun {
         // A run that goes on needs its journal, which cannot be shared with another folder.
         let staying = [&SOLVED[..], &[journal::NAME]].concat();
         let staying: &[&str] = if self.same { &staying } else { &[] };
-        Ok(self.staging.take_place(staying)?.files)
+        let home = self.staging.home().to_owned();
+        let placed = self.staging.take_place(staying)?;
+        checksums::write(&home)?;
+        Ok(placed.files)
     }
 }
 

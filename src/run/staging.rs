@@ -51,6 +51,11 @@ impl Staging {
         Ok(staging)
     }
 
+    /// Where the files are to stand.
+    pub(super) fn home(&self) -> &Path {
+        &self.home
+    }
+
     /// The folder to write the new files to.
     pub(super) fn fresh(&self) -> PathBuf {
         self.room.path().join("fresh")
