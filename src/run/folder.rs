@@ -12,7 +12,7 @@ use crate::continuation::{Point, Subject, SweepResult};
 use crate::density::EstimatedDensity;
 
 /// Everything a run may leave in its folder, the file that marks it as one first.
-pub(super) const ENTRIES: [&str; 14] = [
+pub(super) const ENTRIES: [&str; 15] = [
     "run.json",
     checksums::NAME,
     journal::NAME,
@@ -27,6 +27,7 @@ pub(super) const ENTRIES: [&str; 14] = [
     "densities.zarr.old",
     "checks.csv",
     "figures",
+    "explorer.html",
 ];
 
 /// The folder of a run while it is written.
