@@ -255,3 +255,11 @@ fn the_rule_has_no_cycle_and_the_reader_sees_dependencies() {
     assert_eq!(used(text), ["space", "density", "run", "system"]);
     assert!(dependencies()["continuation"].contains_key("density"));
 }
+
+#[test]
+fn the_citation_is_of_this_version() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let citation = std::fs::read_to_string(root.join("CITATION.cff")).unwrap();
+    let version = format!("\nversion: {}\n", env!("CARGO_PKG_VERSION"));
+    assert!(citation.contains(&version), "{citation}");
+}
