@@ -185,12 +185,13 @@ impl<'a> Run<'a> {
             &self.cancellation,
             &mut recorder,
         )
-        .map_err(
-            |SweepError::Observer(error)| match error.downcast::<RunError>() {
+        .map_err(|error| match error {
+            SweepError::Observer(error) => match error.downcast::<RunError>() {
                 Ok(error) => CommandError::Run(*error),
                 Err(error) => CommandError::Sweep(SweepError::Observer(error)),
             },
-        )?;
+            error => CommandError::Sweep(error),
+        })?;
         for point in &mut result.points {
             point.seconds = self.source.seconds(point.value).unwrap_or(point.seconds);
         }

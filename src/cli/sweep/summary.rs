@@ -49,7 +49,8 @@ pub(in crate::cli) fn text(result: &SweepResult, folder: &Path) -> String {
 
 /// Why there is no figure.
 fn nothing_to_draw(result: &SweepResult) -> &'static str {
-    let failed = |point: &Point| point.report.status == PointStatus::NotConverged;
+    let unsolved = [PointStatus::NotConverged, PointStatus::Failed];
+    let failed = |point: &Point| unsolved.contains(&point.report.status);
     match result.points.iter().any(failed) {
         true => "no density at any value: nothing to draw\n",
         false => "no steady state in Ω at any value: nothing to draw\n",

@@ -14,8 +14,8 @@ use crate::run::RunError;
 /// all others are solved as they would have been, and written before they are given.
 ///
 /// What cannot be written, or asks for other values than the journal has, ends the session as if it had been interrupted;
-/// [`JournalledSource::failure`] says why. The finer source that checks located values is that of the source itself: what a session of it has solved
-/// is solved again, to the same bits.
+/// [`JournalledSource::failure`] says why. The sources that check located values are those of the source itself: what their sessions have solved is
+/// solved again, to the same bits.
 pub struct JournalledSource {
     source: Box<dyn DensitySource>,
     shared: Arc<Mutex<Shared>>,
@@ -102,6 +102,10 @@ impl DensitySource for JournalledSource {
 
     fn finer(&self) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
         self.source.finer()
+    }
+
+    fn enclosed(&self) -> Option<Box<dyn DensitySource>> {
+        self.source.enclosed()
     }
 }
 
