@@ -6,6 +6,7 @@
 //! | read formulas, differentiate and analyse them, run them on many states at a time | [`formula`] |
 //! | state a model, look up the built-in ones | [`system`] |
 //! | ask long work to stop | [`cancellation`] |
+//! | keep numbers as bytes, the same to the bit | [`bytes`] |
 //! | lay a grid of cells over the domain | [`space`] |
 //! | sample a transition matrix by trajectories (SGCM) | [`sampling`] |
 //! | run free trajectories: reference densities, relaxation times, the bias of a time step | [`monte_carlo`] |
@@ -24,6 +25,7 @@
 //!
 //! Modules depend on those above them in this table, never the other way.
 
+pub mod bytes;
 pub mod cancellation;
 pub mod cli;
 pub mod compare;

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 /// The modules that each module may use. The order is the one of the table in `src/lib.rs`.
 const ALLOWED: &[(&str, &[&str])] = &[
     ("cancellation", &[]),
+    ("bytes", &[]),
     ("formula", &[]),
     ("system", &["formula"]),
     ("space", &[]),
@@ -18,12 +19,22 @@ const ALLOWED: &[(&str, &[&str])] = &[
         &["cancellation", "system", "space", "sampling"],
     ),
     ("generator", &["system", "space"]),
-    ("stationary", &["cancellation", "space", "sampling"]),
+    (
+        "stationary",
+        &["cancellation", "space", "sampling", "bytes"],
+    ),
     ("density", &["system", "space"]),
     ("topology", &["space", "density"]),
     (
         "continuation",
-        &["cancellation", "system", "space", "density", "topology"],
+        &[
+            "cancellation",
+            "system",
+            "space",
+            "density",
+            "topology",
+            "bytes",
+        ],
     ),
     (
         "method",
@@ -37,6 +48,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "stationary",
             "density",
             "continuation",
+            "bytes",
         ],
     ),
     (
@@ -90,6 +102,9 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "continuation",
             "compare",
             "sweep_file",
+            "bytes",
+            "cancellation",
+            "method",
         ],
     ),
     (
@@ -239,4 +254,12 @@ fn the_rule_has_no_cycle_and_the_reader_sees_dependencies() {
     let text = "use crate::{space::{Axis, CellSpace}, density};\nlet a = crate::run::x;\nuse crate::system::System;";
     assert_eq!(used(text), ["space", "density", "run", "system"]);
     assert!(dependencies()["continuation"].contains_key("density"));
+}
+
+#[test]
+fn the_citation_is_of_this_version() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let citation = std::fs::read_to_string(root.join("CITATION.cff")).unwrap();
+    let version = format!("\nversion: {}\n", env!("CARGO_PKG_VERSION"));
+    assert!(citation.contains(&version), "{citation}");
 }

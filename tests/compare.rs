@@ -176,11 +176,11 @@ fn an_earlier_comparison_is_kept_and_numbers_repeat_on_any_threads() {
     let output = command.output().unwrap();
     assert!(output.stderr.is_empty(), "{output:?}");
     assert_eq!(first, (read("densities.csv"), read("distances.csv")));
-    assert_eq!(first.0, read("previous/densities.csv"));
+    assert_eq!(first.0, read("previous/1/densities.csv"));
     assert!(
         folder
             .path()
-            .join("previous/figures/marginals.svg")
+            .join("previous/1/figures/marginals.svg")
             .is_file()
     );
     assert_eq!(read("mine.txt"), "stays");

@@ -319,7 +319,7 @@ fn quiet_leaves_the_results_alone_and_an_earlier_run_is_kept() {
     assert!(!first.stdout.is_empty() && !first.stdout.contains(&b'\x1b'));
     let before = std::fs::read(folder.path().join("run/features.csv")).unwrap();
     run("bistable", &overrides, &["--quiet"], &folder);
-    let kept = std::fs::read(folder.path().join("run/previous/features.csv")).unwrap();
+    let kept = std::fs::read(folder.path().join("run/previous/1/features.csv")).unwrap();
     assert_eq!(before, kept);
 }
 

@@ -12,6 +12,7 @@ Examples:
   pbif systems coulomb               show one: equations, parameters, source
   pbif check sweeps/coulomb_fc.toml  what would be run, and what it costs
   pbif sweep sweeps/coulomb_fc.toml  run it; results go to output/coulomb_fc/
+  pbif sweep sweeps/coulomb_fc.toml --resume   go on with it after an interrupt, a kill or a full disk
   pbif sweep sweeps/coulomb_fc.toml --set sweep.points=11 --set cells.x.count=30 --out trial
   pbif compare sweeps/coulomb_fc.toml                          the methods side by side
   pbif detect output/coulomb_fc --set detect.confidence=0.99   detect again, without solving
@@ -19,7 +20,10 @@ Examples:
   pbif explore output/coulomb_fc     one page that slides through the densities of the run
 
 Exit status: 0 done; 1 finished, but some row is unresolved, did not converge or has no steady state;
-2 bad usage or input, nothing written; 130 interrupted.";
+2 bad usage or input, or a folder that cannot be written to; 130 interrupted.
+
+Results are never overwritten: an earlier run in the same folder is kept in its folder previous/1,
+previous/2, and so on.";
 
 const DETECT_EXAMPLES: &str = "\
 Examples:
@@ -27,7 +31,7 @@ Examples:
   pbif detect output/coulomb_fc --set detect.floor=0.01 --out stricter
 
 Tables, figures and run.json are written anew, the densities stay. Without --out they take the
-place of those of the run, whose earlier version is kept in its folder previous/; with --out the
+place of those of the run, whose earlier version is kept below its folder previous/; with --out the
 run is left as it is.
 
 Exit status: 0 done; 1 finished, but some row is unresolved, did not converge or has no steady
@@ -41,7 +45,7 @@ Examples:
 Methods are compared at the values of figures.at: the generator with the settings of the file; SGCM as the
 paper has it (50 x 50 cells of equal width, method.samples samples a cell, map step 1, densities flat in the
 cells); the same samples with slope correction; and Monte Carlo to the relative error method.error. Tables
-and figures go to output/NAME-compare/ or --out; what was there before is kept in its folder previous/.
+and figures go to output/NAME-compare/ or --out; earlier comparisons are kept below its folder previous/.
 
 Exit status: 0 done; 1 finished, but generator and Monte Carlo disagree beyond their uncertainties, or a
 method did not converge or has no steady state; 2 bad usage or input, nothing written; 130 interrupted.
@@ -125,6 +129,15 @@ pub(super) enum Command {
         #[command(flatten)]
         run: ExploreArguments,
     },
+    /// Check that every file of a run is as the run left it
+    #[command(
+        after_help = "Examples:\n  pbif verify output/coulomb_fc\n\nExit status: 0 every file is; 1 one is not, or the run has no checksums yet."
+    )]
+    Verify {
+        /// What to check.
+        #[command(flatten)]
+        run: VerifyArguments,
+    },
     /// List the models, or show one: equations, axes, parameters, domain, source
     #[command(after_help = "Examples:\n  pbif systems\n  pbif systems dahl")]
     Systems {
@@ -160,6 +173,9 @@ pub(crate) struct SweepArguments {
     /// Folder for the results [default: output/NAME, after the sweep file]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Go on with the run in the folder that was interrupted or killed; a complete one is not run again
+    #[arg(long)]
+    pub(crate) resume: bool,
     /// Threads to use, all if left out; results do not depend on it
     #[arg(long, value_name = "N", value_parser = threads)]
     pub(crate) threads: Option<usize>,
@@ -197,6 +213,13 @@ pub(crate) struct DetectArguments {
     /// No progress and no warnings on stderr, results alone
     #[arg(long)]
     pub(crate) quiet: bool,
+}
+
+/// A stored run that is checked.
+#[derive(Debug, Args)]
+pub(crate) struct VerifyArguments {
+    /// Folder of a run, as `pbif sweep` left it
+    pub(crate) run: PathBuf,
 }
 
 /// A stored run that is drawn again.

@@ -55,6 +55,8 @@ fn carry_out(
         sgcm: spec.settings.method.sgcm.clone(),
         monte_carlo: spec.settings.method.monte_carlo.clone(),
     };
+    // What would be refused is refused before hours of work, and another process is kept away.
+    let folder = CompareFolder::new(path)?;
     let progress = Progress::new(2 + 3 * at.len(), quiet);
     let compared = compare(&task, cancellation, &mut |step| {
         progress.step(&step.next, step.done, step.total);
@@ -74,7 +76,6 @@ fn carry_out(
         sweep: &resolved,
         threads: rayon::current_num_threads(),
     };
-    let folder = CompareFolder::new(path)?;
     folder.write(&run)?;
     progress.say("drawing");
     let figures = Figures::of_comparison(&comparison, &spec.settings.title)
@@ -84,11 +85,11 @@ fn carry_out(
     let files = folder.take_place()?;
     progress.finish();
     progress.warn(&warnings::of_comparison(run.family(), &comparison));
-    super::print(&text(&run, &files))?;
-    Ok(match comparison.is_complete() && comparison.agrees() {
+    let outcome = match comparison.is_complete() && comparison.agrees() {
         true => Outcome::Complete,
         false => Outcome::Partial,
-    })
+    };
+    super::conclude(&text(&run, &files), outcome, path)
 }
 
 /// The tables, the verdict and the files.

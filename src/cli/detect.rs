@@ -30,12 +30,16 @@ pub(super) fn run(arguments: &DetectArguments) -> Result<Outcome, CommandError> 
     let staged = StagedRun::new(output.path(), &arguments.run)?;
     write(&stored, seconds, staged.folder())?;
     staged.take_place()?;
-    super::print(&summary::text(&stored.result, output.path()))?;
-    Ok(match outcome(&stored.result) {
+    let outcome = match outcome(&stored.result) {
         // It was the run that was interrupted, not this command.
         Outcome::Interrupted => Outcome::Partial,
         outcome => outcome,
-    })
+    };
+    super::conclude(
+        &summary::text(&stored.result, output.path()),
+        outcome,
+        output.path(),
+    )
 }
 
 /// Writes tables, figures, and last the manifest.

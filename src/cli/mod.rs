@@ -5,14 +5,17 @@ mod check;
 mod compare;
 mod detect;
 mod explore;
+mod interrupts;
 mod output;
 mod plot;
 mod stored;
 mod sweep;
 mod systems;
+mod verify;
 mod warnings;
 
 use std::io::{self, IsTerminal as _, Write as _};
+use std::path::Path;
 use std::process::ExitCode;
 
 use clap::Parser as _;
@@ -76,10 +79,31 @@ pub(crate) enum CommandError {
     Threads(#[from] rayon::ThreadPoolBuildError),
     /// Ctrl-C cannot be handled.
     #[error("cannot handle interrupts: {0}")]
-    Interrupts(#[from] ctrlc::Error),
+    Interrupts(io::Error),
     /// Standard output cannot be written to.
     #[error("cannot write to standard output: {0}")]
     Print(#[from] io::Error),
+    /// The command failed after it had written something.
+    #[error("{error}")]
+    Stopped {
+        /// Why it failed.
+        error: Box<CommandError>,
+        /// A sentence of what there is.
+        written: String,
+    },
+}
+
+impl CommandError {
+    /// The same after something was written: `written` says what there is.
+    fn after(self, written: String) -> Self {
+        match self {
+            Self::Stopped { .. } => self,
+            error => Self::Stopped {
+                error: Box::new(error),
+                written,
+            },
+        }
+    }
 }
 
 impl From<Report> for CommandError {
@@ -130,6 +154,7 @@ fn dispatch(command: &Command) -> Result<Outcome, CommandError> {
         Command::Detect { run } => detect::run(run),
         Command::Plot { run } => plot::run(run),
         Command::Explore { run } => explore::run(run),
+        Command::Verify { run } => verify::run(run),
         Command::Systems { name: None } => print(&systems::list()),
         Command::Systems { name: Some(name) } => print(&systems::describe(name)?),
     }
@@ -148,7 +173,8 @@ fn load(input: &args::SweepInput, quiet: bool) -> Result<Settings, Report> {
 
 /// Whether stderr takes colours.
 fn is_styled() -> bool {
-    io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none()
+    let dumb = std::env::var_os("TERM").is_some_and(|terminal| terminal == "dumb");
+    io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none() && !dumb
 }
 
 fn print(text: &str) -> Result<Outcome, CommandError> {
@@ -158,7 +184,20 @@ fn print(text: &str) -> Result<Outcome, CommandError> {
     Ok(Outcome::Complete)
 }
 
+/// Prints the results of a command whose files are in place. A reader who has gone changes nothing of how it ended.
+fn conclude(text: &str, outcome: Outcome, folder: &Path) -> Result<Outcome, CommandError> {
+    match print(text) {
+        Ok(_) => Ok(outcome),
+        Err(CommandError::Print(error)) if error.kind() == io::ErrorKind::BrokenPipe => Ok(outcome),
+        Err(error) => Err(error.after(format!("the results are in {}", folder.display()))),
+    }
+}
+
 fn render(error: CommandError, styled: bool) -> String {
+    let (error, written) = match error {
+        CommandError::Stopped { error, written } => (*error, written),
+        error => (error, "nothing was run or written".to_owned()),
+    };
     let report = match error {
         CommandError::Input(report) => report,
         CommandError::Output(error) => Diagnostic::new(error.to_string())
@@ -168,7 +207,7 @@ fn render(error: CommandError, styled: bool) -> String {
         error => Diagnostic::new(error.to_string()).into(),
     };
     let (findings, count) = (report.render(styled), report.count());
-    format!("{findings}{count}; nothing was run or written\n")
+    format!("{findings}{count}; {written}\n")
 }
 
 /// The threads that a command runs on (`None`: one a core), and what the first interrupt cancels. The second ends
@@ -180,14 +219,6 @@ fn interruptible(
         .num_threads(threads.unwrap_or(0))
         .build()?;
     let cancellation = Cancellation::new();
-    let asked = cancellation.clone();
-    ctrlc::set_handler(move || {
-        if asked.is_cancelled() {
-            // Nothing is half-written: files are put in place by renaming.
-            #[allow(clippy::exit)]
-            std::process::exit(130);
-        }
-        asked.cancel();
-    })?;
+    interrupts::cancel(&cancellation).map_err(CommandError::Interrupts)?;
     Ok((threads, cancellation))
 }

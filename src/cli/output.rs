@@ -65,11 +65,17 @@ impl OutputFolder {
             made: Vec::new(),
         };
         for part in missing.into_iter().rev() {
-            std::fs::create_dir(&part).map_err(|source| OutputError::Create {
-                path: path.to_owned(),
-                source,
-            })?;
-            folder.made.push(part);
+            match std::fs::create_dir(&part) {
+                Ok(()) => folder.made.push(part),
+                // Another run that shares it was faster.
+                Err(_) if part.is_dir() => {}
+                Err(source) => {
+                    return Err(OutputError::Create {
+                        path: path.to_owned(),
+                        source,
+                    });
+                }
+            }
         }
         // Permissions do not tell (a full or read-only disk): only writing does.
         let probe = tempfile::Builder::new().prefix(".pbif-").tempfile_in(path);

@@ -33,8 +33,12 @@ pub(super) fn run(arguments: &PlotArguments) -> Result<Outcome, CommandError> {
     if files.is_empty() {
         return super::print("no steady state in Ω at any value: nothing to draw\n");
     }
+    if arguments.out.is_none() {
+        stored.run.renew_figures()?;
+    }
     let lines = files.iter().map(|file| format!("  {}\n", file.display()));
-    super::print(&format!("files\n{}", lines.collect::<String>()))
+    let text = format!("files\n{}", lines.collect::<String>());
+    super::conclude(&text, Outcome::Complete, output.path())
 }
 
 /// Refuses names that no figure of this run has, such as one at a value that was not computed.

@@ -80,6 +80,15 @@ pub(super) fn diagnostic(error: &RunError) -> Diagnostic {
         RunError::NotARun { .. } => {
             finding.remedy("give the folder that `pbif sweep` wrote, such as `output/coulomb_fc`")
         }
+        RunError::InUse { .. } => {
+            finding.remedy("wait until it has ended, or give another folder with `--out DIR`")
+        }
+        RunError::NotOurs { .. } => finding.remedy("give another folder with `--out DIR`"),
+        RunError::NoJournal { .. } | RunError::Journal { .. } | RunError::JournalOrder { .. } => {
+            finding.remedy("leave `--resume` out: the run begins anew, and what is there is kept in its folder previous/")
+        }
+        RunError::OtherSweep { .. } => finding
+            .remedy("give the settings of that run, or leave `--resume` out: it is then kept in the folder previous/"),
         RunError::NotStored { stored, .. } => finding
             .allowed(format!("observables of {}", list(stored)))
             .remedy("`pbif sweep FILE --set detect.marginals=…` or `detect.joint=…` solves and stores more"),
@@ -93,7 +102,11 @@ pub(super) fn diagnostic(error: &RunError) -> Diagnostic {
         | RunError::Row { .. }
         | RunError::ReadStore { .. }
         | RunError::Cells { .. }
-        | RunError::NoDensity { .. } => {
+        | RunError::NoDensity { .. }
+        | RunError::Checksums { .. }
+        | RunError::Damaged { .. }
+        | RunError::Rows { .. }
+        | RunError::NotFinite { .. } => {
             finding.remedy(format!("the run was changed or is not complete; {solve}"))
         }
         _ => finding,

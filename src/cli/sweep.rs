@@ -1,6 +1,8 @@
 //! `pbif sweep`: solves along the parameter, writes every row as it comes, then the tables and the figures.
 
 pub(super) mod progress;
+mod recorder;
+mod resume;
 pub(super) mod summary;
 
 use std::path::{Path, PathBuf};
@@ -10,16 +12,16 @@ use super::args::SweepArguments;
 use super::output::OutputFolder;
 use super::{CommandError, Outcome, warnings};
 use crate::cancellation::Cancellation;
-use crate::continuation::{
-    BifurcationStatus, Observer, Point, Subject, SweepError, SweepResult, sweep,
-};
+use crate::continuation::{BifurcationStatus, SweepError, SweepResult, sweep};
 use crate::figure::{Figures, write_figures};
-use crate::method::{MethodError, MethodSource};
-use crate::run::{Ending, Manifest, RunError, RunFolder};
+use crate::method::MethodError;
+use crate::run::{Ending, Journal, JournalledSource, Manifest, RunError, RunFolder};
 use crate::sweep_file::Sweep;
 use progress::Progress;
+use recorder::Recorder;
+use resume::Begin;
 
-/// Runs a sweep and prints what it found.
+/// Runs a sweep, or goes on with it, and prints what it found.
 ///
 /// # Errors
 /// [`CommandError`] when the results cannot be written or the threads not be made; failed points are data.
@@ -29,9 +31,17 @@ pub(super) fn run(
     arguments: &SweepArguments,
 ) -> Result<Outcome, CommandError> {
     let output = OutputFolder::prepare(&output_path(name, arguments.out.as_deref()))?;
+    let begin = match arguments.resume {
+        true => resume::begin(spec, output.path())?,
+        false => Begin::Anew,
+    };
+    if let Begin::Done(stored) = begin {
+        return resume::show(&stored, output.path());
+    }
     let (threads, cancellation) = super::interruptible(arguments.threads)?;
     let path = output.path().to_owned();
-    let prepared = threads.install(|| Run::new(spec, &path, arguments.quiet, cancellation));
+    let quiet = arguments.quiet;
+    let prepared = threads.install(|| Run::new(spec, &path, quiet, begin, cancellation));
     match prepared {
         Err(CommandError::Method(MethodError::Cancelled(_))) => {
             super::print("interrupted: nothing was written\n")?;
@@ -48,7 +58,7 @@ fn output_path(name: &str, out: Option<&Path>) -> PathBuf {
 
 struct Run<'a> {
     spec: &'a Sweep,
-    source: MethodSource,
+    source: JournalledSource,
     folder: RunFolder,
     manifest: Manifest,
     progress: Progress,
@@ -61,6 +71,7 @@ impl<'a> Run<'a> {
         spec: &'a Sweep,
         path: &Path,
         quiet: bool,
+        begin: Begin,
         cancellation: Cancellation,
     ) -> Result<Self, CommandError> {
         let progress = Progress::new(spec.settings.points, quiet);
@@ -70,11 +81,24 @@ impl<'a> Run<'a> {
         let resolved = spec.to_toml();
         let threads = rayon::current_num_threads();
         let manifest = Manifest::start(&resolved, spec.settings.method.chosen().seed(), threads)?;
-        let folder = RunFolder::create(path)?;
-        folder.write_manifest(&manifest)?;
+        let goes_on = matches!(begin, Begin::GoOn);
+        let folder = match goes_on {
+            true => RunFolder::reopen(path)?,
+            false => RunFolder::create(path)?,
+        };
+        let journal = match goes_on {
+            true => resume::journal(spec, path)?,
+            false => folder
+                .write_manifest(&manifest)
+                .and_then(|()| Journal::create(path, &resolved))
+                .map_err(|error| CommandError::from(error).after(written(path, 0)))?,
+        };
+        if goes_on {
+            progress.say(&format!("{} points are done already", journal.solves()));
+        }
         Ok(Self {
             spec,
-            source,
+            source: JournalledSource::new(Box::new(source), journal),
             folder,
             manifest,
             progress,
@@ -83,9 +107,33 @@ impl<'a> Run<'a> {
         })
     }
 
+    /// Does everything; what went wrong on the way comes with what there is all the same.
     fn carry_out(mut self) -> Result<Outcome, CommandError> {
+        self.say_what_is_kept();
+        let result = self.solve_and_write();
+        self.progress.finish();
+        let path = self.folder.path();
+        let points = self.folder.points().max(self.source.waiting());
+        let Some(result) = result.map_err(|error| error.after(written(path, points)))? else {
+            super::print("interrupted: everything is as it was\n")?;
+            return Ok(Outcome::Interrupted);
+        };
+        if !self.quiet {
+            self.progress.warn(&self.manifest.warnings);
+        }
+        super::conclude(&summary::text(&result, path), outcome(&result), path)
+    }
+
+    /// `None` where an interrupt came before what is stored was read.
+    fn solve_and_write(&mut self) -> Result<Option<SweepResult>, CommandError> {
         let clock = Instant::now();
         let result = self.sweep()?;
+        if let Some(error) = self.source.failure() {
+            return Err(error.into());
+        }
+        if result.interrupted && self.source.waiting() > 0 {
+            return Ok(None);
+        }
         self.manifest.seconds.sweep = clock.elapsed().as_secs_f64();
         let clock = Instant::now();
         self.folder.finish(&result)?;
@@ -103,12 +151,19 @@ impl<'a> Run<'a> {
             Ending::Complete
         };
         self.folder.write_manifest(&self.manifest)?;
-        self.progress.finish();
-        if !self.quiet {
-            self.progress.warn(&self.manifest.warnings);
+        self.folder.seal()?;
+        if !result.interrupted {
+            self.folder.close_journal()?;
         }
-        super::print(&summary::text(&result, self.folder.path()))?;
-        Ok(outcome(&result))
+        Ok(Some(result))
+    }
+
+    fn say_what_is_kept(&self) {
+        if let Some(kept) = self.folder.kept() {
+            let kept = kept.display();
+            self.progress
+                .say(&format!("the earlier run is kept in {kept}"));
+        }
     }
 
     fn sweep(&mut self) -> Result<SweepResult, CommandError> {
@@ -116,9 +171,13 @@ impl<'a> Run<'a> {
         let mut recorder = Recorder {
             subject: self.spec.problem.subject(),
             folder: &mut self.folder,
+            manifest: &mut self.manifest,
             progress: &self.progress,
+            stored: self.source.waiting(),
+            given: Vec::new(),
+            source: &self.source,
         };
-        sweep(
+        let mut result = sweep(
             &self.source,
             &detector,
             self.spec.settings.points,
@@ -132,7 +191,22 @@ impl<'a> Run<'a> {
                 Err(error) => CommandError::Sweep(SweepError::Observer(error)),
             },
             error => CommandError::Sweep(error),
-        })
+        })?;
+        for point in &mut result.points {
+            point.seconds = self.source.seconds(point.value).unwrap_or(point.seconds);
+        }
+        Ok(result)
+    }
+}
+
+/// What there is in a folder whose run did not come to its end.
+fn written(folder: &Path, points: usize) -> String {
+    let folder = folder.display();
+    match points {
+        0 => format!("no point was done; {folder} holds no results"),
+        points => format!(
+            "{points} points that were done are kept in {folder}, and `pbif sweep` with `--resume` goes on from there"
+        ),
     }
 }
 
@@ -150,26 +224,6 @@ pub(super) fn draw(
         .with_style(&settings.figure_style);
     let drawn = figures.draw_named(&settings.figures_drawn)?;
     Ok(write_figures(&drawn, &settings.figure_formats, folder)?)
-}
-
-/// Writes every point as soon as it is done, and shows how far the sweep is.
-struct Recorder<'a> {
-    subject: &'a Subject,
-    folder: &'a mut RunFolder,
-    progress: &'a Progress,
-}
-
-impl Observer for Recorder<'_> {
-    fn point(
-        &mut self,
-        point: &Point,
-        done: usize,
-        remaining: usize,
-    ) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-        self.folder.add_point(self.subject, point)?;
-        self.progress.point(self.subject, point, done, remaining);
-        Ok(())
-    }
 }
 
 /// How a command ends that gives this result.

@@ -5,6 +5,7 @@
 //! each other and may run side by side.
 
 use super::SolveReport;
+use crate::bytes::NotWhatWasWritten;
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::density::{EstimatedDensity, Moments, Observable};
 use crate::system::Family;
@@ -107,6 +108,12 @@ pub enum SourceError {
     Method(#[from] Box<dyn std::error::Error + Send + Sync>),
 }
 
+impl From<NotWhatWasWritten> for SourceError {
+    fn from(error: NotWhatWasWritten) -> Self {
+        Self::Method(Box::new(error))
+    }
+}
+
 impl From<Cancelled> for SourceError {
     fn from(_: Cancelled) -> Self {
         Self::Interrupted
@@ -205,6 +212,22 @@ pub trait Session: Send {
     /// # Errors
     /// [`SourceError`] when there is nothing to report; failed solves are reported in the solution. The session can be used on.
     fn solve(&mut self, value: f64) -> Result<Solution<'_>, SourceError>;
+
+    /// What the last solve has left in the session for later ones, so that [`Session::recall`] can bring another one there; nothing
+    /// for sessions that remember nothing.
+    fn memory(&self) -> Vec<u8> {
+        Vec::new()
+    }
+
+    /// Brings a fresh session of the same source to where another one was after its solves: `left` has the value of each, in their
+    /// order, with the [`Session::memory`] after it. Whatever is solved then is the same to the bit as it would have been there.
+    ///
+    /// # Errors
+    /// [`SourceError::Method`] when that is not what a session of this source has left; [`SourceError::Interrupted`].
+    fn recall(&mut self, left: &[(f64, &[u8])]) -> Result<(), SourceError> {
+        let _ = left;
+        Ok(())
+    }
 }
 
 impl<F> Session for F

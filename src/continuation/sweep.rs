@@ -4,7 +4,7 @@
 use std::time::Instant;
 
 use super::bracket::is_settled;
-use super::change::{Found, changes, crossings_at_centre, dip};
+use super::change::{Change, Found, changes, crossings_at_centre, dip};
 use super::grid::CheckedIndicator;
 use super::live::Live;
 use super::locate::label_points;
@@ -173,6 +173,11 @@ impl Run<'_> {
             .map_err(SweepError::Observer)
     }
 
+    /// Whether a value is yet to be solved: asked for again, it would give nothing new.
+    fn is_new(&self, value: &f64) -> bool {
+        self.at(*value).is_none()
+    }
+
     fn at(&self, value: f64) -> Option<&Point> {
         self.points.iter().find(|point| point.value == value)
     }
@@ -213,14 +218,12 @@ impl Run<'_> {
             .filter(|point| !point.detections.is_empty())
             .collect();
         let tolerance = self.options.tolerance;
-        if let Some(value) = dip(&solved, tolerance) {
-            return Some(value);
-        }
-        if let Some(value) = self.next_at_centre(&solved) {
+        let dip = dip(&solved, tolerance).filter(|value| self.is_new(value));
+        if let Some(value) = dip.or_else(|| self.next_at_centre(&solved)) {
             return Some(value);
         }
         let changes = changes(&solved, self.detector);
-        changes.iter().find_map(|change| match &change.found {
+        let wanted = |change: &Change| match &change.found {
             Found::Crossing(crossing) => {
                 next_value(&solved, crossing, self.detector.confidence(), tolerance)
             }
@@ -236,7 +239,9 @@ impl Run<'_> {
                 let settled = is_settled(a, b, self.span.step, &self.options);
                 (!settled && middle > a.value && middle < b.value).then_some(middle)
             }
-        })
+        };
+        let mut changes = changes.iter();
+        changes.find_map(|change| wanted(change).filter(|value| self.is_new(value)))
     }
 
     /// Narrows every change of sign at a centre of symmetry, and looks at the stage between two of them.
@@ -245,7 +250,8 @@ impl Run<'_> {
         crossings_at_centre(solved).iter().find_map(|crossings| {
             let narrower = crossings
                 .iter()
-                .find_map(|crossing| next_value(solved, crossing, confidence, tolerance));
+                .filter_map(|crossing| next_value(solved, crossing, confidence, tolerance))
+                .find(|value| self.is_new(value));
             let mut roots: Vec<f64> = (crossings.iter())
                 .map(|crossing| root(solved, crossing, confidence).value)
                 .collect();
@@ -262,7 +268,7 @@ impl Run<'_> {
             };
             narrower
                 .or_else(|| roots.windows(2).find_map(unseen))
-                .or_else(beside)
+                .or_else(|| beside().filter(|value| self.is_new(value)))
         })
     }
 

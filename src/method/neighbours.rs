@@ -24,6 +24,11 @@ impl<T> Neighbours<T> {
         nearest.map(|(_, start)| start)
     }
 
+    /// The start that was kept last; it is there at any rate.
+    pub(super) fn newest(&self) -> Option<&(f64, T)> {
+        self.kept.last()
+    }
+
     /// Keeps a start that takes about so many bytes, like all others.
     pub(super) fn keep(&mut self, value: f64, start: T, bytes: usize) {
         self.kept.push((value, start));

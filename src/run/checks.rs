@@ -97,7 +97,7 @@ pub(super) fn read_checks(
         indicator: None,
         failure: None,
     };
-    let mut seen = columns(family, observables).read(path, blank)?;
+    let mut seen = columns(family, observables).read(path, true, blank)?;
     seen.retain(|one| one.observable < observables.len());
     Ok(seen)
 }

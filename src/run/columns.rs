@@ -179,19 +179,27 @@ impl<T> Columns<'_, T> {
     }
 
     /// Reads a table back; `blank` makes a record that has what no column tells. A last line without its end is one that a killed
-    /// run did not finish: it is left out.
+    /// run did not finish: it is left out, unless the table is said to be `complete`.
     ///
     /// # Errors
     /// [`RunError::Read`], [`RunError::Column`], [`RunError::Row`].
-    pub(super) fn read(&self, path: &Path, blank: impl Fn() -> T) -> Result<Vec<T>, RunError> {
+    pub(super) fn read(
+        &self,
+        path: &Path,
+        complete: bool,
+        blank: impl Fn() -> T,
+    ) -> Result<Vec<T>, RunError> {
         let unreadable = |source| RunError::Read {
             path: path.to_owned(),
             source,
         };
         let broken = |error: csv::Error| unreadable(std::io::Error::other(error.to_string()));
         let bytes = std::fs::read(path).map_err(unreadable)?;
-        let whole = bytes.iter().rposition(|&byte| byte == b'\n');
-        let whole = &bytes[..whole.map_or(0, |end| end + 1)];
+        let end = bytes.iter().rposition(|&byte| byte == b'\n');
+        let whole = match complete {
+            true => &bytes[..],
+            false => &bytes[..end.map_or(0, |end| end + 1)],
+        };
         // Rows that are too short are then told by the column they lack.
         let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(whole);
         let header = reader.byte_headers().map_err(broken)?;

@@ -2,17 +2,20 @@
 
 use std::path::{Path, PathBuf};
 
+use super::atomic::{sync_all_below, write_atomically, write_durably};
 use super::growing::GrowingTable;
 use super::{
-    DensityStore, Manifest, RunError, atomic::write_atomically, bifurcations, checks,
-    features_table, points_table, staging::Staging,
+    DensityStore, Ending, Manifest, RunError, bifurcations, checks, checksums, features_table,
+    journal, lock::FolderLock, points_table, staging::Staging,
 };
 use crate::continuation::{Point, Subject, SweepResult};
 use crate::density::EstimatedDensity;
 
-/// Everything a run may leave in its folder.
-pub(super) const ENTRIES: [&str; 10] = [
+/// Everything a run may leave in its folder, the file that marks it as one first.
+pub(super) const ENTRIES: [&str; 15] = [
     "run.json",
+    checksums::NAME,
+    journal::NAME,
     "points.csv",
     "features.csv",
     "bifurcations.csv",
@@ -20,8 +23,11 @@ pub(super) const ENTRIES: [&str; 10] = [
     "bifurcations.tex",
     "bifurcations.json",
     "densities.zarr",
+    "densities.zarr.new",
+    "densities.zarr.old",
     "checks.csv",
     "figures",
+    "explorer.html",
 ];
 
 /// The folder of a run while it is written.
@@ -31,22 +37,46 @@ pub struct RunFolder {
     store: DensityStore,
     points: GrowingTable,
     features: GrowingTable,
+    /// Points that were added.
+    added: usize,
+    kept: Option<PathBuf>,
+    /// Keeps other processes away while the run is written.
+    _lock: Option<FolderLock>,
 }
 
 impl RunFolder {
-    /// Prepares a folder: makes it if need be, and moves the files of an earlier run into `previous/`, in place of
-    /// what was there. Files that are not a run's are left alone.
+    /// Prepares a folder: makes it if need be, and moves the files of an earlier run to `previous/1`, or the next number that is
+    /// free. Files that are not a run's are left alone. Until it is dropped, no other process writes to the folder.
     ///
     /// # Errors
-    /// [`RunError::Write`].
+    /// [`RunError::InUse`], [`RunError::NotOurs`], [`RunError::Read`], [`RunError::Write`]; then the folder is as it was.
     pub fn create(path: &Path) -> Result<Self, RunError> {
         std::fs::create_dir_all(path).map_err(|source| RunError::Write {
             path: path.to_owned(),
             source,
         })?;
         // A run is written as it goes on, so that a reader sees how far it is: only the earlier one is staged.
-        Staging::new(path, &ENTRIES)?.take_place(&[])?;
-        Ok(Self::fresh(path))
+        let placed = Staging::new(path, &ENTRIES)?.take_place(&[])?;
+        Ok(Self {
+            kept: placed.kept,
+            _lock: Some(placed.lock),
+            ..Self::fresh(path)
+        })
+    }
+
+    /// Opens the folder of an unfinished run to go on with it. What is there is replaced whole, when the points of the run are
+    /// [added](RunFolder::add_points) again.
+    ///
+    /// # Errors
+    /// [`RunError::InUse`], [`RunError::Write`].
+    pub fn reopen(path: &Path) -> Result<Self, RunError> {
+        let lock = FolderLock::take(path)?;
+        // They are of what is now replaced.
+        let _ = std::fs::remove_file(path.join(checksums::NAME));
+        Ok(Self {
+            _lock: Some(lock),
+            ..Self::fresh(path)
+        })
     }
 
     /// A folder that is written beside its place, in which nothing was before.
@@ -56,7 +86,15 @@ impl RunFolder {
             store: DensityStore::new(&path.join("densities.zarr")),
             points: GrowingTable::new(&path.join("points.csv")),
             features: GrowingTable::new(&path.join("features.csv")),
+            added: 0,
+            kept: None,
+            _lock: None,
         }
+    }
+
+    /// Where the earlier run is kept that was in the folder.
+    pub fn kept(&self) -> Option<&Path> {
+        self.kept.as_deref()
     }
 
     /// The folder.
@@ -69,11 +107,23 @@ impl RunFolder {
         self.path.join("figures")
     }
 
-    /// Writes `run.json`.
+    /// Writes `run.json`. One that says that the run has ended waits until everything else is on the disk.
     ///
     /// # Errors
     /// [`RunError::Json`] or [`RunError::Write`].
     pub fn write_manifest(&self, manifest: &Manifest) -> Result<(), RunError> {
+        if manifest.ending != Ending::Running {
+            sync_all_below(&self.path)?;
+        }
+        let text = serde_json::to_string_pretty(manifest)? + "\n";
+        write_durably(&self.path.join("run.json"), text.as_bytes())
+    }
+
+    /// Writes how far a run is into `run.json`, without waiting for the disk.
+    ///
+    /// # Errors
+    /// [`RunError::Json`] or [`RunError::Write`].
+    pub fn write_progress(&self, manifest: &Manifest) -> Result<(), RunError> {
         let text = serde_json::to_string_pretty(manifest)? + "\n";
         self.write("run.json", &text)
     }
@@ -99,7 +149,56 @@ impl RunFolder {
             .add(|| columns.header(), &columns.lines(&rows)?)?;
         let columns = points_table::columns(family, observables, &[]);
         self.points
-            .add(|| columns.header(), &columns.lines([point])?)
+            .add(|| columns.header(), &columns.lines([point])?)?;
+        self.added += 1;
+        Ok(())
+    }
+
+    /// The same of several points at once, the first of the run: whatever was there of the tables and the store is replaced.
+    ///
+    /// # Errors
+    /// As [`RunFolder::add_point`].
+    pub fn add_points(&mut self, subject: &Subject, points: &[Point]) -> Result<(), RunError> {
+        let family = &subject.family;
+        self.store.replace(family, &with_densities(points))?;
+        let observables = &subject.observables;
+        let found = points
+            .iter()
+            .flat_map(|point| features_table::found(observables, point));
+        let rows: Vec<_> = found.collect();
+        let columns = features_table::columns(family);
+        self.features
+            .add(|| columns.header(), &columns.lines(&rows)?)?;
+        let columns = points_table::columns(family, observables, &[]);
+        self.points
+            .add(|| columns.header(), &columns.lines(points)?)?;
+        self.added += points.len();
+        Ok(())
+    }
+
+    /// Writes the checksums of all files of a run that has ended, see `docs/run-folder.md`.
+    ///
+    /// # Errors
+    /// [`RunError::Read`] or [`RunError::Write`].
+    pub fn seal(&self) -> Result<(), RunError> {
+        checksums::write(&self.path)
+    }
+
+    /// Removes the journal of a run that is complete.
+    ///
+    /// # Errors
+    /// [`RunError::Write`].
+    pub fn close_journal(&self) -> Result<(), RunError> {
+        let path = self.path.join(journal::NAME);
+        match std::fs::remove_file(&path) {
+            Err(source) if path.exists() => Err(RunError::Write { path, source }),
+            _ => Ok(()),
+        }
+    }
+
+    /// How many points were added so far.
+    pub fn points(&self) -> usize {
+        self.added
     }
 
     /// Writes all tables of a finished sweep and puts the stored densities in ascending order.
@@ -114,12 +213,7 @@ impl RunFolder {
             let text = checks::checks_csv(&result.subject, checks)?;
             self.write("checks.csv", &text)?;
         }
-        let densities: Vec<(f64, &[EstimatedDensity])> = result
-            .points
-            .iter()
-            .filter(|point| !point.densities.is_empty())
-            .map(|point| (point.value, point.densities.as_slice()))
-            .collect();
+        let densities = with_densities(&result.points);
         self.store.replace(&result.subject.family, &densities)
     }
 
@@ -157,4 +251,12 @@ impl RunFolder {
     fn write(&self, name: &str, text: &str) -> Result<(), RunError> {
         write_atomically(&self.path.join(name), text.as_bytes())
     }
+}
+
+/// The densities of those points that have some.
+fn with_densities(points: &[Point]) -> Vec<(f64, &[EstimatedDensity])> {
+    let solved = points.iter().filter(|point| !point.densities.is_empty());
+    solved
+        .map(|point| (point.value, point.densities.as_slice()))
+        .collect()
 }

@@ -1,18 +1,23 @@
 //! What a run leaves on disk: tables, stored densities, manifest. Every file appears whole or not at all, and is read back as
 //! it was.
 
+mod archive;
 mod arrays;
 mod atomic;
 mod bifurcations;
 mod cell;
 mod checks;
+mod checksums;
 mod columns;
 mod compare;
+mod exchange;
 mod features_table;
 mod findings;
 mod folder;
 mod growing;
+mod journal;
 mod latex;
+mod lock;
 mod manifest;
 mod number;
 mod points_table;
@@ -27,14 +32,17 @@ mod stored_run;
 mod stored_tests;
 #[cfg(test)]
 mod tests;
+mod tree;
 
 pub(crate) use atomic::write_atomically;
 pub use bifurcations::{
     bifurcations_csv, bifurcations_json, bifurcations_markdown, bifurcations_tex,
 };
+pub use checksums::{Checked, Damage};
 pub use compare::{CompareFolder, CompareTable, ComparedRun, compare_tables};
 pub use features_table::features_csv;
 pub use folder::RunFolder;
+pub use journal::{Journal, JournalledSource};
 pub use manifest::{Ending, Manifest, PhaseSeconds};
 pub use number::{format_number, format_with_error};
 pub use points_table::points_csv;
@@ -73,6 +81,90 @@ pub enum RunError {
     /// A value cannot be written as JSON.
     #[error("cannot compose JSON: {0}")]
     Json(#[from] serde_json::Error),
+    /// Another process writes to the folder.
+    #[error("`{}` is being written to by {holder}", path.display())]
+    InUse {
+        /// The folder.
+        path: PathBuf,
+        /// Process and machine.
+        holder: String,
+    },
+    /// A file or folder stands where a run's would, without the file that marks a run.
+    #[error("`{}` is there, but no {mark} beside it: it was not left by pbif, and is not touched", path.display())]
+    NotOurs {
+        /// What stands there.
+        path: PathBuf,
+        /// The file that would mark it.
+        mark: &'static str,
+    },
+    /// A line of the checksums that is none.
+    #[error("{}, line {line}: not a checksum and a name", path.display())]
+    Checksums {
+        /// The file.
+        path: PathBuf,
+        /// The line, counted from 1.
+        line: usize,
+    },
+    /// A file that is not as the run left it.
+    #[error("{} is {}: it is not what the run left", path.display(), damage.word())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What became of it.
+        damage: Damage,
+    },
+    /// A table with other rows than the run has points.
+    #[error("{} has {found} rows; the run left {wanted}", path.display())]
+    Rows {
+        /// The table.
+        path: PathBuf,
+        /// How many it has.
+        found: usize,
+        /// How many the run left.
+        wanted: usize,
+    },
+    /// A stored density that is not finite.
+    #[error("{}: the density of `{observable}` at {parameter} = {value} has values that are missing or no numbers", path.display())]
+    NotFinite {
+        /// The store.
+        path: PathBuf,
+        /// The observable.
+        observable: String,
+        /// The swept parameter.
+        parameter: String,
+        /// Its value.
+        value: f64,
+    },
+    /// An unfinished run without a journal.
+    #[error("the run in {} has no journal.bin to go on from", path.display())]
+    NoJournal {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A journal that cannot be read.
+    #[error("{} is not the journal of this run, or is damaged", path.display())]
+    Journal {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A journal whose values are not those that the sweep asks for.
+    #[error("{} has {stored} where the sweep asks for {wanted}", path.display())]
+    JournalOrder {
+        /// The file.
+        path: PathBuf,
+        /// The value in the journal.
+        stored: f64,
+        /// The value that the sweep asks for.
+        wanted: f64,
+    },
+    /// An unfinished run of another sweep.
+    #[error("the unfinished run in {} is of another sweep: {}", path.display(), differences.join("; "))]
+    OtherSweep {
+        /// The folder.
+        path: PathBuf,
+        /// What differs, key by key.
+        differences: Vec<String>,
+    },
     /// A folder without a manifest.
     #[error("`{}` is not the folder of a run: it has no run.json", path.display())]
     NotARun {

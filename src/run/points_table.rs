@@ -236,7 +236,8 @@ pub fn points_csv(subject: &Subject, points: &[Point]) -> Result<String, RunErro
     columns(&subject.family, &subject.observables, &[]).csv(ascending(points))
 }
 
-/// Reads the table back: everything of its points but densities and what follows from them, in the order of the table.
+/// Reads the table back: everything of its points but densities and what follows from them, in the order of the table. One that is
+/// not `complete` may lack the end of its last row.
 ///
 /// # Errors
 /// [`RunError::Read`]; [`RunError::Column`] and [`RunError::Row`] when the table is not one of this sweep.
@@ -244,8 +245,22 @@ pub(super) fn read_points(
     path: &Path,
     family: &Family,
     methods: &[&'static str],
+    complete: bool,
 ) -> Result<Vec<Point>, RunError> {
-    columns(family, &[], methods).read(path, blank)
+    let points = columns(family, &[], methods).read(path, complete, blank)?;
+    for (row, point) in points.iter().enumerate() {
+        let same = |other: &Point| other.value == point.value;
+        if let Some(first) = points[..row].iter().position(same) {
+            return Err(RunError::Row {
+                path: path.to_owned(),
+                line: row as u64 + 2,
+                column: family.parameter().to_owned(),
+                value: point.value.to_string(),
+                wanted: format!("a new value: line {} has it", first + 2),
+            });
+        }
+    }
+    Ok(points)
 }
 
 /// Points in the order of tables.

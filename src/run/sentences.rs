@@ -31,9 +31,13 @@ fn escape_in_words(finding: &Finding) -> Option<String> {
             relaxation_time,
             limit,
         } => format!(
-            "no steady state in Ω: mass leaves at a rate of {rate:.3e} per unit time; {:.0} % of the mass leaves within \
+            "no steady state in Ω: mass leaves at a rate of {rate:.3e} per unit time; {} of the mass leaves within \
              one relaxation time ({relaxation_time:.3}), the limit is {:.0} %",
-            100.0 * rate * relaxation_time,
+            // The product of rate and time is a share only while it is small.
+            match rate * relaxation_time {
+                share if share < 1.0 => format!("{:.0} %", 100.0 * share),
+                _ => "nearly all".to_owned(),
+            },
             100.0 * limit
         ),
         Finding::LeavesAtOnce { rate } => format!(

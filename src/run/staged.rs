@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::staging::{Staging, link_tree};
-use super::{RunError, RunFolder, folder};
+use super::staging::Staging;
+use super::tree::link_tree;
+use super::{RunError, RunFolder, checksums, exchange, folder, journal};
 
 /// What a sweep solved for: it stays when the run is detected again.
 const SOLVED: [&str; 2] = ["densities.zarr", "checks.csv"];
@@ -21,13 +22,15 @@ impl StagedRun {
     /// A new version of the run at `solved`, to stand at `home`: the folder of that run, or another one that exists.
     ///
     /// # Errors
-    /// [`RunError::Read`] or [`RunError::Write`].
+    /// [`RunError::InUse`], [`RunError::NotOurs`], [`RunError::Read`] or [`RunError::Write`].
     pub fn new(home: &Path, solved: &Path) -> Result<Self, RunError> {
         let staging = Staging::new(home, &folder::ENTRIES)?;
         let same = is_same(home, solved);
-        if !same {
-            for entry in SOLVED {
-                link_tree(&solved.join(entry), &staging.fresh().join(entry))?;
+        for entry in SOLVED {
+            let place = solved.join(entry);
+            let standing = exchange::standing(&place, "zarr.json");
+            if !same || standing != place {
+                link_tree(&standing, &staging.fresh().join(entry))?;
             }
         }
         let folder = RunFolder::fresh(&staging.fresh());
@@ -43,14 +46,19 @@ impl StagedRun {
         &self.folder
     }
 
-    /// Puts the new version in place and returns its files. A run that was there becomes a complete one in `previous/`, its
-    /// densities linked, in place of what `previous/` held.
+    /// Puts the new version in place and returns its files. A run that was there becomes a complete one below `previous/`, its
+    /// densities linked.
     ///
     /// # Errors
     /// [`RunError::Read`] or [`RunError::Write`].
     pub fn take_place(self) -> Result<Vec<PathBuf>, RunError> {
-        let staying: &[&str] = if self.same { &SOLVED } else { &[] };
-        self.staging.take_place(staying)
+        // A run that goes on needs its journal, which cannot be shared with another folder.
+        let staying = [&SOLVED[..], &[journal::NAME]].concat();
+        let staying: &[&str] = if self.same { &staying } else { &[] };
+        let home = self.staging.home().to_owned();
+        let placed = self.staging.take_place(staying)?;
+        checksums::write(&home)?;
+        Ok(placed.files)
     }
 }
 

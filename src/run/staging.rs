@@ -1,37 +1,59 @@
-//! New files of a folder, written beside their place and put there when they are whole; what was there before is kept in
-//! `previous/`.
+//! New files of a folder, written beside their place and put there when they are whole; what was there before is kept for good, in
+//! `previous/1`, `previous/2`, …
 
 use std::path::{Path, PathBuf};
 
 use super::RunError;
+use super::archive;
+use super::atomic::sync_folder;
+use super::lock::FolderLock;
+use super::tree::{make, rename};
 
-/// Where the files that were there before are kept.
-const PREVIOUS: &str = "previous";
+/// Beginning of the names of folders in which files are made or taken out of the way.
+const ROOM: &str = ".pbif-";
 
-/// New files in the making. Dropped before they are in place, they leave the folder as it was.
+/// What a folder may hold by this program's doing: files and folders by name, the file that marks the folder first.
+pub(super) type Entries = &'static [&'static str];
+
+/// New files in the making. Dropped before they are in place, they leave the folder as it was. While it lives, no other
+/// process writes to the folder.
 #[derive(Debug)]
 pub(super) struct Staging {
     home: PathBuf,
-    entries: &'static [&'static str],
+    entries: Entries,
     room: tempfile::TempDir,
+    lock: FolderLock,
 }
 
 impl Staging {
-    /// Room beside the files of `home`, an existing folder. `entries` are the names of all files and folders that may ever stand
-    /// there by this program's doing; others are left alone.
+    /// Room beside the files of `home`, an existing folder, of which other writers are kept away. `entries` are the names of all files and
+    /// folders that may ever stand there by this program's doing; others are left alone.
     ///
     /// # Errors
-    /// [`RunError::Write`].
-    pub(super) fn new(home: &Path, entries: &'static [&'static str]) -> Result<Self, RunError> {
-        let room = tempfile::Builder::new().prefix(".pbif-").tempdir_in(home);
-        let room = room.map_err(|source| failed(home, source))?;
+    /// [`RunError::InUse`] when another process writes there; [`RunError::NotOurs`] when one of the entries is there without
+    /// the first, which marks the folder; [`RunError::Read`] and [`RunError::Write`].
+    pub(super) fn new(home: &Path, entries: Entries) -> Result<Self, RunError> {
+        let lock = FolderLock::take(home)?;
+        clear_rooms(home);
+        archive::check_ours(home, entries)?;
+        let room = tempfile::Builder::new().prefix(ROOM).tempdir_in(home);
+        let room = room.map_err(|source| RunError::Write {
+            path: home.to_owned(),
+            source,
+        })?;
         let staging = Self {
             home: home.to_owned(),
             entries,
             room,
+            lock,
         };
         make(&staging.fresh())?;
         Ok(staging)
+    }
+
+    /// Where the files are to stand.
+    pub(super) fn home(&self) -> &Path {
+        &self.home
     }
 
     /// The folder to write the new files to.
@@ -39,81 +61,75 @@ impl Staging {
         self.room.path().join("fresh")
     }
 
-    /// Puts the new files in place. Those that were there before go to `previous/`, in place of what it held, but for the
-    /// entries that are `staying`: these have a second place there. Returns the new files, those in folders by name.
+    /// Puts the new files in place. Those that were there before become a complete version of their own below `previous/`; the
+    /// entries that are `staying` have their second place there.
     ///
-    /// Every file that is replaced is there at any moment, in its old or its new form; a kill between leaves the earlier files
-    /// whole in `previous/`.
+    /// The earlier version is whole in `previous/` before the first file is replaced or taken away. Where that cannot be done, everything
+    /// is as it was.
     ///
     /// # Errors
     /// [`RunError::Read`] or [`RunError::Write`].
-    pub(super) fn take_place(self, staying: &[&str]) -> Result<Vec<PathBuf>, RunError> {
-        let (fresh, old) = (self.fresh(), self.room.path().join("old"));
-        make(&old)?;
-        self.keep_earlier(staying, &old)?;
+    pub(super) fn take_place(self, staying: &[&str]) -> Result<Placed, RunError> {
+        let (fresh, gone) = (self.fresh(), self.room.path().join("gone"));
+        make(&gone)?;
+        let is_new = |entry: &&str| fresh.join(entry).exists();
+        let is_there = |entry: &&str| self.home.join(entry).exists();
+        let mut made = None;
+        let mut kept = None;
+        if self.entries.iter().any(&is_there) {
+            kept = archive::kept_already(&self.home, self.entries);
+            if kept.is_none() {
+                made = Some(archive::keep(&self.home, self.entries, self.room.path())?);
+                kept.clone_from(&made);
+            }
+        }
+        // A file is replaced in one step; folders, and what is not there any more, make room first.
+        let leaving = self.entries.iter().copied().filter(|entry| {
+            let stays = match is_new(entry) {
+                true => !self.home.join(entry).is_dir(),
+                false => staying.contains(entry),
+            };
+            is_there(entry) && !stays
+        });
+        if let Err(error) = archive::take_away(&self.home, &leaving.collect::<Vec<_>>(), &gone) {
+            if let Some(made) = &made {
+                archive::undo(made);
+            }
+            return Err(error);
+        }
         let mut files = Vec::new();
-        for entry in self.entries {
-            let (new, place) = (fresh.join(entry), self.home.join(entry));
-            if !new.exists() {
-                continue;
-            }
-            // A file is replaced in one step; a folder must make room first.
-            if place.is_dir() {
-                rename(&place, &old.join(entry))?;
-            }
-            rename(&new, &place)?;
-            files.extend(files_of(place));
+        // The file that marks the folder comes last: it tells of the others.
+        for entry in self.entries.iter().rev().filter(|entry| is_new(entry)) {
+            let place = self.home.join(entry);
+            rename(&fresh.join(entry), &place)?;
+            files.splice(0..0, files_of(place));
         }
-        Ok(files)
-    }
-
-    /// Moves what was there to `previous/`; what is replaced or stays is given a second place there.
-    fn keep_earlier(&self, staying: &[&str], old: &Path) -> Result<(), RunError> {
-        let earlier = || {
-            let there = |entry: &&&str| self.home.join(entry).exists();
-            self.entries.iter().filter(there)
-        };
-        if earlier().next().is_none() {
-            return Ok(());
-        }
-        let (kept, previous) = (self.room.path().join("kept"), self.home.join(PREVIOUS));
-        make(&kept)?;
-        let (linked, moved): (Vec<&str>, Vec<&str>) = earlier()
-            .partition(|entry| staying.contains(entry) || self.fresh().join(entry).exists());
-        for entry in linked {
-            link_tree(&self.home.join(entry), &kept.join(entry))?;
-        }
-        if previous.exists() {
-            rename(&previous, &old.join(PREVIOUS))?;
-        }
-        rename(&kept, &previous)?;
-        for entry in moved {
-            rename(&self.home.join(entry), &previous.join(entry))?;
-        }
-        Ok(())
+        sync_folder(&self.home);
+        let lock = self.lock;
+        Ok(Placed { files, kept, lock })
     }
 }
 
-/// Gives a file or folder a second place: files are linked, and copied where the file system cannot link. What stands in the
-/// two places is then never changed, only replaced, so either may be rewritten or removed. Nothing where `from` is not there.
-///
-/// # Errors
-/// [`RunError::Read`] or [`RunError::Write`].
-pub(super) fn link_tree(from: &Path, to: &Path) -> Result<(), RunError> {
-    let unreadable = |source| RunError::Read {
-        path: from.to_owned(),
-        source,
-    };
-    if from.is_dir() {
-        make(to)?;
-        for entry in std::fs::read_dir(from).map_err(unreadable)? {
-            let entry = entry.map_err(unreadable)?;
-            link_tree(&entry.path(), &to.join(entry.file_name()))?;
+/// What stands where it should.
+#[derive(Debug)]
+pub(super) struct Placed {
+    /// The new files, those in folders by name.
+    pub(super) files: Vec<PathBuf>,
+    /// Where the earlier version is.
+    pub(super) kept: Option<PathBuf>,
+    /// Whoever goes on writing holds on to it.
+    pub(super) lock: FolderLock,
+}
+
+/// Removes rooms that killed processes left. Nothing in them has its only place there, see [`Staging::take_place`].
+fn clear_rooms(home: &Path) {
+    for entry in std::fs::read_dir(home).into_iter().flatten().flatten() {
+        let is_room = entry.file_name().to_string_lossy().starts_with(ROOM);
+        if is_room && entry.path().is_dir() {
+            // One that cannot be removed is in nobody's way.
+            let _ = std::fs::remove_dir_all(entry.path());
         }
-    } else if from.is_file() && std::fs::hard_link(from, to).is_err() {
-        std::fs::copy(from, to).map_err(|source| failed(to, source))?;
     }
-    Ok(())
 }
 
 /// A file, or the files of a folder by name.
@@ -125,21 +141,6 @@ fn files_of(path: PathBuf) -> Vec<PathBuf> {
             inside
         }
         Err(_) => vec![path],
-    }
-}
-
-fn make(folder: &Path) -> Result<(), RunError> {
-    std::fs::create_dir(folder).map_err(|source| failed(folder, source))
-}
-
-fn rename(from: &Path, to: &Path) -> Result<(), RunError> {
-    std::fs::rename(from, to).map_err(|source| failed(to, source))
-}
-
-fn failed(path: &Path, source: std::io::Error) -> RunError {
-    RunError::Write {
-        path: path.to_owned(),
-        source,
     }
 }
 
@@ -181,41 +182,95 @@ mod tests {
     }
 
     #[test]
-    fn new_files_take_their_place_and_earlier_ones_are_kept_whole() {
+    fn new_files_take_their_place_and_every_earlier_version_is_kept_whole() {
         let home = tempfile::tempdir().unwrap();
         let home = home.path();
         write(home, &[("notes", "mine"), ("previous/table", "0")]);
         write(home, &[("table", "1"), ("solved/a", "1"), ("drawn/a", "1")]);
         let staging = Staging::new(home, ENTRIES).unwrap();
         write(&staging.fresh(), &[("table", "2"), ("drawn/b", "2")]);
-        let files = staging.take_place(&["solved"]).unwrap();
-        assert_eq!(files, [home.join("table"), home.join("drawn/b")]);
-        let now = [
-            ("drawn/b", "2"),
-            ("notes", "mine"),
-            ("previous/drawn/a", "1"),
-            ("previous/solved/a", "1"),
-            ("previous/table", "1"),
-            ("solved/a", "1"),
-            ("table", "2"),
+        let placed = staging.take_place(&["solved"]).unwrap();
+        assert_eq!(placed.files, [home.join("table"), home.join("drawn/b")]);
+        assert_eq!(placed.kept, Some(home.join("previous/1")));
+        drop(placed);
+        let first = [
+            ("previous/1/drawn/a", "1"),
+            ("previous/1/solved/a", "1"),
+            ("previous/1/table", "1"),
         ];
-        assert_holds(home, &now);
-        // Without new files everything moves away.
+        let beside = [("notes", "mine")];
+        let oldest = [("previous/table", "0")];
+        let now = [
+            &[("drawn/b", "2")][..],
+            &beside,
+            &first,
+            &oldest,
+            &[("solved/a", "1"), ("table", "2")],
+        ];
+        assert_holds(home, &now.concat());
+        // Without new files everything moves away, and nothing that was kept is touched.
         let staging = Staging::new(home, ENTRIES).unwrap();
-        assert!(staging.take_place(&[]).unwrap().is_empty());
-        let now = [
-            ("notes", "mine"),
-            ("previous/drawn/b", "2"),
-            ("previous/solved/a", "1"),
-            ("previous/table", "2"),
+        assert!(staging.take_place(&[]).unwrap().files.is_empty());
+        let second = [
+            ("previous/2/drawn/b", "2"),
+            ("previous/2/solved/a", "1"),
+            ("previous/2/table", "2"),
         ];
-        assert_holds(home, &now);
-        // Where nothing was, the version before the last stays.
-        Staging::new(home, ENTRIES)
-            .unwrap()
-            .take_place(&[])
-            .unwrap();
-        assert_holds(home, &now);
+        assert_holds(home, &[&beside[..], &first, &second, &oldest].concat());
+        // Where nothing was, nothing is kept.
+        let staging = Staging::new(home, ENTRIES).unwrap();
+        assert_eq!(staging.take_place(&[]).unwrap().kept, None);
+        assert_holds(home, &[&beside[..], &first, &second, &oldest].concat());
+    }
+
+    #[test]
+    fn what_a_kill_left_half_moved_is_not_kept_twice() {
+        let home = tempfile::tempdir().unwrap();
+        let home = home.path();
+        write(home, &[("table", "1"), ("previous/1/table", "1")]);
+        write(
+            home,
+            &[("previous/1/solved/a", "1"), (".pbif-x/gone/solved/a", "1")],
+        );
+        let staging = Staging::new(home, ENTRIES).unwrap();
+        staging.take_place(&[]).unwrap();
+        let kept = [("previous/1/solved/a", "1"), ("previous/1/table", "1")];
+        assert_holds(home, &kept);
+    }
+
+    #[test]
+    fn what_is_not_ours_is_not_touched() {
+        let home = tempfile::tempdir().unwrap();
+        let mine = [("drawn/sketch", "mine")];
+        write(home.path(), &mine);
+        let error = Staging::new(home.path(), ENTRIES).unwrap_err();
+        assert!(
+            matches!(&error, RunError::NotOurs { path, mark: "table" }
+            if *path == home.path().join("drawn")),
+            "{error}"
+        );
+        assert_holds(home.path(), &mine);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_version_that_cannot_be_moved_stays_where_it_is() {
+        use std::os::unix::fs::PermissionsExt as _;
+        let home = tempfile::tempdir().unwrap();
+        let home = home.path();
+        let files = [("solved/a", "1"), ("table", "1")];
+        write(home, &files);
+        let rights = |mode| std::fs::Permissions::from_mode(mode);
+        std::fs::set_permissions(home.join("solved"), rights(0o555)).unwrap();
+        let staging = Staging::new(home, ENTRIES).unwrap();
+        let taken = staging.take_place(&[]);
+        // The superuser may move it all the same.
+        if taken.is_err() {
+            assert_holds(home, &files);
+        }
+        for place in [home.join("solved"), home.join("previous/1/solved")] {
+            let _ = std::fs::set_permissions(place, rights(0o755));
+        }
     }
 
     #[test]

@@ -14,6 +14,7 @@ use zarrs::storage::store::MemoryStore;
 use zarrs::storage::{ListableStorageTraits, ReadableStorageTraits};
 
 use super::arrays::{Layout, PARAMETER_CHUNK, REPLICATE_CHUNK};
+use super::exchange::Fresh;
 use super::{RunError, atomic::write_atomically};
 use crate::density::{EstimatedDensity, Variants};
 use crate::space::Axis;
@@ -68,29 +69,13 @@ impl DensityStore {
         if densities.is_empty() {
             return Ok(());
         }
-        let failed = |source| RunError::Write {
-            path: self.path.clone(),
-            source,
-        };
-        let fresh = self.path.with_extension("zarr.new");
-        let old = self.path.with_extension("zarr.old");
-        for left_over in [&fresh, &old] {
-            if left_over.exists() {
-                std::fs::remove_dir_all(left_over).map_err(failed)?;
-            }
-        }
-        let mut store = Self::new(&fresh);
+        let fresh = Fresh::beside(&self.path)?;
+        let mut store = Self::new(&fresh.path);
         for (value, densities) in densities {
             store.add(family, *value, densities)?;
         }
         store.write_all_metadata(family)?;
-        if self.path.exists() {
-            std::fs::rename(&self.path, &old).map_err(failed)?;
-        }
-        std::fs::rename(&fresh, &self.path).map_err(failed)?;
-        if old.exists() {
-            std::fs::remove_dir_all(&old).map_err(failed)?;
-        }
+        fresh.take_place(&self.path)?;
         store.path.clone_from(&self.path);
         *self = store;
         Ok(())

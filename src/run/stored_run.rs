@@ -8,9 +8,10 @@ use sha2::{Digest, Sha256};
 use super::checks::read_checks;
 use super::points_table::read_points;
 use super::stored_densities::StoredDensities;
-use super::{Ending, PhaseSeconds, RunError};
+use super::{Checked, Ending, PhaseSeconds, RunError, checksums, exchange, journal};
 use crate::continuation::{CheckedIndicator, Point, Subject};
 use crate::space::CellSpace;
+use crate::system::Family;
 
 /// The folder of a run that is read.
 #[derive(Debug)]
@@ -32,6 +33,8 @@ struct StoredManifest {
     seed: u64,
     threads: usize,
     ending: Ending,
+    /// Runs of early versions may not say so while they are written.
+    points: Option<usize>,
     seconds: PhaseSeconds,
     warnings: Vec<String>,
 }
@@ -89,6 +92,21 @@ impl StoredRun {
         self.manifest.ending
     }
 
+    /// Refuses a sweep that is not the one that was run; titles and figures may differ.
+    ///
+    /// # Errors
+    /// [`RunError::OtherSweep`].
+    pub fn check_sweep(&self, resolved: &str) -> Result<(), RunError> {
+        let differences = journal::different_keys(&self.resolved, resolved);
+        match differences.is_empty() {
+            true => Ok(()),
+            false => Err(RunError::OtherSweep {
+                path: self.path.clone(),
+                differences,
+            }),
+        }
+    }
+
     /// Seed of the random streams.
     pub fn seed(&self) -> u64 {
         self.manifest.seed
@@ -133,12 +151,23 @@ impl StoredRun {
     ) -> Result<Vec<Point>, RunError> {
         let table = self.path.join("points.csv");
         let family = &subject.family;
-        let mut points = read_points(&table, family, methods)?;
+        let complete = self.ending() == Ending::Complete;
+        let mut points = read_points(&table, family, methods, complete)?;
+        if let Some(wanted) = self.manifest.points.filter(|_| complete)
+            && wanted != points.len()
+        {
+            let (path, found) = (table, points.len());
+            return Err(RunError::Rows {
+                path,
+                found,
+                wanted,
+            });
+        }
         // Only points with a density have moments.
         if points.iter().all(|point| point.moments.is_empty()) {
-            return Ok(points);
+            return self.check_sums().map(|()| points);
         }
-        let path = self.path.join("densities.zarr");
+        let path = exchange::standing(&self.path.join("densities.zarr"), "zarr.json");
         let stored = StoredDensities::open(&path, subject, space)?;
         for point in points.iter_mut().filter(|point| !point.moments.is_empty()) {
             point.densities = stored.at(point.value)?.ok_or_else(|| RunError::NoDensity {
@@ -146,10 +175,59 @@ impl StoredRun {
                 parameter: family.parameter().to_owned(),
                 value: point.value,
             })?;
+            check_finite(&path, family, point)?;
         }
+        self.check_sums()?;
         Ok(points)
     }
+
+    /// Refuses a run whose tables or densities are not those that it left, by its checksums; nothing is known of a run without.
+    fn check_sums(&self) -> Result<(), RunError> {
+        let entries = ["run.json", "points.csv", "checks.csv", "densities.zarr"];
+        let damaged = checksums::check(&self.path, &entries)?;
+        match damaged.and_then(|(_, damaged)| damaged.into_iter().next()) {
+            Some((path, damage)) => Err(RunError::Damaged { path, damage }),
+            None => Ok(()),
+        }
+    }
+
+    /// How many files are as the run left them, and those that are not; `None` for a run without checksums: one that is not finished,
+    /// or of an early version.
+    ///
+    /// # Errors
+    /// [`RunError::Read`], [`RunError::Checksums`].
+    pub fn damage(&self) -> Result<Option<Checked>, RunError> {
+        checksums::check(&self.path, &[])
+    }
+
+    /// Takes the figures that are there for those of the run: they were drawn again.
+    ///
+    /// # Errors
+    /// [`RunError::Read`], [`RunError::Write`], [`RunError::Checksums`].
+    pub fn renew_figures(&self) -> Result<(), RunError> {
+        checksums::renew(&self.path, "figures")
+    }
 }
+
+/// Refuses densities with values that are missing or no numbers.
+fn check_finite(path: &Path, family: &Family, point: &Point) -> Result<(), RunError> {
+    let is_number = |value: &f64| value.is_finite() && value.abs() < LARGEST;
+    for one in &point.densities {
+        let mut values = one.density.values.iter().chain(&one.standard_error);
+        if !values.all(is_number) {
+            return Err(RunError::NotFinite {
+                path: path.to_owned(),
+                observable: one.observable.name(family),
+                parameter: family.parameter().to_owned(),
+                value: point.value,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// No density is as large: its square is still a number.
+const LARGEST: f64 = 1e150;
 
 /// Versions are compatible when they differ in the last number alone.
 fn check_version(file: &Path, manifest: &StoredManifest) -> Result<(), RunError> {

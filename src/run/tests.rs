@@ -210,17 +210,21 @@ fn tables_grow_by_rows_and_end_in_ascending_order() {
 }
 
 #[test]
-fn an_earlier_run_is_kept_and_other_files_are_left_alone() {
+fn every_earlier_run_is_kept_and_other_files_are_left_alone() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("notes.txt"), "mine").unwrap();
     for text in ["first", "second", "third"] {
         let run = RunFolder::create(folder.path()).unwrap();
-        drop(run);
+        std::fs::write(folder.path().join("run.json"), text).unwrap();
         std::fs::write(folder.path().join("points.csv"), text).unwrap();
+        let error = RunFolder::create(folder.path()).unwrap_err();
+        assert!(matches!(error, RunError::InUse { .. }), "{error}");
+        assert_eq!(run.kept().is_some(), text != "first");
     }
     let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
     assert_eq!(read("points.csv"), "third");
-    assert_eq!(read("previous/points.csv"), "second");
+    assert_eq!(read("previous/1/points.csv"), "first");
+    assert_eq!(read("previous/2/points.csv"), "second");
     assert_eq!(read("notes.txt"), "mine");
 }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use comfy_table::{Table, presets};
 
-use crate::continuation::{LabelledPoint, PointType, SweepResult};
+use crate::continuation::{LabelledPoint, Point, PointStatus, PointType, SweepResult};
 use crate::run::{format_number, format_with_error};
 use crate::system::Family;
 
@@ -17,26 +17,44 @@ pub(in crate::cli) fn text(result: &SweepResult, folder: &Path) -> String {
         .filter(|row| row.kind != PointType::EndPoint)
         .collect();
     let mut text = String::new();
-    if rows.is_empty() {
-        text += &format!("no change of topology along {}\n", family.parameter());
-    } else {
+    if !rows.is_empty() {
         text += &table(family, &rows);
+    } else if !result.points.is_empty() {
+        let so_far = if result.interrupted { " so far" } else { "" };
+        text += &format!(
+            "no change of topology along {}{so_far}\n",
+            family.parameter()
+        );
     }
-    if result.points.iter().all(|point| point.densities.is_empty()) {
-        text += "no steady state in Ω at any value: nothing to draw\n";
+    let solved = |point: &Point| !point.densities.is_empty();
+    if !result.points.is_empty() && !result.points.iter().any(solved) {
+        text += nothing_to_draw(result);
     }
     text += &ends(result);
     if let Some(distance) = result.largest_distance() {
         text += &format!("largest Hellinger distance between neighbours: {distance:.2}\n");
     }
     if result.interrupted {
-        text += "interrupted: the tables hold the points that were done\n";
+        text += &match result.points.len() {
+            0 => "interrupted before the first point was done\n".to_owned(),
+            points => format!("interrupted: the tables hold the {points} points that were done\n"),
+        };
     }
     text += "\nfiles\n";
     for name in files(folder) {
         text += &format!("  {}\n", folder.join(name).display());
     }
     text
+}
+
+/// Why there is no figure.
+fn nothing_to_draw(result: &SweepResult) -> &'static str {
+    let unsolved = [PointStatus::NotConverged, PointStatus::Failed];
+    let failed = |point: &Point| unsolved.contains(&point.report.status);
+    match result.points.iter().any(failed) {
+        true => "no density at any value: nothing to draw\n",
+        false => "no steady state in Ω at any value: nothing to draw\n",
+    }
 }
 
 fn table(family: &Family, rows: &[&LabelledPoint]) -> String {

@@ -2,6 +2,7 @@
 //! one, relaxation, and derivatives.
 
 mod cost;
+mod memory;
 mod one_axis;
 mod options;
 mod relaxation;

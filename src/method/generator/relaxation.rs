@@ -6,6 +6,7 @@
 
 use std::sync::Arc;
 
+use crate::bytes::{NotWhatWasWritten, Reader, Writer};
 use crate::stationary::generator::RateSolver;
 
 /// Most inverse iterations.
@@ -50,6 +51,28 @@ impl Relaxation {
             mode: neighbour.mode.clone(),
             change: neighbour.change,
             age,
+        })
+    }
+
+    /// Number of cells that it is on.
+    pub(super) fn cells(&self) -> usize {
+        self.mode.len()
+    }
+
+    /// All of it as bytes.
+    pub(super) fn write(&self, writer: &mut Writer) {
+        let age = usize::try_from(self.age).unwrap_or(0);
+        writer.number(self.time).numbers(&self.mode);
+        writer.number(self.change).count(age);
+    }
+
+    /// What was written.
+    pub(super) fn read(reader: &mut Reader<'_>) -> Result<Self, NotWhatWasWritten> {
+        Ok(Self {
+            time: reader.number()?,
+            mode: Arc::new(reader.numbers()?),
+            change: reader.number()?,
+            age: i32::try_from(reader.count()?).map_err(|_| NotWhatWasWritten)?,
         })
     }
 

@@ -9,6 +9,7 @@
 use std::sync::Arc;
 
 use super::GeneratorSource;
+use super::memory;
 use super::one_axis;
 use super::relaxation::Relaxation;
 use super::sensitivity::GeneratorSensitivity;
@@ -37,11 +38,24 @@ const ROUGH: f64 = 1e-2;
 
 /// Owns the factorisation and what the solved points say of the next one.
 pub(super) struct GeneratorSession {
-    source: GeneratorSource,
-    solver: RateSolver,
+    pub(super) source: GeneratorSource,
+    pub(super) solver: RateSolver,
     /// Every solved point with those before it.
-    trails: Neighbours<Trail>,
+    pub(super) trails: Neighbours<Trail>,
+    /// Where the solver stands.
+    pub(super) stand: Stand,
+    /// Whether the last solve has left a trail.
+    has_left: bool,
     cancellation: Cancellation,
+}
+
+/// Values whose generators the solver holds on to.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Stand {
+    /// The factorised one.
+    pub(super) factorised: Option<f64>,
+    /// The one solved last.
+    pub(super) solved: Option<f64>,
 }
 
 /// What was solved at one point.
@@ -60,6 +74,15 @@ impl Session for GeneratorSession {
     fn solve(&mut self, value: f64) -> Result<Solution<'_>, SourceError> {
         Ok(self.solve_from_nearest(value)?)
     }
+
+    fn memory(&self) -> Vec<u8> {
+        let left = self.trails.newest().filter(|_| self.has_left);
+        memory::write(&self.solver, self.stand, left.map(|(_, trail)| trail))
+    }
+
+    fn recall(&mut self, left: &[(f64, &[u8])]) -> Result<(), SourceError> {
+        memory::recall(self, left)
+    }
 }
 
 impl GeneratorSession {
@@ -68,12 +91,15 @@ impl GeneratorSession {
             source: source.clone(),
             solver: source.solver(cancellation),
             trails: Neighbours::default(),
+            stand: Stand::default(),
+            has_left: false,
             cancellation: cancellation.clone(),
         }
     }
 
     fn solve_from_nearest(&mut self, value: f64) -> Result<Solution<'_>, MethodError> {
         self.cancellation.check()?;
+        self.has_left = false;
         let system = self.source.system_at(value)?;
         if let Some(found) = one_axis::masses(&self.source, system.as_ref()) {
             return one_axis::solution(&self.source, value, system.as_ref(), &found);
@@ -88,10 +114,8 @@ impl GeneratorSession {
         if before.is_none() {
             trail.slope = self.slope(&solved)?.map(Arc::new);
         }
-        // The masses, and as many differences between schemes.
         let unknowns = Arc::new(solved.steady.mass);
-        let bytes = 2 * size_of_val(unknowns.as_slice());
-        self.trails.keep(value, trail, bytes);
+        self.keep(value, trail);
         solution.sensitivity = Some(Box::new(GeneratorSensitivity {
             source: &self.source,
             solver: &mut self.solver,
@@ -102,6 +126,14 @@ impl GeneratorSession {
         Ok(solution)
     }
 
+    /// Keeps what a point leaves: the masses, and as many differences between schemes.
+    pub(super) fn keep(&mut self, value: f64, trail: Trail) {
+        let cells = self.source.problem.space().n_cells();
+        let bytes = 2 * size_of::<f64>() * cells;
+        self.trails.keep(value, trail, bytes);
+        self.has_left = true;
+    }
+
     fn solved(
         &mut self,
         value: f64,
@@ -110,11 +142,18 @@ impl GeneratorSession {
     ) -> Result<Solved, MethodError> {
         let (source, solver) = (&self.source, &mut self.solver);
         let generator = source.assemble(system.as_ref(), source.options.scheme)?;
+        let factorisations = solver.factorisations();
         // The solve leaves a core idle most of the time.
         let (steady, second) = rayon::join(
             || solver.solve(&generator.matrix, &generator.escape, guess),
             || source.assemble(system.as_ref(), companion(source.options.scheme)),
         );
+        if solver.factorisations() > factorisations {
+            self.stand.factorised = Some(value);
+        }
+        if steady.is_ok() {
+            self.stand.solved = Some(value);
+        }
         Ok(Solved {
             value,
             system,

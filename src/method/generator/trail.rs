@@ -6,6 +6,7 @@
 use std::sync::Arc;
 
 use super::relaxation::Relaxation;
+use crate::bytes::{NotWhatWasWritten, Reader, Writer};
 
 /// Points that are remembered: one more than the highest degree of the polynomial.
 const POINTS: usize = 6;
@@ -51,6 +52,69 @@ impl Trail {
             slope: None,
             relaxation,
         }
+    }
+
+    /// The newest point and what else is new as bytes; the older points by their values alone.
+    pub(super) fn write(&self, writer: &mut Writer) {
+        writer.count(self.points.len());
+        for (index, point) in self.points.iter().enumerate() {
+            writer.number(point.value);
+            if index == 0 {
+                writer.numbers(&point.mass).numbers(&point.difference);
+            }
+        }
+        writer.flag(self.slope.is_some());
+        if let Some(slope) = &self.slope {
+            writer.numbers(slope);
+        }
+        writer.flag(self.relaxation.is_some());
+        if let Some(relaxation) = &self.relaxation {
+            relaxation.write(writer);
+        }
+    }
+
+    /// What was written, with the older points of the trails in `known`.
+    pub(super) fn read(
+        reader: &mut Reader<'_>,
+        known: &[Arc<Solved>],
+    ) -> Result<Self, NotWhatWasWritten> {
+        let mut trail = Self::default();
+        for index in 0..reader.count()?.min(POINTS) {
+            let value = reader.number()?;
+            if index == 0 {
+                trail.points.push(Arc::new(Solved {
+                    value,
+                    mass: Arc::new(reader.numbers()?),
+                    difference: reader.numbers()?,
+                }));
+            } else {
+                let older = known.iter().rev().find(|point| point.value == value);
+                trail.points.push(older.ok_or(NotWhatWasWritten)?.clone());
+            }
+        }
+        if reader.flag()? {
+            trail.slope = Some(Arc::new(reader.numbers()?));
+        }
+        if reader.flag()? {
+            trail.relaxation = Some(Arc::new(Relaxation::read(reader)?));
+        }
+        Ok(trail)
+    }
+
+    /// Lengths of all that has one value a cell.
+    pub(super) fn lengths(&self) -> Vec<usize> {
+        let points = self.points.iter();
+        let mut lengths: Vec<usize> = points
+            .flat_map(|point| [point.mass.len(), point.difference.len()])
+            .collect();
+        lengths.extend(self.slope.iter().map(|slope| slope.len()));
+        lengths.extend(self.relaxation.iter().map(|one| one.cells()));
+        lengths
+    }
+
+    /// The newest point.
+    pub(super) fn newest(&self) -> Option<&Arc<Solved>> {
+        self.points.first()
     }
 
     /// Unknowns expected at a value; `None` without any point.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::SgcmSource;
+use crate::bytes::{NotWhatWasWritten, Reader, Writer};
 use crate::cancellation::Cancellation;
 use crate::continuation::{Session, Solution, SourceError};
 use crate::method::MethodError;
@@ -12,6 +13,8 @@ use crate::method::neighbours::Neighbours;
 pub(super) struct SgcmSession {
     source: SgcmSource,
     masses: Neighbours<Arc<Vec<f64>>>,
+    /// Whether the last solve has left some.
+    has_left: bool,
     cancellation: Cancellation,
 }
 
@@ -20,11 +23,13 @@ impl SgcmSession {
         Self {
             source: source.clone(),
             masses: Neighbours::default(),
+            has_left: false,
             cancellation: cancellation.clone(),
         }
     }
 
     fn solve_from_nearest(&mut self, value: f64) -> Result<Solution<'static>, MethodError> {
+        self.has_left = false;
         let (source, cancellation) = (&self.source, &self.cancellation);
         let start = self.masses.nearest(value).cloned();
         let start = start.as_ref().map(|mass| mass.as_slice());
@@ -32,15 +37,40 @@ impl SgcmSession {
         let correction = source.correction();
         let (solution, mass) = source.solve_sampled(&point, correction, start, cancellation)?;
         if let Some(mass) = mass {
-            let bytes = size_of_val(mass.as_slice());
-            self.masses.keep(value, Arc::new(mass), bytes);
+            self.keep(value, mass);
         }
         Ok(solution)
+    }
+
+    fn keep(&mut self, value: f64, mass: Vec<f64>) {
+        let bytes = size_of_val(mass.as_slice());
+        self.masses.keep(value, Arc::new(mass), bytes);
+        self.has_left = true;
     }
 }
 
 impl Session for SgcmSession {
     fn solve(&mut self, value: f64) -> Result<Solution<'_>, SourceError> {
         Ok(self.solve_from_nearest(value)?)
+    }
+
+    fn memory(&self) -> Vec<u8> {
+        let mut writer = Writer::new();
+        if let Some((_, mass)) = self.masses.newest().filter(|_| self.has_left) {
+            writer.numbers(mass);
+        }
+        writer.finish()
+    }
+
+    fn recall(&mut self, left: &[(f64, &[u8])]) -> Result<(), SourceError> {
+        let cells = self.source.cells();
+        for (value, bytes) in left.iter().filter(|(_, bytes)| !bytes.is_empty()) {
+            let mass = Reader::new(bytes).numbers()?;
+            if mass.len() != cells {
+                return Err(NotWhatWasWritten.into());
+            }
+            self.keep(*value, mass);
+        }
+        Ok(())
     }
 }

@@ -79,6 +79,11 @@ impl SgcmSource {
         })
     }
 
+    /// Number of cells of the space.
+    pub(super) fn cells(&self) -> usize {
+        self.problem.space().n_cells()
+    }
+
     /// The same source on other cells over the same ranges, with the steps that were chosen.
     ///
     /// # Errors

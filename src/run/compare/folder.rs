@@ -7,15 +7,15 @@ use super::{
     compare_tex, densities_csv, distances_csv,
 };
 use crate::run::RunError;
-use crate::run::atomic::write_atomically;
+use crate::run::atomic::{sync_all_below, write_atomically};
 use crate::run::staging::Staging;
 
-/// Everything a comparison leaves in its folder.
+/// Everything a comparison leaves in its folder, the file that marks it as one first.
 const ENTRIES: [&str; 9] = [
+    "compare.json",
     "compare.csv",
     "compare.md",
     "compare.tex",
-    "compare.json",
     "distances.csv",
     "agreement.csv",
     "accuracy.csv",
@@ -30,10 +30,10 @@ pub struct CompareFolder {
 }
 
 impl CompareFolder {
-    /// Prepares to write to `home`, an existing folder.
+    /// Prepares to write to `home`, an existing folder; other processes are kept away from it.
     ///
     /// # Errors
-    /// [`RunError::Write`].
+    /// [`RunError::InUse`], [`RunError::NotOurs`], [`RunError::Write`].
     pub fn new(home: &Path) -> Result<Self, RunError> {
         let staging = Staging::new(home, &ENTRIES)?;
         Ok(Self { staging })
@@ -64,11 +64,12 @@ impl CompareFolder {
         Ok(())
     }
 
-    /// Puts the comparison in its place and returns its files; what an earlier one left goes to `previous/`, in place of what was there.
+    /// Puts the comparison in its place and returns its files; what an earlier one left goes below `previous/`.
     ///
     /// # Errors
     /// [`RunError::Read`] or [`RunError::Write`].
     pub fn take_place(self) -> Result<Vec<PathBuf>, RunError> {
-        self.staging.take_place(&[])
+        sync_all_below(&self.staging.fresh())?;
+        Ok(self.staging.take_place(&[])?.files)
     }
 }

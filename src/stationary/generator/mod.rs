@@ -15,11 +15,13 @@
 //! | `balance` | residual and Jacobian of the (quasi-)steady state |
 //! | `krylov`, `newton` | GMRES, and Newton's method by it |
 //! | `solver` | when to iterate, when to factorise |
+//! | `memory` | where the solver stands, to go on from there later |
 
 mod balance;
 mod dissection;
 mod fronts;
 mod krylov;
+mod memory;
 mod narrowing;
 mod newton;
 mod preconditioner;
@@ -30,6 +32,7 @@ mod symbolic;
 mod tests;
 mod triangular;
 
+pub use memory::SolverMemory;
 pub use preconditioner::{Estimate, RateMethod, estimate};
 pub use solver::RateSolver;
 

@@ -3,6 +3,7 @@
 use sprs::CsMat;
 
 use super::balance::{Balance, add_product};
+use super::memory::SolverMemory;
 use super::narrowing;
 use super::newton::{Newton, Progress, linear};
 use super::preconditioner::{Estimate, Preconditioner, estimate};
@@ -33,6 +34,9 @@ pub struct RateSolver {
     /// Iterations that the solve took for which the factorisation was made.
     baseline: usize,
     last: Option<(CsMat<f64>, Vec<f64>)>,
+    /// Factorisations that were made, and the reach and method of the last.
+    factorisations: usize,
+    factorised: Option<(Vec<usize>, RateMethod)>,
     cancellation: Cancellation,
 }
 
@@ -47,6 +51,8 @@ impl RateSolver {
             excess: 0,
             baseline: 0,
             last: None,
+            factorisations: 0,
+            factorised: None,
             cancellation: Cancellation::new(),
         }
     }
@@ -59,6 +65,71 @@ impl RateSolver {
             cancellation,
             ..self
         }
+    }
+
+    /// Factorisations that were made since the solver was.
+    pub fn factorisations(&self) -> usize {
+        self.factorisations
+    }
+
+    /// Where the solver stands, but for the matrices.
+    pub fn memory(&self) -> SolverMemory {
+        let of = |(reach, plan): &(Vec<usize>, Estimate)| (reach.clone(), plan.method);
+        SolverMemory {
+            plan: self.plan.as_ref().map(of),
+            factorised: self.factorised.clone(),
+            held: self.preconditioner.as_ref().map_or(0, |kept| kept.held),
+            excess: self.excess,
+            baseline: self.baseline,
+        }
+    }
+
+    /// Brings a fresh solver to where another one on the same cells was: `factorised` is the matrix that it had factorised, `last`
+    /// that of its last solve with the escape. What is solved then is the same to the bit.
+    ///
+    /// # Errors
+    /// As [`RateSolver::solve`].
+    pub fn restore(
+        &mut self,
+        memory: &SolverMemory,
+        factorised: Option<&CsMat<f64>>,
+        last: Option<(CsMat<f64>, Vec<f64>)>,
+    ) -> Result<(), RateError> {
+        let cells = self.space.n_cells();
+        shape(
+            cells,
+            "held cell",
+            if memory.held < cells {
+                cells
+            } else {
+                memory.held
+            },
+        )?;
+        for matrix in factorised
+            .into_iter()
+            .chain(last.as_ref().map(|last| &last.0))
+        {
+            shape(cells, "columns", matrix.cols())?;
+        }
+        if let (Some((reach, method)), Some(matrix)) = (&memory.factorised, factorised) {
+            let (space, cancellation) = (&self.space, &self.cancellation);
+            let held = memory.held;
+            let made =
+                Preconditioner::new(space, reach, *method, matrix, held, None, cancellation)?;
+            self.preconditioner = Some(made);
+        }
+        self.plan = match &memory.plan {
+            Some((reach, method)) => {
+                let limit = self.options.memory_limit_bytes;
+                let plan = estimate(&self.space, reach, limit, Some(*method))?;
+                Some((reach.clone(), plan))
+            }
+            None => None,
+        };
+        self.factorised.clone_from(&memory.factorised);
+        (self.excess, self.baseline) = (memory.excess, memory.baseline);
+        self.last = last;
+        Ok(())
     }
 
     /// The (quasi-)steady state of a generator: `matrix` is n × n by columns (CSC), column j the rates out of
@@ -315,7 +386,9 @@ impl RateSolver {
         let old = self.preconditioner.take();
         let (space, method, cancellation) = (&self.space, plan.method, &self.cancellation);
         let new = Preconditioner::new(space, reach, method, matrix, held, old, cancellation)?;
+        self.factorised = Some((reach.to_vec(), method));
         self.preconditioner = Some(new);
+        self.factorisations += 1;
         self.excess = 0;
         Ok(())
     }

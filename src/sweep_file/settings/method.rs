@@ -8,6 +8,27 @@ use crate::sweep_file::reader::Reader;
 /// Checks the settings of all methods, chosen or not, so that a file can hold them all and one word switches.
 pub(super) fn check(reader: &mut Reader<'_>, method: &MethodSettings) {
     check_sgcm(reader, &method.sgcm);
+    check_times(reader, method);
+}
+
+/// Longest time that trajectories run: beyond, steps could not be counted, and no sweep would see the end of it.
+const LONGEST: f64 = 1e12;
+
+fn check_times(reader: &mut Reader<'_>, method: &MethodSettings) {
+    let times = [
+        ("map_step", method.sgcm.map_step),
+        ("burn_in", method.monte_carlo.burn_in),
+        ("length", method.monte_carlo.length),
+    ];
+    for (key, time) in times {
+        if let StepChoice::Fixed(time) = time
+            && time > LONGEST
+        {
+            let title = format!("`method.{key}` of {time:e} is longer than any trajectory can be");
+            let diagnostic = Diagnostic::new(title).allowed(format!("at most {LONGEST:e}"));
+            report_at(reader, diagnostic, [key, key]);
+        }
+    }
 }
 
 fn check_sgcm(reader: &mut Reader<'_>, options: &SgcmOptions) {

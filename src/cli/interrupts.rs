@@ -1,0 +1,54 @@
+//! What the first Ctrl-C, or a request to end, cancels; the second ends the program at once.
+
+use crate::cancellation::Cancellation;
+
+/// Cancels when the system asks the program to end, and ends it when it is asked again. What was ignored when the program
+/// started stays ignored: a run under `nohup` outlives its terminal.
+///
+/// # Errors
+/// The system's, where signals cannot be handled.
+#[cfg(unix)]
+pub(super) fn cancel(cancellation: &Cancellation) -> std::io::Result<()> {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
+    use signal_hook::iterator::Signals;
+    let ignored = ignored();
+    let is_ignored = |signal: i32| ignored & (1 << (signal - 1)) != 0;
+    // A shell's `&` ignores both of these, by habit and for nobody's sake: an interrupt sent to such a run is meant for it.
+    let by_habit = is_ignored(SIGINT) && is_ignored(SIGQUIT);
+    let heard = [SIGINT, SIGTERM, SIGHUP].into_iter();
+    let heard = heard.filter(|&signal| !is_ignored(signal) || (signal == SIGINT && by_habit));
+    let mut signals = Signals::new(heard)?;
+    let asked = cancellation.clone();
+    std::thread::Builder::new().spawn(move || {
+        for _ in signals.forever() {
+            ask(&asked);
+        }
+    })?;
+    Ok(())
+}
+
+/// See above.
+#[cfg(not(unix))]
+pub(super) fn cancel(cancellation: &Cancellation) -> std::io::Result<()> {
+    let asked = cancellation.clone();
+    ctrlc::set_handler(move || ask(&asked)).map_err(std::io::Error::other)
+}
+
+fn ask(asked: &Cancellation) {
+    if asked.is_cancelled() {
+        // Nothing is half-written: files are put in place by renaming.
+        #[allow(clippy::exit)]
+        std::process::exit(130);
+    }
+    asked.cancel();
+}
+
+/// Signals that are ignored, a bit each from the first on; none where the system does not say.
+#[cfg(unix)]
+fn ignored() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mut lines = status.lines();
+    let mask = lines.find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
+        .unwrap_or(0)
+}

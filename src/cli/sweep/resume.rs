@@ -1,0 +1,58 @@
+//! `pbif sweep --resume`: whether there is a run to go on with.
+
+use std::path::Path;
+
+use super::{outcome, summary};
+use crate::cli::stored::Stored;
+use crate::cli::{CommandError, Outcome};
+use crate::run::{Ending, Journal, RunError, StoredRun};
+use crate::sweep_file::{MethodKind, Sweep};
+
+/// How a run begins.
+pub(super) enum Begin {
+    /// From the first point.
+    Anew,
+    /// After the points that are in its journal.
+    GoOn,
+    /// It is complete.
+    Done(Box<Stored>),
+}
+
+/// Looks at what is in a folder.
+///
+/// # Errors
+/// [`CommandError::Run`] when there is a run that cannot be read, or one of another sweep.
+pub(super) fn begin(spec: &Sweep, path: &Path) -> Result<Begin, CommandError> {
+    let run = match StoredRun::open(path) {
+        Err(RunError::NotARun { .. }) => return Ok(Begin::Anew),
+        run => run?,
+    };
+    run.check_sweep(&spec.to_toml())?;
+    if run.ending() != Ending::Complete {
+        return Ok(Begin::GoOn);
+    }
+    Ok(Begin::Done(Box::new(Stored::read(path, &[], &[], true)?)))
+}
+
+/// The journal to go on from.
+///
+/// # Errors
+/// [`CommandError::Run`].
+pub(super) fn journal(spec: &Sweep, path: &Path) -> Result<Journal, CommandError> {
+    let of = (spec.problem.subject(), spec.problem.space());
+    let methods = MethodKind::ALL.map(MethodKind::name);
+    Ok(Journal::open(path, &spec.to_toml(), of, &methods)?)
+}
+
+/// Prints what a complete run has found.
+///
+/// # Errors
+/// [`CommandError::Print`].
+pub(super) fn show(stored: &Stored, path: &Path) -> Result<Outcome, CommandError> {
+    let done = format!(
+        "the run in {} is complete: nothing was solved\n",
+        path.display()
+    );
+    let text = done + &summary::text(&stored.result, path);
+    crate::cli::conclude(&text, outcome(&stored.result), path)
+}

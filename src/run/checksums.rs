@@ -1,0 +1,222 @@
+//! `checksums.sha256`: the SHA-256 of every file of a finished run, in the form that `sha256sum -c` reads, and whether they are still those.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use sha2::{Digest as _, Sha256};
+
+use super::RunError;
+use super::atomic::write_durably;
+use super::folder::ENTRIES;
+use super::journal;
+
+/// Name of the file.
+pub(super) const NAME: &str = "checksums.sha256";
+
+/// What became of a file of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Damage {
+    /// It is not there.
+    Missing,
+    /// It holds something else than the run left.
+    Changed,
+    /// The run has not left it, and it stands among the run's densities.
+    Added,
+}
+
+impl Damage {
+    /// In a word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Missing => "missing",
+            Self::Changed => "changed",
+            Self::Added => "added",
+        }
+    }
+}
+
+/// What a check finds: how many files are as the run left them, and those that are not.
+pub type Checked = (usize, Vec<(PathBuf, Damage)>);
+
+/// Checksums by the names of files below a run's folder, with `/` between folders.
+type Sums = BTreeMap<String, String>;
+
+/// Writes the checksums of all files of a run. A journal is not one of them: it grows.
+///
+/// # Errors
+/// [`RunError::Read`] or [`RunError::Write`].
+pub(super) fn write(run: &Path) -> Result<(), RunError> {
+    let entries = ENTRIES.iter().filter(|entry| is_summed(entry));
+    let mut sums = Sums::new();
+    for entry in entries {
+        add(run, entry, &mut sums)?;
+    }
+    put(run, &sums)
+}
+
+/// Writes those below one entry anew, which was made anew.
+///
+/// # Errors
+/// As [`write`]; nothing where the run has no checksums.
+pub(super) fn renew(run: &Path, entry: &str) -> Result<(), RunError> {
+    let Some(mut sums) = read(run)? else {
+        return Ok(());
+    };
+    sums.retain(|name, _| !is_below(name, entry));
+    add(run, entry, &mut sums)?;
+    put(run, &sums)
+}
+
+/// The files below the given entries (all, if there are none) that are not as the run left them, and how many are; `None`
+/// for a run without checksums.
+///
+/// # Errors
+/// [`RunError::Read`]; [`RunError::Checksums`] when the checksums are not readable themselves.
+pub(super) fn check(run: &Path, entries: &[&str]) -> Result<Option<Checked>, RunError> {
+    let Some(wanted) = read(run)? else {
+        return Ok(None);
+    };
+    let is_asked =
+        |name: &str| entries.is_empty() || entries.iter().any(|entry| is_below(name, entry));
+    let mut found = Sums::new();
+    for entry in ENTRIES
+        .iter()
+        .filter(|entry| is_summed(entry) && is_asked(entry))
+    {
+        add(run, entry, &mut found)?;
+    }
+    let asked = wanted.iter().filter(|(name, _)| is_asked(name));
+    let mut damaged = Vec::new();
+    let mut whole = 0;
+    for (name, sum) in asked {
+        match found.get(name) {
+            Some(now) if now == sum => whole += 1,
+            Some(_) => damaged.push((run.join(name), Damage::Changed)),
+            None => damaged.push((run.join(name), Damage::Missing)),
+        }
+    }
+    // A user's own files beside the figures are nobody's business; a foreign chunk is.
+    let foreign = found.keys().filter(|name| !wanted.contains_key(*name));
+    let foreign = foreign.filter(|name| is_below(name, "densities.zarr"));
+    damaged.extend(foreign.map(|name| (run.join(name), Damage::Added)));
+    Ok(Some((whole, damaged)))
+}
+
+fn is_summed(entry: &str) -> bool {
+    entry != NAME && entry != journal::NAME
+}
+
+fn is_below(name: &str, entry: &str) -> bool {
+    let rest = name.strip_prefix(entry);
+    rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+}
+
+/// Adds the checksums of a file, or of all below a folder; nothing where there is none.
+fn add(run: &Path, name: &str, sums: &mut Sums) -> Result<(), RunError> {
+    let path = run.join(name);
+    let unreadable = |source| RunError::Read {
+        path: path.clone(),
+        source,
+    };
+    if path.is_dir() {
+        for entry in std::fs::read_dir(&path).map_err(unreadable)? {
+            let entry = entry.map_err(unreadable)?.file_name();
+            add(run, &format!("{name}/{}", entry.to_string_lossy()), sums)?;
+        }
+    } else if path.is_file() {
+        let digest = Sha256::digest(std::fs::read(&path).map_err(unreadable)?);
+        let hex = digest.iter().map(|byte| format!("{byte:02x}"));
+        sums.insert(name.to_owned(), hex.collect());
+    }
+    Ok(())
+}
+
+fn put(run: &Path, sums: &Sums) -> Result<(), RunError> {
+    let lines = sums.iter().map(|(name, sum)| format!("{sum}  {name}\n"));
+    write_durably(&run.join(NAME), lines.collect::<String>().as_bytes())
+}
+
+fn read(run: &Path) -> Result<Option<Sums>, RunError> {
+    let path = run.join(NAME);
+    let text = match std::fs::read_to_string(&path) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+        text => text.map_err(|source| RunError::Read {
+            path: path.clone(),
+            source,
+        })?,
+    };
+    let mut sums = Sums::new();
+    for (index, line) in text.lines().enumerate() {
+        let is_sum = |sum: &str| sum.len() == 64 && sum.bytes().all(|b| b.is_ascii_hexdigit());
+        let parts = line.split_once("  ").filter(|(sum, _)| is_sum(sum));
+        let Some((sum, name)) = parts else {
+            let line = index + 1;
+            return Err(RunError::Checksums { path, line });
+        };
+        sums.insert(name.to_owned(), sum.to_owned());
+    }
+    Ok(Some(sums))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_flipped_byte_and_every_missing_file_is_found() {
+        let folder = tempfile::tempdir().unwrap();
+        let run = folder.path();
+        std::fs::create_dir_all(run.join("densities.zarr/p_x/c")).unwrap();
+        std::fs::create_dir(run.join("figures")).unwrap();
+        let files = [
+            "run.json",
+            "points.csv",
+            "densities.zarr/p_x/c/0",
+            "figures/a b.svg",
+        ];
+        for name in files {
+            std::fs::write(run.join(name), name).unwrap();
+        }
+        assert_eq!(check(run, &[]).unwrap(), None);
+        write(run).unwrap();
+        assert_eq!(check(run, &[]).unwrap(), Some((4, Vec::new())));
+        for name in files {
+            let path = run.join(name);
+            let whole = std::fs::read(&path).unwrap();
+            for place in 0..whole.len() {
+                let mut bytes = whole.clone();
+                bytes[place] ^= 1;
+                std::fs::write(&path, bytes).unwrap();
+                let (count, damaged) = check(run, &[]).unwrap().unwrap();
+                assert_eq!((count, damaged), (3, vec![(path.clone(), Damage::Changed)]));
+            }
+            std::fs::remove_file(&path).unwrap();
+            let damaged = check(run, &[]).unwrap().unwrap().1;
+            assert_eq!(damaged, [(path.clone(), Damage::Missing)]);
+            std::fs::write(&path, whole).unwrap();
+        }
+        // A flipped byte of the checksums themselves is a checksum of no file, or none at all.
+        let sums = std::fs::read(run.join(NAME)).unwrap();
+        for place in 0..sums.len() {
+            let mut bytes = sums.clone();
+            bytes[place] ^= 1;
+            std::fs::write(run.join(NAME), bytes).unwrap();
+            let found = check(run, &[]);
+            assert!(
+                found.is_err() || !found.unwrap().unwrap().1.is_empty(),
+                "{place}"
+            );
+        }
+        std::fs::write(run.join(NAME), sums).unwrap();
+        std::fs::write(run.join("densities.zarr/p_x/c/1"), "").unwrap();
+        std::fs::write(run.join("figures/mine.svg"), "").unwrap();
+        let added = (run.join("densities.zarr/p_x/c/1"), Damage::Added);
+        assert_eq!(
+            check(run, &["densities.zarr"]).unwrap(),
+            Some((1, vec![added]))
+        );
+        std::fs::write(run.join("figures/a b.svg"), "drawn again").unwrap();
+        renew(run, "figures").unwrap();
+        assert_eq!(check(run, &["figures"]).unwrap(), Some((2, Vec::new())));
+    }
+}

@@ -1,0 +1,260 @@
+//! A solve in full, as bytes and back.
+
+use crate::bytes::{NotWhatWasWritten, Reader, Writer};
+use crate::continuation::{Finding, MethodPart, PointStatus, Solution, SolveReport, Subject};
+use crate::density::{Density, EstimatedDensity, Kink, Moments, Observable, Structure, Variants};
+use crate::run::findings::{findings_cell, parse_findings};
+use crate::space::{Axis, CellSpace};
+use crate::system::Family;
+
+/// What a session gave at a value, and what it remembers of it.
+#[derive(Debug)]
+pub(super) struct Record {
+    pub(super) value: f64,
+    pub(super) seconds: f64,
+    /// The solution, or what the method said instead.
+    pub(super) solved: Result<Found, String>,
+    pub(super) memory: Vec<u8>,
+}
+
+/// A solution that can be kept: it answers no questions.
+#[derive(Debug)]
+pub(super) struct Found {
+    pub(super) report: SolveReport,
+    pub(super) moments: Vec<Moments>,
+    pub(super) densities: Vec<EstimatedDensity>,
+}
+
+impl From<Solution<'_>> for Found {
+    fn from(solution: Solution<'_>) -> Self {
+        Self {
+            report: solution.report,
+            moments: solution.moments,
+            densities: solution.densities,
+        }
+    }
+}
+
+impl From<Found> for Solution<'static> {
+    fn from(found: Found) -> Self {
+        Self {
+            report: found.report,
+            moments: found.moments,
+            densities: found.densities,
+            sensitivity: None,
+        }
+    }
+}
+
+impl Record {
+    /// All of it.
+    pub(super) fn write(&self, family: &Family) -> Vec<u8> {
+        let mut writer = Writer::new();
+        writer.number(self.value).number(self.seconds);
+        writer.flag(self.solved.is_ok());
+        match &self.solved {
+            Ok(solution) => write_solution(&mut writer, family, solution),
+            Err(words) => {
+                writer.text(words);
+            }
+        }
+        writer.bytes(&self.memory);
+        writer.finish()
+    }
+
+    /// What was written of the densities of a subject on a space.
+    pub(super) fn read(
+        reader: &mut Reader<'_>,
+        of: (&Subject, &CellSpace),
+        methods: &[&'static str],
+    ) -> Result<Self, NotWhatWasWritten> {
+        let (value, seconds) = (reader.number()?, reader.number()?);
+        let solved = match reader.flag()? {
+            true => Ok(read_solution(reader, of, methods)?),
+            false => Err(reader.text()?.to_owned()),
+        };
+        Ok(Self {
+            value,
+            seconds,
+            solved,
+            memory: reader.bytes()?.to_vec(),
+        })
+    }
+}
+
+fn write_solution(writer: &mut Writer, family: &Family, solution: &Found) {
+    write_report(writer, family, &solution.report);
+    writer.count(solution.moments.len());
+    for one in &solution.moments {
+        writer.number(one.mean).number(one.standard_deviation);
+    }
+    writer.count(solution.densities.len());
+    for density in &solution.densities {
+        write_density(writer, density);
+    }
+}
+
+fn read_solution(
+    reader: &mut Reader<'_>,
+    (subject, space): (&Subject, &CellSpace),
+    methods: &[&'static str],
+) -> Result<Found, NotWhatWasWritten> {
+    let report = read_report(reader, &subject.family, methods)?;
+    let mut solution = Found::from(Solution::without_density(report));
+    for _ in 0..reader.count()? {
+        solution.moments.push(Moments {
+            mean: reader.number()?,
+            standard_deviation: reader.number()?,
+        });
+    }
+    let count = reader.count()?;
+    if count > subject.observables.len() {
+        return Err(NotWhatWasWritten);
+    }
+    for &observable in &subject.observables[..count] {
+        let density = read_density(reader, observable, space)?;
+        solution.densities.push(density);
+    }
+    Ok(solution)
+}
+
+fn write_report(writer: &mut Writer, family: &Family, report: &SolveReport) {
+    writer.text(report.status.word()).text(report.method);
+    writer.count(report.iterations).number(report.residual);
+    writer
+        .number(report.solver_error)
+        .number(report.escape_rate);
+    writer.numbers(&report.edge_mass);
+    let own = &report.own;
+    writer.count(own.factorisations).number(own.negative_mass);
+    writer.numbers(&own.numerical_diffusion);
+    writer.optional(own.map_step).optional(own.time_step_bias);
+    writer.count(report.findings.len());
+    for finding in &report.findings {
+        let told = match finding {
+            Finding::Told(words) => Some(words),
+            _ => None,
+        };
+        writer.flag(told.is_some());
+        match told {
+            Some(words) => writer.text(words),
+            None => writer.text(&findings_cell(family, std::slice::from_ref(finding))),
+        };
+    }
+}
+
+fn read_report(
+    reader: &mut Reader<'_>,
+    family: &Family,
+    methods: &[&'static str],
+) -> Result<SolveReport, NotWhatWasWritten> {
+    let word = reader.text()?;
+    let mut known = PointStatus::ALL.into_iter();
+    let status = known.find(|status| status.word() == word);
+    let name = reader.text()?;
+    let method = methods.iter().find(|method| **method == name);
+    let mut report = SolveReport::solved(method.ok_or(NotWhatWasWritten)?);
+    report.status = status.ok_or(NotWhatWasWritten)?;
+    report.iterations = reader.count()?;
+    report.residual = reader.number()?;
+    report.solver_error = reader.number()?;
+    report.escape_rate = reader.number()?;
+    report.edge_mass = reader.numbers()?;
+    report.own = MethodPart {
+        factorisations: reader.count()?,
+        negative_mass: reader.number()?,
+        numerical_diffusion: reader.numbers()?,
+        map_step: reader.optional()?,
+        time_step_bias: reader.optional()?,
+    };
+    for _ in 0..reader.count()? {
+        if reader.flag()? {
+            let words = reader.text()?.to_owned();
+            report.findings.push(Finding::Told(words));
+        } else {
+            let found = parse_findings(family, reader.text()?);
+            report
+                .findings
+                .extend(found.map_err(|_| NotWhatWasWritten)?);
+        }
+    }
+    Ok(report)
+}
+
+fn write_density(writer: &mut Writer, estimate: &EstimatedDensity) {
+    writer.numbers(&estimate.density.values);
+    writer.numbers(&estimate.standard_error);
+    match &estimate.variants {
+        Variants::None => {
+            writer.count(0);
+        }
+        Variants::Scheme(second) => {
+            writer.count(1).numbers(second);
+        }
+        Variants::Jackknife(replicates) => {
+            writer.count(2).count(replicates.len());
+            for replicate in replicates {
+                writer.numbers(replicate);
+            }
+        }
+    }
+    let Structure { centre, kinks } = &estimate.structure;
+    writer.flag(centre.is_some());
+    writer.numbers(centre.as_deref().unwrap_or(&[]));
+    writer.count(kinks.len());
+    for kink in kinks {
+        writer.count(kink.axis).number(kink.at).numbers(&kink.jump);
+    }
+    writer.number(estimate.negligible);
+}
+
+fn read_density(
+    reader: &mut Reader<'_>,
+    observable: Observable,
+    space: &CellSpace,
+) -> Result<EstimatedDensity, NotWhatWasWritten> {
+    let numbers = observable.axes();
+    let axes: Vec<Axis> = (numbers.iter())
+        .filter_map(|&number| space.axes().get(number).cloned())
+        .collect();
+    let cells: usize = axes.iter().map(Axis::count).product();
+    let values = of_length(reader.numbers()?, cells)?;
+    let standard_error = of_length(reader.numbers()?, cells)?;
+    let variants = match reader.count()? {
+        0 => Variants::None,
+        1 => Variants::Scheme(of_length(reader.numbers()?, cells)?),
+        2 => {
+            let mut replicates = Vec::new();
+            for _ in 0..reader.count()? {
+                replicates.push(of_length(reader.numbers()?, cells)?);
+            }
+            Variants::Jackknife(replicates)
+        }
+        _ => return Err(NotWhatWasWritten),
+    };
+    let has_centre = reader.flag()?;
+    let centre = Some(reader.numbers()?).filter(|_| has_centre);
+    let mut kinks = Vec::new();
+    for _ in 0..reader.count()? {
+        kinks.push(Kink {
+            axis: reader.count()?,
+            at: reader.number()?,
+            jump: reader.numbers()?,
+        });
+    }
+    Ok(EstimatedDensity {
+        observable,
+        density: Density { axes, values },
+        standard_error,
+        variants,
+        structure: Structure { centre, kinks },
+        negligible: reader.number()?,
+    })
+}
+
+fn of_length(numbers: Vec<f64>, length: usize) -> Result<Vec<f64>, NotWhatWasWritten> {
+    match numbers.len() == length {
+        true => Ok(numbers),
+        false => Err(NotWhatWasWritten),
+    }
+}

@@ -1,0 +1,193 @@
+//! A source of densities that writes every solve into a journal, and gives those that are there already from it.
+
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+
+use super::Journal;
+use super::record::{Found, Record};
+use crate::cancellation::Cancellation;
+use crate::continuation::{DensitySource, Session, Solution, SourceError, Subject};
+use crate::run::RunError;
+
+/// A source whose first session goes on where the journal ends: solves that are in it are given from it, in its order, the same to the bit;
+/// all others are solved as they would have been, and written before they are given.
+///
+/// What cannot be written, or asks for other values than the journal has, ends the session as if it had been interrupted;
+/// [`JournalledSource::failure`] says why. The sources that check located values are those of the source itself: what their sessions have solved is
+/// solved again, to the same bits.
+pub struct JournalledSource {
+    source: Box<dyn DensitySource>,
+    shared: Arc<Mutex<Shared>>,
+}
+
+struct Shared {
+    /// Taken by the first session.
+    journal: Option<Journal>,
+    /// Seconds that each stored solve took when it was solved.
+    seconds: Vec<(f64, f64)>,
+    /// Stored solves that no session has asked for yet.
+    waiting: usize,
+    failure: Option<RunError>,
+}
+
+impl JournalledSource {
+    /// Joins a source with a journal of its solves.
+    pub fn new(source: Box<dyn DensitySource>, journal: Journal) -> Self {
+        let stored = journal.stored.iter();
+        let shared = Shared {
+            seconds: stored
+                .map(|record| (record.value, record.seconds))
+                .collect(),
+            waiting: journal.stored.len(),
+            journal: Some(journal),
+            failure: None,
+        };
+        Self {
+            source,
+            shared: Arc::new(Mutex::new(shared)),
+        }
+    }
+
+    /// Why the session ended, where it was not interrupted. It is told once.
+    pub fn failure(&self) -> Option<RunError> {
+        lock(&self.shared).failure.take()
+    }
+
+    /// Stored solves that are still to be given.
+    pub fn waiting(&self) -> usize {
+        lock(&self.shared).waiting
+    }
+
+    /// Seconds that the solve of a value took, in whichever process it was solved; `None` for those of this one.
+    pub fn seconds(&self, value: f64) -> Option<f64> {
+        let shared = lock(&self.shared);
+        let found = shared.seconds.iter().find(|(known, _)| *known == value);
+        found.map(|(_, seconds)| *seconds)
+    }
+}
+
+impl std::fmt::Debug for JournalledSource {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("JournalledSource")
+            .field("method", &self.source.method())
+            .field("waiting", &self.waiting())
+            .finish_non_exhaustive()
+    }
+}
+
+impl DensitySource for JournalledSource {
+    fn method(&self) -> &'static str {
+        self.source.method()
+    }
+
+    fn subject(&self) -> &Subject {
+        self.source.subject()
+    }
+
+    fn open(&self, cancellation: &Cancellation) -> Box<dyn Session> {
+        let session = self.source.open(cancellation);
+        let Some(mut journal) = lock(&self.shared).journal.take() else {
+            return session;
+        };
+        Box::new(JournalledSession {
+            subject: self.source.subject().clone(),
+            session,
+            stored: std::mem::take(&mut journal.stored).into(),
+            journal,
+            left: Vec::new(),
+            shared: self.shared.clone(),
+        })
+    }
+
+    fn finer(&self) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
+        self.source.finer()
+    }
+
+    fn enclosed(&self) -> Option<Box<dyn DensitySource>> {
+        self.source.enclosed()
+    }
+}
+
+struct JournalledSession {
+    subject: Subject,
+    session: Box<dyn Session>,
+    journal: Journal,
+    stored: VecDeque<Record>,
+    /// What the session is to recall before its first solve.
+    left: Vec<(f64, Vec<u8>)>,
+    shared: Arc<Mutex<Shared>>,
+}
+
+impl Session for JournalledSession {
+    fn solve(&mut self, value: f64) -> Result<Solution<'_>, SourceError> {
+        if let Some(record) = self.stored.pop_front() {
+            return self.give(value, record);
+        }
+        self.recall_all()?;
+        let clock = Instant::now();
+        let solved = match self.session.solve(value) {
+            Ok(solution) => Ok(Found::from(solution)),
+            Err(SourceError::Interrupted) => return Err(SourceError::Interrupted),
+            Err(SourceError::Method(error)) => Err(error.to_string()),
+        };
+        let record = Record {
+            value,
+            seconds: clock.elapsed().as_secs_f64(),
+            solved,
+            memory: self.session.memory(),
+        };
+        let content = record.write(&self.subject.family);
+        if let Err(error) = self.journal.append(&content) {
+            return Err(self.end(error));
+        }
+        record.solved.map(Solution::from).map_err(in_words)
+    }
+}
+
+impl JournalledSession {
+    /// A stored solve, which must be the one that is asked for.
+    fn give(&mut self, value: f64, record: Record) -> Result<Solution<'static>, SourceError> {
+        if record.value.to_bits() != value.to_bits() {
+            let path = self.journal.path.clone();
+            return Err(self.end(RunError::JournalOrder {
+                path,
+                stored: record.value,
+                wanted: value,
+            }));
+        }
+        self.left.push((value, record.memory));
+        lock(&self.shared).waiting = self.stored.len();
+        record.solved.map(Solution::from).map_err(in_words)
+    }
+
+    fn recall_all(&mut self) -> Result<(), SourceError> {
+        let left = std::mem::take(&mut self.left);
+        if left.is_empty() {
+            return Ok(());
+        }
+        let left: Vec<(f64, &[u8])> = left.iter().map(|(v, bytes)| (*v, &bytes[..])).collect();
+        match self.session.recall(&left) {
+            Err(SourceError::Method(_)) => {
+                let path = self.journal.path.clone();
+                Err(self.end(RunError::Journal { path }))
+            }
+            recalled => recalled,
+        }
+    }
+
+    /// Ends the session with an error that is not the method's.
+    fn end(&self, error: RunError) -> SourceError {
+        lock(&self.shared).failure = Some(error);
+        SourceError::Interrupted
+    }
+}
+
+fn in_words(words: String) -> SourceError {
+    SourceError::Method(words.into())
+}
+
+/// What is shared holds no promises that a panic elsewhere could break.
+fn lock(shared: &Mutex<Shared>) -> MutexGuard<'_, Shared> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
+}
