@@ -78,10 +78,22 @@ pub struct Estimate {
     pub iteration_operations: f64,
 }
 
+/// The grid that a method dissects. Modes are all coupled, so that no cut runs across them: those of a place stay together.
+fn grid(space: &CellSpace, reach: &[usize], method: RateMethod) -> Grid {
+    let axes = space.axes().iter().enumerate();
+    let reach: Vec<usize> = axes
+        .map(|(index, axis)| match (axis.is_modes(), method.is_narrow()) {
+            (true, _) => axis.count() - 1,
+            (false, true) => 1,
+            (false, false) => reach.get(index).copied().unwrap_or(1),
+        })
+        .collect();
+    Grid::new(&space.shape(), &reach, LEAF)
+}
+
 /// Predicts what one method takes for a stencil that reaches `reach` cells along each axis.
 fn predict_method(space: &CellSpace, reach: &[usize], method: RateMethod) -> Estimate {
-    let reach = if method.is_narrow() { &[][..] } else { reach };
-    let prediction: Prediction = predict(&Grid::new(&space.shape(), reach, LEAF));
+    let prediction: Prediction = predict(&grid(space, reach, method));
     let number = method.bytes_per_number();
     Estimate {
         method,
@@ -163,8 +175,7 @@ impl Preconditioner {
             old.method == method && old.pattern.0 == starts && old.pattern.1 == matrix.indices()
         });
         let mut this = reusable.unwrap_or_else(|| {
-            let reach = if method.is_narrow() { &[][..] } else { reach };
-            let grid = Grid::new(&space.shape(), reach, LEAF);
+            let grid = grid(space, reach, method);
             let symbolic = Symbolic::new(matrix, Dissection::new(&grid));
             let numbers = match method {
                 RateMethod::Lu | RateMethod::NarrowLu => Numbers::Double(allocate(&symbolic)),
