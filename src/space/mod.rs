@@ -9,6 +9,7 @@ mod series;
 pub use axis::Axis;
 pub use cells::CellSpace;
 pub use grading::Grading;
+pub use series::MOST_MODES;
 
 /// Why an axis or a cell space could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -8,8 +8,8 @@
 //! The weights also tell cells around the nodes: by the theorem of Chebyshev, Markov and Stieltjes the sums of the first weights
 //! separate the nodes.
 
-/// Largest number of modes: nodes are found by Newton's method to rounding up to there, and nobody needs more.
-pub(super) const MOST_MODES: usize = 64;
+/// Largest number of modes of an axis: nodes are found by Newton's method to rounding up to there, and nobody needs more.
+pub const MOST_MODES: usize = 64;
 
 /// A rule on [-1, 1]: nodes, ascending, and weights, Σ = 2, exact for polynomials of degree 2 count - 1.
 #[derive(Debug, Clone, PartialEq)]

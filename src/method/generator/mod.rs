@@ -2,6 +2,7 @@
 //! one, relaxation, and derivatives.
 
 mod cost;
+mod modes;
 mod one_axis;
 mod options;
 mod relaxation;
@@ -11,5 +12,6 @@ mod source;
 mod trail;
 
 pub use cost::GeneratorCost;
+pub use modes::{ModesFound, automatic_modes};
 pub use options::GeneratorMethodOptions;
 pub use source::GeneratorSource;

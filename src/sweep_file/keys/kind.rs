@@ -52,6 +52,8 @@ pub(in crate::sweep_file) enum Kind {
     Integer(i128, i128),
     /// A number greater than zero, or "auto".
     Step,
+    /// An integer from the first to the second value, or "auto".
+    Count(i128, i128),
     /// One of some strings.
     Choice(fn() -> Vec<&'static str>),
     /// Two strings.
@@ -78,6 +80,9 @@ impl Kind {
             }
             Self::Integer(least, most) => format!("an integer from {least} to {most}"),
             Self::Step => "a finite number greater than zero, or `\"auto\"`".to_owned(),
+            Self::Count(least, most) => {
+                format!("an integer from {least} to {most}, or `\"auto\"`")
+            }
             Self::Choice(names) => format!("a string: {}", list(&names())),
             Self::Pair => "a pair of strings, such as `[\"x\", \"y\"]`".to_owned(),
             Self::Formula => "a formula, such as `\"-k x + 2 y^3\"`".to_owned(),
@@ -111,6 +116,10 @@ impl Kind {
             Self::Step => match plain.number() {
                 Some(value) => value > 0.0,
                 None => plain.text() == Some(AUTO),
+            },
+            Self::Count(least, most) => match plain {
+                Plain::Integer(value) => (least..=most).contains(value),
+                _ => plain.text() == Some(AUTO),
             },
             Self::Choice(names) => plain.text().is_some_and(|text| names().contains(&text)),
             Self::Pair => plain.items().is_some_and(|items| {
