@@ -26,7 +26,7 @@ pub struct Axis {
 }
 
 /// Modes that the finer axis of a check has more than the axis that is checked.
-const FINER_MODES: usize = 2;
+const FINER_MODES: usize = 1;
 
 impl Axis {
     /// Cells of equal width.
@@ -173,7 +173,7 @@ impl Axis {
 
     /// The same axis with about `factor` times as many cells (fewer below 1, at least two a stretch between graded points), graded
     /// alike: faces stay on the points it is graded toward, and an even number of cells stays even, so that a face stays in the middle.
-    /// An axis of modes, which converge fast, gets two more modes (none below 1).
+    /// An axis of modes, which converge exponentially, gets one more mode (none below 1).
     pub fn refined(&self, factor: f64) -> Self {
         if self.is_modes {
             let count = self.count() + if factor > 1.0 { FINER_MODES } else { 0 };

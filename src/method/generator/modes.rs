@@ -13,10 +13,10 @@ use crate::method::{MethodError, Problem};
 use crate::space::{Axis, CellSpace};
 
 /// Numbers of modes that are tried, in this order.
-const TRIED: [usize; 7] = [4, 6, 8, 12, 16, 24, 32];
+const TRIED: [usize; 10] = [3, 4, 5, 6, 8, 10, 12, 16, 20, 24];
 
 /// Change of a watched density, relative to its largest value, that more modes may still make.
-const CHANGE: f64 = 1e-5;
+const CHANGE: f64 = 1e-4;
 
 /// Cells of the other axes on which modes are counted.
 const COARSE: usize = 32;

@@ -15,6 +15,7 @@
 //! | `balance` | residual and Jacobian of the (quasi-)steady state |
 //! | `krylov`, `newton` | GMRES, and Newton's method by it |
 //! | `solver` | when to iterate, when to factorise |
+//! | `symmetric` | symmetric generators on half of the cells |
 
 mod balance;
 mod dissection;
@@ -26,12 +27,13 @@ mod preconditioner;
 mod prediction;
 mod solver;
 mod symbolic;
+mod symmetric;
 #[cfg(test)]
 mod tests;
 mod triangular;
 
 pub use preconditioner::{Estimate, RateMethod, estimate};
-pub use solver::RateSolver;
+pub use symmetric::RateSolver;
 
 /// Settings of [`RateSolver`].
 #[derive(Debug, Clone, Copy, PartialEq)]
