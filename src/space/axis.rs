@@ -74,7 +74,10 @@ impl Axis {
     pub fn modes(from: f64, to: f64, count: usize) -> Result<Self, SpaceError> {
         Self::check(from, to, count.max(2))?;
         if !(2..=MOST_MODES).contains(&count) {
-            return Err(SpaceError::Modes { count, most: MOST_MODES });
+            return Err(SpaceError::Modes {
+                count,
+                most: MOST_MODES,
+            });
         }
         let rule = gauss_legendre(count);
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));

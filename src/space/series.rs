@@ -23,7 +23,10 @@ fn legendre(n: usize, s: f64) -> (f64, f64) {
     let (mut before, mut value) = (1.0, s);
     for k in 2..=n {
         let k = k as f64;
-        (before, value) = (value, ((2.0 * k - 1.0) * s * value - (k - 1.0) * before) / k);
+        (before, value) = (
+            value,
+            ((2.0 * k - 1.0) * s * value - (k - 1.0) * before) / k,
+        );
     }
     (value, n as f64 * (s * value - before) / (s * s - 1.0))
 }
@@ -92,7 +95,11 @@ mod tests {
                 terms.map(|(s, w)| w * s.powi(power)).sum()
             };
             for power in 0..2 * count as i32 {
-                let exact = if power % 2 == 0 { 2.0 / f64::from(power + 1) } else { 0.0 };
+                let exact = if power % 2 == 0 {
+                    2.0 / f64::from(power + 1)
+                } else {
+                    0.0
+                };
                 assert!((integral(power) - exact).abs() < 1e-14, "{count} {power}");
             }
             let power = 2 * count as i32;
@@ -123,7 +130,10 @@ mod tests {
                     let row = &matrix[k * count..(k + 1) * count];
                     let found: f64 = row.iter().zip(&nodes).map(|(d, x)| d * x.powi(power)).sum();
                     let exact = f64::from(power) * if power == 0 { 0.0 } else { s.powi(power - 1) };
-                    assert!((found - exact).abs() < 1e-11, "{count} {power} {found} {exact}");
+                    assert!(
+                        (found - exact).abs() < 1e-11,
+                        "{count} {power} {found} {exact}"
+                    );
                 }
             }
         }

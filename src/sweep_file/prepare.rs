@@ -61,9 +61,8 @@ impl Settings {
     /// Replaces what is left to the program by numbers.
     fn find_cells(&mut self, cancellation: &Cancellation) -> Result<(), Report> {
         let kind = self.method.kind;
-        let is_open = |axis: &super::AxisSettings| {
-            axis.grade == Grade::Auto && axis.modes_by(kind).is_none()
-        };
+        let is_open =
+            |axis: &super::AxisSettings| axis.grade == Grade::Auto && axis.modes_by(kind).is_none();
         let open = |axis: &super::AxisSettings| axis.range.is_none() || is_open(axis);
         if !self.axes.iter().any(open) {
             return Ok(());

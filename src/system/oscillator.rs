@@ -104,7 +104,11 @@ pub(super) fn axes<A: Into<AxisDescription>>(
     internal: impl IntoIterator<Item = A>,
 ) -> Vec<AxisDescription> {
     let internal = internal.into_iter().map(Into::into);
-    [X, Y].map(AxisDescription::from).into_iter().chain(internal).collect()
+    [X, Y]
+        .map(AxisDescription::from)
+        .into_iter()
+        .chain(internal)
+        .collect()
 }
 
 /// Parameters of a built-in oscillator with friction: α, κ, μ, those of its law, σ².

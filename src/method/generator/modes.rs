@@ -4,8 +4,8 @@
 //! coarse cells, at both ends and in the middle of a sweep, and holds for all of it: a number that changed from point to point would
 //! make densities jump.
 
-use super::source::GeneratorSource;
 use super::GeneratorMethodOptions;
+use super::source::GeneratorSource;
 use crate::cancellation::Cancellation;
 use crate::density::Projection;
 use crate::generator::cell_masses;
@@ -44,11 +44,16 @@ pub fn automatic_modes(
     let (from, to) = problem.family().ends();
     let values = [from, 0.5 * (from + to), to];
     let mut before: Option<Vec<Option<Densities>>> = None;
-    let mut found = ModesFound { count: TRIED[0], change: f64::INFINITY };
+    let mut found = ModesFound {
+        count: TRIED[0],
+        change: f64::INFINITY,
+    };
     for count in TRIED {
         let source = GeneratorSource::new(&coarse(problem, open, count)?, options)?;
-        let now: Result<Vec<_>, MethodError> =
-            values.iter().map(|&value| densities(&source, value, cancellation)).collect();
+        let now: Result<Vec<_>, MethodError> = values
+            .iter()
+            .map(|&value| densities(&source, value, cancellation))
+            .collect();
         let now = now?;
         if let Some(before) = before {
             found.change = change(&before, &now);
@@ -102,7 +107,10 @@ fn densities(
 
 /// Largest change between two tries, relative to the largest value of each density.
 fn change(before: &[Option<Densities>], now: &[Option<Densities>]) -> f64 {
-    let pairs = before.iter().zip(now).filter_map(|(a, b)| Some((a.as_ref()?, b.as_ref()?)));
+    let pairs = before
+        .iter()
+        .zip(now)
+        .filter_map(|(a, b)| Some((a.as_ref()?, b.as_ref()?)));
     let pairs = pairs.flat_map(|(a, b)| a.iter().zip(b));
     let changes = pairs.map(|(a, b)| {
         let largest = b.iter().copied().fold(0.0, f64::max);
@@ -110,6 +118,9 @@ fn change(before: &[Option<Densities>], now: &[Option<Densities>]) -> f64 {
         moved.fold(0.0, f64::max) / largest
     });
     // Without any steady state to look at nothing is known.
-    changes.fold(None, |most: Option<f64>, one| Some(most.map_or(one, |most| most.max(one))))
+    changes
+        .fold(None, |most: Option<f64>, one| {
+            Some(most.map_or(one, |most| most.max(one)))
+        })
         .unwrap_or(f64::INFINITY)
 }

@@ -57,7 +57,9 @@ pub(super) fn narrow(space: &CellSpace, matrix: &CsMat<f64>) -> CsMat<f64> {
     let positions = Positions::new(space);
     let shape = space.shape();
     let axes = space.dimension();
-    let modes: Vec<usize> = (0..axes).filter(|&axis| space.axes()[axis].is_modes()).collect();
+    let modes: Vec<usize> = (0..axes)
+        .filter(|&axis| space.axes()[axis].is_modes())
+        .collect();
     let mut start = vec![0];
     let (mut rows, mut rates) = (Vec::new(), Vec::new());
     for (cell, column) in matrix.outer_iterator().enumerate() {
@@ -65,7 +67,10 @@ pub(super) fn narrow(space: &CellSpace, matrix: &CsMat<f64>) -> CsMat<f64> {
         let mut sum = 0.0;
         let mut kept = Vec::new();
         for (&row, &rate) in column.indices().iter().zip(column.data()) {
-            if modes.iter().any(|&axis| positions.get(row, axis) != positions.get(cell, axis)) {
+            if modes
+                .iter()
+                .any(|&axis| positions.get(row, axis) != positions.get(cell, axis))
+            {
                 kept.push((row, rate));
                 continue;
             }

@@ -92,11 +92,13 @@ fn grid(space: &CellSpace, structure: &Structure, method: RateMethod) -> Grid {
     let reach = &structure.reach;
     let axes = space.axes().iter().enumerate();
     let reach: Vec<usize> = axes
-        .map(|(index, axis)| match (axis.is_modes(), method.is_narrow()) {
-            (true, _) => axis.count() - 1,
-            (false, true) => 1,
-            (false, false) => reach.get(index).copied().unwrap_or(1),
-        })
+        .map(
+            |(index, axis)| match (axis.is_modes(), method.is_narrow()) {
+                (true, _) => axis.count() - 1,
+                (false, true) => 1,
+                (false, false) => reach.get(index).copied().unwrap_or(1),
+            },
+        )
         .collect();
     Grid::new(&space.shape(), &reach, LEAF).folded_at(structure.folded)
 }

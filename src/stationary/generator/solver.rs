@@ -268,7 +268,11 @@ impl DirectSolver {
             folded: None,
         });
         if let Some((planned, plan)) = &self.plan
-            && planned.reach.iter().zip(&structure.reach).all(|(old, new)| new <= old)
+            && planned
+                .reach
+                .iter()
+                .zip(&structure.reach)
+                .all(|(old, new)| new <= old)
         {
             return Ok(*plan);
         }
@@ -319,7 +323,10 @@ impl DirectSolver {
         plan: &Estimate,
     ) -> Result<(), Cancelled> {
         let unplanned = Structure::default();
-        let structure = self.plan.as_ref().map_or(&unplanned, |(structure, _)| structure);
+        let structure = self
+            .plan
+            .as_ref()
+            .map_or(&unplanned, |(structure, _)| structure);
         let old = self.preconditioner.take();
         let (space, method, cancellation) = (&self.space, plan.method, &self.cancellation);
         let new = Preconditioner::new(space, structure, method, matrix, held, old, cancellation)?;

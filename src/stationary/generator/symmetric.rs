@@ -166,7 +166,9 @@ impl RateSolver {
         if let Some(half) = self.half.as_mut().filter(|_| is_symmetric(change)) {
             let guess = guess.map(|guess| half.folding.fold(guess));
             let (change, mass) = (half.folding.fold(change), half.folding.fold(mass));
-            let response = half.solver.response(&change, &mass, guess.as_deref(), tolerance)?;
+            let response = half
+                .solver
+                .response(&change, &mass, guess.as_deref(), tolerance)?;
             return Ok(half.folding.unfold(&response));
         }
         // Only now are factors of the whole matrix needed. It stays solved on half of the cells.
@@ -187,14 +189,21 @@ fn is_centrosymmetric(matrix: &CsMat<f64>, escape: &[f64]) -> bool {
     let starts = starts.raw_storage();
     let mirrored = |values: &[usize], sum: usize| {
         let pairs = values.iter().zip(values.iter().rev());
-        pairs.take(values.len().div_ceil(2)).all(|(a, b)| a + b == sum)
+        pairs
+            .take(values.len().div_ceil(2))
+            .all(|(a, b)| a + b == sum)
     };
-    mirrored(starts, rates.len()) && mirrored(rows, last) && is_symmetric(rates) && is_symmetric(escape)
+    mirrored(starts, rates.len())
+        && mirrored(rows, last)
+        && is_symmetric(rates)
+        && is_symmetric(escape)
 }
 
 /// Whether numbers are the same from the other end, to rounding of the largest.
 fn is_symmetric(values: &[f64]) -> bool {
-    let largest = values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+    let largest = values
+        .iter()
+        .fold(0.0_f64, |most, value| most.max(value.abs()));
     let pairs = values.iter().zip(values.iter().rev());
     let mut half = pairs.take(values.len() / 2);
     half.all(|(a, b)| (a - b).abs() <= ROUNDING * largest)
@@ -282,6 +291,9 @@ impl Folding {
             start.push(rows.len());
         }
         let escape = self.upper.iter().map(|&cell| escape[cell as usize]);
-        (CsMat::new_csc((cells, cells), start, rows, rates), escape.collect())
+        (
+            CsMat::new_csc((cells, cells), start, rows, rates),
+            escape.collect(),
+        )
     }
 }

@@ -163,13 +163,26 @@ fn check_modes(
 ) -> Option<()> {
     let (from, to) = family.ends();
     let systems = [family.at(from).ok()?, family.at(to).ok()?];
-    let walled = |range| systems.iter().all(|system| system.walls(index, range) == [true; 2]);
-    let (why, remedy) = if systems.iter().any(|system| system.noise_axes().contains(&index)) {
+    let walled = |range| {
+        systems
+            .iter()
+            .all(|system| system.walls(index, range) == [true; 2])
+    };
+    let (why, remedy) = if systems
+        .iter()
+        .any(|system| system.noise_axes().contains(&index))
+    {
         ("noise drives it", format!("give `cells.{name}.count`"))
     } else if systems.iter().any(|system| system.bounds(index).is_none()) {
-        ("the model knows no bounds of it", format!("give `cells.{name}.count`"))
+        (
+            "the model knows no bounds of it",
+            format!("give `cells.{name}.count`"),
+        )
     } else if !range.is_some_and(walled) {
-        ("the state may leave the range", "leave the range out: the model knows the bounds".to_owned())
+        (
+            "the state may leave the range",
+            "leave the range out: the model knows the bounds".to_owned(),
+        )
     } else {
         return Some(());
     };

@@ -75,7 +75,11 @@ pub(super) fn read(
 fn refuse_modes(reader: &mut Reader<'_>, name: &str, at: &Place) {
     let title = format!("the density along axis `{name}`, which modes carry, is not watched");
     let remedy = format!("give `cells.{name}.count` in place of modes, or leave it out here");
-    reader.report(Diagnostic::new(title).at(at, "carried by modes").remedy(remedy));
+    reader.report(
+        Diagnostic::new(title)
+            .at(at, "carried by modes")
+            .remedy(remedy),
+    );
 }
 
 fn axis_index(reader: &mut Reader<'_>, model: &Model, name: &str, at: &Place) -> Option<usize> {
