@@ -180,7 +180,7 @@ impl RateSolver {
 }
 
 /// Whether rates and escape are the same counted from the other end.
-fn is_centrosymmetric(matrix: &CsMat<f64>, escape: &[f64]) -> bool {
+pub(super) fn is_centrosymmetric(matrix: &CsMat<f64>, escape: &[f64]) -> bool {
     let (rows, rates) = (matrix.indices(), matrix.data());
     let Some(last) = matrix.rows().checked_sub(1) else {
         return false;
