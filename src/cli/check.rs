@@ -33,12 +33,12 @@ pub(super) fn text(file: &Path, spec: &Sweep) -> io::Result<String> {
 }
 
 fn costs(spec: &Sweep) -> Vec<String> {
-    let shape: Vec<String> = spec
-        .problem
-        .space()
-        .shape()
-        .iter()
-        .map(usize::to_string)
+    let axes = spec.problem.space().axes().iter();
+    let shape: Vec<String> = axes
+        .map(|axis| match axis.is_modes() {
+            true => format!("{} modes", axis.count()),
+            false => axis.count().to_string(),
+        })
         .collect();
     let cells = spec.problem.space().n_cells();
     let mut lines = vec![
@@ -180,7 +180,7 @@ fn misplaced_faces(spec: &Sweep) -> Vec<String> {
         let Some(axis) = spec.problem.space().axes().get(index) else {
             continue;
         };
-        if axis.is_inside_cell(at) {
+        if !axis.is_modes() && axis.is_inside_cell(at) {
             let (name, count) = (family.axis(index), axis.count());
             notes.push(format!(
                 "{what} {name} = {at} lies inside a cell: give a range with {at} in its middle and an even \

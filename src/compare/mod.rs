@@ -2,7 +2,7 @@
 //! Carlo; times and work, distances with their uncertainties, and the error against time.
 //!
 //! All densities are compared on *common cells*, the paper's: 50 cells of equal width along the first two axes, as many as the
-//! file has along the others. SGCM and Monte Carlo work on these cells; what others give is brought there by [`rebin()`].
+//! file has along the others (16 where the generator has modes). SGCM and Monte Carlo work on these cells; what others give is brought there by [`rebin()`].
 
 mod accuracy;
 mod agreement;
@@ -27,6 +27,9 @@ use solve::Sources;
 
 /// Cells of equal width along the first two axes of the paper's cell space.
 pub const PAPER_CELLS: usize = 50;
+
+/// Cells along an axis that the generator carries by modes.
+const MODE_CELLS: usize = 16;
 
 /// Time one transition of the paper's cell map spans.
 pub const PAPER_MAP_STEP: f64 = 1.0;
@@ -257,7 +260,11 @@ fn uniform_cells(space: &CellSpace, count: usize) -> Result<CellSpace, crate::sp
     let axes = space.axes().iter().enumerate();
     let axes: Result<Vec<Axis>, _> = axes
         .map(|(index, axis)| {
-            let count = if index < 2 { count } else { axis.count() };
+            let count = match (index < 2, axis.is_modes()) {
+                (true, _) => count,
+                (false, true) => MODE_CELLS,
+                (false, false) => axis.count(),
+            };
             Axis::uniform(axis.from(), axis.to(), count)
         })
         .collect();

@@ -3,9 +3,14 @@
 use super::{DensityError, EstimatedDensity, Observable, Projection, Structure, Variants};
 use crate::space::CellSpace;
 
+/// Height of a wiggle from trough to crest, over the depth of its troughs below zero: what is below zero is the lower half of a wiggle
+/// about a positive density at most.
+const WIGGLE: f64 = 4.0;
+
 /// Density of an observable from the masses of all cells, with the difference to a second discretisation (masses,
 /// Σ = 0) as its error. Where two solutions happen to cross, the difference says too little, so every error is the root mean
-/// square over the cell and its neighbours.
+/// square over the cell and its neighbours. A density is nowhere negative: values below zero are wiggles of the scheme, and what is not
+/// clearly higher than they are deep is negligible.
 ///
 /// # Errors
 /// [`DensityError::Axis`], [`DensityError::RepeatedAxis`] or [`DensityError::Length`].
@@ -31,13 +36,16 @@ pub fn estimate_from_difference(
         stride /= count;
         squares = neighbour_means(&squares, count, stride);
     }
+    let deepest = density.values.iter().copied().fold(0.0, f64::min).abs();
+    let maximum = density.maximum().max(f64::MIN_POSITIVE);
+    let negligible = crate::density::NEGLIGIBLE.max(WIGGLE * deepest / maximum);
     Ok(EstimatedDensity {
         observable,
         density,
         standard_error: squares.into_iter().map(f64::sqrt).collect(),
         variants: Variants::Scheme(second),
         structure: Structure::default(),
-        negligible: crate::density::NEGLIGIBLE,
+        negligible,
     })
 }
 
@@ -71,6 +79,20 @@ mod tests {
         for (found, expected) in estimate.standard_error.iter().zip(expected) {
             assert!((found - expected).abs() < 1e-15);
         }
+    }
+
+    #[test]
+    fn wiggles_about_nothing_are_negligible() {
+        let axis = Axis::uniform(0.0, 4.0, 4).unwrap();
+        let space = CellSpace::new(vec![axis]).unwrap();
+        let of = |mass: [f64; 4]| {
+            let observable = Observable::Marginal(0);
+            estimate_from_difference(&space, observable, &mass, &[0.0; 4])
+                .unwrap()
+                .negligible
+        };
+        assert_eq!(of([0.5, 0.5, 0.0, 0.0]), crate::density::NEGLIGIBLE);
+        assert!((of([0.5, 0.5, -1e-3, 1e-3]) - 8e-3).abs() < 1e-15);
     }
 
     #[test]

@@ -5,18 +5,21 @@
 
 use rayon::prelude::*;
 
-use super::columns::columns;
-use super::geometry::AxisGeometry;
+use super::columns::{AxisRates, columns};
+use super::geometry::{AxisGeometry, End};
+use super::modes::block;
 use super::sampler::{LineSampler, quadrature_points};
 use super::scheme::{REACH, Window};
 use super::{Generator, GeneratorError, GeneratorOptions};
+use crate::MAX_DIMENSION;
 use crate::space::CellSpace;
 use crate::system::System;
 
 /// Assembles the generator of an autonomous system on a cell space of the same dimension.
 ///
 /// An end of the range that the system declares never to leave ([`System::bounds`]) is a wall without flux;
-/// what flows or diffuses out through any other end is lost and counted in [`Generator::escape`].
+/// what flows or diffuses out through any other end is lost and counted in [`Generator::escape`]. An axis of modes
+/// ([`crate::space::Axis::modes`]) lies between two such ends, and no noise drives it.
 ///
 /// # Errors
 /// Any [`GeneratorError`] but [`GeneratorError::System`].
@@ -40,11 +43,23 @@ pub(super) fn assemble_within(
     let axes: Vec<AxisGeometry> = (0..space.dimension())
         .map(|index| AxisGeometry::new(walls, index, &space.axes()[index], options.scheme))
         .collect();
+    for (axis, geometry) in axes.iter().enumerate() {
+        let bounded = geometry.ends == [End::Wall; 2];
+        if geometry.differentiation.is_some() && !(bounded && !system.noise_axes().contains(&axis))
+        {
+            return Err(GeneratorError::Modes { axis });
+        }
+    }
     let strides = strides(&axes);
-    let fluxes: Result<Vec<Vec<Window>>, GeneratorError> = (0..axes.len())
-        .map(|axis| axis_fluxes(system, &axes, &strides, axis))
+    let rates: Result<Vec<AxisRates>, GeneratorError> = (0..axes.len())
+        .map(|axis| match &axes[axis].differentiation {
+            Some(differentiation) => {
+                axis_blocks(system, &axes, &strides, axis, differentiation).map(AxisRates::Blocks)
+            }
+            None => axis_fluxes(system, &axes, &strides, axis).map(AxisRates::Fluxes),
+        })
         .collect();
-    columns(&axes, &strides, &fluxes?, space.n_cells())
+    columns(&axes, &strides, &rates?, space.n_cells())
 }
 
 fn check(system: &dyn System, space: &CellSpace) -> Result<(), GeneratorError> {
@@ -93,18 +108,55 @@ fn axis_fluxes(
         .try_for_each_init(
             || LineSampler::new(system, axis),
             |sampler, (number, fluxes)| {
-                let (outer, inner) = (number / strides[axis], number % strides[axis]);
-                let first = outer * strides[axis] * count + inner;
-                for (index, geometry) in axes.iter().enumerate() {
-                    let position = first / strides[index] % geometry.count();
-                    sampler.state[index] = geometry.nodes[position];
-                }
+                sampler.state = line_start(axes, strides, axis, number);
                 sampler.sample(&axes[axis].nodes, &quadrature)?;
                 sampler.line.fluxes(&axes[axis], fluxes);
                 Ok::<(), GeneratorError>(())
             },
         )?;
     Ok(fluxes)
+}
+
+/// Blocks of all lines along an axis of modes: `lines × count × count` rates, the line's number as in [`axis_fluxes`].
+fn axis_blocks(
+    system: &dyn System,
+    axes: &[AxisGeometry],
+    strides: &[usize],
+    axis: usize,
+    differentiation: &[f64],
+) -> Result<Vec<f64>, GeneratorError> {
+    let count = axes[axis].count();
+    let cells: usize = axes.iter().map(AxisGeometry::count).product();
+    let mut blocks = vec![0.0; cells * count];
+    blocks
+        .par_chunks_mut(count * count)
+        .enumerate()
+        .try_for_each_init(
+            || LineSampler::new(system, axis),
+            |sampler, (number, rates)| {
+                sampler.state = line_start(axes, strides, axis, number);
+                sampler.sample(&axes[axis].nodes, &[])?;
+                block(differentiation, &sampler.line.drift, rates);
+                Ok::<(), GeneratorError>(())
+            },
+        )?;
+    Ok(blocks)
+}
+
+/// Nodes of the first cell of a line along an axis.
+fn line_start(
+    axes: &[AxisGeometry],
+    strides: &[usize],
+    axis: usize,
+    number: usize,
+) -> [f64; MAX_DIMENSION] {
+    let (outer, inner) = (number / strides[axis], number % strides[axis]);
+    let first = outer * strides[axis] * axes[axis].count() + inner;
+    let mut state = [0.0; MAX_DIMENSION];
+    for (index, geometry) in axes.iter().enumerate() {
+        state[index] = geometry.nodes[first / strides[index] % geometry.count()];
+    }
+    state
 }
 
 #[cfg(test)]

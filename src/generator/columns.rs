@@ -10,24 +10,32 @@ use super::{Generator, GeneratorError};
 /// Columns that are filled as one task.
 const COLUMNS: usize = 2048;
 
+/// What moves along the lines of an axis.
+pub(super) enum AxisRates {
+    /// Weights of the flux through every face: `lines × (count + 1)`.
+    Fluxes(Vec<Window>),
+    /// Rates between all nodes of an axis of modes: `lines × count × count`, from the one (slow) into the other (fast).
+    Blocks(Vec<f64>),
+}
+
 /// Everything a column needs.
 struct Columns<'a> {
     axes: &'a [AxisGeometry],
     strides: &'a [usize],
-    fluxes: &'a [Vec<Window>],
+    rates: &'a [AxisRates],
 }
 
 /// Fills the matrix from the fluxes of all lines along every axis.
 pub(super) fn columns(
     axes: &[AxisGeometry],
     strides: &[usize],
-    fluxes: &[Vec<Window>],
+    rates: &[AxisRates],
     n_cells: usize,
 ) -> Result<Generator, GeneratorError> {
     let columns = Columns {
         axes,
         strides,
-        fluxes,
+        rates,
     };
     let mut starts = Vec::with_capacity(n_cells + 1);
     starts.push(0);
@@ -83,33 +91,28 @@ impl Columns<'_> {
 
     /// Writes a column, rows ascending, and returns its escape rate.
     fn fill(&self, cell: usize, rows: &mut [usize], values: &mut [f64]) -> f64 {
-        let (mut diagonal, mut escape) = (0.0, 0.0);
-        let mut next = 0;
+        let (mut diagonal, mut escape, mut next) = (0.0, 0.0, 0);
+        let mut put = |row: usize, entry: f64, next: &mut usize| {
+            (rows[*next], values[*next]) = (row, entry);
+            diagonal -= entry;
+            *next += 1;
+        };
         // Below the diagonal the rows rise with the first axis first, above it with the last axis first.
         for axis in 0..self.axes.len() {
-            let window = self.window(cell, axis);
-            for (distance, entry) in window.0.iter().enumerate().take(REACH) {
-                if let Some(entry) = entry {
-                    rows[next] = cell - (REACH - distance) * self.strides[axis];
-                    values[next] = *entry;
-                    diagonal -= entry;
-                    next += 1;
-                }
-            }
-            escape += window.1;
+            let (stride, position) = (self.strides[axis], self.position(cell, axis));
+            let lowest = position.saturating_sub(self.axes[axis].reach);
+            escape += self.each_rate(cell, axis, lowest..position, |to, entry| {
+                put(cell - (position - to) * stride, entry, &mut next);
+            });
         }
         let place = next;
         next += 1;
         for axis in (0..self.axes.len()).rev() {
-            let window = self.window(cell, axis);
-            for (distance, entry) in window.0.iter().enumerate().skip(REACH + 1) {
-                if let Some(entry) = entry {
-                    rows[next] = cell + (distance - REACH) * self.strides[axis];
-                    values[next] = *entry;
-                    diagonal -= entry;
-                    next += 1;
-                }
-            }
+            let (stride, position) = (self.strides[axis], self.position(cell, axis));
+            let end = (position + self.axes[axis].reach + 1).min(self.axes[axis].count());
+            self.each_rate(cell, axis, position + 1..end, |to, entry| {
+                put(cell + (to - position) * stride, entry, &mut next);
+            });
         }
         rows[place] = cell;
         // What enters no other cell and does not leave stays.
@@ -117,30 +120,32 @@ impl Columns<'_> {
         escape
     }
 
-    /// Rates from a cell into the cells along an axis (`None` past the ends), and into the sink through its ends.
-    fn window(&self, cell: usize, axis: usize) -> ([Option<f64>; 2 * REACH + 1], f64) {
-        let geometry = &self.axes[axis];
-        let (count, stride, reach) = (geometry.count(), self.strides[axis], geometry.reach);
+    /// Tells the rates from a cell into the cells at some positions along an axis, and returns the rate into the sink through the
+    /// axis's ends.
+    fn each_rate(
+        &self,
+        cell: usize,
+        axis: usize,
+        positions: std::ops::Range<usize>,
+        mut tell: impl FnMut(usize, f64),
+    ) -> f64 {
+        let (count, stride) = (self.axes[axis].count(), self.strides[axis]);
         let position = self.position(cell, axis);
-        let (outer, inner) = (cell / (stride * count), cell % stride);
-        let start = (outer * stride + inner) * (count + 1);
-        let faces = &self.fluxes[axis][start..start + count + 1];
+        let line = cell / (stride * count) * stride + cell % stride;
+        let faces = match &self.rates[axis] {
+            AxisRates::Blocks(blocks) => {
+                let rates = &blocks[(line * count + position) * count..][..count];
+                positions.for_each(|to| tell(to, rates[to]));
+                return 0.0;
+            }
+            AxisRates::Fluxes(fluxes) => &fluxes[line * (count + 1)..][..count + 1],
+        };
         // Weight of this cell in the flux through a face.
         let weight = |face: usize| {
             let place = (position + REACH).wrapping_sub(face);
-            if place < 2 * REACH {
-                faces[face][place]
-            } else {
-                0.0
-            }
+            faces[face].get(place).copied().unwrap_or(0.0)
         };
-        let mut window = [None; 2 * REACH + 1];
-        for (place, entry) in window.iter_mut().enumerate() {
-            let row = (position + place).wrapping_sub(REACH);
-            if row < count && row.abs_diff(position) <= reach {
-                *entry = Some(weight(row) - weight(row + 1));
-            }
-        }
-        (window, weight(count) - weight(0))
+        positions.for_each(|to| tell(to, weight(to) - weight(to + 1)));
+        weight(count) - weight(0)
     }
 }

@@ -43,6 +43,8 @@ pub(super) struct AxisGeometry {
     pub(super) stencils: Vec<FaceStencil>,
     /// Cells on either side that an entry of the matrix may reach.
     pub(super) reach: usize,
+    /// Of an axis of modes, [`Axis::differentiation`].
+    pub(super) differentiation: Option<Vec<f64>>,
 }
 
 impl AxisGeometry {
@@ -65,7 +67,12 @@ impl AxisGeometry {
             stencils: (0..=count)
                 .map(|face| stencil(scheme, face, count - face))
                 .collect(),
-            reach: if noisy { REACH } else { scheme.reach() },
+            reach: match (axis.is_modes(), noisy) {
+                (true, _) => count - 1,
+                (false, true) => REACH,
+                (false, false) => scheme.reach(),
+            },
+            differentiation: axis.is_modes().then(|| axis.differentiation()),
         }
     }
 

@@ -14,12 +14,13 @@ const POINTS: usize = 5;
 /// The unknown of a cell is p(node) times the local volume Π dx/du. A cell's mass is the integral of p over
 /// the cell, which differs in second order of its width: along every axis the polynomial of fourth degree
 /// through the densities at the nearest nodes is integrated, all of them on the cell's side of any switching
-/// surface, where p has a kink. `unknowns` has length `n_cells`; if the masses sum to nothing they are not
-/// normalised.
+/// surface, where p has a kink. Along an axis of modes the unknowns are Gauss's rule already, and stay. `unknowns` has
+/// length `n_cells`; if the masses sum to nothing they are not normalised.
 pub fn cell_masses(system: &dyn System, space: &CellSpace, unknowns: &[f64]) -> Vec<f64> {
     let mut masses = unknowns.to_vec();
     let shape = space.shape();
-    for (index, axis) in space.axes().iter().enumerate() {
+    let axes = space.axes().iter().enumerate();
+    for (index, axis) in axes.filter(|(_, axis)| !axis.is_modes()) {
         let mut cuts = vec![0, axis.count()];
         cuts.extend(surface_faces(system, index, axis));
         cuts.sort_unstable();

@@ -12,6 +12,7 @@
 //! | schemes and stencils | `scheme.rs`, `geometry.rs` |
 //! | drift and diffusion along a grid line | `sampler.rs` |
 //! | fluxes along a grid line: fitted and advected drift | `line.rs` |
+//! | rates along an axis of modes | `modes.rs` |
 //! | the matrix | `assemble.rs`, `columns.rs` |
 //! | masses of cells and moments from the unknowns | `masses.rs` |
 //! | one axis: the steady state by quadrature | `one_axis.rs` |
@@ -30,6 +31,7 @@ mod geometry;
 mod grading;
 mod line;
 mod masses;
+mod modes;
 mod one_axis;
 mod resolution;
 mod sampler;
@@ -98,6 +100,14 @@ pub enum GeneratorError {
         axis: usize,
         /// A state on the grid line.
         state: Vec<f64>,
+    },
+    /// An axis of modes that has noise, or where the state may pass an end of the range.
+    #[error(
+        "axis {axis} cannot have modes: they are for states without noise that stay between the ends of the range"
+    )]
+    Modes {
+        /// The axis.
+        axis: usize,
     },
     /// The parameter of a derivative is unknown, or cannot be varied about its value.
     #[error(transparent)]

@@ -40,7 +40,7 @@ pub fn resolution(system: &dyn System, space: &CellSpace, masses: &[f64]) -> Vec
     let mut axes = system.noise_axes().to_vec();
     axes.sort_unstable();
     axes.dedup();
-    axes.retain(|&axis| axis < space.dimension());
+    axes.retain(|&axis| axis < space.dimension() && !space.axes()[axis].is_modes());
     axes.iter()
         .map(|&axis| judge(system, space, masses, axis))
         .collect()

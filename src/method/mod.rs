@@ -15,7 +15,9 @@ mod time_step;
 
 pub use any::MethodSource;
 pub use cost::Cost;
-pub use generator::{GeneratorCost, GeneratorMethodOptions, GeneratorSource};
+pub use generator::{
+    GeneratorCost, GeneratorMethodOptions, GeneratorSource, ModesFound, automatic_modes,
+};
 pub use monte_carlo::{
     Estimator, MonteCarloCost, MonteCarloOptions, MonteCarloPlan, MonteCarloSource,
 };

@@ -4,9 +4,13 @@
 //! ρ(x) = ρ₀ + Σ_k B / √(w² + (x - c_k)²), a uniform bulk plus a sinh grading toward each point c_k.
 //! Its integral, the *cell coordinate* u(x), is closed, so finding a cell costs a few logarithms, and a
 //! face falls on every c_k. The bulk keeps a fixed share of the cells: too strong a grading starves it.
+//!
+//! An *axis of modes* carries a series in place of cells (`series.rs`): its nodes are those of a Gauss rule, and its "cells" are
+//! as wide as the weights, so that sums over cells are the rule.
 
 use super::SpaceError;
 use super::grading::{BULK_SHARE, Grading, Piece, grading_terms};
+use super::series::{MOST_MODES, differentiation, gauss_legendre};
 
 /// Distance, in widths of a cell, within which two coordinates are one place.
 const SAME_PLACE: f64 = 1e-6;
@@ -18,7 +22,11 @@ pub struct Axis {
     /// Where the cell coordinate is half-way between a cell's edges, one a cell.
     nodes: Vec<f64>,
     pieces: Vec<Piece>,
+    is_modes: bool,
 }
+
+/// Modes that the finer axis of a check has more than the axis that is checked.
+const FINER_MODES: usize = 1;
 
 impl Axis {
     /// Cells of equal width.
@@ -56,6 +64,50 @@ impl Axis {
         let bulk = BULK_SHARE / uniform;
         let terms = grading_terms((from, to), count, bulk, &points, smallest);
         Self::split(from, to, count, bulk, &terms)
+    }
+
+    /// An axis of `count` modes: the density along it is a polynomial of degree `count` - 1, given by its values at the nodes of
+    /// Gauss's rule for Legendre polynomials. For internal states that stay in the range and have no noise.
+    ///
+    /// # Errors
+    /// [`SpaceError::Range`] or [`SpaceError::Modes`].
+    pub fn modes(from: f64, to: f64, count: usize) -> Result<Self, SpaceError> {
+        Self::check(from, to, count.max(2))?;
+        if !(2..=MOST_MODES).contains(&count) {
+            return Err(SpaceError::Modes {
+                count,
+                most: MOST_MODES,
+            });
+        }
+        let rule = gauss_legendre(count);
+        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+        let mut edges = vec![from];
+        // From the nearer end, so that mirrored cells are alike to the last bit.
+        let mut sum = 0.0;
+        for weight in &rule.weights[..count - 1] {
+            sum += weight;
+            edges.push(from + half * sum);
+        }
+        edges.push(to);
+        for index in 1..=count / 2 {
+            edges[count - index] = middle + (middle - edges[index]);
+        }
+        Ok(Self {
+            edges,
+            nodes: rule.nodes.iter().map(|s| middle + half * s).collect(),
+            pieces: Vec::new(),
+            is_modes: true,
+        })
+    }
+
+    /// Whether it carries a series in place of cells: see [`Axis::modes`].
+    pub fn is_modes(&self) -> bool {
+        self.is_modes
+    }
+
+    /// Of an axis of modes, the derivatives of the Lagrange polynomials of its nodes: entry `k · count + i` is ℓ_i'(node k).
+    pub(crate) fn differentiation(&self) -> Vec<f64> {
+        differentiation(&self.nodes)
     }
 
     /// Cuts the axis at the graded points and gives each piece a whole number of cells.
@@ -118,12 +170,19 @@ impl Axis {
             edges,
             nodes,
             pieces,
+            is_modes: false,
         }
     }
 
     /// The same axis with about `factor` times as many cells (fewer below 1, at least two a stretch between graded points), graded
     /// alike: faces stay on the points it is graded toward, and an even number of cells stays even, so that a face stays in the middle.
+    /// An axis of modes, which converge exponentially, gets one more mode (none below 1).
     pub fn refined(&self, factor: f64) -> Self {
+        if self.is_modes {
+            let count = self.count() + if factor > 1.0 { FINER_MODES } else { 0 };
+            let finer = Self::modes(self.from(), self.to(), count.min(MOST_MODES));
+            return finer.unwrap_or_else(|_| self.clone());
+        }
         let finer = |cells: usize| {
             let odd = cells % 2;
             2 * (0.5 * (cells as f64 * factor - odd as f64)).round() as usize + odd
@@ -180,7 +239,7 @@ impl Axis {
         &self.nodes
     }
 
-    /// Derivative dx/du of x by the cell coordinate (the local cell width) at the node of a cell.
+    /// Derivative dx/du of x by the cell coordinate (the local cell width) at the node of a cell; the weight of a node of modes.
     pub(crate) fn node_stretch(&self, cell: usize) -> f64 {
         self.piece_of(cell)
             .map_or(self.width(cell), |piece| piece.stretch(self.nodes[cell]))
@@ -200,7 +259,7 @@ impl Axis {
 
     /// Whether all cells have the same width.
     pub fn is_uniform(&self) -> bool {
-        self.pieces.iter().all(|piece| piece.terms.is_empty())
+        !self.is_modes && self.pieces.iter().all(|piece| piece.terms.is_empty())
     }
 
     /// The cell that holds `x`; `None` outside the range and for values that are not numbers.
@@ -209,9 +268,13 @@ impl Axis {
             return None;
         }
         let piece = self.pieces.iter().find(|piece| x < piece.to);
-        let piece = piece.or(self.pieces.last())?;
-        let inside = (piece.coordinate(x).max(0.0) as usize).min(piece.cells - 1);
-        let mut cell = piece.first_cell + inside;
+        let mut cell = match piece.or(self.pieces.last()) {
+            Some(piece) => {
+                let inside = (piece.coordinate(x).max(0.0) as usize).min(piece.cells - 1);
+                piece.first_cell + inside
+            }
+            None => 0,
+        };
         // The closed form and the stored edges may differ in the last digits.
         while cell > 0 && x < self.edges[cell] {
             cell -= 1;

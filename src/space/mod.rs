@@ -1,12 +1,15 @@
-//! Cell space: a rectilinear grid of boxes over the domain Ω. Everything outside is the sink.
+//! Cell space: a rectilinear grid of boxes over the domain Ω. Everything outside is the sink. An axis may carry a series of
+//! modes in place of cells.
 
 mod axis;
 mod cells;
 mod grading;
+mod series;
 
 pub use axis::Axis;
 pub use cells::CellSpace;
 pub use grading::Grading;
+pub use series::MOST_MODES;
 
 /// Why an axis or a cell space could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -24,6 +27,14 @@ pub enum SpaceError {
     Count {
         /// Number of cells that was given.
         count: usize,
+    },
+    /// Too few or too many modes.
+    #[error("{count} modes on an axis; 2 to {most} are possible")]
+    Modes {
+        /// Number of modes that was given.
+        count: usize,
+        /// The largest number.
+        most: usize,
     },
     /// A point of grading outside the range, or repeated.
     #[error("cells cannot be graded toward {at}: it must lie in [{from}, {to}], each point once")]

@@ -64,6 +64,11 @@ impl MethodKind {
     /// All methods, in the order of [`MethodOptions::KINDS`].
     pub const ALL: [Self; 3] = [Self::Generator, Self::Sgcm, Self::MonteCarlo];
 
+    /// Whether it can carry an axis by modes; all can cut it into cells.
+    pub fn takes_modes(self) -> bool {
+        self == Self::Generator
+    }
+
     /// Name used in files.
     pub fn name(self) -> &'static str {
         MethodOptions::KINDS[self as usize]
@@ -74,6 +79,15 @@ impl MethodKind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Auto;
 
+/// Number of modes of an axis that carries a series in place of cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Modes {
+    /// As many as what is watched needs, found before the sweep.
+    Auto,
+    /// So many.
+    Number(usize),
+}
+
 /// What the file says of one axis.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct AxisDraft {
@@ -82,6 +96,7 @@ pub(super) struct AxisDraft {
     pub(super) from: Option<f64>,
     pub(super) to: Option<f64>,
     pub(super) count: Option<usize>,
+    pub(super) modes: Option<Modes>,
     pub(super) grade: Option<Auto>,
     pub(super) grade_at: Option<Vec<f64>>,
     pub(super) grade_smallest: Option<f64>,

@@ -7,11 +7,13 @@ use super::diagnostic::Diagnostic;
 use super::memory::{bytes_in_words, machine_memory};
 use super::names::list;
 use super::report::Report;
-use super::settings::{Grade, Settings, at_cells, cell_space};
+use super::settings::{Grade, Modes, Settings, at_cells, cell_space};
 use super::sweep::Sweep;
 use crate::cancellation::Cancellation;
 use crate::generator::automatic_grading;
-use crate::method::{PILOT_BOX, Problem, RangeError, SgcmOptions, automatic_ranges};
+use crate::method::{
+    PILOT_BOX, Problem, RangeError, SgcmOptions, automatic_modes, automatic_ranges,
+};
 use crate::space::Grading;
 use crate::system::System;
 
@@ -25,6 +27,7 @@ impl Settings {
         self.check_memory()?;
         self.find_cells(cancellation)?;
         self.check_equations()?;
+        self.find_modes(cancellation)?;
         let sweep = self.fixed()?;
         sweep.settings.check_factors(&sweep)?;
         Ok(sweep)
@@ -35,7 +38,8 @@ impl Settings {
     /// # Errors
     /// A report where something is left to the program.
     pub fn fixed(self) -> Result<Sweep, Report> {
-        let space = cell_space(&self.document, &self.family, &self.axes)
+        let method = self.method.kind;
+        let space = cell_space(&self.document, &self.family, &self.axes, method)
             .map_err(|diagnostic| self.refuse(*diagnostic))?;
         let problem = Problem::new(self.family.clone(), space, self.observables.clone())
             .map(|problem| problem.checked_by(self.method.chosen().cell_check()))
@@ -56,8 +60,10 @@ impl Settings {
 
     /// Replaces what is left to the program by numbers.
     fn find_cells(&mut self, cancellation: &Cancellation) -> Result<(), Report> {
-        let is_open = |grade: &Grade| *grade == Grade::Auto;
-        let open = |axis: &super::AxisSettings| axis.range.is_none() || is_open(&axis.grade);
+        let kind = self.method.kind;
+        let is_open =
+            |axis: &super::AxisSettings| axis.grade == Grade::Auto && axis.modes_by(kind).is_none();
+        let open = |axis: &super::AxisSettings| axis.range.is_none() || is_open(axis);
         if !self.axes.iter().any(open) {
             return Ok(());
         }
@@ -68,9 +74,9 @@ impl Settings {
         let ranges = self.find_ranges(&ends, cancellation)?;
         for (index, axis) in self.axes.iter_mut().enumerate() {
             axis.range = Some(ranges[index]);
-            if is_open(&axis.grade) {
+            if is_open(axis) {
                 let finest = |system: &Arc<dyn System>| {
-                    automatic_grading(system.as_ref(), &ranges, index, axis.count)
+                    automatic_grading(system.as_ref(), &ranges, index, axis.count?)
                 };
                 let gradings = ends.iter().filter_map(finest);
                 let narrowest =
@@ -108,18 +114,50 @@ impl Settings {
         })
     }
 
+    /// Replaces numbers of modes that are left to the program.
+    fn find_modes(&mut self, cancellation: &Cancellation) -> Result<(), Report> {
+        let kind = self.method.kind;
+        let open = self.axes.iter().enumerate();
+        let open: Vec<usize> = open
+            .filter(|(_, axis)| axis.modes_by(kind) == Some(Modes::Auto))
+            .map(|(index, _)| index)
+            .collect();
+        if open.is_empty() {
+            return Ok(());
+        }
+        // With any number they make a space; the right one is then found.
+        for &axis in &open {
+            self.axes[axis].modes = Some(Modes::Number(2));
+        }
+        let problem = self.clone().fixed()?.problem;
+        let found = automatic_modes(&problem, &open, &self.method.generator, cancellation);
+        let found = found.map_err(|error| self.refuse_cells(Diagnostic::new(error.to_string())))?;
+        for axis in open {
+            self.axes[axis].modes = Some(Modes::Number(found.count));
+        }
+        Ok(())
+    }
+
+    /// Unknowns along each axis as the method has it; a few modes where their number is left to the program.
+    fn unknowns(&self) -> Vec<usize> {
+        let axes = self.axes.iter();
+        axes.map(|axis| match axis.modes_by(self.method.kind) {
+            Some(Modes::Number(count)) => count,
+            Some(Modes::Auto) => 4,
+            None => axis.count.unwrap_or(1),
+        })
+        .collect()
+    }
+
     /// Refuses cells whose least need exceeds the machine's memory; runs before anything is laid out.
     fn check_memory(&self) -> Result<(), Report> {
-        let n_cells: f64 = self.axes.iter().map(|axis| axis.count as f64).product();
+        let unknowns = self.unknowns();
+        let n_cells: f64 = unknowns.iter().map(|&count| count as f64).product();
         let least = self.method.chosen().least_bytes(n_cells, self.axes.len());
         let Some(memory) = machine_memory().filter(|&memory| least > memory) else {
             return Ok(());
         };
-        let counts: Vec<String> = self
-            .axes
-            .iter()
-            .map(|axis| axis.count.to_string())
-            .collect();
+        let counts: Vec<String> = unknowns.iter().map(usize::to_string).collect();
         let title = format!(
             "{} cells need at least {} of memory; this machine has {}",
             counts.join(" × "),

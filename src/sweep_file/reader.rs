@@ -219,7 +219,7 @@ fn meant(kind: Kind, node: &Node) -> Option<String> {
     let plain = node.plain()?;
     match kind {
         Kind::Choice(names) => nearest_name(plain.text()?, names()).map(str::to_owned),
-        Kind::Step => plain.text().map(|_| "\"auto\"".to_owned()),
+        Kind::Step | Kind::Count(..) => plain.text().map(|_| "\"auto\"".to_owned()),
         Kind::List(kind) if kind.holds(&plain) => Some(format!("[{}]", plain.to_toml())),
         _ => None,
     }

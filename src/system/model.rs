@@ -13,6 +13,8 @@ pub struct AxisDescription {
     pub symbol: String,
     /// Meaning in words.
     pub meaning: String,
+    /// Whether modes carry it unless a file says otherwise: the density along it is smooth inside its bounds, and no noise drives it.
+    pub by_modes: bool,
 }
 
 impl AxisDescription {
@@ -26,6 +28,17 @@ impl AxisDescription {
             name: name.into(),
             symbol: symbol.into(),
             meaning: meaning.into(),
+            by_modes: false,
+        }
+    }
+
+    /// The axis of an internal state that modes carry; a series in place of cells. The state has bounds, no noise,
+    /// and a smooth density between its bounds.
+    #[must_use]
+    pub fn carried_by_modes(self) -> Self {
+        Self {
+            by_modes: true,
+            ..self
         }
     }
 }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use multiversion::multiversion;
 
 use super::friction::{FrictionLaw, Motion};
-use super::parameters::{ALPHA, Axis, KAPPA, MU, Parameter, SIGMA2, X, Y};
-use super::{LANES, Lanes, SwitchingSurface, Symmetry, System};
+use super::parameters::{ALPHA, KAPPA, MU, Parameter, SIGMA2, X, Y};
+use super::{AxisDescription, LANES, Lanes, SwitchingSurface, Symmetry, System};
 
 /// Axis of the displacement of an oscillator.
 pub const DISPLACEMENT: usize = 0;
@@ -100,8 +100,15 @@ impl<D: Damping, F: FrictionLaw<N>, const N: usize> Oscillator<D, F, N> {
 }
 
 /// Axes of a built-in oscillator with friction: x, y, and the internal states of its law.
-pub(super) fn axes(internal: impl IntoIterator<Item = Axis>) -> Vec<Axis> {
-    [X, Y].into_iter().chain(internal).collect()
+pub(super) fn axes<A: Into<AxisDescription>>(
+    internal: impl IntoIterator<Item = A>,
+) -> Vec<AxisDescription> {
+    let internal = internal.into_iter().map(Into::into);
+    [X, Y]
+        .map(AxisDescription::from)
+        .into_iter()
+        .chain(internal)
+        .collect()
 }
 
 /// Parameters of a built-in oscillator with friction: α, κ, μ, those of its law, σ².

@@ -4,6 +4,7 @@
 use super::{AxisDescription, ParameterDescription, ParameterRange};
 
 /// An axis as it is declared here: name, symbol and meaning.
+#[derive(Clone, Copy)]
 pub(super) struct Axis(&'static str, &'static str, &'static str);
 
 impl From<Axis> for AxisDescription {

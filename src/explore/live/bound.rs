@@ -68,8 +68,10 @@ impl Base {
         let mut settings = self.settings(moved);
         if ask.preview {
             for axis in &mut settings.axes {
-                let half = axis.count.div_ceil(4) * 2;
-                axis.count = half.max(FEWEST).min(axis.count);
+                axis.count = axis.count.map(|count| {
+                    let half = count.div_ceil(4) * 2;
+                    half.max(FEWEST).min(count)
+                });
             }
         }
         Ok(Bound {
@@ -172,7 +174,7 @@ fn key(settings: &Settings) -> Vec<u64> {
     key.extend(family.fixed().map(|(_, value)| value.to_bits()));
     for axis in &settings.axes {
         let (from, to) = axis.range.unwrap_or_default();
-        key.extend([axis.count as u64, from.to_bits(), to.to_bits()]);
+        key.extend([axis.count.unwrap_or(0) as u64, from.to_bits(), to.to_bits()]);
     }
     key
 }

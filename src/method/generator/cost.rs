@@ -40,14 +40,25 @@ impl GeneratorMethodOptions {
         MATRICES * RATE_BYTES * n_cells * rates as f64
     }
 
+    /// Cells that the stencil reaches along each axis; modes are all coupled.
+    fn reach(&self, space: &CellSpace) -> Vec<usize> {
+        let axes = space.axes().iter();
+        axes.map(|axis| match axis.is_modes() {
+            true => axis.count() - 1,
+            false => self.scheme.reach(),
+        })
+        .collect()
+    }
+
     /// What a point costs on these cells.
     ///
     /// # Errors
     /// [`RateError::Memory`] when not even the smallest factorisation fits the limit.
     pub fn cost(&self, space: &CellSpace) -> Result<GeneratorCost, RateError> {
-        let reach = vec![self.scheme.reach(); space.dimension()];
+        let reach = self.reach(space);
         let factors = estimate(space, &reach, (self.memory_limit * 1e9) as u64, None)?;
-        let matrices = self.matrix_bytes(space.n_cells() as f64, space.dimension());
+        let rates = 1 + 2 * reach.iter().sum::<usize>();
+        let matrices = MATRICES * RATE_BYTES * space.n_cells() as f64 * rates as f64;
         Ok(GeneratorCost {
             bytes: matrices + factors.peak_bytes as f64,
             factors,

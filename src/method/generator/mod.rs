@@ -3,6 +3,7 @@
 
 mod cost;
 mod memory;
+mod modes;
 mod one_axis;
 mod options;
 mod relaxation;
@@ -12,5 +13,6 @@ mod source;
 mod trail;
 
 pub use cost::GeneratorCost;
+pub use modes::{ModesFound, automatic_modes};
 pub use options::GeneratorMethodOptions;
 pub use source::GeneratorSource;

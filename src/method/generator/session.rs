@@ -191,7 +191,8 @@ impl GeneratorSession {
         let watched = densities
             .iter()
             .map(|one| negative_mass(&one.density.masses()));
-        reporter.negative_mass(negative_mass(&masses), watched.fold(0.0, f64::max));
+        let watched = watched.fold(0.0, f64::max);
+        reporter.negative_mass(negative_mass(&summed_over_modes(&space, &masses)), watched);
         let solution = Solution {
             report: reporter.report,
             moments: moments_of(&space, unknowns),
@@ -298,6 +299,25 @@ fn trail_after(
     trail
         .unwrap_or_default()
         .with(point, relaxation.map(Arc::new))
+}
+
+/// Masses of the cells of the other axes. The values at the nodes of a series, which may be negative where the density is
+/// nothing, are the masses of no cells.
+fn summed_over_modes(space: &CellSpace, masses: &[f64]) -> Vec<f64> {
+    let mut summed = masses.to_vec();
+    let mut stride = 1;
+    for axis in space.axes().iter().rev() {
+        if axis.is_modes() {
+            let blocks = summed.chunks_exact(stride * axis.count());
+            let sum = |block: &[f64], inner| block.iter().skip(inner).step_by(stride).sum::<f64>();
+            summed = blocks
+                .flat_map(|block| (0..stride).map(move |inner| sum(block, inner)))
+                .collect();
+        } else {
+            stride *= axis.count();
+        }
+    }
+    summed
 }
 
 /// Σ |min(mass, 0)|.

@@ -16,7 +16,7 @@ use crate::system::{Enclosed, SwitchingSurface, System, SystemError};
 /// Name of the method in tables.
 pub(super) const METHOD: &str = "generator";
 
-/// Cells an axis of the finer grid over those of this one, in up to two dimensions and in more.
+/// Cells an axis of the finer grid over those of this one, with up to two axes that are cut into cells and with more.
 const FINER: [f64; 2] = [1.5, 1.25];
 
 /// Densities along a path by the generator.
@@ -64,7 +64,8 @@ impl GeneratorSource {
     /// The same on finer cells.
     fn refined(&self) -> Result<Self, MethodError> {
         let space = self.problem.space();
-        let factor = FINER[usize::from(space.dimension() > 2)];
+        let cut = space.axes().iter().filter(|axis| !axis.is_modes()).count();
+        let factor = FINER[usize::from(cut > 2)];
         let axes = space.axes().iter();
         let finer = CellSpace::new(axes.map(|axis| axis.refined(factor)).collect())?;
         Self::new(&self.problem.on(finer)?, &self.options)

@@ -42,6 +42,14 @@ pub(super) struct Grid {
     pub(super) shape: [usize; MAX_DIMENSION],
     pub(super) reach: [usize; MAX_DIMENSION],
     pub(super) leaf: usize,
+    /// Axis at whose lower end the cells couple to images of one another, see `symmetric`.
+    pub(super) folded: Option<usize>,
+}
+
+/// A box that is cut: its halves, if it is, and the boxes of its own cells, which come last.
+pub(super) struct Cut {
+    pub(super) halves: Option<[GridBox; 2]>,
+    pub(super) own: Vec<GridBox>,
 }
 
 impl Grid {
@@ -58,6 +66,51 @@ impl Grid {
             shape: pad(shape),
             reach: pad(reach),
             leaf: leaf.max(1),
+            folded: None,
+        }
+    }
+
+    /// The grid of the upper half along an axis.
+    pub(super) fn folded_at(self, axis: Option<usize>) -> Self {
+        Self {
+            folded: axis,
+            ..self
+        }
+    }
+
+    /// Cuts the box of all cells. The layers where images couple hold together across the whole fold, so they come last.
+    pub(super) fn cut_whole(&self) -> Cut {
+        let mut rest = self.whole();
+        let mut fold = None;
+        if let Some(axis) = self.folded
+            && rest.high[axis] > self.reach[axis]
+        {
+            let mut layers = rest;
+            layers.high[axis] = self.reach[axis];
+            rest.low[axis] = self.reach[axis];
+            fold = Some(layers);
+        } else if self.folded.is_some() {
+            return Cut {
+                halves: None,
+                own: vec![rest],
+            };
+        }
+        let mut cut = self.cut_or_leaf(&rest);
+        cut.own.extend(fold);
+        cut
+    }
+
+    /// Cuts a box, or makes a leaf of it.
+    pub(super) fn cut_or_leaf(&self, cells: &GridBox) -> Cut {
+        match self.cut(cells) {
+            None => Cut {
+                halves: None,
+                own: vec![*cells],
+            },
+            Some([left, right, slab]) => Cut {
+                halves: Some([left, right]),
+                own: vec![slab],
+            },
         }
     }
 
@@ -118,21 +171,19 @@ impl Dissection {
             nodes: Vec::new(),
             order: Vec::with_capacity(grid.whole().count()),
         };
-        tree.add(grid, &grid.whole());
+        tree.add(grid, grid.cut_whole());
         tree
     }
 
-    fn add(&mut self, grid: &Grid, cells: &GridBox) -> usize {
+    fn add(&mut self, grid: &Grid, cut: Cut) -> usize {
         let first = self.nodes.len();
-        let (children, own) = match grid.cut(cells) {
-            None => (None, *cells),
-            Some([left, right, slab]) => {
-                let children = [self.add(grid, &left), self.add(grid, &right)];
-                (Some(children), slab)
-            }
-        };
+        let children = cut
+            .halves
+            .map(|halves| halves.map(|half| self.add(grid, grid.cut_or_leaf(&half))));
         let start = self.order.len();
-        own.push_cells(&grid.shape, &mut self.order);
+        for own in cut.own {
+            own.push_cells(&grid.shape, &mut self.order);
+        }
         self.nodes.push(Node {
             own: start..self.order.len(),
             children,
@@ -173,6 +224,20 @@ mod tests {
                     assert!(apart, "{a:?} {b:?}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn a_folded_grid_orders_every_cell_once_and_its_fold_last() {
+        for shape in [[13, 9], [3, 9], [30, 4]] {
+            let grid = Grid::new(&shape, &[3, 2], 20).folded_at(Some(0));
+            let order = Dissection::new(&grid).order;
+            let mut sorted = order.clone();
+            sorted.sort_unstable();
+            assert!(sorted.iter().copied().eq(0..(shape[0] * shape[1]) as u32));
+            let fold = 3.min(shape[0]) * shape[1];
+            let last = &order[order.len() - fold..];
+            assert!(last.iter().all(|&cell| (cell as usize) < fold));
         }
     }
 

@@ -13,6 +13,8 @@ pub struct SolverMemory {
     pub(super) plan: Option<(Vec<usize>, RateMethod)>,
     /// The same of the last factorisation.
     pub(super) factorised: Option<(Vec<usize>, RateMethod)>,
+    /// Whether all of it is of the solver on half of the cells.
+    pub(super) folded: bool,
     /// The cell that it holds.
     pub(super) held: usize,
     pub(super) excess: usize,
@@ -31,6 +33,7 @@ impl SolverMemory {
                 }
             }
         }
+        writer.flag(self.folded);
         let Self {
             held,
             excess,
@@ -48,6 +51,7 @@ impl SolverMemory {
         Ok(Self {
             plan: read_chosen(reader)?,
             factorised: read_chosen(reader)?,
+            folded: reader.flag()?,
             held: reader.count()?,
             excess: reader.count()?,
             baseline: reader.count()?,

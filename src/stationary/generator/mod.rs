@@ -16,6 +16,7 @@
 //! | `krylov`, `newton` | GMRES, and Newton's method by it |
 //! | `solver` | when to iterate, when to factorise |
 //! | `memory` | where the solver stands, to go on from there later |
+//! | `symmetric` | symmetric generators on half of the cells |
 
 mod balance;
 mod dissection;
@@ -28,13 +29,14 @@ mod preconditioner;
 mod prediction;
 mod solver;
 mod symbolic;
+mod symmetric;
 #[cfg(test)]
 mod tests;
 mod triangular;
 
 pub use memory::SolverMemory;
 pub use preconditioner::{Estimate, RateMethod, estimate};
-pub use solver::RateSolver;
+pub use symmetric::RateSolver;
 
 /// Settings of [`RateSolver`].
 #[derive(Debug, Clone, Copy, PartialEq)]

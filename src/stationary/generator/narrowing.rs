@@ -52,17 +52,28 @@ impl Positions {
     }
 }
 
-/// The narrow stand-in for `matrix`; every column keeps its sum.
+/// The narrow stand-in for `matrix`; every column keeps its sum. Rates between the modes of a place are kept as they are.
 pub(super) fn narrow(space: &CellSpace, matrix: &CsMat<f64>) -> CsMat<f64> {
     let positions = Positions::new(space);
     let shape = space.shape();
     let axes = space.dimension();
+    let modes: Vec<usize> = (0..axes)
+        .filter(|&axis| space.axes()[axis].is_modes())
+        .collect();
     let mut start = vec![0];
     let (mut rows, mut rates) = (Vec::new(), Vec::new());
     for (cell, column) in matrix.outer_iterator().enumerate() {
         let mut moments = [(0.0, 0.0); crate::MAX_DIMENSION];
         let mut sum = 0.0;
+        let mut kept = Vec::new();
         for (&row, &rate) in column.indices().iter().zip(column.data()) {
+            if modes
+                .iter()
+                .any(|&axis| positions.get(row, axis) != positions.get(cell, axis))
+            {
+                kept.push((row, rate));
+                continue;
+            }
             sum += rate;
             for (axis, moment) in moments.iter_mut().enumerate().take(axes) {
                 let from = positions.get(cell, axis) as f64;
@@ -77,6 +88,10 @@ pub(super) fn narrow(space: &CellSpace, matrix: &CsMat<f64>) -> CsMat<f64> {
             let (drift, spread) = moments[axis];
             let spread = spread.max(LEAST_DIFFUSION * drift.abs());
             let place = positions.get(cell, axis);
+            if space.axes()[axis].is_modes() {
+                stride *= shape[axis];
+                continue;
+            }
             if place > 0 {
                 below.push((cell - stride, 0.5 * (spread - drift)));
             }
@@ -86,9 +101,10 @@ pub(super) fn narrow(space: &CellSpace, matrix: &CsMat<f64>) -> CsMat<f64> {
             stride *= shape[axis];
         }
         let away: f64 = below.iter().chain(&above).map(|entry| entry.1).sum();
-        below.reverse();
         let entries = below.into_iter().chain([(cell, sum - away)]).chain(above);
-        for (row, rate) in entries {
+        kept.extend(entries);
+        kept.sort_unstable_by_key(|entry| entry.0);
+        for (row, rate) in kept {
             rows.push(row);
             rates.push(rate);
         }

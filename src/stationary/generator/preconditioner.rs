@@ -78,10 +78,34 @@ pub struct Estimate {
     pub iteration_operations: f64,
 }
 
-/// Predicts what one method takes for a stencil that reaches `reach` cells along each axis.
-fn predict_method(space: &CellSpace, reach: &[usize], method: RateMethod) -> Estimate {
-    let reach = if method.is_narrow() { &[][..] } else { reach };
-    let prediction: Prediction = predict(&Grid::new(&space.shape(), reach, LEAF));
+/// What is known of a matrix before its numbers.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Structure {
+    /// Cells that the stencil reaches along each axis.
+    pub(super) reach: Vec<usize>,
+    /// Axis at whose lower end images of cells couple.
+    pub(super) folded: Option<usize>,
+}
+
+/// The grid that a method dissects. Modes are all coupled, so that no cut runs across them: those of a place stay together.
+fn grid(space: &CellSpace, structure: &Structure, method: RateMethod) -> Grid {
+    let reach = &structure.reach;
+    let axes = space.axes().iter().enumerate();
+    let reach: Vec<usize> = axes
+        .map(
+            |(index, axis)| match (axis.is_modes(), method.is_narrow()) {
+                (true, _) => axis.count() - 1,
+                (false, true) => 1,
+                (false, false) => reach.get(index).copied().unwrap_or(1),
+            },
+        )
+        .collect();
+    Grid::new(&space.shape(), &reach, LEAF).folded_at(structure.folded)
+}
+
+/// Predicts what one method takes.
+fn predict_method(space: &CellSpace, structure: &Structure, method: RateMethod) -> Estimate {
+    let prediction: Prediction = predict(&grid(space, structure, method));
     let number = method.bytes_per_number();
     Estimate {
         method,
@@ -103,12 +127,26 @@ pub fn estimate(
     memory_limit_bytes: u64,
     method: Option<RateMethod>,
 ) -> Result<Estimate, RateError> {
+    let structure = Structure {
+        reach: reach.to_vec(),
+        folded: None,
+    };
+    estimate_of(space, &structure, memory_limit_bytes, method)
+}
+
+/// [`estimate`] for a matrix that may be folded.
+pub(super) fn estimate_of(
+    space: &CellSpace,
+    structure: &Structure,
+    memory_limit_bytes: u64,
+    method: Option<RateMethod>,
+) -> Result<Estimate, RateError> {
     let mut needed = 0;
     for candidate in RateMethod::ALL {
         if method.is_some_and(|wanted| wanted != candidate) {
             continue;
         }
-        let estimate = predict_method(space, reach, candidate);
+        let estimate = predict_method(space, structure, candidate);
         if method.is_none() && candidate == RateMethod::Lu && estimate.factor_bytes > LARGE {
             continue;
         }
@@ -148,7 +186,7 @@ impl Preconditioner {
     /// [`Cancelled`].
     pub(super) fn new(
         space: &CellSpace,
-        reach: &[usize],
+        structure: &Structure,
         method: RateMethod,
         matrix: &CsMat<f64>,
         held: usize,
@@ -163,8 +201,7 @@ impl Preconditioner {
             old.method == method && old.pattern.0 == starts && old.pattern.1 == matrix.indices()
         });
         let mut this = reusable.unwrap_or_else(|| {
-            let reach = if method.is_narrow() { &[][..] } else { reach };
-            let grid = Grid::new(&space.shape(), reach, LEAF);
+            let grid = grid(space, structure, method);
             let symbolic = Symbolic::new(matrix, Dissection::new(&grid));
             let numbers = match method {
                 RateMethod::Lu | RateMethod::NarrowLu => Numbers::Double(allocate(&symbolic)),

@@ -3,7 +3,7 @@
 //! A front of a node with k own cells and m boundary cells stores k² + 2 k m numbers for good and m² until its
 //! parent has taken them, and costs 2k³/3 + 2k²m + 2km² operations.
 
-use super::dissection::{Grid, GridBox};
+use super::dissection::{Cut, Grid, GridBox};
 use crate::MAX_DIMENSION;
 
 /// What factorising takes.
@@ -48,26 +48,27 @@ fn boundary(grid: &Grid, cells: &GridBox) -> usize {
 
 /// Predicts by walking the tree of boxes, without any matrix.
 pub(super) fn predict(grid: &Grid) -> Prediction {
-    walk(grid, &grid.whole())
+    walk(grid, &grid.cut_whole(), 0)
 }
 
-fn walk(grid: &Grid, cells: &GridBox) -> Prediction {
-    let around = boundary(grid, cells);
-    let (children, own) = match grid.cut(cells) {
-        None => (Prediction::default(), cells.count()),
-        Some([left, right, slab]) => {
-            let (a, b) = (walk(grid, &left), walk(grid, &right));
+/// Of a box that is cut, with so many cells around it.
+fn walk(grid: &Grid, cut: &Cut, around: usize) -> Prediction {
+    let children = match cut.halves {
+        None => Prediction::default(),
+        Some([left, right]) => {
+            let of = |half: &GridBox| walk(grid, &grid.cut_or_leaf(half), boundary(grid, half));
+            let (a, b) = (of(&left), of(&right));
             let waiting = |half: &GridBox| (boundary(grid, half) as f64).powi(2);
             let own_front = (around as f64).powi(2);
-            let sum = Prediction {
+            Prediction {
                 factor_entries: a.factor_entries + b.factor_entries,
                 // Both halves may be in flight together, or both wait while this front is filled.
                 front_entries: (a.front_entries + b.front_entries)
                     .max(waiting(&left) + waiting(&right) + own_front),
                 operations: a.operations + b.operations,
-            };
-            (sum, slab.count())
+            }
         }
     };
+    let own = cut.own.iter().map(GridBox::count).sum();
     children.with_front(own, around)
 }

@@ -6,7 +6,7 @@ use super::balance::{Balance, add_product};
 use super::memory::SolverMemory;
 use super::narrowing;
 use super::newton::{Newton, Progress, linear};
-use super::preconditioner::{Estimate, Preconditioner, estimate};
+use super::preconditioner::{Estimate, Preconditioner, Structure, estimate_of};
 use super::{RateError, RateInfo, RateMethod, RateOptions, RateSteadyState};
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::space::CellSpace;
@@ -15,7 +15,7 @@ use crate::space::CellSpace;
 /// for each arithmetic operation a number. Measured (`benches/rates.rs`) from 50² to 30³ cells, in both precisions, within
 /// a third: iterations are bound by memory, factorisations by arithmetic the larger they are.
 const RENEWAL: (f64, f64) = (12.0, 0.027);
-/// Iterations of a [`RateSolver::response`] to two digits with the factors of its own matrix.
+/// Iterations of a [`DirectSolver::response`] to two digits with the factors of its own matrix.
 const FRESH_RESPONSE: usize = 2;
 /// If the held cell carries less than this share of the largest mass, another one is held in new factors, and new ones are
 /// made if a solve fails.
@@ -24,10 +24,12 @@ const WEAK_HELD_SHARE: f64 = 1e-2;
 const LEAST_HELD_SHARE: f64 = 1e-8;
 
 /// Solves generators on one cell space, keeping the factorisation from one to the next.
-pub struct RateSolver {
+pub(super) struct DirectSolver {
     space: CellSpace,
     options: RateOptions,
-    plan: Option<(Vec<usize>, Estimate)>,
+    /// Of a folded matrix, whose entries do not show it.
+    given: Option<Structure>,
+    plan: Option<(Structure, Estimate)>,
     preconditioner: Option<Preconditioner>,
     /// Iterations that a new factorisation would have saved since this one was made.
     excess: usize,
@@ -40,11 +42,12 @@ pub struct RateSolver {
     cancellation: Cancellation,
 }
 
-impl RateSolver {
+impl DirectSolver {
     /// A solver without a factorisation yet.
-    pub fn new(space: CellSpace, options: RateOptions) -> Self {
+    pub(super) fn new(space: CellSpace, options: RateOptions, given: Option<Structure>) -> Self {
         Self {
             space,
+            given,
             options,
             plan: None,
             preconditioner: None,
@@ -59,7 +62,7 @@ impl RateSolver {
 
     /// The solver with a token that is looked at in every front of a factorisation and in every iteration.
     #[must_use]
-    pub fn cancelled_by(self, cancellation: &Cancellation) -> Self {
+    pub(super) fn cancelled_by(self, cancellation: &Cancellation) -> Self {
         let cancellation = cancellation.clone();
         Self {
             cancellation,
@@ -68,16 +71,17 @@ impl RateSolver {
     }
 
     /// Factorisations that were made since the solver was.
-    pub fn factorisations(&self) -> usize {
+    pub(super) fn factorisations(&self) -> usize {
         self.factorisations
     }
 
     /// Where the solver stands, but for the matrices.
-    pub fn memory(&self) -> SolverMemory {
-        let of = |(reach, plan): &(Vec<usize>, Estimate)| (reach.clone(), plan.method);
+    pub(super) fn memory(&self) -> SolverMemory {
+        let of = |(structure, plan): &(Structure, Estimate)| (structure.reach.clone(), plan.method);
         SolverMemory {
             plan: self.plan.as_ref().map(of),
             factorised: self.factorised.clone(),
+            folded: false,
             held: self.preconditioner.as_ref().map_or(0, |kept| kept.held),
             excess: self.excess,
             baseline: self.baseline,
@@ -89,7 +93,7 @@ impl RateSolver {
     ///
     /// # Errors
     /// As [`RateSolver::solve`].
-    pub fn restore(
+    pub(super) fn restore(
         &mut self,
         memory: &SolverMemory,
         factorised: Option<&CsMat<f64>>,
@@ -114,15 +118,24 @@ impl RateSolver {
         if let (Some((reach, method)), Some(matrix)) = (&memory.factorised, factorised) {
             let (space, cancellation) = (&self.space, &self.cancellation);
             let held = memory.held;
-            let made =
-                Preconditioner::new(space, reach, *method, matrix, held, None, cancellation)?;
+            let structure = self.structure_of(reach);
+            let made = Preconditioner::new(
+                space,
+                &structure,
+                *method,
+                matrix,
+                held,
+                None,
+                cancellation,
+            )?;
             self.preconditioner = Some(made);
         }
         self.plan = match &memory.plan {
             Some((reach, method)) => {
                 let limit = self.options.memory_limit_bytes;
-                let plan = estimate(&self.space, reach, limit, Some(*method))?;
-                Some((reach.clone(), plan))
+                let structure = self.structure_of(reach);
+                let plan = estimate_of(&self.space, &structure, limit, Some(*method))?;
+                Some((structure, plan))
             }
             None => None,
         };
@@ -132,12 +145,20 @@ impl RateSolver {
         Ok(())
     }
 
+    /// The structure of a matrix of this reach.
+    fn structure_of(&self, reach: &[usize]) -> Structure {
+        Structure {
+            reach: reach.to_vec(),
+            ..self.given.clone().unwrap_or_default()
+        }
+    }
+
     /// The (quasi-)steady state of a generator: `matrix` is n × n by columns (CSC), column j the rates out of
     /// cell j, summing to -`escape[j]`. `guess` is a neighbour's mass vector, or one predicted from it.
     ///
     /// # Errors
     /// [`RateError`] when the input is no generator, the memory does not suffice, or the solve is cancelled.
-    pub fn solve(
+    pub(super) fn solve(
         &mut self,
         matrix: &CsMat<f64>,
         escape: &[f64],
@@ -197,41 +218,24 @@ impl RateSolver {
 
     /// The plan to fall back to when single precision did not converge; kept for later solves.
     fn in_double_precision(&mut self, plan: &Estimate) -> Option<Estimate> {
-        let (reach, _) = self.plan.as_ref()?;
+        let (structure, _) = self.plan.as_ref()?;
         let limit = self.options.memory_limit_bytes;
         if plan.method != RateMethod::LuSingle || self.options.method.is_some() {
             return None;
         }
-        let double = estimate(&self.space, reach, limit, Some(RateMethod::Lu)).ok()?;
-        self.plan = Some((reach.clone(), double));
+        let double = estimate_of(&self.space, structure, limit, Some(RateMethod::Lu)).ok()?;
+        self.plan = Some((structure.clone(), double));
         Some(double)
     }
 
-    /// dp/dθ (Σ = 0) from Q dp = -(dQ/dθ) p at the last steady state, with its factorisation; `derivative` is
-    /// dQ/dθ (CSC, any pattern), `mass` the steady state. Escape is taken into account.
+    /// By how much more mass enters each cell when Q changes by `derivative` (CSC).
     ///
     /// # Errors
-    /// [`RateError::NoSteadyState`] before the first solve, [`RateError::Shape`] for wrong sizes,
-    /// [`RateError::Sensitivity`] when the iterations do not suffice, [`RateError::Cancelled`].
-    pub fn sensitivity(
-        &mut self,
+    /// [`RateError::Shape`] for wrong sizes, [`RateError::Storage`].
+    pub(super) fn change(
+        &self,
         derivative: &CsMat<f64>,
         mass: &[f64],
-    ) -> Result<Vec<f64>, RateError> {
-        self.sensitivity_within(derivative, mass, None, self.options.tolerance)
-    }
-
-    /// [`RateSolver::sensitivity`] to a relative error of `tolerance` in L1: predictions and estimates of errors need
-    /// two digits, and with a neighbour's factorisation every digit costs iterations. `guess` is what is expected.
-    ///
-    /// # Errors
-    /// As [`RateSolver::sensitivity`].
-    pub fn sensitivity_within(
-        &mut self,
-        derivative: &CsMat<f64>,
-        mass: &[f64],
-        guess: Option<&[f64]>,
-        tolerance: f64,
     ) -> Result<Vec<f64>, RateError> {
         let cells = self.space.n_cells();
         shape(cells, "derivative's rows", derivative.rows())?;
@@ -242,15 +246,36 @@ impl RateSolver {
         }
         let mut change = vec![0.0; cells];
         add_product(derivative, mass, &mut change);
-        self.response(&change, mass, guess, tolerance)
+        Ok(change)
+    }
+
+    /// Nothing, if the vectors of a response have one entry a cell.
+    ///
+    /// # Errors
+    /// [`RateError::Shape`].
+    pub(super) fn shapes(
+        &self,
+        change: &[f64],
+        mass: &[f64],
+        guess: Option<&[f64]>,
+    ) -> Result<(), RateError> {
+        let cells = self.space.n_cells();
+        shape(cells, "change", change.len())?;
+        shape(cells, "mass", mass.len())?;
+        shape(cells, "guess", guess.map_or(cells, <[f64]>::len))
+    }
+
+    /// Whether the last matrix that was solved is this one.
+    pub(super) fn has_solved(&self, matrix: &CsMat<f64>) -> bool {
+        self.last.as_ref().is_some_and(|(last, _)| last == matrix)
     }
 
     /// How the last steady state `mass` answers to a change of its balance: p' (Σ = 0) from Q p' = -`change`, where `change`
     /// is by how much more mass enters each cell than before, per unit time; what its sum lacks escapes.
     ///
     /// # Errors
-    /// As [`RateSolver::sensitivity`].
-    pub fn response(
+    /// As [`super::RateSolver::sensitivity`].
+    pub(super) fn response(
         &mut self,
         change: &[f64],
         mass: &[f64],
@@ -260,10 +285,7 @@ impl RateSolver {
         let (Some((matrix, escape)), Some(kept)) = (&self.last, &self.preconditioner) else {
             return Err(RateError::NoSteadyState);
         };
-        let cells = self.space.n_cells();
-        shape(cells, "change", change.len())?;
-        shape(cells, "mass", mass.len())?;
-        shape(cells, "guess", guess.map_or(cells, <[f64]>::len))?;
+        self.shapes(change, mass, guess)?;
         let balance = Balance {
             matrix,
             escape,
@@ -294,7 +316,7 @@ impl RateSolver {
         Ok(response)
     }
 
-    fn check(&self, matrix: &CsMat<f64>, escape: &[f64]) -> Result<(), RateError> {
+    pub(super) fn check(&self, matrix: &CsMat<f64>, escape: &[f64]) -> Result<(), RateError> {
         let cells = self.space.n_cells();
         shape(cells, "rows", matrix.rows())?;
         shape(cells, "columns", matrix.cols())?;
@@ -330,20 +352,27 @@ impl RateSolver {
         {
             return Ok(*plan);
         }
-        let reach = narrowing::reach(&self.space, matrix);
+        let structure = self.given.clone().unwrap_or_else(|| Structure {
+            reach: narrowing::reach(&self.space, matrix),
+            folded: None,
+        });
         if let Some((planned, plan)) = &self.plan
-            && planned.iter().zip(&reach).all(|(old, new)| new <= old)
+            && planned
+                .reach
+                .iter()
+                .zip(&structure.reach)
+                .all(|(old, new)| new <= old)
         {
             return Ok(*plan);
         }
         let options = &self.options;
-        let plan = estimate(
+        let plan = estimate_of(
             &self.space,
-            &reach,
+            &structure,
             options.memory_limit_bytes,
             options.method,
         )?;
-        self.plan = Some((reach, plan));
+        self.plan = Some((structure, plan));
         Ok(plan)
     }
 
@@ -382,11 +411,15 @@ impl RateSolver {
         held: usize,
         plan: &Estimate,
     ) -> Result<(), Cancelled> {
-        let reach = self.plan.as_ref().map_or(&[][..], |(reach, _)| reach);
+        let unplanned = Structure::default();
+        let structure = self
+            .plan
+            .as_ref()
+            .map_or(&unplanned, |(structure, _)| structure);
         let old = self.preconditioner.take();
         let (space, method, cancellation) = (&self.space, plan.method, &self.cancellation);
-        let new = Preconditioner::new(space, reach, method, matrix, held, old, cancellation)?;
-        self.factorised = Some((reach.to_vec(), method));
+        let new = Preconditioner::new(space, structure, method, matrix, held, old, cancellation)?;
+        self.factorised = Some((structure.reach.clone(), method));
         self.preconditioner = Some(new);
         self.factorisations += 1;
         self.excess = 0;

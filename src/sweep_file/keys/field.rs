@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::super::draft::{Auto, Draft, MethodKind};
+use super::super::draft::{Auto, Draft, MethodKind, Modes};
 use super::super::value::Plain;
 use crate::figure::{ColourMap, FigureWidth, Format, Ground, Typeface};
 use crate::generator::AdvectiveScheme;
@@ -152,6 +152,22 @@ impl InFile for Auto {
 
     fn from_plain(plain: &Plain) -> Option<Self> {
         (plain.text() == Some(AUTO)).then_some(Self)
+    }
+}
+
+impl InFile for Modes {
+    fn to_plain(&self) -> Plain {
+        match self {
+            Self::Auto => Auto.to_plain(),
+            Self::Number(count) => count.to_plain(),
+        }
+    }
+
+    fn from_plain(plain: &Plain) -> Option<Self> {
+        match usize::from_plain(plain) {
+            Some(count) => Some(Self::Number(count)),
+            None => Auto::from_plain(plain).map(|Auto| Self::Auto),
+        }
     }
 }
 

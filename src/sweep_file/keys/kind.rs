@@ -75,6 +75,8 @@ pub(in crate::sweep_file) enum Kind {
     Step,
     /// Millimetres, or the name of a width of figures.
     Width,
+    /// An integer from the first to the second value, or "auto".
+    Count(i128, i128),
     /// One of some strings.
     Choice(fn() -> Vec<&'static str>),
     /// Two strings.
@@ -101,6 +103,9 @@ impl Kind {
             }
             Self::Integer(least, most) => format!("an integer from {least} to {most}"),
             Self::Step => "a finite number greater than zero, or `\"auto\"`".to_owned(),
+            Self::Count(least, most) => {
+                format!("an integer from {least} to {most}, or `\"auto\"`")
+            }
             Self::Choice(names) => format!("a string: {}", list(&names())),
             Self::Width => format!(
                 "a number of millimetres greater than zero, or a string: {}",
@@ -142,6 +147,10 @@ impl Kind {
             Self::Width => match plain.number() {
                 Some(value) => value > 0.0 && value.is_finite(),
                 None => plain.text().is_some_and(|text| widths().contains(&text)),
+            },
+            Self::Count(least, most) => match plain {
+                Plain::Integer(value) => (least..=most).contains(value),
+                _ => plain.text() == Some(AUTO),
             },
             Self::Choice(names) => plain.text().is_some_and(|text| names().contains(&text)),
             Self::Pair => plain.items().is_some_and(|items| {

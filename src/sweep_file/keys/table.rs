@@ -7,6 +7,7 @@ use crate::figure::{ColourMap, Format, Ground, Typeface};
 use crate::generator::AdvectiveScheme;
 use crate::method::{Correction, Estimator};
 use crate::sampling::Integrator;
+use crate::space::MOST_MODES;
 use crate::stationary::Solver;
 use crate::sweep_file::draft::MethodKind;
 use crate::system::{Interpretation, registry};
@@ -72,8 +73,10 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
         "Lower end of the domain along an axis."),
     key("cells.<axis>.to", Kind::Number(ANY), Rule("the model's bound, where it knows one"), of_axis!(to),
         "Upper end of the domain along an axis."),
-    key("cells.<axis>.count", Kind::Integer(2, MOST_CELLS), Required, of_axis!(count),
+    key("cells.<axis>.count", Kind::Integer(2, MOST_CELLS), Rule("none: it must be given, but for an axis of modes"), of_axis!(count),
         "Number of cells along an axis. An even number puts a face in the middle."),
+    key("cells.<axis>.modes", Kind::Count(2, MOST_MODES as i128), Rule("`auto` where the model marks the axis and `count` is not given"), of_axis!(modes),
+        "Number of modes that carry the density along the axis of an internal state without noise, in place of cells, by the generator; other methods use `count`. `auto` finds how many what is watched needs."),
     key("cells.<axis>.grade", Kind::Choice(automatic), Rule("cells of equal width"), of_axis!(grade),
         "`auto` narrows the cells toward the model's switching surfaces, to a quarter of the layer that holds the kink of the density; or a table with `at` and `smallest`."),
     key("cells.<axis>.grade.at", Kind::List(&Kind::Number(ANY)), Rule("cells of equal width"), of_axis!(grade_at),

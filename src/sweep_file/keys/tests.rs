@@ -110,6 +110,7 @@ fn example(key: &Key) -> crate::sweep_file::value::Plain {
         Kind::Text | Kind::Printable => text("y"),
         Kind::Number(_) => Plain::Number(0.625),
         Kind::Integer(..) => Plain::Integer(77),
+        Kind::Count(..) => Plain::Integer(17),
         Kind::Step => Plain::Number(0.375),
         Kind::Width => text("slide"),
         Kind::Choice(names) => text(names().last().unwrap()),

@@ -3,21 +3,23 @@
 use crate::space::{Axis, CellSpace, Grading, SpaceError};
 use crate::sweep_file::diagnostic::Diagnostic;
 use crate::sweep_file::document::Document;
-use crate::sweep_file::draft::{AxisDraft, Draft};
+use crate::sweep_file::draft::{AxisDraft, Draft, MethodKind, Modes};
 use crate::sweep_file::names::quotable;
 use crate::sweep_file::reader::Reader;
 use crate::sweep_file::value::Value;
-use crate::system::{Family, Model};
+use crate::system::{AxisDescription, Family, Model};
 
-/// How one axis is cut into cells.
+/// How one axis is cut into cells, or carried by modes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisSettings {
     /// Lower and upper end; `None` where they are left to the program.
     pub range: Option<(f64, f64)>,
-    /// Number of cells, at least 2.
-    pub count: usize,
+    /// Number of cells, at least 2; `None` for an axis of modes alone.
+    pub count: Option<usize>,
     /// Where the cells get narrower.
     pub grade: Grade,
+    /// Number of modes that carry it in place of cells, by methods that can ([`MethodKind::takes_modes`]).
+    pub modes: Option<Modes>,
 }
 
 /// Where the cells of an axis get narrower.
@@ -32,12 +34,24 @@ pub enum Grade {
 }
 
 impl AxisSettings {
-    /// The axis; `None` where something is left to the program.
-    fn axis(&self) -> Option<Result<Axis, SpaceError>> {
+    /// The number of modes that a method uses; `None` where it uses cells.
+    pub fn modes_by(&self, method: MethodKind) -> Option<Modes> {
+        self.modes.filter(|_| method.takes_modes())
+    }
+
+    /// The axis as a method uses it; `None` where something is left to the program.
+    fn axis(&self, method: MethodKind) -> Option<Result<Axis, SpaceError>> {
         let (from, to) = self.range?;
+        match self.modes_by(method) {
+            Some(Modes::Auto) => return None,
+            Some(Modes::Number(count)) => return Some(Axis::modes(from, to, count)),
+            None => {}
+        }
+        // Without a number of cells, which reading does not allow, the space says what is wrong.
+        let count = self.count.unwrap_or(0);
         match &self.grade {
-            Grade::Even => Some(Axis::uniform(from, to, self.count)),
-            Grade::Toward(grading) => Some(Axis::graded(from, to, self.count, grading)),
+            Grade::Even => Some(Axis::uniform(from, to, count)),
+            Grade::Toward(grading) => Some(Axis::graded(from, to, count, grading)),
             Grade::Auto => None,
         }
     }
@@ -65,7 +79,7 @@ pub(super) fn read(
     let read: Vec<Option<AxisSettings>> = names
         .iter()
         .enumerate()
-        .map(|(index, name)| read_axis(reader, draft, name, family, index))
+        .map(|(index, name)| read_axis(reader, draft, (name, &model.axes[index]), family, index))
         .collect();
     read.into_iter().collect()
 }
@@ -81,10 +95,20 @@ pub(in crate::sweep_file) fn at_cells(document: &Document, diagnostic: Diagnosti
 fn read_axis(
     reader: &mut Reader<'_>,
     draft: &Draft,
-    name: &str,
+    (name, described): (&str, &AxisDescription),
     family: Option<&Family>,
     index: usize,
 ) -> Option<AxisSettings> {
+    let method = draft.method.kind;
+    let by_modes = described.by_modes && method.takes_modes();
+    if by_modes && reader.entry(&["cells", name]).is_none() {
+        return Some(AxisSettings {
+            range: Some(bounds(family?, index)?),
+            count: None,
+            grade: Grade::Even,
+            modes: Some(Modes::Auto),
+        });
+    }
     let Some(entry) = reader.entry(&["cells", name]) else {
         if reader.document().cut.is_none() {
             let diagnostic = Diagnostic::new(format!("no cells for axis `{name}`")).remedy(
@@ -97,9 +121,14 @@ fn read_axis(
     if !matches!(entry.node.value, Value::Table(_)) {
         return None;
     }
-    reader.require(&["cells", name, "count"]);
     let empty = AxisDraft::default();
     let axis = draft.axis(name).unwrap_or(&empty);
+    let unsaid = axis.count.is_none() && reader.entry(&["cells", name, "count"]).is_none();
+    let modes = axis.modes.or((by_modes && unsaid).then_some(Modes::Auto));
+    if modes.is_none() || !method.takes_modes() {
+        reader.require(&["cells", name, "count"]);
+        axis.count?;
+    }
     let grade = read_grade(reader, axis, name);
     let bounds = family.map(|family| bounds(family, index));
     let range = match axis.range {
@@ -108,16 +137,64 @@ fn read_axis(
     };
     let settings = AxisSettings {
         range: range?,
-        count: axis.count?,
+        count: axis.count,
         grade: grade?,
+        modes,
     };
-    match build_axis(reader.document(), name, &settings) {
+    if modes.is_some() && method.takes_modes() {
+        check_modes(reader, name, family?, index, settings.range)?;
+    }
+    match build_axis(reader.document(), name, &settings, method) {
         Ok(_) => Some(settings),
         Err(diagnostic) => {
             reader.report(*diagnostic);
             None
         }
     }
+}
+
+/// Reports modes on an axis that cannot have them: it has noise, or its range is not that of a bounded state.
+fn check_modes(
+    reader: &mut Reader<'_>,
+    name: &str,
+    family: &Family,
+    index: usize,
+    range: Option<(f64, f64)>,
+) -> Option<()> {
+    let (from, to) = family.ends();
+    let systems = [family.at(from).ok()?, family.at(to).ok()?];
+    let walled = |range| {
+        systems
+            .iter()
+            .all(|system| system.walls(index, range) == [true; 2])
+    };
+    let (why, remedy) = if systems
+        .iter()
+        .any(|system| system.noise_axes().contains(&index))
+    {
+        ("noise drives it", format!("give `cells.{name}.count`"))
+    } else if systems.iter().any(|system| system.bounds(index).is_none()) {
+        (
+            "the model knows no bounds of it",
+            format!("give `cells.{name}.count`"),
+        )
+    } else if !range.is_some_and(walled) {
+        (
+            "the state may leave the range",
+            "leave the range out: the model knows the bounds".to_owned(),
+        )
+    } else {
+        return Some(());
+    };
+    let diagnostic = Diagnostic::new(format!("axis `{name}` cannot have modes: {why}"))
+        .allowed("modes carry a state without noise between the bounds that the model knows")
+        .remedy(remedy);
+    let place = reader.place(&["cells", name, "modes"]);
+    reader.report(match place.or_else(|| reader.place(&["cells", name])) {
+        Some(place) => diagnostic.at(place, "refused"),
+        None => diagnostic,
+    });
+    None
 }
 
 /// The widest range that the model's bounds of an axis take at the ends of the sweep.
@@ -185,8 +262,9 @@ fn build_axis(
     document: &Document,
     name: &str,
     settings: &AxisSettings,
+    method: MethodKind,
 ) -> Result<Option<Axis>, Box<Diagnostic>> {
-    let error = match settings.axis().transpose() {
+    let error = match settings.axis(method).transpose() {
         Ok(axis) => return Ok(axis),
         Err(error) => error,
     };
@@ -200,6 +278,7 @@ fn build_axis(
                 .find(|item| item.plain().and_then(|plain| plain.number()) == Some(*at))
                 .map(|item| &item.place)
         }),
+        SpaceError::Modes { .. } => entry(&["modes"]).map(|entry| &entry.node.place),
         SpaceError::GradingWidth { .. } => {
             entry(&["grade", "smallest"]).map(|entry| &entry.node.place)
         }
@@ -221,12 +300,13 @@ pub(in crate::sweep_file) fn cell_space(
     document: &Document,
     family: &Family,
     axes: &[AxisSettings],
+    method: MethodKind,
 ) -> Result<CellSpace, Box<Diagnostic>> {
     let mut built = Vec::new();
     for (index, settings) in axes.iter().enumerate() {
         let name = family.axis(index);
-        let Some(axis) = build_axis(document, name, settings)? else {
-            let title = format!("range or grading of axis `{name}` is left to the program");
+        let Some(axis) = build_axis(document, name, settings, method)? else {
+            let title = format!("range, grading or modes of axis `{name}` is left to the program");
             let diagnostic = Diagnostic::new(title).remedy("give numbers, or prepare the sweep");
             return Err(Box::new(at_cells(document, diagnostic)));
         };

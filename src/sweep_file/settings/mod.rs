@@ -16,6 +16,7 @@ use crate::figure::{FigureStyle, Format};
 use crate::system::Family;
 use crate::topology::DetectOptions;
 
+pub use super::draft::Modes;
 pub use axes::{AxisSettings, Grade};
 pub(super) use axes::{at_cells, cell_space};
 pub(super) use equations::value_place as formula_place;
@@ -80,7 +81,8 @@ impl Settings {
             .and_then(|model| system::read(&mut reader, &draft, model));
         let family = swept.as_ref().map(|swept| &swept.family);
         let axes = model.and_then(|model| axes::read(&mut reader, &draft, model, family));
-        let observables = model.map(|model| watched::read(&mut reader, &draft, model));
+        let observables =
+            model.map(|model| watched::read(&mut reader, &draft, model, axes.as_deref()));
         let figures_at = swept
             .as_ref()
             .map(|swept| figures::read_at(&mut reader, &draft, swept));

@@ -139,6 +139,7 @@ fn the_resolved_file_holds_every_key() {
         sgcm,
         monte_carlo,
         parse(EQUATIONS, &[]).unwrap().to_toml(),
+        parse(DAHL, &["cells.z.modes=5"]).unwrap().to_toml(),
     ];
     let text = texts.join("\n# next\n");
     let tables = texts.map(|text| text.parse::<toml::Table>().unwrap());
@@ -147,7 +148,14 @@ fn the_resolved_file_holds_every_key() {
         let named = key
             .path()
             .replace("<parameter>", "kappa")
-            .replace("<axis>", "y")
+            .replace(
+                "<axis>",
+                if key.path().ends_with(".modes") {
+                    "z"
+                } else {
+                    "y"
+                },
+            )
             .replace("<name>", "force");
         let (first, rest) = named.split_once('.').unwrap_or((&named, ""));
         let found = tables.iter().any(|table| {
@@ -259,4 +267,82 @@ fn what_is_left_to_the_program_stays_open_and_is_written_so() {
     assert!(matches!(sweep.settings.axes[1].grade, Grade::Toward(_)));
     let again = parse(&sweep.to_toml(), &[]).unwrap().fixed().unwrap();
     assert_eq!(again.problem.space(), sweep.problem.space());
+}
+
+const DAHL: &str = r#"
+[system]
+model = "dahl"
+parameters = { kappa = 0.02, mu = 1, lambda = 0.06, f_c = 0.05, sigma2 = 0.02 }
+[sweep]
+parameter = "alpha"
+from = 0.5
+to = -1
+points = 3
+[cells]
+x = { from = -2.5, to = 2.5, count = 12 }
+y = { from = -2.5, to = 2.5, count = 12 }
+"#;
+
+#[test]
+fn an_internal_state_is_carried_by_modes_unless_cells_are_given() {
+    let modes = |sets: &[&str]| parse(DAHL, sets).unwrap().axes[2].modes;
+    assert_eq!(modes(&[]), Some(Modes::Auto));
+    assert_eq!(modes(&["cells.z.modes=5"]), Some(Modes::Number(5)));
+    assert_eq!(modes(&["cells.z.count=8"]), None);
+    // What is watched leaves the axis out.
+    let spec = parse(DAHL, &["cells.z.modes=5"]).unwrap();
+    assert_eq!(spec.observables.len(), 3);
+    let sweep = spec.prepare(&Cancellation::new()).unwrap();
+    assert_eq!(sweep.problem.space().shape(), [12, 12, 5]);
+    let again = SweepFile::parse("a.toml", &sweep.to_toml())
+        .validate()
+        .unwrap();
+    assert_eq!(again.axes, sweep.settings.axes);
+    // Both may be given: the method decides.
+    let both = ["cells.z={modes=5, count=8}", "method.kind=sgcm"];
+    assert_eq!(
+        parse(DAHL, &both)
+            .unwrap()
+            .fixed()
+            .unwrap()
+            .problem
+            .space()
+            .shape(),
+        [12, 12, 8]
+    );
+}
+
+#[test]
+fn modes_where_they_cannot_be_are_refused_with_the_remedy() {
+    let refusal = |sets: &[&str]| parse(DAHL, sets).unwrap_err().to_string();
+    for (sets, words) in [
+        (
+            &["cells.y={from=-1, to=1, modes=4}"][..],
+            "axis `y` cannot have modes: noise drives it",
+        ),
+        (
+            &["cells.x={from=-1, to=1, modes=4}"],
+            "axis `x` cannot have modes: the model knows no bounds",
+        ),
+        (
+            &["cells.z={from=-0.1, to=0.1, modes=4}"],
+            "axis `z` cannot have modes: the state may leave",
+        ),
+        (
+            &["cells.z.modes=1"],
+            "an integer from 2 to 64, or `\"auto\"`",
+        ),
+        (&["method.kind=sgcm"], "no cells for axis `z`"),
+        (
+            &["cells.z.modes=4", "method.kind=sgcm"],
+            "missing key `cells.z.count`",
+        ),
+        (
+            &["detect.marginals=[\"z\"]"],
+            "the density along axis `z`, which modes carry, is not watched",
+        ),
+    ] {
+        let message = refusal(sets);
+        assert!(message.contains(words), "{sets:?}: {message}");
+    }
 }

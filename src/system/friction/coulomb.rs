@@ -5,7 +5,7 @@
 use super::{FrictionLaw, Motion};
 use crate::system::oscillator::{axes, parameters, with_friction};
 use crate::system::parameters::COULOMB_LEVEL;
-use crate::system::{Model, SwitchingSurface, VELOCITY};
+use crate::system::{AxisDescription, Model, SwitchingSurface, VELOCITY};
 
 /// x' = y, y' = -κy - αx - μx³ - f_c sgn(y) + ξ.
 pub(in crate::system) fn model() -> Model {
@@ -16,7 +16,7 @@ pub(in crate::system) fn model() -> Model {
             "y' = -κ y - α x - μ x³ - f_c sgn(y) + ξ(t),   sgn(0) = 0",
             "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
         ])
-        .with_axes(axes([]))
+        .with_axes(axes::<AxisDescription>([]))
         .with_parameters(parameters([COULOMB_LEVEL]))
         .with_source("the paper, Eqs. (5)-(6), with the letters of Eq. (7)")
         .with_notes([

@@ -6,7 +6,7 @@
 use super::{FrictionLaw, Motion};
 use crate::system::oscillator::{axes, parameters, with_friction};
 use crate::system::parameters::{DAHL_LEVEL, LAMBDA, Z};
-use crate::system::{Model, SwitchingSurface, VELOCITY};
+use crate::system::{AxisDescription, Model, SwitchingSurface, VELOCITY};
 
 /// x' = y, y' = -κy - αx - μx³ - λz + ξ, z' = y - (λ|y|/f_c) z.
 pub(in crate::system) fn model() -> Model {
@@ -18,7 +18,7 @@ pub(in crate::system) fn model() -> Model {
             "z' = y - (λ |y| / f_c) z,   |z| ≤ f_c/λ",
             "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
         ])
-        .with_axes(axes([Z]))
+        .with_axes(axes([AxisDescription::from(Z).carried_by_modes()]))
         .with_parameters(parameters([LAMBDA, DAHL_LEVEL]))
         .with_source("the paper, Eqs. (7)-(9), with z as last factor of z'; P. R. Dahl, A solid friction model (1968)")
         .with_notes([

@@ -2,6 +2,7 @@
 
 mod cancelled;
 mod exact;
+mod folded;
 mod generators;
 mod warm;
 

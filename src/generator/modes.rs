@@ -1,0 +1,172 @@
+//! The rates along an axis of modes: a dense block for every place on the other axes.
+//!
+//! Tested with a polynomial f of degree below N, a drift b along the axis gives
+//! d/dt Σ_k u_k f(s_k) = Σ_k u_k b(s_k) f'(s_k), Gauss's rule for the exact ∫ p b f' ds. With f the Lagrange polynomials of the
+//! nodes that is the block; by the degree of the rule it is exact for every drift that is a polynomial of degree 2 in s, and
+//! spectrally accurate for any smooth one. Walls need no condition: nothing is tested beyond them.
+
+/// One entry `from · count + to` a pair of nodes: the rate from the one into the other.
+pub(super) fn block(differentiation: &[f64], drift: &[f64], rates: &mut [f64]) {
+    let count = drift.len();
+    for (from, &drift) in drift.iter().enumerate() {
+        let row = from * count..(from + 1) * count;
+        let slopes = &differentiation[row.clone()];
+        for (rate, slope) in rates[row].iter_mut().zip(slopes) {
+            *rate = drift * slope;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generator::banded::null_vector;
+    use crate::generator::{GeneratorError, GeneratorOptions, assemble, unknown_moments};
+    use crate::space::{Axis, CellSpace};
+    use crate::system::registry;
+
+    /// P_0 … P_{count - 1} at s.
+    fn legendre(count: usize, s: f64) -> Vec<f64> {
+        let mut values = vec![1.0, s];
+        for n in 2..count {
+            let n = n as f64;
+            let next = ((2.0 * n - 1.0) * s * values[values.len() - 1]
+                - (n - 1.0) * values[values.len() - 2])
+                / n;
+            values.push(next);
+        }
+        values.truncate(count);
+        values
+    }
+
+    /// Moments Σ_k u_k P_n(s_k).
+    fn moments(axis: &Axis, unknowns: &[f64]) -> Vec<f64> {
+        let mut sums = vec![0.0; axis.count()];
+        for (u, &s) in unknowns.iter().zip(axis.nodes()) {
+            for (sum, value) in sums.iter_mut().zip(legendre(axis.count(), s)) {
+                *sum += u * value;
+            }
+        }
+        sums
+    }
+
+    #[test]
+    fn rates_of_the_moments_are_the_exact_products() {
+        // s' = c - s: P_m' = Σ (2k + 1) P_k over k = m - 1, m - 3, …, and s P_m' = m P_m + Σ (2k + 1) P_k over k = m - 2, m - 4, …
+        let c = 0.3;
+        for count in [2, 5, 9] {
+            let axis = Axis::modes(-1.0, 1.0, count).unwrap();
+            let drift: Vec<f64> = axis.nodes().iter().map(|s| c - s).collect();
+            let mut rates = vec![0.0; count * count];
+            block(&axis.differentiation(), &drift, &mut rates);
+            let unknowns: Vec<f64> = (0..count).map(|k| 1.0 + (1.7 * k as f64).sin()).collect();
+            let mut change = vec![0.0; count];
+            for (from, u) in unknowns.iter().enumerate() {
+                for (to, slot) in change.iter_mut().enumerate() {
+                    *slot += rates[from * count + to] * u;
+                }
+            }
+            let (a, found) = (moments(&axis, &unknowns), moments(&axis, &change));
+            for (m, found) in found.into_iter().enumerate() {
+                // Σ (2k + 1) a_k over k = top, top - 2, …
+                let sum = |top: Option<usize>| -> f64 {
+                    let terms = top.into_iter().flat_map(|top| (0..=top).rev().step_by(2));
+                    terms.map(|k| (2 * k + 1) as f64 * a[k]).sum()
+                };
+                let (odd, even) = (sum(m.checked_sub(1)), sum(m.checked_sub(2)));
+                let exact = c * odd - (m as f64 * a[m] + even);
+                assert!(
+                    (found - exact).abs() < 1e-12 * (1.0 + exact.abs()),
+                    "{count} {m}: {found} {exact}"
+                );
+            }
+        }
+    }
+
+    const VALUES: [(&str, f64); 6] = [
+        ("alpha", 0.5),
+        ("kappa", 0.1),
+        ("mu", 1.0),
+        ("lambda", 0.2),
+        ("f_c", 0.1),
+        ("sigma2", 0.2),
+    ];
+
+    /// Unknowns of Dahl's oscillator.
+    fn dahl(cells: usize, modes: usize, sigma2: f64) -> (CellSpace, Vec<f64>) {
+        let mut values = VALUES;
+        values[5].1 = sigma2;
+        let system = registry::find("dahl")
+            .unwrap()
+            .system_with(&values)
+            .unwrap();
+        let x = Axis::uniform(-2.4, 2.4, cells).unwrap();
+        let y = Axis::uniform(-3.2, 3.2, cells).unwrap();
+        let space = CellSpace::new(vec![x, y, Axis::modes(-0.5, 0.5, modes).unwrap()]).unwrap();
+        let generator = assemble(&*system, &space, &GeneratorOptions::default()).unwrap();
+        let centre = space.find(&[1e-9, 1e-9, 1e-9]).unwrap();
+        let unknowns = null_vector(&generator.matrix, centre);
+        (space, unknowns)
+    }
+
+    /// Mean of a function of velocity and friction state.
+    fn mean(space: &CellSpace, unknowns: &[f64], function: impl Fn(f64, f64) -> f64) -> f64 {
+        let node = |cell, axis: usize| space.axes()[axis].nodes()[space.position(cell, axis)];
+        let cells = unknowns.iter().enumerate();
+        cells
+            .map(|(cell, u)| u * function(node(cell, 1), node(cell, 2)))
+            .sum()
+    }
+
+    #[test]
+    fn balances_of_the_friction_state_and_of_the_energy_hold() {
+        let (space, unknowns) = dahl(26, 4, 0.08);
+        // d/dt z²/2 = yz - (λ/f_c)|y| z² is tested by the series itself: but for what leaves Ω it holds.
+        let fed = mean(&space, &unknowns, |y, z| y * z);
+        let lost = mean(&space, &unknowns, |y, z| 2.0 * y.abs() * z * z);
+        assert!((fed - lost).abs() < 1e-4 * lost, "{fed} {lost}");
+        // Noise feeds σ²/2; damping and friction take κ y² + λ y z. The cells of x and y decide how well that holds.
+        let taken = mean(&space, &unknowns, |y, z| 0.1 * y * y + 0.2 * y * z);
+        assert!((taken - 0.04).abs() < 2e-3, "{taken}");
+    }
+
+    #[test]
+    fn a_few_modes_have_the_digits_of_many() {
+        let [three, five, eight] = [3, 5, 8].map(|modes| {
+            let (space, unknowns) = dahl(14, modes, 0.2);
+            let moments = unknown_moments(&space, &unknowns);
+            moments
+                .into_iter()
+                .map(|moment| moment.1)
+                .collect::<Vec<f64>>()
+        });
+        let off = |few: &[f64]| {
+            let pairs = few.iter().zip(&eight);
+            pairs.map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max)
+        };
+        assert!(
+            off(&five) < 5e-3 && off(&five) < 0.2 * off(&three),
+            "{:e} {:e}",
+            off(&three),
+            off(&five)
+        );
+    }
+
+    #[test]
+    fn modes_are_for_bounded_states_without_noise() {
+        let system = registry::find("dahl")
+            .unwrap()
+            .system_with(&VALUES)
+            .unwrap();
+        let refused = |axes: [Axis; 3]| {
+            let space = CellSpace::new(axes.to_vec()).unwrap();
+            assemble(&*system, &space, &GeneratorOptions::default()).err()
+        };
+        let cells = || Axis::uniform(-2.0, 2.0, 6).unwrap();
+        let modes = |half: f64| Axis::modes(-half, half, 4).unwrap();
+        let at = |axis| Some(GeneratorError::Modes { axis });
+        assert_eq!(refused([cells(), cells(), modes(0.4)]), at(2));
+        assert_eq!(refused([modes(2.0), cells(), modes(0.5)]), at(0));
+        assert_eq!(refused([cells(), cells(), modes(0.5)]), None);
+    }
+}

@@ -1,0 +1,126 @@
+//! How many modes an axis needs: as many as change nothing more in what is watched.
+//!
+//! The answer converges exponentially in the number of modes, whatever the cells along the other axes; so the number is found on
+//! coarse cells, at both ends and in the middle of a sweep, and holds for all of it: a number that changed from point to point would
+//! make densities jump.
+
+use super::GeneratorMethodOptions;
+use super::source::GeneratorSource;
+use crate::cancellation::Cancellation;
+use crate::density::Projection;
+use crate::generator::cell_masses;
+use crate::method::{MethodError, Problem};
+use crate::space::{Axis, CellSpace};
+
+/// Numbers of modes that are tried, in this order.
+const TRIED: [usize; 10] = [3, 4, 5, 6, 8, 10, 12, 16, 20, 24];
+
+/// Change of a watched density, relative to its largest value, that more modes may still make.
+const CHANGE: f64 = 1e-4;
+
+/// Cells of the other axes on which modes are counted.
+const COARSE: usize = 32;
+
+/// The numbers of modes that are needed, and the change of what is watched that more would make.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModesFound {
+    /// Number of modes of the axes asked for.
+    pub count: usize,
+    /// Largest change of a watched density, relative to its largest value, when the next number was tried.
+    pub change: f64,
+}
+
+/// Finds how many modes the axes `open` need (all alike) for what is watched along the path of a problem. The axes of `problem` are as
+/// wanted but for the number of modes of these.
+///
+/// # Errors
+/// [`MethodError`].
+pub fn automatic_modes(
+    problem: &Problem,
+    open: &[usize],
+    options: &GeneratorMethodOptions,
+    cancellation: &Cancellation,
+) -> Result<ModesFound, MethodError> {
+    let (from, to) = problem.family().ends();
+    let values = [from, 0.5 * (from + to), to];
+    let mut before: Option<Vec<Option<Densities>>> = None;
+    let mut found = ModesFound {
+        count: TRIED[0],
+        change: f64::INFINITY,
+    };
+    for count in TRIED {
+        let source = GeneratorSource::new(&coarse(problem, open, count)?, options)?;
+        let now: Result<Vec<_>, MethodError> = values
+            .iter()
+            .map(|&value| densities(&source, value, cancellation))
+            .collect();
+        let now = now?;
+        if let Some(before) = before {
+            found.change = change(&before, &now);
+            if found.change <= CHANGE {
+                return Ok(found);
+            }
+        }
+        found.count = count;
+        before = Some(now);
+    }
+    Ok(found)
+}
+
+/// Values of all watched densities.
+type Densities = Vec<Vec<f64>>;
+
+/// The problem on coarse cells, with so many modes along some axes.
+fn coarse(problem: &Problem, open: &[usize], count: usize) -> Result<Problem, MethodError> {
+    let axes = problem.space().axes().iter().enumerate();
+    let axes: Result<Vec<Axis>, _> = axes
+        .map(|(index, axis)| match axis.is_modes() {
+            true if open.contains(&index) => Axis::modes(axis.from(), axis.to(), count),
+            true => Ok(axis.clone()),
+            false => Axis::uniform(axis.from(), axis.to(), axis.count().min(COARSE)),
+        })
+        .collect();
+    problem.on(CellSpace::new(axes?)?)
+}
+
+/// The watched densities at a value; `None` where there is no steady state on these cells.
+fn densities(
+    source: &GeneratorSource,
+    value: f64,
+    cancellation: &Cancellation,
+) -> Result<Option<Densities>, MethodError> {
+    let (problem, system) = (&source.problem, source.problem.family().at(value)?);
+    let generator = source.assemble(system.as_ref(), source.options.scheme)?;
+    let mut solver = source.solver(cancellation);
+    let steady = solver.solve(&generator.matrix, &generator.escape, None)?;
+    if !steady.info.converged {
+        return Ok(None);
+    }
+    let masses = cell_masses(system.as_ref(), problem.space(), &steady.mass);
+    let density = |&observable| {
+        let projection = Projection::new(problem.space(), observable)?;
+        Ok(projection.density(&masses)?.values)
+    };
+    let densities: Result<_, MethodError> = problem.observables().iter().map(density).collect();
+    densities.map(Some)
+}
+
+/// Largest change between two tries, relative to the largest value of each density.
+fn change(before: &[Option<Densities>], now: &[Option<Densities>]) -> f64 {
+    let pairs = before
+        .iter()
+        .zip(now)
+        .filter_map(|(a, b)| Some((a.as_ref()?, b.as_ref()?)));
+    let pairs = pairs.flat_map(|(a, b)| a.iter().zip(b));
+    let changes = pairs.map(|(a, b)| {
+        let largest = b.iter().copied().fold(0.0, f64::max);
+        let moved = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+        moved.fold(0.0, f64::max) / largest
+    });
+    // Without any steady state to look at nothing is known.
+    changes
+        .fold(None, |most: Option<f64>, one| {
+            Some(most.map_or(one, |most| most.max(one)))
+        })
+        .unwrap_or(f64::INFINITY)
+}

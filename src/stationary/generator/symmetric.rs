@@ -1,0 +1,350 @@
+//! Symmetric generators on half of the cells.
+//!
+//! Where the matrix does not change when all cells are counted from the other end (a system that is odd about the middle of its
+//! cells), the steady state is symmetric too, being the only one, and so is its answer to symmetric changes. Cells and their mirror
+//! images are then summed: half the unknowns, half the memory, less than half the work. Symmetry is seen in the matrix itself, to
+//! rounding; a change that is not symmetric is answered on all cells.
+
+use sprs::CsMat;
+
+use super::memory::SolverMemory;
+use super::narrowing;
+use super::preconditioner::{Estimate, Structure, estimate_of};
+use super::solver::DirectSolver;
+use super::{RateError, RateOptions, RateSteadyState};
+use crate::cancellation::Cancellation;
+use crate::space::{Axis, CellSpace};
+
+/// Unknowns below which halving them is not worth the while.
+const WORTH_FOLDING: usize = 12_000;
+
+/// Deviation from symmetry, relative to the largest rate (or change), that is rounding.
+const ROUNDING: f64 = 1e-11;
+
+/// Solves generators on one cell space, keeping the factorisation from one to the next.
+pub struct RateSolver {
+    space: CellSpace,
+    options: RateOptions,
+    cancellation: Cancellation,
+    plain: DirectSolver,
+    half: Option<Half>,
+    /// The last matrix, with its escape, that was solved on half of the cells; `None` after one that was not.
+    folded: Option<(CsMat<f64>, Vec<f64>)>,
+}
+
+/// The solver on half of the cells.
+struct Half {
+    folding: Folding,
+    solver: DirectSolver,
+}
+
+impl RateSolver {
+    /// A solver without a factorisation yet.
+    pub fn new(space: CellSpace, options: RateOptions) -> Self {
+        Self {
+            plain: DirectSolver::new(space.clone(), options, None),
+            space,
+            options,
+            cancellation: Cancellation::new(),
+            half: None,
+            folded: None,
+        }
+    }
+
+    /// The solver with a token that is looked at in every front of a factorisation and in every iteration.
+    #[must_use]
+    pub fn cancelled_by(self, cancellation: &Cancellation) -> Self {
+        Self {
+            plain: self.plain.cancelled_by(cancellation),
+            half: None,
+            folded: None,
+            cancellation: cancellation.clone(),
+            ..self
+        }
+    }
+
+    /// The (quasi-)steady state of a generator: `matrix` is n × n by columns (CSC), column j the rates out of
+    /// cell j, summing to -`escape[j]`. `guess` is a neighbour's mass vector, or one predicted from it.
+    ///
+    /// # Errors
+    /// [`RateError`] when the input is no generator, the memory does not suffice, or the solve is cancelled.
+    pub fn solve(
+        &mut self,
+        matrix: &CsMat<f64>,
+        escape: &[f64],
+        guess: Option<&[f64]>,
+    ) -> Result<RateSteadyState, RateError> {
+        self.folded = None;
+        if self.space.n_cells() < WORTH_FOLDING || !is_centrosymmetric(matrix, escape) {
+            return self.plain.solve(matrix, escape, guess);
+        }
+        self.plain.check(matrix, escape)?;
+        let Some(half) = self.half(matrix)? else {
+            return self.plain.solve(matrix, escape, guess);
+        };
+        let guess = guess.map(|guess| half.folding.fold(guess));
+        let (folded, escaping) = half.folding.generator(matrix, escape);
+        let steady = half.solver.solve(&folded, &escaping, guess.as_deref())?;
+        let mass = half.folding.unfold(&steady.mass);
+        let mut info = steady.info;
+        info.unknowns = mass.len();
+        self.folded = Some((matrix.clone(), escape.to_vec()));
+        Ok(RateSteadyState { mass, info })
+    }
+
+    /// Factorisations that were made since the solver was.
+    pub fn factorisations(&self) -> usize {
+        let half = self.half.as_ref();
+        self.plain.factorisations() + half.map_or(0, |half| half.solver.factorisations())
+    }
+
+    /// Where the solver stands, but for the matrices: on half of the cells if the last solve was, else on all of them.
+    pub fn memory(&self) -> SolverMemory {
+        match (&self.folded, &self.half) {
+            (Some(_), Some(half)) => SolverMemory {
+                folded: true,
+                ..half.solver.memory()
+            },
+            _ => self.plain.memory(),
+        }
+    }
+
+    /// Brings a fresh solver to where another one on the same cells was: `factorised` is the matrix that it had factorised, `last`
+    /// that of its last solve with the escape. What is solved then is the same to the bit.
+    ///
+    /// # Errors
+    /// As [`RateSolver::solve`].
+    pub fn restore(
+        &mut self,
+        memory: &SolverMemory,
+        factorised: Option<&CsMat<f64>>,
+        last: Option<(CsMat<f64>, Vec<f64>)>,
+    ) -> Result<(), RateError> {
+        let Some((matrix, escape)) = last.as_ref().filter(|_| memory.folded) else {
+            return self.plain.restore(memory, factorised, last);
+        };
+        self.plain.check(matrix, escape)?;
+        if let Some(other) = factorised.filter(|other| other.cols() != matrix.cols()) {
+            return Err(RateError::Shape {
+                cells: matrix.cols(),
+                part: "columns",
+                found: other.cols(),
+            });
+        }
+        let Some(half) = self.half(matrix)? else {
+            return Ok(());
+        };
+        let folding = &half.folding;
+        let old = factorised.map(|matrix| folding.generator(matrix, escape).0);
+        let new = folding.generator(matrix, escape);
+        half.solver.restore(memory, old.as_ref(), Some(new))?;
+        self.folded = last;
+        Ok(())
+    }
+
+    /// The solver on half of the cells; `None` where there is no half, or it would not fit the memory in full.
+    fn half(&mut self, matrix: &CsMat<f64>) -> Result<Option<&mut Half>, RateError> {
+        if self.half.is_none() {
+            let Some(folding) = Folding::new(&self.space) else {
+                return Ok(None);
+            };
+            let reach = narrowing::reach(&self.space, matrix);
+            let structure = Structure {
+                reach: reach.clone(),
+                folded: Some(folding.axis),
+            };
+            let limit = self.options.memory_limit_bytes;
+            let fits = |plan: Estimate| !plan.method.is_narrow();
+            let plan = estimate_of(&folding.half, &structure, limit, self.options.method);
+            if !plan.is_ok_and(fits) {
+                return Ok(None);
+            }
+            let solver = DirectSolver::new(folding.half.clone(), self.options, Some(structure));
+            self.half = Some(Half {
+                folding,
+                solver: solver.cancelled_by(&self.cancellation),
+            });
+        }
+        Ok(self.half.as_mut())
+    }
+
+    /// dp/dθ (Σ = 0) from Q dp = -(dQ/dθ) p at the last steady state, with its factorisation; `derivative` is
+    /// dQ/dθ (CSC, any pattern), `mass` the steady state. Escape is taken into account.
+    ///
+    /// # Errors
+    /// [`RateError::NoSteadyState`] before the first solve, [`RateError::Shape`] for wrong sizes,
+    /// [`RateError::Sensitivity`] when the iterations do not suffice, [`RateError::Cancelled`].
+    pub fn sensitivity(
+        &mut self,
+        derivative: &CsMat<f64>,
+        mass: &[f64],
+    ) -> Result<Vec<f64>, RateError> {
+        self.sensitivity_within(derivative, mass, None, self.options.tolerance)
+    }
+
+    /// [`RateSolver::sensitivity`] to a relative error of `tolerance` in L1: predictions and estimates of errors need
+    /// two digits, and with a neighbour's factorisation every digit costs iterations. `guess` is what is expected.
+    ///
+    /// # Errors
+    /// As [`RateSolver::sensitivity`].
+    pub fn sensitivity_within(
+        &mut self,
+        derivative: &CsMat<f64>,
+        mass: &[f64],
+        guess: Option<&[f64]>,
+        tolerance: f64,
+    ) -> Result<Vec<f64>, RateError> {
+        let change = self.plain.change(derivative, mass)?;
+        self.response(&change, mass, guess, tolerance)
+    }
+
+    /// How the last steady state `mass` answers to a change of its balance: p' (Σ = 0) from Q p' = -`change`, where `change`
+    /// is by how much more mass enters each cell than before, per unit time; what its sum lacks escapes.
+    ///
+    /// # Errors
+    /// As [`RateSolver::sensitivity`].
+    pub fn response(
+        &mut self,
+        change: &[f64],
+        mass: &[f64],
+        guess: Option<&[f64]>,
+        tolerance: f64,
+    ) -> Result<Vec<f64>, RateError> {
+        let Some((matrix, escape)) = &self.folded else {
+            return self.plain.response(change, mass, guess, tolerance);
+        };
+        self.plain.shapes(change, mass, guess)?;
+        if let Some(half) = self.half.as_mut().filter(|_| is_symmetric(change)) {
+            let guess = guess.map(|guess| half.folding.fold(guess));
+            let (change, mass) = (half.folding.fold(change), half.folding.fold(mass));
+            let response = half
+                .solver
+                .response(&change, &mass, guess.as_deref(), tolerance)?;
+            return Ok(half.folding.unfold(&response));
+        }
+        // Only now are factors of the whole matrix needed. It stays solved on half of the cells.
+        if !self.plain.has_solved(matrix) {
+            self.plain.solve(matrix, escape, Some(mass))?;
+        }
+        self.plain.response(change, mass, guess, tolerance)
+    }
+}
+
+/// Whether rates and escape are the same counted from the other end.
+pub(super) fn is_centrosymmetric(matrix: &CsMat<f64>, escape: &[f64]) -> bool {
+    let (rows, rates) = (matrix.indices(), matrix.data());
+    let Some(last) = matrix.rows().checked_sub(1) else {
+        return false;
+    };
+    let starts = matrix.indptr();
+    let starts = starts.raw_storage();
+    let mirrored = |values: &[usize], sum: usize| {
+        let pairs = values.iter().zip(values.iter().rev());
+        pairs
+            .take(values.len().div_ceil(2))
+            .all(|(a, b)| a + b == sum)
+    };
+    mirrored(starts, rates.len())
+        && mirrored(rows, last)
+        && is_symmetric(rates)
+        && is_symmetric(escape)
+}
+
+/// Whether numbers are the same from the other end, to rounding of the largest.
+fn is_symmetric(values: &[f64]) -> bool {
+    let largest = values
+        .iter()
+        .fold(0.0_f64, |most, value| most.max(value.abs()));
+    let pairs = values.iter().zip(values.iter().rev());
+    let mut half = pairs.take(values.len() / 2);
+    half.all(|(a, b)| (a - b).abs() <= ROUNDING * largest)
+}
+
+/// The upper half of the cells along one axis, each standing for itself and its mirror image.
+struct Folding {
+    /// The axis that is halved.
+    axis: usize,
+    /// The half. Of its axes only the numbers of cells mean anything.
+    half: CellSpace,
+    /// The cell of the whole space that each cell of the half is, ascending.
+    upper: Vec<u32>,
+    /// The cell of the half that each cell of the whole is, or is the image of.
+    place: Vec<u32>,
+}
+
+impl Folding {
+    /// Halves the longest axis of cells with an even number of them.
+    fn new(space: &CellSpace) -> Option<Self> {
+        let axes = space.axes().iter().enumerate();
+        let even = axes.filter(|(_, axis)| !axis.is_modes() && axis.count() % 2 == 0);
+        let (axis, longest) = even.max_by_key(|(_, axis)| axis.count())?;
+        let middle = longest.count() / 2;
+        let mut axes = space.axes().to_vec();
+        axes[axis] = Axis::uniform(0.0, 1.0, middle).ok()?;
+        let half = CellSpace::new(axes).ok()?;
+        let cells = 0..space.n_cells();
+        let upper: Vec<u32> = cells
+            .filter(|&cell| space.position(cell, axis) >= middle)
+            .map(|cell| cell as u32)
+            .collect();
+        let mut place = vec![0; space.n_cells()];
+        for (index, &cell) in upper.iter().enumerate() {
+            let cell = cell as usize;
+            place[cell] = index as u32;
+            place[space.n_cells() - 1 - cell] = index as u32;
+        }
+        Some(Self {
+            axis,
+            half,
+            upper,
+            place,
+        })
+    }
+
+    /// Sums of cells and their images.
+    fn fold(&self, values: &[f64]) -> Vec<f64> {
+        let last = values.len() - 1;
+        let sum = |&cell: &u32| values[cell as usize] + values[last - cell as usize];
+        self.upper.iter().map(sum).collect()
+    }
+
+    /// Shares a cell's value with its image.
+    fn unfold(&self, values: &[f64]) -> Vec<f64> {
+        let share = |&index: &u32| 0.5 * values[index as usize];
+        self.place.iter().map(share).collect()
+    }
+
+    /// The generator of the sums, and their escape.
+    fn generator(&self, matrix: &CsMat<f64>, escape: &[f64]) -> (CsMat<f64>, Vec<f64>) {
+        let cells = self.upper.len();
+        let starts = matrix.indptr();
+        let starts = starts.raw_storage();
+        let (mut start, mut rows, mut rates) = (vec![0], Vec::new(), Vec::new());
+        let mut column: Vec<(usize, f64)> = Vec::new();
+        for &cell in &self.upper {
+            let entries = starts[cell as usize]..starts[cell as usize + 1];
+            column.clear();
+            column.extend(entries.map(|entry| {
+                let row = self.place[matrix.indices()[entry]] as usize;
+                (row, matrix.data()[entry])
+            }));
+            column.sort_by_key(|entry| entry.0);
+            let first = rows.len();
+            for &(row, rate) in &column {
+                match rates.last_mut() {
+                    Some(last) if rows.len() > first && rows.last() == Some(&row) => *last += rate,
+                    _ => {
+                        rows.push(row);
+                        rates.push(rate);
+                    }
+                }
+            }
+            start.push(rows.len());
+        }
+        let escape = self.upper.iter().map(|&cell| escape[cell as usize]);
+        (
+            CsMat::new_csc((cells, cells), start, rows, rates),
+            escape.collect(),
+        )
+    }
+}
