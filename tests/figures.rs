@@ -242,6 +242,8 @@ fn a_figure_is_drawn_by_its_name() {
             "surface_xy_-0.5",
             "surface_xy_0.5",
             "pairs_xy",
+            "section_xy",
+            "conditional_xy",
             "peaks_x",
             "peaks_y",
             "indicator_x",
