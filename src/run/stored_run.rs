@@ -10,7 +10,7 @@ use super::points_table::read_points;
 use super::stored_densities::StoredDensities;
 use super::{Ending, PhaseSeconds, RunError};
 use crate::continuation::{CheckedIndicator, Point, Subject};
-use crate::space::CellSpace;
+use crate::space::{Axis, CellSpace};
 
 /// The folder of a run that is read.
 #[derive(Debug)]
@@ -119,7 +119,7 @@ impl StoredRun {
         there.then(|| read_checks(&path, subject)).transpose()
     }
 
-    /// All points in the order of the table, with the densities of the observables of `subject`, bit for bit as they were solved; detections
+    /// All points in the order of the table, with the densities of the observables of `subject` on these cells (and bins of quantities), bit for bit as they were solved; detections
     /// are empty. A run that was killed may hold a density whose row was not written: it is left out.
     ///
     /// # Errors
@@ -128,7 +128,7 @@ impl StoredRun {
     pub fn points(
         &self,
         subject: &Subject,
-        space: &CellSpace,
+        (space, bins): (&CellSpace, &[Axis]),
         methods: &[&'static str],
     ) -> Result<Vec<Point>, RunError> {
         let table = self.path.join("points.csv");
@@ -139,7 +139,7 @@ impl StoredRun {
             return Ok(points);
         }
         let path = self.path.join("densities.zarr");
-        let stored = StoredDensities::open(&path, subject, space)?;
+        let stored = StoredDensities::open(&path, subject, (space, bins))?;
         for point in points.iter_mut().filter(|point| !point.moments.is_empty()) {
             point.densities = stored.at(point.value)?.ok_or_else(|| RunError::NoDensity {
                 path: path.clone(),

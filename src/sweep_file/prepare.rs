@@ -11,8 +11,10 @@ use super::settings::{Grade, Settings, at_cells, cell_space};
 use super::sweep::Sweep;
 use crate::cancellation::Cancellation;
 use crate::generator::automatic_grading;
-use crate::method::{PILOT_BOX, Problem, RangeError, SgcmOptions, automatic_ranges};
-use crate::space::Grading;
+use crate::method::{
+    BinsError, PILOT_BOX, Problem, RangeError, SgcmOptions, automatic_bins, automatic_ranges,
+};
+use crate::space::{Axis, Grading};
 use crate::system::System;
 
 impl Settings {
@@ -25,6 +27,7 @@ impl Settings {
         self.check_memory()?;
         self.find_cells(cancellation)?;
         self.check_equations()?;
+        self.find_bins(cancellation)?;
         let sweep = self.fixed()?;
         sweep.settings.check_factors(&sweep)?;
         Ok(sweep)
@@ -37,7 +40,18 @@ impl Settings {
     pub fn fixed(self) -> Result<Sweep, Report> {
         let space = cell_space(&self.document, &self.family, &self.axes)
             .map_err(|diagnostic| self.refuse(*diagnostic))?;
-        let problem = Problem::new(self.family.clone(), space, self.observables.clone())
+        let named = self.family.quantities().iter().zip(&self.bins);
+        let bins = named.map(|(quantity, bins)| {
+            let (from, to) = bins.range.ok_or_else(|| {
+                let name = quantity.name();
+                Diagnostic::new(format!("the bins of `{name}` have no range"))
+                    .remedy(format!("give `detect.bins.{name}.from` and `to`"))
+            })?;
+            Axis::uniform(from, to, bins.count).map_err(|error| Diagnostic::new(error.to_string()))
+        });
+        let bins: Result<Vec<Axis>, Diagnostic> = bins.collect();
+        let bins = bins.map_err(|diagnostic| self.refuse(diagnostic))?;
+        let problem = Problem::watching(self.family.clone(), space, self.observables.clone(), bins)
             .map(|problem| problem.checked_by(self.method.chosen().cell_check()))
             .map_err(|error| self.refuse(Diagnostic::new(error.to_string())))?;
         Ok(Sweep {
@@ -77,6 +91,35 @@ impl Settings {
                     gradings.min_by(|a: &Grading, b: &Grading| a.smallest.total_cmp(&b.smallest));
                 axis.grade = narrowest.map_or(Grade::Even, Grade::Toward);
             }
+        }
+        Ok(())
+    }
+
+    /// Finds the values over which quantities are watched, where the file leaves them open.
+    fn find_bins(&mut self, cancellation: &Cancellation) -> Result<(), Report> {
+        if self.bins.iter().all(|bins| bins.range.is_some()) {
+            return Ok(());
+        }
+        let space = cell_space(&self.document, &self.family, &self.axes)
+            .map_err(|diagnostic| self.refuse(*diagnostic))?;
+        let ranges = automatic_bins(&self.family, &space, cancellation).map_err(|error| {
+            let diagnostic = Diagnostic::new(error.to_string());
+            let entry = self.document.root.find(&["detect"]);
+            let diagnostic = match (&error, entry) {
+                (BinsError::Cancelled(_), _) | (_, None) => diagnostic,
+                (_, Some(entry)) => {
+                    diagnostic.at(&entry.key_place, "a quantity that is watched here")
+                }
+            };
+            self.refuse(match error {
+                BinsError::NotFinite { .. } => diagnostic.remedy(
+                    "watch a formula that has a value all over the cells, or move the cells",
+                ),
+                _ => diagnostic,
+            })
+        })?;
+        for (bins, range) in self.bins.iter_mut().zip(ranges) {
+            bins.range = bins.range.or(Some(range));
         }
         Ok(())
     }
