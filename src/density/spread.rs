@@ -16,7 +16,7 @@ pub enum Coordinate {
     /// A coordinate of the state.
     Axis(usize),
     /// A quantity, over these bins; values beyond them are not counted.
-    Quantity(BoundQuantity, Axis),
+    Quantity(Box<BoundQuantity>, Axis),
 }
 
 /// How finely cells are cut.
@@ -365,7 +365,7 @@ impl Averages {
         let bins = Axis::uniform(0.0, 1.0, 2);
         let coordinates: Vec<Coordinate> = bins
             .into_iter()
-            .map(|bins| Coordinate::Quantity(quantity.clone(), bins))
+            .map(|bins| Coordinate::Quantity(Box::new(quantity.clone()), bins))
             .collect();
         let cut = Cut::new(space, &coordinates, detail, planes);
         let mut weights = [Vec::new(), Vec::new()];

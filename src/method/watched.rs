@@ -67,7 +67,7 @@ impl Problem {
         let coordinate = |axis: usize| match axis.checked_sub(space.dimension()) {
             None => Coordinate::Axis(axis),
             Some(number) => {
-                Coordinate::Quantity(bound[number].clone(), self.bins()[number].clone())
+                Coordinate::Quantity(Box::new(bound[number].clone()), self.bins()[number].clone())
             }
         };
         let (fine, coarse) = match masses {

@@ -40,17 +40,9 @@ impl Settings {
     pub fn fixed(self) -> Result<Sweep, Report> {
         let space = cell_space(&self.document, &self.family, &self.axes)
             .map_err(|diagnostic| self.refuse(*diagnostic))?;
-        let named = self.family.quantities().iter().zip(&self.bins);
-        let bins = named.map(|(quantity, bins)| {
-            let (from, to) = bins.range.ok_or_else(|| {
-                let name = quantity.name();
-                Diagnostic::new(format!("the bins of `{name}` have no range"))
-                    .remedy(format!("give `detect.bins.{name}.from` and `to`"))
-            })?;
-            Axis::uniform(from, to, bins.count).map_err(|error| Diagnostic::new(error.to_string()))
-        });
-        let bins: Result<Vec<Axis>, Diagnostic> = bins.collect();
-        let bins = bins.map_err(|diagnostic| self.refuse(diagnostic))?;
+        let bins = self
+            .bin_axes()
+            .map_err(|diagnostic| self.refuse(*diagnostic))?;
         let problem = Problem::watching(self.family.clone(), space, self.observables.clone(), bins)
             .map(|problem| problem.checked_by(self.method.chosen().cell_check()))
             .map_err(|error| self.refuse(Diagnostic::new(error.to_string())))?;
@@ -58,6 +50,22 @@ impl Settings {
             settings: self,
             problem,
         })
+    }
+
+    /// The bins of all quantities.
+    fn bin_axes(&self) -> Result<Vec<Axis>, Box<Diagnostic>> {
+        let named = self.family.quantities().iter().zip(&self.bins);
+        let bins = named.map(|(quantity, bins)| {
+            let name = quantity.name();
+            let Some((from, to)) = bins.range else {
+                let open = Diagnostic::new(format!("the bins of `{name}` have no range"));
+                let remedy = format!("give `detect.bins.{name}.from` and `to`");
+                return Err(Box::new(open.remedy(remedy)));
+            };
+            Axis::uniform(from, to, bins.count)
+                .map_err(|error| Box::new(Diagnostic::new(error.to_string())))
+        });
+        bins.collect()
     }
 
     fn refuse(&self, diagnostic: Diagnostic) -> Report {

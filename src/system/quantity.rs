@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::{Family, LANES, Lanes, Model, SystemError};
 use crate::formula::graph::{Expression, Symbol};
+use crate::formula::language::FormulaError;
 use crate::formula::scope::{DefinitionError, DefinitionFault, Scope, SymbolError, Symbols};
 use crate::formula::tape::{Program, Tape};
 
@@ -43,11 +44,11 @@ pub enum QuantityFault {
     #[error(transparent)]
     Name(#[from] SymbolError),
     /// Its formula is none.
-    #[error(transparent)]
-    Formula(#[from] DefinitionFault),
+    #[error("{0}")]
+    Formula(Box<DefinitionFault>),
     /// A definition of the model that is not right.
     #[error("{0}")]
-    Model(DefinitionError),
+    Model(Box<DefinitionError>),
     /// A name without a formula that is no definition of the model.
     #[error("`{name}` is not defined")]
     Undefined {
@@ -83,20 +84,26 @@ impl QuantityFault {
         }
     }
 
-    /// What is allowed there.
-    pub fn allowed(&self) -> Option<String> {
+    fn error(&self) -> Option<&FormulaError> {
         match self {
-            Self::Formula(DefinitionFault::Formula(error)) => error.allowed(),
+            Self::Formula(fault) => match fault.as_ref() {
+                DefinitionFault::Formula(error) => Some(error),
+                DefinitionFault::Circle { .. } => None,
+            },
             _ => None,
         }
+    }
+
+    /// What is allowed there.
+    pub fn allowed(&self) -> Option<String> {
+        self.error()?.allowed()
     }
 
     /// What to write instead.
     pub fn remedy(&self) -> Option<String> {
         match self {
-            Self::Formula(DefinitionFault::Formula(error)) => error.remedy(),
             Self::Name(_) => Some("give it another name".to_owned()),
-            _ => None,
+            _ => self.error()?.remedy(),
         }
     }
 }
@@ -150,8 +157,8 @@ pub fn quantities(
         let located = wrong.into_iter().map(|error| {
             let known = given.iter().position(|(name, _)| *name == error.name);
             match known {
-                Some(index) => at(index)(error.fault.into()),
-                None => at(0)(QuantityFault::Model(error)),
+                Some(index) => at(index)(QuantityFault::Formula(Box::new(error.fault))),
+                None => at(0)(QuantityFault::Model(Box::new(error))),
             }
         });
         located.collect::<Vec<_>>()
