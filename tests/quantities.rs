@@ -66,7 +66,6 @@ fn energy_and_amplitude_of_a_linear_oscillator_have_their_exact_densities() {
         [&|h| -(-h).exp(), &|r| -(-0.5 * r * r).exp(), &|u| normal(u)];
     for (found, exact) in solution.densities.iter().zip(exact) {
         let (error, stated) = errors(found, exact);
-        println!("{:?} {error:e} {stated:e}", found.observable);
         // The second scheme may happen to err alike along a direction.
         assert!(
             error < 3.0 * stated && stated < 1e-2,
@@ -177,7 +176,6 @@ fn a_sweep_watches_quantities_stores_them_and_reads_them_back() {
         let weight = |h: f64| (100.0 * (a * h - 0.05 * h * h)).exp();
         let whole = integral(weight, 0.0, 6.0);
         let (error, stated) = errors(found, |h| integral(weight, 0.0, h) / whole);
-        println!("{a} {error:e} {stated:e}");
         assert!(error < 2.0 * stated + 1e-4, "a = {a}: {error:e} {stated:e}");
     }
 }
