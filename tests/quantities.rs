@@ -228,6 +228,8 @@ fn bad_formulas_are_shown_where_they_stand() {
         text.contains("unknown symbol `v`") && text.contains("test.toml:19:"),
         "{text}"
     );
-    let text = refusal("[watch]", "[detect.bins]\nenergy = { count = 50 }\n[watch]");
+    let more = FILE.replace("[watch]", "[detect.bins]\nenergy = { count = 50 }\n[watch]");
+    let settings = SweepFile::parse("test.toml", &more).validate().unwrap();
+    let text = settings.warnings.to_string();
     assert!(text.contains("no quantity `energy` is watched"), "{text}");
 }

@@ -119,10 +119,11 @@ pub(super) fn read_bins(
     let known: Vec<&str> = family.quantities().iter().map(|one| one.name()).collect();
     for entry in reader.entries(&["detect", "bins"]) {
         if !known.contains(&entry.key.as_str()) {
+            // A stored run may be looked at again with fewer quantities.
             let title = format!("no quantity `{}` is watched", entry.key);
-            let diagnostic = Diagnostic::new(title).at(&entry.key_place, "bins of what?");
+            let diagnostic = Diagnostic::warning(title).at(&entry.key_place, "bins of what?");
             let diagnostic = diagnostic.nearest(&entry.key, known.iter().copied());
-            reader.report(diagnostic);
+            reader.warn(diagnostic);
         }
     }
     let bins = family.quantities().iter().map(|quantity| {
