@@ -126,7 +126,11 @@ fn the_code_of_the_page_reads_the_stored_densities() {
         .unwrap();
     let subject = sweep.problem.subject();
     let points = run
-        .points(subject, sweep.problem.space(), &["generator"])
+        .points(
+            subject,
+            (sweep.problem.space(), sweep.problem.bins()),
+            &["generator"],
+        )
         .unwrap();
     let with_density = || points.iter().filter(|point| !point.densities.is_empty());
     for (k, arrays) in read["arrays"].as_array().unwrap().iter().enumerate() {

@@ -242,6 +242,8 @@ fn a_figure_is_drawn_by_its_name() {
             "surface_xy_-0.5",
             "surface_xy_0.5",
             "pairs_xy",
+            "section_xy",
+            "conditional_xy",
             "peaks_x",
             "peaks_y",
             "indicator_x",
@@ -275,6 +277,22 @@ fn a_figure_is_drawn_by_its_name() {
     assert!(
         matches!(&error, FigureError::Unknown { known, .. } if *known == names),
         "{error}"
+    );
+    // Beside it what it shows, and the numbers behind it.
+    let diagram = figures.draw("diagram_x").unwrap().unwrap();
+    assert!(diagram.caption.contains("p(x) over a") && diagram.caption.contains("cells"));
+    assert!(
+        diagram
+            .data
+            .starts_with("a,axis,coordinate,density,standard_error\n")
+    );
+    let solved = result
+        .points
+        .iter()
+        .filter(|point| !point.densities.is_empty());
+    assert_eq!(
+        diagram.data.lines().count(),
+        1 + solved.count() * uniform().count()
     );
     // Without a density there is nothing to see, which is no error.
     let empty = SweepResult {

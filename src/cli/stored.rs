@@ -92,6 +92,8 @@ pub(super) fn diagnostic(error: &RunError) -> Diagnostic {
         RunError::NotStored { stored, .. } => finding
             .allowed(format!("observables of {}", list(stored)))
             .remedy("`pbif sweep FILE --set detect.marginals=…` or `detect.joint=…` solves and stores more"),
+        RunError::OtherFormula { .. } => finding
+            .remedy("give the quantity another name; `pbif sweep FILE` solves and stores its density"),
         RunError::Version { .. } => {
             finding.remedy(format!("use the version that made the run, or {solve}"))
         }

@@ -77,8 +77,14 @@ pub(super) fn measure(
         return Ok(None);
     };
     let joint = |observable: &&Observable| matches!(observable, Observable::Joint(..));
-    let watched = task.problem.observables();
-    let Some(&observable) = watched.iter().find(joint).or(watched.first()) else {
+    // The error of a quantity is not measured against the cells.
+    let dimension = task.problem.space().dimension();
+    let of_axes = |observable: &&Observable| {
+        let axes = observable.axes();
+        axes.into_iter().all(|axis| axis < dimension)
+    };
+    let watched = || task.problem.observables().iter().filter(of_axes);
+    let Some(&observable) = watched().find(joint).or(watched().next()) else {
         return Ok(None);
     };
     let gauge = Gauge {

@@ -3,7 +3,7 @@
 use super::{CompareError, overlap::rebin_density};
 use crate::density::{DensityError, EstimatedDensity, Observable, estimate};
 use crate::method::MethodError;
-use crate::space::CellSpace;
+use crate::space::{Axis, CellSpace};
 use crate::system::{Family, System};
 
 /// Nodes and weights of Gauss-Legendre quadrature with four points on [-½, ½], exact to degree seven.
@@ -53,7 +53,8 @@ pub fn exact_masses(system: &dyn System, space: &CellSpace) -> Option<Vec<f64>> 
     (whole > 0.0 && whole.is_finite()).then(|| masses.iter().map(|mass| mass / whole).collect())
 }
 
-/// The exact density of an observable at a parameter value, integrated over the cells of `space` and brought to those of `common`.
+/// The exact density of an observable at a parameter value, integrated over the cells of `space` and brought to those of `common`; `None` where
+/// none is known, and for quantities.
 ///
 /// # Errors
 /// [`CompareError`] when the value is not allowed, or the observable names no axis.
@@ -65,6 +66,14 @@ pub fn exact_density(
     observable: Observable,
 ) -> Result<Option<EstimatedDensity>, CompareError> {
     let system = family.at(value).map_err(MethodError::from)?;
+    // The cells' own sub-cells would take part in what is called exact.
+    if observable
+        .axes()
+        .iter()
+        .any(|&axis| axis >= space.dimension())
+    {
+        return Ok(None);
+    }
     let Some(masses) = exact_masses(system.as_ref(), space) else {
         return Ok(None);
     };
@@ -73,10 +82,7 @@ pub fn exact_density(
 }
 
 /// The axes of a cell space that an observable keeps.
-pub(super) fn axes_of(
-    space: &CellSpace,
-    observable: Observable,
-) -> Result<Vec<crate::space::Axis>, DensityError> {
+fn axes_of(space: &CellSpace, observable: Observable) -> Result<Vec<Axis>, DensityError> {
     let dimension = space.dimension();
     let axes = observable.axes().into_iter();
     axes.map(|axis| {
@@ -86,10 +92,17 @@ pub(super) fn axes_of(
     .collect()
 }
 
+/// The axes that a density is brought to: those of the common cells. Quantities have the same bins by every method.
+pub(super) fn common_axes(common: &CellSpace, estimated: &EstimatedDensity) -> Vec<Axis> {
+    let axes = estimated.observable.axes().into_iter();
+    let own = axes.zip(&estimated.density.axes);
+    own.map(|(axis, own)| common.axes().get(axis).unwrap_or(own).clone())
+        .collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::space::Axis;
     use crate::system::registry;
     use statrs::function::erf::erf;
 

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::exact::axes_of;
+use super::exact::common_axes;
 use super::{CompareError, Method, PAPER_MAP_STEP, Task, overlap::rebin_density};
 use crate::cancellation::Cancellation;
 use crate::continuation::{DensitySource, PointStatus, Solution, SolveReport, SourceError};
@@ -284,10 +284,8 @@ fn solved(
     let densities = solution.densities.iter();
     let densities: Result<Vec<EstimatedDensity>, CompareError> = densities
         .map(|density| {
-            Ok(rebin_density(
-                density,
-                &axes_of(common, density.observable)?,
-            )?)
+            let axes = common_axes(common, density);
+            Ok(rebin_density(density, &axes)?)
         })
         .collect();
     Ok(Solved {

@@ -1,6 +1,6 @@
 //! Densities whose error is that of a grid, not of sampling: the difference between two discretisations.
 
-use super::{DensityError, EstimatedDensity, Observable, Projection, Structure, Variants};
+use super::{Density, DensityError, EstimatedDensity, Observable, Projection, Structure, Variants};
 use crate::space::CellSpace;
 
 /// Height of a wiggle from trough to crest, over the depth of its troughs below zero: what is below zero is the lower half of a wiggle
@@ -23,13 +23,29 @@ pub fn estimate_from_difference(
     let projection = Projection::new(space, observable)?;
     let density = projection.density(mass)?;
     let difference = projection.density(difference)?;
-    let mut squares: Vec<f64> = difference
-        .values
-        .iter()
-        .map(|value| value * value)
-        .collect();
     let both = density.values.iter().zip(&difference.values);
     let second = both.map(|(value, change)| value + change).collect();
+    Ok(of_both(observable, density, second, &difference.values))
+}
+
+/// As [`estimate_from_difference`] from the densities by both discretisations (of the second its values alone).
+pub fn estimate_from_second(
+    observable: Observable,
+    density: Density,
+    second: Vec<f64>,
+) -> EstimatedDensity {
+    let both = second.iter().zip(&density.values);
+    let difference: Vec<f64> = both.map(|(second, value)| second - value).collect();
+    of_both(observable, density, second, &difference)
+}
+
+fn of_both(
+    observable: Observable,
+    density: Density,
+    second: Vec<f64>,
+    difference: &[f64],
+) -> EstimatedDensity {
+    let mut squares: Vec<f64> = difference.iter().map(|value| value * value).collect();
     let counts: Vec<usize> = density.axes.iter().map(|axis| axis.count()).collect();
     let mut stride = squares.len();
     for &count in &counts {
@@ -39,14 +55,14 @@ pub fn estimate_from_difference(
     let deepest = density.values.iter().copied().fold(0.0, f64::min).abs();
     let maximum = density.maximum().max(f64::MIN_POSITIVE);
     let negligible = crate::density::NEGLIGIBLE.max(WIGGLE * deepest / maximum);
-    Ok(EstimatedDensity {
+    EstimatedDensity {
         observable,
         density,
         standard_error: squares.into_iter().map(f64::sqrt).collect(),
         variants: Variants::Scheme(second),
         structure: Structure::default(),
         negligible,
-    })
+    }
 }
 
 /// Mean over each value and its neighbours along one axis of `count` cells, `stride` values apart.

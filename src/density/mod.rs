@@ -6,20 +6,23 @@ mod discretisation;
 mod distance;
 mod moments;
 mod projection;
+mod spread;
 mod structure;
+mod sub_cells;
 mod uncertainty;
 
-pub use discretisation::estimate_from_difference;
+pub use discretisation::{estimate_from_difference, estimate_from_second};
 pub use distance::{hellinger, hellinger_of_masses, total_variation, total_variation_of_masses};
 pub use moments::moments;
-pub use projection::{Projection, project};
+pub use projection::{Projection, QuantityMoments, project};
+pub use spread::{Coordinate, Detail};
 pub use structure::{Kink, Structure, Variants};
-pub use uncertainty::estimate;
+pub use uncertainty::{estimate, estimate_projected};
 
 use crate::space::Axis;
 use crate::system::Family;
 
-/// A density that is watched.
+/// A density that is watched. Numbers beyond the axes of the state are those of the family's quantities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Observable {
     /// Marginal of one axis.
@@ -37,10 +40,13 @@ impl Observable {
         }
     }
 
-    /// Its name in files, for systems of a family: the names of its axes run together, for example `xy`.
+    /// Its name in files, for systems of a family: the names of its axes run together, for example `xy`; with `_` between
+    /// them where one is longer than a letter.
     pub fn name(self, family: &Family) -> String {
-        let axes = self.axes();
-        axes.into_iter().map(|axis| family.axis(axis)).collect()
+        let axes = self.axes().into_iter();
+        let names: Vec<&str> = axes.map(|axis| family.axis(axis)).collect();
+        let is_letter = |name: &&str| name.chars().count() == 1;
+        names.join(if names.iter().all(is_letter) { "" } else { "_" })
     }
 
     /// Symbols of its axes, with `_{}` and `^{}`, for systems of a family.
@@ -109,6 +115,9 @@ pub struct EstimatedDensity {
 /// [`EstimatedDensity::negligible`] of a density whose solver bounds the error of all masses together.
 pub const NEGLIGIBLE: f64 = 1e-7;
 
+/// [`EstimatedDensity::negligible`] of a density of quantities: values that the solver leaves in single cells add up along level lines.
+pub const NEGLIGIBLE_OF_QUANTITIES: f64 = 1e-5;
+
 impl EstimatedDensity {
     /// Whether its values carry noise, as those of sampled methods do; else its errors are those of a grid.
     pub fn is_noisy(&self) -> bool {
@@ -147,6 +156,12 @@ pub enum DensityError {
         axis: usize,
         /// Number of axes.
         dimension: usize,
+    },
+    /// Neither one coordinate nor two.
+    #[error("a density of {given} coordinates; one or two are watched")]
+    Coordinates {
+        /// Number of coordinates that was given.
+        given: usize,
     },
     /// A joint density of an axis with itself.
     #[error("a joint density needs two different axes; both are axis {axis}")]

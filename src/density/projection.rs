@@ -1,16 +1,61 @@
 //! Sums cell masses over the axes that an observable does not keep, and divides by volume.
 
-use super::{Density, DensityError, Observable, cell_volumes};
+use std::sync::Arc;
+
+use super::spread::{Averages, Coordinate, Detail, Spread};
+use super::{Density, DensityError, Moments, Observable, cell_volumes};
 use crate::space::{Axis, CellSpace};
+use crate::system::BoundQuantity;
 
 /// The map from the cells of a cell space to the cells of an observable, worked out once and applied to
 /// as many mass vectors as wanted.
 #[derive(Debug, Clone)]
 pub struct Projection {
     axes: Vec<Axis>,
-    /// Cell of the observable that each cell of the space belongs to; length `n_cells`.
-    targets: Vec<u32>,
+    sums: Sums,
+    /// From what is summed to the cells of the observable, where that takes more than sums.
+    spread: Option<Arc<Spread>>,
     volumes: Vec<f64>,
+}
+
+/// Sums over the axes of a space that are not kept.
+#[derive(Debug, Clone)]
+struct Sums {
+    /// Cell that each cell of the space adds to; length `n_cells`.
+    targets: Vec<u32>,
+    count: usize,
+}
+
+impl Sums {
+    /// For axes that exist and differ, in the order wanted.
+    fn new(space: &CellSpace, kept: &[usize]) -> Self {
+        // What one step along each axis of the space adds to the number of the cell.
+        let mut strides = vec![0; space.dimension()];
+        let mut stride: u32 = 1;
+        for &axis in kept.iter().rev() {
+            strides[axis] = stride;
+            // No overflow: a cell space has at most `CellSpace::LIMIT` cells.
+            stride *= space.axes()[axis].count() as u32;
+        }
+        let mut targets = vec![0];
+        for (axis, &stride) in space.axes().iter().zip(&strides) {
+            let steps = |target: u32| (0..axis.count() as u32).map(move |i| target + i * stride);
+            targets = targets.into_iter().flat_map(steps).collect();
+        }
+        Self {
+            targets,
+            count: stride as usize,
+        }
+    }
+
+    fn of(&self, mass: &[f64]) -> Result<Vec<f64>, DensityError> {
+        check_length(mass, self.targets.len())?;
+        let mut sums = vec![0.0; self.count];
+        for (&target, value) in self.targets.iter().zip(mass) {
+            sums[target as usize] += value;
+        }
+        Ok(sums)
+    }
 }
 
 impl Projection {
@@ -28,24 +73,49 @@ impl Projection {
             return Err(DensityError::RepeatedAxis { axis: kept[0] });
         }
         let axes: Vec<Axis> = kept.iter().map(|&a| space.axes()[a].clone()).collect();
-        // What one step along each axis of the space adds to the number of the observable's cell.
-        let mut strides = vec![0; dimension];
-        let mut stride: u32 = 1;
-        for &axis in kept.iter().rev() {
-            strides[axis] = stride;
-            // No overflow: a cell space has at most `CellSpace::LIMIT` cells.
-            stride *= space.axes()[axis].count() as u32;
-        }
-        let mut targets = vec![0];
-        for (axis, &stride) in space.axes().iter().zip(&strides) {
-            let steps = |target: u32| (0..axis.count() as u32).map(move |i| target + i * stride);
-            targets = targets.into_iter().flat_map(steps).collect();
-        }
-        let volumes = cell_volumes(&axes);
         Ok(Self {
+            sums: Sums::new(space, &kept),
+            spread: None,
+            volumes: cell_volumes(&axes),
             axes,
-            targets,
-            volumes,
+        })
+    }
+
+    /// Works out the map for one or two coordinates of which some are quantities; `planes` are axes of the space with coordinates at which the
+    /// derivative of the density jumps. The maps of two details differ by what sub-cells do to the density.
+    ///
+    /// # Errors
+    /// [`DensityError::Axis`] or [`DensityError::Coordinates`].
+    pub fn of_quantities(
+        space: &CellSpace,
+        coordinates: &[Coordinate],
+        detail: Detail,
+        planes: &[(usize, f64)],
+    ) -> Result<Self, DensityError> {
+        let dimension = space.dimension();
+        let axes: Result<Vec<Axis>, DensityError> = coordinates
+            .iter()
+            .map(|coordinate| match coordinate {
+                Coordinate::Axis(axis) => {
+                    let known = space.axes().get(*axis).cloned();
+                    known.ok_or(DensityError::Axis {
+                        axis: *axis,
+                        dimension,
+                    })
+                }
+                Coordinate::Quantity(_, bins) => Ok(bins.clone()),
+            })
+            .collect();
+        let axes = axes?;
+        if !matches!(axes.len(), 1 | 2) {
+            return Err(DensityError::Coordinates { given: axes.len() });
+        }
+        let spread = Spread::new(space, coordinates, detail, planes);
+        Ok(Self {
+            sums: Sums::new(space, spread.axes()),
+            spread: Some(Arc::new(spread)),
+            volumes: cell_volumes(&axes),
+            axes,
         })
     }
 
@@ -59,17 +129,19 @@ impl Projection {
         &self.volumes
     }
 
-    /// Masses of the observable's cells, from the masses of all cells of the space.
+    /// Masses of the observable's cells, from the masses of all cells of the space. What lies beyond the bins of a quantity is
+    /// not among them.
     ///
     /// # Errors
     /// [`DensityError::Length`].
     pub fn masses(&self, mass: &[f64]) -> Result<Vec<f64>, DensityError> {
-        check_length(mass, self.targets.len())?;
-        let mut sums = vec![0.0; self.n_cells()];
-        for (&target, value) in self.targets.iter().zip(mass) {
-            sums[target as usize] += value;
-        }
-        Ok(sums)
+        let sums = self.sums.of(mass)?;
+        let Some(spread) = &self.spread else {
+            return Ok(sums);
+        };
+        let mut bins = vec![0.0; self.n_cells()];
+        spread.add_masses(&sums, &mut bins);
+        Ok(bins)
     }
 
     /// Density of the observable; ∫ equals the sum of `mass`, which is 1 by contract and not rescaled.
@@ -84,6 +156,41 @@ impl Projection {
         Ok(Density {
             axes: self.axes.clone(),
             values,
+        })
+    }
+}
+
+/// Mean and standard deviation of a quantity from the masses of cells, worked out once and applied to as many mass vectors as wanted.
+#[derive(Debug, Clone)]
+pub struct QuantityMoments {
+    sums: Sums,
+    averages: Arc<Averages>,
+}
+
+impl QuantityMoments {
+    /// Works out the map; see [`Projection::of_quantities`].
+    pub fn new(
+        space: &CellSpace,
+        quantity: &BoundQuantity,
+        detail: Detail,
+        planes: &[(usize, f64)],
+    ) -> Self {
+        let averages = Averages::new(space, quantity, detail, planes);
+        Self {
+            sums: Sums::new(space, averages.axes()),
+            averages: Arc::new(averages),
+        }
+    }
+
+    /// The moments for the masses of all cells of the space, Σ = 1.
+    ///
+    /// # Errors
+    /// [`DensityError::Length`].
+    pub fn of(&self, mass: &[f64]) -> Result<Moments, DensityError> {
+        let [mean, square] = self.averages.of(&self.sums.of(mass)?);
+        Ok(Moments {
+            mean,
+            standard_deviation: (square - mean * mean).max(0.0).sqrt(),
         })
     }
 }

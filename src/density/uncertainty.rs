@@ -33,6 +33,19 @@ pub fn estimate(
     replicate_masses: &[Vec<f64>],
 ) -> Result<EstimatedDensity, DensityError> {
     let projection = Projection::new(space, observable)?;
+    estimate_projected(&projection, observable, mass, replicate_masses)
+}
+
+/// As [`estimate`], with the map from cells to the observable worked out before.
+///
+/// # Errors
+/// [`DensityError::Length`], or [`DensityError::Replicates`] for a single replicate.
+pub fn estimate_projected(
+    projection: &Projection,
+    observable: Observable,
+    mass: &[f64],
+    replicate_masses: &[Vec<f64>],
+) -> Result<EstimatedDensity, DensityError> {
     let density = projection.density(mass)?;
     let (standard_error, variants) = match replicate_masses.len() {
         0 => (vec![0.0; density.values.len()], Variants::None),

@@ -16,6 +16,8 @@ pub(super) struct Scene {
     swept: Swept,
     parameters: Vec<Parameter>,
     axes: Vec<Axis>,
+    /// Symbols of what moments are of: axes of the state, and quantities that are averaged.
+    moments: Vec<String>,
     observables: Vec<Watched>,
     /// The complete sweep file.
     sweep_file: String,
@@ -105,6 +107,7 @@ impl Scene {
             },
             parameters: parameters(family),
             axes: axes(family),
+            moments: moments(family),
             observables: subject.observables.iter().map(watched).collect(),
             sweep_file: sweep.to_toml(),
             labels: labels.iter().map(|row| Label::new(row, subject)).collect(),
@@ -150,7 +153,19 @@ fn axes(family: &Family) -> Vec<Axis> {
         symbol: axis.symbol.clone(),
         meaning: axis.meaning.clone(),
     });
-    axis.collect()
+    // Observables number quantities on from the axes.
+    let quantities = family.quantities().iter().map(|quantity| Axis {
+        name: quantity.name().to_owned(),
+        symbol: quantity.symbol().to_owned(),
+        meaning: quantity.formula().unwrap_or_default().to_owned(),
+    });
+    axis.chain(quantities).collect()
+}
+
+fn moments(family: &Family) -> Vec<String> {
+    let axes = family.model().axes.iter().map(|axis| axis.symbol.as_str());
+    let averaged = family.averaged().iter().map(|quantity| quantity.symbol());
+    axes.chain(averaged).map(str::to_owned).collect()
 }
 
 impl Label {

@@ -47,6 +47,19 @@ fn at(result: &SweepResult, points: &[&Point]) -> String {
     format!(" at {} = {values}", result.subject.family.parameter())
 }
 
+/// A value to the second digit of its error.
+fn located(value: f64, error: f64) -> String {
+    if !(error > 0.0 && error.is_finite()) {
+        return number(value);
+    }
+    let decimals = (1.0 - error.log10().floor()).clamp(0.0, 15.0) as usize;
+    let text = format!("{value:.decimals$}");
+    match text.chars().all(|c| matches!(c, '-' | '0' | '.')) {
+        true => "0".to_owned(),
+        false => text,
+    }
+}
+
 /// What the figure shows.
 fn seen(result: &SweepResult, shows: &Shows<'_>) -> String {
     let parameter = result.subject.family.parameter();
@@ -160,7 +173,7 @@ fn marked(result: &SweepResult, shows: &Shows<'_>) -> String {
         format!(
             "{} at {} ± {error} ({observable}{status})",
             row.label,
-            number(row.value)
+            located(row.value, row.error)
         )
     };
     let rows = result
@@ -171,5 +184,18 @@ fn marked(result: &SweepResult, shows: &Shows<'_>) -> String {
     match rows.is_empty() {
         true => String::new(),
         false => format!("P-bifurcations: {}.", rows.join("; ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_have_the_digits_of_their_errors() {
+        assert_eq!(located(-0.00284863, 2.7e-6), "-0.0028486");
+        assert_eq!(located(2.3e-17, 4.5e-11), "0");
+        assert_eq!(located(0.25, 0.0), "0.25");
+        assert_eq!(located(12.34, 30.0), "12");
     }
 }

@@ -7,7 +7,7 @@ use super::style::FigureStyle;
 use super::told::Shows;
 use super::{
     FigureError, compared_joint, compared_marginals, diagram, health, indicator, joint, marginals,
-    pairs, peaks, surface, time_to_accuracy,
+    pairs, peaks, section, surface, time_to_accuracy,
 };
 use super::{caption, data};
 use crate::compare::Comparison;
@@ -16,12 +16,13 @@ use crate::density::Observable;
 use crate::system::Family;
 
 /// The kinds of figures of a sweep, in the order in which they are drawn: a new kind is one line here.
-const OF_SWEEPS: [for<'a> fn(&'a SweepScene<'a>) -> Vec<Sketch<'a>>; 8] = [
+const OF_SWEEPS: [for<'a> fn(&'a SweepScene<'a>) -> Vec<Sketch<'a>>; 9] = [
     diagram::sketches,
     marginals::sketches,
     joint::sketches,
     surface::sketches,
     pairs::sketches,
+    section::sketches,
     peaks::sketches,
     indicator::sketches,
     health::sketches,
@@ -35,13 +36,15 @@ const OF_COMPARISONS: [for<'a> fn(&'a ComparisonScene<'a>) -> Vec<Sketch<'a>>; 3
 ];
 
 /// The kinds of figures of a sweep: what the names of all figures of a kind begin with.
-pub const KINDS: [&str; 9] = [
+pub const KINDS: [&str; 11] = [
     "diagram",
     "marginals",
     "joint",
     "multiples",
     "surface",
     "pairs",
+    "section",
+    "conditional",
     "peaks",
     "indicator",
     "health",

@@ -1,5 +1,7 @@
 //! Marginal densities at several parameter values, overlaid: a panel an axis, side by side.
 
+use std::borrow::Cow;
+
 use crate::continuation::Point;
 use crate::density::{Density, EstimatedDensity, Observable};
 
@@ -26,17 +28,17 @@ const NARROWEST: f64 = 165.0;
 /// Room right of the last panel, for half a label of its axis.
 const BESIDE: f64 = 10.0;
 
-/// The densities of one marginal.
-struct Watched<'a> {
+/// Densities of one axis, overlaid in a panel.
+pub(super) struct Overlaid<'a> {
     axis: usize,
-    densities: Vec<(usize, &'a EstimatedDensity)>,
+    densities: Vec<(usize, Cow<'a, EstimatedDensity>)>,
     window: (f64, f64),
     up: Scale,
 }
 
 /// One panel laid out.
 struct Laid<'a> {
-    watched: &'a Watched<'a>,
+    overlaid: &'a Overlaid<'a>,
     across: Scale,
 }
 
@@ -69,12 +71,20 @@ fn arrangement(look: &Look, panels: usize, room: f64) -> (usize, f64) {
 
 /// The figure of all observed marginals at the chosen points; `None` if there is nothing to draw.
 fn draw(scene: &SweepScene<'_>) -> Result<Option<Page>, DrawError> {
+    let mut all = Vec::new();
+    for number in 0..scene.result.subject.observables.len() {
+        all.extend(marginal(scene, number)?);
+    }
+    draw_overlaid(scene, &all)
+}
+
+/// Draws a panel for each of some axes, in a legend the chosen points; `None` without a panel.
+pub(super) fn draw_overlaid(
+    scene: &SweepScene<'_>,
+    all: &[Overlaid<'_>],
+) -> Result<Option<Page>, DrawError> {
     let (family, look) = (scene.family(), &scene.look);
     let high = look.height(HEIGHT, USUAL);
-    let mut all = Vec::new();
-    for observable in 0..scene.result.subject.observables.len() {
-        all.extend(watched(scene, observable, high)?);
-    }
     if all.is_empty() {
         return Ok(None);
     }
@@ -119,7 +129,7 @@ fn draw(scene: &SweepScene<'_>) -> Result<Option<Page>, DrawError> {
         };
         let title = names::axis(family, one.axis);
         let laid = Laid {
-            watched: one,
+            overlaid: one,
             across: Scale::horizontal(look, one.window, wide, &title)?,
         };
         draw_panel(&page, &laid, rect)?;
@@ -128,57 +138,68 @@ fn draw(scene: &SweepScene<'_>) -> Result<Option<Page>, DrawError> {
 }
 
 /// The densities of one marginal at the chosen points.
-fn watched<'a>(
-    scene: &SweepScene<'a>,
-    number: usize,
-    high: f64,
-) -> Result<Option<Watched<'a>>, DrawError> {
+fn marginal<'a>(scene: &SweepScene<'a>, number: usize) -> Result<Option<Overlaid<'a>>, DrawError> {
     let observable = scene.result.subject.observables[number];
     let Observable::Marginal(axis) = observable else {
         return Ok(None);
     };
-    let drawable =
-        |(place, point): (usize, &&'a Point)| Some((place, select::density(point, number)?));
-    let densities: Vec<(usize, &EstimatedDensity)> = scene
-        .chosen
-        .iter()
-        .enumerate()
-        .filter_map(drawable)
-        .collect();
-    let bare: Vec<&Density> = densities
-        .iter()
-        .map(|(_, estimated)| &estimated.density)
-        .collect();
-    let Some(window) = select::window(&bare, 0) else {
-        return Ok(None);
+    let drawable = |(place, point): (usize, &&'a Point)| {
+        Some((place, Cow::Borrowed(select::density(point, number)?)))
     };
-    let highest = select::largest(bare.iter().copied());
+    let densities = scene.chosen.iter().enumerate().filter_map(drawable);
     let title = names::density(scene.family(), observable);
-    Ok(Some(Watched {
-        axis,
-        densities,
-        window,
-        up: Scale::vertical(&scene.look, (0.0, 1.06 * highest), high, &title)?,
-    }))
+    Overlaid::new(scene, axis, densities.collect(), &title)
+}
+
+impl<'a> Overlaid<'a> {
+    /// Densities along an axis, with the numbers of their points among the chosen; `None` where there is nothing to see. The title is that of
+    /// the ordinate.
+    pub(super) fn new(
+        scene: &SweepScene<'_>,
+        axis: usize,
+        densities: Vec<(usize, Cow<'a, EstimatedDensity>)>,
+        title: &str,
+    ) -> Result<Option<Self>, DrawError> {
+        let bare: Vec<&Density> = densities
+            .iter()
+            .map(|(_, estimated)| &estimated.density)
+            .collect();
+        let Some(window) = select::window(&bare, 0) else {
+            return Ok(None);
+        };
+        let highest = select::largest(bare.iter().copied());
+        let high = scene.look.height(HEIGHT, USUAL);
+        let up = Scale::vertical(&scene.look, (0.0, 1.06 * highest), high, title)?;
+        Ok(Some(Self {
+            axis,
+            densities,
+            window,
+            up,
+        }))
+    }
 }
 
 fn draw_panel(page: &Page, laid: &Laid<'_>, rect: Rectangle) -> Result<(), DrawError> {
-    let panel = page.panel(rect, laid.across.range, laid.watched.up.range);
-    for (number, estimated) in &laid.watched.densities {
+    let panel = page.panel(rect, laid.across.range, laid.overlaid.up.range);
+    for (number, estimated) in &laid.overlaid.densities {
         let stroke = Stroke::curve(*number);
-        let band = band(estimated, laid.across.range, laid.watched.up.range);
+        let band = band(estimated, laid.across.range, laid.overlaid.up.range);
         if !band.is_empty() {
             let fill = stroke.colour.at(BAND);
             panel.draw(&band, Shape::Area(fill))?;
         }
     }
-    for (number, estimated) in &laid.watched.densities {
-        let curve = curve(&estimated.density, laid.across.range, laid.watched.up.range);
+    for (number, estimated) in &laid.overlaid.densities {
+        let curve = curve(
+            &estimated.density,
+            laid.across.range,
+            laid.overlaid.up.range,
+        );
         panel.draw(&curve, Shape::Line(Stroke::curve(*number)))?;
     }
     frame::border(page, rect)?;
     laid.across.draw_below(page, rect, true)?;
-    laid.watched.up.draw_left(page, rect, true)
+    laid.overlaid.up.draw_left(page, rect, true)
 }
 
 /// Numbers and centres of the cells inside a window.

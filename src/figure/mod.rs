@@ -40,6 +40,7 @@ mod marginals;
 mod names;
 mod pairs;
 mod peaks;
+mod section;
 mod select;
 mod sketch;
 mod style;

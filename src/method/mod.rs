@@ -1,6 +1,7 @@
 //! Methods: sources of densities for a sweep, each made of the modules before it and each in a wing of its own.
 
 mod any;
+mod bins;
 mod cost;
 mod generator;
 mod monte_carlo;
@@ -12,8 +13,10 @@ mod report;
 mod sgcm;
 mod structure;
 mod time_step;
+mod watched;
 
 pub use any::MethodSource;
+pub use bins::{BinsError, automatic_bins};
 pub use cost::Cost;
 pub use generator::{
     GeneratorCost, GeneratorMethodOptions, GeneratorSource, ModesFound, automatic_modes,

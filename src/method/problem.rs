@@ -1,9 +1,10 @@
 //! What a source of densities is made for.
 
 use super::MethodError;
+use super::watched::Fixed;
 use crate::continuation::{CellCheck, Subject};
-use crate::density::{Observable, Projection};
-use crate::space::CellSpace;
+use crate::density::{DensityError, Observable, Projection};
+use crate::space::{Axis, CellSpace};
 use crate::system::Family;
 
 /// Systems along a path, the cells on which they are solved, and what is watched: three things that fit together.
@@ -11,6 +12,9 @@ use crate::system::Family;
 pub struct Problem {
     subject: Subject,
     space: CellSpace,
+    /// Those of the family's quantities, in their order.
+    bins: Vec<Axis>,
+    fixed: Fixed,
 }
 
 impl Problem {
@@ -24,19 +28,51 @@ impl Problem {
         space: CellSpace,
         observables: Vec<Observable>,
     ) -> Result<Self, MethodError> {
+        Self::watching(family, space, observables, Vec::new())
+    }
+
+    /// As [`Problem::new`], with bins for the family's quantities, in their order: observables may name those that have bins.
+    ///
+    /// # Errors
+    /// As [`Problem::new`].
+    pub fn watching(
+        family: Family,
+        space: CellSpace,
+        observables: Vec<Observable>,
+        bins: Vec<Axis>,
+    ) -> Result<Self, MethodError> {
         let (axes, cells) = (family.model().axes.len(), space.dimension());
         if axes != cells {
             return Err(MethodError::Dimension { axes, cells });
         }
+        let known = axes + bins.len().min(family.quantities().len());
         for &observable in &observables {
-            Projection::new(&space, observable)?;
+            let beyond = observable.axes().into_iter().find(|&axis| axis >= known);
+            if let Some(axis) = beyond {
+                let dimension = known;
+                return Err(DensityError::Axis { axis, dimension }.into());
+            }
+            match observable {
+                Observable::Joint(axis, other) if axis == other => {
+                    return Err(DensityError::RepeatedAxis { axis }.into());
+                }
+                _ if observable.axes().into_iter().all(|axis| axis < axes) => {
+                    Projection::new(&space, observable)?;
+                }
+                _ => {}
+            }
         }
         let subject = Subject {
             family,
             observables,
             cell_check: CellCheck::Needless,
         };
-        Ok(Self { subject, space })
+        Ok(Self {
+            subject,
+            space,
+            bins,
+            fixed: Fixed::default(),
+        })
     }
 
     /// The systems and what is watched of them.
@@ -64,10 +100,28 @@ impl Problem {
     pub fn checked_by(&self, cell_check: CellCheck) -> Self {
         let mut problem = self.clone();
         problem.subject.cell_check = cell_check;
+        // What is worked out for one method is not for another.
+        problem.fixed = Fixed::default();
         problem
     }
 
-    /// The same on other cells.
+    /// The bins of the family's quantities, in their order.
+    pub fn bins(&self) -> &[Axis] {
+        &self.bins
+    }
+
+    /// What an observable's densities are laid out on.
+    pub fn axes_of(&self, observable: Observable) -> Vec<Axis> {
+        let all = || self.space.axes().iter().chain(&self.bins);
+        let axes = observable.axes().into_iter();
+        axes.filter_map(|axis| all().nth(axis).cloned()).collect()
+    }
+
+    pub(super) fn fixed(&self) -> &Fixed {
+        &self.fixed
+    }
+
+    /// The same on other cells, with the same bins.
     ///
     /// # Errors
     /// As [`Problem::new`].
@@ -77,6 +131,14 @@ impl Problem {
             observables,
             ..
         } = self.subject.clone();
-        Self::new(family, space, observables)
+        Self::watching(family, space, observables, self.bins.clone())
+    }
+
+    /// The same with so many times as many bins.
+    #[must_use]
+    pub(super) fn with_finer_bins(mut self, factor: f64) -> Self {
+        self.bins = self.bins.iter().map(|bins| bins.refined(factor)).collect();
+        self.fixed = Fixed::default();
+        self
     }
 }

@@ -5,7 +5,7 @@
 //! | --- | --- | --- |
 //! | `f_c` (the parameter) | parameter | its values |
 //! | `x`, `x_edges` | cells of the axis, edges | centres and edges of the cells |
-//! | `p_x`, `p_xy` | parameter, axes … | density; attribute `centre_of_symmetry` where the system declares one |
+//! | `p_x`, `p_xy` | parameter, axes … | density; attribute `centre_of_symmetry` where the system declares one, `formulas` of quantities |
 //! | `p_x_error` | as `p_x` | standard error |
 //! | `p_x_second` | as `p_x` | density by a second discretisation (generator) |
 //! | `p_x_replicate` | parameter, replicate, axes … | densities without one group of samples each (SGCM) |
@@ -28,6 +28,18 @@ pub(super) const REPLICATE_CHUNK: u64 = 8;
 
 /// Attribute of a density.
 pub(super) const CENTRE: &str = "centre_of_symmetry";
+
+/// Attribute of a density of quantities: their names and formulas.
+pub(super) const FORMULAS: &str = "formulas";
+
+/// The formulas of the quantities of an observable; `None` where it has none.
+pub(super) fn formulas(family: &Family, observable: Observable) -> Option<Value> {
+    let axes = observable.axes().into_iter();
+    let quantities = axes.filter_map(|axis| family.quantity(axis));
+    let named = quantities.map(|one| (one.name().to_owned(), json!(one.formula())));
+    let named: Map<String, Value> = named.collect();
+    (!named.is_empty()).then_some(Value::Object(named))
+}
 
 /// Attribute of a density: share of its maximum below which values are what the solver leaves.
 pub(super) const NEGLIGIBLE: &str = "negligible";
@@ -108,6 +120,10 @@ impl Layout {
             words,
         );
         let layout = layout.attribute(NEGLIGIBLE, json!(estimate.negligible));
+        let layout = match formulas(family, estimate.observable) {
+            Some(formulas) => layout.attribute(FORMULAS, formulas),
+            None => layout,
+        };
         match &estimate.structure.centre {
             Some(centre) => layout.attribute(CENTRE, json!(centre)),
             None => layout,

@@ -241,6 +241,12 @@ pub enum RunError {
         /// Those that are stored.
         stored: Vec<String>,
     },
+    /// A quantity has another formula than the stored one of that name.
+    #[error("the stored density of `{observable}` is that of another formula")]
+    OtherFormula {
+        /// The observable.
+        observable: String,
+    },
     /// The stored densities are on other cells than the sweep says.
     #[error("{}: the cells of axis `{axis}` are not those of the sweep in run.json", path.display())]
     Cells {

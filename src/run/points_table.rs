@@ -25,8 +25,9 @@ pub(super) fn columns<'a>(
         .map(|axis| family.axis(axis))
         .collect();
     let mut columns = Vec::from(of_solve(family, methods));
-    for (axis, name) in axes.iter().enumerate() {
-        columns.extend(of_moments(axis, name));
+    let averaged = family.averaged().iter().map(|quantity| quantity.name());
+    for (number, name) in axes.iter().copied().chain(averaged).enumerate() {
+        columns.extend(of_moments(number, name));
     }
     columns.extend(of_detections(family, observables));
     columns.push(optional("distance", |point: &Point| point.distance));
@@ -104,7 +105,7 @@ fn of_solve<'a>(family: &'a Family, methods: &'a [&'static str]) -> [Column<'a, 
     ]
 }
 
-/// Mean and standard deviation of an axis.
+/// Mean and standard deviation of an axis, or of a quantity that is averaged.
 fn of_moments<'a>(axis: usize, name: &str) -> [Column<'a, Point>; 2] {
     let of = move |point: &Point| point.moments.get(axis).copied();
     // An axis has both or neither.

@@ -18,8 +18,9 @@ impl StoredRun {
     /// # Errors
     /// As [`StoredRun::points`].
     pub fn detect(&self, sweep: &Sweep) -> Result<SweepResult, RunError> {
-        let (subject, space) = (sweep.problem.subject(), sweep.problem.space());
-        let points = self.points(subject, space, &MethodKind::ALL.map(MethodKind::name))?;
+        let problem = &sweep.problem;
+        let (subject, cells) = (problem.subject(), (problem.space(), problem.bins()));
+        let points = self.points(subject, cells, &MethodKind::ALL.map(MethodKind::name))?;
         let checks = self.checks(subject)?;
         let swept = (subject.clone(), sweep.settings.points);
         let (detector, locate) = (sweep.detector(), &sweep.settings.locate);

@@ -49,11 +49,11 @@ impl StoredDensities {
     ///
     /// # Errors
     /// [`RunError::ReadStore`]; [`RunError::NotStored`] for an observable that the store does not have;
-    /// [`RunError::Cells`] when its cells are not those of `space`.
+    /// [`RunError::Cells`] when its cells or bins are others.
     pub(super) fn open(
         path: &Path,
         subject: &Subject,
-        space: &CellSpace,
+        cells: (&CellSpace, &[Axis]),
     ) -> Result<Self, RunError> {
         let opened = Opened::new(path)?;
         let family = &subject.family;
@@ -61,7 +61,7 @@ impl StoredDensities {
         let observed = subject
             .observables
             .iter()
-            .map(|&observable| opened.observed(family, space, observable))
+            .map(|&observable| opened.observed(family, cells, observable))
             .collect::<Result<_, _>>()?;
         Ok(Self {
             path: path.to_owned(),
@@ -219,7 +219,7 @@ impl Opened {
     fn observed(
         &self,
         family: &Family,
-        space: &CellSpace,
+        (space, bins): (&CellSpace, &[Axis]),
         observable: Observable,
     ) -> Result<Observed, RunError> {
         let name = arrays::density(family, observable);
@@ -230,10 +230,9 @@ impl Opened {
             });
         }
         let numbers = observable.axes();
-        let axes: Vec<Axis> = numbers
-            .iter()
-            .filter_map(|&axis| space.axes().get(axis).cloned())
-            .collect();
+        let known = || space.axes().iter().chain(bins);
+        let of = |&axis: &usize| known().nth(axis).cloned();
+        let axes: Vec<Axis> = numbers.iter().filter_map(of).collect();
         for (&number, axis) in numbers.iter().zip(&axes) {
             if self.whole(&arrays::edges(family.axis(number)))? != axis.edges() {
                 return Err(RunError::Cells {
@@ -244,6 +243,13 @@ impl Opened {
         }
         let shape: Vec<u64> = axes.iter().map(|axis| axis.count() as u64).collect();
         let density = self.shaped(&name, &shape)?;
+        // A quantity may have been given another formula under the same name.
+        let formulas = density.attributes().get(arrays::FORMULAS);
+        if formulas != arrays::formulas(family, observable).as_ref() {
+            return Err(RunError::OtherFormula {
+                observable: observable.name(family),
+            });
+        }
         let centre = density.attributes().get(arrays::CENTRE);
         let centre = centre.and_then(Value::as_array).map(|centre| {
             let numbers = centre.iter().filter_map(Value::as_f64);

@@ -10,7 +10,7 @@ use super::points_table::read_points;
 use super::stored_densities::StoredDensities;
 use super::{Checked, Ending, PhaseSeconds, RunError, checksums, exchange, journal};
 use crate::continuation::{CheckedIndicator, Point, Subject};
-use crate::space::CellSpace;
+use crate::space::{Axis, CellSpace};
 use crate::system::Family;
 
 /// The folder of a run that is read.
@@ -137,7 +137,7 @@ impl StoredRun {
         there.then(|| read_checks(&path, subject)).transpose()
     }
 
-    /// All points in the order of the table, with the densities of the observables of `subject`, bit for bit as they were solved; detections
+    /// All points in the order of the table, with the densities of the observables of `subject` on these cells (and bins of quantities), bit for bit as they were solved; detections
     /// are empty. A run that was killed may hold a density whose row was not written: it is left out.
     ///
     /// # Errors
@@ -146,7 +146,7 @@ impl StoredRun {
     pub fn points(
         &self,
         subject: &Subject,
-        space: &CellSpace,
+        (space, bins): (&CellSpace, &[Axis]),
         methods: &[&'static str],
     ) -> Result<Vec<Point>, RunError> {
         let table = self.path.join("points.csv");
@@ -168,7 +168,7 @@ impl StoredRun {
             return self.check_sums().map(|()| points);
         }
         let path = exchange::standing(&self.path.join("densities.zarr"), "zarr.json");
-        let stored = StoredDensities::open(&path, subject, space)?;
+        let stored = StoredDensities::open(&path, subject, (space, bins))?;
         for point in points.iter_mut().filter(|point| !point.moments.is_empty()) {
             point.densities = stored.at(point.value)?.ok_or_else(|| RunError::NoDensity {
                 path: path.clone(),

@@ -140,7 +140,11 @@ fn write(folder: &std::path::Path, points: &[Point]) {
 
 fn read(folder: &std::path::Path) -> Result<Vec<Point>, RunError> {
     let run = StoredRun::open(folder)?;
-    run.points(&subject(&OBSERVABLES), &space(), &["generator", "sgcm"])
+    run.points(
+        &subject(&OBSERVABLES),
+        (&space(), &[]),
+        &["generator", "sgcm"],
+    )
 }
 
 /// Equality of bits: `==` would take -0.0 for 0.0.
@@ -378,7 +382,7 @@ fn other_cells_and_other_observables_are_refused() {
     write(folder.path(), &[point(0.5, None, 0)]);
     let run = StoredRun::open(folder.path()).unwrap();
     let points = |space: &CellSpace, observables: &[Observable]| {
-        run.points(&subject(observables), space, &["sgcm"])
+        run.points(&subject(observables), (space, &[]), &["sgcm"])
             .unwrap_err()
     };
     let error = points(&space(), &[Observable::Marginal(0)]);

@@ -117,6 +117,15 @@ pub(super) struct EquationsDraft {
     pub(super) bounds: Vec<(String, [String; 2])>,
 }
 
+/// What the file says of the values over which a quantity is watched.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct BinsDraft {
+    pub(super) name: String,
+    pub(super) from: Option<f64>,
+    pub(super) to: Option<f64>,
+    pub(super) count: Option<usize>,
+}
+
 /// What the file says.
 #[derive(Debug, Clone)]
 pub(super) struct Draft {
@@ -135,6 +144,10 @@ pub(super) struct Draft {
     pub(super) method: MethodSettings,
     pub(super) marginals: Option<Vec<String>>,
     pub(super) joint: Option<Vec<[String; 2]>>,
+    /// Values of quantities, in the order given.
+    pub(super) bins: Vec<BinsDraft>,
+    /// Names and formulas of quantities of which moments are wanted.
+    pub(super) averaged: Vec<(String, String)>,
     pub(super) detect: DetectOptions,
     pub(super) locate: LocateOptions,
     pub(super) figures_at: Option<Vec<f64>>,
@@ -158,6 +171,8 @@ impl Default for Draft {
             method: MethodSettings::default(),
             marginals: None,
             joint: None,
+            bins: Vec::new(),
+            averaged: Vec::new(),
             detect: DetectOptions::default(),
             locate: LocateOptions::default(),
             figures_at: None,
@@ -185,6 +200,24 @@ impl Draft {
             });
         }
         &mut self.axes[index]
+    }
+
+    /// What is said of a quantity's values, made where nothing was.
+    pub(super) fn bins_mut(&mut self, name: &str) -> &mut BinsDraft {
+        let known = self.bins.iter().position(|bins| bins.name == name);
+        let index = known.unwrap_or(self.bins.len());
+        if known.is_none() {
+            self.bins.push(BinsDraft {
+                name: name.to_owned(),
+                ..BinsDraft::default()
+            });
+        }
+        &mut self.bins[index]
+    }
+
+    /// What is said of a quantity's values.
+    pub(super) fn bins(&self, name: &str) -> Option<&BinsDraft> {
+        self.bins.iter().find(|bins| bins.name == name)
     }
 
     /// Gives a parameter its value.

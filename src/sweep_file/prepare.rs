@@ -12,9 +12,10 @@ use super::sweep::Sweep;
 use crate::cancellation::Cancellation;
 use crate::generator::automatic_grading;
 use crate::method::{
-    PILOT_BOX, Problem, RangeError, SgcmOptions, automatic_modes, automatic_ranges,
+    BinsError, PILOT_BOX, Problem, RangeError, SgcmOptions, automatic_bins, automatic_modes,
+    automatic_ranges,
 };
-use crate::space::Grading;
+use crate::space::{Axis, Grading};
 use crate::system::System;
 
 impl Settings {
@@ -28,6 +29,7 @@ impl Settings {
         self.find_cells(cancellation)?;
         self.check_equations()?;
         self.find_modes(cancellation)?;
+        self.find_bins(cancellation)?;
         let sweep = self.fixed()?;
         sweep.settings.check_factors(&sweep)?;
         Ok(sweep)
@@ -41,13 +43,32 @@ impl Settings {
         let method = self.method.kind;
         let space = cell_space(&self.document, &self.family, &self.axes, method)
             .map_err(|diagnostic| self.refuse(*diagnostic))?;
-        let problem = Problem::new(self.family.clone(), space, self.observables.clone())
+        let bins = self
+            .bin_axes()
+            .map_err(|diagnostic| self.refuse(*diagnostic))?;
+        let problem = Problem::watching(self.family.clone(), space, self.observables.clone(), bins)
             .map(|problem| problem.checked_by(self.method.chosen().cell_check()))
             .map_err(|error| self.refuse(Diagnostic::new(error.to_string())))?;
         Ok(Sweep {
             settings: self,
             problem,
         })
+    }
+
+    /// The bins of all quantities.
+    fn bin_axes(&self) -> Result<Vec<Axis>, Box<Diagnostic>> {
+        let named = self.family.quantities().iter().zip(&self.bins);
+        let bins = named.map(|(quantity, bins)| {
+            let name = quantity.name();
+            let Some((from, to)) = bins.range else {
+                let open = Diagnostic::new(format!("the bins of `{name}` have no range"));
+                let remedy = format!("give `detect.bins.{name}.from` and `to`");
+                return Err(Box::new(open.remedy(remedy)));
+            };
+            Axis::uniform(from, to, bins.count)
+                .map_err(|error| Box::new(Diagnostic::new(error.to_string())))
+        });
+        bins.collect()
     }
 
     fn refuse(&self, diagnostic: Diagnostic) -> Report {
@@ -83,6 +104,35 @@ impl Settings {
                     gradings.min_by(|a: &Grading, b: &Grading| a.smallest.total_cmp(&b.smallest));
                 axis.grade = narrowest.map_or(Grade::Even, Grade::Toward);
             }
+        }
+        Ok(())
+    }
+
+    /// Finds the values over which quantities are watched, where the file leaves them open.
+    fn find_bins(&mut self, cancellation: &Cancellation) -> Result<(), Report> {
+        if self.bins.iter().all(|bins| bins.range.is_some()) {
+            return Ok(());
+        }
+        let space = cell_space(&self.document, &self.family, &self.axes, self.method.kind)
+            .map_err(|diagnostic| self.refuse(*diagnostic))?;
+        let ranges = automatic_bins(&self.family, &space, cancellation).map_err(|error| {
+            let diagnostic = Diagnostic::new(error.to_string());
+            let entry = self.document.root.find(&["detect"]);
+            let diagnostic = match (&error, entry) {
+                (BinsError::Cancelled(_), _) | (_, None) => diagnostic,
+                (_, Some(entry)) => {
+                    diagnostic.at(&entry.key_place, "a quantity that is watched here")
+                }
+            };
+            self.refuse(match error {
+                BinsError::NotFinite { .. } => diagnostic.remedy(
+                    "watch a formula that has a value all over the cells, or move the cells",
+                ),
+                _ => diagnostic,
+            })
+        })?;
+        for (bins, range) in self.bins.iter_mut().zip(ranges) {
+            bins.range = bins.range.or(Some(range));
         }
         Ok(())
     }

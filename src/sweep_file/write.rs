@@ -43,6 +43,12 @@ pub(super) fn to_toml(draft: &Draft) -> String {
 fn names<'d>(key: &Key, draft: &'d Draft) -> Vec<&'d str> {
     match key.parts().find(|part| is_stand_in(part)) {
         None => vec![""],
+        Some("<quantity>") => draft.bins.iter().map(|bins| bins.name.as_str()).collect(),
+        Some("<formula>") => draft
+            .averaged
+            .iter()
+            .map(|(name, _)| name.as_str())
+            .collect(),
         Some("<axis>") => draft.axes.iter().map(|axis| axis.name.as_str()).collect(),
         Some("<name>") => {
             let definitions = draft.equations.define.iter();

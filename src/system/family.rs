@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Model, ParameterValues, Path, System, SystemError};
+use super::{Model, ParameterValues, Path, Quantity, System, SystemError};
 
 /// Systems along a path: one number in, a bound system out, with names and symbols for tables and figures.
 ///
@@ -23,6 +23,9 @@ pub struct Family {
     /// Those of the first end.
     values: ParameterValues,
     path: Path,
+    /// Numbered on from the axes.
+    quantities: Vec<Arc<Quantity>>,
+    averaged: Vec<Arc<Quantity>>,
 }
 
 impl Family {
@@ -46,9 +49,42 @@ impl Family {
             model,
             values,
             path,
+            quantities: Vec::new(),
+            averaged: Vec::new(),
         };
         family.along()?;
         Ok(family)
+    }
+
+    /// The family with quantities that can be watched like axes, as [`quantities`](super::quantities) reads them: they are numbered
+    /// on from the axes of the state.
+    #[must_use]
+    pub fn with_quantities(mut self, quantities: Vec<Arc<Quantity>>) -> Self {
+        self.quantities = quantities;
+        self
+    }
+
+    /// The family with quantities of which mean and standard deviation are wanted.
+    #[must_use]
+    pub fn with_averaged(mut self, averaged: Vec<Arc<Quantity>>) -> Self {
+        self.averaged = averaged;
+        self
+    }
+
+    /// The quantities that can be watched.
+    pub fn quantities(&self) -> &[Arc<Quantity>] {
+        &self.quantities
+    }
+
+    /// The quantities of which mean and standard deviation are wanted.
+    pub fn averaged(&self) -> &[Arc<Quantity>] {
+        &self.averaged
+    }
+
+    /// The quantity of a number among axes and quantities; `None` for an axis.
+    pub fn quantity(&self, number: usize) -> Option<&Arc<Quantity>> {
+        self.quantities
+            .get(number.checked_sub(self.model.axes.len())?)
     }
 
     /// The model.
@@ -95,16 +131,18 @@ impl Family {
         (from.min(to), from.max(to))
     }
 
-    /// Name of an axis of the state, for example `y`; `?` where the model has none.
+    /// Name of an axis of the state, for example `y`, or of the quantity of that number; `?` where there is none.
     pub fn axis(&self, axis: usize) -> &str {
-        let axis = self.model.axes.get(axis);
-        axis.map_or("?", |axis| axis.name.as_str())
+        let known = self.model.axes.get(axis).map(|axis| axis.name.as_str());
+        let quantity = || self.quantity(axis).map(|quantity| quantity.name());
+        known.or_else(quantity).unwrap_or("?")
     }
 
-    /// Symbol of an axis, with `_{}` and `^{}`, for example `ẋ`; `?` where the model has none.
+    /// Symbol of an axis, with `_{}` and `^{}`, for example `ẋ`, or of the quantity of that number; `?` where there is none.
     pub fn axis_symbol(&self, axis: usize) -> &str {
-        let axis = self.model.axes.get(axis);
-        axis.map_or("?", |axis| axis.symbol.as_str())
+        let known = self.model.axes.get(axis).map(|axis| axis.symbol.as_str());
+        let quantity = || self.quantity(axis).map(|quantity| quantity.symbol());
+        known.or_else(quantity).unwrap_or("?")
     }
 
     /// Values of all parameters at a coordinate, which may lie beyond the ends.

@@ -18,6 +18,7 @@ mod model;
 mod oscillator;
 mod parameters;
 mod path;
+mod quantity;
 mod rayleigh;
 pub mod registry;
 mod symmetry;
@@ -34,6 +35,7 @@ pub use oscillator::{
     DISPLACEMENT, Damping, Duffing, FIRST_INTERNAL_STATE, Oscillator, VELOCITY, Viscous,
 };
 pub use path::Path;
+pub use quantity::{BoundQuantity, Quantity, QuantityError, QuantityFault, quantities};
 pub use symmetry::proved_symmetry;
 pub use typed::{
     FormulaHazard, FormulaPlace, Interpretation, TypedEquations, TypedModel, TypedModelError,

@@ -178,6 +178,7 @@ pub struct Model {
     pub source: String,
     /// Anything a user should know, one paragraph a string.
     pub notes: Vec<String>,
+    definitions: Vec<(String, String)>,
     bind: Box<Binding>,
     typed: Option<Box<TypedEquations>>,
 }
@@ -248,6 +249,12 @@ pub enum SystemError {
         /// The range in words.
         allowed: &'static str,
     },
+    /// A quantity of another model.
+    #[error("quantity `{quantity}` cannot be worked out with the parameters of this model")]
+    QuantityNotBound {
+        /// The quantity.
+        quantity: String,
+    },
 }
 
 /// How a model is stated.
@@ -266,6 +273,7 @@ impl Model {
             parameters: Vec::new(),
             source: String::new(),
             notes: Vec::new(),
+            definitions: Vec::new(),
             bind: Box::new(bind),
             typed: None,
         }
@@ -287,6 +295,15 @@ impl Model {
     pub fn with_equations<S: Into<String>>(self, lines: impl IntoIterator<Item = S>) -> Self {
         let equations = lines.into_iter().map(Into::into).collect();
         Self { equations, ..self }
+    }
+
+    /// The model with names for formulas of its coordinates and parameters, which quantities that are watched may use.
+    #[must_use]
+    pub fn with_definitions(self, definitions: Vec<(String, String)>) -> Self {
+        Self {
+            definitions,
+            ..self
+        }
     }
 
     /// The model with its axes, in the order of the state.
@@ -323,6 +340,11 @@ impl Model {
 
 /// How values become systems.
 impl Model {
+    /// Names and formulas that quantities may use.
+    pub fn definitions(&self) -> &[(String, String)] {
+        &self.definitions
+    }
+
     /// Position of a parameter in [`Model::parameters`].
     ///
     /// # Errors

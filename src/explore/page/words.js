@@ -54,7 +54,7 @@ const momentsTable = (scene, frame) => make("table", {},
   make("tbody", {}, frame.moments.map(([mean, deviation], axis) => {
     // A mean that is rounding of the solver beside the width is zero to the eye.
     const shown = Math.abs(mean) < 1e-9 * deviation ? 0 : mean;
-    return row(nodes(scene.axes[axis].symbol), number(shown, 5), number(deviation, 5));
+    return row(nodes(scene.moments[axis]), number(shown, 5), number(deviation, 5));
   })));
 
 const comparison = (source, frame, pinned, scene) => {

@@ -1,6 +1,7 @@
 //! The generator, solved directly: its settings, what a point costs, the source, its session, what the last points say of the next
 //! one, relaxation, and derivatives.
 
+mod coarse;
 mod cost;
 mod memory;
 mod modes;
@@ -12,6 +13,7 @@ mod session;
 mod source;
 mod trail;
 
+pub(super) use coarse::rough_masses;
 pub use cost::GeneratorCost;
 pub use modes::{ModesFound, automatic_modes};
 pub use options::GeneratorMethodOptions;

@@ -5,11 +5,10 @@ use std::sync::Arc;
 use super::GeneratorSource;
 use super::source::METHOD;
 use crate::continuation::{Sensitivity, Solution, SourceError};
-use crate::density::{Moments, Projection, estimate_from_difference};
+use crate::density::{Moments, Observable};
 use crate::generator::{OneAxis, one_axis};
 use crate::method::MethodError;
 use crate::method::report::Reporter;
-use crate::method::structure::structure;
 use crate::system::{System, SystemError};
 
 /// Largest relative error of a cell that the quadrature may have; where noise nearly vanishes, or the drift jumps inside a cell,
@@ -47,21 +46,24 @@ pub(super) fn solution<'session>(
     reporter.report.solver_error = found.error;
     reporter.edge_mass(masses, &source.closed_ends);
     let difference: Vec<f64> = masses.iter().map(|mass| mass * found.error).collect();
-    let densities = source.problem.observables().iter().map(|&observable| {
-        let mut estimated = estimate_from_difference(space, observable, masses, &difference)?;
-        estimated.structure = structure(system, space, masses, observable, &source.kinked);
-        estimated.negligible = 0.0;
-        Ok(estimated)
-    });
-    let densities: Result<Vec<_>, MethodError> = densities.collect();
-    let moments = Moments {
+    let (problem, maps) = (&source.problem, source.maps(value)?);
+    let mut densities = maps.exact(problem, masses, &difference)?;
+    for one in &mut densities {
+        let kinked = &source.kinked;
+        one.structure = maps.structure(system, problem, masses, one.observable, kinked);
+        // Sub-cells leave more than the quadrature does.
+        let of_quantity = one.observable != Observable::Marginal(0);
+        one.negligible = if of_quantity { one.negligible } else { 0.0 };
+    }
+    let mut moments = vec![Moments {
         mean: found.moments.0,
         standard_deviation: found.moments.1.max(0.0).sqrt(),
-    };
+    }];
+    moments.extend(maps.moments(masses)?);
     Ok(Solution {
         report: reporter.report,
-        moments: vec![moments],
-        densities: densities?,
+        moments,
+        densities,
         sensitivity: Some(Box::new(QuadratureSensitivity { source, value })),
     })
 }
@@ -79,7 +81,8 @@ impl Sensitivity for QuadratureSensitivity<'_> {
         let values = family.values_at(self.value).map_err(MethodError::from)?;
         let index = model.parameter_index(name).map_err(MethodError::from)?;
         let at = |value: f64| Ok(model.system(&model.with(&values, name, value)?));
-        Ok(self.of(at, values.as_slice()[index])?)
+        let centre = values.as_slice()[index];
+        Ok(self.of(at, centre)?)
     }
 
     fn along_path(&mut self) -> Result<Vec<Vec<f64>>, SourceError> {
@@ -105,10 +108,6 @@ impl QuadratureSensitivity<'_> {
                 *slot += weight / (12.0 * step) * mass;
             }
         }
-        let density = |&observable| {
-            let projection = Projection::new(problem.space(), observable)?;
-            Ok(projection.density(&sum)?.values)
-        };
-        problem.observables().iter().map(density).collect()
+        self.source.maps(self.value)?.changes(problem, &sum)
     }
 }

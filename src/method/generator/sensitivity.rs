@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use super::GeneratorSource;
 use crate::continuation::{Sensitivity, SourceError};
-use crate::density::{DensityError, Projection};
 use crate::generator::{GeneratorOptions, assemble_derivative, cell_masses};
 use crate::method::MethodError;
 use crate::stationary::generator::RateSolver;
@@ -45,7 +44,7 @@ impl Sensitivity for GeneratorSensitivity<'_> {
 }
 
 impl GeneratorSensitivity<'_> {
-    /// Of systems that depend on one number, at its value.
+    /// Of systems that depend on one number, at its value. The formulas of quantities are held.
     fn of(
         &mut self,
         system_at: impl Fn(f64) -> Result<Arc<dyn System>, SystemError>,
@@ -61,12 +60,7 @@ impl GeneratorSensitivity<'_> {
             .solver
             .sensitivity_within(matrix, unknowns, None, ACCURACY)?;
         let masses = self.change_of_masses(&change);
-        let density = |&observable| {
-            let projection = Projection::new(problem.space(), observable)?;
-            Ok::<_, DensityError>(projection.density(&masses)?.values)
-        };
-        let densities: Result<Vec<_>, _> = problem.observables().iter().map(density).collect();
-        Ok(densities?)
+        self.source.maps(self.value)?.changes(problem, &masses)
     }
 
     /// By how much the masses of the cells change with the unknowns, to first order.

@@ -17,7 +17,7 @@ use super::source::METHOD;
 use super::trail::{self, Trail};
 use crate::cancellation::Cancellation;
 use crate::continuation::{Session, Solution, SourceError};
-use crate::density::{EstimatedDensity, Moments, Observable, estimate_from_difference};
+use crate::density::{EstimatedDensity, Moments};
 use crate::generator::{
     AdvectiveScheme, Generator, GeneratorOptions, assemble_derivative, cell_masses, resolution,
     unknown_moments,
@@ -25,7 +25,6 @@ use crate::generator::{
 use crate::method::MethodError;
 use crate::method::neighbours::Neighbours;
 use crate::method::report::{QUIET_ESCAPE, Reporter};
-use crate::method::structure::structure;
 use crate::space::CellSpace;
 use crate::stationary::generator::{RateError, RateInfo, RateSolver, RateSteadyState};
 use crate::system::System;
@@ -193,9 +192,11 @@ impl GeneratorSession {
             .map(|one| negative_mass(&one.density.masses()));
         let watched = watched.fold(0.0, f64::max);
         reporter.negative_mass(negative_mass(&summed_over_modes(&space, &masses)), watched);
+        let mut moments = moments_of(&space, unknowns);
+        moments.extend(self.source.maps(solved.value)?.moments(&masses)?);
         let solution = Solution {
             report: reporter.report,
-            moments: moments_of(&space, unknowns),
+            moments,
             densities,
             sensitivity: None,
         };
@@ -222,14 +223,12 @@ impl GeneratorSession {
         let changed = cell_masses(system, space, &changed);
         let difference: Vec<f64> = changed.iter().zip(masses).map(|(b, a)| b - a).collect();
         let kinked = &self.source.kinked;
-        let estimate = |&observable: &Observable| {
-            let mut estimated = estimate_from_difference(space, observable, masses, &difference)?;
-            estimated.structure = structure(system, space, masses, observable, kinked);
-            Ok::<_, MethodError>(estimated)
-        };
-        let densities: Result<Vec<_>, MethodError> =
-            problem.observables().iter().map(estimate).collect();
-        Ok((densities?, change))
+        let maps = self.source.maps(solved.value)?;
+        let mut densities = maps.exact(problem, masses, &difference)?;
+        for one in &mut densities {
+            one.structure = maps.structure(system, problem, masses, one.observable, kinked);
+        }
+        Ok((densities, change))
     }
 
     /// du/dθ at the solution; `None` where Q cannot be varied (at an end of the parameter's range) or the

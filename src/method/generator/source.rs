@@ -8,6 +8,7 @@ use crate::cancellation::Cancellation;
 use crate::continuation::{DensitySource, Session, SourceError, Subject};
 use crate::generator::{AdvectiveScheme, Generator, GeneratorOptions, assemble};
 use crate::method::structure::{closed_ends, kinked_surfaces};
+use crate::method::watched::{Maps, Masses};
 use crate::method::{MethodError, Problem, autonomous};
 use crate::space::CellSpace;
 use crate::stationary::generator::{RateOptions, RateSolver};
@@ -68,7 +69,13 @@ impl GeneratorSource {
         let factor = FINER[usize::from(cut > 2)];
         let axes = space.axes().iter();
         let finer = CellSpace::new(axes.map(|axis| axis.refined(factor)).collect())?;
-        Self::new(&self.problem.on(finer)?, &self.options)
+        let problem = self.problem.on(finer)?.with_finer_bins(factor);
+        Self::new(&problem, &self.options)
+    }
+
+    /// What turns masses into what is watched at a value of the path.
+    pub(super) fn maps(&self, value: f64) -> Result<Arc<Maps>, MethodError> {
+        self.problem.maps(value, &self.kinked, Masses::Exact)
     }
 
     /// The generator of a system by one of the schemes.

@@ -4,9 +4,10 @@
 use super::{Estimator, MonteCarloOptions, MonteCarloPlan};
 use crate::cancellation::Cancellation;
 use crate::continuation::{DensitySource, Finding, Session, Solution, Subject};
-use crate::density::{EstimatedDensity, Moments, Observable, estimate};
+use crate::density::{EstimatedDensity, Moments};
 use crate::method::report::Reporter;
-use crate::method::structure::{closed_ends, kinked_surfaces, structure};
+use crate::method::structure::{closed_ends, kinked_surfaces};
+use crate::method::watched::{Maps, Masses};
 use crate::method::{MethodError, Problem, autonomous};
 use crate::monte_carlo::{
     EnsembleRun, ErgodicRun, Estimate, MonteCarloError, Relaxation, ensemble, ergodic, relaxation,
@@ -134,26 +135,26 @@ impl MonteCarloSource {
     ) -> Result<(Solution<'static>, Estimate), MethodError> {
         let system = self.problem.family().at(value)?;
         let found = self.run(system.as_ref(), cancellation)?;
-        Ok((self.solution(system.as_ref(), &found)?, found))
+        Ok((self.solution((value, system.as_ref()), &found)?, found))
     }
 
     fn densities(
         &self,
+        maps: &Maps,
         system: &dyn System,
         found: &Estimate,
     ) -> Result<Vec<EstimatedDensity>, MethodError> {
-        let (space, mass) = (self.problem.space(), found.mass.as_slice());
-        let density = |&observable: &Observable| {
-            let mut estimated = estimate(space, observable, mass, &found.replicates)?;
-            estimated.structure = structure(system, space, mass, observable, &self.kinked);
-            Ok(estimated)
-        };
-        self.problem.observables().iter().map(density).collect()
+        let (problem, mass) = (&self.problem, found.mass.as_slice());
+        let mut densities = maps.sampled(problem, mass, &found.replicates)?;
+        for one in &mut densities {
+            one.structure = maps.structure(system, problem, mass, one.observable, &self.kinked);
+        }
+        Ok(densities)
     }
 
     fn solution(
         &self,
-        system: &dyn System,
+        (value, system): (f64, &dyn System),
         found: &Estimate,
     ) -> Result<Solution<'static>, MethodError> {
         let plan = &self.plan;
@@ -179,16 +180,17 @@ impl MonteCarloSource {
         reporter.outside(found.share_outside);
         reporter.time_step(plan.time_step, plan.bias.as_ref(), plan.error);
         reporter.burn_in(plan.burn_in, plan.relaxation_time, plan.relaxation_resolved);
-        let moments = found.mean.iter().zip(&found.variance);
+        let maps = self.problem.maps(value, &self.kinked, Masses::Sampled)?;
+        let of_axes = found.mean.iter().zip(&found.variance);
+        let of_axes = of_axes.map(|(&mean, variance)| Moments {
+            mean,
+            standard_deviation: variance.sqrt(),
+        });
+        let of_quantities = maps.moments(&found.mass)?;
         Ok(Solution {
             report: reporter.report,
-            moments: moments
-                .map(|(&mean, variance)| Moments {
-                    mean,
-                    standard_deviation: variance.sqrt(),
-                })
-                .collect(),
-            densities: self.densities(system, found)?,
+            moments: of_axes.chain(of_quantities).collect(),
+            densities: self.densities(&maps, system, found)?,
             sensitivity: None,
         })
     }

@@ -12,9 +12,9 @@ use super::{Correction, SgcmOptions};
 use crate::MAX_DIMENSION;
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::continuation::{DensitySource, Finding, Session, Solution, Subject};
-use crate::density::{EstimatedDensity, estimate, moments};
+use crate::density::{EstimatedDensity, moments};
 use crate::method::report::Reporter;
-use crate::method::structure::structure;
+use crate::method::watched::{Maps, Masses};
 use crate::method::{MethodError, Problem};
 use crate::sampling::{
     SampledTransitions, SamplingError, SamplingOptions, TransitionMatrix, sample_transitions,
@@ -49,6 +49,7 @@ type Found = (Solution<'static>, Option<Vec<f64>>);
 
 /// The sampled cell map at one parameter value, to be solved with either [`Correction`].
 pub struct SampledPoint {
+    value: f64,
     system: Arc<dyn System>,
     transitions: SampledTransitions,
 }
@@ -184,31 +185,26 @@ impl SgcmSource {
 
     fn densities(
         &self,
-        (system, transitions): (&dyn System, &SampledTransitions),
+        point: &SampledPoint,
         correction: Correction,
         steady: &SteadyState,
         cancellation: &Cancellation,
     ) -> Result<(Vec<EstimatedDensity>, usize), MethodError> {
+        let (system, transitions) = (point.system.as_ref(), &point.transitions);
         let replicates = self.replicates(correction, transitions, steady, cancellation)?;
         let usable: &[Vec<f64>] = if replicates.len() < 2 {
             &[]
         } else {
             &replicates
         };
-        let densities: Result<Vec<_>, _> = self
-            .problem
-            .observables()
-            .iter()
-            .map(|&observable| {
-                let mut estimated =
-                    estimate(self.problem.space(), observable, &steady.mass, usable)?;
-                let (mass, surfaces) = (&steady.mass, &self.steps.kinked);
-                estimated.structure =
-                    structure(system, self.problem.space(), mass, observable, surfaces);
-                Ok::<_, MethodError>(estimated)
-            })
-            .collect();
-        Ok((densities?, usable.len()))
+        let (problem, surfaces) = (&self.problem, &self.steps.kinked);
+        let maps = self.maps(point.value)?;
+        let mut densities = maps.sampled(problem, &steady.mass, usable)?;
+        for one in &mut densities {
+            let observable = one.observable;
+            one.structure = maps.structure(system, problem, &steady.mass, observable, surfaces);
+        }
+        Ok((densities, usable.len()))
     }
 
     fn solved(
@@ -236,7 +232,7 @@ impl SgcmSource {
         let Some(share) = reporter.escaping_share(relaxation_time, limit) else {
             return Ok((Solution::without_density(reporter.report), None));
         };
-        let moments = moments(self.problem.space(), &steady.mass)?;
+        let mut moments = moments(self.problem.space(), &steady.mass)?;
         reporter.edge_mass(&steady.mass, &self.steps.closed_ends);
         let diffusion = self.diffusion(transitions, correction, slopes, &steady.mass);
         reporter.numerical_diffusion(diffusion, &self.steps.noise, &moments);
@@ -246,8 +242,8 @@ impl SgcmSource {
         if !info.converged {
             reporter.not_converged(info.error_estimate);
         }
-        let sampled = (point.system.as_ref(), transitions);
-        let (densities, replicates) = self.densities(sampled, correction, &steady, cancellation)?;
+        let (densities, replicates) = self.densities(point, correction, &steady, cancellation)?;
+        moments.extend(self.maps(point.value)?.moments(&steady.mass)?);
         reporter.replicates(replicates, transitions.groups());
         let solution = Solution {
             report: reporter.report,
@@ -256,6 +252,12 @@ impl SgcmSource {
             sensitivity: None,
         };
         Ok((solution, Some(steady.mass)))
+    }
+
+    /// What turns masses into what is watched at a value of the path.
+    fn maps(&self, value: f64) -> Result<Arc<Maps>, MethodError> {
+        self.problem
+            .maps(value, &self.steps.kinked, Masses::Sampled)
     }
 
     /// Diffusion that the cells add, one value an axis.
@@ -298,6 +300,7 @@ impl SgcmSource {
         let system = self.problem.family().at(value)?;
         let transitions = self.sample(system.as_ref(), start, cancellation)?;
         Ok(SampledPoint {
+            value,
             system,
             transitions,
         })

@@ -329,6 +329,16 @@ macro_rules! formulas {
     };
 }
 
+/// A field of the bins of a quantity.
+macro_rules! of_bins {
+    ($field:ident) => {
+        Field {
+            get: |draft, name| draft.bins(name)?.$field.as_ref().map(InFile::to_plain),
+            set: |draft, name, plain| draft.bins_mut(name).$field = InFile::from_plain(plain),
+        }
+    };
+}
+
 /// A field of the settings of some methods: set for all of them, got from the chosen one.
 macro_rules! of_methods {
     ($field:ident: $($kind:ident $method:ident),+) => {
@@ -347,4 +357,4 @@ macro_rules! of_methods {
     };
 }
 
-pub(super) use {always, formulas, of_axis, of_methods, optional};
+pub(super) use {always, formulas, of_axis, of_bins, of_methods, optional};

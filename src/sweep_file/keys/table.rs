@@ -1,6 +1,8 @@
 //! Every key of a sweep file, declared once: path, kind of value, default, meaning, and where the value lives.
 
-use super::field::{Field, InFile, Named, SWITCH, always, formulas, of_axis, of_methods, optional};
+use super::field::{
+    Field, InFile, Named, SWITCH, always, formulas, of_axis, of_bins, of_methods, optional,
+};
 use super::kind::{ANY, DPI, Kind, LINE, OPEN_UNIT, POSITIVE, SHARE, TEXT, UP_TO_ONE};
 use super::{Key, KeyDefault};
 use crate::figure::{ColourMap, Format, Ground, Typeface};
@@ -120,13 +122,28 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
     key("method.escape_limit", Kind::Number(UP_TO_ONE), OfOptions, of_methods!(escape_limit: Generator generator, Sgcm sgcm, MonteCarlo monte_carlo),
         "Largest share of the mass that may leave the domain within one relaxation time before there is said to be no steady state."),
     key("detect.marginals", Kind::List(&Kind::Text), Rule("every axis"), optional!(marginals),
-        "Axes whose marginal densities are watched for changes."),
+        "Axes whose marginal densities are watched for changes, and quantities, each with its name: `amplitude = sqrt(x^2 + y^2)`."),
     key("detect.joint", Kind::List(&Kind::Pair), Rule("the first two axes"), optional!(joint),
-        "Pairs of axes whose joint densities are watched for changes."),
+        "Pairs of axes or quantities whose joint densities are watched for changes."),
+    key("detect.bins.<quantity>.from", Kind::Number(ANY), Rule("found by rough solves"), of_bins!(from),
+        "First value over which a quantity is watched; what lies beyond is not drawn or counted."),
+    key("detect.bins.<quantity>.to", Kind::Number(ANY), Rule("found by rough solves"), of_bins!(to),
+        "Last value over which a quantity is watched."),
+    key("detect.bins.<quantity>.count", Kind::Integer(8, 100_000), Rule("the largest number of cells of the axes that it depends on, from 40 to 200"), of_bins!(count),
+        "Number of bins of a quantity."),
     key("detect.confidence", Kind::Number(OPEN_UNIT), OfOptions, always!(detect.confidence),
         "Probability that no peak or crater of the whole sweep is sampling noise."),
     key("detect.floor", Kind::Number(SHARE), OfOptions, always!(detect.floor),
         "Smallest persistence that counts, as a share of the density's maximum."),
+    key("watch.<formula>", Kind::Text, Rule("none"),
+        Field {
+            get: |draft, name| draft.averaged.iter().find(|(known, _)| known == name).map(|(_, text)| text.to_plain()),
+            set: |draft, name, plain| if let Some(text) = plain.text() {
+                draft.averaged.retain(|(known, _)| known != name);
+                draft.averaged.push((name.to_owned(), text.to_owned()));
+            },
+        },
+        "A formula whose mean and standard deviation are columns of `points.csv`, for example `power = \"y^2\"`."),
     key("locate.tolerance", Kind::Number(POSITIVE), Rule("`locate.relative_tolerance` of the swept range"), optional!(locate.tolerance),
         "Wanted width of a P-bifurcation's bracket, in units of the swept parameter."),
     key("locate.relative_tolerance", Kind::Number(OPEN_UNIT), OfOptions, always!(locate.relative_tolerance),

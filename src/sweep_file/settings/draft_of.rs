@@ -2,7 +2,7 @@
 
 use super::{AxisSettings, Grade, Settings};
 use crate::density::Observable;
-use crate::sweep_file::draft::{Auto, AxisDraft, Draft, EquationsDraft};
+use crate::sweep_file::draft::{Auto, AxisDraft, BinsDraft, Draft, EquationsDraft};
 use crate::system::Model;
 
 impl Settings {
@@ -37,6 +37,8 @@ impl Settings {
             method: self.method.clone(),
             marginals: Some(self.marginals()),
             joint: Some(self.joint()),
+            bins: self.bins_draft(),
+            averaged: self.averaged(),
             detect: self.detect.clone(),
             locate: self.locate.clone(),
             figures_at: Some(self.figures_at.clone()),
@@ -46,11 +48,39 @@ impl Settings {
         }
     }
 
+    fn bins_draft(&self) -> Vec<BinsDraft> {
+        let all = self.family.quantities().iter().zip(&self.bins);
+        let draft = all.map(|(quantity, bins)| BinsDraft {
+            name: quantity.name().to_owned(),
+            from: bins.range.map(|range| range.0),
+            to: bins.range.map(|range| range.1),
+            count: Some(bins.count),
+        });
+        draft.collect()
+    }
+
+    fn averaged(&self) -> Vec<(String, String)> {
+        let all = self.family.averaged().iter();
+        let texts = all.map(|one| (one.name(), one.formula().unwrap_or(one.name())));
+        texts
+            .map(|(name, text)| (name.to_owned(), text.to_owned()))
+            .collect()
+    }
+
+    /// How a file says an axis or a quantity: with the formula, where its name alone does not say it.
+    fn coordinate(&self, axis: usize, is_known: bool) -> String {
+        let quantity = self.family.quantity(axis).filter(|_| !is_known);
+        match quantity.and_then(|quantity| Some((quantity.name(), quantity.formula()?))) {
+            Some((name, formula)) => format!("{name} = {formula}"),
+            None => self.family.axis(axis).to_owned(),
+        }
+    }
+
     /// Names of the axes whose marginals are watched.
     fn marginals(&self) -> Vec<String> {
         let observables = self.observables.iter();
         let names = observables.filter_map(|observable| match *observable {
-            Observable::Marginal(axis) => Some(self.family.axis(axis).to_owned()),
+            Observable::Marginal(axis) => Some(self.coordinate(axis, false)),
             Observable::Joint(..) => None,
         });
         names.collect()
@@ -58,12 +88,21 @@ impl Settings {
 
     /// Names of the pairs of axes whose joint densities are watched.
     fn joint(&self) -> Vec<[String; 2]> {
+        // Marginals have said their quantities before.
+        let mut known: Vec<usize> = Vec::new();
+        let marginals = self.observables.iter();
+        known.extend(marginals.filter_map(|observable| match *observable {
+            Observable::Marginal(axis) => Some(axis),
+            Observable::Joint(..) => None,
+        }));
         let observables = self.observables.iter();
         let names = observables.filter_map(|observable| match *observable {
             Observable::Marginal(_) => None,
-            Observable::Joint(one, other) => {
-                Some([one, other].map(|axis| self.family.axis(axis).to_owned()))
-            }
+            Observable::Joint(one, other) => Some([one, other].map(|axis| {
+                let text = self.coordinate(axis, known.contains(&axis));
+                known.push(axis);
+                text
+            })),
         });
         names.collect()
     }

@@ -5,6 +5,7 @@ mod draft_of;
 mod equations;
 mod figures;
 mod method;
+mod quantities;
 mod system;
 #[cfg(test)]
 mod tests;
@@ -20,6 +21,7 @@ pub use super::draft::Modes;
 pub use axes::{AxisSettings, Grade};
 pub(super) use axes::{at_cells, cell_space};
 pub(super) use equations::value_place as formula_place;
+pub use quantities::BinSettings;
 
 use super::document::Document;
 use super::draft::MethodSettings;
@@ -46,6 +48,8 @@ pub struct Settings {
     pub detect: DetectOptions,
     /// What is watched, marginals first.
     pub observables: Vec<Observable>,
+    /// Bins of the family's quantities, in their order.
+    pub bins: Vec<BinSettings>,
     /// Settings of location.
     pub locate: LocateOptions,
     /// Parameter values at which densities are drawn.
@@ -81,20 +85,27 @@ impl Settings {
             .and_then(|model| system::read(&mut reader, &draft, model));
         let family = swept.as_ref().map(|swept| &swept.family);
         let axes = model.and_then(|model| axes::read(&mut reader, &draft, model, family));
-        let observables =
+        let watched =
             model.map(|model| watched::read(&mut reader, &draft, model, axes.as_deref()));
         let figures_at = swept
             .as_ref()
             .map(|swept| figures::read_at(&mut reader, &draft, swept));
-        if let (Some(family), Some(observables)) = (family, &observables) {
-            figures::check_drawn(&mut reader, &draft, family, observables);
+        if let (Some(family), Some(watched)) = (family, &watched) {
+            let family = family.clone().with_quantities(watched.quantities.clone());
+            figures::check_drawn(&mut reader, &draft, &family, &watched.observables);
         }
         figures::check_style(&mut reader, &draft.figure_style);
-        let (Some(swept), Some(axes), Some(observables), Some(figures_at), true) =
-            (swept, axes, observables, figures_at, reader.is_clean())
+        let (Some(mut swept), Some(axes), Some(watched), Some(figures_at), true) =
+            (swept, axes, watched, figures_at, reader.is_clean())
         else {
             return Err(reader.into_report());
         };
+        let family = swept.family.with_quantities(watched.quantities);
+        swept.family = family.with_averaged(watched.averaged);
+        let bins = quantities::read_bins(&mut reader, &draft, &swept.family);
+        if !reader.is_clean() {
+            return Err(reader.into_report());
+        }
         let (model, parameter) = (swept.family.model(), swept.family.parameter());
         let title = || format!("{}, sweep of {parameter}", model.title);
         Ok(Self {
@@ -104,7 +115,8 @@ impl Settings {
             axes,
             method: draft.method,
             detect: draft.detect,
-            observables,
+            observables: watched.observables,
+            bins,
             locate: draft.locate,
             figures_at,
             figure_formats: figures::each_once(&draft.figure_formats),

@@ -1,33 +1,47 @@
-//! The densities that are watched.
+//! The densities that are watched: of axes, of quantities, and of pairs of them; and the quantities that are averaged.
+
+use std::sync::Arc;
 
 use super::AxisSettings;
+use super::quantities::{Given, read_all, split};
 use crate::density::Observable;
 use crate::sweep_file::diagnostic::{Diagnostic, Place};
 use crate::sweep_file::draft::Draft;
 use crate::sweep_file::names::quotable;
 use crate::sweep_file::reader::Reader;
-use crate::system::Model;
+use crate::system::{Model, Quantity};
 
-/// Checks `detect.marginals` and `detect.joint`: marginals first, each in the order given.
+/// What is watched.
+#[derive(Debug, Default)]
+pub(super) struct Watched {
+    /// Marginals first, each in the order given.
+    pub(super) observables: Vec<Observable>,
+    /// Numbered on from the axes.
+    pub(super) quantities: Vec<Arc<Quantity>>,
+    pub(super) averaged: Vec<Arc<Quantity>>,
+}
+
+/// Checks `detect.marginals`, `detect.joint` and `[watch]`.
 pub(super) fn read(
     reader: &mut Reader<'_>,
     draft: &Draft,
     model: &Model,
     axes: Option<&[AxisSettings]>,
-) -> Vec<Observable> {
+) -> Watched {
     let dimension = model.axes.len();
     let has_modes = |axis: usize| {
         let settings = axes.and_then(|axes| axes.get(axis));
         settings.is_some_and(|axis| axis.modes_by(draft.method.kind).is_some())
     };
     let mut observables: Vec<Observable> = Vec::new();
+    let mut given: Vec<Given> = Vec::new();
     match &draft.marginals {
-        Some(names) => {
+        Some(texts) => {
             let items = reader.items(&["detect", "marginals"]);
-            for (name, item) in names.iter().zip(items) {
-                if let Some(axis) = axis_index(reader, model, name, &item.place) {
-                    if has_modes(axis) {
-                        refuse_modes(reader, name, &item.place);
+            for (text, item) in texts.iter().zip(items) {
+                if let Some(axis) = coordinate(reader, model, &mut given, text, &item.place) {
+                    if axis < dimension && has_modes(axis) {
+                        refuse_modes(reader, text, &item.place);
                         continue;
                     }
                     let marginal = Observable::Marginal(axis);
@@ -52,8 +66,9 @@ pub(super) fn read(
                     refuse_modes(reader, name, &item.place);
                     continue;
                 }
-                let one = axis_index(reader, model, one, &item.place);
-                let other = axis_index(reader, model, other, &item.place);
+                let place = |index: usize| item.items().get(index).unwrap_or(item).place.clone();
+                let one = coordinate(reader, model, &mut given, one, &place(0));
+                let other = coordinate(reader, model, &mut given, other, &place(1));
                 if let (Some(one), Some(other)) = (one, other) {
                     let joint = Observable::Joint(one, other);
                     watch(reader, &mut observables, joint, &item.place);
@@ -68,7 +83,34 @@ pub(super) fn read(
             .remedy("name an axis in `detect.marginals` or a pair in `detect.joint`");
         reader.report(diagnostic);
     }
-    observables
+    let quantities = read_all(reader, model, &given);
+    let averaged: Vec<Given> = reader
+        .entries(&["watch"])
+        .iter()
+        .filter_map(|entry| {
+            let known = draft.averaged.iter().find(|(name, _)| *name == entry.key);
+            known.map(|(name, text)| Given {
+                name: name.clone(),
+                formula: Some((text.clone(), 0)),
+                name_place: entry.key_place.clone(),
+                place: entry.node.place.clone(),
+            })
+        })
+        .collect();
+    let averaged = read_all(reader, model, &averaged);
+    if !(quantities.is_empty() && averaged.is_empty())
+        && let Some(axis) = (0..dimension).find(|&axis| has_modes(axis))
+    {
+        let name = &model.axes[axis].name;
+        let title = format!("quantities are not watched where modes carry an axis, here `{name}`");
+        let remedy = format!("give `cells.{name}.count` in place of modes, or leave the formulas out");
+        reader.report(Diagnostic::new(title).remedy(remedy));
+    }
+    Watched {
+        observables,
+        quantities,
+        averaged,
+    }
 }
 
 /// Reports that the density along an axis of modes is not watched.
@@ -82,15 +124,75 @@ fn refuse_modes(reader: &mut Reader<'_>, name: &str, at: &Place) {
     );
 }
 
-fn axis_index(reader: &mut Reader<'_>, model: &Model, name: &str, at: &Place) -> Option<usize> {
-    let index = model.axes.iter().position(|axis| axis.name == name);
-    if index.is_none() {
-        let title = format!("model `{}` has no axis `{}`", model.name, quotable(name));
-        let names = model.axes.iter().map(|axis| axis.name.as_str());
-        let diagnostic = Diagnostic::new(title).at(at, "unknown axis");
-        reader.report(diagnostic.nearest(name, names));
+/// The number of an axis, or of a quantity, numbered on from the axes.
+fn coordinate(
+    reader: &mut Reader<'_>,
+    model: &Model,
+    given: &mut Vec<Given>,
+    text: &str,
+    at: &Place,
+) -> Option<usize> {
+    let dimension = model.axes.len();
+    let number = |given: &[Given], name: &str| {
+        let known = given.iter().position(|one| one.name == name);
+        known.map(|number| dimension + number)
+    };
+    let new = |name: &str, formula: Option<(String, usize)>| Given {
+        name: name.to_owned(),
+        formula,
+        name_place: at.clone(),
+        place: at.clone(),
+    };
+    if let Some((name, formula, offset)) = split(text) {
+        if let Some(known) = number(given, name) {
+            let first = given[known - dimension].formula.as_ref();
+            if first.is_some_and(|(first, _)| first == formula) {
+                return Some(known);
+            }
+            let title = format!("`{}` has two formulas", quotable(name));
+            let diagnostic = Diagnostic::new(title).at(at, "the second one");
+            reader.report(diagnostic.remedy("define it once; elsewhere its name will do"));
+            return None;
+        }
+        given.push(new(name, Some((formula.to_owned(), offset))));
+        return number(given, name);
     }
-    index
+    let name = text.trim();
+    if let Some(axis) = model.axes.iter().position(|axis| axis.name == name) {
+        return Some(axis);
+    }
+    if let Some(known) = number(given, name) {
+        return Some(known);
+    }
+    if model.definitions().iter().any(|(known, _)| known == name) {
+        given.push(new(name, None));
+        return number(given, name);
+    }
+    unknown(reader, model, given, text, at);
+    None
+}
+
+/// Reports a text that is neither a name nor a quantity.
+fn unknown(reader: &mut Reader<'_>, model: &Model, given: &[Given], text: &str, at: &Place) {
+    if text.contains(|c: char| "+-*/^()".contains(c) || c == ' ') {
+        let title = format!("a formula needs a name: `{}`", quotable(text));
+        let diagnostic = Diagnostic::new(title).at(at, "no name");
+        let remedy = format!("write `name = {}`", quotable(text.trim()));
+        reader.report(
+            diagnostic
+                .allowed("names of axes, and quantities as `name = formula`")
+                .remedy(remedy),
+        );
+        return;
+    }
+    let title = format!("model `{}` has no axis `{}`", model.name, quotable(text));
+    let axes = model.axes.iter().map(|axis| axis.name.as_str());
+    let defined = model.definitions().iter().map(|(name, _)| name.as_str());
+    let names = axes
+        .chain(given.iter().map(|one| one.name.as_str()))
+        .chain(defined);
+    let diagnostic = Diagnostic::new(title).at(at, "unknown axis");
+    reader.report(diagnostic.nearest(text, names));
 }
 
 /// Adds an observable that is new and sound.

@@ -247,7 +247,8 @@ impl TypedModel {
             .with_axes(self.axes.clone())
             .with_parameters(self.parameters.clone())
             .with_source(self.source.as_str())
-            .with_notes(notes);
+            .with_notes(notes)
+            .with_definitions(self.definitions.clone());
         Ok(Arc::new(
             model.with_typed(TypedEquations::new(self, reading)),
         ))

@@ -1,0 +1,258 @@
+//! From cell masses to what is watched: coordinates by sums, quantities by sub-cells, and the means that are wanted beside them.
+
+use std::sync::{Arc, OnceLock};
+
+use super::structure::structure;
+use super::{MethodError, Problem};
+use crate::density::{
+    Coordinate, Detail, EstimatedDensity, Moments, NEGLIGIBLE_OF_QUANTITIES, Observable,
+    Projection, QuantityMoments, Structure, estimate_from_difference, estimate_from_second,
+    estimate_projected,
+};
+use crate::system::{BoundQuantity, LANES, SwitchingSurface, System, proved_symmetry};
+
+/// What quantities need at one value of the path.
+#[derive(Debug)]
+pub(super) struct Maps {
+    /// One an observable that has a quantity: the map, and a coarser one where the masses carry no noise.
+    watched: Vec<Option<(Projection, Option<Projection>)>>,
+    averaged: Vec<QuantityMoments>,
+    /// The quantities that can be watched, in their order.
+    bound: Vec<BoundQuantity>,
+}
+
+/// The maps where they are the same along a whole path.
+pub(super) type Fixed = Arc<OnceLock<Arc<Maps>>>;
+
+/// Whether masses carry noise.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Masses {
+    Exact,
+    Sampled,
+}
+
+impl Problem {
+    /// The maps at a value of the path's coordinate.
+    pub(super) fn maps(
+        &self,
+        value: f64,
+        kinked: &[SwitchingSurface],
+        masses: Masses,
+    ) -> Result<Arc<Maps>, MethodError> {
+        let family = self.family();
+        let mut all = family.quantities().iter().chain(family.averaged());
+        if all.any(|quantity| quantity.moves_with(family)) {
+            return Ok(Arc::new(self.maps_at(value, kinked, masses)?));
+        }
+        if let Some(known) = self.fixed().get() {
+            return Ok(Arc::clone(known));
+        }
+        let made = Arc::new(self.maps_at(value, kinked, masses)?);
+        Ok(Arc::clone(self.fixed().get_or_init(|| made)))
+    }
+
+    fn maps_at(
+        &self,
+        value: f64,
+        kinked: &[SwitchingSurface],
+        masses: Masses,
+    ) -> Result<Maps, MethodError> {
+        let (family, space) = (self.family(), self.space());
+        let values = family.values_at(value)?;
+        let planes: Vec<(usize, f64)> = kinked.iter().map(|one| (one.axis, one.at)).collect();
+        let bind = |quantity: &Arc<crate::system::Quantity>| quantity.bind(&values);
+        let bound: Result<Vec<BoundQuantity>, _> = family.quantities().iter().map(bind).collect();
+        let averaged: Result<Vec<BoundQuantity>, _> = family.averaged().iter().map(bind).collect();
+        let (bound, averaged) = (bound?, averaged?);
+        let coordinate = |axis: usize| match axis.checked_sub(space.dimension()) {
+            None => Coordinate::Axis(axis),
+            Some(number) => {
+                Coordinate::Quantity(Box::new(bound[number].clone()), self.bins()[number].clone())
+            }
+        };
+        let (fine, coarse) = match masses {
+            Masses::Exact => (Detail::Fine, Some(Detail::Coarse)),
+            Masses::Sampled => (Detail::Sampled, None),
+        };
+        let watched = self.observables().iter().map(|observable| {
+            let axes = observable.axes();
+            if axes.iter().all(|&axis| axis < space.dimension()) {
+                return Ok(None);
+            }
+            let coordinates: Vec<Coordinate> = axes.into_iter().map(coordinate).collect();
+            let map = |detail| Projection::of_quantities(space, &coordinates, detail, &planes);
+            Ok::<_, MethodError>(Some((map(fine)?, coarse.map(map).transpose()?)))
+        });
+        let watched: Result<Vec<_>, _> = watched.collect();
+        let averaged = averaged
+            .iter()
+            .map(|quantity| QuantityMoments::new(space, quantity, fine, &planes));
+        Ok(Maps {
+            watched: watched?,
+            averaged: averaged.collect(),
+            bound,
+        })
+    }
+}
+
+impl Maps {
+    /// The watched densities of masses without noise, with the difference to a second discretisation (masses, Σ = 0). Of quantities the second one
+    /// is read off coarser sub-cells too, so that its difference holds what these do.
+    pub(super) fn exact(
+        &self,
+        problem: &Problem,
+        masses: &[f64],
+        difference: &[f64],
+    ) -> Result<Vec<EstimatedDensity>, MethodError> {
+        let second: Vec<f64> = masses.iter().zip(difference).map(|(m, d)| m + d).collect();
+        let all = problem.observables().iter().zip(&self.watched);
+        let densities = all.map(|(&observable, maps)| match maps {
+            None => Ok(estimate_from_difference(
+                problem.space(),
+                observable,
+                masses,
+                difference,
+            )?),
+            Some((fine, coarse)) => {
+                let coarse = coarse.as_ref().unwrap_or(fine);
+                let other = coarse.density(&second)?.values;
+                let mut estimated = estimate_from_second(observable, fine.density(masses)?, other);
+                estimated.negligible = NEGLIGIBLE_OF_QUANTITIES;
+                Ok(estimated)
+            }
+        });
+        densities.collect()
+    }
+
+    /// The watched densities of sampled masses, with their replicates.
+    pub(super) fn sampled(
+        &self,
+        problem: &Problem,
+        masses: &[f64],
+        replicates: &[Vec<f64>],
+    ) -> Result<Vec<EstimatedDensity>, MethodError> {
+        let all = problem.observables().iter().zip(&self.watched);
+        let densities = all.map(|(&observable, maps)| {
+            Ok(match maps {
+                None => crate::density::estimate(problem.space(), observable, masses, replicates)?,
+                Some((map, _)) => estimate_projected(map, observable, masses, replicates)?,
+            })
+        });
+        densities.collect()
+    }
+
+    /// Changes of the watched densities, from changes of the masses.
+    pub(super) fn changes(
+        &self,
+        problem: &Problem,
+        masses: &[f64],
+    ) -> Result<Vec<Vec<f64>>, MethodError> {
+        let all = problem.observables().iter().zip(&self.watched);
+        let changes = all.map(|(&observable, maps)| {
+            Ok(match maps {
+                None => {
+                    Projection::new(problem.space(), observable)?
+                        .density(masses)?
+                        .values
+                }
+                Some((map, _)) => map.density(masses)?.values,
+            })
+        });
+        changes.collect()
+    }
+
+    /// Moments of the quantities that are averaged.
+    pub(super) fn moments(&self, masses: &[f64]) -> Result<Vec<Moments>, MethodError> {
+        let averaged = self.averaged.iter();
+        Ok(averaged
+            .map(|map| map.of(masses))
+            .collect::<Result<_, _>>()?)
+    }
+
+    /// What the equations say of the density of an observable.
+    pub(super) fn structure(
+        &self,
+        system: &dyn System,
+        problem: &Problem,
+        masses: &[f64],
+        observable: Observable,
+        kinked: &[SwitchingSurface],
+    ) -> Structure {
+        let space = problem.space();
+        let axes = observable.axes();
+        if axes.iter().all(|&axis| axis < space.dimension()) {
+            return structure(system, space, masses, observable, kinked);
+        }
+        Structure {
+            centre: self.centre(system, problem, &axes, kinked),
+            kinks: Vec::new(),
+        }
+    }
+
+    /// The point of symmetry of a density of quantities: where the system's reflection reflects each of them.
+    fn centre(
+        &self,
+        system: &dyn System,
+        problem: &Problem,
+        axes: &[usize],
+        kinked: &[SwitchingSurface],
+    ) -> Option<Vec<f64>> {
+        let space = problem.space();
+        let ends: Vec<(f64, f64)> = space.axes().iter().map(|a| (a.from(), a.to())).collect();
+        let symmetry = proved_symmetry(system, &ends)?;
+        let of = |&axis: &usize| match axis.checked_sub(space.dimension()) {
+            None => symmetry.reflected[axis].then(|| symmetry.centre[axis]),
+            Some(number) => {
+                let quantity = &self.bound[number];
+                let is_bent = |surface: &SwitchingSurface| {
+                    let others = quantity.states().iter().enumerate();
+                    quantity.states()[surface.axis]
+                        && others.filter(|(_, needed)| **needed).count() == 1
+                };
+                // A kink that is carried over to the quantity would be taken for a curvature.
+                if kinked.iter().any(is_bent) {
+                    return None;
+                }
+                mirror(quantity, &symmetry, &ends)
+            }
+        };
+        axes.iter().map(of).collect()
+    }
+}
+
+/// Relative difference of two values that are the same.
+const ROUNDING: f64 = 1e-9;
+
+/// The value about which a reflection of the state reflects a quantity, tried at a batch of states.
+fn mirror(
+    quantity: &BoundQuantity,
+    symmetry: &crate::system::Symmetry,
+    ends: &[(f64, f64)],
+) -> Option<f64> {
+    // Fractions of the multiples of irrational numbers fill the box evenly.
+    const STEPS: [f64; 4] = [
+        0.618_033_988_75,
+        0.754_877_666_25,
+        0.569_840_290_998,
+        0.438_447_187_19,
+    ];
+    let (mut states, mut images) = (Vec::new(), Vec::new());
+    for (axis, &(from, to)) in ends.iter().enumerate() {
+        let (mut state, mut image) = ([0.0; LANES], [0.0; LANES]);
+        for lane in 0..LANES {
+            let share = ((lane + 1) as f64 * STEPS[axis % STEPS.len()]).fract();
+            state[lane] = from + share * (to - from);
+            image[lane] = match symmetry.reflected[axis] {
+                true => 2.0 * symmetry.centre[axis] - state[lane],
+                false => state[lane],
+            };
+        }
+        states.push(state);
+        images.push(image);
+    }
+    let (here, there) = (quantity.values(&states), quantity.values(&images));
+    let sums: Vec<f64> = here.iter().zip(there).map(|(a, b)| a + b).collect();
+    let scale = here.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+    let same = |sum: &f64| (sum - sums[0]).abs() <= ROUNDING * scale;
+    sums.iter().all(same).then(|| 0.5 * sums[0])
+}

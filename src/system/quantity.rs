@@ -1,0 +1,315 @@
+//! Quantities: functions of the state given as formulas, such as an amplitude or an energy. Their densities can be watched like those of
+//! coordinates.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::{Family, LANES, Lanes, Model, SystemError};
+use crate::formula::graph::{Expression, Symbol};
+use crate::formula::language::FormulaError;
+use crate::formula::scope::{DefinitionError, DefinitionFault, Scope, SymbolError, Symbols};
+use crate::formula::tape::{Program, Tape};
+
+/// A function of the state, and perhaps of parameters.
+#[derive(Debug, Clone)]
+pub struct Quantity {
+    name: String,
+    symbol: String,
+    formula: Option<String>,
+    program: Program,
+    states: Vec<bool>,
+    parameters: Vec<String>,
+}
+
+/// A quantity with values of all parameters.
+#[derive(Debug, Clone)]
+pub struct BoundQuantity {
+    tape: Tape,
+    states: Vec<bool>,
+}
+
+/// What is wrong with a quantity.
+#[derive(Debug, Clone, PartialEq)]
+pub struct QuantityError {
+    /// Its number among those that were given.
+    pub index: usize,
+    /// What is wrong with it.
+    pub fault: QuantityFault,
+}
+
+/// What is wrong with a quantity.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum QuantityFault {
+    /// Its name cannot be given.
+    #[error(transparent)]
+    Name(#[from] SymbolError),
+    /// Its formula is none.
+    #[error("{0}")]
+    Formula(Box<DefinitionFault>),
+    /// A definition of the model that is not right.
+    #[error("{0}")]
+    Model(Box<DefinitionError>),
+    /// A name without a formula that is no definition of the model.
+    #[error("`{name}` is not defined")]
+    Undefined {
+        /// The name.
+        name: String,
+    },
+    /// It depends on time.
+    #[error("`{name}` depends on time: a steady state does not")]
+    Time {
+        /// Its name.
+        name: String,
+    },
+    /// It depends on no coordinate of the state.
+    #[error("`{name}` depends on no coordinate of the state: it has no density")]
+    Constant {
+        /// Its name.
+        name: String,
+    },
+    /// It keeps too many intermediate results.
+    #[error("the formula of `{name}` is too long")]
+    TooWide {
+        /// Its name.
+        name: String,
+    },
+}
+
+impl QuantityFault {
+    /// Bytes of the formula's text at which the fault stands, where it stands in the formula.
+    pub fn span(&self) -> Option<Range<usize>> {
+        match self {
+            Self::Formula(fault) => Some(fault.span()),
+            _ => None,
+        }
+    }
+
+    fn error(&self) -> Option<&FormulaError> {
+        match self {
+            Self::Formula(fault) => match fault.as_ref() {
+                DefinitionFault::Formula(error) => Some(error),
+                DefinitionFault::Circle { .. } => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// What is allowed there.
+    pub fn allowed(&self) -> Option<String> {
+        self.error()?.allowed()
+    }
+
+    /// What to write instead.
+    pub fn remedy(&self) -> Option<String> {
+        match self {
+            Self::Name(_) => Some("give it another name".to_owned()),
+            _ => self.error()?.remedy(),
+        }
+    }
+}
+
+/// Reads quantities of a model: names with their formulas in the model's coordinates and parameters, in the names of its definitions, and in each
+/// other's names. A name without a formula is that of a definition of the model.
+///
+/// # Errors
+/// Everything that is wrong with them.
+///
+/// ```
+/// use pbif::system::{quantities, registry};
+///
+/// let model = registry::find("rayleigh")?;
+/// let read = quantities(&model, &[("H", Some("(x^2 + y^2)/2")), ("scaled", Some("2 b H"))]).unwrap();
+/// let scaled = read[1].bind(&model.values(&[("a", 0.1), ("b", 0.5), ("sigma2", 1.0)])?).unwrap();
+/// assert_eq!(scaled.at(&[3.0, 4.0]), 12.5);
+/// let errors = quantities(&model, &[("H", Some("(x^2 + v^2)/2"))]).unwrap_err();
+/// assert_eq!(errors[0].fault.span(), Some(7..8));
+/// # Ok::<(), pbif::system::SystemError>(())
+/// ```
+pub fn quantities(
+    model: &Model,
+    given: &[(&str, Option<&str>)],
+) -> Result<Vec<Arc<Quantity>>, Vec<QuantityError>> {
+    let mut errors = Vec::new();
+    let at = |index: usize| move |fault: QuantityFault| QuantityError { index, fault };
+    let mut symbols = Symbols::default();
+    let mut whole = |taken: Result<(), SymbolError>| {
+        errors.extend(taken.map_err(|error| at(0)(error.into())).err());
+    };
+    for axis in &model.axes {
+        whole(symbols.add_state(&axis.name).map(drop));
+    }
+    for parameter in &model.parameters {
+        whole(symbols.add_parameter(&parameter.name).map(drop));
+    }
+    for (name, formula) in model.definitions() {
+        whole(symbols.define(name, formula));
+    }
+    for (index, (name, formula)) in given.iter().enumerate() {
+        if let Some(formula) = formula {
+            let taken = symbols.define(name, formula);
+            errors.extend(taken.map_err(|error| at(index)(error.into())).err());
+        }
+    }
+    if !errors.is_empty() {
+        return Err(errors);
+    }
+    let scope = Scope::new(symbols).map_err(|wrong| {
+        let located = wrong.into_iter().map(|error| {
+            let known = given.iter().position(|(name, _)| *name == error.name);
+            match known {
+                Some(index) => at(index)(QuantityFault::Formula(Box::new(error.fault))),
+                None => at(0)(QuantityFault::Model(Box::new(error))),
+            }
+        });
+        located.collect::<Vec<_>>()
+    })?;
+    let mut read = Vec::new();
+    for (index, (name, formula)) in given.iter().enumerate() {
+        match Quantity::new(&scope, model, name, *formula) {
+            Ok(quantity) => read.push(Arc::new(quantity)),
+            Err(fault) => errors.push(at(index)(fault)),
+        }
+    }
+    if errors.is_empty() {
+        Ok(read)
+    } else {
+        Err(errors)
+    }
+}
+
+impl Quantity {
+    fn new(
+        scope: &Scope,
+        model: &Model,
+        name: &str,
+        formula: Option<&str>,
+    ) -> Result<Self, QuantityFault> {
+        let named = || name.to_owned();
+        let found = scope.definition(name);
+        let expression: Expression =
+            found.ok_or_else(|| QuantityFault::Undefined { name: named() })?;
+        let graph = scope.graph();
+        if graph.contains(expression, Symbol::Time) {
+            return Err(QuantityFault::Time { name: named() });
+        }
+        let state = |state: usize| graph.contains(expression, Symbol::State(state));
+        let states: Vec<bool> = (0..model.axes.len()).map(state).collect();
+        if !states.contains(&true) {
+            return Err(QuantityFault::Constant { name: named() });
+        }
+        let program = scope.compile(&[expression]);
+        // Any values will do to see whether it fits.
+        let probe = vec![std::f64::consts::FRAC_1_SQRT_2; program.parameters()];
+        if program.bind_as_written(&probe).is_err() {
+            return Err(QuantityFault::TooWide { name: named() });
+        }
+        let parameters = model.parameters.iter().enumerate();
+        let parameters = parameters
+            .filter(|(number, _)| graph.contains(expression, Symbol::Parameter(*number)))
+            .map(|(_, parameter)| parameter.name.clone());
+        Ok(Self {
+            name: named(),
+            symbol: match name.split_once('_') {
+                Some((name, index)) => format!("{name}_{{{}}}", index.replace('_', " ")),
+                None => named(),
+            },
+            formula: formula.map(str::to_owned),
+            program,
+            states,
+            parameters: parameters.collect(),
+        })
+    }
+
+    /// Its name, as given.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its name as a symbol with `_{}`: what follows the first `_` is lowered.
+    pub fn symbol(&self) -> &str {
+        &self.symbol
+    }
+
+    /// The formula as given; `None` where it is a definition of the model.
+    pub fn formula(&self) -> Option<&str> {
+        self.formula.as_deref()
+    }
+
+    /// Whether it depends on each coordinate of the state.
+    pub fn states(&self) -> &[bool] {
+        &self.states
+    }
+
+    /// Whether it changes along the path of a family.
+    pub fn moves_with(&self, family: &Family) -> bool {
+        let moved = family.path().moved();
+        self.parameters.iter().any(|name| moved.contains(name))
+    }
+
+    /// With values of all parameters of the model.
+    ///
+    /// # Errors
+    /// [`SystemError::QuantityNotBound`] for values of another model.
+    pub fn bind(&self, values: &super::ParameterValues) -> Result<BoundQuantity, SystemError> {
+        let tape = self.program.bind_as_written(values.as_slice());
+        let tape = tape.map_err(|_| SystemError::QuantityNotBound {
+            quantity: self.name.clone(),
+        })?;
+        let states = self.states.clone();
+        Ok(BoundQuantity { tape, states })
+    }
+}
+
+impl BoundQuantity {
+    /// Whether it depends on each coordinate of the state.
+    pub fn states(&self) -> &[bool] {
+        &self.states
+    }
+
+    /// Values at a batch of states, `states[axis][lane]`; NaN or infinite where the formula has no value.
+    pub fn values(&self, states: &[Lanes]) -> Lanes {
+        let mut values = [[f64::NAN; LANES]];
+        self.tape.run(0.0, states, &mut values);
+        values[0]
+    }
+
+    /// The value at one state.
+    pub fn at(&self, state: &[f64]) -> f64 {
+        let states: Vec<Lanes> = state.iter().map(|&value| [value; LANES]).collect();
+        self.values(&states)[0]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::system::registry;
+
+    fn faults(given: &[(&str, Option<&str>)]) -> Vec<String> {
+        let model = registry::find("coulomb").unwrap();
+        let errors = quantities(&model, given).unwrap_err();
+        errors.iter().map(|error| error.fault.to_string()).collect()
+    }
+
+    #[test]
+    fn what_is_no_quantity_is_refused_by_name() {
+        assert!(faults(&[("x", Some("y"))])[0].contains("already a state"));
+        assert!(faults(&[("v", Some("kappa"))])[0].contains("no coordinate"));
+        assert!(faults(&[("v", Some("t x"))])[0].contains("depends on time"));
+        assert!(faults(&[("v", None)])[0].contains("not defined"));
+        assert!(faults(&[("v", Some("w")), ("w", Some("v x"))])[0].contains("needs itself"));
+        assert!(faults(&[("sin", Some("x"))])[0].contains("a function"));
+    }
+
+    #[test]
+    fn it_knows_what_it_depends_on() {
+        let model = registry::find("coulomb").unwrap();
+        let read = quantities(&model, &[("V_s", Some("alpha x^2/2"))]).unwrap();
+        assert_eq!(read[0].states(), [true, false]);
+        assert_eq!(read[0].symbol(), "V_{s}");
+        let fixed = [("kappa", 0.1), ("sigma2", 0.1), ("f_c", 0.0)];
+        let path = crate::system::Path::parameter("alpha", 0.5, 1.0);
+        let family = Family::new(model, &fixed, path).unwrap();
+        assert!(read[0].moves_with(&family));
+    }
+}
