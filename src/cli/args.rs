@@ -17,6 +17,7 @@ Examples:
   pbif detect output/coulomb_fc --set detect.confidence=0.99   detect again, without solving
   pbif plot output/coulomb_fc        draw again
   pbif explore output/coulomb_fc     one page that slides through the densities of the run
+  pbif explore sweeps/coulomb_fc.toml --open                   the same page, solving live
 
 Exit status: 0 done; 1 finished, but some row is unresolved, did not converge or has no steady state;
 2 bad usage or input, nothing written; 130 interrupted.";
@@ -62,8 +63,12 @@ const EXPLORE_EXAMPLES: &str = "\
 Examples:
   pbif explore output/coulomb_fc
   pbif explore output/coulomb_fc --html coulomb.html
+  pbif explore sweeps/coulomb_fc.toml --open
+  pbif explore sweeps/dahl_alpha.toml --set cells.x.count=30 --set cells.y.count=30
 
-The page is one file that needs no network and nothing installed but a browser: open it, send it, put it beside a paper.";
+Of a run, the page is one file that needs no network and nothing installed but a browser: open it, send it, put it beside a
+paper. Of a sweep file, densities are solved while the sliders of the page move; the address that is printed works on this machine
+alone, until Ctrl-C.";
 
 /// Finds where the steady-state density of a noisy oscillator changes its topology (P-bifurcations).
 #[derive(Debug, Parser)]
@@ -118,7 +123,7 @@ pub(super) enum Command {
         #[command(flatten)]
         run: PlotArguments,
     },
-    /// Write one page in which a browser slides through a stored run: densities, what was found in them, where they change
+    /// Slide along a parameter in the browser: through a stored run in one file, or solving live from a sweep file
     #[command(after_help = EXPLORE_EXAMPLES)]
     Explore {
         /// What to show.
@@ -232,14 +237,25 @@ pub(crate) struct PlotArguments {
     pub(crate) quiet: bool,
 }
 
-/// A stored run that is put into a page.
+/// What is explored: a stored run or a sweep file.
 #[derive(Debug, Args)]
 pub(crate) struct ExploreArguments {
-    /// Folder of a run, as `pbif sweep` left it
-    pub(crate) run: PathBuf,
-    /// File of the page; one that is there is replaced [default: RUN/explorer.html]
+    /// Folder of a run, as `pbif sweep` left it, or a sweep file (TOML)
+    #[arg(value_name = "RUN|FILE")]
+    pub(crate) target: PathBuf,
+    /// Of a run: file of the page; one that is there is replaced [default: RUN/explorer.html]
     #[arg(long, value_name = "FILE")]
     pub(crate) html: Option<PathBuf>,
+    /// Override a key of a sweep file, such as cells.x.count=60; of a run those under detect and locate (repeatable; the last one
+    /// counts)
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(crate) overrides: Vec<String>,
+    /// Of a sweep file: port on the loopback address [default: one that is free]
+    #[arg(long, value_name = "N", conflicts_with = "html")]
+    pub(crate) port: Option<u16>,
+    /// Open the page in the browser
+    #[arg(long)]
+    pub(crate) open: bool,
     /// No progress and no warnings on stderr, results alone
     #[arg(long)]
     pub(crate) quiet: bool,

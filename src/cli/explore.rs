@@ -1,26 +1,48 @@
-//! `pbif explore`: the page of a stored run.
+//! `pbif explore`: the page of a stored run, or a live one of a sweep file.
 
-use super::args::ExploreArguments;
+use std::io::Write as _;
+use std::path::Path;
+
+use super::args::{ExploreArguments, SweepInput};
 use super::stored::Stored;
 use super::{CommandError, Outcome};
-use crate::explore::StoredPage;
+use crate::cancellation::Cancellation;
+use crate::explore::{LiveServer, StoredPage};
 use crate::run::write_atomically;
+use crate::sweep_file::Diagnostic;
 
-/// Writes the page of a run and prints where it is.
+/// Writes the page of a run and prints where it is; or serves that of a sweep file until it is interrupted.
 ///
 /// # Errors
-/// [`CommandError`] when the run cannot be read or the page not be written.
+/// [`CommandError`] when the run or the sweep file cannot be read, or the page not be written or served.
 pub(super) fn run(arguments: &ExploreArguments) -> Result<Outcome, CommandError> {
-    let stored = Stored::read(&arguments.run, &[], &[], arguments.quiet)?;
+    if arguments.target.is_file() {
+        return serve(arguments);
+    }
+    if arguments.port.is_some() {
+        return Err(refused(
+            "`--port` is for a sweep file: the page of a run is a file",
+        ));
+    }
+    let stored = Stored::read(
+        &arguments.target,
+        &arguments.overrides,
+        &["detect", "locate"],
+        arguments.quiet,
+    )?;
     let page = StoredPage::new(&stored.spec, &stored.result)?;
-    let beside = arguments.run.join("explorer.html");
+    let beside = arguments.target.join("explorer.html");
     let file = arguments.html.as_deref().unwrap_or(&beside);
     write_atomically(file, page.html().as_bytes())?;
+    if arguments.open {
+        let file = file.canonicalize().unwrap_or_else(|_| file.to_owned());
+        open(&file.to_string_lossy());
+    }
     super::print(&text(&page, file))
 }
 
 /// Where the page is, how large, and what packing did to the densities.
-fn text(page: &StoredPage, file: &std::path::Path) -> String {
+fn text(page: &StoredPage, file: &Path) -> String {
     let megabytes = page.html().len() as f64 / 1e6;
     let digits = page.joint_bits().map_or(String::new(), |bits| {
         format!(", square roots of joint densities kept to {bits} bits")
@@ -29,4 +51,58 @@ fn text(page: &StoredPage, file: &std::path::Path) -> String {
         "page\n  {} ({megabytes:.2} MB{digits})\nopen it in a browser: it needs no network\n",
         file.display()
     )
+}
+
+/// Serves the live page of a sweep file.
+fn serve(arguments: &ExploreArguments) -> Result<Outcome, CommandError> {
+    if arguments.html.is_some() {
+        return Err(refused(
+            "`--html` is for the folder of a run: `pbif sweep FILE` makes one",
+        ));
+    }
+    let input = SweepInput {
+        file: arguments.target.clone(),
+        overrides: arguments.overrides.clone(),
+    };
+    let sweep = super::load(&input, arguments.quiet)?.prepare(&Cancellation::new())?;
+    let server = LiveServer::bind(&sweep, arguments.port.unwrap_or(0))?;
+    let (_, cancellation) = super::interruptible(None)?;
+    super::print(&format!("{}\n", server.address()))?;
+    if !arguments.quiet {
+        let words = "open this address in a browser of this machine; Ctrl-C ends\n";
+        // Without a reader of stderr there is nobody to tell.
+        let _ = std::io::stderr().lock().write_all(words.as_bytes());
+    }
+    if arguments.open {
+        open(&server.address());
+    }
+    server.serve(&cancellation);
+    Ok(Outcome::Complete)
+}
+
+/// Opens an address or a file with the program that the user has for it; the address is printed anyway.
+fn open(address: &str) {
+    let program = if cfg!(target_os = "macos") {
+        "open"
+    } else if cfg!(windows) {
+        "explorer"
+    } else {
+        "xdg-open"
+    };
+    let quiet = std::process::Stdio::null;
+    let mut command = std::process::Command::new(program);
+    let started = command
+        .arg(address)
+        .stdin(quiet())
+        .stdout(quiet())
+        .stderr(quiet())
+        .spawn();
+    if started.is_err() {
+        let words = format!("`{program}` cannot be started: open the page by hand\n");
+        let _ = std::io::stderr().lock().write_all(words.as_bytes());
+    }
+}
+
+fn refused(title: &str) -> CommandError {
+    CommandError::Input(Diagnostic::new(title).into())
 }

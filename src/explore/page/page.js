@@ -100,7 +100,7 @@ class Page {
   }
 
   lock(top) {
-    const values = this.frame.densities[this.k.joint]?.values;
+    const values = this.frame?.densities[this.k.joint]?.values;
     this.options.lock = top === undefined ? (this.options.lock === null && values ? largest(values) : null) : top;
     $("lock").checked = this.options.lock !== null;
     this.later();
@@ -178,6 +178,8 @@ class Page {
     if ($("says").textContent !== says) $("says").textContent = says;
     $("slide").setAttribute("aria-valuetext", says);
     this.writeControls();
+    const band = this.singles.map((k) => source.bandIs(k)).find((words) => words);
+    $("bands").textContent = band ? `Bands: ${band}.` : "";
     fill($("words"), reading(this.view(0)));
     for (const row of $("table").querySelectorAll("tr[data-at]")) {
       row.classList.toggle("here", this.isHere(Number(row.dataset.at)));
@@ -324,14 +326,10 @@ const build = (page) => {
         make("span", { class: "exports" }, exportButtons(page, `marginal-${k}`, plain(title)))),
       make("div", { class: "drawing" }, make("canvas", { id: `marginal-${k}`, role: "img" })));
   });
-  const section = make("figure", { id: "section-figure", hidden: true, "aria-label": "Section" },
-    make("div", { class: "head" }, make("h2", {}, "Section"), make("span", { class: "exports" }, exportButtons(page, "section", "the section"))),
-    make("div", { class: "drawing" }, make("canvas", { id: "section-canvas", role: "img" })));
-  const bands = page.singles.map((k) => source.bandIs(k)).filter((band) => band);
-  const caption = bands.length ? make("p", { class: "hint" }, `Bands: ${bands[0]}.`) : [];
-  fill($("marginals"), figures, caption, section);
+  const caption = make("p", { class: "hint", id: "bands" });
+  fill($("marginals"), figures, caption);
   for (const place of document.querySelectorAll(".exports[data-of]")) {
-    fill(place, exportButtons(page, place.dataset.of, place.dataset.of === "joint" ? "the joint density" : "the diagram"));
+    fill(place, exportButtons(page, place.dataset.of, place.dataset.of === "joint" ? "the joint density" : `the ${place.dataset.of}`));
   }
   if (page.k.joint !== undefined) fill($("section-axis"), nodes(source.observables[page.k.joint].symbols[1]));
   page.tabulate();
@@ -429,17 +427,3 @@ const press = (page, event) => {
   act();
 };
 
-const start = async () => {
-  const told = JSON.parse(new TextDecoder().decode(await readBlock("scene")));
-  const page = told.live ? new LivePage(told, new LiveSource(told)) : new Page(told, await StoredSource.load(told));
-  build(page);
-  if (told.live) buildParameters(page);
-  connect(page);
-  page.restore(readAddress());
-  document.documentElement.dataset.ready = "true";
-};
-
-start().catch((error) => {
-  document.getElementById("says").textContent = `This page cannot be shown: ${error.message}.`;
-  throw error;
-});

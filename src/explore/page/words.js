@@ -82,7 +82,7 @@ const changesTable = (scene, source, go) => {
     return [make("p", {}, scene.live ? "None yet: “Locate here” narrows the change nearest to the cursor."
       : "No change of topology was located on this sweep.")];
   }
-  const head = ["", "value", "of", "from … to", "status"].map((name) => make("th", { scope: "col" }, name));
+  const head = ["label", "value", "of", "from … to", "status"].map((name) => make("th", { scope: "col" }, name));
   const rows = scene.labels.filter(({ kind }) => kind !== "end").map((label) => make("tr", { "data-at": label.value },
     make("td", {}, make("button", { type: "button", onclick: () => go(label.value), title: `Go to ${label.label}` }, label.label)),
     make("td", {}, withError(label.value, label.error)),

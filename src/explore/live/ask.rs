@@ -1,0 +1,43 @@
+//! What the page asks for, as it arrives.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+
+/// Asks for the densities at some values.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct AskSolve {
+    /// Requests of one lane replace each other.
+    pub(super) lane: String,
+    /// Rises along a lane.
+    pub(super) ticket: u64,
+    /// The parameter that moves: neighbouring requests differ in it alone.
+    pub(super) moving: String,
+    /// Values of the parameters; the sweep's where one is left out.
+    pub(super) values: BTreeMap<String, f64>,
+    /// On half as many cells an axis.
+    #[serde(default)]
+    pub(super) preview: bool,
+    /// Without the values of joint densities.
+    #[serde(default)]
+    pub(super) marginals_only: bool,
+}
+
+/// Asks for the changes between two values of the swept parameter.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct AskLocate {
+    pub(super) lane: String,
+    pub(super) ticket: u64,
+    pub(super) values: BTreeMap<String, f64>,
+    pub(super) from: f64,
+    pub(super) to: f64,
+}
+
+/// Asks for a sweep file with these values of the parameters that are not swept.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct AskSweepFile {
+    pub(super) values: BTreeMap<String, f64>,
+}

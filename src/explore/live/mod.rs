@@ -1,0 +1,274 @@
+//! What the live page asks for: densities at any values of the parameters, changes between two values, a sweep file.
+//!
+//! Requests come in lanes with rising tickets: a newer one of a lane makes the older ones stale. What waits is dropped, what is being
+//! solved is cancelled. Solves are warm: sessions are kept for the parameters that do not move.
+
+mod ask;
+mod bound;
+mod lanes;
+mod sessions;
+
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use serde::Serialize;
+
+use super::ExploreError;
+use super::frame::{Frame, band};
+use super::html;
+use super::pack::deflate;
+use super::scene::{Label, Scene};
+use crate::cancellation::Cancellation;
+use crate::continuation::{Point, PointType, SourceError};
+use crate::density::{EstimatedDensity, Observable};
+use crate::sweep_file::{SolveError, Sweep};
+use crate::topology::{Detector as _, PersistenceDetector};
+use ask::{AskLocate, AskSolve, AskSweepFile};
+use bound::Base;
+use lanes::Lanes;
+use sessions::{Sessions, Solving};
+
+/// The live side of a sweep.
+pub(super) struct Live {
+    base: Base,
+    detector: PersistenceDetector,
+    sessions: Mutex<Sessions>,
+    lanes: Lanes,
+}
+
+impl std::fmt::Debug for Live {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Live").finish_non_exhaustive()
+    }
+}
+
+/// What a request comes to.
+#[derive(Debug)]
+pub(super) enum Answer {
+    /// What was asked for, as JSON.
+    Done(Vec<u8>),
+    /// Why not, as JSON.
+    Refused(Vec<u8>),
+    /// A newer request has taken its place.
+    Stale,
+}
+
+/// Why there is no answer.
+enum Stop {
+    Refused(String),
+    Stale,
+}
+
+#[derive(Debug, Serialize)]
+struct Told<'a> {
+    live: bool,
+    #[serde(flatten)]
+    scene: &'a Scene,
+    frames: [(); 0],
+    arrays: Vec<Grid>,
+}
+
+#[derive(Debug, Serialize)]
+struct Solved {
+    ticket: u64,
+    frame: Frame,
+    arrays: Vec<Grid>,
+    milliseconds: f64,
+}
+
+/// The cells of a watched density, with its values and band as little-endian doubles in base64; `None` where they were not asked for.
+#[derive(Debug, Serialize)]
+struct Grid {
+    edges: Vec<Vec<f64>>,
+    values: Option<String>,
+    band: Option<String>,
+    band_is: Option<&'static str>,
+}
+
+#[derive(Debug, Serialize)]
+struct Located {
+    ticket: u64,
+    labels: Vec<Label>,
+}
+
+#[derive(Debug, Serialize)]
+struct Refusal<'a> {
+    error: &'a str,
+}
+
+impl Live {
+    pub(super) fn new(sweep: &Sweep) -> Self {
+        Self {
+            detector: sweep.detector(),
+            base: Base::new(sweep),
+            sessions: Mutex::default(),
+            lanes: Lanes::default(),
+        }
+    }
+
+    /// The page that asks this.
+    pub(super) fn page(&self) -> Result<String, ExploreError> {
+        let sweep = self.base.sweep();
+        let axes = sweep.problem.space().axes();
+        let edges = |observable: &Observable| {
+            let kept = observable.axes().into_iter();
+            kept.map(|axis| axes[axis].edges().to_vec()).collect()
+        };
+        let told = Told {
+            live: true,
+            scene: &Scene::new(sweep, &[]),
+            frames: [],
+            arrays: (sweep.problem.observables().iter())
+                .map(|observable| Grid {
+                    edges: edges(observable),
+                    values: None,
+                    band: None,
+                    band_is: None,
+                })
+                .collect(),
+        };
+        let told = deflate(&serde_json::to_vec(&told)?)?;
+        Ok(html::page(&sweep.settings.title, &told, &[], true))
+    }
+
+    /// Cancels whatever is being solved.
+    pub(super) fn stop(&self) {
+        self.lanes.cancel_all();
+    }
+
+    /// The densities at some values of the parameters.
+    pub(super) fn solve(&self, body: &[u8]) -> Answer {
+        answer(|| {
+            let ask: AskSolve = read(body)?;
+            let bound = self.base.bind(&ask).map_err(Stop::Refused)?;
+            let lane = self.lanes.enter(&ask.lane, ask.ticket).ok_or(Stop::Stale)?;
+            let clock = Instant::now();
+            let mut sessions = self.sessions.lock().unwrap_or_else(PoisonError::into_inner);
+            let fresh = |cancellation: &Cancellation| lane.begin(cancellation);
+            let point = match sessions.solve(&bound, fresh) {
+                Ok(solution) => solution,
+                Err(Solving::Stale | Solving::Source(SourceError::Interrupted)) => {
+                    return Err(Stop::Stale);
+                }
+                Err(Solving::Source(error)) => return Err(Stop::Refused(error.to_string())),
+                Err(Solving::Open(error)) => return Err(Stop::Refused(error)),
+            };
+            drop(sessions);
+            lane.end();
+            let point = self.detected(point, bound.value, clock);
+            let grids = point
+                .densities
+                .iter()
+                .map(|density| grid(density, ask.marginals_only));
+            Ok(Solved {
+                ticket: ask.ticket,
+                arrays: grids.collect(),
+                frame: Frame::new(&point, &bound.sweep.settings.family),
+                milliseconds: 1e3 * clock.elapsed().as_secs_f64(),
+            })
+        })
+    }
+
+    fn detected(
+        &self,
+        solution: crate::continuation::Solution<'static>,
+        value: f64,
+        clock: Instant,
+    ) -> Point {
+        let densities = solution.densities;
+        Point {
+            value,
+            report: solution.report,
+            moments: solution.moments,
+            detections: densities
+                .iter()
+                .map(|one| self.detector.detect(one))
+                .collect(),
+            densities,
+            distance: None,
+            seconds: clock.elapsed().as_secs_f64(),
+        }
+    }
+
+    /// The changes of topology between two values of the swept parameter.
+    pub(super) fn locate(&self, body: &[u8]) -> Answer {
+        answer(|| {
+            let ask: AskLocate = read(body)?;
+            let sweep = self.base.between(&ask).map_err(Stop::Refused)?;
+            let lane = self.lanes.enter(&ask.lane, ask.ticket).ok_or(Stop::Stale)?;
+            let cancellation = Cancellation::new();
+            if !lane.begin(&cancellation) {
+                return Err(Stop::Stale);
+            }
+            let result = sweep
+                .run(&cancellation, &mut ())
+                .map_err(|error: SolveError| {
+                    if cancellation.is_cancelled() {
+                        Stop::Stale
+                    } else {
+                        Stop::Refused(error.to_string())
+                    }
+                })?;
+            if result.interrupted {
+                return Err(Stop::Stale);
+            }
+            lane.end();
+            let changes = result
+                .labels
+                .iter()
+                .filter(|row| row.kind == PointType::Bifurcation);
+            Ok(Located {
+                ticket: ask.ticket,
+                labels: changes
+                    .map(|row| Label::new(row, &result.subject))
+                    .collect(),
+            })
+        })
+    }
+
+    /// The sweep at these values of the other parameters, as a sweep file.
+    pub(super) fn sweep_file(&self, body: &[u8]) -> Answer {
+        answer(|| {
+            let ask: AskSweepFile = read(body)?;
+            self.base.sweep_file(&ask.values).map_err(Stop::Refused)
+        })
+    }
+}
+
+fn answer<T: Serialize>(make: impl FnOnce() -> Result<T, Stop>) -> Answer {
+    let refused = |reason: &str| serde_json::to_vec(&Refusal { error: reason }).unwrap_or_default();
+    match make() {
+        Ok(done) => match serde_json::to_vec(&done) {
+            Ok(body) => Answer::Done(body),
+            Err(error) => Answer::Refused(refused(&error.to_string())),
+        },
+        Err(Stop::Refused(reason)) => Answer::Refused(refused(&reason)),
+        Err(Stop::Stale) => Answer::Stale,
+    }
+}
+
+fn read<'b, T: serde::Deserialize<'b>>(body: &'b [u8]) -> Result<T, Stop> {
+    serde_json::from_slice(body).map_err(|error| Stop::Refused(error.to_string()))
+}
+
+fn grid(estimated: &EstimatedDensity, marginals_only: bool) -> Grid {
+    let is_marginal = matches!(estimated.observable, Observable::Marginal(_));
+    let band = is_marginal.then(|| band(estimated)).flatten();
+    let edges = estimated.density.axes.iter();
+    Grid {
+        edges: edges.map(|axis| axis.edges().to_vec()).collect(),
+        values: (is_marginal || !marginals_only).then(|| doubles(&estimated.density.values)),
+        band_is: band.as_ref().map(|band| band.1),
+        band: band.map(|band| doubles(&band.0)),
+    }
+}
+
+fn doubles(values: &[f64]) -> String {
+    let bytes: Vec<u8> = values
+        .iter()
+        .flat_map(|value| value.to_le_bytes())
+        .collect();
+    STANDARD.encode(bytes)
+}

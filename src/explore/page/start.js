@@ -1,0 +1,16 @@
+// Begins: reads what the page was told, and shows what its address says.
+
+const start = async () => {
+  const told = JSON.parse(new TextDecoder().decode(await readBlock("scene")));
+  const page = told.live ? new LivePage(told, new LiveSource(told)) : new Page(told, await StoredSource.load(told));
+  build(page);
+  if (told.live) buildParameters(page);
+  connect(page);
+  page.restore(readAddress());
+  document.documentElement.dataset.ready = "true";
+};
+
+start().catch((error) => {
+  document.getElementById("says").textContent = `This page cannot be shown: ${error.message}.`;
+  throw error;
+});

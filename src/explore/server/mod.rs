@@ -1,0 +1,132 @@
+//! The server of the live page: on the loopback address only, for pages that it sent itself, bounded in everything.
+
+mod guard;
+mod http;
+
+use std::net::{Ipv4Addr, TcpListener, TcpStream};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
+
+use super::ExploreError;
+use super::live::{Answer, Live};
+use crate::cancellation::Cancellation;
+use guard::Guard;
+use http::{Request, Response};
+
+/// Connections that are served side by side; further ones are closed at once.
+const MOST_CONNECTIONS: usize = 64;
+/// How long the server sleeps when nobody asks.
+const NAP: Duration = Duration::from_millis(4);
+
+/// A page that solves while one moves its sliders, served to the browsers of this machine.
+///
+/// ```no_run
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// use pbif::cancellation::Cancellation;
+/// use pbif::explore::LiveServer;
+/// use pbif::sweep_file::SweepFile;
+///
+/// let never = Cancellation::new();
+/// let sweep = SweepFile::read("sweeps/coulomb_fc.toml".as_ref())?.validate()?.prepare(&never)?;
+/// let server = LiveServer::bind(&sweep, 0)?;
+/// println!("{}", server.address());
+/// server.serve(&never);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug)]
+pub struct LiveServer {
+    listener: TcpListener,
+    guard: Guard,
+    live: Live,
+    page: String,
+}
+
+impl LiveServer {
+    /// Takes a port of the loopback address, a free one for 0, and composes the page of a sweep.
+    ///
+    /// # Errors
+    /// [`ExploreError::Port`] when the port cannot be had, [`ExploreError::Random`] without random numbers for the token,
+    /// and what the page cannot be composed for.
+    pub fn bind(sweep: &crate::sweep_file::Sweep, port: u16) -> Result<Self, ExploreError> {
+        let taken = |source| ExploreError::Port { port, source };
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(taken)?;
+        listener.set_nonblocking(true).map_err(taken)?;
+        let port = listener.local_addr().map_err(taken)?.port();
+        let live = Live::new(sweep);
+        Ok(Self {
+            listener,
+            guard: Guard::new(port)?,
+            page: live.page()?,
+            live,
+        })
+    }
+
+    /// The address of the page, with its token.
+    pub fn address(&self) -> String {
+        self.guard.address()
+    }
+
+    /// Answers requests until it is cancelled, on the threads of the pool it is called in.
+    pub fn serve(&self, cancellation: &Cancellation) {
+        let active = AtomicUsize::new(0);
+        std::thread::scope(|scope| {
+            while !cancellation.is_cancelled() {
+                let Ok((mut stream, _)) = self.listener.accept() else {
+                    // Nobody asks, or the machine is out of something for a moment.
+                    std::thread::sleep(NAP);
+                    continue;
+                };
+                if active.load(Ordering::SeqCst) >= MOST_CONNECTIONS {
+                    continue;
+                }
+                active.fetch_add(1, Ordering::SeqCst);
+                let active = &active;
+                let started = std::thread::Builder::new().spawn_scoped(scope, move || {
+                    self.converse(&mut stream);
+                    active.fetch_sub(1, Ordering::SeqCst);
+                });
+                if started.is_err() {
+                    active.fetch_sub(1, Ordering::SeqCst);
+                }
+            }
+            self.live.stop();
+        });
+    }
+
+    fn converse(&self, stream: &mut TcpStream) {
+        // A stream that was accepted takes after its listener on some systems.
+        if stream.set_nonblocking(false).is_err() {
+            return;
+        }
+        let response = match http::read(stream) {
+            Ok(request) => self.respond(&request).unwrap_or_else(|refusal| refusal),
+            Err(refusal) => refusal,
+        };
+        // Without a reader there is nobody to tell.
+        let _ = response.send(stream);
+    }
+
+    fn respond(&self, request: &Request) -> Result<Response, Response> {
+        let asked = self.guard.admit(request)?;
+        let answer: fn(&Live, &[u8]) -> Answer = match (request.method.as_str(), asked) {
+            ("GET", "") => return Ok(Response::html(&self.page)),
+            (_, "solve") => Live::solve,
+            (_, "locate") => Live::locate,
+            (_, "sweep-file") => Live::sweep_file,
+            (_, "") => return Err(Response::refused(405, "this can only be read")),
+            _ => return Err(Response::refused(404, "there is nothing of this name")),
+        };
+        if request.method != "POST" {
+            return Err(Response::refused(405, "this takes a POST"));
+        }
+        if request.header("content-type") != Some("application/json") {
+            return Err(Response::refused(400, "this takes JSON"));
+        }
+        Ok(match answer(&self.live, &request.body) {
+            Answer::Done(body) => Response::json(200, body),
+            Answer::Refused(body) => Response::json(400, body),
+            Answer::Stale => Response::json(409, b"{\"stale\":true}".to_vec()),
+        })
+    }
+}
