@@ -304,6 +304,7 @@ fn a_live_page_solves_what_the_library_solves() {
     let body = r#"{"lane":"a","ticket":1,"moving":"f_c","values":{"f_c":-0.013,"kappa":0.012}}"#;
     let (code, answer) = served.post("solve", body);
     assert_eq!(code, 200, "{answer}");
+    let answer = &answer["done"];
     assert_eq!(answer["frame"]["value"], -0.013);
 
     let mut file = SweepFile::parse("again.toml", &served.sweep.to_toml());
@@ -341,63 +342,63 @@ fn a_live_page_solves_what_the_library_solves() {
 fn requests_of_a_live_page_are_answered_or_refused_in_words() {
     let served = Served::new();
     let solve = |ticket: u64, rest: &str| {
-        served.post(
+        let (code, answer) = served.post(
             "solve",
             &format!(r#"{{"lane":"a","ticket":{ticket},{rest}}}"#),
-        )
+        );
+        assert_eq!(code, 200);
+        answer
     };
-    let (code, answer) = solve(
+    let refused =
+        |answer: &serde_json::Value| answer["refused"].as_str().unwrap_or_default().to_owned();
+    let answer = solve(
         2,
         r#""moving":"kappa","values":{"kappa":0.02},"preview":true"#,
     );
-    assert_eq!(code, 400, "the swept parameter has no value: {answer}");
-    let (code, answer) = solve(
+    assert!(
+        refused(&answer).contains("`f_c`"),
+        "the swept parameter has no value: {answer}"
+    );
+    let answer = solve(
         3,
         r#""moving":"kappa","values":{"kappa":0.02,"f_c":0.0},"preview":true,"marginals_only":true"#,
     );
-    assert_eq!(code, 200, "{answer}");
+    let arrays = &answer["done"]["arrays"];
     assert_eq!(
-        answer["arrays"][0]["edges"][0].as_array().unwrap().len(),
-        25
+        arrays[0]["edges"][0].as_array().unwrap().len(),
+        25,
+        "{answer}"
     );
-    assert!(answer["arrays"][2]["values"].is_null());
+    assert!(arrays[2]["values"].is_null());
     // An older ticket of the same lane is stale; values that are not allowed are refused with what is.
-    assert_eq!(solve(1, r#""moving":"f_c","values":{"f_c":0.0}"#).0, 409);
-    let (code, answer) = solve(4, r#""moving":"sigma2","values":{"f_c":0.0,"sigma2":-1.0}"#);
-    assert_eq!(code, 400);
+    assert_eq!(
+        solve(1, r#""moving":"f_c","values":{"f_c":0.0}"#)["stale"],
+        true
+    );
+    let answer = solve(4, r#""moving":"sigma2","values":{"f_c":0.0,"sigma2":-1.0}"#);
+    assert!(refused(&answer).contains("greater than zero"), "{answer}");
+    let answer = solve(5, r#""moving":"friction","values":{"friction":0.0}"#);
     assert!(
-        answer["error"]
-            .as_str()
-            .unwrap()
-            .contains("greater than zero"),
+        refused(&answer).contains("no parameter `friction`"),
         "{answer}"
     );
-    let (_, answer) = solve(5, r#""moving":"friction","values":{"friction":0.0}"#);
-    assert!(
-        answer["error"]
-            .as_str()
-            .unwrap()
-            .contains("no parameter `friction`"),
-        "{answer}"
+    assert_ne!(
+        refused(&solve(6, r#""moving":"f_c","values":{"f_c":1e999}"#)),
+        ""
     );
-    assert_eq!(solve(6, r#""moving":"f_c","values":{"f_c":1e999}"#).0, 400);
 
-    let (code, file) = served.post("sweep-file", r#"{"values":{"kappa":0.03}}"#);
-    assert_eq!(code, 200);
-    let again = SweepFile::parse("copied.toml", file.as_str().unwrap())
-        .validate()
-        .unwrap();
+    let (_, answer) = served.post("sweep-file", r#"{"values":{"kappa":0.03}}"#);
+    let file = answer["done"].as_str().unwrap();
+    let again = SweepFile::parse("copied.toml", file).validate().unwrap();
     assert!(again.family.fixed().any(|fixed| fixed == ("kappa", 0.03)));
 
     let locate = r#"{"lane":"l","ticket":1,"values":{},"from":-0.006,"to":0.004}"#;
-    let (code, answer) = served.post("locate", locate);
-    assert_eq!(code, 200, "{answer}");
-    let rows = answer["labels"].as_array().unwrap();
-    assert!(
-        rows.iter()
-            .any(|row| row["observable"] == 1 && row["value"].as_f64().unwrap().abs() < 1e-4),
-        "{rows:?}"
-    );
+    let (_, answer) = served.post("locate", locate);
+    let rows = answer["done"]["labels"].as_array().unwrap();
+    let at_rest = |row: &&serde_json::Value| {
+        row["observable"] == 1 && row["value"].as_f64().unwrap().abs() < 1e-4
+    };
+    assert!(rows.iter().any(|row| at_rest(&row)), "{rows:?}");
 }
 
 #[test]

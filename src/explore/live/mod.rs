@@ -44,15 +44,17 @@ impl std::fmt::Debug for Live {
     }
 }
 
-/// What a request comes to.
-#[derive(Debug)]
-pub(super) enum Answer {
-    /// What was asked for, as JSON.
-    Done(Vec<u8>),
-    /// Why not, as JSON.
-    Refused(Vec<u8>),
+/// What a request comes to, as JSON. That a value is refused or a request stale is an answer like others: browsers write failures
+/// into their consoles.
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "lowercase")]
+enum Answer<T> {
+    /// What was asked for.
+    Done(T),
+    /// Why not, for people.
+    Refused(String),
     /// A newer request has taken its place.
-    Stale,
+    Stale(bool),
 }
 
 /// Why there is no answer.
@@ -91,11 +93,6 @@ struct Grid {
 struct Located {
     ticket: u64,
     labels: Vec<Label>,
-}
-
-#[derive(Debug, Serialize)]
-struct Refusal<'a> {
-    error: &'a str,
 }
 
 impl Live {
@@ -139,7 +136,7 @@ impl Live {
     }
 
     /// The densities at some values of the parameters.
-    pub(super) fn solve(&self, body: &[u8]) -> Answer {
+    pub(super) fn solve(&self, body: &[u8]) -> Vec<u8> {
         answer(|| {
             let ask: AskSolve = read(body)?;
             let bound = self.base.bind(&ask).map_err(Stop::Refused)?;
@@ -193,7 +190,7 @@ impl Live {
     }
 
     /// The changes of topology between two values of the swept parameter.
-    pub(super) fn locate(&self, body: &[u8]) -> Answer {
+    pub(super) fn locate(&self, body: &[u8]) -> Vec<u8> {
         answer(|| {
             let ask: AskLocate = read(body)?;
             let sweep = self.base.between(&ask).map_err(Stop::Refused)?;
@@ -229,7 +226,7 @@ impl Live {
     }
 
     /// The sweep at these values of the other parameters, as a sweep file.
-    pub(super) fn sweep_file(&self, body: &[u8]) -> Answer {
+    pub(super) fn sweep_file(&self, body: &[u8]) -> Vec<u8> {
         answer(|| {
             let ask: AskSweepFile = read(body)?;
             self.base.sweep_file(&ask.values).map_err(Stop::Refused)
@@ -237,16 +234,13 @@ impl Live {
     }
 }
 
-fn answer<T: Serialize>(make: impl FnOnce() -> Result<T, Stop>) -> Answer {
-    let refused = |reason: &str| serde_json::to_vec(&Refusal { error: reason }).unwrap_or_default();
-    match make() {
-        Ok(done) => match serde_json::to_vec(&done) {
-            Ok(body) => Answer::Done(body),
-            Err(error) => Answer::Refused(refused(&error.to_string())),
-        },
-        Err(Stop::Refused(reason)) => Answer::Refused(refused(&reason)),
-        Err(Stop::Stale) => Answer::Stale,
-    }
+fn answer<T: Serialize>(make: impl FnOnce() -> Result<T, Stop>) -> Vec<u8> {
+    let answer = match make() {
+        Ok(done) => Answer::Done(done),
+        Err(Stop::Refused(reason)) => Answer::Refused(reason),
+        Err(Stop::Stale) => Answer::Stale(true),
+    };
+    serde_json::to_vec(&answer).unwrap_or_default()
 }
 
 fn read<'b, T: serde::Deserialize<'b>>(body: &'b [u8]) -> Result<T, Stop> {

@@ -45,17 +45,11 @@ class LiveSource {
         await new Promise((resolve) => setTimeout(resolve, 300 * (attempt + 1)));
         continue;
       }
-      if (response.status === 409) return null;
       const text = await response.text();
-      if (response.ok) return JSON.parse(text);
-      if (response.status === 503 && attempt < 2) continue;
-      let reason = text;
-      try {
-        reason = JSON.parse(text).error;
-      } catch (error) {
-        // A refusal in plain words.
-      }
-      throw new Refused(reason);
+      if (!response.ok) throw new Refused(text);
+      const { done, refused } = JSON.parse(text);
+      if (refused !== undefined) throw new Refused(refused);
+      return done ?? null;
     }
   }
 
@@ -137,6 +131,7 @@ class LivePage extends Page {
     this.values[name] = value;
     this.moving = name;
     this.wanted++;
+    $("refused").textContent = "";
     this.writeControls();
     clearTimeout(this.resting);
     if (!this.flying) this.send(true);
@@ -151,9 +146,12 @@ class LivePage extends Page {
     const preview = moves && this.cost > SLOW;
     try {
       const answer = await this.source.ask("solve", "shown", { moving: this.moving, values, preview });
-      if (answer && flight === this.flying) this.arrive(answer, values[this.swept], preview);
+      if (answer && flight === this.flying) {
+        this.good = values;
+        this.arrive(answer, values[this.swept], preview);
+      }
     } catch (error) {
-      if (flight === this.flying) this.refuse(error);
+      if (flight === this.flying) this.takeBack(error);
     }
     if (flight !== this.flying) return;
     this.flying = null;
@@ -166,9 +164,18 @@ class LivePage extends Page {
     this.frame = this.source.frame(answer, value);
     this.frame.preview = preview;
     if (!preview) this.cost = answer.milliseconds;
-    $("refused").textContent = "";
     this.remember(this.frame);
     this.later();
+  }
+
+  /** Values that were refused give way to those that are shown, or to those that the page began with. */
+  takeBack(error) {
+    this.refuse(error);
+    const values = this.good ?? this.initial;
+    const same = Object.keys(values).every((name) => values[name] === this.values[name]);
+    this.values = { ...values };
+    this.writeControls();
+    if (!this.good && !same) this.wanted++;
   }
 
   refuse(error) {

@@ -3,7 +3,7 @@
 const readAddress = () => Object.fromEntries(new URLSearchParams(location.hash.slice(1)));
 
 const writeAddress = (state) => {
-  const entries = Object.entries(state).filter(([, value]) => value !== null && value !== "" && value !== false);
+  const entries = Object.entries(state).filter(([, value]) => value !== null && value !== undefined && value !== "" && value !== false);
   const text = `#${new URLSearchParams(entries)}`;
   if (text === location.hash) return;
   try {

@@ -46,9 +46,9 @@ pub(super) struct Response {
 }
 
 impl Response {
-    pub(super) fn json(status: u16, body: Vec<u8>) -> Self {
+    pub(super) fn json(body: Vec<u8>) -> Self {
         Self {
-            status,
+            status: 200,
             kind: "application/json",
             body,
         }
@@ -80,9 +80,7 @@ impl Response {
             404 => "Not Found",
             405 => "Method Not Allowed",
             408 => "Request Timeout",
-            409 => "Conflict",
             413 => "Content Too Large",
-            503 => "Service Unavailable",
             _ => "Error",
         };
         let head = format!(

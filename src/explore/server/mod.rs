@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use super::ExploreError;
-use super::live::{Answer, Live};
+use super::live::Live;
 use crate::cancellation::Cancellation;
 use guard::Guard;
 use http::{Request, Response};
@@ -109,7 +109,7 @@ impl LiveServer {
 
     fn respond(&self, request: &Request) -> Result<Response, Response> {
         let asked = self.guard.admit(request)?;
-        let answer: fn(&Live, &[u8]) -> Answer = match (request.method.as_str(), asked) {
+        let answer: fn(&Live, &[u8]) -> Vec<u8> = match (request.method.as_str(), asked) {
             ("GET", "") => return Ok(Response::html(&self.page)),
             (_, "solve") => Live::solve,
             (_, "locate") => Live::locate,
@@ -123,10 +123,6 @@ impl LiveServer {
         if request.header("content-type") != Some("application/json") {
             return Err(Response::refused(400, "this takes JSON"));
         }
-        Ok(match answer(&self.live, &request.body) {
-            Answer::Done(body) => Response::json(200, body),
-            Answer::Refused(body) => Response::json(400, body),
-            Answer::Stale => Response::json(409, b"{\"stale\":true}".to_vec()),
-        })
+        Ok(Response::json(answer(&self.live, &request.body)))
     }
 }
