@@ -67,7 +67,7 @@ impl LiveServer {
         self.guard.address()
     }
 
-    /// Answers requests until it is cancelled, on the threads of the pool it is called in.
+    /// Answers requests, each on a thread of its own, until it is cancelled.
     pub fn serve(&self, cancellation: &Cancellation) {
         let active = AtomicUsize::new(0);
         std::thread::scope(|scope| {
