@@ -202,7 +202,14 @@ fn a_browser_shows_the_page_from_disk() {
         "the pinned state is not compared"
     );
     // What an address says wrongly changes nothing.
-    let odd = shown("f_c=much&pin=NaN&joint=7&theme=loud");
+    // On a busy machine the browser's clock may run out before the page has read its data.
+    let mut odd = String::new();
+    for _ in 0..5 {
+        odd = shown("f_c=much&pin=NaN&joint=7&theme=loud");
+        if odd.contains("data-ready") {
+            break;
+        }
+    }
     assert!(odd.contains("data-ready=\"true\"") && odd.contains("aria-live=\"polite\">f_c = "));
 }
 
@@ -361,12 +368,12 @@ fn requests_of_a_live_page_are_answered_or_refused_in_words() {
     );
     let answer = solve(
         3,
-        r#""moving":"kappa","values":{"kappa":0.02,"f_c":0.0},"preview":true,"marginals_only":true"#,
+        r#""moving":"kappa","values":{"kappa":0.02,"f_c":0.0},"marginals_only":true"#,
     );
     let arrays = &answer["done"]["arrays"];
     assert_eq!(
         arrays[0]["edges"][0].as_array().unwrap().len(),
-        25,
+        31,
         "{answer}"
     );
     assert!(arrays[2]["values"].is_null());

@@ -161,6 +161,8 @@ class LivePage extends Page {
   }
 
   arrive(answer, value, preview) {
+    // Too few cells may hold no density where more do: that is not worth showing.
+    if (preview && answer.frame.found.length === 0) return;
     this.frame = this.source.frame(answer, value);
     this.frame.preview = preview;
     if (!preview) this.cost = answer.milliseconds;

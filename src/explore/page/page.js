@@ -302,7 +302,8 @@ const exportButtons = (page, panel, name) => ["SVG", "PNG", "CSV"].map((format) 
 /** What is swept, and what is held. */
 const subtitle = (scene) => {
   const { swept, parameters } = scene;
-  const held = parameters.filter(({ value }) => value !== null)
+  // Of a live page the others have their sliders.
+  const held = parameters.filter(({ value }) => value !== null && !scene.live)
     .flatMap(({ symbol, value }) => [", ", ...nodes(symbol), ` = ${plainNumber(value, 6)}`]).slice(1);
   return [...nodes(swept.symbol), ` from ${plainNumber(swept.from, 6)} to ${plainNumber(swept.to, 6)}`, held.length ? "; " : "", ...held];
 };
