@@ -5,6 +5,7 @@ mod check;
 mod compare;
 mod detect;
 mod explore;
+mod new;
 mod output;
 mod plot;
 mod stored;
@@ -130,6 +131,11 @@ fn dispatch(command: &Command) -> Result<Outcome, CommandError> {
         Command::Detect { run } => detect::run(run),
         Command::Plot { run } => plot::run(run),
         Command::Explore { run } => explore::run(run),
+        Command::New { file: None, .. } => print(&new::list()),
+        Command::New {
+            file: Some(file),
+            like,
+        } => print(&new::write(file, like)?),
         Command::Systems { name: None } => print(&systems::list()),
         Command::Systems { name: Some(name) } => print(&systems::describe(name)?),
     }
