@@ -30,7 +30,7 @@ fn sampling(system: &dyn System) -> f64 {
         samples: 128,
         groups: 2,
         seed: 1,
-        integrator: Integrator::Heun,
+        integrator: Integrator::default(),
         keep_starts: false,
     };
     let never = Cancellation::new();
