@@ -50,7 +50,7 @@ const TWINS: [Twins; 5] = [
             [system.equations]
             x = "y"
             y = "-kappa y - x (alpha + mu x^2) - lambda z"
-            z = "y - lambda/f_c abs(y) z"
+            z = "y - lambda/f_c*abs(y)*z"
             [system.noise]
             y = "sqrt(sigma2)"
             [system.bounds]
@@ -82,7 +82,7 @@ const TWINS: [Twins; 5] = [
             [system.equations]
             x = "y"
             y = "-kappa y - x (alpha + mu x^2) - lambda z"
-            z = "y - lambda/f_c abs(y) x"
+            z = "y - lambda/f_c*abs(y)*x"
             [system.noise]
             y = "sqrt(sigma2)"
         "#,
