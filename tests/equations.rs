@@ -273,3 +273,85 @@ fn a_run_is_as_that_of_a_built_in_model() {
     text(pbif(path, &["plot", "run", "--out", "drawn", "--quiet"]));
     assert!(path.join("drawn").read_dir().unwrap().next().is_some());
 }
+
+#[test]
+fn starting_files_are_written_and_run_as_they_stand() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let words = |output: &Output| {
+        let both = [&output.stdout[..], &output.stderr].concat();
+        String::from_utf8(both).unwrap()
+    };
+    let listed = pbif(path, &["new"]);
+    assert_says(
+        &words(&listed),
+        &[
+            "vanderpol",
+            "Van der Pol oscillator",
+            "pbif new FILE --like NAME",
+        ],
+    );
+    let written = pbif(path, &["new", "mine.toml", "--like", "genetic"]);
+    assert_eq!(written.status.code(), Some(0));
+    assert_says(&words(&written), &["pbif sweep mine.toml"]);
+    let text = std::fs::read_to_string(path.join("mine.toml")).unwrap();
+    assert_says(
+        &text,
+        &["pbif sweep mine.toml", "# Source: ", "[system.equations]"],
+    );
+    let found = pbif(
+        path,
+        &[
+            "sweep",
+            "mine.toml",
+            "--quiet",
+            "--set",
+            "figures.formats=[]",
+        ],
+    );
+    assert_eq!(found.status.code(), Some(0), "{}", words(&found));
+    assert_says(
+        &words(&found),
+        &["1 peak → 2 peaks, symmetric split", "located"],
+    );
+    // A file that is there is never replaced.
+    let again = pbif(path, &["new", "mine.toml"]);
+    assert_eq!(again.status.code(), Some(2));
+    assert_says(&words(&again), &["`mine.toml` is there already"]);
+    assert_eq!(
+        std::fs::read_to_string(path.join("mine.toml")).unwrap(),
+        text
+    );
+    let unknown = pbif(path, &["new", "b.toml", "--like", "vanderpool"]);
+    assert_eq!(unknown.status.code(), Some(2));
+    assert_says(&words(&unknown), &["did you mean `vanderpol`?"]);
+    assert!(!path.join("b.toml").exists());
+}
+
+#[test]
+fn check_shows_what_was_read_and_found() {
+    let (_, out, _) = check(GOOD, &[]);
+    assert_says(
+        &out,
+        &[
+            "#   x' = y",
+            "√(2 D) ξ₁(t) + 0.1 x ξ₂(t)",
+            "#   friction = f_c sign(y)",
+            "ξ₁ on y, additive",
+            "ξ₂ on y, multiplicative in x",
+            "the drift is not smooth where y = 0",
+            "the reflection x → -x, y → -y leaves the process as it is",
+        ],
+    );
+    let oblique = GOOD
+        .replace("y - x", "y - abs(x - y)")
+        .replace("\"sqrt(2 D)\", ", "");
+    let (_, out, _) = check(&oblique, &[]);
+    assert_says(
+        &out,
+        &[
+            "no face of the grid lies there",
+            "the amplitude 0.1 x may be zero in the domain",
+        ],
+    );
+}

@@ -8,6 +8,7 @@ use crate::sweep_file;
 
 const EXAMPLES: &str = "\
 Examples:
+  pbif new mine.toml --like vanderpol  a sweep file to start from; `pbif new` lists them
   pbif systems                       list the models
   pbif systems coulomb               show one: equations, parameters, source
   pbif check sweeps/coulomb_fc.toml  what would be run, and what it costs
@@ -86,6 +87,15 @@ pub(super) struct Arguments {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
+    /// Write a commented sweep file to start from; without FILE, list those that there are
+    #[command(after_help = "Examples:\n  pbif new\n  pbif new mine.toml --like vanderpol")]
+    New {
+        /// File to write; it must not be there yet
+        file: Option<PathBuf>,
+        /// Starting file
+        #[arg(long, value_name = "NAME", default_value = "vanderpol")]
+        like: String,
+    },
     /// Sweep a parameter, locate the P-bifurcations, write tables, densities and figures
     #[command(after_help = "The keys of a sweep file: pbif sweep --help", after_long_help = sweep_file::help())]
     Sweep {

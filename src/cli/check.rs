@@ -1,5 +1,7 @@
 //! `pbif check`: the resolved sweep and what it will cost. Runs nothing.
 
+mod equations;
+
 use std::io;
 use std::path::Path;
 
@@ -18,6 +20,9 @@ const MANY_POINTS: usize = 1000;
 pub(super) fn text(file: &Path, spec: &Sweep) -> io::Result<String> {
     let mut text = format!("# {}: no errors. Complete, it reads\n\n", file.display());
     text += &spec.to_toml();
+    for line in equations::lines(spec) {
+        text += &format!("{line}\n");
+    }
     text += "\n# Cost\n";
     for line in costs(spec) {
         text += &format!("# {line}\n");
@@ -133,6 +138,7 @@ fn points(spec: &Sweep) -> String {
 /// What a user should know before the run.
 fn notes(spec: &Sweep) -> Vec<String> {
     let mut notes = misplaced_faces(spec);
+    notes.extend(equations::notes(spec));
     if spec.settings.points > MANY_POINTS {
         notes.push(format!(
             "{} points is a long sweep; changes are located between points, so fewer will do",

@@ -6,6 +6,7 @@ mod compare;
 mod detect;
 mod explore;
 mod interrupts;
+mod new;
 mod output;
 mod plot;
 mod stored;
@@ -155,6 +156,11 @@ fn dispatch(command: &Command) -> Result<Outcome, CommandError> {
         Command::Plot { run } => plot::run(run),
         Command::Explore { run } => explore::run(run),
         Command::Verify { run } => verify::run(run),
+        Command::New { file: None, .. } => print(&new::list()),
+        Command::New {
+            file: Some(file),
+            like,
+        } => print(&new::write(file, like)?),
         Command::Systems { name: None } => print(&systems::list()),
         Command::Systems { name: Some(name) } => print(&systems::describe(name)?),
     }

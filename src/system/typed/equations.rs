@@ -124,12 +124,7 @@ impl TypedEquations {
     /// Operations of drift and noise that fail, or may fail, somewhere in a box of states and of parameters: one range each.
     pub fn hazards(&self, states: &[(f64, f64)], parameters: &[(f64, f64)]) -> Vec<FormulaHazard> {
         let reading = &self.reading;
-        let interval = |&(low, high): &(f64, f64)| Interval::new(low, high);
-        let domain = Domain {
-            states: states.iter().map(interval).collect(),
-            parameters: parameters.iter().map(interval).collect(),
-            time: Interval::point(0.0),
-        };
+        let domain = domain(states, parameters);
         let mut found = Vec::new();
         for (place, expression) in self.formulas() {
             for hazard in reading.scope.graph().hazards(expression, &domain) {
@@ -144,6 +139,31 @@ impl TypedEquations {
             }
         }
         found
+    }
+
+    /// Amplitudes that depend on the state and may be zero somewhere in a box of states and of parameters, typeset; those beside
+    /// an additive noise on the same axis do no harm and are left out.
+    pub fn vanishing_noises(
+        &self,
+        states: &[(f64, f64)],
+        parameters: &[(f64, f64)],
+    ) -> Vec<String> {
+        let (scope, reading) = (&self.reading.scope, &self.reading);
+        let domain = domain(states, parameters);
+        let channels = || reading.noise.iter().zip(&reading.noise_axes);
+        let is_additive =
+            |expression: Expression| scope.graph().dependence(expression).states.is_empty();
+        let additive: Vec<usize> = channels()
+            .filter(|(amplitudes, axis)| is_additive(amplitudes[**axis]))
+            .map(|(_, &axis)| axis)
+            .collect();
+        let own = channels().filter(|(_, axis)| !additive.contains(axis));
+        let own = own.map(|(amplitudes, &axis)| amplitudes[axis]);
+        let vanishing =
+            own.filter(|&amplitude| scope.graph().range(amplitude, &domain).contains(0.0));
+        vanishing
+            .map(|amplitude| scope.typeset(amplitude))
+            .collect()
     }
 
     /// Drift of the Itô equation and amplitudes, with their places.
@@ -166,6 +186,16 @@ impl TypedEquations {
             (place, amplitudes[axis])
         });
         drift.chain(noise).collect()
+    }
+}
+
+/// A box of states and of parameters.
+fn domain(states: &[(f64, f64)], parameters: &[(f64, f64)]) -> Domain {
+    let interval = |&(low, high): &(f64, f64)| Interval::new(low, high);
+    Domain {
+        states: states.iter().map(interval).collect(),
+        parameters: parameters.iter().map(interval).collect(),
+        time: Interval::point(0.0),
     }
 }
 

@@ -1,0 +1,87 @@
+//! Runs the sweeps of `sweeps/gallery/` and writes `docs/gallery.md` with a picture of each.
+//!
+//! Run with `cargo run --release --example gallery`; it takes about a minute.
+
+#![allow(clippy::print_stdout)] // An example talks to its reader.
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::time::Instant;
+
+use pbif::cancellation::Cancellation;
+use pbif::figure::Figures;
+use pbif::sweep_file::{StartingFile, SweepFile, starting_files};
+
+const BEGINNING: &str = "# Gallery\n\n\
+    Systems from the literature as sweep files, in `sweeps/gallery/`. Each is a starting file too: `pbif new mine.toml --like NAME` writes a copy\n\
+    to change. Values that are known exactly, and densities against exact ones or free trajectories, are checked in `tests/gallery.rs`.\n\
+    This page is written by `cargo run --release --example gallery`.\n";
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let images = docs.join("images/gallery");
+    std::fs::create_dir_all(&images)?;
+    let mut page = BEGINNING.to_owned();
+    for file in starting_files() {
+        let start = Instant::now();
+        page += &section(file, &images)?;
+        println!("{}: {:.1} s", file.name, start.elapsed().as_secs_f64());
+    }
+    std::fs::write(docs.join("gallery.md"), page)?;
+    Ok(())
+}
+
+/// What is said of one system; its picture is written beside the page.
+fn section(file: &StartingFile, images: &Path) -> Result<String, Box<dyn std::error::Error>> {
+    let never = Cancellation::new();
+    let sweep = SweepFile::parse(file.name, file.text)
+        .validate()?
+        .prepare(&never)?;
+    let found = sweep.run(&never, &mut ())?;
+    let family = sweep.problem.family();
+    let mut text = format!("\n## {}\n\n", file.title());
+    let comments = file.text.lines().map_while(|line| line.strip_prefix('#'));
+    for line in comments.take_while(|line| !line.contains("Look first")) {
+        writeln!(text, "{}", line.trim())?;
+    }
+    if let Some(typed) = family.model().typed() {
+        for line in typed.typeset() {
+            writeln!(text, "    {line}")?;
+        }
+    }
+    let subject = &found.subject;
+    let parameter = family.parameter();
+    writeln!(
+        text,
+        "\n| {parameter} | observable | change, {parameter} ascending | status |\n| ---: | --- | --- | --- |"
+    )?;
+    for row in &found.labels {
+        let (Some(observable), Some(status)) = (row.observable, row.status) else {
+            continue;
+        };
+        let signature = |one: &Option<pbif::topology::Signature>| {
+            one.as_ref().map_or(String::new(), ToString::to_string)
+        };
+        writeln!(
+            text,
+            "| {:.4} ± {:.1e} | {} | {} → {}, {} | {} |",
+            row.value,
+            row.error,
+            observable.name(&subject.family),
+            signature(&row.before),
+            signature(&row.after),
+            row.change,
+            status.word()
+        )?;
+    }
+    let figures = Figures::of_sweep(&found, file.title(), &[]);
+    let name = format!("diagram_{}", family.axis(0));
+    if let Some(figure) = figures.draw(&name)? {
+        let picture = format!("{}.svg", file.name);
+        std::fs::write(images.join(&picture), figure.svg())?;
+        let words = format!("Density of {} against {parameter}", family.axis(0));
+        writeln!(text, "\n![{words}](images/gallery/{picture})")?;
+    }
+    writeln!(text, "\n`pbif sweep sweeps/gallery/{}.toml`", file.name)?;
+    Ok(text)
+}

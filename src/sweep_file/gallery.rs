@@ -1,0 +1,78 @@
+//! Starting files: the gallery of systems from the literature, compiled in so that `pbif new` needs no folder.
+
+/// A sweep file that runs as it stands, with comments for whoever changes it.
+#[derive(Debug, Clone, Copy)]
+pub struct StartingFile {
+    /// Name, that of the file in `sweeps/gallery/` without its ending.
+    pub name: &'static str,
+    /// The sweep file.
+    pub text: &'static str,
+}
+
+impl StartingFile {
+    /// What the system is, in a few words.
+    pub fn title(&self) -> &'static str {
+        let lines = self.text.lines();
+        let mut titles = lines.filter_map(|line| line.strip_prefix("title = \""));
+        titles
+            .next()
+            .map_or("", |title| title.trim_end_matches('"'))
+    }
+}
+
+/// One entry a file of `sweeps/gallery/`.
+macro_rules! files {
+    ($($name:literal),+ $(,)?) => {
+        &[$(StartingFile {
+            name: $name,
+            text: include_str!(concat!("../../sweeps/gallery/", $name, ".toml")),
+        }),+]
+    };
+}
+
+/// All starting files, in the order in which they are listed.
+pub fn starting_files() -> &'static [StartingFile] {
+    files!(
+        "vanderpol",
+        "rayleigh",
+        "peak_and_ring",
+        "laser",
+        "duffing_vanderpol",
+        "duffing_vanderpol_parametric",
+        "galloping",
+        "ship_roll",
+        "harvester",
+        "verhulst",
+        "genetic",
+        "schloegl",
+        "toggle",
+        "fitzhugh_nagumo",
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sweep_file::SweepFile;
+
+    /// Every file of the folder is listed, and is right as it stands.
+    #[test]
+    fn starting_files_are_the_gallery() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/sweeps/gallery");
+        let entries = std::fs::read_dir(folder).unwrap();
+        let in_folder = entries.map(|entry| entry.unwrap().path());
+        let mut in_folder: Vec<String> = in_folder
+            .map(|path| path.file_stem().unwrap().to_string_lossy().into_owned())
+            .collect();
+        in_folder.sort();
+        let mut listed: Vec<&str> = starting_files().iter().map(|file| file.name).collect();
+        listed.sort_unstable();
+        assert_eq!(listed, in_folder);
+        for file in starting_files() {
+            let read = SweepFile::parse(file.name, file.text).validate().unwrap();
+            assert!(read.warnings.is_empty(), "{}", read.warnings);
+            assert_eq!(read.family.model().title, file.title());
+            assert!(file.text.contains("# Source: "), "{}", file.name);
+        }
+    }
+}
