@@ -30,7 +30,7 @@ fn sampling(system: &dyn System) -> f64 {
         samples: 128,
         groups: 2,
         seed: 1,
-        integrator: Integrator::default(),
+        integrator: Integrator::StochasticHeun,
         keep_starts: false,
     };
     let never = Cancellation::new();

@@ -119,15 +119,8 @@ impl DirectSolver {
             let (space, cancellation) = (&self.space, &self.cancellation);
             let held = memory.held;
             let structure = self.structure_of(reach);
-            let made = Preconditioner::new(
-                space,
-                &structure,
-                *method,
-                matrix,
-                held,
-                None,
-                cancellation,
-            )?;
+            let made =
+                Preconditioner::new(space, &structure, *method, matrix, held, None, cancellation)?;
             self.preconditioner = Some(made);
         }
         self.plan = match &memory.plan {

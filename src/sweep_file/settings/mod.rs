@@ -85,8 +85,7 @@ impl Settings {
             .and_then(|model| system::read(&mut reader, &draft, model));
         let family = swept.as_ref().map(|swept| &swept.family);
         let axes = model.and_then(|model| axes::read(&mut reader, &draft, model, family));
-        let watched =
-            model.map(|model| watched::read(&mut reader, &draft, model, axes.as_deref()));
+        let watched = model.map(|model| watched::read(&mut reader, &draft, model, axes.as_deref()));
         let figures_at = swept
             .as_ref()
             .map(|swept| figures::read_at(&mut reader, &draft, swept));

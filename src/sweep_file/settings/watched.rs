@@ -103,7 +103,8 @@ pub(super) fn read(
     {
         let name = &model.axes[axis].name;
         let title = format!("quantities are not watched where modes carry an axis, here `{name}`");
-        let remedy = format!("give `cells.{name}.count` in place of modes, or leave the formulas out");
+        let remedy =
+            format!("give `cells.{name}.count` in place of modes, or leave the formulas out");
         reader.report(Diagnostic::new(title).remedy(remedy));
     }
     Watched {
