@@ -11,6 +11,9 @@ use pbif::sampling::{Integrator, SamplingOptions, sample_transitions};
 use pbif::space::{Axis, CellSpace};
 use pbif::system::{System, TypedModel, registry};
 
+/// What is measured of a system, in seconds.
+type Measure = fn(&dyn System) -> f64;
+
 /// Seconds of the fastest run.
 fn fastest(runs: usize, mut work: impl FnMut()) -> f64 {
     let times = (0..runs).map(|_| {
@@ -70,7 +73,7 @@ fn main() {
         .num_threads(1)
         .build()
         .unwrap();
-    let measures: [(&str, fn(&dyn System) -> f64); 2] = [
+    let measures: [(&str, Measure); 2] = [
         ("sampling, 50 × 50 cells × 128 samples × 50 steps", sampling),
         ("assembly of a generator, 100 × 100 cells", assembly),
     ];
