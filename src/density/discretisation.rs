@@ -108,7 +108,7 @@ mod tests {
                 .negligible
         };
         assert_eq!(of([0.5, 0.5, 0.0, 0.0]), crate::density::NEGLIGIBLE);
-        assert!((of([0.5, 0.5, -1e-3, 1e-3]) - 8e-3).abs() < 1e-15);
+        assert!((of([0.5, 0.5, -1e-3, 1e-3]) - 16e-3).abs() < 1e-15);
     }
 
     #[test]

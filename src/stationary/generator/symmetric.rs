@@ -5,6 +5,9 @@
 //! images are then summed: half the unknowns, half the memory, less than half the work. Symmetry is seen in the matrix itself, to
 //! rounding; a change that is not symmetric is answered on all cells.
 
+#[cfg(test)]
+mod tests;
+
 use sprs::CsMat;
 
 use super::memory::SolverMemory;

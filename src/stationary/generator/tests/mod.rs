@@ -2,7 +2,6 @@
 
 mod cancelled;
 mod exact;
-mod folded;
 mod generators;
 mod warm;
 

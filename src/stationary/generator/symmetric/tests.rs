@@ -1,12 +1,15 @@
 //! Symmetric generators on half of the cells, against all of them.
 
-use super::distance;
 use crate::generator::{GeneratorOptions, assemble};
 use crate::space::{Axis, CellSpace};
 use crate::stationary::generator::solver::DirectSolver;
 use crate::stationary::generator::symmetric::is_centrosymmetric;
 use crate::stationary::generator::{RateMethod, RateOptions, RateSolver};
 use crate::system::registry;
+
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| (x - y).abs()).sum()
+}
 
 #[test]
 fn half_of_the_cells_give_the_whole_answer() {
