@@ -333,6 +333,7 @@ fn a_killed_run_is_detected_in_the_points_it_has() {
     std::fs::write(run.join("points.csv"), format!("{rows}\n")).unwrap();
     let json = text(&run, "run.json").replace("\"complete\"", "\"running\"");
     std::fs::write(run.join("run.json"), json).unwrap();
+    std::fs::remove_file(run.join("checksums.sha256")).unwrap();
     let output = detect(&run, &[], &[]);
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     let (stdout, stderr) = (

@@ -9,8 +9,7 @@ const WIGGLE: f64 = 8.0;
 
 /// Density of an observable from the masses of all cells, with the difference to a second discretisation (masses,
 /// Σ = 0) as its error. Where two solutions happen to cross, the difference says too little, so every error is the root mean
-/// square over the cell and its neighbours. A density is nowhere negative: values below zero are wiggles of the scheme, and what is not
-/// clearly higher than they are deep is negligible.
+/// square over the cell and its neighbours.
 ///
 /// # Errors
 /// [`DensityError::Axis`], [`DensityError::RepeatedAxis`] or [`DensityError::Length`].
@@ -52,16 +51,28 @@ fn of_both(
         stride /= count;
         squares = neighbour_means(&squares, count, stride);
     }
-    let deepest = density.values.iter().copied().fold(0.0, f64::min).abs();
-    let maximum = density.maximum().max(f64::MIN_POSITIVE);
-    let negligible = crate::density::NEGLIGIBLE.max(WIGGLE * deepest / maximum);
     EstimatedDensity {
         observable,
         density,
         standard_error: squares.into_iter().map(f64::sqrt).collect(),
         variants: Variants::Scheme(second),
         structure: Structure::default(),
-        negligible,
+        negligible: crate::density::NEGLIGIBLE,
+    }
+}
+
+impl EstimatedDensity {
+    /// Share of the maximum below which heights tell nothing: what the solver leaves, or more where the density is
+    /// negative. A density is nowhere so: values below zero are wiggles of the scheme, and what is not clearly higher than they are
+    /// deep is one of them. Noise has errors of its own.
+    pub fn negligible_height(&self) -> f64 {
+        let maximum = self.density.maximum();
+        if self.is_noisy() || !(maximum > 0.0) {
+            return self.negligible;
+        }
+        let values = self.density.values.iter().copied();
+        let deepest = values.fold(0.0, f64::min).abs();
+        self.negligible.max(WIGGLE * deepest / maximum)
     }
 }
 
@@ -105,7 +116,7 @@ mod tests {
             let observable = Observable::Marginal(0);
             estimate_from_difference(&space, observable, &mass, &[0.0; 4])
                 .unwrap()
-                .negligible
+                .negligible_height()
         };
         assert_eq!(of([0.5, 0.5, 0.0, 0.0]), crate::density::NEGLIGIBLE);
         assert!((of([0.5, 0.5, -1e-3, 1e-3]) - 16e-3).abs() < 1e-15);

@@ -65,14 +65,13 @@ impl RunFolder {
     }
 
     /// Opens the folder of an unfinished run to go on with it. What is there is replaced whole, when the points of the run are
-    /// [added](RunFolder::add_points) again.
+    /// [added](RunFolder::add_points) again; figures of an interrupted run, which are of other values, are removed.
     ///
     /// # Errors
     /// [`RunError::InUse`], [`RunError::Write`].
     pub fn reopen(path: &Path) -> Result<Self, RunError> {
         let lock = FolderLock::take(path)?;
-        // They are of what is now replaced.
-        let _ = std::fs::remove_file(path.join(checksums::NAME));
+        checksums::reopen(path);
         Ok(Self {
             _lock: Some(lock),
             ..Self::fresh(path)

@@ -231,7 +231,7 @@ impl Detector for PersistenceDetector {
             self.looks,
             density.density.axes.len(),
             grid.values.len(),
-            (density.density.maximum(), density.negligible),
+            (density.density.maximum(), density.negligible_height()),
         );
         let (peaks, craters) = components(grid);
         let peaks = self.judged(peaks, false, density, &limits);

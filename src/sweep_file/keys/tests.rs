@@ -121,8 +121,9 @@ fn example(key: &Key) -> crate::sweep_file::value::Plain {
         Kind::List(_) => unreachable!(),
     };
     match key.kind {
-        // Points of print have a least number.
+        // Points and dots of print have a least number.
         Kind::Number(_) if key.path == "figures.style.text" => Plain::Number(9.5),
+        Kind::Number(_) if key.path == "figures.style.dpi" => Plain::Number(95.0),
         Kind::List(kind) => Plain::List(vec![of(*kind)]),
         kind => of(kind),
     }
