@@ -66,8 +66,8 @@ impl EstimatedDensity {
     /// negative. A density is nowhere so: values below zero are wiggles of the scheme, and what is not clearly higher than they are
     /// deep is one of them. Noise has errors of its own.
     pub fn negligible_height(&self) -> f64 {
-        let maximum = self.density.maximum();
-        if self.is_noisy() || !(maximum > 0.0) {
+        let maximum = self.density.maximum().max(f64::MIN_POSITIVE);
+        if self.is_noisy() {
             return self.negligible;
         }
         let values = self.density.values.iter().copied();

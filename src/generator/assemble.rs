@@ -45,8 +45,7 @@ pub(super) fn assemble_within(
         .collect();
     for (axis, geometry) in axes.iter().enumerate() {
         let bounded = geometry.ends == [End::Wall; 2];
-        if geometry.differentiation.is_some() && !(bounded && !system.noise_axes().contains(&axis))
-        {
+        if geometry.differentiation.is_some() && (!bounded || system.noise_axes().contains(&axis)) {
             return Err(GeneratorError::Modes { axis });
         }
     }
