@@ -5,7 +5,7 @@ use crate::space::CellSpace;
 
 /// Height of a wiggle from trough to crest, over the depth of its troughs below zero: what is below zero is the lower half of a wiggle
 /// about a positive density at most.
-const WIGGLE: f64 = 8.0;
+pub(crate) const WIGGLE: f64 = 8.0;
 
 /// Density of an observable from the masses of all cells, with the difference to a second discretisation (masses,
 /// Σ = 0) as its error. Where two solutions happen to cross, the difference says too little, so every error is the root mean

@@ -11,6 +11,7 @@ mod structure;
 mod sub_cells;
 mod uncertainty;
 
+pub(crate) use discretisation::WIGGLE;
 pub use discretisation::{estimate_from_difference, estimate_from_second};
 pub use distance::{hellinger, hellinger_of_masses, total_variation, total_variation_of_masses};
 pub use moments::moments;

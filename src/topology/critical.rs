@@ -6,7 +6,7 @@
 
 use super::FeatureKind;
 use super::field::{Field, Jet, Stencil};
-use crate::density::EstimatedDensity;
+use crate::density::{EstimatedDensity, WIGGLE};
 
 /// Most steps of Newton's method.
 const MOST_STEPS: usize = 12;
@@ -256,5 +256,7 @@ pub(super) fn height_above(
     let far = high.cells_from(low);
     let far = ((far - ONE_ERROR) / ONE_ERROR).clamp(0.0, 1.0);
     let each = high.error(estimated) + low.error(estimated);
-    (found, (rough + scheme).max(far * each))
+    // A density is nowhere negative: where the lower one is, both are a wiggle of the scheme unless the upper one is clearly higher.
+    let wiggle = WIGGLE * low.value(values).min(0.0).abs();
+    (found, (rough + scheme).max(far * each) + wiggle)
 }
