@@ -172,11 +172,6 @@ fn missing_keys() {
         "y = { to = 5, count = 10 }",
         &["missing key `cells.y.from`", "a.toml:14:1"],
     );
-    assert_refused(
-        "y = { from = -5, to = 5, count = 10 }\n",
-        "",
-        &["no cells for axis `y`", "a.toml:12:2"],
-    );
     assert_says(
         &refused("title = \"empty\"", &["a.toml"]),
         &[

@@ -355,3 +355,34 @@ fn check_shows_what_was_read_and_found() {
         ],
     );
 }
+
+/// Ranges, gradings and counts are found, told, and written down as numbers; the error that was wanted is kept.
+#[test]
+fn cells_may_be_left_out() {
+    let (file, _) = GOOD.split_once("[cells]").unwrap();
+    let file = format!("{file}[cells]\naccuracy = 0.01\n");
+    let (code, out, message) = check(&file, &["method.memory_limit=1"]);
+    assert_eq!(code, Some(0), "{message}");
+    assert_says(
+        &out,
+        &[
+            "an axis are chosen; with 40 and 60 cells an axis",
+            "grade = { at = [0.0], smallest = ",
+        ],
+    );
+    let table: toml::Table = out.parse().unwrap();
+    let axis = |name: &str| table["cells"][name].clone();
+    let count = axis("x")["count"].as_integer().unwrap();
+    assert_eq!(axis("y")["count"].as_integer().unwrap(), count);
+    assert!((40..=240).contains(&count) && count % 2 == 0, "{count}");
+    assert!(axis("x")["to"].as_float().unwrap() > 2.0);
+    // One axis is chosen, the other given.
+    let (code, out, message) = check(
+        &format!("{file}x = {{ from = -4, to = 4, count = 30 }}\n"),
+        &[],
+    );
+    assert_eq!(code, Some(0), "{message}");
+    let table: toml::Table = out.parse().unwrap();
+    assert_eq!(table["cells"]["x"]["count"].as_integer(), Some(30));
+    assert!(table["cells"]["y"]["count"].as_integer().is_some());
+}

@@ -46,10 +46,9 @@ fn costs(spec: &Sweep) -> Vec<String> {
         })
         .collect();
     let cells = spec.problem.space().n_cells();
-    let mut lines = vec![
-        format!("cells: {} = {cells}", shape.join(" x ")),
-        points(spec),
-    ];
+    let mut lines = vec![format!("cells: {} = {cells}", shape.join(" x "))];
+    lines.extend(spec.settings.chosen.iter().cloned());
+    lines.push(points(spec));
     lines.extend(match costs_of_a_point(spec) {
         Ok(Cost::Generator(cost)) => generator_costs(spec, &cost),
         Ok(Cost::Sgcm(cost)) => sgcm_costs(spec, &cost),

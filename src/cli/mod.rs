@@ -22,7 +22,7 @@ use std::process::ExitCode;
 use clap::Parser as _;
 
 use crate::cancellation::Cancellation;
-use crate::sweep_file::{Diagnostic, Report, Settings, SweepFile};
+use crate::sweep_file::{Diagnostic, Report, Settings, Sweep, SweepFile};
 use args::{Arguments, Command};
 use output::OutputError;
 
@@ -142,6 +142,7 @@ fn dispatch(command: &Command) -> Result<Outcome, CommandError> {
     match command {
         Command::Sweep { input, run } => {
             let spec = load(input, run.quiet)?.prepare(&Cancellation::new())?;
+            tell_chosen(&spec, run.quiet);
             sweep::run(&spec, &input.name(), run)
         }
         Command::Check { input } => {
@@ -150,6 +151,7 @@ fn dispatch(command: &Command) -> Result<Outcome, CommandError> {
         }
         Command::Compare { input, run } => {
             let spec = load(input, run.quiet)?.prepare(&Cancellation::new())?;
+            tell_chosen(&spec, run.quiet);
             compare::run(&spec, &input.name(), run)
         }
         Command::Detect { run } => detect::run(run),
@@ -175,6 +177,15 @@ fn load(input: &args::SweepInput, quiet: bool) -> Result<Settings, Report> {
         let _ = io::stderr().lock().write_all(text.as_bytes());
     }
     Ok(settings)
+}
+
+/// Says on stderr what was chosen for the program's part, unless it is to be quiet. `pbif check` has it on stdout.
+fn tell_chosen(spec: &Sweep, quiet: bool) {
+    if !quiet {
+        for line in &spec.settings.chosen {
+            let _ = writeln!(io::stderr().lock(), "{line}");
+        }
+    }
 }
 
 /// Whether stderr takes colours.

@@ -75,6 +75,9 @@ impl MethodKind {
     }
 }
 
+/// Total variation that is far below what a figure shows, and reached in seconds with two axes.
+const ACCURACY: f64 = 1e-3;
+
 /// The word that leaves a choice to the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Auto;
@@ -139,6 +142,8 @@ pub(super) struct Draft {
     pub(super) from: Option<f64>,
     pub(super) to: Option<f64>,
     pub(super) points: Option<usize>,
+    /// Wanted error of the watched densities where counts are left to the program.
+    pub(super) accuracy: f64,
     /// The axes in the order given.
     pub(super) axes: Vec<AxisDraft>,
     pub(super) method: MethodSettings,
@@ -167,6 +172,7 @@ impl Default for Draft {
             from: None,
             to: None,
             points: None,
+            accuracy: ACCURACY,
             axes: Vec::new(),
             method: MethodSettings::default(),
             marginals: None,

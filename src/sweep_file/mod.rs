@@ -28,6 +28,7 @@
 //! # }
 //! ```
 
+mod counts;
 mod diagnostic;
 mod document;
 mod draft;

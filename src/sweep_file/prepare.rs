@@ -10,12 +10,11 @@ use super::report::Report;
 use super::settings::{Grade, Modes, Settings, at_cells, cell_space};
 use super::sweep::Sweep;
 use crate::cancellation::Cancellation;
-use crate::generator::automatic_grading;
 use crate::method::{
     BinsError, PILOT_BOX, Problem, RangeError, SgcmOptions, automatic_bins, automatic_modes,
     automatic_ranges,
 };
-use crate::space::{Axis, Grading};
+use crate::space::Axis;
 use crate::system::System;
 
 impl Settings {
@@ -71,7 +70,7 @@ impl Settings {
         bins.collect()
     }
 
-    fn refuse(&self, diagnostic: Diagnostic) -> Report {
+    pub(super) fn refuse(&self, diagnostic: Diagnostic) -> Report {
         Report::new(self.document.sources.clone(), vec![diagnostic], 0)
     }
 
@@ -82,9 +81,10 @@ impl Settings {
     /// Replaces what is left to the program by numbers.
     fn find_cells(&mut self, cancellation: &Cancellation) -> Result<(), Report> {
         let kind = self.method.kind;
-        let is_open =
-            |axis: &super::AxisSettings| axis.grade == Grade::Auto && axis.modes_by(kind).is_none();
-        let open = |axis: &super::AxisSettings| axis.range.is_none() || is_open(axis);
+        let open = |axis: &super::AxisSettings| {
+            let by_cells = axis.modes_by(kind).is_none();
+            axis.range.is_none() || by_cells && (axis.count.is_none() || axis.grade == Grade::Auto)
+        };
         if !self.axes.iter().any(open) {
             return Ok(());
         }
@@ -95,16 +95,11 @@ impl Settings {
         let ranges = self.find_ranges(&ends, cancellation)?;
         for (index, axis) in self.axes.iter_mut().enumerate() {
             axis.range = Some(ranges[index]);
-            if is_open(axis) {
-                let finest = |system: &Arc<dyn System>| {
-                    automatic_grading(system.as_ref(), &ranges, index, axis.count?)
-                };
-                let gradings = ends.iter().filter_map(finest);
-                let narrowest =
-                    gradings.min_by(|a: &Grading, b: &Grading| a.smallest.total_cmp(&b.smallest));
-                axis.grade = narrowest.map_or(Grade::Even, Grade::Toward);
-            }
         }
+        // Formulas that are not finite there would leave the coarse grids without a density.
+        self.check_equations()?;
+        self.find_counts(&ends, cancellation)?;
+        self.find_gradings(&ends);
         Ok(())
     }
 
@@ -201,6 +196,12 @@ impl Settings {
 
     /// Refuses cells whose least need exceeds the machine's memory; runs before anything is laid out.
     fn check_memory(&self) -> Result<(), Report> {
+        let is_open = |axis: &super::AxisSettings| {
+            axis.count.is_none() && axis.modes_by(self.method.kind).is_none()
+        };
+        if self.axes.iter().any(is_open) {
+            return Ok(());
+        }
         let unknowns = self.unknowns();
         let n_cells: f64 = unknowns.iter().map(|&count| count as f64).product();
         let least = self.method.chosen().least_bytes(n_cells, self.axes.len());

@@ -14,7 +14,7 @@ use crate::system::{AxisDescription, Family, Model};
 pub struct AxisSettings {
     /// Lower and upper end; `None` where they are left to the program.
     pub range: Option<(f64, f64)>,
-    /// Number of cells, at least 2; `None` for an axis of modes alone.
+    /// Number of cells, at least 2; `None` where it is left to the program, and for an axis of modes alone.
     pub count: Option<usize>,
     /// Where the cells get narrower.
     pub grade: Grade,
@@ -47,8 +47,7 @@ impl AxisSettings {
             Some(Modes::Number(count)) => return Some(Axis::modes(from, to, count)),
             None => {}
         }
-        // Without a number of cells, which reading does not allow, the space says what is wrong.
-        let count = self.count.unwrap_or(0);
+        let count = self.count?;
         match &self.grade {
             Grade::Even => Some(Axis::uniform(from, to, count)),
             Grade::Toward(grading) => Some(Axis::graded(from, to, count, grading)),
@@ -56,6 +55,9 @@ impl AxisSettings {
         }
     }
 }
+
+/// The key of `[cells]` that is no axis.
+const ACCURACY: &str = "accuracy";
 
 /// Checks `[cells]`; `None` if anything is wrong with it. Without a family there is no telling what bounds the model knows.
 pub(super) fn read(
@@ -66,7 +68,8 @@ pub(super) fn read(
 ) -> Option<Vec<AxisSettings>> {
     let names: Vec<&str> = model.axes.iter().map(|axis| axis.name.as_str()).collect();
     for entry in reader.entries(&["cells"]) {
-        if !names.contains(&entry.key.as_str()) {
+        let is_axis = names.contains(&entry.key.as_str());
+        if !is_axis && entry.key != ACCURACY {
             let axis = quotable(&entry.key);
             let diagnostic =
                 Diagnostic::new(format!("model `{}` has no axis `{axis}`", model.name))
@@ -110,13 +113,13 @@ fn read_axis(
         });
     }
     let Some(entry) = reader.entry(&["cells", name]) else {
-        if reader.document().cut.is_none() {
-            let diagnostic = Diagnostic::new(format!("no cells for axis `{name}`")).remedy(
-                format!("add `{name} = {{ from = …, to = …, count = 50 }}` to [cells]"),
-            );
-            reader.report(at_cells(reader.document(), diagnostic));
-        }
-        return None;
+        // Everything is left to the program.
+        return Some(AxisSettings {
+            range: family.and_then(|family| bounds(family, index)),
+            count: None,
+            grade: Grade::Auto,
+            modes: None,
+        });
     };
     if !matches!(entry.node.value, Value::Table(_)) {
         return None;
@@ -125,10 +128,6 @@ fn read_axis(
     let axis = draft.axis(name).unwrap_or(&empty);
     let unsaid = axis.count.is_none() && reader.entry(&["cells", name, "count"]).is_none();
     let modes = axis.modes.or((by_modes && unsaid).then_some(Modes::Auto));
-    if modes.is_none() || !method.takes_modes() {
-        reader.require(&["cells", name, "count"]);
-        axis.count?;
-    }
     let grade = read_grade(reader, axis, name);
     let bounds = family.map(|family| bounds(family, index));
     let range = match axis.range {

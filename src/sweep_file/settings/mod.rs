@@ -40,6 +40,10 @@ pub struct Settings {
     pub family: Family,
     /// Number of values, at least 2.
     pub points: usize,
+    /// Wanted error of the watched densities, in total variation, where counts are left to the program.
+    pub accuracy: f64,
+    /// What was chosen for the program's part, in words.
+    pub chosen: Vec<String>,
     /// How each axis is cut into cells, in the model's order of axes.
     pub axes: Vec<AxisSettings>,
     /// The method, and the settings of all methods.
@@ -111,6 +115,8 @@ impl Settings {
             title: draft.title.clone().unwrap_or_else(title),
             points: swept.points,
             family: swept.family,
+            accuracy: draft.accuracy,
+            chosen: Vec::new(),
             axes,
             method: draft.method,
             detect: draft.detect,
