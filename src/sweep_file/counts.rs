@@ -167,7 +167,10 @@ impl Settings {
         observables.retain(of_axes);
         if observables.is_empty() {
             let carried = |axis: &usize| trial.axes[*axis].modes_by(kind).is_none();
-            observables = (0..axes).filter(carried).map(Observable::Marginal).collect();
+            observables = (0..axes)
+                .filter(carried)
+                .map(Observable::Marginal)
+                .collect();
         }
         Ok(Problem::new(trial.family, space, observables).ok())
     }
