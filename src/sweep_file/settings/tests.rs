@@ -342,6 +342,10 @@ fn modes_where_they_cannot_be_are_refused_with_the_remedy() {
             &["cells.z.modes=1"],
             "an integer from 2 to 64, or `\"auto\"`",
         ),
+        (
+            &["detect.marginals=[\"z\"]"],
+            "the density along axis `z`, which modes carry, is not watched",
+        ),
     ] {
         let message = refusal(sets);
         assert!(message.contains(words), "{sets:?}: {message}");
