@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+use crate::continuation::curve::CurveOptions;
 use crate::sweep_file;
 
 const EXAMPLES: &str = "\
@@ -16,6 +17,7 @@ Examples:
   pbif sweep sweeps/coulomb_fc.toml --resume   go on with it after an interrupt, a kill or a full disk
   pbif sweep sweeps/coulomb_fc.toml --set sweep.points=11 --set cells.x.count=30 --out trial
   pbif compare sweeps/coulomb_fc.toml                          the methods side by side
+  pbif curve output/coulomb_fc --row PB1 --second sigma2 --from 0.005 --to 0.02   PB1 in a plane of two parameters
   pbif detect output/coulomb_fc --set detect.confidence=0.99   detect again, without solving
   pbif plot output/coulomb_fc        draw again
   pbif explore output/coulomb_fc     one page that slides through the densities of the run
@@ -38,6 +40,19 @@ run is left as it is.
 
 Exit status: 0 done; 1 finished, but some row is unresolved, did not converge or has no steady
 state, or the run had been interrupted; 2 bad usage or input, nothing written.";
+
+const CURVE_EXAMPLES: &str = "\
+Examples:
+  pbif curve output/coulomb_fc --row PB1 --second sigma2 --from 0.005 --to 0.02
+  pbif curve output/coulomb_fc --row PB1 --second sigma2 --from 0.005 --to 0.02 --first-from -0.05 --first-to 0.05
+  pbif curve sweeps/bistable.toml --second sigma2 --from 0.2 --to 1
+
+From the located row on, the zero of its indicator is followed in both directions until it leaves the box, closes, or its
+feature is lost. curves.csv, curve.json and a figure of the plane go to RUN/curves/ROW-SECOND/ (of a sweep file, which is swept
+first, to output/NAME-ROW-SECOND/) or --out; an earlier curve is kept below its folder previous/.
+What the columns mean, and how far to trust them: docs/curves.md
+
+Exit status: 0 done; 1 finished, but some point is not located; 2 bad usage or input, nothing written; 130 interrupted.";
 
 const COMPARE_EXAMPLES: &str = "\
 Examples:
@@ -122,6 +137,13 @@ pub(super) enum Command {
         /// How to run it.
         #[command(flatten)]
         run: CompareArguments,
+    },
+    /// Follow a located P-bifurcation in the plane of the swept and a second parameter
+    #[command(after_help = CURVE_EXAMPLES)]
+    Curve {
+        /// What to follow.
+        #[command(flatten)]
+        run: CurveArguments,
     },
     /// Detect and locate again from the stored densities of a run, without solving
     #[command(after_help = DETECT_EXAMPLES)]
@@ -230,6 +252,48 @@ pub(crate) struct DetectArguments {
     pub(crate) quiet: bool,
 }
 
+/// A curve in a plane of two parameters.
+#[derive(Debug, Args)]
+pub(crate) struct CurveArguments {
+    /// Folder of a run, as `pbif sweep` left it, or a sweep file (TOML), which is swept first
+    #[arg(value_name = "RUN|FILE")]
+    pub(crate) target: PathBuf,
+    /// Label of the P-bifurcation to start from, such as PB1; may be left out where only one can be followed
+    #[arg(long, value_name = "LABEL")]
+    pub(crate) row: Option<String>,
+    /// The second parameter, which the sweep holds
+    #[arg(long, value_name = "PARAMETER")]
+    pub(crate) second: String,
+    /// One end of the box in the second parameter
+    #[arg(long, value_name = "VALUE", allow_negative_numbers = true, value_parser = finite)]
+    pub(crate) from: f64,
+    /// The other end
+    #[arg(long, value_name = "VALUE", allow_negative_numbers = true, value_parser = finite)]
+    pub(crate) to: f64,
+    /// Lower end of the box in the swept parameter [default: that of the sweep]
+    #[arg(long, value_name = "VALUE", allow_negative_numbers = true, value_parser = finite)]
+    pub(crate) first_from: Option<f64>,
+    /// Upper end of the box in the swept parameter [default: that of the sweep]
+    #[arg(long, value_name = "VALUE", allow_negative_numbers = true, value_parser = finite)]
+    pub(crate) first_to: Option<f64>,
+    /// Longest step between points, as a share of the sides of the box
+    #[arg(long, value_name = "SHARE", default_value_t = CurveOptions::default().largest_step, value_parser = share)]
+    pub(crate) step: f64,
+    /// Override a key of a sweep file, such as cells.x.count=60; of a run those under detect, locate and figures (repeatable; the
+    /// last one counts)
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(crate) overrides: Vec<String>,
+    /// Folder for the results [default: RUN/curves/ROW-SECOND]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Threads to use, all if left out; results do not depend on it
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub(crate) threads: Option<usize>,
+    /// No progress and no warnings on stderr, results alone
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
 /// A stored run that is checked.
 #[derive(Debug, Args)]
 pub(crate) struct VerifyArguments {
@@ -292,6 +356,20 @@ pub(crate) struct ExploreArguments {
     /// No progress and no warnings on stderr, results alone
     #[arg(long)]
     pub(crate) quiet: bool,
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if f64::is_finite(value) => Ok(value),
+        _ => Err("allowed: a number".to_owned()),
+    }
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(share) if (1e-4..=0.25).contains(&share) => Ok(share),
+        _ => Err("allowed: a number from 0.0001 to 0.25".to_owned()),
+    }
 }
 
 fn threads(text: &str) -> Result<usize, String> {

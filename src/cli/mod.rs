@@ -3,6 +3,7 @@
 mod args;
 mod check;
 mod compare;
+mod curve;
 mod detect;
 mod explore;
 mod interrupts;
@@ -154,6 +155,7 @@ fn dispatch(command: &Command) -> Result<Outcome, CommandError> {
             tell_chosen(&spec, run.quiet);
             compare::run(&spec, &input.name(), run)
         }
+        Command::Curve { run } => curve::run(run),
         Command::Detect { run } => detect::run(run),
         Command::Plot { run } => plot::run(run),
         Command::Explore { run } => explore::run(run),

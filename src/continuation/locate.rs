@@ -298,7 +298,7 @@ fn leaks(
 }
 
 /// Mass in the outermost cells below which what leaves Ω matters nowhere.
-const QUIET: f64 = 1e-11;
+pub(super) const QUIET: f64 = 1e-11;
 
 /// The largest mass in the outermost cells of an axis.
 fn edge_mass(point: &Point) -> f64 {

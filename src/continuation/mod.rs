@@ -6,6 +6,7 @@
 mod again;
 mod bracket;
 mod change;
+pub mod curve;
 mod events;
 mod finding;
 mod follow;

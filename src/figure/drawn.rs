@@ -1,5 +1,6 @@
 //! The figures of a sweep or a comparison as values: listed by name, drawn one by one or all.
 
+use super::canvas::page::Page;
 use super::canvas::{DrawError, pdf, render};
 use super::select;
 use super::sketch::{ComparisonScene, Sketch, SweepScene};
@@ -90,6 +91,17 @@ pub struct Figure {
 }
 
 impl Figure {
+    /// A drawn page as a figure of that name, with its caption and its numbers.
+    pub(super) fn new(name: &str, (caption, data): (String, String), page: &Page) -> Self {
+        Self {
+            name: name.to_owned(),
+            caption,
+            data,
+            svg: page.svg(),
+            dpi: page.look().dpi,
+        }
+    }
+
     /// The figure as an SVG document. Heat maps are embedded pictures; equal results give equal bytes.
     pub fn svg(&self) -> &str {
         &self.svg
@@ -160,20 +172,15 @@ impl<'a> Figures<'a> {
         let Some(page) = sketch.draw()? else {
             return Ok(None);
         };
-        let (look, result) = match &self.0 {
-            Scene::Sweep(scene) => (&scene.look, Some(scene.result)),
-            Scene::Comparison(scene) => (&scene.look, None),
+        let result = match &self.0 {
+            Scene::Sweep(scene) => Some(scene.result),
+            Scene::Comparison(_) => None,
         };
         let told = |tell: fn(&SweepResult, &Shows<'_>) -> String| {
             result.map_or_else(String::new, |result| tell(result, &sketch.shows))
         };
-        Ok(Some(Figure {
-            name: sketch.name.clone(),
-            caption: told(caption::caption),
-            data: told(data::table),
-            svg: page.svg(),
-            dpi: look.dpi,
-        }))
+        let texts = (told(caption::caption), told(data::table));
+        Ok(Some(Figure::new(&sketch.name, texts, &page)))
     }
 
     /// Names of all figures, in their order. Some may turn out to have nothing to show.

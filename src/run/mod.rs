@@ -10,6 +10,7 @@ mod checks;
 mod checksums;
 mod columns;
 mod compare;
+mod curve;
 mod exchange;
 mod features_table;
 mod findings;
@@ -40,6 +41,7 @@ pub use bifurcations::{
 };
 pub use checksums::{Checked, Damage};
 pub use compare::{CompareFolder, CompareTable, ComparedRun, compare_tables};
+pub use curve::{CurveFolder, curves_csv};
 pub use features_table::features_csv;
 pub use folder::RunFolder;
 pub use journal::{Journal, JournalledSource};

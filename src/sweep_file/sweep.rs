@@ -2,8 +2,10 @@
 
 use super::settings::Settings;
 use crate::cancellation::Cancellation;
+use crate::continuation::curve::Plane;
 use crate::continuation::{Observer, SweepError, SweepResult, sweep};
 use crate::method::{MethodError, MethodSource, Problem};
+use crate::system::Family;
 use crate::topology::PersistenceDetector;
 
 /// Everything a sweep needs.
@@ -40,6 +42,33 @@ impl Sweep {
     /// [`MethodError`] where the method refuses.
     pub fn source(&self, cancellation: &Cancellation) -> Result<MethodSource, MethodError> {
         MethodSource::new(&self.problem, &self.settings.method.chosen(), cancellation)
+    }
+
+    /// A source of densities by the same method on the same cells in a plane of two parameters, one of which is swept.
+    ///
+    /// # Errors
+    /// [`MethodError`] where the method refuses, [`MethodError::System`] for a parameter that the model does not have, or a corner of
+    /// the plane's box that it does not allow.
+    pub fn source_in(
+        &self,
+        plane: &Plane,
+        cancellation: &Cancellation,
+    ) -> Result<MethodSource, MethodError> {
+        let (family, path) = (self.problem.family(), plane.path());
+        let is_held = |(name, _): &(&str, f64)| path.moved().iter().all(|moved| moved != name);
+        let swept = family.values_at(family.ends().0)?;
+        let named = family.model().parameters.iter().zip(swept.as_slice());
+        let values = named.map(|(parameter, &value)| (parameter.name.as_str(), value));
+        let held: Vec<(&str, f64)> = values.filter(is_held).collect();
+        let model = family.model().clone();
+        let (quantities, averaged) = (family.quantities().to_vec(), family.averaged().to_vec());
+        let in_plane = Family::new(model, &held, path.clone())?
+            .with_quantities(quantities)
+            .with_averaged(averaged);
+        let problem = &self.problem;
+        let (space, observables) = (problem.space().clone(), problem.observables().to_vec());
+        let problem = Problem::watching(in_plane, space, observables, problem.bins().to_vec())?;
+        MethodSource::new(&problem, &self.settings.method.chosen(), cancellation)
     }
 
     /// Solves along the parameter and locates the changes; `observer` sees every point as it is done, `()` looks away.

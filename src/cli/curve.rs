@@ -1,0 +1,314 @@
+//! `pbif curve`: from a located row of a run, the curve of the same P-bifurcation in the plane of the swept and a second parameter.
+
+mod refusals;
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use super::args::{CurveArguments, SweepInput};
+use super::output::OutputFolder;
+use super::stored::Stored;
+use super::{CommandError, Outcome};
+use crate::cancellation::Cancellation;
+use crate::continuation::curve::{Curve, CurveError, CurveOptions, CurveStart, Plane, follow};
+use crate::continuation::{BifurcationStatus, LabelledPoint, SourceError, SweepResult};
+use crate::figure::{curve_figure, write_figures};
+use crate::method::MethodError;
+use crate::run::{CurveFolder, format_number, format_with_error};
+use crate::sweep_file::{Diagnostic, SolveError, Sweep};
+use refusals::{chosen_row, held_value, no_indicator, refused, refused_plane};
+
+/// Sections of a run's sweep that may be set anew.
+const SECTIONS: [&str; 3] = ["detect", "locate", "figures"];
+
+/// Follows a curve, writes it, and prints what was found.
+///
+/// # Errors
+/// [`CommandError`] when the run or the sweep file cannot be read, the row has no curve, or the results cannot be written.
+pub(super) fn run(arguments: &CurveArguments) -> Result<Outcome, CommandError> {
+    let (threads, cancellation) = super::interruptible(arguments.threads)?;
+    threads.install(|| {
+        let Some((spec, result)) = swept(arguments, &cancellation)? else {
+            super::print("interrupted: nothing was written\n")?;
+            return Ok(Outcome::Interrupted);
+        };
+        let job = Job::new(arguments, &spec, &result)?;
+        let output = OutputFolder::prepare(&job.home())?;
+        let folder = CurveFolder::new(output.path())?;
+        match job.follow(&cancellation)? {
+            Some(curve) => job.conclude(&curve, folder, output.path()),
+            None => {
+                super::print("interrupted: nothing was written\n")?;
+                Ok(Outcome::Interrupted)
+            }
+        }
+    })
+}
+
+/// The sweep with its result: that of a run as it is stored, that of a sweep file solved now; `None` when interrupted.
+fn swept(
+    arguments: &CurveArguments,
+    cancellation: &Cancellation,
+) -> Result<Option<(Sweep, SweepResult)>, CommandError> {
+    if !arguments.target.is_file() {
+        let overrides = &arguments.overrides;
+        let stored = Stored::read(&arguments.target, overrides, &SECTIONS, arguments.quiet)?;
+        return Ok(Some((stored.spec, stored.result)));
+    }
+    let input = SweepInput {
+        file: arguments.target.clone(),
+        overrides: arguments.overrides.clone(),
+    };
+    let spec = super::load(&input, arguments.quiet)?.prepare(cancellation)?;
+    tell(
+        arguments.quiet,
+        "sweeping; the run of a `pbif sweep` is read instead of solved\n",
+    );
+    match spec.run(cancellation, &mut ()) {
+        Ok(result) if result.interrupted => Ok(None),
+        Ok(result) => Ok(Some((spec, result))),
+        Err(SolveError::Method(MethodError::Cancelled(_))) => Ok(None),
+        Err(SolveError::Method(error)) => Err(error.into()),
+        Err(SolveError::Sweep(error)) => Err(error.into()),
+    }
+}
+
+/// A curve to be followed.
+struct Job<'a> {
+    arguments: &'a CurveArguments,
+    spec: &'a Sweep,
+    row: &'a LabelledPoint,
+    plane: Plane,
+    start: CurveStart,
+}
+
+impl<'a> Job<'a> {
+    fn new(
+        arguments: &'a CurveArguments,
+        spec: &'a Sweep,
+        result: &'a SweepResult,
+    ) -> Result<Self, CommandError> {
+        let row = chosen_row(arguments.row.as_deref(), result)?;
+        let held = held_value(&arguments.second, spec)?;
+        let swept = spec.problem.family();
+        let (low, high) = swept.range();
+        let first = (
+            swept.parameter(),
+            arguments.first_from.unwrap_or(low),
+            arguments.first_to.unwrap_or(high),
+        );
+        let (from, to) = (
+            arguments.from.min(arguments.to),
+            arguments.from.max(arguments.to),
+        );
+        let plane = Plane::new(first, (&arguments.second, from, to)).map_err(refused)?;
+        let start = CurveStart::from_row(row, held, spec.problem.subject());
+        let start = start.ok_or_else(|| no_indicator(row, result))?;
+        let job = Self {
+            arguments,
+            spec,
+            row,
+            plane,
+            start,
+        };
+        job.check_box()?;
+        Ok(job)
+    }
+
+    /// Refuses a box that the start is not in, before anything is solved.
+    fn check_box(&self) -> Result<(), CommandError> {
+        let sides = self.plane.sides().iter().zip(self.start.values).enumerate();
+        for (number, (side, value)) in sides {
+            if (side.from..=side.to).contains(&value) {
+                continue;
+            }
+            let (parameter, from, to) = (&side.parameter, side.from, side.to);
+            let title = format!(
+                "{} is not in the box: {parameter} is {} there, and the box goes from {from} to {to}",
+                self.row.label,
+                format_number(value)
+            );
+            let (low, high) = match number {
+                0 => ("--first-from", "--first-to"),
+                _ => ("--from", "--to"),
+            };
+            let remedy = format!(
+                "give `{low}` and `{high}` on either side of {}",
+                format_number(value)
+            );
+            return Err(CommandError::Input(
+                Diagnostic::new(title).remedy(remedy).into(),
+            ));
+        }
+        Ok(())
+    }
+
+    /// The folder for the results.
+    fn home(&self) -> PathBuf {
+        let name = format!("{}-{}", self.row.label, self.arguments.second);
+        let target = &self.arguments.target;
+        match &self.arguments.out {
+            Some(out) => out.clone(),
+            None if target.is_file() => {
+                let stem = target
+                    .file_stem()
+                    .map(|stem| stem.to_string_lossy().into_owned());
+                let stem = stem.unwrap_or_else(|| "sweep".to_owned());
+                Path::new("output").join(format!("{stem}-{name}"))
+            }
+            None => target.join("curves").join(name),
+        }
+    }
+
+    /// Follows the curve; `None` when interrupted before there was one.
+    fn follow(&self, cancellation: &Cancellation) -> Result<Option<Curve>, CommandError> {
+        let locate = &self.spec.settings.locate;
+        let swept = self.plane.sides()[0].length();
+        let options = CurveOptions {
+            largest_step: self.arguments.step,
+            tolerance: match locate.tolerance {
+                Some(tolerance) => tolerance / swept,
+                None => locate.relative_tolerance,
+            },
+            check_every: match locate.grid_check {
+                true => CurveOptions::default().check_every,
+                false => 0,
+            },
+            ..CurveOptions::default()
+        };
+        let source = match self.spec.source_in(&self.plane, cancellation) {
+            Ok(source) => source,
+            Err(MethodError::Cancelled(_)) => return Ok(None),
+            Err(error) => return Err(refused_plane(&error)),
+        };
+        let [first, second] = self
+            .plane
+            .sides()
+            .each_ref()
+            .map(|side| side.parameter.as_str());
+        let mut met = 0;
+        let quiet = self.arguments.quiet;
+        let mut observer = |values: [f64; 2]| {
+            met += 1;
+            tell(
+                quiet,
+                &format!(
+                    "{met}: {first} = {:.6e}  {second} = {:.6e}\n",
+                    values[0], values[1]
+                ),
+            );
+        };
+        let detector = self.spec.detector();
+        let found = follow(
+            &source,
+            &self.plane,
+            &detector,
+            &self.start,
+            &options,
+            cancellation,
+            &mut observer,
+        );
+        match found {
+            Ok(curve) => Ok(Some(curve)),
+            Err(CurveError::Source(SourceError::Interrupted)) => Ok(None),
+            Err(error) => Err(refused(error)),
+        }
+    }
+
+    /// Writes the curve and prints what it is.
+    fn conclude(
+        &self,
+        curve: &Curve,
+        folder: CurveFolder,
+        home: &Path,
+    ) -> Result<Outcome, CommandError> {
+        let (family, settings) = (self.spec.problem.family(), &self.spec.settings);
+        folder.write(family, curve, &self.row.label, &self.spec.to_toml())?;
+        let style = &settings.figure_style;
+        let figure = curve_figure(curve, self.row, family, &settings.title, style)?;
+        write_figures(&[figure], &settings.figure_formats, &folder.figures())?;
+        let files = folder.take_place()?;
+        let mut text = self.summary(curve);
+        text += "files\n";
+        for file in files {
+            text += &format!("  {}\n", file.display());
+        }
+        super::conclude(&text, outcome(curve), home)
+    }
+
+    fn summary(&self, curve: &Curve) -> String {
+        let family = self.spec.problem.family();
+        let [first, second] = curve.plane.sides();
+        let mut text = format!(
+            "{} of {} is zero, followed from {} in the plane of {} and {}\n",
+            curve.kind.name(),
+            curve.observable.name(family),
+            self.row.label,
+            first.parameter,
+            second.parameter
+        );
+        let mut line = |label: &str, index: usize, words: &str| {
+            let Some(point) = curve.points.get(index) else {
+                return;
+            };
+            let values = [first, second].into_iter().enumerate().map(|(k, side)| {
+                let error = point.error * side.length();
+                format!(
+                    "{} = {}",
+                    side.parameter,
+                    format_with_error(point.values[k], error).0
+                )
+            });
+            let values = values.collect::<Vec<_>>().join("  ");
+            text += &format!("  {label:<4} {values}  {words}\n");
+        };
+        let first_end = curve.ends.first().filter(|_| curve.ends.len() > 1);
+        if let Some(end) = first_end {
+            line(&end.label, end.point, &end.reason.words(&curve.plane));
+        }
+        line(&self.row.label, curve.start, "start");
+        if let Some(end) = curve.ends.last() {
+            line(&end.label, end.point, &end.reason.words(&curve.plane));
+        }
+        let largest = curve
+            .points
+            .iter()
+            .map(|point| point.error)
+            .fold(0.0, f64::max);
+        let checked = curve.points.iter().filter(|point| point.checked).count();
+        let located = curve
+            .points
+            .iter()
+            .filter(|point| is_located(point.status))
+            .count();
+        text += &format!(
+            "  {} points, {located} of them located, {checked} checked; largest error {largest:.1e} of the sides of the box\n",
+            curve.points.len()
+        );
+        text
+    }
+}
+
+fn is_located(status: BifurcationStatus) -> bool {
+    status == BifurcationStatus::Located
+}
+
+/// How a command ends that gives this curve.
+fn outcome(curve: &Curve) -> Outcome {
+    let mut points = curve.points.iter();
+    if curve.is_interrupted() {
+        Outcome::Interrupted
+    } else if points.all(|point| is_located(point.status)) {
+        Outcome::Complete
+    } else {
+        Outcome::Partial
+    }
+}
+
+/// Says how it goes.
+fn tell(quiet: bool, text: &str) {
+    if !quiet {
+        // Without a reader of stderr there is nobody to tell.
+        let _ = std::io::stderr().lock().write_all(text.as_bytes());
+    }
+}

@@ -1,0 +1,277 @@
+//! The error of a curve's points: their own, and what solves on finer cells and between closed ends of Ω show at selected ones.
+//!
+//! As for the rows of a sweep, the finer value is the better one and is kept: the curve moves by what the checked points show, interpolated
+//! along it, and the error of that is stated from the distance between coarse and fine.
+
+use super::reading::{Missing, Reader};
+use super::walk::{Node, Walked};
+use super::{CurveOptions, CurvePoint, CurveStart, CurveWork, Plane};
+use crate::cancellation::Cancellation;
+use crate::continuation::grid::SHARE_OF_DISTANCE;
+use crate::continuation::locate::QUIET;
+use crate::continuation::{BifurcationStatus, DensitySource, ErrorParts, PointStatus};
+use crate::topology::{Detector, IndicatorKind, two_sided_limit};
+
+/// A finer curve farther than this from the coarser one is not the same, in sides of the box.
+const SAME: f64 = 0.05;
+/// Checks on either side that the error of a point is taken from: where in its cell an indicator's place lies makes a single one small by
+/// chance.
+const NEIGHBOURS: usize = 2;
+
+/// What a check shows: how far uphill the curve is by it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Shown {
+    Moved(f64),
+    /// There is no such curve near.
+    Nothing,
+    /// It could not be asked.
+    Failed,
+}
+
+/// What the checks of one point show; `None` where none was made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Check {
+    index: usize,
+    finer: Option<Shown>,
+    enclosed: Option<Shown>,
+}
+
+/// How curves are checked.
+pub(super) struct Checks<'a> {
+    pub(super) source: &'a dyn DensitySource,
+    pub(super) plane: &'a Plane,
+    pub(super) detector: &'a dyn Detector,
+    pub(super) start: &'a CurveStart,
+    pub(super) options: &'a CurveOptions,
+    pub(super) cancellation: &'a Cancellation,
+}
+
+impl Checks<'_> {
+    /// The points with their errors, and what checking them took.
+    pub(super) fn judged(&self, walked: &Walked) -> (Vec<CurvePoint>, CurveWork) {
+        let selected = self.selected(walked);
+        let mut checks: Vec<Check> = selected
+            .iter()
+            .map(|&index| Check {
+                index,
+                finer: None,
+                enclosed: None,
+            })
+            .collect();
+        let mut work = CurveWork::default();
+        if !checks.is_empty() {
+            let finer = self.source.finer();
+            match finer {
+                Ok(Some(source)) => {
+                    let shown = self.ask(source.as_ref(), walked, &selected, &mut work);
+                    let pairs = checks.iter_mut().zip(shown);
+                    pairs.for_each(|(check, shown)| check.finer = shown);
+                }
+                Ok(None) => {}
+                Err(_) => checks
+                    .iter_mut()
+                    .for_each(|check| check.finer = Some(Shown::Failed)),
+            }
+            let leaks = walked
+                .points
+                .iter()
+                .any(|node| node.reading.edge_mass > QUIET);
+            if let Some(source) = self.source.enclosed().filter(|_| leaks) {
+                let shown = self.ask(source.as_ref(), walked, &selected, &mut work);
+                let pairs = checks.iter_mut().zip(shown);
+                pairs.for_each(|(check, shown)| check.enclosed = shown);
+            }
+        }
+        checks.retain(|check| check.finer.is_some() || check.enclosed.is_some());
+        let nodes = walked.points.iter().enumerate();
+        let points = nodes.map(|(index, node)| {
+            let check = between(&checks, &walked.points, index);
+            self.point(node, &check)
+        });
+        (points.collect(), work)
+    }
+
+    /// The points that are checked. The slope at a kink follows from the equations: no grid takes part.
+    fn selected(&self, walked: &Walked) -> Vec<usize> {
+        let every = self.options.check_every;
+        if every == 0 || self.start.kind == IndicatorKind::KinkSlope {
+            return Vec::new();
+        }
+        let last = walked.points.len() - 1;
+        let is_chosen = |&index: &usize| {
+            let from_start = index.abs_diff(walked.start);
+            index == 0 || index == last || from_start.is_multiple_of(every)
+        };
+        (0..=last).filter(is_chosen).collect()
+    }
+
+    /// What another source shows at the selected points, `None` where it was asked to stop.
+    fn ask(
+        &self,
+        source: &dyn DensitySource,
+        walked: &Walked,
+        selected: &[usize],
+        work: &mut CurveWork,
+    ) -> Vec<Option<Shown>> {
+        let mut reader = Reader {
+            session: source.open(self.cancellation),
+            plane: self.plane,
+            detector: self.detector,
+            observable: self.start.observable,
+            kind: self.start.kind,
+            work: CurveWork::default(),
+        };
+        let mut shown = vec![None; selected.len()];
+        // In the order in which the path was walked, neighbours follow each other.
+        let mut order: Vec<usize> = (0..selected.len()).collect();
+        let reading = |place: usize| &walked.points[selected[place]].reading;
+        order.sort_by(|&a, &b| reading(a).coordinate.total_cmp(&reading(b).coordinate));
+        for place in order {
+            let reading = reading(place);
+            let value = reader.value(reading.coordinate, &reading.indicator.place);
+            shown[place] = match value {
+                Ok(value) => {
+                    let moved = (reading.indicator.value - value) / reading.steepness();
+                    let same = moved.abs() <= SAME;
+                    Some(if same {
+                        Shown::Moved(moved)
+                    } else {
+                        Shown::Nothing
+                    })
+                }
+                Err(Missing::Indicator) => Some(Shown::Nothing),
+                Err(Missing::Density(_)) => Some(Shown::Failed),
+                Err(Missing::Interrupted) => break,
+            };
+        }
+        work.add(&reader.work);
+        shown
+    }
+
+    fn point(&self, node: &Node, check: &Interpolated) -> CurvePoint {
+        let reading = &node.reading;
+        let (indicator, steepness) = (&reading.indicator, reading.steepness());
+        let sampling = match indicator.sampling_error > 0.0 {
+            true => {
+                let doubt = 1.0 - self.detector.confidence();
+                indicator.sampling_error * two_sided_limit(doubt, indicator.degrees_of_freedom)
+            }
+            false => 0.0,
+        };
+        let own = indicator.systematic_error / steepness;
+        let parts = ErrorParts {
+            solver: reading.solver_error * indicator.sensitivity / steepness + node.remainder,
+            grid: check.grid.unwrap_or(own),
+            sampling: sampling / steepness,
+            leak: check.leak,
+        };
+        let error = parts.total();
+        let uphill = reading.uphill();
+        let mut foot = node.foot;
+        match node.border {
+            // It stays on the border.
+            Some(side) => foot[1 - side] += check.shift / uphill[1 - side],
+            None => (0..2).for_each(|k| foot[k] += check.shift * uphill[k]),
+        }
+        let sides = self.plane.sides();
+        let depends_on_cells = self.start.kind != IndicatorKind::KinkSlope;
+        let unknown = check.grid.is_none() && depends_on_cells && reading.is_diffused;
+        let status = match check.status {
+            Some(status) => status,
+            None if reading.status != PointStatus::Solved || error > self.options.tolerance => {
+                BifurcationStatus::Unresolved
+            }
+            None if unknown => BifurcationStatus::Unconfirmed,
+            None => BifurcationStatus::Located,
+        };
+        CurvePoint {
+            values: self.plane.values(foot),
+            error,
+            parts,
+            to_edge: [0, 1].map(|k| error * uphill[k] * sides[k].length()),
+            indicator: indicator.value,
+            gradient: [0, 1].map(|k| reading.gradient[k] / sides[k].length()),
+            place: indicator.place.clone(),
+            arclength: node.arclength,
+            tangent: [0, 1].map(|k| node.tangent[k] * sides[k].length()),
+            checked: check.is_own,
+            status,
+        }
+    }
+}
+
+/// What the checks show of a point.
+#[derive(Debug, Clone, PartialEq, Default)]
+struct Interpolated {
+    /// How far uphill the better curve is.
+    shift: f64,
+    /// Error of the cells; `None` where no finer cells tell.
+    grid: Option<f64>,
+    leak: f64,
+    /// Whether the point itself was checked.
+    is_own: bool,
+    /// The status where a check shows no curve, or failed.
+    status: Option<BifurcationStatus>,
+}
+
+/// Between the nearest checked points on either side.
+fn between(checks: &[Check], nodes: &[Node], index: usize) -> Interpolated {
+    let after = checks.partition_point(|check| check.index < index);
+    let above = checks.get(after);
+    let below = match above {
+        Some(check) if check.index == index => Some(check),
+        _ => after.checked_sub(1).and_then(|place| checks.get(place)),
+    };
+    let (Some(below), Some(above)) = (below.or(above), above.or(below)) else {
+        return Interpolated::default();
+    };
+    let arclength = |check: &Check| nodes[check.index].arclength;
+    let (from, to) = (arclength(below), arclength(above));
+    let share = match to > from {
+        true => (nodes[index].arclength - from) / (to - from),
+        false => 0.0,
+    };
+    let nearest = if share <= 0.5 { below } else { above };
+    let moved = |shown: Option<Shown>| match shown {
+        Some(Shown::Moved(moved)) => Some(moved),
+        _ => None,
+    };
+    let (a, b) = (moved(below.finer), moved(above.finer));
+    let pair = a.or(b).zip(b.or(a));
+    let around = checks[after.saturating_sub(NEIGHBOURS)..]
+        .iter()
+        .take(2 * NEIGHBOURS);
+    let around: Vec<f64> = around.filter_map(|check| moved(check.finer)).collect();
+    let largest = around
+        .iter()
+        .fold(0.0_f64, |max, moved| max.max(moved.abs()));
+    let from_neighbours = match below.index == above.index {
+        true => 0.0,
+        false => spread(&around),
+    };
+    let leaks = [below, above].map(|check| moved(check.enclosed).map_or(0.0, f64::abs));
+    let shows = |what: Shown| nearest.finer == Some(what) || nearest.enclosed == Some(what);
+    Interpolated {
+        shift: pair.map_or(0.0, |(a, b)| (1.0 - share) * a + share * b),
+        grid: pair.map(|_| SHARE_OF_DISTANCE * largest + from_neighbours),
+        leak: leaks[0].max(leaks[1]),
+        is_own: below.index == index,
+        status: if nearest.finer == Some(Shown::Nothing) {
+            Some(BifurcationStatus::Unconfirmed)
+        } else if shows(Shown::Failed) || nearest.enclosed == Some(Shown::Nothing) {
+            Some(BifurcationStatus::Unchecked)
+        } else {
+            None
+        },
+    }
+}
+
+/// How far apart the numbers of a list are.
+fn spread(list: &[f64]) -> f64 {
+    let (low, high) = list
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &one| {
+            (low.min(one), high.max(one))
+        });
+    (high - low).max(0.0)
+}

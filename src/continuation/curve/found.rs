@@ -1,0 +1,168 @@
+//! What following a curve gives: its points with their errors, its ends with their reasons, and the work it took.
+
+use super::Plane;
+use crate::continuation::{BifurcationStatus, ErrorParts};
+use crate::density::Observable;
+use crate::topology::IndicatorKind;
+
+/// A point of a curve.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CurvePoint {
+    /// Values of both parameters.
+    pub values: [f64; 2],
+    /// Half-width of the band that is believed to hold the true curve, across the curve, as a share of the sides of the box.
+    pub error: f64,
+    /// Its parts, in the same unit.
+    pub parts: ErrorParts,
+    /// From the curve to the edge of the band on the side where the indicator is positive, in units of the parameters; the other edge is
+    /// as far on the other side.
+    pub to_edge: [f64; 2],
+    /// The indicator where it was solved last.
+    pub indicator: f64,
+    /// Its change per unit of each parameter.
+    pub gradient: [f64; 2],
+    /// Where the indicator is, one coordinate an axis of the density.
+    pub place: Vec<f64>,
+    /// Length of the curve from the start to here, in sides of the box; negative before it.
+    pub arclength: f64,
+    /// Direction of the curve toward rising arclength, in units of the parameters per arclength.
+    pub tangent: [f64; 2],
+    /// Whether it was checked on finer cells, or between closed ends.
+    pub checked: bool,
+    /// How well it is known.
+    pub status: BifurcationStatus,
+}
+
+/// Why a curve ends.
+#[derive(Debug, Clone, PartialEq)]
+pub enum EndReason {
+    /// It leaves the box; the side whose parameter is at an end of its range, 0 or 1.
+    Border(usize),
+    /// It comes back to where it began.
+    Closed,
+    /// The density has no steady state beyond, or none was found, for this reason.
+    NoDensity(String),
+    /// The feature whose indicator was followed is not there beyond.
+    FeatureLost,
+    /// The indicator changes in no direction: curves meet, or turn on the spot.
+    Singular,
+    /// However short the step, the curve was not met again.
+    NotConverged,
+    /// It has as many points as were wanted at most.
+    TooManyPoints,
+    /// It was asked to stop.
+    Interrupted,
+}
+
+impl EndReason {
+    /// The letters of its label, as AUTO has them: `EP` an end of the box, `CL` closed, `MX` no density or no
+    /// convergence; `FL` feature lost, `SP` singular point, `UN` unfinished.
+    pub fn prefix(&self) -> &'static str {
+        match self {
+            Self::Border(_) => "EP",
+            Self::Closed => "CL",
+            Self::NoDensity(_) | Self::NotConverged => "MX",
+            Self::FeatureLost => "FL",
+            Self::Singular => "SP",
+            Self::TooManyPoints | Self::Interrupted => "UN",
+        }
+    }
+
+    /// In words, for a curve in this plane.
+    pub fn words(&self, plane: &Plane) -> String {
+        match self {
+            Self::Border(side) => {
+                let parameter = plane.sides().get(*side).map(|side| side.parameter.as_str());
+                format!("border of the box in {}", parameter.unwrap_or("?"))
+            }
+            Self::Closed => "closed curve".to_owned(),
+            Self::NoDensity(reason) => format!("no density beyond: {reason}"),
+            Self::FeatureLost => "the feature is lost".to_owned(),
+            Self::Singular => "the indicator changes in no direction".to_owned(),
+            Self::NotConverged => "the curve was not met again".to_owned(),
+            Self::TooManyPoints => "as many points as wanted at most".to_owned(),
+            Self::Interrupted => "interrupted".to_owned(),
+        }
+    }
+}
+
+/// An end of a curve.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CurveEnd {
+    /// Letters and ordinal, for example `EP1`.
+    pub label: String,
+    /// Why it ends there.
+    pub reason: EndReason,
+    /// The point, by its place in [`Curve::points`].
+    pub point: usize,
+}
+
+/// What a curve took.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct CurveWork {
+    /// Solves.
+    pub solves: usize,
+    /// Iterations of the solver in all of them.
+    pub iterations: usize,
+    /// Factorisations.
+    pub factorisations: usize,
+}
+
+impl CurveWork {
+    pub(super) fn add(&mut self, other: &Self) {
+        self.solves += other.solves;
+        self.iterations += other.iterations;
+        self.factorisations += other.factorisations;
+    }
+}
+
+/// A curve of P-bifurcations.
+#[derive(Debug, Clone)]
+pub struct Curve {
+    /// The plane.
+    pub plane: Plane,
+    /// The observable whose signature changes across it.
+    pub observable: Observable,
+    /// The indicator that is zero on it.
+    pub kind: IndicatorKind,
+    /// Its points, one after the other from end to end.
+    pub points: Vec<CurvePoint>,
+    /// The point at which it was begun, by its place.
+    pub start: usize,
+    /// Its ends: that of the first point and that of the last. A closed curve has one.
+    pub ends: Vec<CurveEnd>,
+    /// What following it took.
+    pub work: CurveWork,
+    /// What checking it took.
+    pub check_work: CurveWork,
+}
+
+impl Curve {
+    /// Whether it was asked to stop before it was complete.
+    pub fn is_interrupted(&self) -> bool {
+        let mut ends = self.ends.iter();
+        ends.any(|end| end.reason == EndReason::Interrupted)
+    }
+}
+
+/// Ends with their labels, numbered by their letters.
+pub(super) fn labelled(reasons: Vec<EndReason>, points: usize) -> Vec<CurveEnd> {
+    let mut ends: Vec<CurveEnd> = Vec::new();
+    for (index, reason) in reasons.into_iter().enumerate() {
+        let prefix = reason.prefix();
+        let before = ends
+            .iter()
+            .filter(|end| end.reason.prefix() == prefix)
+            .count();
+        ends.push(CurveEnd {
+            label: format!("{prefix}{}", before + 1),
+            point: if index == 0 {
+                0
+            } else {
+                points.saturating_sub(1)
+            },
+            reason,
+        });
+    }
+    ends
+}

@@ -1,0 +1,204 @@
+//! Curves of P-bifurcations in a plane of two parameters: from a zero of an indicator g on, the line on which g(θ₁, θ₂) = 0.
+//!
+//! The curve is followed by pseudo-arclength in the plane scaled by the sides of its box. The tangent is exact where the source knows how
+//! its densities answer to parameters; a step goes along the tangent and the curvature seen so far, and is corrected along the gradient.
+//! Selected points are checked on finer cells and between closed ends of Ω, as the rows of a sweep are, and what the checks show is
+//! interpolated along the curve. This module knows an indicator and sessions, and nothing of cells.
+
+mod check;
+mod found;
+mod plane;
+mod reading;
+mod walk;
+
+pub use found::{Curve, CurveEnd, CurvePoint, CurveWork, EndReason};
+pub use plane::{Plane, PlaneSide};
+
+use found::labelled;
+
+use super::{DensitySource, LabelledPoint, SourceError, Subject};
+use crate::cancellation::Cancellation;
+use crate::density::Observable;
+use crate::topology::{Detector, IndicatorKind};
+
+/// Settings of curves. Lengths are shares of the sides of the box.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CurveOptions {
+    /// Longest step between points.
+    pub largest_step: f64,
+    /// Most points in each of the two directions.
+    pub most_points: usize,
+    /// Largest error of a point that counts as located.
+    pub tolerance: f64,
+    /// Hellinger distance between densities of neighbouring points above which a step is halved.
+    pub largest_distance: f64,
+    /// Every which point is checked on finer cells, where the source has them; zero for none. The ends are checked at any rate.
+    pub check_every: usize,
+}
+
+impl Default for CurveOptions {
+    fn default() -> Self {
+        Self {
+            largest_step: 0.025,
+            most_points: 400,
+            tolerance: 1e-4,
+            largest_distance: 0.2,
+            check_every: 8,
+        }
+    }
+}
+
+/// Where a curve is known to pass.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CurveStart {
+    /// Values of both parameters.
+    pub values: [f64; 2],
+    /// Place of the observable in [`Subject::observables`].
+    pub observable: usize,
+    /// The indicator that is zero there.
+    pub kind: IndicatorKind,
+    /// Where the indicator is, one coordinate an axis of the density.
+    pub place: Vec<f64>,
+}
+
+impl CurveStart {
+    /// A row of a sweep over the first parameter at a value of the second; `None` for a row that was located by no indicator, or is of no
+    /// observable of the subject.
+    pub fn from_row(row: &LabelledPoint, second: f64, subject: &Subject) -> Option<Self> {
+        let mut observables = subject.observables.iter();
+        let observable = observables.position(|&one| Some(one) == row.observable)?;
+        Some(Self {
+            values: [row.value, second],
+            observable,
+            kind: row.indicator?,
+            place: row.place.clone(),
+        })
+    }
+}
+
+/// Why there is no curve.
+#[derive(Debug, thiserror::Error)]
+pub enum CurveError {
+    /// Both sides are the same parameter.
+    #[error("the second parameter is the first one, `{parameter}`")]
+    SameParameter {
+        /// The parameter.
+        parameter: String,
+    },
+    /// A side of the box that has no length.
+    #[error("the box has no extent in {parameter}: from {from} to {to}")]
+    EmptySide {
+        /// The parameter.
+        parameter: String,
+        /// The lower end.
+        from: f64,
+        /// The upper end.
+        to: f64,
+    },
+    /// The start is not in the box.
+    #[error(
+        "the start is not in the box: {parameter} = {value}, and the box goes from {from} to {to}"
+    )]
+    Outside {
+        /// The parameter.
+        parameter: String,
+        /// Its value at the start.
+        value: f64,
+        /// The lower end.
+        from: f64,
+        /// The upper end.
+        to: f64,
+    },
+    /// The source does not solve along the plane.
+    #[error("the source moves {}, and the plane has {} and {}", moved.join(", "), sides[0], sides[1])]
+    OtherPlane {
+        /// The parameters that its path moves.
+        moved: Vec<String>,
+        /// Those of the plane.
+        sides: [String; 2],
+    },
+    /// There is no zero of the indicator at the start.
+    #[error("no zero of the indicator was found near the start: {reason}")]
+    NoStart {
+        /// Why.
+        reason: String,
+    },
+    /// The source refuses to work.
+    #[error(transparent)]
+    Source(#[from] SourceError),
+}
+
+/// Follows the curve through a start in both directions, in the box of a plane along whose path `source` solves. `observer` is told the
+/// values of every point as it is met.
+///
+/// Cancelled, the curve ends early, and says so.
+///
+/// # Errors
+/// [`CurveError`] where the start is not in the box, or no zero of its indicator is near.
+pub fn follow(
+    source: &dyn DensitySource,
+    plane: &Plane,
+    detector: &dyn Detector,
+    start: &CurveStart,
+    options: &CurveOptions,
+    cancellation: &Cancellation,
+    observer: &mut dyn FnMut([f64; 2]),
+) -> Result<Curve, CurveError> {
+    let subject = source.subject();
+    let observable = checked(subject, plane, start)?;
+    let follower = walk::Follower {
+        source,
+        plane,
+        detector,
+        start,
+        options,
+        cancellation,
+    };
+    let walked = follower.both_ways(observer)?;
+    let checks = check::Checks {
+        source,
+        plane,
+        detector,
+        start,
+        options,
+        cancellation,
+    };
+    let (points, check_work) = checks.judged(&walked);
+    Ok(Curve {
+        plane: plane.clone(),
+        observable,
+        kind: start.kind,
+        points,
+        start: walked.start,
+        ends: labelled(walked.ends, walked.points.len()),
+        work: walked.work,
+        check_work,
+    })
+}
+
+/// Refuses a start that is not in the box, or not of this source; gives its observable.
+fn checked(subject: &Subject, plane: &Plane, start: &CurveStart) -> Result<Observable, CurveError> {
+    let sides = plane.sides();
+    let names = sides.each_ref().map(|side| side.parameter.clone());
+    let moved = subject.family.path().moved();
+    if moved != names {
+        return Err(CurveError::OtherPlane {
+            moved: moved.to_vec(),
+            sides: names,
+        });
+    }
+    for (side, value) in sides.iter().zip(start.values) {
+        if !(side.from..=side.to).contains(&value) {
+            return Err(CurveError::Outside {
+                parameter: side.parameter.clone(),
+                value,
+                from: side.from,
+                to: side.to,
+            });
+        }
+    }
+    let observable = subject.observables.get(start.observable).copied();
+    observable.ok_or_else(|| CurveError::NoStart {
+        reason: "the source does not watch its density".to_owned(),
+    })
+}

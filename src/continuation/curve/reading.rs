@@ -1,0 +1,201 @@
+//! The indicator at a place of the plane, and how it changes with both parameters.
+//!
+//! Where the solved point knows how its densities answer to parameters, the indicator's derivative is the indicator of the density moved a
+//! little along dp/dθ: exact to the digits of dp/dθ. Elsewhere two more solves beside the place give it by differences.
+
+use super::{CurveWork, Plane};
+use crate::continuation::{PointStatus, Session, SourceError};
+use crate::density::{Density, EstimatedDensity};
+use crate::topology::{Detector, Indicator, IndicatorKind};
+
+/// Largest change of a density, as a share of its maximum, by which an indicator is differentiated: the error is this squared.
+const SHARE: f64 = 1e-5;
+/// Distance of the places beside, where derivatives come from differences; sides of the box have length one.
+const BESIDE: f64 = 5e-3;
+
+/// What is read at a place. Places and derivatives are those of the box with sides of length one.
+#[derive(Debug, Clone)]
+pub(super) struct Reading {
+    /// The path's coordinate.
+    pub(super) coordinate: f64,
+    pub(super) at: [f64; 2],
+    pub(super) indicator: Indicator,
+    pub(super) gradient: [f64; 2],
+    pub(super) solver_error: f64,
+    /// Mass in the outermost cells, the largest over the axes.
+    pub(super) edge_mass: f64,
+    pub(super) status: PointStatus,
+    /// Whether cells add diffusion of their own.
+    pub(super) is_diffused: bool,
+    pub(super) density: Density,
+    /// How far from the place the derivatives were read.
+    pub(super) doubt: f64,
+}
+
+impl Reading {
+    /// Length of the gradient.
+    pub(super) fn steepness(&self) -> f64 {
+        self.gradient[0].hypot(self.gradient[1])
+    }
+
+    /// The direction in which the indicator rises fastest.
+    pub(super) fn uphill(&self) -> [f64; 2] {
+        self.gradient.map(|part| part / self.steepness())
+    }
+
+    /// The direction of the curve through the place, one of the two.
+    pub(super) fn tangent(&self) -> [f64; 2] {
+        let [x, y] = self.uphill();
+        [-y, x]
+    }
+
+    /// How far uphill the curve is, by the gradient.
+    pub(super) fn distance(&self) -> f64 {
+        -self.indicator.value / self.steepness()
+    }
+
+    /// Where the curve is, by the gradient.
+    pub(super) fn foot(&self) -> [f64; 2] {
+        let (uphill, distance) = (self.uphill(), self.distance());
+        [0, 1].map(|k| self.at[k] + distance * uphill[k])
+    }
+}
+
+/// Why nothing was read.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Missing {
+    /// There is no density, for this reason.
+    Density(String),
+    /// The density has no such indicator.
+    Indicator,
+    /// The source was asked to stop.
+    Interrupted,
+}
+
+/// A session with what is to be read in it.
+pub(super) struct Reader<'a> {
+    pub(super) session: Box<dyn Session>,
+    pub(super) plane: &'a Plane,
+    pub(super) detector: &'a dyn Detector,
+    pub(super) observable: usize,
+    pub(super) kind: IndicatorKind,
+    pub(super) work: CurveWork,
+}
+
+impl Reader<'_> {
+    /// Reads at a place, the indicator nearest to `near`, with its derivatives.
+    pub(super) fn read(&mut self, at: [f64; 2], near: &[f64]) -> Result<Reading, Missing> {
+        let coordinate = self.plane.lay(at);
+        let mut reading = self.solve(coordinate, at, near, true)?;
+        if reading.gradient.iter().any(|part| part.is_nan()) {
+            reading.gradient = self.differences(&reading)?;
+            reading.doubt = BESIDE;
+        }
+        Ok(reading)
+    }
+
+    /// Reads at a coordinate of what is laid already, without derivatives.
+    pub(super) fn value(&mut self, coordinate: f64, near: &[f64]) -> Result<f64, Missing> {
+        let reading = self.solve(coordinate, [f64::NAN; 2], near, false)?;
+        Ok(reading.indicator.value)
+    }
+
+    /// Solves and reads; the derivatives are NaN where the source knows none, or none are wanted.
+    fn solve(
+        &mut self,
+        coordinate: f64,
+        at: [f64; 2],
+        near: &[f64],
+        with_gradient: bool,
+    ) -> Result<Reading, Missing> {
+        let mut solution = self.session.solve(coordinate).map_err(missing)?;
+        let report = &solution.report;
+        self.work.solves += 1;
+        self.work.iterations += report.iterations;
+        self.work.factorisations += report.own.factorisations;
+        if !report.status.is_resolved() {
+            return Err(Missing::Density(report.status.word().to_owned()));
+        }
+        let density = solution.densities.get(self.observable);
+        let density = density.ok_or_else(|| Missing::Density("no density".to_owned()))?;
+        let indicator = self.detector.indicator(density, self.kind, near);
+        let indicator = indicator.ok_or(Missing::Indicator)?;
+        let mut gradient = [f64::NAN; 2];
+        // The slope at a kink follows from the equations, not from the density alone.
+        let wanted = with_gradient && self.kind != IndicatorKind::KinkSlope;
+        if let Some(sensitivity) = solution.sensitivity.as_mut().filter(|_| wanted) {
+            for (part, side) in gradient.iter_mut().zip(self.plane.sides()) {
+                let changes = match sensitivity.to_parameter(&side.parameter) {
+                    Ok(changes) => changes,
+                    Err(SourceError::Interrupted) => return Err(Missing::Interrupted),
+                    // At an end of a parameter's range; differences go inward.
+                    Err(SourceError::Method(_)) => break,
+                };
+                let change = changes.get(self.observable).map_or(&[][..], Vec::as_slice);
+                let place = &indicator.place;
+                let along = derivative(self.detector, density, self.kind, place, change);
+                *part = along.map_or(f64::NAN, |along| along * side.length());
+            }
+        }
+        Ok(Reading {
+            coordinate,
+            at,
+            gradient,
+            solver_error: report.solver_error,
+            edge_mass: report.edge_mass.iter().copied().fold(0.0, f64::max),
+            status: report.status,
+            is_diffused: !report.own.numerical_diffusion.is_empty(),
+            density: density.density.clone(),
+            indicator,
+            doubt: 0.0,
+        })
+    }
+
+    /// Derivatives by two places beside, on the side of the middle of the box.
+    fn differences(&mut self, reading: &Reading) -> Result<[f64; 2], Missing> {
+        let mut gradient = [0.0; 2];
+        for (k, part) in gradient.iter_mut().enumerate() {
+            let step = if reading.at[k] < 0.5 { BESIDE } else { -BESIDE };
+            let mut at = reading.at;
+            at[k] += step;
+            let coordinate = self.plane.lay(at);
+            let value = self.value(coordinate, &reading.indicator.place)?;
+            *part = (value - reading.indicator.value) / step;
+        }
+        Ok(gradient)
+    }
+}
+
+fn missing(error: SourceError) -> Missing {
+    match error {
+        SourceError::Interrupted => Missing::Interrupted,
+        SourceError::Method(error) => Missing::Density(error.to_string()),
+    }
+}
+
+/// Derivative of an indicator when its density changes at this rate.
+fn derivative(
+    detector: &dyn Detector,
+    estimated: &EstimatedDensity,
+    kind: IndicatorKind,
+    place: &[f64],
+    rate: &[f64],
+) -> Option<f64> {
+    let values = &estimated.density.values;
+    let fastest = rate.iter().fold(0.0_f64, |max, rate| max.max(rate.abs()));
+    if rate.len() != values.len() || !fastest.is_finite() {
+        return None;
+    }
+    if fastest == 0.0 {
+        return Some(0.0);
+    }
+    let step = SHARE * estimated.density.maximum() / fastest;
+    let moved = |step: f64| {
+        let mut moved = estimated.clone();
+        let pairs = moved.density.values.iter_mut().zip(rate);
+        pairs.for_each(|(value, rate)| *value += step * rate);
+        let indicator = detector.indicator(&moved, kind, place)?;
+        Some(indicator.value)
+    };
+    Some((moved(step)? - moved(-step)?) / (2.0 * step))
+}

@@ -1,0 +1,346 @@
+//! Following a curve: predicted along tangent and curvature, corrected along the gradient, in steps as long as the curve allows.
+
+use super::reading::{Missing, Reader, Reading};
+use super::{CurveError, CurveOptions, CurveStart, CurveWork, EndReason, Plane};
+use crate::cancellation::Cancellation;
+use crate::continuation::{DensitySource, SourceError};
+use crate::density::hellinger;
+use crate::topology::Detector;
+
+/// A place nearer to the curve than this is on it: its foot is the point.
+const CLOSE: f64 = 1e-4;
+/// Corrections of one point.
+const MOST_CORRECTIONS: usize = 6;
+/// A correction that leaves more than this share of the distance does not converge.
+const CONVERGING: f64 = 0.5;
+/// Shortest step, over the longest.
+const SHORTEST: f64 = 1.0 / 256.0;
+/// Cosine of the angle between neighbouring tangents below which a step is halved, and above which steps grow.
+const SHARP: f64 = 0.906;
+const GENTLE: f64 = 0.99;
+const GROWTH: f64 = 1.6;
+/// Farthest that the curve may be from where it is said to begin.
+const FAR: f64 = 0.05;
+/// Places of an indicator at neighbouring points farther apart than this, in ranges of the axes, are not one place that moved.
+const ONE_PLACE: f64 = 0.1;
+/// Fewest points of a closed curve.
+const FEWEST_CLOSED: usize = 6;
+
+/// A point as it was met.
+#[derive(Debug, Clone)]
+pub(super) struct Node {
+    pub(super) reading: Reading,
+    /// The point of the curve, in the box with sides of length one.
+    pub(super) foot: [f64; 2],
+    /// Toward rising arclength, of length one.
+    pub(super) tangent: [f64; 2],
+    /// Error of the straight line from where it was read to the foot.
+    pub(super) remainder: f64,
+    pub(super) arclength: f64,
+    /// The side of the box on whose end it lies.
+    pub(super) border: Option<usize>,
+}
+
+/// A curve as it was met, without checks.
+pub(super) struct Walked {
+    pub(super) points: Vec<Node>,
+    pub(super) start: usize,
+    pub(super) ends: Vec<EndReason>,
+    pub(super) work: CurveWork,
+}
+
+/// What follows a curve.
+pub(super) struct Follower<'a> {
+    pub(super) source: &'a dyn DensitySource,
+    pub(super) plane: &'a Plane,
+    pub(super) detector: &'a dyn Detector,
+    pub(super) start: &'a CurveStart,
+    pub(super) options: &'a CurveOptions,
+    pub(super) cancellation: &'a Cancellation,
+}
+
+impl<'a> Follower<'a> {
+    fn reader(&self) -> Reader<'a> {
+        Reader {
+            session: self.source.open(self.cancellation),
+            plane: self.plane,
+            detector: self.detector,
+            observable: self.start.observable,
+            kind: self.start.kind,
+            work: CurveWork::default(),
+        }
+    }
+
+    /// Both directions from the start.
+    pub(super) fn both_ways(
+        &self,
+        observer: &mut dyn FnMut([f64; 2]),
+    ) -> Result<Walked, CurveError> {
+        let mut reader = self.reader();
+        let start = self.begin(&mut reader)?;
+        observer(self.plane.values(start.foot));
+        let (mut onward, last) = self.one_way(&mut reader, &start, observer);
+        let mut work = reader.work;
+        let mut ends = vec![last];
+        let mut back = Vec::new();
+        if !matches!(ends[0], EndReason::Closed | EndReason::Interrupted) {
+            // Afresh: what was solved last is at the other end.
+            let mut reader = self.reader();
+            self.plane.begin(start.reading.at);
+            let mut turned = start.clone();
+            turned.tangent = turned.tangent.map(|part| -part);
+            let first;
+            (back, first) = self.one_way(&mut reader, &turned, observer);
+            work.add(&reader.work);
+            ends.insert(0, first);
+        }
+        for node in &mut back {
+            node.arclength = -node.arclength;
+            node.tangent = node.tangent.map(|part| -part);
+        }
+        let before = back.len();
+        let mut points: Vec<Node> = back.into_iter().rev().collect();
+        points.push(start);
+        points.append(&mut onward);
+        Ok(Walked {
+            points,
+            start: before,
+            ends,
+            work,
+        })
+    }
+
+    /// The point of the curve at its start, the tangent toward larger values of the second parameter.
+    fn begin(&self, reader: &mut Reader<'_>) -> Result<Node, CurveError> {
+        let at = self.plane.place(self.start.values);
+        self.plane.begin(at);
+        let border = (0..2).find(|&k| at[k] <= 0.0 || at[k] >= 1.0);
+        let sought = Sought {
+            near: &self.start.place,
+            border,
+            farthest: FAR,
+            before: None,
+        };
+        let (mut node, _) = correct(reader, at, &sought).map_err(|reason| match reason {
+            EndReason::Interrupted => CurveError::Source(SourceError::Interrupted),
+            reason => CurveError::NoStart {
+                reason: reason.words(self.plane),
+            },
+        })?;
+        let [x, y] = node.tangent;
+        if y < 0.0 || (y == 0.0 && x < 0.0) {
+            node.tangent = [-x, -y];
+        }
+        Ok(node)
+    }
+
+    /// The points after the start, in the direction of its tangent, and why there are no more.
+    fn one_way(
+        &self,
+        reader: &mut Reader<'_>,
+        start: &Node,
+        observer: &mut dyn FnMut([f64; 2]),
+    ) -> (Vec<Node>, EndReason) {
+        let mut nodes: Vec<Node> = Vec::new();
+        let mut bend = [0.0; 2];
+        let longest = self.options.largest_step;
+        let mut step = 0.5 * longest;
+        loop {
+            let here = nodes.last().unwrap_or(start);
+            if nodes.len() >= self.options.most_points {
+                return (nodes, EndReason::TooManyPoints);
+            }
+            let Some((at, border)) = predicted(here, bend, step) else {
+                let side = nearest_side(here.foot);
+                return (nodes, EndReason::Border(side));
+            };
+            let sought = Sought {
+                near: &here.reading.indicator.place,
+                border,
+                farthest: 0.5 * step,
+                before: Some(here),
+            };
+            let found = correct(reader, at, &sought)
+                .and_then(|(node, corrections)| self.follows(here, node).map(|n| (n, corrections)));
+            match found {
+                Ok((node, corrections)) => {
+                    let length = apart(node.foot, here.foot);
+                    bend = [0, 1].map(|k| (node.tangent[k] - here.tangent[k]) / length);
+                    let gentle = dot(node.tangent, here.tangent) > GENTLE && corrections <= 1;
+                    step = if gentle {
+                        (GROWTH * step).min(longest)
+                    } else {
+                        step
+                    };
+                    observer(self.plane.values(node.foot));
+                    if nodes.len() >= FEWEST_CLOSED && passes(here.foot, node.foot, start.foot) {
+                        let arclength = here.arclength + apart(here.foot, start.foot);
+                        nodes.push(Node {
+                            arclength,
+                            ..start.clone()
+                        });
+                        return (nodes, EndReason::Closed);
+                    }
+                    nodes.push(node);
+                    if let Some(side) = border {
+                        return (nodes, EndReason::Border(side));
+                    }
+                }
+                Err(EndReason::Interrupted) => return (nodes, EndReason::Interrupted),
+                Err(reason) => {
+                    step *= 0.5;
+                    if step < SHORTEST * longest {
+                        return (nodes, reason);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The node as the next one of a curve, or why it is not.
+    fn follows(&self, here: &Node, mut node: Node) -> Result<Node, EndReason> {
+        let axes = &node.reading.density.axes;
+        let places = here.reading.indicator.place.iter();
+        let moved = places.zip(&node.reading.indicator.place).zip(axes);
+        let moved = moved.map(|((a, b), axis)| ((a - b) / (axis.to() - axis.from())).abs());
+        if moved.fold(0.0, f64::max) > ONE_PLACE {
+            return Err(EndReason::FeatureLost);
+        }
+        if dot(node.tangent, here.tangent) < 0.0 {
+            node.tangent = node.tangent.map(|part| -part);
+        }
+        let onward = [0, 1].map(|k| node.foot[k] - here.foot[k]);
+        let turns = dot(node.tangent, here.tangent) < SHARP || dot(onward, here.tangent) <= 0.0;
+        let distance = hellinger(&here.reading.density, &node.reading.density).unwrap_or(0.0);
+        if turns || distance > self.options.largest_distance {
+            return Err(EndReason::NotConverged);
+        }
+        node.arclength = here.arclength + apart(node.foot, here.foot);
+        Ok(node)
+    }
+}
+
+/// What a correction looks for.
+struct Sought<'a> {
+    /// The indicator's place.
+    near: &'a [f64],
+    /// The side of the box along whose end to look.
+    border: Option<usize>,
+    /// Longest correction.
+    farthest: f64,
+    /// The point before.
+    before: Option<&'a Node>,
+}
+
+/// The point of the curve near a place, and the number of corrections.
+fn correct(
+    reader: &mut Reader<'_>,
+    mut at: [f64; 2],
+    sought: &Sought<'_>,
+) -> Result<(Node, usize), EndReason> {
+    let mut last = f64::INFINITY;
+    for corrections in 0..MOST_CORRECTIONS {
+        let reading = reader
+            .read(at, sought.near)
+            .map_err(|missing| match missing {
+                Missing::Density(reason) => EndReason::NoDensity(reason),
+                Missing::Indicator => EndReason::FeatureLost,
+                Missing::Interrupted => EndReason::Interrupted,
+            })?;
+        let steepness = reading.steepness();
+        if !steepness.is_finite() || steepness == 0.0 {
+            return Err(EndReason::Singular);
+        }
+        let foot = match sought.border {
+            None => reading.foot(),
+            Some(side) => {
+                let mut foot = at;
+                foot[1 - side] -= reading.indicator.value / reading.gradient[1 - side];
+                foot
+            }
+        };
+        let size = apart(foot, at);
+        if size <= CLOSE {
+            let remainder = remainder(&reading, size, sought.before);
+            let node = Node {
+                foot,
+                tangent: reading.tangent(),
+                remainder,
+                arclength: 0.0,
+                border: sought.border,
+                reading,
+            };
+            return Ok((node, corrections));
+        }
+        // A place that is not a number is not near.
+        if !(size <= sought.farthest && size <= CONVERGING * last) {
+            return Err(EndReason::NotConverged);
+        }
+        last = size;
+        at = foot;
+    }
+    Err(EndReason::NotConverged)
+}
+
+/// What the straight line to the foot may leave: half the curvature of the indicator, by how much its gradient changed since the point
+/// before, times the square of the distance.
+fn remainder(reading: &Reading, size: f64, before: Option<&Node>) -> f64 {
+    let bend = before.map_or(1.0, |before| {
+        let change = apart(reading.gradient, before.reading.gradient);
+        change / (reading.steepness() * apart(reading.at, before.reading.at))
+    });
+    0.5 * bend * size * (size + reading.doubt)
+}
+
+/// Where the next point is expected, and the side of the box at whose end it lies, if the step leads out; `None` where nothing of the box is
+/// left in this direction.
+fn predicted(here: &Node, bend: [f64; 2], step: f64) -> Option<([f64; 2], Option<usize>)> {
+    let at = |step: f64| {
+        [0, 1].map(|k| here.foot[k] + step * here.tangent[k] + 0.5 * step * step * bend[k])
+    };
+    let inside = |place: [f64; 2]| place.iter().all(|part| (0.0..=1.0).contains(part));
+    if inside(at(step)) {
+        return Some((at(step), None));
+    }
+    let (mut low, mut high) = (0.0, step);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if inside(at(middle)) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    if low < CLOSE {
+        return None;
+    }
+    let mut place = at(low);
+    let beyond = at(high);
+    let side = (0..2).find(|&k| !(0.0..=1.0).contains(&beyond[k]))?;
+    place[side] = if beyond[side] < 0.5 { 0.0 } else { 1.0 };
+    Some((place, Some(side)))
+}
+
+/// The side of the box to whose ends a place is nearest.
+fn nearest_side(place: [f64; 2]) -> usize {
+    let gap = |k: usize| place[k].min(1.0 - place[k]);
+    usize::from(gap(1) < gap(0))
+}
+
+/// Whether the line between two points passes by a third.
+fn passes(from: [f64; 2], to: [f64; 2], by: [f64; 2]) -> bool {
+    let onward = [to[0] - from[0], to[1] - from[1]];
+    let gap = [by[0] - from[0], by[1] - from[1]];
+    let length = dot(onward, onward);
+    let share = dot(gap, onward) / length;
+    let across = (gap[0] * onward[1] - gap[1] * onward[0]) / length;
+    (0.0..=1.0).contains(&share) && across.abs() < 0.25
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+pub(super) fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}

@@ -1,0 +1,285 @@
+//! A curve of P-bifurcations in its plane of two parameters: the line, its band of error, its ends, and the row that it was begun at.
+
+use plotters_backend::text_anchor::HPos;
+
+use super::FigureError;
+use super::canvas::DrawError;
+use super::canvas::frame::{self, Scale};
+use super::canvas::legend::{Legend, Sample};
+use super::canvas::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
+use super::canvas::style::{BIFURCATION, GREY, INK, MARGIN, PAPER, Stroke, TICK_TEXT};
+use super::canvas::symbols;
+use super::drawn::Figure;
+use super::names;
+use super::style::FigureStyle;
+use crate::continuation::curve::{Curve, CurvePoint};
+use crate::continuation::{BifurcationStatus, LabelledPoint};
+use crate::system::Family;
+
+/// Size of the panel on a page of its own width, in pixels, and that width.
+const PANEL: (f64, f64) = (390.0, 300.0);
+const USUAL: f64 = 480.0;
+/// Room right of the panel, for half a label.
+const BESIDE: f64 = 14.0;
+/// Opacity of the band.
+const BAND: f64 = 0.25;
+/// A band narrower than this, in pixels, is not seen beside the line.
+const SEEN: f64 = 2.0;
+/// Radius of the dots at the ends and at the start, in pixels.
+const DOT: f64 = 3.4;
+/// Where the line is not located.
+const DASHES: &[f64] = &[5.0, 4.0];
+/// Distance of letters from what they name, in pixels.
+const AWAY: f64 = 9.0;
+
+/// The figure `curve` of a curve that was begun at a row of a sweep over its first parameter. `family` gives names and symbols; `title`
+/// (plain text, may be empty) stands above it.
+///
+/// # Errors
+/// [`FigureError::Draw`].
+pub fn curve_figure(
+    curve: &Curve,
+    row: &LabelledPoint,
+    family: &Family,
+    title: &str,
+    style: &FigureStyle,
+) -> Result<Figure, FigureError> {
+    let scene = Scene {
+        curve,
+        row,
+        family,
+        look: style.look(),
+    };
+    let page = scene.draw(title)?;
+    Ok(Figure::new("curve", (scene.caption(), scene.data()), &page))
+}
+
+struct Scene<'a> {
+    curve: &'a Curve,
+    row: &'a LabelledPoint,
+    family: &'a Family,
+    look: super::canvas::look::Look,
+}
+
+impl Scene<'_> {
+    /// Symbol of a side's parameter.
+    fn symbol(&self, side: usize) -> String {
+        let name = &self.curve.plane.sides()[side].parameter;
+        let mut parameters = self.family.model().parameters.iter();
+        let known = parameters.find(|parameter| parameter.name == *name);
+        symbols::variable(known.map_or(name.as_str(), |parameter| parameter.symbol.as_str()))
+    }
+
+    fn draw(&self, title: &str) -> Result<Page, DrawError> {
+        let look = &self.look;
+        let [x, y] = self.curve.plane.sides();
+        let (x, y) = ((x.from, x.to), (y.from, y.to));
+        let high = look.height(PANEL.1, USUAL);
+        let up = Scale::vertical(look, y, high, &self.symbol(1))?;
+        let left = MARGIN + up.left();
+        let wide = look.fill(PANEL.0, left + BESIDE + MARGIN);
+        let width = left + wide + BESIDE + MARGIN;
+        let across = Scale::horizontal(look, x, wide, &self.symbol(0))?;
+        let heading = Heading::new(look, title, width)?;
+        let top = heading.height() + 6.0;
+        let rect = Rectangle {
+            left,
+            top,
+            width: wide,
+            height: high,
+        };
+        let below = rect.bottom() + Scale::below();
+        let legend = Legend::new(look, self.entries(rect), width - 2.0 * MARGIN)?;
+        let page = Page::new(look, width, below + legend.height() + MARGIN);
+        heading.draw(&page)?;
+        let panel = page.panel(rect, x, y);
+        self.draw_curve(&panel)?;
+        frame::border(&page, rect)?;
+        across.draw_below(&page, rect, true)?;
+        up.draw_left(&page, rect, true)?;
+        self.draw_marks(&page, &panel, rect)?;
+        legend.draw(&page, left + 0.5 * wide, below)?;
+        Ok(page)
+    }
+
+    fn entries(&self, rect: Rectangle) -> Vec<(Sample, String)> {
+        let stroke = Stroke::curve(0);
+        let density = names::density(self.family, self.curve.observable);
+        let line = format!("{} of {density} is 0", self.curve.kind.name());
+        let mut entries = vec![(Sample::Curve(stroke), line)];
+        if self.is_band_seen(rect) {
+            let band = Stroke::solid(stroke.colour.at(BAND), 8.0);
+            entries.push((Sample::Curve(band), "its error".to_owned()));
+        }
+        let doubtful = |point: &CurvePoint| point.status != BifurcationStatus::Located;
+        if self.curve.points.iter().any(doubtful) {
+            entries.push((Sample::Curve(dashed()), "not located".to_owned()));
+        }
+        entries
+    }
+
+    /// Whether the band is wider than the line somewhere.
+    fn is_band_seen(&self, rect: Rectangle) -> bool {
+        let shorter = rect.width.min(rect.height);
+        let mut points = self.curve.points.iter();
+        points.any(|point| 2.0 * point.error * shorter > SEEN)
+    }
+
+    fn draw_curve(&self, panel: &Panel) -> Result<(), DrawError> {
+        let points = &self.curve.points;
+        let edge = |sign: f64| {
+            let points = points.iter();
+            points.map(move |point| {
+                let [x, y] = [0, 1].map(|k| point.values[k] + sign * point.to_edge[k]);
+                self.kept(x, y)
+            })
+        };
+        let mut outline: Vec<(f64, f64)> = edge(1.0).collect();
+        outline.extend(edge(-1.0).collect::<Vec<_>>().into_iter().rev());
+        let colour = Stroke::curve(0).colour;
+        panel.draw(&outline, Shape::Area(colour.at(BAND)))?;
+        for (places, located) in self.pieces() {
+            let stroke = if located { Stroke::curve(0) } else { dashed() };
+            panel.draw(&places, Shape::Line(stroke))?;
+        }
+        Ok(())
+    }
+
+    /// Pieces of the line of which both ends are located, or not.
+    fn pieces(&self) -> Vec<(Vec<(f64, f64)>, bool)> {
+        let mut pieces: Vec<(Vec<(f64, f64)>, bool)> = Vec::new();
+        for pair in self.curve.points.windows(2) {
+            let mut both = pair.iter();
+            let located = both.all(|point| point.status == BifurcationStatus::Located);
+            let [a, b] = [0, 1].map(|k| self.kept(pair[k].values[0], pair[k].values[1]));
+            match pieces.last_mut().filter(|piece| piece.1 == located) {
+                Some((places, _)) => places.push(b),
+                None => pieces.push((vec![a, b], located)),
+            }
+        }
+        pieces
+    }
+
+    /// A place moved into the box.
+    fn kept(&self, x: f64, y: f64) -> (f64, f64) {
+        let [first, second] = self.curve.plane.sides();
+        (
+            x.clamp(first.from, first.to),
+            y.clamp(second.from, second.to),
+        )
+    }
+
+    /// The start with its label and the signatures on both sides, and the ends with theirs.
+    fn draw_marks(&self, page: &Page, panel: &Panel, rect: Rectangle) -> Result<(), DrawError> {
+        let place = |point: &CurvePoint| {
+            let (x, y) = self.kept(point.values[0], point.values[1]);
+            (x, y)
+        };
+        for end in &self.curve.ends {
+            let Some(point) = self.curve.points.get(end.point) else {
+                continue;
+            };
+            let rim = Stroke::solid(INK, 1.2);
+            panel.draw(&[place(point)], Shape::Dot(DOT, PAPER, rim))?;
+            let at = panel.place(place(point));
+            write(page, rect, at, &symbols::plain(&end.label), GREY, false)?;
+        }
+        let Some(start) = self.curve.points.get(self.curve.start) else {
+            return Ok(());
+        };
+        let rim = Stroke::solid(BIFURCATION, 1.2);
+        panel.draw(&[place(start)], Shape::Dot(DOT, BIFURCATION, rim))?;
+        let at = panel.place(place(start));
+        write(
+            page,
+            rect,
+            at,
+            &symbols::plain(&self.row.label),
+            BIFURCATION,
+            true,
+        )?;
+        let words = [(self.row.before, -1.0), (self.row.after, 1.0)];
+        for (signature, side) in words {
+            let Some(signature) = signature else {
+                continue;
+            };
+            let anchor = if side < 0.0 { HPos::Right } else { HPos::Left };
+            let mut text = lettering(symbols::plain(&signature.to_string()), anchor);
+            (text.size, text.colour) = (TICK_TEXT, GREY);
+            page.text((at.0 + side * 2.5 * AWAY, at.1 + AWAY), text)?;
+        }
+        Ok(())
+    }
+
+    fn caption(&self) -> String {
+        let curve = self.curve;
+        let [first, second] = curve.plane.sides();
+        let largest = curve
+            .points
+            .iter()
+            .map(|point| point.error)
+            .fold(0.0, f64::max);
+        let mut text = format!(
+            "Where the {} of the density of {} is zero, in the plane of {} and {}, followed from {} at {} = {}.",
+            curve.kind.name(),
+            curve.observable.name(self.family),
+            first.parameter,
+            second.parameter,
+            self.row.label,
+            first.parameter,
+            symbols::rounded(self.row.value),
+        );
+        for end in &curve.ends {
+            text += &format!(" {}: {}.", end.label, end.reason.words(&curve.plane));
+        }
+        text += &format!(
+            " The error across the curve is at most {largest:.1e} of the sides of the box.\n"
+        );
+        text
+    }
+
+    fn data(&self) -> String {
+        let [first, second] = self.curve.plane.sides();
+        let mut text = format!(
+            "{},{},edge_{},edge_{},status\n",
+            first.parameter, second.parameter, first.parameter, second.parameter
+        );
+        for point in &self.curve.points {
+            let ([x, y], [dx, dy]) = (point.values, point.to_edge);
+            text += &format!("{x},{y},{dx},{dy},{}\n", point.status.word());
+        }
+        text
+    }
+}
+
+fn dashed() -> Stroke {
+    Stroke {
+        dash: DASHES,
+        ..Stroke::curve(0)
+    }
+}
+
+/// Writes beside a point, above it and toward the middle of the panel, where that is free.
+fn write(
+    page: &Page,
+    rect: Rectangle,
+    at: (f64, f64),
+    words: &str,
+    colour: super::canvas::style::Colour,
+    bold: bool,
+) -> Result<(), DrawError> {
+    let is_left = at.0 < rect.left + 0.5 * rect.width;
+    let (anchor, side) = if is_left {
+        (HPos::Left, 1.0)
+    } else {
+        (HPos::Right, -1.0)
+    };
+    let down = if at.1 < rect.top + 2.0 * AWAY {
+        AWAY
+    } else {
+        -AWAY
+    };
+    let mut text = lettering(words, anchor);
+    (text.size, text.colour, text.bold) = (TICK_TEXT, colour, bold);
+    page.text((at.0 + side * AWAY, at.1 + down), text)
+}

@@ -1,0 +1,158 @@
+//! A curve in a plane of two parameters on disk: `curves.csv`, `curve.json`, and the folder they go to.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::json;
+
+use super::RunError;
+use super::atomic::{sync_all_below, write_atomically};
+use super::columns::{Columns, flag, number, word};
+use super::staging::Staging;
+use crate::continuation::curve::{Curve, CurvePoint, CurveWork};
+use crate::system::Family;
+
+/// Everything a curve leaves in its folder, the file that marks it as one first.
+const ENTRIES: [&str; 3] = ["curve.json", "curves.csv", "figures"];
+
+/// The table of a curve's points, from end to end, numbers in full; `start` is the label of the row that it was begun at.
+///
+/// # Errors
+/// [`RunError::Table`].
+pub fn curves_csv(family: &Family, curve: &Curve, start: &str) -> Result<String, RunError> {
+    type Row<'a> = (String, &'a CurvePoint);
+    let label = |index: usize| {
+        let mut ends = curve.ends.iter();
+        match ends.find(|end| end.point == index) {
+            _ if index == curve.start => start.to_owned(),
+            Some(end) => end.label.clone(),
+            None => String::new(),
+        }
+    };
+    let points = curve.points.iter().enumerate();
+    let rows: Vec<Row<'_>> = points.map(|(index, point)| (label(index), point)).collect();
+    let [first, second] = curve
+        .plane
+        .sides()
+        .each_ref()
+        .map(|side| side.parameter.clone());
+    let mut columns = vec![
+        word("label", |row: &Row<'_>| row.0.clone()),
+        number(first.clone(), |row: &Row<'_>| row.1.values[0]),
+        number(second.clone(), |row: &Row<'_>| row.1.values[1]),
+        number("error", |row: &Row<'_>| row.1.error),
+        number(format!("edge_{first}"), |row: &Row<'_>| row.1.to_edge[0]),
+        number(format!("edge_{second}"), |row: &Row<'_>| row.1.to_edge[1]),
+        word("observable", |_| curve.observable.name(family)),
+        word("method", |_| curve.kind.name().to_owned()),
+        number("indicator", |row: &Row<'_>| row.1.indicator),
+        number(format!("indicator_by_{first}"), |row: &Row<'_>| {
+            row.1.gradient[0]
+        }),
+        number(format!("indicator_by_{second}"), |row: &Row<'_>| {
+            row.1.gradient[1]
+        }),
+        number("arclength", |row: &Row<'_>| row.1.arclength),
+        number("slope", |row: &Row<'_>| row.1.tangent[1] / row.1.tangent[0]),
+        flag("checked", |row: &Row<'_>| row.1.checked),
+        word("status", |row: &Row<'_>| row.1.status.word().to_owned()),
+    ];
+    columns.extend([
+        number("error_solver", |row: &Row<'_>| row.1.parts.solver),
+        number("error_grid", |row: &Row<'_>| row.1.parts.grid),
+        number("error_sampling", |row: &Row<'_>| row.1.parts.sampling),
+        number("error_leak", |row: &Row<'_>| row.1.parts.leak),
+    ]);
+    Columns(columns).csv(&rows)
+}
+
+/// What there is to know of a curve beside its points, as JSON.
+fn curve_json(
+    family: &Family,
+    curve: &Curve,
+    start: &str,
+    sweep: &str,
+) -> Result<String, RunError> {
+    let work = |work: &CurveWork| {
+        json!({
+            "solves": work.solves,
+            "iterations": work.iterations,
+            "factorisations": work.factorisations,
+        })
+    };
+    let sides = curve.plane.sides().iter();
+    let ends = curve.ends.iter().map(|end| {
+        json!({
+            "label": end.label,
+            "reason": end.reason.words(&curve.plane),
+            "point": end.point,
+        })
+    });
+    let text = json!({
+        "program": env!("CARGO_PKG_NAME"),
+        "version": env!("CARGO_PKG_VERSION"),
+        "row": start,
+        "observable": curve.observable.name(family),
+        "method": curve.kind.name(),
+        "box": sides
+            .map(|side| json!({ "parameter": side.parameter, "from": side.from, "to": side.to }))
+            .collect::<Vec<_>>(),
+        "points": curve.points.len(),
+        "start": curve.start,
+        "ends": ends.collect::<Vec<_>>(),
+        "work": work(&curve.work),
+        "check_work": work(&curve.check_work),
+        "sweep_file": sweep,
+    });
+    Ok(serde_json::to_string_pretty(&text)? + "\n")
+}
+
+/// A curve's folder in the making. Dropped before it is in place, it leaves what was there.
+#[derive(Debug)]
+pub struct CurveFolder {
+    staging: Staging,
+}
+
+impl CurveFolder {
+    /// Prepares to write to `home`, an existing folder; other processes are kept away from it.
+    ///
+    /// # Errors
+    /// [`RunError::InUse`], [`RunError::NotOurs`], [`RunError::Write`].
+    pub fn new(home: &Path) -> Result<Self, RunError> {
+        let staging = Staging::new(home, &ENTRIES)?;
+        Ok(Self { staging })
+    }
+
+    /// Where figures are drawn to.
+    pub fn figures(&self) -> PathBuf {
+        self.staging.fresh().join("figures")
+    }
+
+    /// Writes the tables; `start` is the label of the row that the curve was begun at, `sweep` the resolved sweep as TOML.
+    ///
+    /// # Errors
+    /// [`RunError`] when a file cannot be composed or written.
+    pub fn write(
+        &self,
+        family: &Family,
+        curve: &Curve,
+        start: &str,
+        sweep: &str,
+    ) -> Result<(), RunError> {
+        for (name, text) in [
+            ("curves.csv", curves_csv(family, curve, start)?),
+            ("curve.json", curve_json(family, curve, start, sweep)?),
+        ] {
+            write_atomically(&self.staging.fresh().join(name), text.as_bytes())?;
+        }
+        Ok(())
+    }
+
+    /// Puts the curve in its place and returns its files; what an earlier one left goes below `previous/`.
+    ///
+    /// # Errors
+    /// [`RunError::Read`] or [`RunError::Write`].
+    pub fn take_place(self) -> Result<Vec<PathBuf>, RunError> {
+        sync_all_below(&self.staging.fresh())?;
+        Ok(self.staging.take_place(&[])?.files)
+    }
+}

@@ -1,0 +1,536 @@
+//! Curves of P-bifurcations in planes of two parameters, against curves that are known exactly and against sweeps over one parameter.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use assert_cmd::Command;
+use pbif::cancellation::Cancellation;
+use pbif::continuation::curve::{
+    Curve, CurveError, CurveOptions, CurvePoint, CurveStart, EndReason, Plane, follow,
+};
+use pbif::continuation::{BifurcationStatus, LabelledPoint, SweepResult};
+use pbif::sweep_file::{Sweep, SweepFile};
+
+/// Additive noise: peaks of the density are zeros of the drift, and two of them fold where 27 h² = 4 a³.
+const CUSP: &str = r#"
+[system.equations]
+x = "h + a x - x^3"
+[system.noise]
+x = "sqrt(sigma2)"
+[system.parameters]
+a = 1.0
+h = 0.3
+sigma2 = 0.1
+[sweep]
+parameter = "h"
+from = 0.1
+to = 0.6
+points = 11
+[cells]
+x = { from = -2.5, to = 2.5, count = 300 }
+"#;
+
+/// One peak splits where u² + v² = 1.
+const CIRCLE: &str = r#"
+[system.equations]
+x = "(1 - u^2 - v^2) x - x^3"
+[system.noise]
+x = "1/2"
+[system.parameters]
+u = 0.0
+v = 0.3
+[sweep]
+parameter = "u"
+from = 0.2
+to = 1.5
+points = 6
+[cells]
+x = { from = -2.5, to = 2.5, count = 100 }
+"#;
+
+const COULOMB: &str = r#"
+[system]
+model = "coulomb"
+[system.parameters]
+kappa = 0.05
+mu = 0.05
+sigma2 = 0.05
+[sweep]
+parameter = "f_c"
+from = -0.03
+to = 0.01
+points = 5
+[cells]
+x = { from = -4.0, to = 4.0, count = 50, grade = { at = [0.0], smallest = 0.06 } }
+y = { from = -4.0, to = 4.0, count = 50, grade = "auto" }
+[detect]
+marginals = ["x", "y"]
+joint = []
+[locate]
+relative_tolerance = 1e-3
+"#;
+
+/// With damping -a + bH the density is exp(-(2/σ²)(-aH + bH²/2)): the crater opens at a = 0, and x splits at a = c √(b σ²).
+const RAYLEIGH: &str = r#"
+[system]
+model = "rayleigh"
+[system.parameters]
+b = 0.1
+sigma2 = 0.02
+[sweep]
+parameter = "a"
+from = -0.02
+to = 0.06
+points = 5
+[cells]
+x = { from = -2.8, to = 2.8, count = 50 }
+y = { from = -2.8, to = 2.8, count = 50 }
+[locate]
+relative_tolerance = 1e-3
+"#;
+
+fn swept(text: &str, settings: &[&str]) -> (Sweep, SweepResult) {
+    let never = Cancellation::new();
+    let mut file = SweepFile::parse("curve.toml", text);
+    let settings = file.set_all("--set", settings).validate().unwrap();
+    let sweep = settings.prepare(&never).unwrap();
+    let result = sweep.run(&never, &mut ()).unwrap();
+    (sweep, result)
+}
+
+/// The row of an observable that an indicator of this name located.
+fn row<'a>(result: &'a SweepResult, observable: &str, method: &str) -> &'a LabelledPoint {
+    let family = &result.subject.family;
+    let mut rows = result.labels.iter();
+    let is_it = |row: &&LabelledPoint| {
+        let name = row.observable.map(|one| one.name(family));
+        name.as_deref() == Some(observable) && row.method == method
+    };
+    rows.find(is_it).unwrap()
+}
+
+/// The curve from a row in the plane of the swept and a second parameter, which the sweep holds at `held`.
+fn curve(sweep: &Sweep, row: &LabelledPoint, plane: &Plane, held: f64) -> Curve {
+    let never = Cancellation::new();
+    let source = sweep.source_in(plane, &never).unwrap();
+    let start = CurveStart::from_row(row, held, sweep.problem.subject()).unwrap();
+    let options = CurveOptions::default();
+    let detector = sweep.detector();
+    let (observer, never) = (&mut |_: [f64; 2]| (), Cancellation::new());
+    follow(
+        &source, plane, &detector, &start, &options, &never, observer,
+    )
+    .unwrap()
+}
+
+/// Asserts that a curve lies where a function of both parameters is zero: `off` gives its distance to there across the curve, in sides of
+/// the box.
+fn assert_on(curve: &Curve, off: impl Fn([f64; 2]) -> f64) {
+    for CurvePoint { values, error, .. } in &curve.points {
+        let off = off(*values).abs();
+        assert!(
+            off <= 1e-4 && off <= *error,
+            "{values:?}: {off:.1e} off, stated {error:.1e}"
+        );
+    }
+}
+
+fn ends(curve: &Curve) -> Vec<&EndReason> {
+    curve.ends.iter().map(|end| &end.reason).collect()
+}
+
+/// Distance of a point from the fold of the cusp, in a box with sides of these lengths.
+fn off_the_fold([h, a]: [f64; 2], [of_h, of_a]: [f64; 2]) -> f64 {
+    (27.0 * h * h - 4.0 * a.powi(3)) / (54.0 * h * of_h).hypot(12.0 * a * a * of_a)
+}
+
+#[test]
+fn the_fold_of_a_cusp_is_followed_within_its_error_whichever_parameter_is_first() {
+    let (sweep, result) = swept(CUSP, &[]);
+    let plane = Plane::new(("h", -0.7, 0.7), ("a", 0.2, 1.6)).unwrap();
+    let first = curve(
+        &sweep,
+        row(&result, "x", "slope at the inflection"),
+        &plane,
+        1.0,
+    );
+    assert_on(&first, |values| off_the_fold(values, [1.4, 1.4]));
+    // At the lower end a = 0.2; at the upper one h = 0.7.
+    assert_eq!(ends(&first), [&EndReason::Border(1), &EndReason::Border(0)]);
+    let (low, high) = (
+        &first.points[0].values,
+        &first.points.last().unwrap().values,
+    );
+    assert!(low[1] == 0.2 && (low[0] - 2.0 * (0.2_f64 / 3.0).powf(1.5)).abs() < 1e-6);
+    assert!(high[0] == 0.7 && (high[1] - 3.0 * 0.35_f64.powf(2.0 / 3.0)).abs() < 1e-6);
+    assert!(
+        first
+            .points
+            .iter()
+            .all(|point| point.status == BifurcationStatus::Located)
+    );
+
+    // One solve a point, but for the two ends and the start; every eighth point, both ends and the start are checked.
+    let points = first.points.len();
+    assert!((30..70).contains(&points), "{points}");
+    assert!(
+        first.work.solves <= points + 6,
+        "{:?} for {points}",
+        first.work
+    );
+    let checked = first.points.iter().filter(|point| point.checked).count();
+    assert_eq!(first.check_work.solves, checked);
+    assert!((points / 8..points / 8 + 4).contains(&checked));
+
+    // Neighbours follow each other, and the tangent is that of 27 h² = 4 a³: da/dh = 54 h/(12 a²).
+    for pair in first.points.windows(2) {
+        assert!(pair[0].arclength < pair[1].arclength);
+        assert!(pair[0].values[1] < pair[1].values[1]);
+    }
+    for point in &first.points {
+        let ([h, a], [dh, da]) = (point.values, point.tangent);
+        assert!(
+            (da / dh / (4.5 * h / (a * a)) - 1.0).abs() < 1e-3,
+            "{point:?}"
+        );
+    }
+
+    // The same from a sweep over the other parameter, begun elsewhere.
+    let other = [
+        "sweep.parameter=a",
+        "sweep.from=0.5",
+        "sweep.to=1.2",
+        "system.parameters.h=0.2",
+    ];
+    let (sweep, result) = swept(&CUSP.replace("a = 1.0\n", ""), &other);
+    let plane = Plane::new(("a", 0.2, 1.6), ("h", -0.7, 0.7)).unwrap();
+    let second = curve(
+        &sweep,
+        row(&result, "x", "slope at the inflection"),
+        &plane,
+        0.2,
+    );
+    assert_on(&second, |[a, h]| off_the_fold([h, a], [1.4, 1.4]));
+    let both =
+        [&first, &second].map(|one| one.points.last().unwrap().arclength - one.points[0].arclength);
+    assert!((both[0] - both[1]).abs() < 1e-3, "{both:?}");
+}
+
+#[test]
+fn into_the_cusp_the_fold_is_followed_until_it_turns_on_the_spot() {
+    let (sweep, result) = swept(CUSP, &[]);
+    let plane = Plane::new(("h", -0.7, 0.7), ("a", -0.4, 1.0)).unwrap();
+    let curve = curve(
+        &sweep,
+        row(&result, "x", "slope at the inflection"),
+        &plane,
+        1.0,
+    );
+    let [h, a] = curve.points[0].values;
+    assert!(h.abs() < 1e-3 && a.abs() < 2e-2, "{h} {a}");
+    let reason = &curve.ends[0].reason;
+    assert!(
+        matches!(reason, EndReason::NotConverged | EndReason::FeatureLost),
+        "{reason:?}"
+    );
+}
+
+#[test]
+fn a_closed_curve_comes_back_to_where_it_began() {
+    let (sweep, result) = swept(CIRCLE, &[]);
+    let plane = Plane::new(("u", -1.2, 1.3), ("v", -1.3, 1.2)).unwrap();
+    let curve = curve(
+        &sweep,
+        row(&result, "x", "curvature at the centre"),
+        &plane,
+        0.3,
+    );
+    assert_on(&curve, |[u, v]| (u * u + v * v - 1.0) / (2.0 * 2.5));
+    assert_eq!(ends(&curve), [&EndReason::Closed]);
+    let length = curve.points.last().unwrap().arclength * 2.5;
+    assert!(
+        (length / std::f64::consts::TAU - 1.0).abs() < 1e-3,
+        "{length}"
+    );
+}
+
+#[test]
+fn sweeps_over_one_parameter_lie_in_the_band_of_coulomb_friction() {
+    let (sweep, result) = swept(COULOMB, &[]);
+    let plane = Plane::new(("f_c", -0.03, 0.01), ("sigma2", 0.03, 0.07)).unwrap();
+    let found = row(&result, "x", "curvature at the centre");
+    let merger = curve(&sweep, found, &plane, 0.05);
+    assert_eq!(
+        ends(&merger),
+        [&EndReason::Border(1), &EndReason::Border(1)]
+    );
+    let begins = &merger.points[merger.start];
+    assert!((begins.values[0] - found.value).abs() <= found.error);
+    for (sigma2, point) in [
+        ("0.03", &merger.points[0]),
+        ("0.07", merger.points.last().unwrap()),
+    ] {
+        let (_, result) = swept(COULOMB, &[&format!("system.parameters.sigma2={sigma2}")]);
+        let alone = row(&result, "x", "curvature at the centre");
+        // Both are on the border; the curve is steep there, so that its band along f_c is about as wide as across.
+        let off = (alone.value - point.values[0]).abs();
+        assert!(
+            off <= 0.04 * point.error,
+            "{} {:?}",
+            alone.value,
+            point.values
+        );
+    }
+    // A factorisation serves several solves, and none is spent on corrections but a few at the beginning and the ends.
+    let (points, work) = (merger.points.len(), merger.work);
+    assert!(
+        work.solves <= points + 8 && 2 * work.factorisations <= points,
+        "{points}: {work:?}"
+    );
+
+    // The kink of y is none where nothing jumps, at any noise; its slope follows from the equations.
+    let kink = curve(&sweep, row(&result, "y", "slope at the kink"), &plane, 0.05);
+    assert!(kink.points.iter().all(|point| point.values[0].abs() < 1e-9));
+    assert!(
+        kink.points
+            .iter()
+            .all(|point| point.status == BifurcationStatus::Located)
+    );
+    assert_eq!(kink.check_work.solves, 0);
+}
+
+/// Root c of ∫ (c - y²/2) exp(c y² - y⁴/4) dy: p''(0) of the marginal of x, in units of b σ² = 1.
+fn split_of_x() -> f64 {
+    let curvature = |c: f64| -> f64 {
+        let at = |k: i32| f64::from(k) * 1e-3;
+        let of = |y: f64| (c - 0.5 * y * y) * (c * y * y - 0.25 * y.powi(4)).exp();
+        (-6000..=6000).map(|k| of(at(k))).sum()
+    };
+    let (mut low, mut high) = (0.1, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if curvature(middle) < 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low
+}
+
+#[test]
+fn curves_of_energy_dependent_damping_are_those_of_its_exact_density() {
+    let (sweep, result) = swept(RAYLEIGH, &[]);
+    let plane = Plane::new(("a", -0.02, 0.06), ("sigma2", 0.01, 0.04)).unwrap();
+    let split = curve(
+        &sweep,
+        row(&result, "x", "curvature at the centre"),
+        &plane,
+        0.02,
+    );
+    let c = split_of_x();
+    assert_on(&split, |[a, sigma2]| {
+        let exact = c * (0.1 * sigma2).sqrt();
+        let slope = 0.5 * exact / sigma2 * 0.03 / 0.08;
+        (a - exact) / 0.08 / 1.0_f64.hypot(slope)
+    });
+    let plane = Plane::new(("a", -0.02, 0.06), ("b", 0.05, 0.2)).unwrap();
+    let opens = curve(
+        &sweep,
+        row(&result, "xy", "lower curvature at the centre"),
+        &plane,
+        0.1,
+    );
+    assert_on(&opens, |[a, _]| a / 0.08);
+}
+
+#[test]
+fn a_start_outside_of_the_box_and_another_plane_are_refused() {
+    let (sweep, result) = swept(CUSP, &[]);
+    let found = row(&result, "x", "slope at the inflection");
+    let start = CurveStart::from_row(found, 1.0, sweep.problem.subject()).unwrap();
+    let never = Cancellation::new();
+    let refused = |solved: &Plane, followed: &Plane, start: &CurveStart| {
+        let source = sweep.source_in(solved, &never).unwrap();
+        let options = CurveOptions::default();
+        let observer = &mut |_: [f64; 2]| ();
+        follow(
+            &source,
+            followed,
+            &sweep.detector(),
+            start,
+            &options,
+            &never,
+            observer,
+        )
+        .unwrap_err()
+    };
+    let high = Plane::new(("h", 0.0, 1.0), ("a", 1.2, 2.0)).unwrap();
+    let error = refused(&high, &high, &start);
+    assert!(
+        matches!(&error, CurveError::Outside { parameter, .. } if parameter == "a"),
+        "{error}"
+    );
+    let other = Plane::new(("h", 0.0, 1.0), ("sigma2", 0.05, 1.2)).unwrap();
+    let error = refused(&other, &high, &start);
+    assert!(matches!(error, CurveError::OtherPlane { .. }), "{error}");
+    let away = CurveStart {
+        values: [0.9, 1.5],
+        ..start
+    };
+    let error = refused(&high, &high, &away);
+    assert!(matches!(error, CurveError::NoStart { .. }), "{error}");
+    let unknown = Plane::new(("h", 0.0, 1.0), ("b", 0.0, 2.0)).unwrap();
+    let error = sweep.source_in(&unknown, &never).err().unwrap();
+    assert!(error.to_string().contains("`b`"), "{error}");
+}
+
+#[test]
+fn a_cancelled_curve_says_so() {
+    let (sweep, result) = swept(CUSP, &[]);
+    let found = row(&result, "x", "slope at the inflection");
+    let start = CurveStart::from_row(found, 1.0, sweep.problem.subject()).unwrap();
+    let plane = Plane::new(("h", -0.7, 0.7), ("a", 0.2, 1.6)).unwrap();
+    let cancellation = Cancellation::new();
+    let source = sweep.source_in(&plane, &cancellation).unwrap();
+    let mut met = 0;
+    let mut observer = |_: [f64; 2]| {
+        met += 1;
+        if met == 5 {
+            cancellation.cancel();
+        }
+    };
+    let (options, detector) = (CurveOptions::default(), sweep.detector());
+    let curve = follow(
+        &source,
+        &plane,
+        &detector,
+        &start,
+        &options,
+        &cancellation,
+        &mut observer,
+    );
+    let curve = curve.unwrap();
+    assert!(curve.is_interrupted());
+    assert_eq!(curve.points.len(), 5);
+}
+
+fn pbif(arguments: &[&str]) -> std::process::Output {
+    Command::cargo_bin("pbif")
+        .unwrap()
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+#[test]
+fn the_program_follows_a_row_of_a_run_and_says_what_is_wrong() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (file, run) = (at("cusp.toml"), at("run"));
+    std::fs::write(&file, CUSP).unwrap();
+    assert!(
+        pbif(&["sweep", &file, "--out", &run, "--quiet"])
+            .status
+            .success()
+    );
+    let fold = |more: &[&str]| {
+        let mut arguments = vec![
+            "curve",
+            run.as_str(),
+            "--quiet",
+            "--first-from",
+            "-0.7",
+            "--first-to",
+            "0.7",
+        ];
+        arguments.extend(more);
+        pbif(&arguments)
+    };
+    let output = fold(&[
+        "--row", "PB1", "--second", "a", "--from", "0.2", "--to", "1.6",
+    ]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        said.contains("EP1") && said.contains("border of the box in a"),
+        "{said}"
+    );
+    let table = std::fs::read_to_string(at("run/curves/PB1-a/curves.csv")).unwrap();
+    let mut lines = table.lines();
+    assert!(
+        lines
+            .next()
+            .unwrap()
+            .starts_with("label,h,a,error,edge_h,edge_a,observable,method,indicator,")
+    );
+    for line in lines {
+        let cells: Vec<&str> = line.split(',').collect();
+        let [h, a, error] = [1, 2, 3].map(|k| cells[k].parse::<f64>().unwrap());
+        assert!(off_the_fold([h, a], [1.4, 1.4]).abs() <= error, "{line}");
+    }
+    for file in ["curve.json", "figures/curve.svg", "figures/curve.png"] {
+        assert!(
+            folder.path().join("run/curves/PB1-a").join(file).is_file(),
+            "{file}"
+        );
+    }
+    // The run is as it was, and a second curve keeps the first.
+    assert!(pbif(&["verify", &run]).status.success());
+    let again = [
+        "--second", "a", "--from", "0.2", "--to", "1.6", "--step", "0.1",
+    ];
+    assert_eq!(fold(&again).status.code(), Some(0));
+    assert!(
+        folder
+            .path()
+            .join("run/curves/PB1-a/previous/1/curves.csv")
+            .is_file()
+    );
+
+    let refusals: [(&[&str], &str); 6] = [
+        (
+            &["--row", "PB7", "--second", "a", "--from", "0", "--to", "2"],
+            "no P-bifurcation `PB7`",
+        ),
+        (
+            &["--second", "b", "--from", "0", "--to", "2"],
+            "there is no parameter `b`",
+        ),
+        (
+            &["--second", "h", "--from", "0", "--to", "2"],
+            "the second parameter is the swept one",
+        ),
+        (
+            &["--second", "a", "--from", "1.2", "--to", "2"],
+            "PB1 is not in the box: a is 1 there",
+        ),
+        (
+            &["--second", "a", "--from", "1", "--to", "1"],
+            "the box has no extent in a",
+        ),
+        (
+            &["--second", "a", "--from", "x", "--to", "1"],
+            "allowed: a number",
+        ),
+    ];
+    for (arguments, wanted) in refusals {
+        let output = fold(arguments);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains(wanted), "{said}");
+    }
+    // A run of another version is not read.
+    let manifest = std::fs::read_to_string(at("run/run.json")).unwrap();
+    let version = format!("\"version\": \"{}\"", env!("CARGO_PKG_VERSION"));
+    std::fs::write(
+        at("run/run.json"),
+        manifest.replace(&version, "\"version\": \"99.0.0\""),
+    )
+    .unwrap();
+    let output = fold(&["--second", "a", "--from", "0.2", "--to", "1.6"]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        output.status.code() == Some(2) && said.contains("99.0.0"),
+        "{said}"
+    );
+}
