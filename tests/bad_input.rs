@@ -329,6 +329,106 @@ fn overrides_that_do_not_parse_or_do_not_fit() {
     }
 }
 
+/// A system of its own equations.
+const TYPED: &str = r#"
+[system]
+[system.equations]
+x = "y"
+y = "-(c + x^2) y - x"
+[system.noise]
+y = "sqrt(2 D)"
+[system.parameters]
+c = 0.0
+D = 0.05
+[sweep]
+parameter = "c"
+from = 0.5
+to = -0.5
+points = 3
+[cells]
+x = { from = -3, to = 3, count = 10 }
+y = { from = -3, to = 3, count = 10 }
+"#;
+
+/// The typed system with one piece of text replaced must be refused in these words, and for one reason.
+fn assert_typed_refused(old: &str, new: &str, words: &[&str]) {
+    assert_eq!(TYPED.matches(old).count(), 1, "{old} is not unique");
+    let message = refused(&TYPED.replace(old, new), &["a.toml"]);
+    assert_says(&message, words);
+    assert_says(&message, &["1 error;"]);
+}
+
+#[test]
+#[rustfmt::skip]
+fn equations_of_other_languages_and_of_other_scales() {
+    let drift = "\"-(c + x^2) y - x\"";
+    let noise = "\"sqrt(2 D)\"";
+    let bounds = |text: &str| format!("[system.bounds]\nx = {text}\n[system.parameters]");
+    let cases = [
+        (drift, "\"-c x**2\"", vec!["found `*`", "a.toml:5:", "write ^ for a power"]),
+        (drift, "\"c nan\"", vec!["unknown symbol `nan`", "finite numbers only"]),
+        (drift, "\"c\u{200b} x\"", vec!["U+200B", "delete it"]),
+        (drift, "'\\alpha c'", vec!["without a backslash"]),
+        // An odd power of a negative number is one; it is too large.
+        (drift, "\"-c y^1001\"", vec!["overflow in y^1001"]),
+        (noise, "\"1e200\"", vec!["too strong", "a.toml:7:5", "other units"]),
+        (noise, "\"1e-200\"", vec!["too weak", "a.toml:7:5", "other units"]),
+        // One mistake is told once.
+        (noise, "[[\"a\"]]", vec!["`system.noise.y` cannot be a list"]),
+        ("c = 0.0", "c = 0.0\nk = \"1\"", vec!["`system.parameters.k` cannot be `1`"]),
+        ("x = { from = -3, to = 3, ", "x = { range = [-3, 3], ", vec!["did you mean `from = -3.0, to = 3.0`?"]),
+        ("x = { from = -3, to = 3, ", "x = { range = \"Auto\", ", vec!["did you mean `auto`?"]),
+    ];
+    for (old, new, words) in cases {
+        assert_typed_refused(old, new, &words);
+    }
+    for (given, words) in [
+        ("[\"1\", \"-1\"]", ["the bounds of `x`, from 1 to -1, hold no value", "the lower bound comes first"]),
+        ("[-1, 1]", ["`x` does not stay within its bound -1", "[system.bounds]"]),
+        ("[10, 20]", ["the cells of `x` hold no state", "overlap"]),
+    ] {
+        assert_typed_refused("[system.parameters]", &bounds(given), &words);
+    }
+    let message = refused(&TYPED.replace("[system.equations]", "[equations]"), &["a.toml"]);
+    assert_says(&message, &["did you mean `system.equations`?"]);
+}
+
+#[test]
+#[rustfmt::skip]
+fn quantities_without_values() {
+    let with = |table: &str| format!("{table}\n[cells]");
+    let cases = [
+        ("[watch]\np = \"1/x\"", vec!["`p` has no mean", "next to x = ", "a.toml:17:1"]),
+        ("[watch]\np = \"sqrt(x)\"", vec!["`p` has no mean"]),
+        ("[watch]\np = \"1e300 y^2\"", vec!["`p` has no mean", "units"]),
+        ("[watch]\np = true", vec!["a formula"]),
+        ("[detect]\nmarginals = [\"H\"]", vec!["the system has no axis `H`", "a quantity needs its formula: `H = …`"]),
+        ("[detect]\nmarginals = [\"x\", \"H = 1/x\"]", vec!["`H` is inf at x = 0", "a.toml:17:19"]),
+        ("[detect]\nmarginals = [\"H = 1e-300 x\"]", vec!["too far from 1", "other units"]),
+        ("[detect]\nmarginals = [\"H = x^2\"]\nbins = { H = { from = 100, to = 200 } }",
+            vec!["no value of `H` lies in its bins", "goes from 0 to 9"]),
+        // Given bins do not spare the formula.
+        ("[detect]\nmarginals = [\"H = 1/x\"]\nbins = { H = { from = 1, to = 2 } }", vec!["`H` is inf at x = 0"]),
+    ];
+    for (table, words) in cases {
+        assert_typed_refused("[cells]", &with(table), &words);
+    }
+}
+
+#[test]
+fn switches_and_widths_in_other_words() {
+    for (given, words) in [
+        ("title = false", "did you mean `\"on\"` or `\"off\"`?"),
+        ("letters = \"no\"", "did you mean `off`?"),
+        ("width = \"84mm\"", "did you mean `84`?"),
+        ("width = \"Singel\"", "did you mean `single`?"),
+        ("width = 1e300", "figures 1e300 mm wide"),
+    ] {
+        let table = format!("[figures.style]\n{given}\n[cells]");
+        assert_refused("[cells]", &table, &[words, "a.toml:13:"]);
+    }
+}
+
 #[test]
 fn output_that_is_no_folder_or_not_writable() {
     let folder = tempfile::tempdir().unwrap();

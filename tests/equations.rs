@@ -326,6 +326,38 @@ fn starting_files_are_written_and_run_as_they_stand() {
     assert_eq!(unknown.status.code(), Some(2));
     assert_says(&words(&unknown), &["did you mean `vanderpol`?"]);
     assert!(!path.join("b.toml").exists());
+    // Names that are easily taken for something else, and names that a shell or a comment would take apart.
+    let cases: [(&[&str], &str); 4] = [
+        (
+            &["new", "laser"],
+            "write `pbif new laser.toml --like laser`",
+        ),
+        (
+            &["new", "--like", "laser"],
+            "write `pbif new laser.toml --like laser`",
+        ),
+        (
+            &["new", "b.toml", "--like", "coulomb"],
+            "`coulomb` is a built-in model",
+        ),
+        (&["new", "none/b.toml"], "make its folder first"),
+    ];
+    for (arguments, expected) in cases {
+        let refused = pbif(path, arguments);
+        assert_eq!(refused.status.code(), Some(2), "{}", words(&refused));
+        assert_says(&words(&refused), &[expected]);
+    }
+    let spaced = pbif(path, &["new", "--", "-my file.toml"]);
+    assert_says(&words(&spaced), &["pbif sweep './-my file.toml'"]);
+    #[cfg(unix)]
+    {
+        let broken = pbif(path, &["new", "two\nlines.toml"]);
+        assert_eq!(broken.status.code(), Some(0));
+        assert_eq!(
+            pbif(path, &["check", "two\nlines.toml"]).status.code(),
+            Some(0)
+        );
+    }
 }
 
 #[test]

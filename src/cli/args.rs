@@ -107,9 +107,9 @@ pub(super) enum Command {
     New {
         /// File to write; it must not be there yet
         file: Option<PathBuf>,
-        /// Starting file
-        #[arg(long, value_name = "NAME", default_value = "vanderpol")]
-        like: String,
+        /// Starting file [default: vanderpol]
+        #[arg(long, value_name = "NAME")]
+        like: Option<String>,
     },
     /// Sweep a parameter, locate the P-bifurcations, write tables, densities and figures
     #[command(after_help = "The keys of a sweep file: pbif sweep --help", after_long_help = sweep_file::help())]

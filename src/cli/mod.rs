@@ -160,11 +160,7 @@ fn dispatch(command: &Command) -> Result<Outcome, CommandError> {
         Command::Plot { run } => plot::run(run),
         Command::Explore { run } => explore::run(run),
         Command::Verify { run } => verify::run(run),
-        Command::New { file: None, .. } => print(&new::list()),
-        Command::New {
-            file: Some(file),
-            like,
-        } => print(&new::write(file, like)?),
+        Command::New { file, like } => print(&new::run(file.as_deref(), like.as_deref())?),
         Command::Systems { name: None } => print(&systems::list()),
         Command::Systems { name: Some(name) } => print(&systems::describe(name)?),
     }

@@ -5,7 +5,7 @@ use super::output::OutputFolder;
 use super::stored::Stored;
 use super::sweep::draw;
 use super::{CommandError, Outcome};
-use crate::continuation::SweepResult;
+use crate::continuation::{Point, SweepResult};
 use crate::figure::{ColourMap, FigureError, FigureWidth, Figures, Ground, Typeface};
 use crate::run::format_number;
 use crate::sweep_file::{Diagnostic, list};
@@ -31,7 +31,7 @@ pub(super) fn run(arguments: &PlotArguments) -> Result<Outcome, CommandError> {
     let output = OutputFolder::prepare(arguments.out.as_deref().unwrap_or(&figures))?;
     let files = draw(&stored.spec, &stored.result, output.path())?;
     if files.is_empty() {
-        return super::print("no steady state in Ω at any value: nothing to draw\n");
+        return super::print(nothing_drawn(&stored));
     }
     if arguments.out.is_none() {
         stored.run.renew_figures()?;
@@ -39,6 +39,22 @@ pub(super) fn run(arguments: &PlotArguments) -> Result<Outcome, CommandError> {
     let lines = files.iter().map(|file| format!("  {}\n", file.display()));
     let text = format!("files\n{}", lines.collect::<String>());
     super::conclude(&text, Outcome::Complete, output.path())
+}
+
+/// Why there is no figure.
+fn nothing_drawn(stored: &Stored) -> &'static str {
+    let settings = &stored.spec.settings;
+    if settings.figures_drawn.is_empty() {
+        return "`figures.draw` is an empty list: nothing to draw\n";
+    }
+    if settings.figure_formats.is_empty() {
+        return "`figures.formats` is an empty list: nothing to draw\n";
+    }
+    let has_density = |point: &Point| !point.densities.is_empty();
+    match stored.result.points.iter().any(has_density) {
+        true => "the run has no figures of these names: nothing to draw\n",
+        false => super::sweep::summary::nothing_to_draw(&stored.result),
+    }
 }
 
 /// Refuses names that no figure of this run has, such as one at a value that was not computed.

@@ -5,7 +5,7 @@ use super::grid::{Checked, Checks, GridCheck, Leak, SHARE_OF_DISTANCE};
 use super::label::{self, BifurcationStatus, LabelledPoint, PointType};
 use super::root::{Root, root};
 use super::{Goal, Point, PointStatus, Subject, persistence, words};
-use crate::density::Observable;
+use crate::density::{Density, Observable};
 use crate::topology::{Detector, IndicatorKind};
 
 /// So many rows in a row that are not located are one.
@@ -262,10 +262,13 @@ fn by_indicator(
     let unsound = [a, b]
         .into_iter()
         .find(|one| one.report.status != PointStatus::Solved);
+    let wiggles = [a, b].map(|one| negative_share(&one.densities[change.observable].density));
+    let wiggles = wiggles[0].max(wiggles[1]);
+    let is_torn = depends_on_cells && wiggles > MOST_NEGATIVE;
     row.status = Some(match on_finer {
         Some(GridCheck::Unconfirmed) => BifurcationStatus::Unconfirmed,
         _ if failed.is_some() => BifurcationStatus::Unchecked,
-        _ if unsound.is_some() || !narrow || error > options.tolerance => {
+        _ if unsound.is_some() || is_torn || !narrow || error > options.tolerance => {
             BifurcationStatus::Unresolved
         }
         None if diffused && depends_on_cells => BifurcationStatus::Unconfirmed,
@@ -273,6 +276,7 @@ fn by_indicator(
     });
     row.reason = failed
         .or_else(|| unsound.map(|point| point.report.status.word().to_owned()))
+        .or_else(|| is_torn.then(|| torn(wiggles)))
         .or_else(|| leaks(&found, error, options, subject, [a, b]));
     row
 }
@@ -295,6 +299,25 @@ fn leaks(
         "what leaves Ω moves it by {:.1e}: a wider range of {} is needed",
         found.error.leak, axis.name
     ))
+}
+
+/// Share of a density's mass that may be negative where its shape is to be believed. What is negative must be positive elsewhere, so
+/// that wiggles of this size hold as much mass as a small peak does.
+const MOST_NEGATIVE: f64 = 0.02;
+
+/// Negative mass of a density, as a share of the whole.
+fn negative_share(density: &Density) -> f64 {
+    let masses = density.masses();
+    let negative: f64 = masses.iter().map(|mass| (-mass).max(0.0)).sum();
+    negative / masses.iter().sum::<f64>().abs().max(f64::MIN_POSITIVE)
+}
+
+/// The sentence for a value read off a density that is not resolved.
+fn torn(wiggles: f64) -> String {
+    format!(
+        "{:.0} % of the density there is negative: wiggles that the cells do not resolve",
+        100.0 * wiggles
+    )
 }
 
 /// Mass in the outermost cells below which what leaves Ω matters nowhere.

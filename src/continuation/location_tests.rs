@@ -209,6 +209,36 @@ fn scale_and_direction_change_no_row() {
     }
 }
 
+/// As [`split`], with tails of which a depth is taken away.
+fn torn_split(depth: f64) -> Exact<impl Formula> {
+    let whole = split().density;
+    Exact::new(
+        1,
+        100,
+        |_| centred(1),
+        move |theta: f64, at: &[f64]| {
+            let tail = if at[0].abs() > 1.6 { depth } else { 0.0 };
+            whole(theta, at) - tail
+        },
+    )
+}
+
+#[test]
+fn nothing_is_located_in_a_density_that_is_negative() {
+    let status = |depth: f64| {
+        let result = run(&torn_split(depth), (-0.5, 0.5, 11), 1e-4);
+        let row = rows(&result)[0].clone();
+        assert!((row.value - 0.03).abs() <= row.error, "{row:?}");
+        (row.status, row.reason)
+    };
+    assert_eq!(status(0.0).0, Some(BifurcationStatus::Located));
+    // 0.8 in x at about a tenth of the height of a density some two wide: four per cent of the mass, or two thousandths of it.
+    let (torn, reason) = status(0.1);
+    assert_eq!(torn, Some(BifurcationStatus::Unresolved));
+    assert!(reason.unwrap().contains("of the density there is negative"));
+    assert_eq!(status(0.005).0, Some(BifurcationStatus::Located));
+}
+
 /// A main peak at -1 and, from θ = 0 on, a pair born at 0.5: (log p)' = -(x + 1)(2 (x - 0.5)² - θ); mirrored for sign -1.
 fn flank(sign: f64) -> Exact<impl Formula> {
     Exact::new(

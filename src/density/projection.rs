@@ -182,15 +182,25 @@ impl QuantityMoments {
         }
     }
 
-    /// The moments for the masses of all cells of the space, Σ = 1.
+    /// A state next to which the quantity, or its square, is no number or beyond the range of numbers: there is no mean then.
+    pub fn undefined(&self) -> Option<&[f64]> {
+        self.averages.undefined()
+    }
+
+    /// The moments for the masses of all cells of the space, Σ = 1; not a number where the quantity is [`Self::undefined`].
     ///
     /// # Errors
     /// [`DensityError::Length`].
     pub fn of(&self, mass: &[f64]) -> Result<Moments, DensityError> {
         let [mean, square] = self.averages.of(&self.sums.of(mass)?);
+        let variance = square - mean * mean;
         Ok(Moments {
             mean,
-            standard_deviation: (square - mean * mean).max(0.0).sqrt(),
+            // Rounding must not make a root of a negative number; what is no number must not become zero.
+            standard_deviation: match variance < 0.0 {
+                true => 0.0,
+                false => variance.sqrt(),
+            },
         })
     }
 }

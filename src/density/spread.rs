@@ -96,6 +96,17 @@ impl Cut {
         }
     }
 
+    /// The centre of a sub-cell; along axes that do not take part, the lower end.
+    fn centre(&self, number: usize, space: &CellSpace) -> Vec<f64> {
+        let mut own = vec![(0.0, 0.0); self.axes.len()];
+        self.sub_cells.edges(number, &mut own);
+        let mut centre: Vec<f64> = space.axes().iter().map(Axis::from).collect();
+        for (&axis, ends) in self.axes.iter().zip(own) {
+            centre[axis] = 0.5 * (ends.0 + ends.1);
+        }
+        centre
+    }
+
     /// Looks at a quantity in every sub-cell, in the order of their numbers.
     fn look(&self, quantity: &BoundQuantity, mut see: impl FnMut(usize, &Seen)) {
         let count = self.sub_cells.count();
@@ -353,6 +364,8 @@ pub(super) struct Averages {
     cut: Cut,
     /// Weights of the mass of each sub-cell, and of its change along each axis, for the mean and for the mean square.
     weights: [Vec<f64>; 2],
+    /// The centre of a sub-cell whose weights are not all finite.
+    undefined: Option<Vec<f64>>,
 }
 
 impl Averages {
@@ -369,16 +382,29 @@ impl Averages {
             .collect();
         let cut = Cut::new(space, &coordinates, detail, planes);
         let mut weights = [Vec::new(), Vec::new()];
-        cut.look(quantity, |_, seen| {
+        let mut undefined = None;
+        cut.look(quantity, |number, seen| {
             let squares: f64 = seen.change.iter().map(|change| change * change).sum();
             weights[0].push(seen.mean);
-            weights[1].push(seen.mean * seen.mean + squares / 12.0);
+            let square = seen.mean * seen.mean + squares / 12.0;
+            weights[1].push(square);
+            if !square.is_finite() && undefined.is_none() {
+                undefined = Some(cut.centre(number, space));
+            }
             for change in &seen.change {
                 weights[0].push(change / 12.0);
                 weights[1].push(2.0 * seen.mean * change / 12.0);
             }
         });
-        Self { cut, weights }
+        Self {
+            cut,
+            weights,
+            undefined,
+        }
+    }
+
+    pub(super) fn undefined(&self) -> Option<&[f64]> {
+        self.undefined.as_deref()
     }
 
     pub(super) fn axes(&self) -> &[usize] {

@@ -110,6 +110,9 @@ fn axis_fluxes(
                 sampler.state = line_start(axes, strides, axis, number);
                 sampler.sample(&axes[axis].nodes, &quadrature)?;
                 sampler.line.fluxes(&axes[axis], fluxes);
+                if fluxes.iter().flatten().any(|weight| !weight.is_finite()) {
+                    return Err(GeneratorError::Overflow { axis });
+                }
                 Ok::<(), GeneratorError>(())
             },
         )?;

@@ -101,6 +101,15 @@ pub enum GeneratorError {
         /// A state on the grid line.
         state: Vec<f64>,
     },
+    /// Rates that are beyond the range of numbers, though drift and noise are not.
+    #[error(
+        "the rates along axis {axis} are beyond the range of numbers: drift, noise or the ends of the axis are too large or too small; \
+         use other units"
+    )]
+    Overflow {
+        /// The axis.
+        axis: usize,
+    },
     /// An axis of modes that has noise, or where the state may pass an end of the range.
     #[error(
         "axis {axis} cannot have modes: they are for states without noise that stay between the ends of the range"

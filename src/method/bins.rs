@@ -4,8 +4,11 @@
 //! amplitude, the range ends beyond the quantiles of rough densities at both ends of the sweep and in its middle. Where it does, as at the
 //! energy of rest, the range ends exactly there: a bin of which a part holds no value would look like a valley.
 
+use std::ops::RangeInclusive;
+
 use super::generator::rough_masses;
 use crate::cancellation::{Cancellation, Cancelled};
+use crate::density::{Detail, QuantityMoments};
 use crate::space::{Axis, CellSpace};
 use crate::system::{BoundQuantity, Family, LANES, Lanes, SystemError};
 
@@ -19,6 +22,8 @@ const NEAR: f64 = 0.05;
 const ROUGH_CELLS: [usize; 4] = [200, 40, 12, 7];
 /// Halvings of the step by which extremes are looked for.
 const HALVINGS: usize = 60;
+/// Lengths of ranges whose squares, and those of the densities on them, are numbers with all their digits.
+const SCALES: RangeInclusive<f64> = 1e-100..=1e100;
 
 /// Why there is no range.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -32,6 +37,26 @@ pub enum BinsError {
         value: f64,
         /// The state in words.
         state: String,
+    },
+    /// The formula has no mean square over Ω.
+    #[error(
+        "`{quantity}` has no mean: it, or its square, is no number or beyond the range of numbers next to {state}"
+    )]
+    NoMean {
+        /// The quantity.
+        quantity: String,
+        /// The state in words.
+        state: String,
+    },
+    /// The values that the formula takes are too small or too large for densities of them.
+    #[error("`{quantity}` goes from {from:e} to {to:e}: too far from 1 to work with")]
+    Scale {
+        /// The quantity.
+        quantity: String,
+        /// Its least value.
+        from: f64,
+        /// Its largest.
+        to: f64,
     },
     /// The formula has one value.
     #[error("`{quantity}` is {value} all over the cells: it has no density")]
@@ -49,15 +74,26 @@ pub enum BinsError {
     Cancelled(#[from] Cancelled),
 }
 
-/// A range for each of the family's quantities, in their order, for cells of a space.
+/// The values of a quantity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct QuantityRange {
+    /// Where its bins begin and end by themselves.
+    pub ends: (f64, f64),
+    /// Its least and largest value in Ω.
+    pub extremes: (f64, f64),
+}
+
+/// The values of each of the family's quantities, in their order, for cells of a space. Where no bins are open, rough densities are not
+/// solved, and the ends are the extremes.
 ///
 /// # Errors
 /// [`BinsError`].
 pub fn automatic_bins(
     family: &Family,
     space: &CellSpace,
+    open: bool,
     cancellation: &Cancellation,
-) -> Result<Vec<(f64, f64)>, BinsError> {
+) -> Result<Vec<QuantityRange>, BinsError> {
     let most = ROUGH_CELLS[space.dimension().clamp(1, ROUGH_CELLS.len()) - 1];
     let rough = space.axes().iter().map(|axis| match axis.count() > most {
         true => axis.refined(most as f64 / axis.count() as f64),
@@ -68,7 +104,10 @@ pub fn automatic_bins(
     let mut ranges: Vec<Option<Range>> = vec![None; family.quantities().len()];
     for value in [from, 0.5 * (from + to), to] {
         cancellation.check()?;
-        let masses = rough_masses(family, &rough, value, cancellation);
+        let masses = match open {
+            true => rough_masses(family, &rough, value, cancellation),
+            false => None,
+        };
         cancellation.check()?;
         let values = family.values_at(value)?;
         for (quantity, range) in family.quantities().iter().zip(&mut ranges) {
@@ -86,16 +125,54 @@ pub fn automatic_bins(
     let ends = ranges.iter().zip(family.quantities());
     ends.map(|(range, quantity)| {
         let range = range.unwrap_or_default();
-        let ends = range.ends();
-        match ends.1 > ends.0 {
-            true => Ok(ends),
-            false => Err(BinsError::OneValue {
-                quantity: quantity.name().to_owned(),
-                value: ends.0,
+        let (from, to) = range.ends();
+        let quantity = quantity.name().to_owned();
+        let value = from;
+        match to - from {
+            length if SCALES.contains(&length) => Ok(QuantityRange {
+                ends: (from, to),
+                extremes: range.extremes,
             }),
+            length if length > 0.0 => Err(BinsError::Scale { quantity, from, to }),
+            _ => Err(BinsError::OneValue { quantity, value }),
         }
     })
     .collect()
+}
+
+/// Refuses quantities that have no mean, at both ends of the sweep and in its middle.
+///
+/// # Errors
+/// [`BinsError`].
+pub fn check_averaged(family: &Family, space: &CellSpace) -> Result<(), BinsError> {
+    let (from, to) = family.ends();
+    for value in [from, 0.5 * (from + to), to] {
+        let values = family.values_at(value)?;
+        for quantity in family.averaged() {
+            let bound = quantity.bind(&values)?;
+            let map = QuantityMoments::new(space, &bound, Detail::Fine, &[]);
+            if let Some(state) = map.undefined() {
+                return Err(BinsError::NoMean {
+                    quantity: quantity.name().to_owned(),
+                    state: in_words(family, &bound, state),
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A state in words, as far as a quantity depends on it.
+fn in_words(family: &Family, quantity: &BoundQuantity, state: &[f64]) -> String {
+    let state = state.iter().enumerate();
+    let words = state
+        .filter(|(axis, _)| quantity.states()[*axis])
+        .map(|(axis, value)| {
+            // As many digits as tell where it is.
+            let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(*value);
+            format!("{} = {rounded}", family.axis(axis))
+        });
+    words.collect::<Vec<_>>().join(", ")
 }
 
 /// Where values lie, and where most of the mass does.
@@ -147,14 +224,10 @@ impl Look<'_> {
         let lattice = self.lattice();
         let values = self.values(&lattice);
         if let Some(wrong) = values.iter().position(|value| !value.is_finite()) {
-            let state = lattice[wrong].iter().enumerate();
-            let words = state
-                .filter(|(axis, _)| self.quantity.states()[*axis])
-                .map(|(axis, value)| format!("{} = {value}", self.family.axis(axis)));
             return Err(BinsError::NotFinite {
                 quantity: self.name.to_owned(),
                 value: values[wrong],
-                state: words.collect::<Vec<_>>().join(", "),
+                state: in_words(self.family, self.quantity, &lattice[wrong]),
             });
         }
         let best = |sign: f64| {

@@ -16,7 +16,7 @@ mod time_step;
 mod watched;
 
 pub use any::MethodSource;
-pub use bins::{BinsError, automatic_bins};
+pub use bins::{BinsError, QuantityRange, automatic_bins, check_averaged};
 pub use cost::Cost;
 pub use generator::{
     GeneratorCost, GeneratorMethodOptions, GeneratorSource, ModesFound, automatic_modes,

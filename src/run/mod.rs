@@ -160,7 +160,7 @@ pub enum RunError {
         wanted: f64,
     },
     /// An unfinished run of another sweep.
-    #[error("the unfinished run in {} is of another sweep: {}", path.display(), differences.join("; "))]
+    #[error("the run in {} is of another sweep: {}", path.display(), differences.join("; "))]
     OtherSweep {
         /// The folder.
         path: PathBuf,

@@ -84,9 +84,13 @@ fn cells_in_words(family: &Family, finding: &Finding) -> Option<String> {
             100.0 * mass
         ),
         Finding::WideCells { axis, peclet } => format!(
-            "the cells of {} are too wide for the noise (cell Péclet number of damping and friction {peclet:.1}): \
+            "the cells of {} are too wide for the noise (cell Péclet number of damping and friction {}): \
              use more cells",
-            family.axis(axis)
+            family.axis(axis),
+            match peclet < 1e5 {
+                true => format!("{peclet:.1}"),
+                false => format!("{peclet:.1e}"),
+            }
         ),
         Finding::SmearedKink { axis, widths } => {
             let axis = family.axis(axis);

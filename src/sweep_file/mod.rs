@@ -28,6 +28,7 @@
 //! # }
 //! ```
 
+mod bins;
 mod counts;
 mod diagnostic;
 mod document;

@@ -11,8 +11,7 @@ use super::settings::{Grade, Modes, Settings, at_cells, cell_space};
 use super::sweep::Sweep;
 use crate::cancellation::Cancellation;
 use crate::method::{
-    BinsError, PILOT_BOX, Problem, RangeError, SgcmOptions, automatic_bins, automatic_modes,
-    automatic_ranges,
+    PILOT_BOX, Problem, RangeError, SgcmOptions, automatic_modes, automatic_ranges,
 };
 use crate::space::Axis;
 use crate::system::System;
@@ -100,35 +99,6 @@ impl Settings {
         self.check_equations()?;
         self.find_counts(&ends, cancellation)?;
         self.find_gradings(&ends);
-        Ok(())
-    }
-
-    /// Finds the values over which quantities are watched, where the file leaves them open.
-    fn find_bins(&mut self, cancellation: &Cancellation) -> Result<(), Report> {
-        if self.bins.iter().all(|bins| bins.range.is_some()) {
-            return Ok(());
-        }
-        let space = cell_space(&self.document, &self.family, &self.axes, self.method.kind)
-            .map_err(|diagnostic| self.refuse(*diagnostic))?;
-        let ranges = automatic_bins(&self.family, &space, cancellation).map_err(|error| {
-            let diagnostic = Diagnostic::new(error.to_string());
-            let entry = self.document.root.find(&["detect"]);
-            let diagnostic = match (&error, entry) {
-                (BinsError::Cancelled(_), _) | (_, None) => diagnostic,
-                (_, Some(entry)) => {
-                    diagnostic.at(&entry.key_place, "a quantity that is watched here")
-                }
-            };
-            self.refuse(match error {
-                BinsError::NotFinite { .. } => diagnostic.remedy(
-                    "watch a formula that has a value all over the cells, or move the cells",
-                ),
-                _ => diagnostic,
-            })
-        })?;
-        for (bins, range) in self.bins.iter_mut().zip(ranges) {
-            bins.range = bins.range.or(Some(range));
-        }
         Ok(())
     }
 

@@ -10,6 +10,7 @@ use super::keys::{self, KEYS, Key, KeyDefault, Kind};
 use super::names::{nearest_name, quotable};
 use super::report::Report;
 use super::value::{Entry, Node, Plain, Value};
+use crate::figure::FigureWidth;
 
 /// A document under examination and what was found so far.
 #[derive(Debug)]
@@ -177,10 +178,20 @@ fn unknown_key(entry: &Entry, path: &[&str]) -> Diagnostic {
     let elsewhere = KEYS
         .iter()
         .find(|key| key.parts().last() == Some(&entry.key));
-    match elsewhere {
-        Some(key) => diagnostic.remedy(format!("did you mean `{}`?", key.path())),
+    let elsewhere = elsewhere.map(|key| key.path().to_owned());
+    match elsewhere.or_else(|| table_called(&entry.key)) {
+        Some(path) => diagnostic.remedy(format!("did you mean `{path}`?")),
         None => diagnostic,
     }
+}
+
+/// The path of a table inside another that has a name.
+fn table_called(name: &str) -> Option<String> {
+    let prefix = |key: &Key| {
+        let at = key.parts().position(|part| part == name)?;
+        Some(key.parts().take(at + 1).collect::<Vec<_>>().join("."))
+    };
+    KEYS.iter().find_map(prefix)
 }
 
 /// The value of a key, or what is wrong with its kind or range; of a list, with its first wrong item.
@@ -216,9 +227,39 @@ fn value_of(key: &Key, path: &[&str], node: &Node) -> Result<Plain, Box<Diagnost
 
 /// What was perhaps meant by a value that is not of a kind.
 fn meant(kind: Kind, node: &Node) -> Option<String> {
+    let is_switch = matches!(kind, Kind::Choice(names) if names().contains(&"off"));
+    if is_switch && matches!(node.value, Value::Other("a boolean")) {
+        return Some("\"on\"` or `\"off\"".to_owned());
+    }
     let plain = node.plain()?;
     match kind {
-        Kind::Choice(names) => nearest_name(plain.text()?, names()).map(str::to_owned),
+        Kind::Choice(names) if is_switch => {
+            let text = plain.text()?;
+            match text.to_lowercase().as_str() {
+                "true" | "yes" => Some("on".to_owned()),
+                "false" | "no" | "none" => Some("off".to_owned()),
+                text => nearest_name(text, names()).map(str::to_owned),
+            }
+        }
+        Kind::Choice(names) => match plain.items() {
+            // A range as a list, where it is two keys.
+            Some([from, to]) if names() == ["auto"] => {
+                let (from, to) = (from.number()?, to.number()?);
+                Some(format!("from = {from:?}, to = {to:?}"))
+            }
+            _ => nearest_name(plain.text()?, names()).map(str::to_owned),
+        },
+        Kind::Width => {
+            let text = plain.text()?;
+            let number = text.strip_suffix("mm").map(str::trim);
+            match number.filter(|number| number.parse::<f64>().is_ok()) {
+                Some(number) => Some(number.to_owned()),
+                None => {
+                    let names = FigureWidth::NAMED.into_iter().filter_map(FigureWidth::name);
+                    nearest_name(text, names).map(str::to_owned)
+                }
+            }
+        }
         Kind::Step | Kind::Count(..) => plain.text().map(|_| "\"auto\"".to_owned()),
         Kind::List(kind) if kind.holds(&plain) => Some(format!("[{}]", plain.to_toml())),
         _ => None,

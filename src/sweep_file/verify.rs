@@ -5,7 +5,7 @@ use super::diagnostic::Diagnostic;
 use super::document::Document;
 use super::report::Report;
 use super::settings::{Settings, at_cells, formula_place};
-use crate::system::contract::{self, ContractViolation};
+use crate::system::contract::{self, ContractViolation, Quantity};
 use crate::system::{FormulaHazard, FormulaPlace, TypedEquations};
 
 impl Settings {
@@ -102,19 +102,123 @@ impl Settings {
             match tried {
                 Ok(()) | Err(ContractViolation::SmoothSurface { .. }) => {}
                 Err(violation) => {
-                    let title = format!(
-                        "the equations do not keep what was read off them, at {} = {end}: {violation}",
-                        self.family.parameter()
-                    );
-                    let diagnostic = at_system(&self.document, Diagnostic::new(title));
-                    let found = vec![diagnostic.remedy(
-                        "bounds in [system.bounds] must hold for the drift, and no noise may act across them; a smaller domain may do",
-                    )];
+                    let found = vec![self.violated(&violation, end)];
                     return Err(Report::new(self.document.sources.clone(), found, 0));
                 }
             }
         }
         Ok(())
+    }
+}
+
+impl Settings {
+    /// What does not hold of a file's own equations, in the names of the file.
+    fn violated(&self, violation: &ContractViolation, end: f64) -> Diagnostic {
+        let swept = format!("{} = {}", self.family.parameter(), short(end));
+        let at = |state: &[f64]| {
+            let state = state.iter().enumerate();
+            let words =
+                state.map(|(axis, &x)| format!("{} = {}", self.family.axis(axis), short(x)));
+            let words: Vec<String> = words.chain([swept.clone()]).collect();
+            words.join(", ")
+        };
+        let name = |axis: &usize| self.family.axis(*axis);
+        let outside = |axis: &usize| {
+            format!(
+                "leave `{}` out of [system.bounds] where the equations do not keep it inside; `from` and `to` in [cells] end the domain",
+                name(axis)
+            )
+        };
+        match violation {
+            ContractViolation::Bounds { axis, from, to } => {
+                let title = format!(
+                    "the bounds of `{}`, from {from} to {to}, hold no value at {swept}",
+                    name(axis)
+                );
+                let found = Diagnostic::new(title).remedy(
+                    "the lower bound comes first, and both are numbers all along the sweep",
+                );
+                self.at_key("bounds", name(axis), found, "these bounds")
+            }
+            ContractViolation::BoundLeft {
+                axis,
+                bound,
+                state,
+                speed,
+            } => {
+                let title = format!(
+                    "`{}` does not stay within its bound {}: it leaves with speed {} at {}",
+                    name(axis),
+                    short(*bound),
+                    short(*speed),
+                    at(state)
+                );
+                let found = Diagnostic::new(title).remedy(outside(axis));
+                self.at_key("bounds", name(axis), found, "does not hold")
+            }
+            ContractViolation::BoundNoise {
+                axis,
+                bound,
+                state,
+                amplitude,
+            } => {
+                let title = format!(
+                    "`{}` does not stay within its bound {}: noise of amplitude {} acts across it at {}",
+                    name(axis),
+                    short(*bound),
+                    short(*amplitude),
+                    at(state)
+                );
+                let found = Diagnostic::new(title).remedy(outside(axis));
+                self.at_key("bounds", name(axis), found, "does not hold")
+            }
+            ContractViolation::NotFinite {
+                quantity: Quantity::Noise(axis),
+                state,
+                ..
+            } => {
+                let title = format!(
+                    "the noise on `{}` is too strong: the square of its amplitude is beyond the range of numbers at {}",
+                    name(axis),
+                    at(state)
+                );
+                let found = Diagnostic::new(title)
+                    .remedy("use other units, in which numbers are nearer to 1");
+                self.at_key("noise", name(axis), found, "this noise")
+            }
+            ContractViolation::Vanishing { axis } => {
+                let title = format!(
+                    "the noise on `{}` is too weak: the square of its amplitude is zero to all digits at {swept}",
+                    name(axis)
+                );
+                let found = Diagnostic::new(title)
+                    .remedy("use other units, in which numbers are nearer to 1");
+                self.at_key("noise", name(axis), found, "this noise")
+            }
+            ContractViolation::Range { axis, from, to } => {
+                let title = format!(
+                    "the cells of `{0}` hold no state: within its bounds nothing lies from {from} to {to} at {swept}",
+                    name(axis)
+                );
+                let found =
+                    Diagnostic::new(title).remedy("let [cells] and [system.bounds] overlap");
+                self.at_key("bounds", name(axis), found, "these bounds")
+            }
+            violation => {
+                let title = format!(
+                    "the equations do not keep what was read off them, at {swept}: {violation}"
+                );
+                at_system(&self.document, Diagnostic::new(title)).remedy("a smaller domain may do")
+            }
+        }
+    }
+
+    /// A finding about a key of a table of the file's equations.
+    fn at_key(&self, table: &str, key: &str, diagnostic: Diagnostic, label: &str) -> Diagnostic {
+        match self.document.root.find(&["system", table, key]) {
+            Some(entry) => diagnostic.at(&entry.node.place, label),
+            None => at_system(&self.document, diagnostic),
+        }
     }
 }
 
@@ -129,7 +233,7 @@ fn at_system(document: &Document, diagnostic: Diagnostic) -> Diagnostic {
 }
 
 /// A number with as many digits as tell where it is.
-fn short(value: f64) -> String {
+pub(super) fn short(value: f64) -> String {
     let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
     // Zero of either sign is zero.
     (rounded + 0.0).to_string()

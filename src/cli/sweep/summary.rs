@@ -48,7 +48,7 @@ pub(in crate::cli) fn text(result: &SweepResult, folder: &Path) -> String {
 }
 
 /// Why there is no figure.
-fn nothing_to_draw(result: &SweepResult) -> &'static str {
+pub(in crate::cli) fn nothing_to_draw(result: &SweepResult) -> &'static str {
     let unsolved = [PointStatus::NotConverged, PointStatus::Failed];
     let failed = |point: &Point| unsolved.contains(&point.report.status);
     match result.points.iter().any(failed) {

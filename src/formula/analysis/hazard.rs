@@ -6,7 +6,7 @@
 mod search;
 
 use super::interval::Interval;
-use crate::formula::arithmetic::{Binary, Unary, small_integer};
+use crate::formula::arithmetic::{Binary, Unary};
 use crate::formula::graph::{Expression, Graph, Node, PartMap, Symbol};
 
 /// Where an expression is looked at: an interval for each state, parameter and for time.
@@ -250,9 +250,8 @@ fn binary_hazard(operation: Binary, a: Interval, b: Interval) -> Option<HazardKi
     match operation {
         Binary::Divide => b.contains(0.0).then_some(HazardKind::DivisionByZero),
         Binary::Power => {
-            let integer = (b.low == b.high).then_some(b.low).and_then(small_integer);
-            let fails = match integer {
-                Some(n) => n < 0 && a.contains(0.0),
+            let fails = match (b.low == b.high && b.low.fract() == 0.0).then_some(b.low) {
+                Some(n) => n < 0.0 && a.contains(0.0),
                 None => a.low < 0.0 || (a.contains(0.0) && b.low < 0.0),
             };
             fails.then_some(HazardKind::Power)

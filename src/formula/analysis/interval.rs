@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use crate::formula::arithmetic::{Binary, Unary, small_integer};
+use crate::formula::arithmetic::{Binary, Unary};
 
 /// All numbers from `low` to `high`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -288,19 +288,19 @@ impl Interval {
     fn power(self, exponent: Self) -> Self {
         let apply = |a: f64, b: f64| Binary::Power.apply(a, b);
         let fixed = (exponent.low == exponent.high).then_some(exponent.low);
-        if let Some(n) = fixed.and_then(small_integer) {
-            if n < 0 {
-                let positive = self.power(Self::point(-f64::from(n)));
+        if let Some(n) = fixed.filter(|n| n.fract() == 0.0) {
+            if n < 0.0 {
+                let positive = self.power(Self::point(-n));
                 return Self::point(1.0).binary(Binary::Divide, positive);
             }
-            if n % 2 == 0 {
-                let values = self.abs().wide_growing(|x| apply(x, f64::from(n)));
+            if n % 2.0 == 0.0 {
+                let values = self.abs().wide_growing(|x| apply(x, n));
                 return Self {
                     low: values.low.max(0.0),
                     ..values
                 };
             }
-            return self.wide_growing(|x| apply(x, f64::from(n)));
+            return self.wide_growing(|x| apply(x, n));
         }
         // For a positive base the power grows or falls in each of both: its extremes are at the corners.
         let Some(base) = self.clipped(0.0, f64::INFINITY) else {

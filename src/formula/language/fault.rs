@@ -143,11 +143,16 @@ fn plural(count: usize) -> &'static str {
 }
 
 fn shown(character: char) -> String {
-    if character.is_control() {
+    if character.is_control() || is_invisible(character) {
         format!("U+{:04X}", character as u32)
     } else {
         format!("`{character}`")
     }
+}
+
+/// Whether a character takes no room, or turns the direction of writing.
+fn is_invisible(character: char) -> bool {
+    matches!(character, '\u{ad}' | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')
 }
 
 impl FormulaError {
@@ -208,6 +213,10 @@ impl FormulaError {
             Fault::Arguments { function, given: 2 } if function.arguments().1 == Some(1) => {
                 "write a decimal point, not a comma, inside a number"
             }
+            Fault::Operand { found } if found == "`*`" => "write ^ for a power, as in x^2",
+            Fault::Symbol { name, .. } if is_no_number(name) => {
+                "formulas have finite numbers only, and may not become infinite"
+            }
             Fault::Chained => "write if(a < b, b < c, 0)",
             Fault::Symbol {
                 product: Some(product),
@@ -262,6 +271,12 @@ fn floor_boundary(text: &str, at: usize) -> usize {
     at
 }
 
+/// Whether a name is what other languages call a number that is none.
+fn is_no_number(name: &str) -> bool {
+    let name = name.to_ascii_lowercase();
+    ["nan", "inf", "infinity"].contains(&name.as_str())
+}
+
 fn character_remedy(character: char) -> Option<String> {
     let words = match character {
         '=' => "write `==` to compare; an equation's left side is its key",
@@ -274,6 +289,8 @@ fn character_remedy(character: char) -> Option<String> {
         '²'..='³' => "an exponent follows what it belongs to",
         '[' | ']' | '{' | '}' => "write ( ) for all parentheses",
         '\'' | '′' => "derivatives are states of their own; give them a name",
+        '\\' => "write names without a backslash, as in alpha or α",
+        _ if is_invisible(character) => "the character takes no room: delete it",
         '%' => "write the remainder as x - n floor(x/n)",
         ';' => "write , between arguments",
         '.' => "write numbers as 1, 0.5, .5 or 1e-3",

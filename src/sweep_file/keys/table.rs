@@ -137,13 +137,10 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
         "Probability that no peak or crater of the whole sweep is sampling noise."),
     key("detect.floor", Kind::Number(SHARE), OfOptions, always!(detect.floor),
         "Smallest persistence that counts, as a share of the density's maximum."),
-    key("watch.<formula>", Kind::Text, Rule("none"),
+    key("watch.<formula>", Kind::Formula, Rule("none"),
         Field {
             get: |draft, name| draft.averaged.iter().find(|(known, _)| known == name).map(|(_, text)| text.to_plain()),
-            set: |draft, name, plain| if let Some(text) = plain.text() {
-                draft.averaged.retain(|(known, _)| known != name);
-                draft.averaged.push((name.to_owned(), text.to_owned()));
-            },
+            set: |draft, name, plain| super::field::set_formulas(&mut draft.averaged, name, plain),
         },
         "A formula whose mean and standard deviation are columns of `points.csv`, for example `power = \"y^2\"`."),
     key("locate.tolerance", Kind::Number(POSITIVE), Rule("`locate.relative_tolerance` of the swept range"), optional!(locate.tolerance),

@@ -1,5 +1,6 @@
 //! The cells of each axis: range, count, grading. What is given is checked here; what is left to the program is found later.
 
+use super::equations::model_in_words;
 use crate::space::{Axis, CellSpace, Grading, SpaceError};
 use crate::sweep_file::diagnostic::Diagnostic;
 use crate::sweep_file::document::Document;
@@ -72,7 +73,7 @@ pub(super) fn read(
         if !is_axis && entry.key != ACCURACY {
             let axis = quotable(&entry.key);
             let diagnostic =
-                Diagnostic::new(format!("model `{}` has no axis `{axis}`", model.name))
+                Diagnostic::new(format!("{} has no axis `{axis}`", model_in_words(model)))
                     .at(&entry.key_place, "unknown axis")
                     .nearest(&entry.key, names.iter().copied());
             reader.report(diagnostic);
@@ -132,6 +133,8 @@ fn read_axis(
     let bounds = family.map(|family| bounds(family, index));
     let range = match axis.range {
         Some(_) => Some(bounds.flatten()),
+        // What is wrong with it is reported already.
+        None if reader.entry(&["cells", name, "range"]).is_some() => None,
         None => read_range(reader, axis, name, bounds).map(Some),
     };
     let settings = AxisSettings {
@@ -175,7 +178,12 @@ fn check_modes(
     } else if systems.iter().any(|system| system.bounds(index).is_none()) {
         (
             "the model knows no bounds of it",
-            format!("give `cells.{name}.count`"),
+            match family.model().typed() {
+                Some(_) => format!(
+                    "give `cells.{name}.count`, or bounds of `{name}` in [system.bounds] that it never leaves"
+                ),
+                None => format!("give `cells.{name}.count`"),
+            },
         )
     } else if !range.is_some_and(walled) {
         (

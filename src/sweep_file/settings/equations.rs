@@ -45,6 +45,14 @@ pub(super) fn model(reader: &mut Reader<'_>, draft: &Draft) -> Option<Arc<Model>
     }
 }
 
+/// What messages call a model: one of a file's own equations has no name.
+pub(super) fn model_in_words(model: &Model) -> String {
+    match model.typed() {
+        Some(_) => "the system".to_owned(),
+        None => format!("model `{}`", model.name),
+    }
+}
+
 /// Says that there is neither a model nor an equation.
 fn missing(reader: &mut Reader<'_>) {
     if reader.document().cut.is_some() {
@@ -74,11 +82,15 @@ fn typed(reader: &mut Reader<'_>, draft: &Draft) -> Option<Arc<Model>> {
         return None;
     }
     // Formulas that are no formulas are reported already; what is left would look incomplete.
+    let table = reader.entry(&["system", "equations"]);
+    if table.is_some_and(|table| !matches!(table.node.value, Value::Table(_))) {
+        return None;
+    }
     let complete = reader.is_clean();
     if !complete && equations.drift.len() < reader.entries(&["system", "equations"]).len() {
         return None;
     }
-    let parameters = parameters(draft);
+    let parameters = parameters(reader, draft);
     let source = source(draft, equations, parameters);
     match source.build_or_all_errors() {
         Ok(model) => {
@@ -105,13 +117,19 @@ fn typed(reader: &mut Reader<'_>, draft: &Draft) -> Option<Arc<Model>> {
 }
 
 /// The parameters that are given, and the swept one. What is given is the default, so that any of them can be swept.
-fn parameters(draft: &Draft) -> Vec<ParameterDescription> {
+fn parameters(reader: &Reader<'_>, draft: &Draft) -> Vec<ParameterDescription> {
     let given = draft.parameters.iter();
     let given =
         given.map(|(name, value)| ParameterDescription::from(name.as_str()).with_default(*value));
     let mut parameters: Vec<ParameterDescription> = given.collect();
+    // A value that is none is reported already; its name is known all the same.
+    for entry in reader.entries(&["system", "parameters"]) {
+        if !parameters.iter().any(|known| known.name == entry.key) {
+            parameters.push(ParameterDescription::from(entry.key.as_str()));
+        }
+    }
     if let Some(swept) = &draft.parameter {
-        let known = draft.parameters.iter().any(|(name, _)| name == swept);
+        let known = parameters.iter().any(|known| known.name == *swept);
         if !known {
             parameters.push(ParameterDescription::from(swept.as_str()));
         }
@@ -219,6 +237,10 @@ fn check_use(reader: &mut Reader<'_>, draft: &Draft, model: &Model) {
 /// Without noise there is no density to speak of.
 fn check_noise(reader: &mut Reader<'_>, model: &Model) {
     if model.typed().is_none_or(|typed| !typed.noises().is_empty()) {
+        return;
+    }
+    // Amplitudes that are no formulas are reported already.
+    if !reader.is_clean() && !reader.entries(&["system", "noise"]).is_empty() {
         return;
     }
     let diagnostic = Diagnostic::new("no equation has noise, so that there is no stationary density")

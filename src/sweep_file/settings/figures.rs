@@ -120,7 +120,11 @@ pub(super) fn check_style(reader: &mut Reader<'_>, style: &FigureStyle) {
     };
     let (least, most) = style.widths();
     let text = style.text_points();
-    let title = format!("figures {width} mm wide have no room for text of {text} points");
+    let shown = match width < 1e6 {
+        true => width.to_string(),
+        false => format!("{width:e}"),
+    };
+    let title = format!("figures {shown} mm wide have no room for text of {text} points");
     let key = |name| reader.place(&["figures", "style", name]);
     let diagnostic = Diagnostic::new(title)
         .allowed(format!("with such text, from {least:.0} to {most:.0} mm"))

@@ -22,6 +22,7 @@ pub use axes::{AxisSettings, Grade};
 pub(super) use axes::{at_cells, cell_space};
 pub(super) use equations::value_place as formula_place;
 pub use quantities::BinSettings;
+pub(super) use quantities::quantity_name;
 
 use super::document::Document;
 use super::draft::MethodSettings;

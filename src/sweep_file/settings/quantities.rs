@@ -53,6 +53,11 @@ pub(super) fn split(text: &str) -> Option<(&str, &str, usize)> {
     ))
 }
 
+/// The name that a text gives a formula, as in `name = formula`.
+pub(in crate::sweep_file) fn quantity_name(text: &str) -> Option<&str> {
+    split(text).map(|(name, _, _)| name)
+}
+
 /// Reads quantities, and reports everything that is wrong with them.
 pub(super) fn read_all(
     reader: &mut Reader<'_>,

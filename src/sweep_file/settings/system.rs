@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::equations::model_in_words;
 use crate::continuation::evenly_spaced;
 use crate::sweep_file::diagnostic::{Diagnostic, Place};
 use crate::sweep_file::draft::Draft;
@@ -60,8 +61,8 @@ fn known_parameter<'m>(
     let known = parameters.iter().find(|parameter| parameter.name == name);
     if known.is_none() {
         let title = format!(
-            "model `{}` has no parameter `{}`",
-            model.name,
+            "{} has no parameter `{}`",
+            model_in_words(model),
             quotable(name)
         );
         let names = parameters.iter().map(|parameter| parameter.name.as_str());

@@ -3,11 +3,13 @@
 use std::sync::Arc;
 
 use super::AxisSettings;
+use super::equations::model_in_words;
 use super::quantities::{Given, read_all, split};
 use crate::density::Observable;
+use crate::formula::language::check_name;
 use crate::sweep_file::diagnostic::{Diagnostic, Place};
 use crate::sweep_file::draft::Draft;
-use crate::sweep_file::names::quotable;
+use crate::sweep_file::names::{nearest_name, quotable};
 use crate::sweep_file::reader::Reader;
 use crate::system::{Model, Quantity};
 
@@ -186,13 +188,20 @@ fn unknown(reader: &mut Reader<'_>, model: &Model, given: &[Given], text: &str, 
         );
         return;
     }
-    let title = format!("model `{}` has no axis `{}`", model.name, quotable(text));
+    let title = format!("{} has no axis `{}`", model_in_words(model), quotable(text));
     let axes = model.axes.iter().map(|axis| axis.name.as_str());
     let defined = model.definitions().iter().map(|(name, _)| name.as_str());
     let names = axes
         .chain(given.iter().map(|one| one.name.as_str()))
         .chain(defined);
     let diagnostic = Diagnostic::new(title).at(at, "unknown axis");
+    let names: Vec<&str> = names.collect();
+    let diagnostic = match nearest_name(text, names.iter().copied()) {
+        None if check_name(text) => {
+            diagnostic.remedy(format!("a quantity needs its formula: `{text} = …`"))
+        }
+        _ => diagnostic,
+    };
     reader.report(diagnostic.nearest(text, names));
 }
 

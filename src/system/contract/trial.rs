@@ -67,12 +67,35 @@ impl<'a> Trial<'a> {
             let drift = mean(&|state| system.drift_at(0.0, state)[axis].powi(2)).sqrt();
             let noise = mean(&|state| trial.intensity(0.0, state, axis));
             (trial.drift_size[axis], trial.noise_size[axis]) = (drift, noise);
+            trial.check_intensity(axis)?;
         }
         Ok(trial)
     }
 
     fn dimension(&self) -> usize {
         self.ranges.len()
+    }
+
+    /// The squares of the amplitudes, which is what a density feels, are numbers too, and not zero where the amplitudes are not.
+    fn check_intensity(&self, axis: usize) -> Result<(), ContractViolation> {
+        let infinite = |state: &&Vec<f64>| !self.intensity(0.0, state, axis).is_finite();
+        if let Some(state) = self.states.iter().find(infinite) {
+            return Err(ContractViolation::NotFinite {
+                quantity: Quantity::Noise(axis),
+                state: state.clone(),
+                time: 0.0,
+            });
+        }
+        let channels = self.system.noise_axes().iter().enumerate();
+        let mut here = channels.filter(|(_, driven)| **driven == axis);
+        let acts = here.any(|(channel, _)| {
+            let amplitude = |state: &Vec<f64>| self.system.amplitude_at(channel, 0.0, state);
+            self.states.iter().any(|state| amplitude(state) != 0.0)
+        });
+        match acts && self.noise_size[axis] == 0.0 {
+            true => Err(ContractViolation::Vanishing { axis }),
+            false => Ok(()),
+        }
     }
 
     /// Σ b² of the processes that drive an axis.

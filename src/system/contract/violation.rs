@@ -129,6 +129,12 @@ pub enum ContractViolation {
         /// When.
         time: f64,
     },
+    /// Noise amplitudes whose squares are too small to be numbers: the method would see no noise.
+    #[error("the noise intensity on axis {axis} is zero, though its amplitude is not")]
+    Vanishing {
+        /// The axis.
+        axis: usize,
+    },
     /// A state in a batch of others has another drift or noise than alone.
     #[error(
         "{quantity} is {alone} at {state:?}, but {in_batch} where other states share its batch"
