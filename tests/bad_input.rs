@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use assert_cmd::Command;
+use std::process::Command;
 
 const GOOD: &str = r#"title = "trial"
 [system]
@@ -32,7 +32,7 @@ fn refused(text: &str, arguments: &[&str]) -> String {
 
 fn refused_in(folder: &Path, arguments: &[&str]) -> String {
     let before = names(folder);
-    let mut command = Command::cargo_bin("pbif").unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pbif"));
     let output = command.current_dir(folder).arg("sweep").args(arguments);
     let output = output.output().unwrap();
     let message = String::from_utf8(output.stderr).unwrap();

@@ -4,10 +4,10 @@
 
 use std::path::{Path, PathBuf};
 
-use assert_cmd::Command;
+use std::process::Command;
 
 fn check(file: &Path, arguments: &[&str]) -> String {
-    let mut command = Command::cargo_bin("pbif").unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pbif"));
     let output = command
         .arg("check")
         .arg(file)
@@ -138,7 +138,7 @@ fn the_range_of_z_is_the_widest_of_the_sweep() {
 #[test]
 fn figures_outside_a_part_of_the_sweep_are_left_out_with_one_warning() {
     let part = |more: &[&str]| {
-        let mut command = Command::cargo_bin("pbif").unwrap();
+        let mut command = Command::new(env!("CARGO_BIN_EXE_pbif"));
         let file = sweeps().join("dahl_alpha.toml");
         let part = ["--set", "sweep.from=0", "--set", "sweep.to=-0.6"];
         command.arg("check").arg(file).args(part).args(more);

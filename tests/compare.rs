@@ -4,9 +4,8 @@
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-use std::process::Output;
+use std::process::{Command, Output};
 
-use assert_cmd::Command;
 use tempfile::TempDir;
 
 /// A Coulomb oscillator that forgets three times as fast as the shipped one; at f_c = 0 its density is known, and the same.
@@ -22,7 +21,7 @@ const SMALL: &[&str] = &[
 
 fn compare(overrides: &[&str], folder: &Path) -> Output {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut command = Command::cargo_bin("pbif").unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pbif"));
     command
         .arg("compare")
         .arg(root.join("sweeps/coulomb_fc.toml"))
@@ -164,7 +163,7 @@ fn an_earlier_comparison_is_kept_and_numbers_repeat_on_any_threads() {
     let first = (read("densities.csv"), read("distances.csv"));
     std::fs::write(folder.path().join("mine.txt"), "stays").unwrap();
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut command = Command::cargo_bin("pbif").unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pbif"));
     command
         .arg("compare")
         .arg(root.join("sweeps/coulomb_fc.toml"))

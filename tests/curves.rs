@@ -2,13 +2,13 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use assert_cmd::Command;
 use pbif::cancellation::Cancellation;
 use pbif::continuation::curve::{
     Curve, CurveError, CurveOptions, CurvePoint, CurveStart, EndReason, Plane, follow,
 };
 use pbif::continuation::{BifurcationStatus, LabelledPoint, SweepResult};
 use pbif::sweep_file::{Sweep, SweepFile};
+use std::process::Command;
 
 /// Additive noise: peaks of the density are zeros of the drift, and two of them fold where 27 h² = 4 a³.
 const CUSP: &str = r#"
@@ -415,8 +415,7 @@ fn a_cancelled_curve_says_so() {
 }
 
 fn pbif(arguments: &[&str]) -> std::process::Output {
-    Command::cargo_bin("pbif")
-        .unwrap()
+    Command::new(env!("CARGO_BIN_EXE_pbif"))
         .args(arguments)
         .output()
         .unwrap()

@@ -5,9 +5,8 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::process::Output;
+use std::process::{Command, Output};
 
-use assert_cmd::Command;
 use tempfile::TempDir;
 
 const GENERATOR: &[&str] = &[
@@ -47,7 +46,7 @@ const TABLES: [&str; 6] = [
 ];
 
 fn pbif(arguments: &[&str], overrides: &[&str]) -> Output {
-    let mut command = Command::cargo_bin("pbif").unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pbif"));
     command.args(arguments);
     for setting in overrides {
         command.args(["--set", setting]);

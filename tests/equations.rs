@@ -3,9 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use std::path::Path;
-use std::process::Output;
-
-use assert_cmd::Command;
+use std::process::{Command, Output};
 
 const GOOD: &str = r#"title = "trial"
 [system.equations]
@@ -30,7 +28,7 @@ y = { from = -4, to = 4, count = 24 }
 "#;
 
 fn pbif(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::cargo_bin("pbif").unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pbif"));
     command
         .current_dir(folder)
         .args(arguments)

@@ -8,7 +8,6 @@ use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use assert_cmd::cargo::CommandCargoExt as _;
 use base64::Engine as _;
 use pbif::cancellation::Cancellation;
 use pbif::continuation::DensitySource as _;
@@ -19,7 +18,7 @@ use pbif::topology::Detector as _;
 use tempfile::TempDir;
 
 fn pbif(arguments: &[&str], folder: &Path) -> (String, String, Option<i32>) {
-    let mut command = Command::cargo_bin("pbif").unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pbif"));
     let output = command
         .args(arguments)
         .current_dir(folder)

@@ -5,12 +5,12 @@
 
 use std::path::Path;
 
-use assert_cmd::Command;
+use std::process::Command;
 
 fn table_of(file: &str, overrides: &[&str]) -> String {
     let folder = tempfile::tempdir().unwrap();
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut command = Command::cargo_bin("pbif").unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pbif"));
     command
         .arg("sweep")
         .arg(root.join("sweeps").join(format!("{file}.toml")))

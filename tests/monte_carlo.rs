@@ -4,9 +4,8 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::path::Path;
-use std::process::Output;
+use std::process::{Command, Output};
 
-use assert_cmd::Command;
 use tempfile::TempDir;
 
 const SMALL: &[&str] = &[
@@ -22,7 +21,7 @@ const SMALL: &[&str] = &[
 fn pbif(command: &str, sweep: &str, overrides: &[&str], options: &[&str]) -> Output {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let file = root.join("sweeps").join(format!("{sweep}.toml"));
-    let mut run = Command::cargo_bin("pbif").unwrap();
+    let mut run = Command::new(env!("CARGO_BIN_EXE_pbif"));
     run.arg(command).arg(file).args(options);
     for setting in overrides {
         run.args(["--set", setting]);

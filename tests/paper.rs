@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use assert_cmd::Command;
+use std::process::Command;
 use tempfile::TempDir;
 
 /// Rows of a table that a sweep writes, as numbers by column name; text is left out.
@@ -15,7 +15,7 @@ impl Run {
         let folder = TempDir::new().unwrap();
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let file = root.join("sweeps").join(format!("{sweep}.toml"));
-        let mut command = Command::cargo_bin("pbif").unwrap();
+        let mut command = Command::new(env!("CARGO_BIN_EXE_pbif"));
         command.arg("sweep").arg(file).arg("--quiet");
         command.arg("--out").arg(folder.path().join("run"));
         for setting in overrides {

@@ -56,7 +56,7 @@ const SWEEPS: [(&str, &[&str]); 5] = [
 
 fn command(sweep: (&str, &[&str]), out: &Path, options: &[&str]) -> Command {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut command = Command::new(assert_cmd::cargo::cargo_bin("pbif"));
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pbif"));
     command
         .arg("sweep")
         .arg(root.join("sweeps").join(format!("{}.toml", sweep.0)));

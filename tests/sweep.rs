@@ -4,9 +4,8 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::path::{Path, PathBuf};
-use std::process::Output;
+use std::process::{Command, Output};
 
-use assert_cmd::Command;
 use pbif::cancellation::Cancellation;
 use pbif::sweep_file::{Grade, SweepFile};
 use tempfile::TempDir;
@@ -18,7 +17,7 @@ fn sweep_file(name: &str) -> PathBuf {
 
 /// Runs a shipped sweep with overrides; the results go to `folder/run`.
 fn run(name: &str, overrides: &[&str], options: &[&str], folder: &TempDir) -> Output {
-    let mut command = Command::cargo_bin("pbif").unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pbif"));
     command.arg("sweep").arg(sweep_file(name)).args(options);
     // These tests are of SGCM, on cells of equal width; those of the generator say so.
     if !overrides
@@ -440,7 +439,7 @@ fn an_interrupt_leaves_the_rows_that_were_done() {
     use std::io::{BufRead, BufReader};
     use std::process::{Command, Stdio};
     let folder = TempDir::new().unwrap();
-    let mut child = Command::new(assert_cmd::cargo::cargo_bin("pbif"))
+    let mut child = Command::new(env!("CARGO_BIN_EXE_pbif"))
         .arg("sweep")
         .arg(sweep_file("coulomb_fc"))
         .args(["--set", "cells.x.count=20", "--set", "cells.y.count=20"])

@@ -2,10 +2,10 @@
 
 #![allow(clippy::unwrap_used)]
 
-use assert_cmd::Command;
+use std::process::Command;
 
 fn run(arguments: &[&str]) -> (i32, String, String) {
-    let mut command = Command::cargo_bin("pbif").unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pbif"));
     let output = command.args(arguments).output().unwrap();
     let text = |bytes| String::from_utf8(bytes).unwrap();
     (
