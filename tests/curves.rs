@@ -427,10 +427,19 @@ fn the_program_follows_a_row_of_a_run_and_says_what_is_wrong() {
     let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let (file, run) = (at("cusp.toml"), at("run"));
     std::fs::write(&file, CUSP).unwrap();
+    // At its first value the system is symmetric, and at no other.
     assert!(
-        pbif(&["sweep", &file, "--out", &run, "--quiet"])
-            .status
-            .success()
+        pbif(&[
+            "sweep",
+            &file,
+            "--out",
+            &run,
+            "--quiet",
+            "--set",
+            "sweep.from=0"
+        ])
+        .status
+        .success()
     );
     let fold = |more: &[&str]| {
         let mut arguments = vec![

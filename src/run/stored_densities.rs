@@ -13,7 +13,7 @@ use crate::density::{
     Density, EstimatedDensity, Kink, NEGLIGIBLE, Observable, Structure, Variants,
 };
 use crate::space::{Axis, CellSpace};
-use crate::system::Family;
+use crate::system::{Family, Symmetry, proved_symmetry};
 
 type StoredArray = Array<FilesystemStore>;
 
@@ -23,6 +23,9 @@ pub(super) struct StoredDensities {
     /// Parameter values in the order of the store.
     values: Vec<f64>,
     observed: Vec<Observed>,
+    family: Family,
+    /// Lower and upper end of every axis of the cells.
+    ends: Vec<(f64, f64)>,
 }
 
 /// The arrays of one observable.
@@ -67,7 +70,18 @@ impl StoredDensities {
             path: path.to_owned(),
             values,
             observed,
+            family: family.clone(),
+            ends: (cells.0.axes().iter())
+                .map(|axis| (axis.from(), axis.to()))
+                .collect(),
         })
+    }
+
+    /// The symmetry of the system at a parameter value: the centre that is stored is that of the value that was solved first, and others
+    /// need not have it.
+    fn symmetry(&self, value: f64) -> Option<Symmetry> {
+        let system = self.family.at(value).ok()?;
+        proved_symmetry(system.as_ref(), &self.ends)
     }
 
     /// The densities at a parameter value; `None` if the store has none there.
@@ -78,16 +92,29 @@ impl StoredDensities {
         let Some(index) = self.values.iter().position(|&known| known == value) else {
             return Ok(None);
         };
+        let with_centre = self.observed.iter().any(|one| one.centre.is_some());
+        let symmetry = with_centre.then(|| self.symmetry(value)).flatten();
         let densities = self.observed.iter();
         densities
-            .map(|observed| observed.estimate(&self.path, index as u64))
+            .map(|observed| observed.estimate(&self.path, index as u64, symmetry.as_ref()))
             .collect::<Result<_, _>>()
             .map(Some)
     }
 }
 
 impl Observed {
-    fn estimate(&self, path: &Path, index: u64) -> Result<EstimatedDensity, RunError> {
+    fn estimate(
+        &self,
+        path: &Path,
+        index: u64,
+        symmetry: Option<&Symmetry>,
+    ) -> Result<EstimatedDensity, RunError> {
+        // Axes of quantities are numbered on from those that are reflected.
+        let axes = self.observable.axes();
+        let reflects = |symmetry: &Symmetry| {
+            let mut axes = axes.iter();
+            axes.all(|&axis| symmetry.reflected.get(axis).copied().unwrap_or(true))
+        };
         let read = |array: &StoredArray| at_index(path, array, index);
         let mut kinks = Vec::new();
         for kink in &self.kinks {
@@ -106,7 +133,10 @@ impl Observed {
             standard_error: read(&self.error)?,
             variants: self.variants(path, index)?,
             structure: Structure {
-                centre: self.centre.clone(),
+                centre: self
+                    .centre
+                    .clone()
+                    .filter(|_| symmetry.is_some_and(reflects)),
                 kinks,
             },
             negligible: self.negligible,
