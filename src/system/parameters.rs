@@ -85,6 +85,131 @@ pub(super) const DAHL_LEVEL: Parameter = Parameter {
     ..parameter("f_c", "f_{c}", "friction level")
 };
 
+/// f_s of Stribeck's law, of either sign.
+pub(super) const STATIC_LEVEL: Parameter = parameter("f_s", "f_{s}", "friction level at rest");
+
+/// f_s > 0 of the LuGre law.
+pub(super) const STATIC_LEVEL_OF_BRISTLES: Parameter = Parameter {
+    range: ParameterRange::Positive,
+    ..STATIC_LEVEL
+};
+
+/// v_s > 0.
+pub(super) const STRIBECK_VELOCITY: Parameter = Parameter {
+    range: ParameterRange::Positive,
+    ..parameter(
+        "v_s",
+        "v_{s}",
+        "Stribeck velocity, over which the level falls from f_s to f_c",
+    )
+};
+
+/// v_b, 0 unless given.
+pub(super) const BELT_VELOCITY: Parameter = Parameter {
+    default: Some(0.0),
+    ..parameter(
+        "v_b",
+        "v_{b}",
+        "velocity of the base on which the body rubs",
+    )
+};
+
+/// f_m of the cubic law.
+pub(super) const LEAST_LEVEL: Parameter = parameter("f_m", "f_{m}", "least friction of sliding");
+
+/// v_m > 0 of the cubic law.
+pub(super) const LEAST_VELOCITY: Parameter = Parameter {
+    range: ParameterRange::Positive,
+    ..parameter(
+        "v_m",
+        "v_{m}",
+        "velocity of sliding at which friction is least",
+    )
+};
+
+/// η of the LuGre law, 0 unless given.
+pub(super) const CONTACT_DAMPING: Parameter = Parameter {
+    default: Some(0.0),
+    range: ParameterRange::NonNegative,
+    ..parameter("eta", "η", "damping of the friction contact")
+};
+
+/// λ of the Bouc-Wen law, of either sign.
+pub(super) const HYSTERESIS_FORCE: Parameter =
+    parameter("lambda", "λ", "force of the hysteretic state");
+
+/// A > 0 of the Bouc-Wen law, 1 unless given.
+pub(super) const HYSTERESIS_GROWTH: Parameter = Parameter {
+    default: Some(1.0),
+    range: ParameterRange::Positive,
+    ..parameter("A", "A", "rate of the hysteretic state before it yields")
+};
+
+/// β > 0 of the Bouc-Wen law.
+pub(super) const HYSTERESIS_LOSS: Parameter = Parameter {
+    range: ParameterRange::Positive,
+    ..parameter(
+        "beta",
+        "β",
+        "loss of the hysteretic state, by which the loop is wide",
+    )
+};
+
+/// γ of the Bouc-Wen law, 0 unless given.
+pub(super) const HYSTERESIS_SHAPE: Parameter = Parameter {
+    default: Some(0.0),
+    ..parameter(
+        "gamma",
+        "γ",
+        "shape of the loop: above 0 softening, below 0 hardening",
+    )
+};
+
+/// n > 0 of the Bouc-Wen law, 1 unless given.
+pub(super) const SHARPNESS: Parameter = Parameter {
+    default: Some(1.0),
+    range: ParameterRange::Positive,
+    ..parameter("n", "n", "sharpness of yielding")
+};
+
+/// The element of the Bliman-Sorine law that yields first.
+pub(super) const FAST_FORCE: Axis = Axis("u", "u", "force of the fast friction element");
+
+/// The element of the Bliman-Sorine law that yields last.
+pub(super) const SLOW_FORCE: Axis = Axis("v", "v", "force of the slow friction element");
+
+/// f₁ > 0.
+pub(super) const FAST_LEVEL: Parameter = Parameter {
+    range: ParameterRange::Positive,
+    ..parameter("f_1", "f_{1}", "level of the fast friction element")
+};
+
+/// f₂ > 0.
+pub(super) const SLOW_LEVEL: Parameter = Parameter {
+    range: ParameterRange::Positive,
+    ..parameter("f_2", "f_{2}", "level of the slow friction element")
+};
+
+/// ε > 0.
+pub(super) const SLIDING_DISTANCE: Parameter = Parameter {
+    range: ParameterRange::Positive,
+    ..parameter(
+        "epsilon",
+        "ε",
+        "distance over which the slow element yields",
+    )
+};
+
+/// ρ > 0.
+pub(super) const SWIFTNESS: Parameter = Parameter {
+    range: ParameterRange::Positive,
+    ..parameter(
+        "rho",
+        "ρ",
+        "distance of the fast element as a share of the slow one's",
+    )
+};
+
 /// σ² > 0.
 pub(super) const SIGMA2: Parameter = Parameter {
     range: ParameterRange::Positive,

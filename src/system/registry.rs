@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, LazyLock};
 
-use super::friction::{coulomb, dahl};
+use super::friction::{bliman_sorine, bouc_wen, coulomb, dahl, lugre, stribeck};
 use super::{Model, SystemError, bistable, rayleigh};
 
 static MODELS: LazyLock<Vec<Arc<Model>>> = LazyLock::new(|| {
@@ -10,6 +10,11 @@ static MODELS: LazyLock<Vec<Arc<Model>>> = LazyLock::new(|| {
         coulomb::model(),
         dahl::model(),
         dahl::model_eq8(),
+        stribeck::model(),
+        stribeck::model_cubic(),
+        lugre::model(),
+        bouc_wen::model(),
+        bliman_sorine::model(),
         rayleigh::model(),
         bistable::model(),
     ];

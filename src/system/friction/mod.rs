@@ -1,7 +1,12 @@
 //! Friction laws, one file each, and what an oscillator wants to know of a law.
 
+pub(super) mod bliman_sorine;
+pub(super) mod bouc_wen;
 pub(super) mod coulomb;
 pub(super) mod dahl;
+pub(super) mod lugre;
+mod sliding;
+pub(super) mod stribeck;
 
 use super::SwitchingSurface;
 
