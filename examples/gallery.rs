@@ -44,8 +44,13 @@ fn section(file: &StartingFile, images: &Path) -> Result<String, Box<dyn std::er
     for line in comments.take_while(|line| !line.contains("Look first")) {
         writeln!(text, "{}", line.trim())?;
     }
-    if let Some(typed) = family.model().typed() {
-        for line in typed.typeset() {
+    let model = family.model();
+    let equations = match model.typed() {
+        Some(typed) => typed.typeset(),
+        None => model.equations.clone(),
+    };
+    if !equations.is_empty() {
+        for line in equations {
             writeln!(text, "    {line}")?;
         }
     }

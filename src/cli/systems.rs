@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use comfy_table::{Table, presets};
 
-use crate::sweep_file::{Diagnostic, Report};
+use crate::sweep_file::{Diagnostic, Report, starting_files};
 use crate::system::{Model, System, registry};
 
 /// The table of models.
@@ -80,6 +80,14 @@ fn write_model(text: &mut String, model: &Model) -> std::fmt::Result {
     for note in &model.notes {
         writeln!(text, "  - {note}")?;
     }
+    let mut files = starting_files().iter();
+    if let Some(file) = files.find(|file| file.is_of_model(&model.name)) {
+        let name = file.name;
+        writeln!(
+            text,
+            "\nA sweep to start from\n  pbif new mine.toml --like {name}"
+        )?;
+    }
     Ok(())
 }
 
@@ -108,9 +116,13 @@ fn write_facts(text: &mut String, model: &Model) -> std::fmt::Result {
         match system.bounds(index) {
             Some((low, high)) => writeln!(
                 text,
-                "  {}  from {low} to {high} at {}; a sweep takes it from its parameters",
+                "  {}  from {low} to {high} at {}; a sweep takes it from its parameters{}",
                 axis.name,
-                shown.join(", ")
+                shown.join(", "),
+                match axis.by_modes {
+                    true => ", and modes carry it unless `cells` cuts it",
+                    false => "",
+                }
             )?,
             None => writeln!(
                 text,
@@ -185,6 +197,15 @@ mod tests {
                 assert!(text.contains(&parameter.meaning));
             }
         }
+    }
+
+    #[test]
+    fn a_law_with_a_starting_file_says_so() {
+        let text = describe("lugre").unwrap();
+        for words in ["pbif new mine.toml --like lugre", "modes carry it"] {
+            assert!(text.contains(words), "{words} not in\n{text}");
+        }
+        assert!(!describe("coulomb").unwrap().contains("--like"));
     }
 
     #[test]
