@@ -8,7 +8,7 @@
 use std::sync::Arc;
 
 use pbif::generator::{GeneratorOptions, assemble, automatic_grading};
-use pbif::space::{Axis, CellSpace};
+use pbif::space::{Axis, CellSpace, Grading};
 use pbif::stationary::generator::{RateOptions, RateSolver};
 use pbif::system::{LANES, Lanes, System, VELOCITY, registry};
 use rand_distr::{Distribution, StandardNormal};
@@ -28,16 +28,10 @@ fn system(model: &str, own: &[(&str, f64)]) -> Arc<dyn System> {
     registry::find(model).unwrap().system_with(&values).unwrap()
 }
 
-/// Means of functions of the state in the steady state: cells on x and y, `modes` on every internal state.
-fn by_generator<const Q: usize>(
-    system: &dyn System,
-    cells: usize,
-    modes: usize,
-    look: impl Fn(&[f64]) -> [f64; Q],
-) -> [f64; Q] {
-    let ranges: Vec<(f64, f64)> = (0..system.dimension())
-        .map(|axis| system.bounds(axis).unwrap_or((-2.4, 2.4)))
-        .collect();
+/// Axes of a grid: `cells` on ±2.4 of x and y, y graded where friction switches, `modes` on every internal state.
+fn axes(system: &dyn System, cells: usize, modes: usize) -> Vec<Axis> {
+    let bounds = |index| system.bounds(index).unwrap_or((-2.4, 2.4));
+    let ranges: Vec<(f64, f64)> = (0..system.dimension()).map(bounds).collect();
     let axis = |index: usize| {
         let (from, to) = ranges[index];
         if system.bounds(index).is_some() {
@@ -48,7 +42,16 @@ fn by_generator<const Q: usize>(
             None => Axis::uniform(from, to, cells).unwrap(),
         }
     };
-    let space = CellSpace::new((0..ranges.len()).map(axis).collect()).unwrap();
+    (0..ranges.len()).map(axis).collect()
+}
+
+/// Means of functions of the state in the steady state on a grid.
+fn by_generator<const Q: usize>(
+    system: &dyn System,
+    axes: Vec<Axis>,
+    look: impl Fn(&[f64]) -> [f64; Q],
+) -> [f64; Q] {
+    let space = CellSpace::new(axes).unwrap();
     let generator = assemble(system, &space, &GeneratorOptions::default()).unwrap();
     let mut solver = RateSolver::new(space.clone(), RateOptions::default());
     let steady = solver
@@ -58,7 +61,7 @@ fn by_generator<const Q: usize>(
     let (mut sums, mut total) = ([0.0; Q], 0.0);
     for (cell, unknown) in steady.mass.iter().enumerate() {
         let node = |axis: usize| space.axes()[axis].nodes()[space.position(cell, axis)];
-        let state: Vec<f64> = (0..ranges.len()).map(node).collect();
+        let state: Vec<f64> = (0..space.axes().len()).map(node).collect();
         total += unknown;
         for (sum, value) in sums.iter_mut().zip(look(&state)) {
             *sum += unknown * value;
@@ -146,7 +149,7 @@ fn assert_agrees(system: &dyn System, cells: usize, modes: usize, of_grid: f64) 
             state[0] * last,
         ]
     };
-    let found = by_generator(system, cells, modes, look);
+    let found = by_generator(system, self::axes(system, cells, modes), look);
     let fed = 0.5 * system.additive_amplitude(0).unwrap().powi(2);
     let missed = (found[0] / fed + 1.0).abs();
     assert!(missed < of_grid, "power: {missed:e} of what noise feeds in");
@@ -195,4 +198,38 @@ fn bouc_wen_agrees_for_both_exponents() {
 fn bliman_sorine_agrees_on_four_axes() {
     let own = [("f_1", 0.12), ("f_2", 0.05), ("epsilon", 0.5), ("rho", 0.4)];
     assert_agrees(&*system("bliman_sorine", &own), 30, 4, 1e-2);
+}
+
+/// A stiff contact is Coulomb's. Where the body turns round, its friction turns only after a distance f_c/λ. Noise takes a
+/// time (f_c/(λσ))^(2/3) for that, in which the velocity moves by (σ² f_c/λ)^(1/3): the force is wrong in a layer that thin, and what
+/// that shifts of the mass is of the order of its square. So E[y²] goes to Coulomb's with the power 2/3 of 1/λ.
+#[test]
+fn a_stiff_dahl_contact_goes_to_coulombs_law_with_the_power_two_thirds() {
+    let shared = [("kappa", 0.1), ("f_c", 0.1), ("sigma2", 0.1)];
+    let y_squared = |system: Arc<dyn System>| {
+        let layer = Grading {
+            at: vec![0.0],
+            smallest: 6e-3,
+        };
+        let mut axes = vec![
+            Axis::uniform(-3.2, 3.2, 32).unwrap(),
+            Axis::graded(-3.2, 3.2, 72, &layer).unwrap(),
+        ];
+        if let Some((from, to)) = system.bounds(2) {
+            axes.push(Axis::modes(from, to, 6).unwrap());
+        }
+        by_generator(&*system, axes, |state| [state[1] * state[1]])[0]
+    };
+    let bound = |model, values: &[(&str, f64)]| {
+        let model = registry::find(model).unwrap();
+        model.system_with(values).unwrap()
+    };
+    let coulomb = y_squared(bound("coulomb", &shared));
+    let [stiff, stiffer] = [128.0, 512.0].map(|lambda| {
+        let values = [&shared[..], &[("lambda", lambda)]].concat();
+        y_squared(bound("dahl", &values)) - coulomb
+    });
+    let order = (stiff / stiffer).log(4.0);
+    assert!((order - 2.0 / 3.0).abs() < 0.04, "{order}");
+    assert!(stiffer > 0.0 && stiffer < 2.5e-3 * coulomb, "{stiffer:e}");
 }

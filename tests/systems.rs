@@ -19,7 +19,9 @@ fn run(arguments: &[&str]) -> (i32, String, String) {
 fn the_list_names_every_model() {
     let (code, list, errors) = run(&["systems"]);
     assert_eq!((code, errors.as_str()), (0, ""));
-    for name in ["coulomb", "dahl", "dahl_eq8", "rayleigh", "bistable"] {
+    for name in [
+        "coulomb", "dahl", "dahl_eq8", "stribeck", "lugre", "bouc_wen", "rayleigh", "bistable",
+    ] {
         assert!(list.contains(&format!("| {name} ")), "{list}");
     }
     assert!(!list.contains('\u{1b}'));
