@@ -24,7 +24,7 @@ y = "-kappa y - x (alpha + mu x^2) - f_c sign(y)"
 y = "sqrt(sigma2)"
 "#;
 
-const TWINS: [Twins; 5] = [
+const TWINS: [Twins; 10] = [
     Twins {
         name: "coulomb",
         typed: OSCILLATOR,
@@ -102,6 +102,162 @@ const TWINS: [Twins; 5] = [
             x = { from = -2.5, to = 2.5, count = 10 }
             y = { from = -2.5, to = 2.5, count = 10 }
             z = { from = -2, to = 2, count = 6 }
+        "#,
+    },
+    Twins {
+        name: "stribeck",
+        typed: r#"
+            [system.equations]
+            x = "y"
+            y = "-kappa y - x (alpha + mu x^2) - (f_c + (f_s - f_c)*exp(-((y - v_b)/v_s)^2))*sign(y - v_b)"
+            [system.noise]
+            y = "sqrt(sigma2)"
+        "#,
+        common: r#"
+            [system.parameters]
+            kappa = 0.2
+            mu = 1
+            sigma2 = 0.2
+            f_c = 0.1
+            f_s = 0.2
+            v_s = 0.5
+            v_b = 0.4
+            [sweep]
+            parameter = "alpha"
+            from = 0.5
+            to = 1
+            points = 2
+            [cells]
+            x = { from = -3, to = 3, count = 30 }
+            y = { from = -3, to = 3, count = 30, grade = "auto" }
+        "#,
+    },
+    Twins {
+        name: "stribeck_cubic",
+        typed: r#"
+            [system.equations]
+            x = "y"
+            y = "-kappa y - x (alpha + mu x^2) - f_s*sign(y - v_b) + 1.5*(f_s - f_m)*((y - v_b)/v_m)*(1 - ((y - v_b)/v_m)^2/3)"
+            [system.noise]
+            y = "sqrt(sigma2)"
+        "#,
+        common: r#"
+            [system.parameters]
+            kappa = 0.2
+            mu = 1
+            sigma2 = 0.2
+            f_s = 0.2
+            f_m = 0.1
+            v_m = 0.8
+            v_b = 0
+            [sweep]
+            parameter = "alpha"
+            from = 0.5
+            to = 1
+            points = 2
+            [cells]
+            x = { from = -3, to = 3, count = 30 }
+            y = { from = -3, to = 3, count = 30, grade = "auto" }
+        "#,
+    },
+    Twins {
+        name: "lugre",
+        typed: r#"
+            [system.equations]
+            x = "y"
+            y = "-kappa y - x (alpha + mu x^2) - lambda z - eta*(y - lambda/(f_c + (f_s - f_c)*exp(-(y/v_s)^2))*abs(y)*z)"
+            z = "y - lambda/(f_c + (f_s - f_c)*exp(-(y/v_s)^2))*abs(y)*z"
+            [system.noise]
+            y = "sqrt(sigma2)"
+            [system.bounds]
+            z = ["-f_s/lambda", "f_s/lambda"]
+        "#,
+        common: r#"
+            [system.parameters]
+            kappa = 0.2
+            mu = 1
+            sigma2 = 0.2
+            lambda = 0.5
+            eta = 0.1
+            f_c = 0.25
+            f_s = 0.5
+            v_s = 0.8
+            [sweep]
+            parameter = "alpha"
+            from = -0.5
+            to = 0.5
+            points = 2
+            [cells]
+            x = { from = -2.5, to = 2.5, count = 10 }
+            y = { from = -2.5, to = 2.5, count = 10 }
+            z = { count = 6 }
+        "#,
+    },
+    Twins {
+        name: "bouc_wen",
+        typed: r#"
+            [system.equations]
+            x = "y"
+            y = "-kappa y - x (alpha + mu x^2) - lambda z"
+            z = "A y - beta*abs(y)*z - gamma*y*abs(z)"
+            [system.noise]
+            y = "sqrt(sigma2)"
+            [system.bounds]
+            z = ["-A/(beta + gamma)", "A/(beta + gamma)"]
+        "#,
+        common: r#"
+            [system.parameters]
+            kappa = 0.2
+            mu = 1
+            sigma2 = 0.2
+            lambda = 0.3
+            A = 1
+            beta = 0.7
+            gamma = 0.3
+            [sweep]
+            parameter = "alpha"
+            from = -0.5
+            to = 0.5
+            points = 2
+            [cells]
+            x = { from = -2.5, to = 2.5, count = 10 }
+            y = { from = -2.5, to = 2.5, count = 10 }
+            z = { count = 6 }
+        "#,
+    },
+    Twins {
+        name: "bliman_sorine",
+        typed: r#"
+            [system.equations]
+            x = "y"
+            y = "-kappa y - x (alpha + mu x^2) - u + v"
+            u = "(f_1 y - abs(y)*u)/(rho epsilon)"
+            v = "(f_2 y - abs(y)*v)/epsilon"
+            [system.noise]
+            y = "sqrt(sigma2)"
+            [system.bounds]
+            u = ["-f_1", "f_1"]
+            v = ["-f_2", "f_2"]
+        "#,
+        common: r#"
+            [system.parameters]
+            kappa = 0.2
+            mu = 1
+            sigma2 = 0.2
+            f_1 = 0.4
+            f_2 = 0.2
+            epsilon = 1
+            rho = 0.5
+            [sweep]
+            parameter = "alpha"
+            from = -0.5
+            to = 0.5
+            points = 2
+            [cells]
+            x = { from = -2.5, to = 2.5, count = 8 }
+            y = { from = -2.5, to = 2.5, count = 8 }
+            u = { count = 4 }
+            v = { count = 4 }
         "#,
     },
     Twins {
