@@ -303,10 +303,10 @@ fn leaks(
 
 /// Share of a density's mass that may be negative where its shape is to be believed. What is negative must be positive elsewhere, so
 /// that wiggles of this size hold as much mass as a small peak does.
-const MOST_NEGATIVE: f64 = 0.02;
+pub(super) const MOST_NEGATIVE: f64 = 0.02;
 
 /// Negative mass of a density, as a share of the whole.
-fn negative_share(density: &Density) -> f64 {
+pub(super) fn negative_share(density: &Density) -> f64 {
     let masses = density.masses();
     let negative: f64 = masses.iter().map(|mass| (-mass).max(0.0)).sum();
     negative / masses.iter().sum::<f64>().abs().max(f64::MIN_POSITIVE)

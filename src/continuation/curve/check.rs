@@ -8,7 +8,7 @@ use super::walk::{Node, Walked};
 use super::{CurveOptions, CurvePoint, CurveStart, CurveWork, Plane};
 use crate::cancellation::Cancellation;
 use crate::continuation::grid::SHARE_OF_DISTANCE;
-use crate::continuation::locate::QUIET;
+use crate::continuation::locate::{MOST_NEGATIVE, QUIET, negative_share};
 use crate::continuation::{BifurcationStatus, DensitySource, ErrorParts, PointStatus};
 use crate::topology::{Detector, IndicatorKind, two_sided_limit};
 
@@ -176,11 +176,11 @@ impl Checks<'_> {
         let sides = self.plane.sides();
         let depends_on_cells = self.start.kind != IndicatorKind::KinkSlope;
         let unknown = check.grid.is_none() && depends_on_cells && reading.is_diffused;
+        let is_torn = depends_on_cells && negative_share(&reading.density) > MOST_NEGATIVE;
+        let is_unsound = reading.status != PointStatus::Solved || is_torn;
         let status = match check.status {
             Some(status) => status,
-            None if reading.status != PointStatus::Solved || error > self.options.tolerance => {
-                BifurcationStatus::Unresolved
-            }
+            None if is_unsound || error > self.options.tolerance => BifurcationStatus::Unresolved,
             None if unknown => BifurcationStatus::Unconfirmed,
             None => BifurcationStatus::Located,
         };
