@@ -184,8 +184,8 @@ fn strange_characters_are_named() {
     for (text, message) in [
         ("x\0", "unexpected character U+0000"),
         ("x + \u{1b}[31m", "unexpected character U+001B"),
-        ("x\u{202e}", "unexpected character `\u{202e}`"),
-        ("\u{feff}x", "unexpected character `\u{feff}`"),
+        ("x\u{202e}", "unexpected character U+202E"),
+        ("\u{feff}x", "unexpected character U+FEFF"),
         ("x；", "unexpected character `；`"),
     ] {
         let error = scope().formula(text).unwrap_err();
