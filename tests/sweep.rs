@@ -276,6 +276,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
         "sweep.points=3",
         "method.samples=160",
         "locate.largest_distance=0.99",
+        "locate.tolerance=2e-3",
     ];
     assert_same_on_one_thread_and_two(&overrides, &["densities.zarr/p_xy_error/c/1/0/0"]);
 }

@@ -1,7 +1,7 @@
-//! The journal of a run: every solve in full, on the disk before it is reported, from which an interrupted run goes on.
+//! The journal of a run: every solve in full, written before it is reported, from which an interrupted run goes on.
 //!
 //! One file, `journal.bin`, to which records are added at the end: length, checksum, content. A kill leaves at most the last record
-//! incomplete, which is then cut off. The first record says of which sweep the others are. It is written for the program that reads it, with
+//! incomplete, which is then cut off; a machine that loses its power may lose those of the last second. The first record says of which sweep the others are. It is written for the program that reads it, with
 //! every bit of a solution and of what its session remembers; tables and arrays are made from it again.
 
 mod record;
@@ -12,6 +12,7 @@ pub use source::JournalledSource;
 use std::fs::File;
 use std::io::{BufReader, Read as _, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use sha2::{Digest as _, Sha256};
 
@@ -38,7 +39,12 @@ pub struct Journal {
     file: File,
     /// What earlier processes have written, in this order.
     stored: Vec<Record>,
+    /// When the disk was last waited for.
+    waited: Instant,
 }
+
+/// Time between two waits for the disk: many fast solves share one.
+const BETWEEN_WAITS: Duration = Duration::from_secs(1);
 
 impl Journal {
     /// A new journal in a run's folder, of a resolved sweep file.
@@ -55,6 +61,7 @@ impl Journal {
             path,
             file,
             stored: Vec::new(),
+            waited: Instant::now(),
         };
         let mut first = Writer::new();
         first.text(env!("CARGO_PKG_VERSION")).text(resolved);
@@ -102,7 +109,12 @@ impl Journal {
         let whole = frames.whole;
         file.set_len(whole).map_err(unreadable)?;
         file.seek(SeekFrom::Start(whole)).map_err(unreadable)?;
-        Ok(Self { path, file, stored })
+        Ok(Self {
+            path,
+            file,
+            stored,
+            waited: Instant::now(),
+        })
     }
 
     /// Solves that are stored.
@@ -110,14 +122,20 @@ impl Journal {
         self.stored.len()
     }
 
-    /// Adds a record and waits until it is on the disk.
+    /// Adds a record; once a second it waits until all are on the disk.
     fn append(&mut self, content: &[u8]) -> Result<(), RunError> {
         let mut frame = Vec::with_capacity(content.len() + 2 * WORD);
         frame.extend((content.len() as u64).to_le_bytes());
         frame.extend(checksum(content));
         frame.extend(content);
         self.write(&frame)?;
-        self.file.sync_data().map_err(|source| self.failed(source))
+        if self.waited.elapsed() >= BETWEEN_WAITS {
+            self.file
+                .sync_data()
+                .map_err(|source| self.failed(source))?;
+            self.waited = Instant::now();
+        }
+        Ok(())
     }
 
     fn write(&mut self, bytes: &[u8]) -> Result<(), RunError> {
