@@ -221,6 +221,13 @@ fn what_cannot_be_explored_is_refused() {
         stderr.contains("`nothing` is not the folder of a run"),
         "{stderr}"
     );
+    // What is named like a sweep file is meant as one.
+    let (_, stderr, code) = pbif(&["explore", "nothing.toml"], folder.path());
+    assert_eq!(code, Some(2));
+    assert!(
+        stderr.contains("nothing.toml") && !stderr.contains("folder of a run"),
+        "{stderr}"
+    );
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 

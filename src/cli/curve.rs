@@ -50,7 +50,7 @@ fn swept(
     arguments: &CurveArguments,
     cancellation: &Cancellation,
 ) -> Result<Option<(Sweep, SweepResult)>, CommandError> {
-    if !arguments.target.is_file() {
+    if !super::is_sweep_file(&arguments.target) {
         let overrides = &arguments.overrides;
         let stored = Stored::read(&arguments.target, overrides, &SECTIONS, arguments.quiet)?;
         return Ok(Some((stored.spec, stored.result)));

@@ -16,7 +16,7 @@ use crate::sweep_file::Diagnostic;
 /// # Errors
 /// [`CommandError`] when the run or the sweep file cannot be read, or the page not be written or served.
 pub(super) fn run(arguments: &ExploreArguments) -> Result<Outcome, CommandError> {
-    if arguments.target.is_file() {
+    if super::is_sweep_file(&arguments.target) {
         return serve(arguments);
     }
     if arguments.port.is_some() {

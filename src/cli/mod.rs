@@ -166,6 +166,12 @@ fn dispatch(command: &Command) -> Result<Outcome, CommandError> {
     }
 }
 
+/// Whether a sweep file is meant where a run or a sweep file may be given, be it there or not.
+fn is_sweep_file(target: &Path) -> bool {
+    let is_named_so = || target.extension().is_some_and(|ending| ending == "toml");
+    target.is_file() || !target.exists() && is_named_so()
+}
+
 /// Reads and checks a sweep file; says on stderr what a user should know, unless it is to be quiet.
 fn load(input: &args::SweepInput, quiet: bool) -> Result<Settings, Report> {
     let mut file = SweepFile::read(&input.file)?;
