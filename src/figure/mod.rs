@@ -3,12 +3,11 @@
 //! Drawing gives [`Figure`]s as values, all or one by name; writing them to files is another step:
 //!
 //! ```no_run
-//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! # let result: pbif::continuation::SweepResult = unimplemented!();
+//! # fn draw(result: &pbif::continuation::SweepResult) -> Result<(), Box<dyn std::error::Error>> {
 //! use pbif::figure::{FigureStyle, FigureWidth, Figures, Format, write_figures};
 //!
 //! let column = FigureStyle { width: FigureWidth::Single, ..FigureStyle::default() };
-//! let figures = Figures::of_sweep(&result, "Coulomb friction", &[-0.02, 0.01]).with_style(&column);
+//! let figures = Figures::of_sweep(result, "Coulomb friction", &[-0.02, 0.01]).with_style(&column);
 //! if let Some(diagram) = figures.draw("diagram_x")? {
 //!     println!("{}", diagram.svg());
 //! }

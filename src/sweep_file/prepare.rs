@@ -7,7 +7,7 @@ use super::diagnostic::Diagnostic;
 use super::memory::{bytes_in_words, machine_memory};
 use super::names::list;
 use super::report::Report;
-use super::settings::{Grade, Modes, Settings, at_cells, cell_space};
+use super::settings::{Modes, Settings, at_cells, cell_space};
 use super::sweep::Sweep;
 use crate::cancellation::Cancellation;
 use crate::method::{
@@ -24,8 +24,13 @@ impl Settings {
     /// A report where it does not fit, where no range holds the density, or when cancelled.
     pub fn prepare(mut self, cancellation: &Cancellation) -> Result<Sweep, Report> {
         self.check_memory()?;
-        self.find_cells(cancellation)?;
+        let ends = self.find_open_ranges(cancellation)?;
+        // Formulas that are not finite there would leave coarse grids without a density.
         self.check_equations()?;
+        self.find_counts(&ends, cancellation)?;
+        self.find_gradings(&ends);
+        // Now of the cells that were found.
+        self.check_memory()?;
         self.find_modes(cancellation)?;
         self.find_bins(cancellation)?;
         let sweep = self.fixed()?;
@@ -77,29 +82,20 @@ impl Settings {
         self.refuse(at_cells(&self.document, diagnostic))
     }
 
-    /// Replaces what is left to the program by numbers.
-    fn find_cells(&mut self, cancellation: &Cancellation) -> Result<(), Report> {
-        let kind = self.method.kind;
-        let open = |axis: &super::AxisSettings| {
-            let by_cells = axis.modes_by(kind).is_none();
-            axis.range.is_none() || by_cells && (axis.count.is_none() || axis.grade == Grade::Auto)
-        };
-        if !self.axes.iter().any(open) {
-            return Ok(());
-        }
+    /// Replaces ranges that are left to the program by numbers; the systems at both ends of the sweep.
+    fn find_open_ranges(
+        &mut self,
+        cancellation: &Cancellation,
+    ) -> Result<Vec<Arc<dyn System>>, Report> {
         let (from, to) = self.family.ends();
         let ends: Result<Vec<Arc<dyn System>>, _> =
             [from, to].iter().map(|&end| self.family.at(end)).collect();
         let ends = ends.map_err(|error| self.refuse(Diagnostic::new(error.to_string())))?;
         let ranges = self.find_ranges(&ends, cancellation)?;
-        for (index, axis) in self.axes.iter_mut().enumerate() {
-            axis.range = Some(ranges[index]);
+        for (axis, range) in self.axes.iter_mut().zip(ranges) {
+            axis.range = Some(range);
         }
-        // Formulas that are not finite there would leave the coarse grids without a density.
-        self.check_equations()?;
-        self.find_counts(&ends, cancellation)?;
-        self.find_gradings(&ends);
-        Ok(())
+        Ok(ends)
     }
 
     fn find_ranges(

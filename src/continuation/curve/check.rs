@@ -113,14 +113,13 @@ impl Checks<'_> {
         selected: &[usize],
         work: &mut CurveWork,
     ) -> Vec<Option<Shown>> {
-        let mut reader = Reader {
-            session: source.open(self.cancellation),
-            plane: self.plane,
-            detector: self.detector,
-            observable: self.start.observable,
-            kind: self.start.kind,
-            work: CurveWork::default(),
-        };
+        let mut reader = Reader::new(
+            source,
+            self.plane,
+            self.detector,
+            self.start,
+            self.cancellation,
+        );
         let mut shown = vec![None; selected.len()];
         // In the order in which the path was walked, neighbours follow each other.
         let mut order: Vec<usize> = (0..selected.len()).collect();

@@ -3,8 +3,9 @@
 //! Where the solved point knows how its densities answer to parameters, the indicator's derivative is the indicator of the density moved a
 //! little along dp/dθ: exact to the digits of dp/dθ. Elsewhere two more solves beside the place give it by differences.
 
-use super::{CurveWork, Plane};
-use crate::continuation::{PointStatus, Session, SourceError};
+use super::{CurveStart, CurveWork, Plane};
+use crate::cancellation::Cancellation;
+use crate::continuation::{DensitySource, PointStatus, Session, SourceError};
 use crate::density::{Density, EstimatedDensity};
 use crate::topology::{Detector, Indicator, IndicatorKind};
 
@@ -80,6 +81,26 @@ pub(super) struct Reader<'a> {
     pub(super) observable: usize,
     pub(super) kind: IndicatorKind,
     pub(super) work: CurveWork,
+}
+
+impl<'a> Reader<'a> {
+    /// In a new session of a source, for the indicator that a curve starts from.
+    pub(super) fn new(
+        source: &dyn DensitySource,
+        plane: &'a Plane,
+        detector: &'a dyn Detector,
+        start: &CurveStart,
+        cancellation: &Cancellation,
+    ) -> Self {
+        Self {
+            session: source.open(cancellation),
+            plane,
+            detector,
+            observable: start.observable,
+            kind: start.kind,
+            work: CurveWork::default(),
+        }
+    }
 }
 
 impl Reader<'_> {

@@ -61,14 +61,13 @@ pub(super) struct Follower<'a> {
 
 impl<'a> Follower<'a> {
     fn reader(&self) -> Reader<'a> {
-        Reader {
-            session: self.source.open(self.cancellation),
-            plane: self.plane,
-            detector: self.detector,
-            observable: self.start.observable,
-            kind: self.start.kind,
-            work: CurveWork::default(),
-        }
+        Reader::new(
+            self.source,
+            self.plane,
+            self.detector,
+            self.start,
+            self.cancellation,
+        )
     }
 
     /// Both directions from the start.
