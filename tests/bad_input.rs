@@ -189,7 +189,11 @@ fn wrong_kinds_and_ranges() {
     #[rustfmt::skip]
     let cases = [
         ("points = 3", "points = 3.5", "an integer from 2 to"),
-        ("points = 3", "points = \"3\"", "this is a string"),
+        ("points = 3", "points = \"3\"", "write the number without quotes: `3`"),
+        ("points = 3", "points = \"three\"", "this is a string"),
+        ("kappa = 0.01", "kappa = \"1e-2\"", "write the number without quotes: `1e-2`"),
+        ("x = { from = -5, to = 5, count = 10 }", "x = { from = -5, to = 5, modes = \"8\" }", "write the number without quotes: `8`"),
+        ("[cells]", "[figures.style]\nwidth = \"90\"\n[cells]", "write the number without quotes: `90`"),
         ("points = 3", "points = 1", "`sweep.points` cannot be `1`"),
         ("kappa = 0.01", "kappa = nan", "a finite number"),
         ("kappa = 0.01", "kappa = inf", "a finite number"),

@@ -130,3 +130,21 @@ pub enum GeneratorError {
         reason: String,
     },
 }
+
+impl GeneratorError {
+    /// The same words with the names of the axes, in their order, in place of their numbers.
+    pub fn with_names(&self, names: &[&str]) -> String {
+        let words = self.to_string();
+        let (Self::NoiseAxis { axis, .. }
+        | Self::NotFinite { axis, .. }
+        | Self::Overflow { axis }
+        | Self::Modes { axis }) = self
+        else {
+            return words;
+        };
+        match names.get(*axis) {
+            Some(name) => words.replacen(&format!("axis {axis}"), &format!("axis `{name}`"), 1),
+            None => words,
+        }
+    }
+}

@@ -70,8 +70,14 @@ pub enum MethodError {
     #[error(transparent)]
     MonteCarlo(MonteCarloError),
     /// The generator could not be assembled.
-    #[error(transparent)]
-    Generator(#[from] crate::generator::GeneratorError),
+    #[error("{words}")]
+    Generator {
+        /// Why.
+        #[source]
+        error: crate::generator::GeneratorError,
+        /// The same with the names of the axes.
+        words: String,
+    },
     /// The generator cannot be solved.
     #[error(transparent)]
     Rates(RateError),

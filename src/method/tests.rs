@@ -4,11 +4,13 @@ use std::sync::Arc;
 
 use super::*;
 use crate::cancellation::Cancellation;
+use crate::continuation::DensitySource as _;
 use crate::density::Observable;
 use crate::generator::{GeneratorError, GeneratorOptions, assemble};
 use crate::monte_carlo::{EnsembleRun, ErgodicRun, MonteCarloError, ensemble, ergodic};
 use crate::sampling::{Integrator, SamplingError, SamplingOptions, sample_transitions};
 use crate::space::{Axis, CellSpace};
+use crate::system::examples::coulomb;
 use crate::system::{
     AxisDescription, Family, Lanes, Model, ParameterDescription, Path, PeriodicDrift, System,
 };
@@ -119,4 +121,15 @@ fn nor_does_what_the_methods_are_made_of() {
     };
     let counted = ensemble(&system, &space, &run, &Cancellation::new());
     assert_eq!(counted.err(), Some(MonteCarloError::Periodic(PERIODIC)));
+}
+
+#[test]
+fn an_axis_that_cannot_be_assembled_is_named() {
+    let axes = [1e155, 1e-155].map(|end| Axis::uniform(-end, end, 10).unwrap());
+    let space = CellSpace::new(axes.to_vec()).unwrap();
+    let problem = Problem::new(coulomb(), space, vec![Observable::Marginal(0)]).unwrap();
+    let source = GeneratorSource::new(&problem, &GeneratorMethodOptions::default()).unwrap();
+    let mut session = source.open(&Cancellation::new());
+    let refused = session.solve(0.0).unwrap_err().to_string();
+    assert!(refused.contains("along axis `y`"), "{refused}");
 }

@@ -216,6 +216,11 @@ fn value_of(key: &Key, path: &[&str], node: &Node) -> Result<Plain, Box<Diagnost
     let diagnostic = Diagnostic::new(title)
         .at(&blamed.place, format!("this is {}", blamed.value.kind()))
         .allowed(key.allowed());
+    if let Some(number) = quoted_number(kind, blamed) {
+        return Err(Box::new(diagnostic.remedy(format!(
+            "write the number without quotes: `{number}`"
+        ))));
+    }
     Err(Box::new(match (kind, &blamed.value, meant(kind, blamed)) {
         (_, _, Some(words)) => diagnostic.remedy(format!("did you mean `{words}`?")),
         (Kind::Printable, Value::Text(_), _) => diagnostic.remedy(
@@ -223,6 +228,19 @@ fn value_of(key: &Key, path: &[&str], node: &Node) -> Result<Plain, Box<Diagnost
         ),
         _ => diagnostic,
     }))
+}
+
+/// A number between quotation marks that the key would take without them.
+fn quoted_number(kind: Kind, node: &Node) -> Option<&str> {
+    let Value::Text(text) = &node.value else {
+        return None;
+    };
+    let text = text.trim();
+    let integer = text.parse().map(Plain::Integer);
+    let number = || text.parse().map(Plain::Number);
+    let plain = integer.or_else(|_| number()).ok()?;
+    let is_finite = plain.number().is_some_and(f64::is_finite);
+    (is_finite && kind.holds(&plain)).then_some(text)
 }
 
 /// What was perhaps meant by a value that is not of a kind.

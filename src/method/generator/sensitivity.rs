@@ -54,7 +54,8 @@ impl GeneratorSensitivity<'_> {
         let options = GeneratorOptions {
             scheme: self.source.options.scheme,
         };
-        let derivative = assemble_derivative(system_at, value, problem.space(), &options)?;
+        let derivative = assemble_derivative(system_at, value, problem.space(), &options)
+            .map_err(|error| self.source.refused(error))?;
         let (matrix, unknowns) = (&derivative.matrix, self.unknowns.as_slice());
         let change = self
             .solver

@@ -6,7 +6,7 @@ use super::GeneratorMethodOptions;
 use super::session::GeneratorSession;
 use crate::cancellation::Cancellation;
 use crate::continuation::{DensitySource, Session, SourceError, Subject};
-use crate::generator::{AdvectiveScheme, Generator, GeneratorOptions, assemble};
+use crate::generator::{AdvectiveScheme, Generator, GeneratorError, GeneratorOptions, assemble};
 use crate::method::structure::{closed_ends, kinked_surfaces};
 use crate::method::watched::{Maps, Masses};
 use crate::method::{MethodError, Problem, autonomous};
@@ -85,7 +85,17 @@ impl GeneratorSource {
         scheme: AdvectiveScheme,
     ) -> Result<Generator, MethodError> {
         let options = GeneratorOptions { scheme };
-        Ok(assemble(system, self.problem.space(), &options)?)
+        assemble(system, self.problem.space(), &options).map_err(|error| self.refused(error))
+    }
+
+    /// What could not be assembled, with the names of the axes.
+    pub(super) fn refused(&self, error: GeneratorError) -> MethodError {
+        let family = self.problem.family();
+        let names: Vec<&str> = (0..self.problem.space().axes().len())
+            .map(|axis| family.axis(axis))
+            .collect();
+        let words = error.with_names(&names);
+        MethodError::Generator { error, words }
     }
 
     /// A solver without a factorisation yet.

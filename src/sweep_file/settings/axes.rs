@@ -147,12 +147,60 @@ fn read_axis(
         check_modes(reader, name, family?, index, settings.range)?;
     }
     match build_axis(reader.document(), name, &settings, method) {
-        Ok(_) => Some(settings),
+        Ok(_) => {
+            warn_of_few_cells(reader, name, &settings, method);
+            warn_of_idle_grade(reader, name, &settings, method);
+            Some(settings)
+        }
         Err(diagnostic) => {
             reader.report(*diagnostic);
             None
         }
     }
+}
+
+/// Cells an axis below which a density along it has no shape: a peak is a cell that is higher than both of its neighbours.
+const FEW_CELLS: usize = 4;
+
+/// Says so where an axis has too few cells for any shape.
+fn warn_of_few_cells(
+    reader: &mut Reader<'_>,
+    name: &str,
+    settings: &AxisSettings,
+    method: MethodKind,
+) {
+    let count = settings.count.filter(|&count| count < FEW_CELLS);
+    let (Some(count), None) = (count, settings.modes_by(method)) else {
+        return;
+    };
+    let title = format!("{count} cells along `{name}` show no shape of a density");
+    let found = Diagnostic::warning(title).remedy(format!(
+        "give `cells.{name}.count` some tens, or leave it out: it is then found"
+    ));
+    let place = reader.place(&["cells", name, "count"]);
+    reader.warn(match place {
+        Some(place) => found.at(place, "as many cells"),
+        None => found,
+    });
+}
+
+/// Says so where a grading is given to an axis that no method of this file cuts into cells.
+fn warn_of_idle_grade(
+    reader: &mut Reader<'_>,
+    name: &str,
+    settings: &AxisSettings,
+    method: MethodKind,
+) {
+    let is_idle = settings.modes_by(method).is_some() && settings.count.is_none();
+    let (true, Some(place)) = (is_idle, reader.place(&["cells", name, "grade"])) else {
+        return;
+    };
+    let found = Diagnostic::warning(format!("the grading of `{name}` has no effect"))
+        .at(place, "modes carry this axis in place of cells")
+        .remedy(format!(
+            "leave it out, or give `cells.{name}.count` to have cells instead of modes"
+        ));
+    reader.warn(found);
 }
 
 /// Reports modes on an axis that cannot have them: it has noise, or its range is not that of a bounded state.

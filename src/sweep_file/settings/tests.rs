@@ -57,6 +57,30 @@ fn defaults_are_those_of_the_options() {
 }
 
 #[test]
+fn few_cells_and_idle_gradings_are_told() {
+    let said = |overrides: &[&str]| {
+        let settings = SweepFile::parse("dahl.toml", DAHL)
+            .set_all(
+                "--set",
+                &overrides.iter().map(|s| s.to_string()).collect::<Vec<_>>(),
+            )
+            .validate();
+        settings.unwrap().warnings.to_string()
+    };
+    for (count, few) in [(2, true), (3, true), (4, false)] {
+        let words = said(&[&format!("cells.x.count={count}")]);
+        let expected = format!("warning: {count} cells along `x` show no shape");
+        assert_eq!(words.contains(&expected), few, "{words}");
+    }
+    let idle = "warning: the grading of `z` has no effect";
+    assert!(said(&["cells.z={ modes = 4, grade = \"auto\" }"]).contains(idle));
+    assert!(said(&["cells.z={ grade = \"auto\" }"]).contains(idle));
+    // Other methods use count and grading, and modes then do nothing.
+    assert!(!said(&["cells.z={ modes = 4, count = 16, grade = \"auto\" }"]).contains(idle));
+    assert!(!said(&["cells.z={ count = 3, modes = 4 }"]).contains("show no shape"));
+}
+
+#[test]
 fn the_resolved_file_gives_the_same_sweep() {
     let sets: [&[&str]; 3] = [
         &[],
