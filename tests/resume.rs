@@ -178,6 +178,41 @@ fn killed_runs_end_with_the_bytes_of_one_that_was_not() {
 }
 
 #[test]
+fn runs_that_are_stopped_in_their_checks_do_not_repeat_them() {
+    // Many rows, so that there are checks on finer cells and between closed ends to be stopped in.
+    let sweep = SWEEPS[1];
+    let folder = TempDir::new().unwrap();
+    let (whole, out) = folders(&folder);
+    run(sweep, &whole, &["--quiet"]);
+    let points = manifest(&whole)["points"].as_u64().unwrap();
+    // After the last point come the checks: their records make the journal grow.
+    let mut child = command(sweep, &out, &["--quiet"])
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    let size = || std::fs::metadata(out.join("journal.bin")).map_or(0, |data| data.len());
+    let all = |out: &Path| {
+        std::fs::read(out.join("run.json"))
+            .ok()
+            .and_then(|bytes| serde_json::from_slice::<serde_json::Value>(&bytes).ok())
+            .is_some_and(|manifest| manifest["points"].as_u64() == Some(points))
+    };
+    while !all(&out) && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    let before = size();
+    while size() == before && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(std::time::Duration::from_micros(200));
+    }
+    assert!(child.try_wait().unwrap().is_none(), "nothing to kill");
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert_eq!(manifest(&out)["ending"], "running");
+    run(sweep, &out, &["--resume", "--quiet"]);
+    assert_same(&out, &whole, "killed in its checks");
+}
+
+#[test]
 fn a_complete_run_is_not_run_again_and_another_sweep_is_refused() {
     let folder = TempDir::new().unwrap();
     let (_, out) = folders(&folder);

@@ -16,6 +16,12 @@ impl Writer {
         Self::default()
     }
 
+    /// Nothing yet, in the memory of bytes that are no longer needed.
+    pub fn after(mut bytes: Vec<u8>) -> Self {
+        bytes.clear();
+        Self(bytes)
+    }
+
     /// A whole number.
     pub fn count(&mut self, count: usize) -> &mut Self {
         self.0.extend((count as u64).to_le_bytes());

@@ -1,11 +1,15 @@
 //! The command line: commands and their arguments.
 
+mod runs;
+
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+use crate::continuation::Shard;
 use crate::continuation::curve::CurveOptions;
 use crate::sweep_file;
+pub(crate) use runs::MergeArguments;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -15,6 +19,7 @@ Examples:
   pbif check sweeps/coulomb_fc.toml  what would be run, and what it costs
   pbif sweep sweeps/coulomb_fc.toml  run it; results go to output/coulomb_fc/
   pbif sweep sweeps/coulomb_fc.toml --resume   go on with it after an interrupt, a kill or a full disk
+  pbif sweep sweeps/coulomb_fc.toml --shard 1/4   one of four shards, on a machine of its own; `pbif merge output/coulomb_fc` joins them
   pbif sweep sweeps/coulomb_fc.toml --set sweep.points=11 --set cells.x.count=30 --out trial
   pbif compare sweeps/coulomb_fc.toml                          the methods side by side
   pbif curve output/coulomb_fc --row PB1 --second sigma2 --from 0.005 --to 0.02   PB1 in a plane of two parameters
@@ -166,6 +171,13 @@ pub(super) enum Command {
         #[command(flatten)]
         run: ExploreArguments,
     },
+    /// Put the shards of a sweep together: detect, locate and draw over the whole
+    #[command(after_help = runs::MERGE_EXAMPLES)]
+    Merge {
+        /// What to put together.
+        #[command(flatten)]
+        run: MergeArguments,
+    },
     /// Check that every file of a run is as the run left it
     #[command(
         after_help = "Examples:\n  pbif verify output/coulomb_fc\n\nExit status: 0 every file is; 1 one is not, or the run has no checksums yet."
@@ -204,6 +216,17 @@ impl SweepInput {
     }
 }
 
+/// How a command works that computes.
+#[derive(Debug, Args)]
+pub(crate) struct Work {
+    /// Threads to use, all if left out; results do not depend on it, only times do
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub(crate) threads: Option<usize>,
+    /// No progress and no warnings on stderr, results alone
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
 /// How a sweep is run.
 #[derive(Debug, Args)]
 pub(crate) struct SweepArguments {
@@ -213,12 +236,12 @@ pub(crate) struct SweepArguments {
     /// Go on with the run in the folder that was interrupted or killed; a complete one is not run again
     #[arg(long)]
     pub(crate) resume: bool,
-    /// Threads to use, all if left out; results do not depend on it
-    #[arg(long, value_name = "N", value_parser = threads)]
-    pub(crate) threads: Option<usize>,
-    /// No progress and no warnings on stderr, results alone
-    #[arg(long)]
-    pub(crate) quiet: bool,
+    /// Run the K-th of N shards of the sweep alone, in shards/K-of-N of the folder; `pbif merge` puts them together
+    #[arg(long, value_name = "K/N", value_parser = runs::shard)]
+    pub(crate) shard: Option<Shard>,
+    /// How to work.
+    #[command(flatten)]
+    pub(crate) work: Work,
 }
 
 /// How a comparison is run.
@@ -227,12 +250,9 @@ pub(crate) struct CompareArguments {
     /// Folder for the results [default: output/NAME-compare, after the sweep file]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Threads to use, all if left out; only times depend on it
-    #[arg(long, value_name = "N", value_parser = threads)]
-    pub(crate) threads: Option<usize>,
-    /// No progress and no warnings on stderr, results alone
-    #[arg(long)]
-    pub(crate) quiet: bool,
+    /// How to work.
+    #[command(flatten)]
+    pub(crate) work: Work,
 }
 
 /// A stored run that is detected again.
@@ -286,12 +306,9 @@ pub(crate) struct CurveArguments {
     /// Folder for the results [default: RUN/curves/ROW-SECOND]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Threads to use, all if left out; results do not depend on it
-    #[arg(long, value_name = "N", value_parser = threads)]
-    pub(crate) threads: Option<usize>,
-    /// No progress and no warnings on stderr, results alone
-    #[arg(long)]
-    pub(crate) quiet: bool,
+    /// How to work.
+    #[command(flatten)]
+    pub(crate) work: Work,
 }
 
 /// A stored run that is checked.

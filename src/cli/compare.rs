@@ -31,8 +31,8 @@ pub(super) fn run(
     let default = || Path::new("output").join(format!("{name}-compare"));
     let path = arguments.out.clone().unwrap_or_else(default);
     let output = OutputFolder::prepare(&path)?;
-    let (threads, cancellation) = super::interruptible(arguments.threads)?;
-    let quiet = arguments.quiet;
+    let (threads, cancellation) = super::interruptible(arguments.work.threads)?;
+    let quiet = arguments.work.quiet;
     threads.install(|| carry_out(spec, output.path(), quiet, &cancellation))
 }
 

@@ -26,7 +26,7 @@ const SECTIONS: [&str; 3] = ["detect", "locate", "figures"];
 /// # Errors
 /// [`CommandError`] when the run or the sweep file cannot be read, the row has no curve, or the results cannot be written.
 pub(super) fn run(arguments: &CurveArguments) -> Result<Outcome, CommandError> {
-    let (threads, cancellation) = super::interruptible(arguments.threads)?;
+    let (threads, cancellation) = super::interruptible(arguments.work.threads)?;
     threads.install(|| {
         let Some((spec, result)) = swept(arguments, &cancellation)? else {
             super::print("interrupted: nothing was written\n")?;
@@ -52,16 +52,21 @@ fn swept(
 ) -> Result<Option<(Sweep, SweepResult)>, CommandError> {
     if !super::is_sweep_file(&arguments.target) {
         let overrides = &arguments.overrides;
-        let stored = Stored::read(&arguments.target, overrides, &SECTIONS, arguments.quiet)?;
+        let stored = Stored::read(
+            &arguments.target,
+            overrides,
+            &SECTIONS,
+            arguments.work.quiet,
+        )?;
         return Ok(Some((stored.spec, stored.result)));
     }
     let input = SweepInput {
         file: arguments.target.clone(),
         overrides: arguments.overrides.clone(),
     };
-    let spec = super::load(&input, arguments.quiet)?.prepare(cancellation)?;
+    let spec = super::load(&input, arguments.work.quiet)?.prepare(cancellation)?;
     tell(
-        arguments.quiet,
+        arguments.work.quiet,
         "sweeping; the run of a `pbif sweep` is read instead of solved\n",
     );
     match spec.run(cancellation, &mut ()) {
@@ -187,7 +192,7 @@ impl<'a> Job<'a> {
             .each_ref()
             .map(|side| side.parameter.as_str());
         let mut met = 0;
-        let quiet = self.arguments.quiet;
+        let quiet = self.arguments.work.quiet;
         let mut observer = |values: [f64; 2]| {
             met += 1;
             tell(

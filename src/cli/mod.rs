@@ -7,6 +7,7 @@ mod curve;
 mod detect;
 mod explore;
 mod interrupts;
+mod merge;
 mod new;
 mod output;
 mod plot;
@@ -142,8 +143,8 @@ pub fn run() -> ExitCode {
 fn dispatch(command: &Command) -> Result<Outcome, CommandError> {
     match command {
         Command::Sweep { input, run } => {
-            let spec = load(input, run.quiet)?.prepare(&Cancellation::new())?;
-            tell_chosen(&spec, run.quiet);
+            let spec = load(input, run.work.quiet)?.prepare(&Cancellation::new())?;
+            tell_chosen(&spec, run.work.quiet);
             sweep::run(&spec, &input.name(), run)
         }
         Command::Check { input } => {
@@ -151,14 +152,15 @@ fn dispatch(command: &Command) -> Result<Outcome, CommandError> {
             print(&check::text(&input.file, &spec)?)
         }
         Command::Compare { input, run } => {
-            let spec = load(input, run.quiet)?.prepare(&Cancellation::new())?;
-            tell_chosen(&spec, run.quiet);
+            let spec = load(input, run.work.quiet)?.prepare(&Cancellation::new())?;
+            tell_chosen(&spec, run.work.quiet);
             compare::run(&spec, &input.name(), run)
         }
         Command::Curve { run } => curve::run(run),
         Command::Detect { run } => detect::run(run),
         Command::Plot { run } => plot::run(run),
         Command::Explore { run } => explore::run(run),
+        Command::Merge { run } => merge::run(run),
         Command::Verify { run } => verify::run(run),
         Command::New { file, like } => print(&new::run(file.as_deref(), like.as_deref())?),
         Command::Systems { name: None } => print(&systems::list()),

@@ -89,6 +89,28 @@ pub(super) fn diagnostic(error: &RunError) -> Diagnostic {
         }
         RunError::OtherSweep { .. } => finding
             .remedy("give the settings of that run, or leave `--resume` out: it is then kept in the folder previous/"),
+        RunError::NoShards { path } => finding.remedy(format!(
+            "`pbif sweep FILE --shard 1/4 --out {}` makes the first of four",
+            path.display()
+        )),
+        RunError::MixedShards { .. } => {
+            finding.remedy("move the shards that are not meant out of that folder")
+        }
+        RunError::MissingShards { path, missing, .. } => {
+            let shards = missing.iter().map(|(shard, _)| shard.to_string());
+            let first = shards.take(1).collect::<String>();
+            finding.remedy(format!(
+                "`pbif sweep FILE --shard {first} --out {} --resume` computes it, and so each of them; `pbif merge --partial` takes what is there",
+                path.display()
+            ))
+        }
+        RunError::BeingMerged { path } => finding.remedy(format!(
+            "`pbif merge {}` goes on with it",
+            path.display()
+        )),
+        RunError::OtherShard { .. } => {
+            finding.remedy("move it out of the folder of the shards, and compute that shard again")
+        }
         RunError::NotStored { stored, .. } => finding
             .allowed(format!("observables of {}", list(stored)))
             .remedy("`pbif sweep FILE --set detect.marginals=…` or `detect.joint=…` solves and stores more"),

@@ -2,26 +2,31 @@
 
 pub(super) mod progress;
 mod recorder;
-mod resume;
+pub(super) mod resume;
+mod shards;
 pub(super) mod summary;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use super::args::SweepArguments;
 use super::output::OutputFolder;
 use super::{CommandError, Outcome, warnings};
 use crate::cancellation::Cancellation;
-use crate::continuation::{BifurcationStatus, SweepError, SweepResult, sweep};
+use crate::continuation::{BifurcationStatus, Shard, SweepError, SweepResult, sweep_shard};
 use crate::figure::{Figures, write_figures};
 use crate::method::MethodError;
-use crate::run::{Ending, Journal, JournalledSource, Manifest, RunError, RunFolder};
+use crate::run::{
+    Ending, Gathered, Journal, JournalledSource, Manifest, RunError, RunFolder, shard_folder,
+};
 use crate::sweep_file::Sweep;
 use progress::Progress;
 use recorder::Recorder;
 use resume::Begin;
 
-/// Runs a sweep, or goes on with it, and prints what it found.
+/// Runs a sweep or a shard of it, or goes on with it, and prints what it found.
 ///
 /// # Errors
 /// [`CommandError`] when the results cannot be written or the threads not be made; failed points are data.
@@ -30,25 +35,36 @@ pub(super) fn run(
     name: &str,
     arguments: &SweepArguments,
 ) -> Result<Outcome, CommandError> {
-    let output = OutputFolder::prepare(&output_path(name, arguments.out.as_deref()))?;
+    let home = output_path(name, arguments.out.as_deref());
+    let shard = arguments.shard;
+    let path = match shard {
+        Some(shard) => {
+            shards::check(spec, shard)?;
+            shard_folder(&home, shard)
+        }
+        None => home.clone(),
+    };
+    let output = OutputFolder::prepare(&path)?;
     let begin = match arguments.resume {
-        true => resume::begin(spec, output.path())?,
+        true => resume::begin(spec, output.path(), shard)?,
         false => Begin::Anew,
     };
+    let kind = match shard {
+        Some(shard) => Kind::Shard(shard, home),
+        None => Kind::Whole,
+    };
     if let Begin::Done(stored) = begin {
-        return resume::show(&stored, output.path());
+        return resume::show(&stored, output.path(), &kind);
     }
-    let (threads, cancellation) = super::interruptible(arguments.threads)?;
-    let path = output.path().to_owned();
-    let quiet = arguments.quiet;
-    let prepared = threads.install(|| Run::new(spec, &path, quiet, begin, cancellation));
-    match prepared {
-        Err(CommandError::Method(MethodError::Cancelled(_))) => {
-            super::print("interrupted: nothing was written\n")?;
-            Ok(Outcome::Interrupted)
-        }
-        prepared => threads.install(|| prepared?.carry_out()),
-    }
+    let quiet = arguments.work.quiet;
+    let path = output.path();
+    let task = Task {
+        spec,
+        path,
+        kind,
+        quiet,
+    };
+    task.carry_out(begin, arguments.work.threads)
 }
 
 /// The folder the results go to: as asked for, or `output/` and the name of the sweep file.
@@ -56,9 +72,53 @@ fn output_path(name: &str, out: Option<&Path>) -> PathBuf {
     out.map_or_else(|| Path::new("output").join(name), Path::to_owned)
 }
 
+/// What is run of a sweep.
+pub(super) enum Kind {
+    /// All of it.
+    Whole,
+    /// A shard of that in a folder.
+    Shard(Shard, PathBuf),
+    /// What so many shards have left open.
+    Merged(usize, Gathered),
+}
+
+/// A sweep that is to be run.
+pub(super) struct Task<'a> {
+    pub(super) spec: &'a Sweep,
+    /// The folder of the run, which is there.
+    pub(super) path: &'a Path,
+    pub(super) kind: Kind,
+    pub(super) quiet: bool,
+}
+
+impl Task<'_> {
+    /// Runs it on so many threads (`None`: one a core).
+    ///
+    /// # Errors
+    /// As [`run`].
+    pub(super) fn carry_out(
+        self,
+        begin: Begin,
+        threads: Option<usize>,
+    ) -> Result<Outcome, CommandError> {
+        let (threads, cancellation) = super::interruptible(threads)?;
+        match threads.install(|| Run::new(self, &begin, cancellation)) {
+            Err(CommandError::Method(MethodError::Cancelled(_))) => {
+                super::print("interrupted: nothing was written\n")?;
+                Ok(Outcome::Interrupted)
+            }
+            prepared => threads.install(|| prepared?.carry_out()),
+        }
+    }
+}
+
 struct Run<'a> {
     spec: &'a Sweep,
+    /// `None` of a whole sweep.
+    shard: Option<(Shard, PathBuf)>,
     source: JournalledSource,
+    /// How many values were solved that no shard has; `None` where none were put together.
+    solves: Option<Arc<AtomicUsize>>,
     folder: RunFolder,
     manifest: Manifest,
     progress: Progress,
@@ -68,19 +128,30 @@ struct Run<'a> {
 
 impl<'a> Run<'a> {
     fn new(
-        spec: &'a Sweep,
-        path: &Path,
-        quiet: bool,
-        begin: Begin,
+        task: Task<'a>,
+        begin: &Begin,
         cancellation: Cancellation,
     ) -> Result<Self, CommandError> {
+        let Task {
+            spec,
+            path,
+            kind,
+            quiet,
+        } = task;
         let progress = Progress::new(spec.settings.points, quiet);
         let source = spec.source(&cancellation)?;
         let cells = spec.problem.space().n_cells();
         progress.say(&format!("{}, {cells} cells", source.describe()));
         let resolved = spec.to_toml();
         let threads = rayon::current_num_threads();
-        let manifest = Manifest::start(&resolved, spec.settings.method.chosen().seed(), threads)?;
+        let mut manifest =
+            Manifest::start(&resolved, spec.settings.method.chosen().seed(), threads)?;
+        if let Kind::Shard(shard, _) = &kind {
+            manifest.shard = Some(shard.to_string());
+        }
+        if let Kind::Merged(of, _) = &kind {
+            manifest.merged = Some(*of);
+        }
         let goes_on = matches!(begin, Begin::GoOn);
         let folder = match goes_on {
             true => RunFolder::reopen(path)?,
@@ -96,9 +167,26 @@ impl<'a> Run<'a> {
         if goes_on {
             progress.say(&format!("{} points are done already", journal.solves()));
         }
+        let mut solves = None;
+        let mut shard = None;
+        let source = match kind {
+            Kind::Merged(_, gathered) => {
+                let (source, count) = shards::join(source, gathered, journal);
+                solves = Some(count);
+                source
+            }
+            kind => {
+                if let Kind::Shard(number, home) = kind {
+                    shard = Some((number, home));
+                }
+                JournalledSource::new(Box::new(source), journal)
+            }
+        };
         Ok(Self {
             spec,
-            source: JournalledSource::new(Box::new(source), journal),
+            shard,
+            source,
+            solves,
             folder,
             manifest,
             progress,
@@ -121,6 +209,10 @@ impl<'a> Run<'a> {
         if !self.quiet {
             self.progress.warn(&self.manifest.warnings);
         }
+        if let Some((shard, home)) = &self.shard {
+            let (text, outcome) = shards::told(&result, (*shard, home), path);
+            return super::conclude(&text, outcome, path);
+        }
         super::conclude(&summary::text(&result, path), outcome(&result), path)
     }
 
@@ -138,10 +230,13 @@ impl<'a> Run<'a> {
         let clock = Instant::now();
         self.folder.finish(&result)?;
         self.manifest.seconds.tables = clock.elapsed().as_secs_f64();
-        let clock = Instant::now();
-        self.progress.say("drawing");
-        draw(self.spec, &result, &self.folder.figures())?;
-        self.manifest.seconds.figures = clock.elapsed().as_secs_f64();
+        // The figures of a shard are those of the whole.
+        if self.shard.is_none() {
+            let clock = Instant::now();
+            self.progress.say("drawing");
+            draw(self.spec, &result, &self.folder.figures())?;
+            self.manifest.seconds.figures = clock.elapsed().as_secs_f64();
+        }
         self.manifest.points = result.points.len();
         self.manifest.largest_distance = result.largest_distance();
         self.manifest.warnings = warnings::of_points(self.spec.problem.family(), &result.points);
@@ -177,10 +272,14 @@ impl<'a> Run<'a> {
             given: Vec::new(),
             source: &self.source,
         };
-        let mut result = sweep(
+        let shard = self
+            .shard
+            .as_ref()
+            .map_or(Shard::WHOLE, |(shard, _)| *shard);
+        let mut result = sweep_shard(
             &self.source,
             &detector,
-            self.spec.settings.points,
+            (self.spec.settings.points, shard),
             &self.spec.settings.locate,
             &self.cancellation,
             &mut recorder,
@@ -192,6 +291,11 @@ impl<'a> Run<'a> {
             },
             error => CommandError::Sweep(error),
         })?;
+        if let Some(solves) = &self.solves {
+            let solves = solves.load(Ordering::Relaxed);
+            self.progress
+                .say(&format!("{solves} values were solved that no shard has"));
+        }
         for point in &mut result.points {
             point.seconds = self.source.seconds(point.value).unwrap_or(point.seconds);
         }

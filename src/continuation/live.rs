@@ -4,12 +4,22 @@ use super::grid::{
     Checked, CheckedBy, CheckedIndicator, Checks, GridCheck, Leak, Seen, check, known, leak, solve,
 };
 use super::span::Span;
-use super::{DensitySource, Session, SourceError};
+use super::{DensitySource, KeptCheck, Observer, Session, SourceError};
 use crate::cancellation::Cancellation;
 use crate::topology::Detector;
 
+/// A check: its source, and what is known of its session.
+#[derive(Default)]
+struct Check {
+    session: Opened,
+    /// What solves that are not repeated have left for it.
+    left: Vec<(f64, Vec<u8>)>,
+}
+
 /// A session that is opened when it is first asked.
+#[derive(Default)]
 enum Opened {
+    #[default]
     NotYet,
     Open(Box<dyn Session>),
     /// There is no such source.
@@ -17,42 +27,58 @@ enum Opened {
     Failed(String),
 }
 
+type Failure = Box<dyn std::error::Error + Send + Sync>;
+
 /// The checks of a sweep.
 pub(super) struct Live<'a> {
     /// `None` where no check is wanted.
     source: Option<&'a dyn DensitySource>,
     detector: &'a dyn Detector,
     cancellation: &'a Cancellation,
+    observer: &'a mut dyn Observer,
     span: Span,
     tolerance: f64,
-    finer: Opened,
-    enclosed: Opened,
+    finer: Check,
+    enclosed: Check,
+    /// What was seen before this sweep went on; `None` before it was asked for.
+    kept: Option<Vec<KeptCheck>>,
     seen: Vec<CheckedIndicator>,
+    /// Why nothing more can be seen.
+    failure: Option<Failure>,
 }
 
 impl<'a> Live<'a> {
     pub(super) fn new(
         source: Option<&'a dyn DensitySource>,
         detector: &'a dyn Detector,
-        cancellation: &'a Cancellation,
+        (cancellation, observer): (&'a Cancellation, &'a mut dyn Observer),
         (span, tolerance): (Span, f64),
     ) -> Self {
         Self {
             source,
             detector,
             cancellation,
+            observer,
             span,
             tolerance,
-            finer: Opened::NotYet,
-            enclosed: Opened::NotYet,
+            finer: Check::default(),
+            enclosed: Check::default(),
+            kept: None,
             seen: Vec::new(),
+            failure: None,
         }
     }
 
     /// What was seen; `None` where there was nothing to check with.
-    pub(super) fn seen(self) -> Option<Vec<CheckedIndicator>> {
-        let wanted = self.source.is_some() && !matches!(self.finer, Opened::None);
-        wanted.then_some(self.seen)
+    ///
+    /// # Errors
+    /// Why the checks could not go on.
+    pub(super) fn seen(self) -> Result<Option<Vec<CheckedIndicator>>, Failure> {
+        if let Some(failure) = self.failure {
+            return Err(failure);
+        }
+        let wanted = self.source.is_some() && !matches!(self.finer.session, Opened::None);
+        Ok(wanted.then_some(self.seen))
     }
 
     fn open(&self, by: CheckedBy) -> Opened {
@@ -70,35 +96,76 @@ impl<'a> Live<'a> {
         }
     }
 
+    fn check(&mut self, by: CheckedBy) -> &mut Check {
+        match by {
+            CheckedBy::FinerCells => &mut self.finer,
+            CheckedBy::ClosedEnds => &mut self.enclosed,
+        }
+    }
+
     /// The indicator at a value, by a solve unless it was seen there before; `None` where there is nothing to check with.
     fn evaluate(&mut self, by: CheckedBy, checked: &Checked<'_>, value: f64) -> Option<Seen> {
+        self.source?;
         let before = known(&self.seen, by, checked, value);
         if before != Seen::Unknown {
             return Some(before);
         }
-        let slot = match by {
-            CheckedBy::FinerCells => &self.finer,
-            CheckedBy::ClosedEnds => &self.enclosed,
-        };
-        if matches!(slot, Opened::NotYet) {
-            let opened = self.open(by);
-            match by {
-                CheckedBy::FinerCells => self.finer = opened,
-                CheckedBy::ClosedEnds => self.enclosed = opened,
-            }
+        if let Some(seen) = self.kept(by, checked, value) {
+            return Some(seen);
         }
-        let slot = match by {
-            CheckedBy::FinerCells => &mut self.finer,
-            CheckedBy::ClosedEnds => &mut self.enclosed,
-        };
-        let found = match slot {
+        if self.failure.is_some() {
+            return Some(Seen::Unknown);
+        }
+        if matches!(self.check(by).session, Opened::NotYet) {
+            self.check(by).session = self.open(by);
+        }
+        let detector = self.detector;
+        let Check { session, left } = self.check(by);
+        let (found, left) = match session {
             Opened::NotYet | Opened::None => return None,
-            Opened::Failed(reason) => Seen::Failed(reason.clone()),
-            Opened::Open(session) => solve(session.as_mut(), self.detector, checked, value),
+            Opened::Failed(reason) => (Seen::Failed(reason.clone()), None),
+            Opened::Open(session) => {
+                if let Err(error) = recall(session.as_mut(), std::mem::take(left)) {
+                    if let SourceError::Method(error) = error {
+                        self.failure = Some(error);
+                    }
+                    return Some(Seen::Unknown);
+                }
+                let seen = solve(session.as_mut(), detector, checked, value);
+                (seen, Some(session.memory()))
+            }
         };
-        self.seen.extend(found.record(by, checked, value));
+        if let Some(seen) = found.record(by, checked, value) {
+            let check = KeptCheck { seen, left };
+            self.failure = self.observer.checked(&check).err();
+            self.seen.push(check.seen);
+        }
         Some(found)
     }
+
+    /// What was seen of it before this sweep went on, which is then seen again.
+    fn kept(&mut self, by: CheckedBy, checked: &Checked<'_>, value: f64) -> Option<Seen> {
+        let observer = &mut self.observer;
+        let kept = self.kept.get_or_insert_with(|| observer.kept_checks());
+        let seen = |one: &KeptCheck| known(std::slice::from_ref(&one.seen), by, checked, value);
+        let place = kept.iter().position(|one| seen(one) != Seen::Unknown)?;
+        let check = kept.remove(place);
+        let found = seen(&check);
+        if let Some(left) = check.left {
+            self.check(by).left.push((value, left));
+        }
+        self.seen.push(check.seen);
+        Some(found)
+    }
+}
+
+/// Brings a session to where an earlier one was.
+fn recall(session: &mut dyn Session, left: Vec<(f64, Vec<u8>)>) -> Result<(), SourceError> {
+    if left.is_empty() {
+        return Ok(());
+    }
+    let left: Vec<(f64, &[u8])> = left.iter().map(|(at, bytes)| (*at, &bytes[..])).collect();
+    session.recall(&left)
 }
 
 impl Checks for Live<'_> {

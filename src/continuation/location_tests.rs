@@ -209,6 +209,52 @@ fn scale_and_direction_change_no_row() {
     }
 }
 
+#[test]
+fn checks_that_were_seen_are_not_solved_again() {
+    #[derive(Default)]
+    struct Keeper {
+        kept: Vec<KeptCheck>,
+        checked: Vec<KeptCheck>,
+    }
+    impl Observer for Keeper {
+        fn checked(
+            &mut self,
+            check: &KeptCheck,
+        ) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+            self.checked.push(check.clone());
+            Ok(())
+        }
+
+        fn kept_checks(&mut self) -> Vec<KeptCheck> {
+            std::mem::take(&mut self.kept)
+        }
+    }
+    let mut source = split();
+    source.subject.family = bistable(-0.5, 0.5);
+    let detector = PersistenceDetector::new(DetectOptions::default(), 11);
+    let (options, never) = (LocateOptions::default(), Cancellation::new());
+    let swept = |kept: &[KeptCheck]| {
+        let mut keeper = Keeper {
+            kept: kept.to_vec(),
+            ..Keeper::default()
+        };
+        let result = sweep(&source, &detector, 11, &options, &never, &mut keeper).unwrap();
+        assert_eq!(rows(&result).len(), 1);
+        (rows(&result)[0].clone(), result.checks, keeper.checked)
+    };
+    let (row, checks, seen) = swept(&[]);
+    assert!(!seen.is_empty());
+    for kept in 0..=seen.len() {
+        let again = swept(&seen[..kept]);
+        assert_eq!((&again.0, &again.1), (&row, &checks));
+        assert_eq!(again.2, seen[kept..]);
+    }
+    // A check that was kept of something else is of no use, and does no harm.
+    let mut other = seen[0].clone();
+    other.seen.value += 1e-9;
+    assert_eq!(swept(&[other]).2, seen);
+}
+
 /// As [`split`], with tails of which a depth is taken away.
 fn torn_split(depth: f64) -> Exact<impl Formula> {
     let whole = split().density;

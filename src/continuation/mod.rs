@@ -18,6 +18,7 @@ mod observer;
 mod persistence;
 mod report;
 mod root;
+mod shard;
 mod source;
 mod span;
 mod sweep;
@@ -29,11 +30,12 @@ pub(crate) use finding::every_finding;
 pub use finding::{Finding, ShiftedQuantity, SteadyClass};
 pub use grid::{CheckedBy, CheckedIndicator};
 pub use label::{BifurcationStatus, LabelledPoint, PointType};
-pub use observer::Observer;
+pub use observer::{KeptCheck, Observer};
 pub use report::{MethodPart, PointStatus, SolveReport};
 pub use root::ErrorParts;
+pub use shard::Shard;
 pub use source::{CellCheck, DensitySource, Sensitivity, Session, Solution, SourceError, Subject};
-pub use sweep::{SweepError, evenly_spaced, sweep};
+pub use sweep::{SweepError, evenly_spaced, sweep, sweep_shard};
 
 #[cfg(test)]
 mod location_tests;

@@ -12,7 +12,7 @@ use super::root::{beyond_doubt, next_value, root};
 use super::span::Span;
 use super::{
     CellCheck, DensitySource, Finding, Goal, LabelledPoint, LocateOptions, Observer, Point,
-    PointStatus, Session, Solution, SolveReport, SourceError, SweepResult,
+    PointStatus, Session, Shard, Solution, SolveReport, SourceError, SweepResult,
 };
 use crate::cancellation::Cancellation;
 use crate::density::hellinger;
@@ -46,6 +46,14 @@ pub enum SweepError {
         /// What the source says.
         source: SourceError,
     },
+    /// More shards than there are steps between the given values.
+    #[error("a sweep of {steps} steps cannot be cut into {shards} shards")]
+    Shards {
+        /// The shards that were asked for.
+        shards: usize,
+        /// Steps between the given values.
+        steps: usize,
+    },
     /// The observer could not go on.
     #[error("{0}")]
     Observer(Box<dyn std::error::Error + Send + Sync>),
@@ -66,9 +74,30 @@ pub fn sweep(
     cancellation: &Cancellation,
     observer: &mut dyn Observer,
 ) -> Result<SweepResult, SweepError> {
+    let whole = (points, Shard::WHOLE);
+    sweep_shard(source, detector, whole, options, cancellation, observer)
+}
+
+/// The same of one shard. What lies between its values is followed, narrowed and located as in the whole sweep, from what the shard knows.
+///
+/// # Errors
+/// As [`sweep`]; [`SweepError::Shards`] where there are more shards than steps.
+pub fn sweep_shard(
+    source: &dyn DensitySource,
+    detector: &dyn Detector,
+    (points, shard): (usize, Shard),
+    options: &LocateOptions,
+    cancellation: &Cancellation,
+    observer: &mut dyn Observer,
+) -> Result<SweepResult, SweepError> {
     let subject = source.subject();
     let span = Span::new(subject, points);
-    let values = evenly_spaced(subject.family.ends(), points);
+    let given = evenly_spaced(subject.family.ends(), points);
+    let places = shard.places(given.len()).ok_or(SweepError::Shards {
+        shards: shard.of(),
+        steps: given.len() - 1,
+    })?;
+    let values = given[places].to_vec();
     observer.begin(values.len());
     let mut run = Run {
         source,
@@ -79,6 +108,7 @@ pub fn sweep(
         cancellation,
         observer,
         remaining: values.len(),
+        may_fail: shard.number() > 1,
         points: Vec::new(),
         interrupted: false,
     };
@@ -95,7 +125,7 @@ pub fn sweep(
         previous = Some(value);
     }
     run.narrow()?;
-    let (labels, checks) = run.labels();
+    let (labels, checks) = run.labels()?;
     Ok(SweepResult {
         subject: subject.clone(),
         points: run.points,
@@ -119,6 +149,8 @@ struct Run<'a> {
     cancellation: &'a Cancellation,
     observer: &'a mut dyn Observer,
     remaining: usize,
+    /// Whether the first value may fail: where it is not the first of the sweep.
+    may_fail: bool,
     /// Ascending in the parameter.
     points: Vec<Point>,
     interrupted: bool,
@@ -139,7 +171,7 @@ impl Run<'_> {
                 return Ok(());
             }
             // One value that fails takes nothing from the others; a first one that does is a mistake.
-            Err(SourceError::Method(error)) if !self.points.is_empty() => {
+            Err(SourceError::Method(error)) if self.may_fail || !self.points.is_empty() => {
                 let mut report = SolveReport::solved(self.source.method());
                 report.status = PointStatus::Failed;
                 report.findings = vec![Finding::Told(error.to_string())];
@@ -273,12 +305,15 @@ impl Run<'_> {
     }
 
     /// The rows, each checked where the source can be, and what was seen in the checks.
-    fn labels(&mut self) -> (Vec<LabelledPoint>, Option<Vec<CheckedIndicator>>) {
+    ///
+    /// # Errors
+    /// [`SweepError::Observer`].
+    fn labels(&mut self) -> Result<Labelled, SweepError> {
         let wanted = self.options.grid_check && !self.interrupted;
         let mut checks = Live::new(
             wanted.then_some(self.source),
             self.detector,
-            self.cancellation,
+            (self.cancellation, self.observer),
             (self.span, self.options.tolerance),
         );
         let labels = label_points(
@@ -289,9 +324,15 @@ impl Run<'_> {
             &mut checks,
         );
         let can_check = self.source.subject().cell_check == CellCheck::OnFinerCells;
-        (labels, checks.seen().filter(|_| can_check))
+        let seen = checks.seen().map_err(SweepError::Observer)?;
+        // What is not checked yet is checked by a run that goes on.
+        self.interrupted |= wanted && self.cancellation.is_cancelled();
+        Ok((labels, seen.filter(|_| can_check)))
     }
 }
+
+/// Rows, and what was seen in their checks.
+type Labelled = (Vec<LabelledPoint>, Option<Vec<CheckedIndicator>>);
 
 /// Largest Hellinger distance over the watched densities of two points; `None` when one has none.
 fn distance_between(a: &Point, b: &Point) -> Option<f64> {

@@ -47,6 +47,12 @@ pub struct Manifest {
     pub seed: u64,
     /// Threads used; results do not depend on it.
     pub threads: usize,
+    /// Which shard of the sweep was run, such as `2/4`; `None` of a whole sweep.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shard: Option<String>,
+    /// Of how many shards the run was put together; `None` of one that was run as a whole.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub merged: Option<usize>,
     /// How it ended.
     pub ending: Ending,
     /// Points solved, those that refine brackets included.
@@ -74,6 +80,8 @@ impl Manifest {
             hash: hash(resolved),
             seed,
             threads,
+            shard: None,
+            merged: None,
             ending: Ending::Running,
             points: 0,
             largest_distance: None,

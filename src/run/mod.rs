@@ -24,6 +24,7 @@ mod number;
 mod points_table;
 mod reopen;
 mod sentences;
+mod shards;
 mod staged;
 mod staging;
 mod store;
@@ -49,11 +50,14 @@ pub use manifest::{Ending, Manifest, PhaseSeconds};
 pub use number::{format_number, format_with_error};
 pub use points_table::points_csv;
 pub use sentences::finding_in_words;
+pub use shards::{Gathered, GatheredSource, Shards, shard_folder};
 pub use staged::StagedRun;
 pub use store::DensityStore;
 pub use stored_run::StoredRun;
 
 use std::path::PathBuf;
+
+use crate::continuation::Shard;
 
 /// Why a file of a run could not be written or read.
 #[derive(Debug, thiserror::Error)]
@@ -167,6 +171,42 @@ pub enum RunError {
         /// What differs, key by key.
         differences: Vec<String>,
     },
+    /// A folder without shards.
+    #[error("`{}` holds no shards of a sweep", path.display())]
+    NoShards {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// Shards of a sweep that was cut in more than one way.
+    #[error("{} holds shards of a sweep that was cut in several ways: into {}", path.display(), in_words(counts))]
+    MixedShards {
+        /// The folder of the shards.
+        path: PathBuf,
+        /// The numbers of shards, ascending.
+        counts: Vec<usize>,
+    },
+    /// Shards that are not complete.
+    #[error("{} of {of} shards in {} are not complete: {}", missing.len(), path.display(), told(missing))]
+    MissingShards {
+        /// The folder of the run.
+        path: PathBuf,
+        /// How many shards there should be.
+        of: usize,
+        /// Which are not complete, with what there is of them in words.
+        missing: Vec<(Shard, String)>,
+    },
+    /// An unfinished run that is being put together of shards.
+    #[error("the run in {} is being put together of shards", path.display())]
+    BeingMerged {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A run in the place of a shard that it is not.
+    #[error("the run in {} is not that shard of a sweep", path.display())]
+    OtherShard {
+        /// The folder.
+        path: PathBuf,
+    },
     /// A folder without a manifest.
     #[error("`{}` is not the folder of a run: it has no run.json", path.display())]
     NotARun {
@@ -267,4 +307,22 @@ pub enum RunError {
         /// Its value.
         value: f64,
     },
+}
+
+/// Numbers with "and" before the last.
+fn in_words(counts: &[usize]) -> String {
+    let words: Vec<String> = counts.iter().map(usize::to_string).collect();
+    match words.split_last() {
+        Some((last, others)) if !others.is_empty() => format!("{} and {last}", others.join(", ")),
+        _ => words.join(""),
+    }
+}
+
+/// Shards with what there is of them.
+fn told(missing: &[(Shard, String)]) -> String {
+    let each = missing.iter();
+    let words: Vec<String> = each
+        .map(|(shard, words)| format!("{shard} ({words})"))
+        .collect();
+    words.join(", ")
 }

@@ -9,7 +9,7 @@ use super::checks::read_checks;
 use super::points_table::read_points;
 use super::stored_densities::StoredDensities;
 use super::{Checked, Ending, PhaseSeconds, RunError, checksums, exchange, journal};
-use crate::continuation::{CheckedIndicator, Point, Subject};
+use crate::continuation::{CheckedIndicator, Point, Shard, Subject};
 use crate::space::{Axis, CellSpace};
 use crate::system::Family;
 
@@ -32,6 +32,12 @@ struct StoredManifest {
     hash: String,
     seed: u64,
     threads: usize,
+    /// A shard alone, such as `2/4`.
+    #[serde(default)]
+    shard: Option<String>,
+    /// Put together of so many shards.
+    #[serde(default)]
+    merged: Option<usize>,
     ending: Ending,
     /// Runs of early versions may not say so while they are written.
     points: Option<usize>,
@@ -90,6 +96,27 @@ impl StoredRun {
     /// How the run ended.
     pub fn ending(&self) -> Ending {
         self.manifest.ending
+    }
+
+    /// Which shard of a sweep it is; `None` of a whole sweep.
+    pub fn shard(&self) -> Option<Shard> {
+        let (number, of) = self.manifest.shard.as_deref()?.split_once('/')?;
+        Shard::new(number.parse().ok()?, of.parse().ok()?)
+    }
+
+    /// Of how many shards it was put together; `None` where it was run as a whole.
+    pub fn merged(&self) -> Option<usize> {
+        self.manifest.merged
+    }
+
+    /// Points that are done; `None` for runs of early versions that were killed.
+    pub fn points_done(&self) -> Option<usize> {
+        self.manifest.points
+    }
+
+    /// Whether it is unfinished and can be gone on with.
+    pub fn can_go_on(&self) -> bool {
+        self.ending() != Ending::Complete && self.path.join(journal::NAME).is_file()
     }
 
     /// Refuses a sweep that is not the one that was run; titles and figures may differ.

@@ -217,9 +217,9 @@ fn value_of(key: &Key, path: &[&str], node: &Node) -> Result<Plain, Box<Diagnost
         .at(&blamed.place, format!("this is {}", blamed.value.kind()))
         .allowed(key.allowed());
     if let Some(number) = quoted_number(kind, blamed) {
-        return Err(Box::new(diagnostic.remedy(format!(
-            "write the number without quotes: `{number}`"
-        ))));
+        return Err(Box::new(
+            diagnostic.remedy(format!("write the number without quotes: `{number}`")),
+        ));
     }
     Err(Box::new(match (kind, &blamed.value, meant(kind, blamed)) {
         (_, _, Some(words)) => diagnostic.remedy(format!("did you mean `{words}`?")),

@@ -1,7 +1,9 @@
 //! Writes every point as soon as it is done, and shows how far the sweep is.
 
+use std::borrow::Cow;
+
 use super::progress::Progress;
-use crate::continuation::{Observer, Point, Subject};
+use crate::continuation::{KeptCheck, Observer, Point, Subject};
 use crate::run::{JournalledSource, Manifest, RunFolder};
 
 /// What a sweep tells its points.
@@ -24,20 +26,36 @@ impl Observer for Recorder<'_> {
         done: usize,
         remaining: usize,
     ) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        let point = match self.source.seconds(point.value) {
+            Some(seconds) => Cow::Owned(Point {
+                seconds,
+                ..point.clone()
+            }),
+            None => Cow::Borrowed(point),
+        };
         if done > self.stored {
-            self.folder.add_point(self.subject, point)?;
-            self.progress.point(self.subject, point, done, remaining);
+            self.folder.add_point(self.subject, &point)?;
+            self.progress.point(self.subject, &point, done, remaining);
             self.manifest.points = done;
             self.folder.write_progress(self.manifest)?;
             return Ok(());
         }
-        let mut point = point.clone();
-        point.seconds = self.source.seconds(point.value).unwrap_or(point.seconds);
-        self.given.push(point);
+        self.given.push(point.into_owned());
         if done == self.stored {
             let given = std::mem::take(&mut self.given);
             self.folder.add_points(self.subject, &given)?;
         }
         Ok(())
+    }
+
+    fn checked(
+        &mut self,
+        check: &KeptCheck,
+    ) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        Ok(self.source.keep_check(check)?)
+    }
+
+    fn kept_checks(&mut self) -> Vec<KeptCheck> {
+        self.source.kept_checks()
     }
 }

@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
-use super::{outcome, summary};
+use super::{Kind, outcome, shards, summary};
 use crate::cli::stored::Stored;
 use crate::cli::{CommandError, Outcome};
+use crate::continuation::Shard;
 use crate::run::{Ending, Journal, RunError, StoredRun};
 use crate::sweep_file::{MethodKind, Sweep};
 
 /// How a run begins.
-pub(super) enum Begin {
+pub(in crate::cli) enum Begin {
     /// From the first point.
     Anew,
     /// After the points that are in its journal.
@@ -22,12 +23,24 @@ pub(super) enum Begin {
 ///
 /// # Errors
 /// [`CommandError::Run`] when there is a run that cannot be read, or one of another sweep.
-pub(super) fn begin(spec: &Sweep, path: &Path) -> Result<Begin, CommandError> {
+pub(super) fn begin(
+    spec: &Sweep,
+    path: &Path,
+    shard: Option<Shard>,
+) -> Result<Begin, CommandError> {
     let run = match StoredRun::open(path) {
         Err(RunError::NotARun { .. }) => return Ok(Begin::Anew),
         run => run?,
     };
     run.check_sweep(&spec.to_toml())?;
+    if run.shard() != shard {
+        let path = path.to_owned();
+        return Err(RunError::OtherShard { path }.into());
+    }
+    if run.can_go_on() && run.merged().is_some() {
+        let path = path.to_owned();
+        return Err(RunError::BeingMerged { path }.into());
+    }
     if run.ending() != Ending::Complete {
         return Ok(Begin::GoOn);
     }
@@ -48,11 +61,15 @@ pub(super) fn journal(spec: &Sweep, path: &Path) -> Result<Journal, CommandError
 ///
 /// # Errors
 /// [`CommandError::Print`].
-pub(super) fn show(stored: &Stored, path: &Path) -> Result<Outcome, CommandError> {
+pub(super) fn show(stored: &Stored, path: &Path, kind: &Kind) -> Result<Outcome, CommandError> {
     let done = format!(
         "the run in {} is complete: nothing was solved\n",
         path.display()
     );
+    if let Kind::Shard(shard, home) = kind {
+        let (text, outcome) = shards::told(&stored.result, (*shard, home), path);
+        return crate::cli::conclude(&(done + &text), outcome, path);
+    }
     let text = done + &summary::text(&stored.result, path);
     crate::cli::conclude(&text, outcome(&stored.result), path)
 }

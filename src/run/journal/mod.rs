@@ -2,8 +2,10 @@
 //!
 //! One file, `journal.bin`, to which records are added at the end: length, checksum, content. A kill leaves at most the last record
 //! incomplete, which is then cut off; a machine that loses its power may lose those of the last second. The first record says of which sweep the others are. It is written for the program that reads it, with
-//! every bit of a solution and of what its session remembers; tables and arrays are made from it again.
+//! every bit of a solution and of what its session remembers; tables and arrays are made from it again. What checks of located values saw is
+//! written as the numbers that were seen, with what their sessions remember.
 
+mod check;
 mod record;
 mod source;
 
@@ -19,15 +21,16 @@ use sha2::{Digest as _, Sha256};
 use super::RunError;
 use super::atomic::sync_folder;
 use crate::bytes::{Reader, Writer};
-use crate::continuation::Subject;
+use crate::continuation::{KeptCheck, Subject};
 use crate::space::CellSpace;
+use crate::system::Family;
 use record::Record;
 
 /// Name of the file.
 pub(super) const NAME: &str = "journal.bin";
 
 /// First bytes of the file: program and format.
-const MAGIC: &[u8; 8] = b"pbif-j1\n";
+const MAGIC: &[u8; 8] = b"pbif-j2\n";
 
 /// Bytes of a length and of a checksum.
 const WORD: usize = 8;
@@ -39,6 +42,10 @@ pub struct Journal {
     file: File,
     /// What earlier processes have written, in this order.
     stored: Vec<Record>,
+    /// What they have seen in checks.
+    checks: Vec<KeptCheck>,
+    /// Where records are put together.
+    room: Vec<u8>,
     /// When the disk was last waited for.
     waited: Instant,
 }
@@ -61,12 +68,14 @@ impl Journal {
             path,
             file,
             stored: Vec::new(),
+            checks: Vec::new(),
+            room: Vec::new(),
             waited: Instant::now(),
         };
-        let mut first = Writer::new();
-        first.text(env!("CARGO_PKG_VERSION")).text(resolved);
         journal.write(MAGIC)?;
-        journal.append(&first.finish())?;
+        journal.append(|first| {
+            first.text(env!("CARGO_PKG_VERSION")).text(resolved);
+        })?;
         sync_folder(folder);
         Ok(journal)
     }
@@ -101,10 +110,16 @@ impl Journal {
         let mut frames = Frames::new(&file).map_err(unreadable)?;
         let first = frames.next().map_err(unreadable)?.ok_or_else(broken)?;
         check_sweep(&path, &first, resolved)?;
-        let mut stored = Vec::new();
+        let (mut stored, mut checks) = (Vec::new(), Vec::new());
         while let Some(frame) = frames.next().map_err(unreadable)? {
-            let record = Record::read(&mut Reader::new(&frame), (subject, space), methods);
-            stored.push(record.map_err(|_| broken())?);
+            let reader = &mut Reader::new(&frame);
+            let is_check = reader.flag().map_err(|_| broken())?;
+            if is_check {
+                checks.push(check::read(reader).map_err(|_| broken())?);
+            } else {
+                let record = Record::read(reader, (subject, space), methods);
+                stored.push(record.map_err(|_| broken())?);
+            }
         }
         let whole = frames.whole;
         file.set_len(whole).map_err(unreadable)?;
@@ -113,6 +128,8 @@ impl Journal {
             path,
             file,
             stored,
+            checks,
+            room: Vec::new(),
             waited: Instant::now(),
         })
     }
@@ -122,13 +139,29 @@ impl Journal {
         self.stored.len()
     }
 
+    /// Adds a solve.
+    fn add(&mut self, record: &Record, family: &Family) -> Result<(), RunError> {
+        self.append(|writer| record.write(writer.flag(false), family))
+    }
+
+    /// Adds what was seen in a check.
+    fn add_check(&mut self, check: &KeptCheck) -> Result<(), RunError> {
+        self.append(|writer| check::write(writer.flag(true), check))
+    }
+
     /// Adds a record; once a second it waits until all are on the disk.
-    fn append(&mut self, content: &[u8]) -> Result<(), RunError> {
-        let mut frame = Vec::with_capacity(content.len() + 2 * WORD);
-        frame.extend((content.len() as u64).to_le_bytes());
-        frame.extend(checksum(content));
-        frame.extend(content);
-        self.write(&frame)?;
+    fn append(&mut self, compose: impl FnOnce(&mut Writer)) -> Result<(), RunError> {
+        // The room is used again and again: a new one would cost as much as the writing.
+        let mut writer = Writer::after(std::mem::take(&mut self.room));
+        writer.count(0).count(0);
+        compose(&mut writer);
+        let mut frame = writer.finish();
+        let (head, content) = frame.split_at_mut(2 * WORD);
+        head[..WORD].copy_from_slice(&(content.len() as u64).to_le_bytes());
+        head[WORD..].copy_from_slice(&checksum(content));
+        let written = self.write(&frame);
+        self.room = frame;
+        written?;
         if self.waited.elapsed() >= BETWEEN_WAITS {
             self.file
                 .sync_data()

@@ -48,18 +48,16 @@ impl From<Found> for Solution<'static> {
 
 impl Record {
     /// All of it.
-    pub(super) fn write(&self, family: &Family) -> Vec<u8> {
-        let mut writer = Writer::new();
+    pub(super) fn write(&self, writer: &mut Writer, family: &Family) {
         writer.number(self.value).number(self.seconds);
         writer.flag(self.solved.is_ok());
         match &self.solved {
-            Ok(solution) => write_solution(&mut writer, family, solution),
+            Ok(solution) => write_solution(writer, family, solution),
             Err(words) => {
                 writer.text(words);
             }
         }
         writer.bytes(&self.memory);
-        writer.finish()
     }
 
     /// What was written of the densities of a subject on a space.

@@ -1,29 +1,31 @@
 //! A source of densities that writes every solve into a journal, and gives those that are there already from it.
 
 use std::collections::VecDeque;
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use super::Journal;
 use super::record::{Found, Record};
 use crate::cancellation::Cancellation;
-use crate::continuation::{DensitySource, Session, Solution, SourceError, Subject};
+use crate::continuation::{DensitySource, KeptCheck, Session, Solution, SourceError, Subject};
 use crate::run::RunError;
 
 /// A source whose first session goes on where the journal ends: solves that are in it are given from it, in its order, the same to the bit;
 /// all others are solved as they would have been, and written before they are given.
 ///
 /// What cannot be written, or asks for other values than the journal has, ends the session as if it had been interrupted;
-/// [`JournalledSource::failure`] says why. The sources that check located values are those of the source itself: what their sessions have solved is
-/// solved again, to the same bits.
+/// [`JournalledSource::failure`] says why. The sources that check located values are those of the source itself; whoever observes the sweep keeps what
+/// they see by [`JournalledSource::keep_check`].
 pub struct JournalledSource {
     source: Box<dyn DensitySource>,
     shared: Arc<Mutex<Shared>>,
 }
 
 struct Shared {
-    /// Taken by the first session.
-    journal: Option<Journal>,
+    journal: Journal,
+    /// Whether the session that writes is open.
+    is_open: bool,
     /// Seconds that each stored solve took when it was solved.
     seconds: Vec<(f64, f64)>,
     /// Stored solves that no session has asked for yet.
@@ -40,13 +42,23 @@ impl JournalledSource {
                 .map(|record| (record.value, record.seconds))
                 .collect(),
             waiting: journal.stored.len(),
-            journal: Some(journal),
+            journal,
+            is_open: false,
             failure: None,
         };
         Self {
             source,
             shared: Arc::new(Mutex::new(shared)),
         }
+    }
+
+    /// The same with what is known besides: the seconds that values took, and what their checks saw.
+    pub fn knowing(self, seconds: Vec<(f64, f64)>, checks: Vec<KeptCheck>) -> Self {
+        let mut shared = lock(&self.shared);
+        shared.seconds.splice(0..0, seconds);
+        shared.journal.checks.extend(checks);
+        drop(shared);
+        self
     }
 
     /// Why the session ended, where it was not interrupted. It is told once.
@@ -57,6 +69,19 @@ impl JournalledSource {
     /// Stored solves that are still to be given.
     pub fn waiting(&self) -> usize {
         lock(&self.shared).waiting
+    }
+
+    /// What checks of located values have seen. It is told once.
+    pub fn kept_checks(&self) -> Vec<KeptCheck> {
+        std::mem::take(&mut lock(&self.shared).journal.checks)
+    }
+
+    /// Writes what a check of a located value has seen.
+    ///
+    /// # Errors
+    /// [`RunError::Write`].
+    pub fn keep_check(&self, check: &KeptCheck) -> Result<(), RunError> {
+        lock(&self.shared).journal.add_check(check)
     }
 
     /// Seconds that the solve of a value took, in whichever process it was solved; `None` for those of this one.
@@ -87,14 +112,14 @@ impl DensitySource for JournalledSource {
 
     fn open(&self, cancellation: &Cancellation) -> Box<dyn Session> {
         let session = self.source.open(cancellation);
-        let Some(mut journal) = lock(&self.shared).journal.take() else {
+        let mut shared = lock(&self.shared);
+        if std::mem::replace(&mut shared.is_open, true) {
             return session;
-        };
+        }
         Box::new(JournalledSession {
             subject: self.source.subject().clone(),
             session,
-            stored: std::mem::take(&mut journal.stored).into(),
-            journal,
+            stored: std::mem::take(&mut shared.journal.stored).into(),
             left: Vec::new(),
             shared: self.shared.clone(),
         })
@@ -112,7 +137,6 @@ impl DensitySource for JournalledSource {
 struct JournalledSession {
     subject: Subject,
     session: Box<dyn Session>,
-    journal: Journal,
     stored: VecDeque<Record>,
     /// What the session is to recall before its first solve.
     left: Vec<(f64, Vec<u8>)>,
@@ -137,8 +161,10 @@ impl Session for JournalledSession {
             solved,
             memory: self.session.memory(),
         };
-        let content = record.write(&self.subject.family);
-        if let Err(error) = self.journal.append(&content) {
+        let written = lock(&self.shared)
+            .journal
+            .add(&record, &self.subject.family);
+        if let Err(error) = written {
             return Err(self.end(error));
         }
         record.solved.map(Solution::from).map_err(in_words)
@@ -149,7 +175,7 @@ impl JournalledSession {
     /// A stored solve, which must be the one that is asked for.
     fn give(&mut self, value: f64, record: Record) -> Result<Solution<'static>, SourceError> {
         if record.value.to_bits() != value.to_bits() {
-            let path = self.journal.path.clone();
+            let path = self.path();
             return Err(self.end(RunError::JournalOrder {
                 path,
                 stored: record.value,
@@ -161,6 +187,10 @@ impl JournalledSession {
         record.solved.map(Solution::from).map_err(in_words)
     }
 
+    fn path(&self) -> PathBuf {
+        lock(&self.shared).journal.path.clone()
+    }
+
     fn recall_all(&mut self) -> Result<(), SourceError> {
         let left = std::mem::take(&mut self.left);
         if left.is_empty() {
@@ -169,7 +199,7 @@ impl JournalledSession {
         let left: Vec<(f64, &[u8])> = left.iter().map(|(v, bytes)| (*v, &bytes[..])).collect();
         match self.session.recall(&left) {
             Err(SourceError::Method(_)) => {
-                let path = self.journal.path.clone();
+                let path = self.path();
                 Err(self.end(RunError::Journal { path }))
             }
             recalled => recalled,

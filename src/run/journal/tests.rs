@@ -2,10 +2,13 @@
 
 use super::record::Found;
 use super::*;
-use crate::continuation::{CellCheck, Finding, Solution, SolveReport, every_finding};
+use crate::continuation::{
+    CellCheck, CheckedBy, CheckedIndicator, Finding, Solution, SolveReport, every_finding,
+};
 use crate::density::{Density, EstimatedDensity, Kink, Moments, Observable, Structure, Variants};
 use crate::space::Axis;
 use crate::system::examples::coulomb;
+use crate::topology::IndicatorKind;
 
 const SWEEP: &str = "title = \"t\"\n[sweep]\npoints = 3\n[figures]\nat = [0.0]\n";
 
@@ -99,8 +102,7 @@ fn open(folder: &Path, sweep: &str) -> Result<Journal, RunError> {
 fn written(folder: &Path, solves: usize) {
     let mut journal = Journal::create(folder, SWEEP).unwrap();
     for solve in 0..solves {
-        let content = record(solve as f64).write(&coulomb());
-        journal.append(&content).unwrap();
+        journal.add(&record(solve as f64), &coulomb()).unwrap();
     }
 }
 
@@ -116,10 +118,37 @@ fn solves_come_back_bit_for_bit_and_go_on() {
         solved: Err("no".to_owned()),
         ..record(2.0)
     };
-    journal.append(&failed.write(&coulomb())).unwrap();
+    journal.add(&failed, &coulomb()).unwrap();
+    let checks = checks();
+    for check in &checks {
+        journal.add_check(check).unwrap();
+    }
     let journal = open(folder.path(), SWEEP).unwrap();
     assert_eq!(journal.solves(), 3);
     assert_eq!(words(&journal.stored[2]), words(&failed));
+    assert_eq!(journal.checks, checks);
+}
+
+/// What checks may have seen: a value, nothing, a failure.
+fn checks() -> [KeptCheck; 3] {
+    let check = |by, indicator: Option<f64>, failure: Option<&str>, left| KeptCheck {
+        seen: CheckedIndicator {
+            by,
+            value: -0.0,
+            observable: 1,
+            kind: IndicatorKind::ALL[1],
+            place: vec![0.1, f64::MIN_POSITIVE],
+            indicator,
+            failure: failure.map(str::to_owned),
+        },
+        left,
+    };
+    let (finer, closed) = (CheckedBy::FinerCells, CheckedBy::ClosedEnds);
+    [
+        check(finer, Some(0.1 + 0.2), None, Some(vec![1, 0, 255])),
+        check(closed, None, None, Some(Vec::new())),
+        check(finer, None, Some("no, \"never\""), None),
+    ]
 }
 
 #[test]
@@ -146,7 +175,7 @@ fn a_journal_that_is_cut_anywhere_keeps_its_whole_records() {
     // What is behind a cut is written over.
     std::fs::write(&path, &whole[..whole.len() - 1]).unwrap();
     let mut journal = open(folder.path(), SWEEP).unwrap();
-    journal.append(&record(5.0).write(&coulomb())).unwrap();
+    journal.add(&record(5.0), &coulomb()).unwrap();
     let journal = open(folder.path(), SWEEP).unwrap();
     let values: Vec<f64> = journal.stored.iter().map(|record| record.value).collect();
     assert_eq!(values, [0.0, 5.0]);
@@ -193,7 +222,9 @@ fn a_finding_without_numbers_is_kept_in_words() {
     if let Ok(solution) = &mut one.solved {
         solution.report.findings = told.clone();
     }
-    let content = one.write(&coulomb());
+    let mut writer = Writer::new();
+    one.write(&mut writer, &coulomb());
+    let content = writer.finish();
     let back = Record::read(
         &mut Reader::new(&content),
         (&subject(), &space()),

@@ -60,10 +60,7 @@ fn defaults_are_those_of_the_options() {
 fn few_cells_and_idle_gradings_are_told() {
     let said = |overrides: &[&str]| {
         let settings = SweepFile::parse("dahl.toml", DAHL)
-            .set_all(
-                "--set",
-                &overrides.iter().map(|s| s.to_string()).collect::<Vec<_>>(),
-            )
+            .set_all("--set", overrides)
             .validate();
         settings.unwrap().warnings.to_string()
     };

@@ -1,0 +1,184 @@
+//! The shards of a sweep: runs of their own in `shards/1-of-4`, `shards/2-of-4`, … of a run's folder, each with its own lock, and read
+//! together.
+
+mod source;
+
+pub use source::GatheredSource;
+
+use std::path::{Path, PathBuf};
+
+use super::{Ending, RunError, StoredRun};
+use crate::continuation::{CheckedIndicator, KeptCheck, Point, Shard, Subject};
+use crate::space::{Axis, CellSpace};
+
+/// The folder of all shards in that of a run.
+const SHARDS: &str = "shards";
+
+/// Where a shard of the run in `folder` stands.
+pub fn shard_folder(folder: &Path, shard: Shard) -> PathBuf {
+    let name = format!("{}-of-{}", shard.number(), shard.of());
+    folder.join(SHARDS).join(name)
+}
+
+/// The shards of one sweep, as far as they are there.
+#[derive(Debug)]
+pub struct Shards {
+    path: PathBuf,
+    of: usize,
+    /// Those with points, in the order of their numbers.
+    runs: Vec<StoredRun>,
+    /// Those that are not complete, with what there is of them in words.
+    missing: Vec<(Shard, String)>,
+}
+
+/// What shards have solved and seen.
+#[derive(Debug, Default)]
+pub struct Gathered {
+    /// All points, each value once.
+    pub points: Vec<Point>,
+    /// What was seen in their checks; `None` where there were none.
+    pub checks: Option<Vec<CheckedIndicator>>,
+}
+
+impl Gathered {
+    /// The checks for a sweep that goes on with them.
+    pub fn kept_checks(&self) -> Vec<KeptCheck> {
+        let seen = self.checks.iter().flatten().cloned();
+        seen.map(|seen| KeptCheck { seen, left: None }).collect()
+    }
+}
+
+impl Shards {
+    /// Looks for the shards in the folder of a run. All that are there must be of one sweep.
+    ///
+    /// # Errors
+    /// [`RunError::NoShards`]; [`RunError::MixedShards`] when a sweep was cut into shards in more than one way;
+    /// [`RunError::OtherSweep`]; [`RunError::OtherShard`]; as [`StoredRun::open`].
+    pub fn open(path: &Path) -> Result<Self, RunError> {
+        let of = count(path)?;
+        let (mut runs, mut missing) = (Vec::new(), Vec::new());
+        for shard in (1..=of).filter_map(|number| Shard::new(number, of)) {
+            let folder = shard_folder(path, shard);
+            let run = match StoredRun::open(&folder) {
+                Err(RunError::NotARun { .. }) => {
+                    missing.push((shard, "not begun".to_owned()));
+                    continue;
+                }
+                run => run?,
+            };
+            if run.shard() != Some(shard) {
+                return Err(RunError::OtherShard { path: folder });
+            }
+            if run.ending() != Ending::Complete {
+                let points = run.points_done().unwrap_or(0);
+                missing.push((shard, format!("not done, {points} points so far")));
+            }
+            runs.push(run);
+        }
+        if let Some((first, others)) = runs.split_first() {
+            for other in others {
+                other.check_sweep(first.resolved())?;
+            }
+        }
+        Ok(Self {
+            path: path.to_owned(),
+            of,
+            runs,
+            missing,
+        })
+    }
+
+    /// How many shards the sweep was cut into.
+    pub fn of(&self) -> usize {
+        self.of
+    }
+
+    /// Shards that are not complete, with what there is of them in words.
+    pub fn missing(&self) -> &[(Shard, String)] {
+        &self.missing
+    }
+
+    /// Refuses shards that are not all complete.
+    ///
+    /// # Errors
+    /// [`RunError::MissingShards`].
+    pub fn check_complete(&self) -> Result<(), RunError> {
+        if self.missing.is_empty() {
+            return Ok(());
+        }
+        Err(RunError::MissingShards {
+            path: self.path.clone(),
+            of: self.of,
+            missing: self.missing.clone(),
+        })
+    }
+
+    /// A run whose sweep is that of all.
+    ///
+    /// # Errors
+    /// [`RunError::MissingShards`] when none has begun.
+    pub fn any(&self) -> Result<&StoredRun, RunError> {
+        match self.runs.first() {
+            Some(run) => Ok(run),
+            None => Err(RunError::MissingShards {
+                path: self.path.clone(),
+                of: self.of,
+                missing: self.missing.clone(),
+            }),
+        }
+    }
+
+    /// All that was solved and seen. Of a value at a border, which two shards have, that of the first is taken: it was solved from its neighbour.
+    ///
+    /// # Errors
+    /// As [`StoredRun::points`] and [`StoredRun::checks`].
+    pub fn gather(
+        &self,
+        subject: &Subject,
+        cells: (&CellSpace, &[Axis]),
+        methods: &[&'static str],
+    ) -> Result<Gathered, RunError> {
+        let mut gathered = Gathered::default();
+        for run in &self.runs {
+            // A shard that has just begun has no table yet.
+            if run.points_done() == Some(0) && run.ending() != Ending::Complete {
+                continue;
+            }
+            for point in run.points(subject, cells, methods)? {
+                let is_known = |known: &Point| known.value == point.value;
+                if !gathered.points.iter().any(is_known) {
+                    gathered.points.push(point);
+                }
+            }
+            if let Some(seen) = run.checks(subject)? {
+                gathered.checks.get_or_insert_default().extend(seen);
+            }
+        }
+        Ok(gathered)
+    }
+}
+
+/// Into how many shards the sweep was cut whose shards are there.
+fn count(path: &Path) -> Result<usize, RunError> {
+    let entries = std::fs::read_dir(path.join(SHARDS));
+    let names = entries.into_iter().flatten().flatten();
+    let mut counts: Vec<usize> = names
+        .filter_map(|entry| {
+            let name = entry.file_name().into_string().ok()?;
+            let (number, of) = name.split_once("-of-")?;
+            Some(Shard::new(number.parse().ok()?, of.parse().ok()?)?.of())
+        })
+        .collect();
+    counts.sort_unstable();
+    counts.dedup();
+    match counts[..] {
+        [] => Err(RunError::NoShards {
+            path: path.to_owned(),
+        }),
+        [of] => Ok(of),
+        _ => Err(RunError::MixedShards {
+            path: path.join(SHARDS),
+            counts,
+        }),
+    }
+}
