@@ -11,6 +11,9 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+#[path = "random_systems/formulas.rs"]
+mod formulas;
+
 use std::fmt::Write as _;
 use std::sync::Arc;
 

@@ -80,15 +80,14 @@ fn in_order(mut found: Vec<(LabelledPoint, &Change)>) -> Vec<LabelledPoint> {
     rows
 }
 
-/// Where features come and go from point to point, one row says from where to where, instead of one a point.
+/// Where features come and go from point to point, one row says from where to where, instead of one a point. What has a place of its own keeps
+/// its row, however wide its error.
 fn without_flicker(rows: Vec<LabelledPoint>) -> Vec<LabelledPoint> {
-    let in_doubt = |row: &LabelledPoint| row.status != Some(BifurcationStatus::Located);
-    let runs = rows.chunk_by(|a, b| a.observable == b.observable && in_doubt(a) == in_doubt(b));
     let mut kept = Vec::new();
-    for run in runs {
+    for run in rows.chunk_by(is_one_doubt) {
         let (first, last) = (&run[0], &run[run.len() - 1]);
         let returns = run.len() > 1 && first.before == last.after;
-        if !in_doubt(first) || (run.len() < FLICKER && !returns) {
+        if run.len() < FLICKER && !returns {
             kept.extend_from_slice(run);
             continue;
         }
@@ -110,13 +109,31 @@ fn without_flicker(rows: Vec<LabelledPoint>) -> Vec<LabelledPoint> {
             method: "persistence",
             indicator: None,
             parts: None,
-            reason: None,
+            reason: Some(match returns {
+                true => "what is there at both ends cannot be told between them".to_owned(),
+                false => "the stages between cannot be told apart".to_owned(),
+            }),
             place: Vec::new(),
             slope: None,
             ..first.clone()
         });
     }
     kept
+}
+
+/// Whether two rows that follow each other are not located and cannot be kept apart: their intervals overlap, or, where one of them is no zero
+/// of an indicator, the stage between them is no wider than they are.
+fn is_one_doubt(first: &LabelledPoint, second: &LabelledPoint) -> bool {
+    let in_doubt = |row: &LabelledPoint| row.status != Some(BifurcationStatus::Located);
+    let is_zero = |row: &LabelledPoint| {
+        row.parts.is_some() && row.status != Some(BifurcationStatus::Unconfirmed)
+    };
+    let between = second.lower - first.upper;
+    let width = match is_zero(first) && is_zero(second) {
+        true => 0.0,
+        false => (first.upper - first.lower).max(second.upper - second.lower),
+    };
+    first.observable == second.observable && in_doubt(first) && in_doubt(second) && between <= width
 }
 
 /// Says what happens, once it is known between which signatures.
@@ -171,9 +188,19 @@ fn by_bracket(
         lower,
         upper,
         status: Some(BifurcationStatus::Unresolved),
+        reason: Some(match change.found {
+            Found::Beyond(_) => {
+                "too low to be counted, it is there up to the end of the sweep".to_owned()
+            }
+            _ => "there its slope can be followed no further: more cells may show it".to_owned(),
+        }),
         ..blank(observables, change)
     }
 }
+
+/// The reason of a band that persistence gives.
+const NO_INDICATOR: &str =
+    "no slope or curvature tells of it: the band is from where it is seen to where it is not";
 
 fn by_persistence(
     points: &[&Point],
@@ -200,6 +227,7 @@ fn by_persistence(
             (true, true) => BifurcationStatus::Located,
             (true, false) => BifurcationStatus::Unresolved,
         }),
+        reason: (!located).then(|| NO_INDICATOR.to_owned()),
         ..blank(observables, change)
     }
 }
@@ -277,8 +305,29 @@ fn by_indicator(
     row.reason = failed
         .or_else(|| unsound.map(|point| point.report.status.word().to_owned()))
         .or_else(|| is_torn.then(|| torn(wiggles)))
-        .or_else(|| leaks(&found, error, options, subject, [a, b]));
+        .or_else(|| leaks(&found, error, options, subject, [a, b]))
+        .or_else(|| coarse(&found, error, options));
     row
+}
+
+/// The sentence for a value that cells, solver or sampling make uncertain.
+fn coarse(found: &Root, error: f64, options: &Goal) -> Option<String> {
+    let parts = found.error;
+    let (part, remedy) = match parts.sampling >= parts.grid.max(parts.solver) {
+        true => (
+            parts.sampling,
+            "samples move it by {}: more of them are needed",
+        ),
+        false if parts.grid >= parts.solver => (
+            parts.grid,
+            "finer cells move it by {}: more cells are needed",
+        ),
+        false => (
+            parts.solver,
+            "errors of the solver and its bracket come to {}",
+        ),
+    };
+    (error > options.tolerance).then(|| remedy.replace("{}", &format!("{part:.1e}")))
 }
 
 /// The sentence for a value that what leaves Ω makes uncertain, with the axis along which most of it leaves.
@@ -354,7 +403,13 @@ fn merge(first: &mut LabelledPoint, second: &LabelledPoint) {
     if first.status == Some(BifurcationStatus::Located) {
         first.status = second.status;
     }
-    if first.indicator != second.indicator {
+    let of_flank = |row: &LabelledPoint| {
+        matches!(
+            row.indicator,
+            Some(IndicatorKind::Shoulder { .. } | IndicatorKind::Fold)
+        )
+    };
+    if first.indicator != second.indicator && !(of_flank(first) && of_flank(second)) {
         first.indicator = Some(IndicatorKind::LowerCurvature);
         first.rises = later;
     }

@@ -472,6 +472,32 @@ fn two_folds_within_one_step_have_a_row_each() {
 }
 
 #[test]
+fn changes_that_undo_each_other_far_apart_keep_their_rows_though_neither_is_located() {
+    // One bump of a wide hill grows as much as the other shrinks: by symmetry their pairs are born and vanish at θ and 0.6 - θ.
+    let source = Exact::new(
+        1,
+        160,
+        |_| Structure::default(),
+        |theta: f64, at: &[f64]| {
+            let x = at[0];
+            let bump = |c: f64, w: f64| w * (-0.5 * ((x - c) / 0.15).powi(2)).exp();
+            (-0.5 * x * x + bump(-1.0, theta) + bump(1.0, 0.6 - theta)).exp()
+        },
+    );
+    let result = run(&source, (0.1, 0.5, 8), 1e-9);
+    let rows = rows(&result);
+    let found: Vec<String> = rows.iter().map(|row| words(row)).collect();
+    assert_eq!(rows.len(), 2, "{found:?}");
+    assert_eq!(rows[0].before, rows[1].after, "{found:?}");
+    for row in &rows {
+        assert_eq!(row.status, Some(BifurcationStatus::Unresolved));
+        assert!(row.error < 1e-3 && row.reason.is_some(), "{row:?}");
+    }
+    let (sum, error) = (rows[0].value + rows[1].value, rows[0].error + rows[1].error);
+    assert!((sum - 0.6).abs() <= error, "{sum} ± {error}");
+}
+
+#[test]
 fn the_end_of_a_ring_around_a_peak_is_located() {
     let source = Exact::new(
         2,

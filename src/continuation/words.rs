@@ -16,11 +16,22 @@ pub(super) fn change(
     if before == after {
         return "comes and goes";
     }
+    // Beside other peaks that stand, the centre becomes a peak between two new valleys, or is one no more.
+    let of_centre = match (rises, peaks) {
+        (true, Less) => "peak at the centre vanishes",
+        (true, _) => "symmetric split",
+        (false, Greater) => "peak at the centre is born",
+        (false, _) => "symmetric merger",
+    };
+    let several = before.peaks.abs_diff(after.peaks) > 1;
     match (kind, craters, peaks) {
-        (Some(IndicatorKind::Curvature), ..) if rises => "symmetric split",
-        (Some(IndicatorKind::Curvature), ..) => "symmetric merger",
+        (Some(IndicatorKind::Curvature), ..) => of_centre,
         (Some(IndicatorKind::KinkSlope), Equal, _) if rises => "split at a kink",
         (Some(IndicatorKind::KinkSlope), Equal, _) => "merger at a kink",
+        (Some(IndicatorKind::Shoulder { .. }), _, Greater) if several => {
+            "peaks and valleys are born"
+        }
+        (Some(IndicatorKind::Shoulder { .. }), ..) if several => "peaks and valleys vanish",
         (Some(IndicatorKind::Shoulder { .. }), _, Greater) => "peak and valley are born",
         (Some(IndicatorKind::Shoulder { .. }), ..) => "peak and valley vanish",
         (Some(IndicatorKind::Fold), Equal, Greater) => "peak and saddle are born",
@@ -41,8 +52,7 @@ pub(super) fn change(
         _ if after.rings < before.rings => "rim breaks into peaks",
         (_, Greater, _) => "crater opens",
         (_, Less, _) => "crater closes",
-        (Some(_), Equal, _) if rises => "symmetric split",
-        (Some(_), Equal, _) => "symmetric merger",
+        (Some(_), Equal, _) => of_centre,
         (None, Equal, Greater) => "peak appears",
         (None, Equal, _) => "peak vanishes",
     }

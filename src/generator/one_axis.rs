@@ -3,7 +3,8 @@
 //!
 //! Every cell is correct to many digits *of its own value*, however deep the valleys between: where barriers are many times the
 //! noise, weights of wells that no linear solver can tell from rounding come out of a quadrature. Polynomials through
-//! Gauss-Legendre points on panels of each cell give the exponent and its integral.
+//! Gauss-Legendre points on panels of each cell give the exponent and its integral. A cell is cut where the drift jumps or bends, and halved where the
+//! exponent changes much, so that cells much wider than what they hold are right too.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
@@ -123,53 +124,133 @@ fn look(system: &dyn System, places: &Lanes) -> (Lanes, Lanes) {
     (drift[0], intensity)
 }
 
-fn integrate(system: &dyn System, axis: &Axis, rule: &Rule, panels: usize) -> Option<OneAxis> {
-    let count = axis.count();
-    // Logarithms of the integrals over each cell of p and of p times the distance from its lower edge and its square.
-    let (mut logs, mut firsts, mut seconds) =
-        (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
-    let mut exponent = 0.0;
-    for cell in 0..count {
-        let (from, width) = (axis.edges()[cell], axis.width(cell) / panels as f64);
-        let mut places = [from; LANES];
-        for (lane, place) in places.iter_mut().enumerate().take(panels * NODES) {
-            *place = from + width * ((lane / NODES) as f64 + rule.points[lane % NODES]);
+/// Most times that a part of a cell is halved.
+const MOST_HALVINGS: usize = 12;
+/// Largest change of the exponent over a part, in one direction: eight points on each of four panels follow an exponential of that range to 1e-9.
+const LARGEST_RISE: f64 = 24.0;
+
+/// The density along the axis as it is gone through, from below to above.
+struct Walk<'a> {
+    system: &'a dyn System,
+    rule: &'a Rule,
+    panels: usize,
+    /// ∫ 2a/b² up to here.
+    exponent: f64,
+}
+
+/// Integrals over a cell of p and of p times the distance from its lower edge and its square, over exp(level).
+#[derive(Default)]
+struct Integrals {
+    level: f64,
+    sums: [f64; 3],
+}
+
+impl Integrals {
+    /// Adds sums over exp(level): the higher level is kept, so that nothing overflows.
+    fn add(&mut self, level: f64, sums: [f64; 3]) {
+        if self.sums[0] == 0.0 {
+            self.level = level;
         }
-        let (drift, intensity) = look(system, &places);
-        let start = exponent;
-        let mut sums = [0.0; 3];
-        for panel in 0..panels {
-            let lanes = panel * NODES..(panel + 1) * NODES;
-            let usable = lanes
-                .clone()
-                .all(|l| drift[l].is_finite() && intensity[l].is_finite() && intensity[l] > 0.0);
-            if !usable {
+        let top = self.level.max(level);
+        let (own, other) = ((self.level - top).exp(), (level - top).exp());
+        for (sum, more) in self.sums.iter_mut().zip(sums) {
+            *sum = *sum * own + more * other;
+        }
+        self.level = top;
+    }
+}
+
+impl Walk<'_> {
+    /// Goes on from one coordinate to another of the cell that begins at `edge`; `None` where drift or noise do not allow it. Where the exponent
+    /// changes much the part is halved.
+    fn go(
+        &mut self,
+        (from, to): (f64, f64),
+        edge: f64,
+        into: &mut Integrals,
+        halvings: usize,
+    ) -> Option<()> {
+        let width = (to - from) / self.panels as f64;
+        let mut places = [from; LANES];
+        for (lane, place) in places.iter_mut().enumerate().take(self.panels * NODES) {
+            *place = from + width * ((lane / NODES) as f64 + self.rule.points[lane % NODES]);
+        }
+        let (drift, intensity) = look(self.system, &places);
+        let mut rates = [0.0; LANES];
+        for lane in 0..self.panels * NODES {
+            let usable = drift[lane].is_finite() && intensity[lane].is_finite();
+            if !(usable && intensity[lane] > 0.0) {
                 return None;
             }
-            let rate: Vec<f64> = lanes
-                .clone()
-                .map(|l| 2.0 * drift[l] / intensity[l])
-                .collect();
+            rates[lane] = 2.0 * drift[lane] / intensity[lane];
+        }
+        let steepest = rates
+            .iter()
+            .fold(0.0_f64, |most, rate| most.max(rate.abs()));
+        let middle = 0.5 * (from + to);
+        if steepest * (to - from) > LARGEST_RISE && halvings > 0 && from < middle && middle < to {
+            self.go((from, middle), edge, into, halvings - 1)?;
+            return self.go((middle, to), edge, into, halvings - 1);
+        }
+        let start = self.exponent;
+        let mut sums = [0.0; 3];
+        for panel in 0..self.panels {
+            let rate = &rates[panel * NODES..(panel + 1) * NODES];
+            let rise = |weights: &[f64; NODES]| -> f64 {
+                weights.iter().zip(rate).map(|(w, r)| w * r).sum()
+            };
             for node in 0..NODES {
                 let lane = panel * NODES + node;
-                let rise: f64 = rule.integrals[node]
-                    .iter()
-                    .zip(&rate)
-                    .map(|(w, r)| w * r)
-                    .sum();
-                let weight = rule.weights[node] * width * (exponent + width * rise - start).exp()
-                    / intensity[lane];
-                let offset = places[lane] - from;
+                let here = self.exponent + width * rise(&self.rule.integrals[node]) - start;
+                let weight = self.rule.weights[node] * width * here.exp() / intensity[lane];
+                let offset = places[lane] - edge;
                 sums[0] += weight;
                 sums[1] += weight * offset;
                 sums[2] += weight * offset * offset;
             }
-            let rise: f64 = rule.weights.iter().zip(&rate).map(|(w, r)| w * r).sum();
-            exponent += width * rise;
+            self.exponent += width * rise(&self.rule.weights);
         }
-        logs[cell] = start + sums[0].ln();
-        firsts[cell] = sums[1] / sums[0];
-        seconds[cell] = sums[2] / sums[0];
+        into.add(start, sums);
+        Some(())
+    }
+}
+
+/// Coordinates at which a cell is cut: its edges, and where the drift is not smooth.
+fn cuts(axis: &Axis, cell: usize, surfaces: &[f64]) -> Vec<f64> {
+    let (from, to) = (axis.edges()[cell], axis.edges()[cell + 1]);
+    let inside = surfaces.iter().copied().filter(|at| from < *at && *at < to);
+    [from].into_iter().chain(inside).chain([to]).collect()
+}
+
+fn integrate(system: &dyn System, axis: &Axis, rule: &Rule, panels: usize) -> Option<OneAxis> {
+    let count = axis.count();
+    let (mut logs, mut firsts, mut seconds) =
+        (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
+    let mut surfaces: Vec<f64> = system
+        .switching_surfaces()
+        .iter()
+        .map(|one| one.at)
+        .collect();
+    surfaces.sort_by(f64::total_cmp);
+    let mut walk = Walk {
+        system,
+        rule,
+        panels,
+        exponent: 0.0,
+    };
+    for cell in 0..count {
+        let mut found = Integrals::default();
+        for part in cuts(axis, cell, &surfaces).windows(2) {
+            walk.go(
+                (part[0], part[1]),
+                axis.edges()[cell],
+                &mut found,
+                MOST_HALVINGS,
+            )?;
+        }
+        logs[cell] = found.level + found.sums[0].ln();
+        firsts[cell] = found.sums[1] / found.sums[0];
+        seconds[cell] = found.sums[2] / found.sums[0];
     }
     let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let mut masses: Vec<f64> = logs.iter().map(|log| (log - largest).exp()).collect();
@@ -197,6 +278,7 @@ fn integrate(system: &dyn System, axis: &Axis, rule: &Rule, panels: usize) -> Op
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::system::SwitchingSurface;
 
     /// dx = (h + x - x³) dt + σ dW.
     struct Tilted {
@@ -274,5 +356,79 @@ mod tests {
         let axis = Axis::uniform(-3.0, 4.0, 60).unwrap();
         let (mean, variance) = one_axis(&Linear, &axis).unwrap().moments;
         assert!((mean - 0.3).abs() < 1e-12 && (variance - 0.125).abs() < 1e-12);
+    }
+
+    /// dx = drift dt + σ dW with a surface.
+    struct Bent<D> {
+        drift: D,
+        sigma2: f64,
+        at: f64,
+    }
+
+    impl<D: Fn(f64) -> f64 + Send + Sync> System for Bent<D> {
+        fn dimension(&self) -> usize {
+            1
+        }
+        fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
+            for (slope, x) in drift[0].iter_mut().zip(&states[0]) {
+                *slope = (self.drift)(*x);
+            }
+        }
+        fn noise_axes(&self) -> &[usize] {
+            &[0]
+        }
+        fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
+            Some(self.sigma2.sqrt())
+        }
+        fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
+            let at = self.at;
+            vec![SwitchingSurface { axis: 0, at }]
+        }
+    }
+
+    #[test]
+    fn cells_wider_than_what_they_hold_are_right_though_tails_fall_by_a_thousand_orders_a_cell() {
+        let system = Bent {
+            drift: |x: f64| 0.9 * x - x.powi(3),
+            sigma2: 0.25,
+            at: 0.0,
+        };
+        let (wide, narrow) = (
+            Axis::uniform(-12.0, 13.0, 50).unwrap(),
+            Axis::uniform(-12.0, 13.0, 2000).unwrap(),
+        );
+        let (wide, narrow) = (
+            one_axis(&system, &wide).unwrap(),
+            one_axis(&system, &narrow).unwrap(),
+        );
+        assert!(wide.error < 1e-8 && narrow.error < 1e-8);
+        for (cell, mass) in wide.masses.iter().enumerate() {
+            let sum: f64 = narrow.masses[40 * cell..40 * cell + 40].iter().sum();
+            assert!((mass - sum).abs() < 1e-11, "{cell}: {mass} {sum}");
+        }
+        assert!((wide.moments.1 / narrow.moments.1 - 1.0).abs() < 1e-10);
+    }
+
+    #[test]
+    fn a_cell_is_cut_where_the_drift_jumps() {
+        // p ∝ exp(-2 |x - 0.13| / σ²) on cells of a half: no face at 0.13.
+        let system = Bent {
+            drift: |x: f64| if x < 0.13 { 1.0 } else { -1.0 },
+            sigma2: 1.0,
+            at: 0.13,
+        };
+        let axis = Axis::uniform(-5.0, 5.0, 20).unwrap();
+        let found = one_axis(&system, &axis).unwrap();
+        assert!(found.error < 1e-10, "{}", found.error);
+        let primitive = |x: f64| {
+            let u = 2.0 * (x - 0.13);
+            if u < 0.0 { u.exp() } else { 2.0 - (-u).exp() }
+        };
+        let total = primitive(5.0) - primitive(-5.0);
+        for (cell, mass) in found.masses.iter().enumerate() {
+            let edges = &axis.edges()[cell..cell + 2];
+            let exact = (primitive(edges[1]) - primitive(edges[0])) / total;
+            assert!((mass - exact).abs() < 1e-12, "{cell}: {mass} {exact}");
+        }
     }
 }

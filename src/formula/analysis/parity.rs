@@ -36,6 +36,14 @@ const TRIALS: usize = 200;
 const SCALES: [f64; 3] = [0.1, 1.0, 4.0];
 /// Largest difference, relative to the largest value among the trials, that counts as rounding.
 const ROUNDING: f64 = 1e-11;
+/// Trial states at each of [`FAR_SCALES`].
+const FAR_TRIALS: usize = 40;
+/// The same for systems in other units: an oscillator a micrometre wide has terms that are lost in rounding at states of size one.
+const FAR_SCALES: [f64; 6] = [1e-3, 1e3, 1e-6, 1e6, 1e-9, 1e9];
+/// Relative difference there that is none of rounding.
+const CLEAR: f64 = 1e-6;
+/// Product of the shares that sums lose to cancellation, up to which a value has digits enough to be compared so.
+const MOST_CANCELLED: f64 = 1e8;
 
 impl Graph {
     /// What a reflection does to an expression with these values of the parameters.
@@ -97,14 +105,26 @@ impl Graph {
         Ok(self.parity_by_trial(bound, reflection))
     }
 
+    /// All sums and differences in an expression, each with its operands.
+    fn sums(&self, expression: Expression) -> Vec<[Expression; 3]> {
+        let parts = self.parts(&[expression]).into_iter();
+        let sums = parts.filter_map(|part| match self.node(part) {
+            Node::Binary(Binary::Add | Binary::Subtract, a, b) => Some([part, a, b]),
+            _ => None,
+        });
+        sums.collect()
+    }
+
     fn parity_by_trial(&self, expression: Expression, reflection: &Reflection) -> ParityFinding {
         let mut evaluator = Evaluator::new(self, &[expression]);
-        let mut value = |state: &[f64], time: f64| {
+        let value = |evaluator: &mut Evaluator, state: &[f64], time: f64| {
+            let parameters = &[];
+            let states = state;
             evaluator.evaluate(
                 self,
                 &Point {
-                    states: state,
-                    parameters: &[],
+                    states,
+                    parameters,
                     time,
                 },
             );
@@ -117,7 +137,8 @@ impl Graph {
             for _ in 0..TRIALS {
                 let state = random.state(reflection, scale);
                 let (time, mirrored) = (random.symmetric(10.0), reflection.mirrored(&state));
-                let (here, there) = (value(&state, time), value(&mirrored, time));
+                let here = value(&mut evaluator, &state, time);
+                let there = value(&mut evaluator, &mirrored, time);
                 if here.is_finite() || there.is_finite() {
                     trials.push((here, there, state));
                 }
@@ -135,6 +156,35 @@ impl Graph {
                     not_even = Some(state.clone());
                 }
                 if !opposite && not_odd.is_none() {
+                    not_odd = Some(state);
+                }
+            }
+        }
+        let sums = self.sums(expression);
+        for scale in FAR_SCALES {
+            if not_even.is_some() && not_odd.is_some() {
+                break;
+            }
+            for _ in 0..FAR_TRIALS {
+                let state = random.state(reflection, scale);
+                let (time, mirrored) = (random.symmetric(10.0), reflection.mirrored(&state));
+                let mut certain = |state: &[f64]| {
+                    let here = value(&mut evaluator, state, time);
+                    let lost = sums.iter().map(|[sum, a, b]| {
+                        let of = |part: &Expression| evaluator.value(*part).abs();
+                        of(a).max(of(b)) / of(sum)
+                    });
+                    let has_digits = lost.product::<f64>() < MOST_CANCELLED;
+                    (has_digits && here.is_finite()).then_some(here)
+                };
+                let (Some(here), Some(there)) = (certain(&state), certain(&mirrored)) else {
+                    continue;
+                };
+                let clear = CLEAR * here.abs().max(there.abs());
+                if (here - there).abs() > clear && not_even.is_none() {
+                    not_even = Some(state.clone());
+                }
+                if (here + there).abs() > clear && not_odd.is_none() {
                     not_odd = Some(state);
                 }
             }

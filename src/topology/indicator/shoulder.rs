@@ -7,12 +7,18 @@
 use super::window::around;
 use super::{Indicator, IndicatorKind};
 use crate::density::{EstimatedDensity, Variants};
-use crate::topology::reconstruction::{Line, interpolating, smoothing};
+use crate::space::Axis;
+use crate::topology::field::{Field, Jet};
+use crate::topology::reconstruction::{Line, smoothing};
 
-/// Cells on either side of the place, in the finer and the rougher reconstruction.
-const REACH: [usize; 2] = [3, 2];
-/// Cells on either side when the density is sampled: noise of slopes falls with the window to the power 3/2.
+/// Cells on either side when the density is sampled, as a share of all: noise of slopes falls with the window to the power 3/2.
 const SAMPLED_SHARE: usize = 12;
+/// Least of them.
+const LEAST: usize = 3;
+/// Most steps of Newton's method.
+const MOST_STEPS: usize = 12;
+/// A step that is a smaller share of a cell ends the search.
+const SETTLED: f64 = 1e-6;
 
 /// The extremum of the slope of a marginal nearest to `near`: a maximum of p' where the density rises from valley to
 /// peak, else a minimum. `None` for joint densities and when there is none away from the ends and kinks.
@@ -21,10 +27,40 @@ pub(crate) fn shoulder(estimated: &EstimatedDensity, near: f64, rising: bool) ->
         return None;
     };
     let sign = if rising { 1.0 } else { -1.0 };
-    let slope_at = |face: usize| -> Option<f64> {
-        let lines = lines(estimated, axis.edges()[face], 0)?;
-        Some(sign * lines[1].apply(&estimated.density.values))
+    let kind = IndicatorKind::Shoulder { rising };
+    if matches!(estimated.variants, Variants::Jackknife(_)) {
+        return sampled(estimated, axis, near, sign, kind);
+    }
+    let field = Field::new(estimated)?;
+    let kinked = |face: usize| {
+        let mut kinks = estimated.structure.kinks.iter();
+        kinks.any(|kink| axis.is_same_place(axis.edges()[face], kink.at))
     };
+    let slope_at = |face: usize| -> Option<f64> {
+        let is_inside = 0 < face && face < axis.count() && !kinked(face);
+        let jet = is_inside.then(|| field.jet(&[axis.edges()[face]]))??;
+        Some(sign * jet.first[0])
+    };
+    let place = settle(&field, sign, &steepest(axis, near, slope_at)?)?;
+    let (fine, rough) = (field.stencil(&[place], 0)?, field.stencil(&[place], 1)?);
+    let of = |jet: Jet| sign * jet.first[0] / (field.unit(0) * jet.value);
+    Indicator::derive(
+        estimated,
+        kind,
+        vec![place],
+        |values| of(fine.jet(values)),
+        |values| of(rough.jet(values)),
+    )
+}
+
+/// A place where a slope, given on the faces, is largest, and the interval about it.
+struct Steepest {
+    place: f64,
+    within: (f64, f64),
+}
+
+/// The maximum of a slope nearest to a place: the vertex of the parabola through those on three faces.
+fn steepest(axis: &Axis, near: f64, slope_at: impl Fn(usize) -> Option<f64>) -> Option<Steepest> {
     let slopes: Vec<Option<f64>> = (0..=axis.count()).map(slope_at).collect();
     let is_maximum = |&face: &usize| {
         let (Some(left), Some(here), Some(right)) =
@@ -38,34 +74,67 @@ pub(crate) fn shoulder(estimated: &EstimatedDensity, near: f64, rising: bool) ->
     let face = (1..axis.count())
         .filter(is_maximum)
         .min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
-    // Vertex of the parabola through three slopes (faces at unequal distances).
+    // Faces are at unequal distances.
     let edges = axis.edges();
     let (h, k) = (edges[face] - edges[face - 1], edges[face + 1] - edges[face]);
     let (left, here, right) = (slopes[face - 1]?, slopes[face]?, slopes[face + 1]?);
     let bend = ((right - here) / k - (here - left) / h) / (0.5 * (h + k));
     let tilt = ((right - here) / k * h + (here - left) / h * k) / (h + k);
-    let place = edges[face] + (-tilt / bend).clamp(-h, k);
+    Some(Steepest {
+        place: edges[face] + (-tilt / bend).clamp(-h, k),
+        within: (edges[face - 1], edges[face + 1]),
+    })
+}
+
+/// The zero of the curvature there, by Newton's method: the slope at the vertex of a parabola is too low by the square of its distance.
+fn settle(field: &Field<'_>, sign: f64, found: &Steepest) -> Option<f64> {
+    let (low, high) = found.within;
+    let mut place = found.place;
+    for _ in 0..MOST_STEPS {
+        let jet = field.jet(&[place])?;
+        let step = -field.unit(0) * jet.second[0] / jet.third[0];
+        // A maximum of the slope, and in the interval: else the parabola's vertex is all that is known.
+        let next = place + step;
+        if sign * jet.third[0] >= 0.0 || !(low..=high).contains(&next) {
+            return Some(found.place);
+        }
+        place = next;
+        if step.abs() < SETTLED * (high - low) {
+            break;
+        }
+    }
+    Some(place)
+}
+
+/// The same of a sampled density, by polynomials nearest to many cells.
+fn sampled(
+    estimated: &EstimatedDensity,
+    axis: &Axis,
+    near: f64,
+    sign: f64,
+    kind: IndicatorKind,
+) -> Option<Indicator> {
+    let slope_at = |face: usize| -> Option<f64> {
+        let lines = lines(estimated, axis.edges()[face], 0)?;
+        Some(sign * lines[1].apply(&estimated.density.values))
+    };
+    let place = steepest(axis, near, slope_at)?.place;
     let (fine, rough) = (lines(estimated, place, 0)?, lines(estimated, place, 1)?);
     let of =
         |lines: &[Line], values: &[f64]| sign * lines[1].apply(values) / lines[0].apply(values);
     Indicator::derive(
         estimated,
-        IndicatorKind::Shoulder { rising },
+        kind,
         vec![place],
         |values| of(&fine, values),
         |values| of(&rough, values),
     )
 }
 
-/// Lines for the value and slope of a marginal at a place that has no kink within their reach.
+/// Lines for the value and slope of a sampled marginal at a place that has no kink within their reach.
 fn lines(estimated: &EstimatedDensity, at: f64, level: usize) -> Option<Vec<Line>> {
     let axis = &estimated.density.axes[0];
-    let sampled = matches!(estimated.variants, Variants::Jackknife(_));
-    let reach = if sampled {
-        (axis.count() / SAMPLED_SHARE).max(REACH[0])
-    } else {
-        REACH[level]
-    };
+    let reach = (axis.count() / SAMPLED_SHARE).max(LEAST);
     let cells = around(axis, at, reach)?;
     let inside = |kink: f64| {
         let face = axis.face_at(kink).or(axis.find(kink)).unwrap_or(0);
@@ -74,9 +143,5 @@ fn lines(estimated: &EstimatedDensity, at: f64, level: usize) -> Option<Vec<Line
     if estimated.structure.kinks.iter().any(|kink| inside(kink.at)) {
         return None;
     }
-    if sampled {
-        smoothing(axis, cells, at, 3 + level, 2)
-    } else {
-        interpolating(axis, cells, at, 2)
-    }
+    smoothing(axis, cells, at, 3 + level, 2)
 }

@@ -152,6 +152,22 @@ fn the_slope_at_a_shoulder_changes_sign_where_peak_and_valley_are_born() {
 }
 
 #[test]
+fn the_slope_at_a_shoulder_is_of_order_six_wherever_its_place_lies_in_a_cell() {
+    // Over many tilts the place takes every part of a cell.
+    let worst = |count: usize| {
+        let tilts = (0..9).map(|k| 0.01 * f64::from(k));
+        let error = |tilt: f64| {
+            let value = |count: usize| shoulder(&tilted(tilt, count), 0.9, true).unwrap().value;
+            (value(count) - value(800)).abs()
+        };
+        tilts.map(error).fold(0.0, f64::max)
+    };
+    let (coarse, fine) = (worst(40), worst(80));
+    // With halved cells 2^6 times smaller; the windows of eight cells jump by a cell, hence the allowance.
+    assert!(fine < coarse / 24.0, "{coarse} {fine}");
+}
+
+#[test]
 fn noise_makes_a_sign_doubtful() {
     let indicator = |value: f64| Indicator {
         kind: IndicatorKind::Curvature,
