@@ -14,18 +14,20 @@ struct Formula {
     /// Drift less b b' at θ, and b².
     slope: Box<dyn Fn(f64, f64) -> f64>,
     intensity: Box<dyn Fn(f64) -> f64>,
-    /// Parameter at which the slope is zero at a place; the density may move with it.
+    /// Parameter at which the slope is zero at a place, and how fast the place moves with it.
     zero: Box<dyn Fn(f64) -> f64>,
+    speed: f64,
     ends: (f64, f64),
     /// Where to look for the density.
     within: (f64, f64),
 }
 
 impl Formula {
-    /// Values at which the zero turns, between the ends; `places` are those of the zero, which may move with the parameter.
-    fn turns(&self, places: (f64, f64)) -> Vec<f64> {
+    /// Values at which the zero turns, between the ends and in a range.
+    fn turns(&self, (from, to): (f64, f64)) -> Vec<f64> {
         let n = 200_000;
-        let x = |i: usize| places.0 + (places.1 - places.0) * (i as f64 + 0.31) / f64::from(n);
+        let (low, high) = self.within;
+        let x = |i: usize| low + (high - low) * (i as f64 + 0.31) / f64::from(n);
         let rate = |x: f64| {
             let h = 1e-5 * (1.0 + x.abs());
             let near = 8.0 * ((self.zero)(x + h) - (self.zero)(x - h));
@@ -47,7 +49,11 @@ impl Formula {
                     false => b = middle,
                 }
             }
-            values.push((self.zero)(0.5 * (a + b)));
+            let value = (self.zero)(0.5 * (a + b));
+            let place = a + self.speed * value;
+            if from < place && place < to {
+                values.push(value);
+            }
         }
         values.sort_by(f64::total_cmp);
         values
@@ -91,8 +97,7 @@ impl Formula {
             .with_parameters(["theta"])
             .build()
             .unwrap();
-        // Places that move stay within those of the density at its own value.
-        let truths = self.turns(self.within);
+        let truths = self.turns((from, to));
         Case {
             family: self.family,
             words: format!(
@@ -119,6 +124,7 @@ fn sines(dice: &mut Dice) -> Formula {
         slope: Box::new(move |x, theta| theta + a * (k * x).sin() - c * x),
         intensity: Box::new(move |_| sigma * sigma),
         zero: Box::new(move |x| c * x - a * (k * x).sin()),
+        speed: 0.0,
         ends: (-1.513, 1.487),
         within: (-12.0, 12.0),
     }
@@ -139,6 +145,7 @@ fn bumps(dice: &mut Dice) -> Formula {
         slope: Box::new(move |x, theta| theta * bump(x) - x),
         intensity: Box::new(move |_| sigma * sigma),
         zero: Box::new(move |x| x / bump(x)),
+        speed: 0.0,
         ends: (0.2, 8.0),
         within: (-8.0, 8.0),
     }
@@ -159,6 +166,7 @@ fn steep_noise(dice: &mut Dice) -> Formula {
         slope: Box::new(move |x, theta| theta + k * x - x.powi(5) - bb(x)),
         intensity: Box::new(move |x| s * (q * x).exp()),
         zero: Box::new(move |x| bb(x) + x.powi(5) - k * x),
+        speed: 0.0,
         ends: (-1.513, 1.487),
         within: (-4.0, 4.0),
     }
@@ -179,6 +187,7 @@ fn genes(dice: &mut Dice) -> Formula {
         slope: Box::new(move |x, theta| theta + made(x) - x - 0.5 * d),
         intensity: Box::new(move |x| d * (0.2 + x)),
         zero: Box::new(move |x| 0.5 * d + x - made(x)),
+        speed: 0.0,
         ends: (0.05, 2.0),
         within: (0.0, 12.0),
     }
@@ -202,6 +211,7 @@ fn moving(dice: &mut Dice) -> Formula {
         intensity: Box::new(move |_| sigma * sigma),
         // By the moving coordinate.
         zero: Box::new(move |u| u.powi(3) - k * u),
+        speed: v,
         ends: (-0.79, 0.81),
         within: (-12.0, 12.0),
     }
