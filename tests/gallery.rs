@@ -198,3 +198,15 @@ fn a_neuron_agrees_with_free_trajectories() {
 fn a_harvester_agrees_with_free_trajectories() {
     assert_as_trajectories("harvester", &[]);
 }
+
+#[test]
+fn the_colour_of_noise_alone_splits_a_peak() {
+    // Independent of the cells: twice as many of them and of the modes find the same to 1e-6. White noise never splits it.
+    let settings = [
+        "sweep.points=4",
+        "cells.x.count=120",
+        "cells.noise.modes=10",
+    ];
+    let found = run("coloured_bistable", &settings);
+    assert_located(&found, "x", 0.191_369, 1e-4);
+}

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::columns::{AxisRates, columns};
 use super::geometry::{AxisGeometry, End};
-use super::modes::block;
+use super::modes::ModeAxis;
 use super::sampler::{LineSampler, quadrature_points};
 use super::scheme::{REACH, Window};
 use super::{Generator, GeneratorError, GeneratorOptions};
@@ -19,7 +19,8 @@ use crate::system::System;
 ///
 /// An end of the range that the system declares never to leave ([`System::bounds`]) is a wall without flux;
 /// what flows or diffuses out through any other end is lost and counted in [`Generator::escape`]. An axis of modes
-/// ([`crate::space::Axis::modes`]) lies between two such ends, and no noise drives it.
+/// ([`crate::space::Axis::modes`]) lies between two such ends, and no noise drives it; one of Hermite modes
+/// ([`crate::space::Axis::hermite`]) is white noise behind a linear filter, and nothing leaves along it.
 ///
 /// # Errors
 /// Any [`GeneratorError`] but [`GeneratorError::System`].
@@ -44,17 +45,14 @@ pub(super) fn assemble_within(
         .map(|index| AxisGeometry::new(walls, index, &space.axes()[index], options.scheme))
         .collect();
     for (axis, geometry) in axes.iter().enumerate() {
-        let bounded = geometry.ends == [End::Wall; 2];
-        if geometry.differentiation.is_some() && (!bounded || system.noise_axes().contains(&axis)) {
-            return Err(GeneratorError::Modes { axis });
+        if let Some(modes) = &geometry.modes {
+            modes.check(system, axis, geometry.ends == [End::Wall; 2])?;
         }
     }
     let strides = strides(&axes);
     let rates: Result<Vec<AxisRates>, GeneratorError> = (0..axes.len())
-        .map(|axis| match &axes[axis].differentiation {
-            Some(differentiation) => {
-                axis_blocks(system, &axes, &strides, axis, differentiation).map(AxisRates::Blocks)
-            }
+        .map(|axis| match &axes[axis].modes {
+            Some(modes) => axis_blocks(system, &axes, &strides, axis, modes).map(AxisRates::Blocks),
             None => axis_fluxes(system, &axes, &strides, axis).map(AxisRates::Fluxes),
         })
         .collect();
@@ -125,7 +123,7 @@ fn axis_blocks(
     axes: &[AxisGeometry],
     strides: &[usize],
     axis: usize,
-    differentiation: &[f64],
+    modes: &ModeAxis,
 ) -> Result<Vec<f64>, GeneratorError> {
     let count = axes[axis].count();
     let cells: usize = axes.iter().map(AxisGeometry::count).product();
@@ -138,8 +136,8 @@ fn axis_blocks(
             |sampler, (number, rates)| {
                 sampler.state = line_start(axes, strides, axis, number);
                 sampler.sample(&axes[axis].nodes, &[])?;
-                block(differentiation, &sampler.line.drift, rates);
-                Ok::<(), GeneratorError>(())
+                let line = &sampler.line;
+                modes.rates(axis, &axes[axis].nodes, &line.drift, &line.diffusion, rates)
             },
         )?;
     Ok(blocks)

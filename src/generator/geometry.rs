@@ -1,5 +1,6 @@
 //! One axis as the discretisation sees it: nodes, local widths, ends, and the stencil of every face.
 
+use super::modes::ModeAxis;
 use super::scheme::{AdvectiveScheme, REACH, Window};
 use crate::space::Axis;
 use crate::system::System;
@@ -43,8 +44,8 @@ pub(super) struct AxisGeometry {
     pub(super) stencils: Vec<FaceStencil>,
     /// Cells on either side that an entry of the matrix may reach.
     pub(super) reach: usize,
-    /// Of an axis of modes, [`Axis::differentiation`].
-    pub(super) differentiation: Option<Vec<f64>>,
+    /// Of an axis of modes, what tests them.
+    pub(super) modes: Option<ModeAxis>,
 }
 
 impl AxisGeometry {
@@ -72,7 +73,7 @@ impl AxisGeometry {
                 (false, true) => REACH,
                 (false, false) => scheme.reach(),
             },
-            differentiation: axis.is_modes().then(|| axis.differentiation()),
+            modes: ModeAxis::new(axis),
         }
     }
 

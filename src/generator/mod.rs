@@ -118,6 +118,15 @@ pub enum GeneratorError {
         /// The axis.
         axis: usize,
     },
+    /// An axis of Hermite modes that is not white noise behind a linear filter, with the mean and deviation of the axis.
+    #[error(
+        "axis {axis} cannot have Hermite modes: they are for white noise behind a linear filter, of the mean and the standard deviation \
+         of the axis"
+    )]
+    Filter {
+        /// The axis.
+        axis: usize,
+    },
     /// The parameter of a derivative is unknown, or cannot be varied about its value.
     #[error(transparent)]
     System(#[from] SystemError),

@@ -4,9 +4,96 @@
 //! d/dt Σ_k u_k f(s_k) = Σ_k u_k b(s_k) f'(s_k), Gauss's rule for the exact ∫ p b f' ds. With f the Lagrange polynomials of the
 //! nodes that is the block; by the degree of the rule it is exact for every drift that is a polynomial of degree 2 in s, and
 //! spectrally accurate for any smooth one. Walls need no condition: nothing is tested beyond them.
+//!
+//! White noise behind a linear filter has D f'' more, at the nodes of Hermite polynomials, which are its eigenfunctions: exact.
+
+use super::GeneratorError;
+use crate::space::{Axis, Series};
+use crate::system::System;
+
+/// Relative deviation of a filter's drift and noise from those of its normal density that is rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// What tests the densities along an axis of modes.
+#[derive(Debug, Clone)]
+pub(super) struct ModeAxis {
+    /// Derivatives of the Lagrange polynomials at the nodes, [`Axis::differentiation`].
+    first: Vec<f64>,
+    /// Their second derivatives, mean and standard deviation of the density, for white noise behind a filter.
+    filter: Option<(Vec<f64>, f64, f64)>,
+}
+
+impl ModeAxis {
+    /// `None` for an axis of cells.
+    pub(super) fn new(axis: &Axis) -> Option<Self> {
+        let series = axis.series()?;
+        let first = axis.differentiation();
+        let filter = match series {
+            Series::Legendre => None,
+            Series::Hermite { mean, deviation } => {
+                Some((square(&first, axis.count()), mean, deviation))
+            }
+        };
+        Some(Self { first, filter })
+    }
+
+    /// Whether the axis number `axis` of a system, with or without walls at both ends, can have these modes.
+    pub(super) fn check(
+        &self,
+        system: &dyn System,
+        axis: usize,
+        is_walled: bool,
+    ) -> Result<(), GeneratorError> {
+        let is_noisy = system.noise_axes().contains(&axis);
+        match &self.filter {
+            None if is_noisy || !is_walled => Err(GeneratorError::Modes { axis }),
+            Some(_) if !is_noisy => Err(GeneratorError::Filter { axis }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Rates of a line, `from · count + to`, from drift and diffusion at the nodes.
+    pub(super) fn rates(
+        &self,
+        axis: usize,
+        nodes: &[f64],
+        drift: &[f64],
+        diffusion: &[f64],
+        rates: &mut [f64],
+    ) -> Result<(), GeneratorError> {
+        block(&self.first, drift, rates);
+        let Some((second, mean, deviation)) = &self.filter else {
+            return Ok(());
+        };
+        let rate = diffusion[0] / deviation.powi(2);
+        let scale = rate * (nodes[nodes.len() - 1] - nodes[0]);
+        let fits = nodes.iter().zip(drift.iter().zip(diffusion));
+        let mut fits = fits.map(|(node, (drift, diffusion))| {
+            (drift + rate * (node - mean)).abs() <= ROUNDING * scale
+                && (diffusion / deviation.powi(2) - rate).abs() <= ROUNDING * rate
+        });
+        if rate <= 0.0 || !fits.all(|fits| fits) {
+            return Err(GeneratorError::Filter { axis });
+        }
+        for (rate, second) in rates.iter_mut().zip(second) {
+            *rate += diffusion[0] * second;
+        }
+        Ok(())
+    }
+}
+
+/// The square of a matrix.
+fn square(matrix: &[f64], n: usize) -> Vec<f64> {
+    let entry = |row: usize, column: usize| -> f64 {
+        (0..n)
+            .map(|k| matrix[row * n + k] * matrix[k * n + column])
+            .sum()
+    };
+    (0..n * n).map(|at| entry(at / n, at % n)).collect()
+}
 
 /// One entry `from · count + to` a pair of nodes: the rate from the one into the other.
-pub(super) fn block(differentiation: &[f64], drift: &[f64], rates: &mut [f64]) {
+fn block(differentiation: &[f64], drift: &[f64], rates: &mut [f64]) {
     let count = drift.len();
     for (from, &drift) in drift.iter().enumerate() {
         let row = from * count..(from + 1) * count;

@@ -11,6 +11,7 @@ mod problem;
 mod range;
 mod report;
 mod sgcm;
+mod sticking;
 mod structure;
 mod time_step;
 mod watched;
@@ -30,6 +31,7 @@ pub use range::{PILOT_BOX, RangeError, automatic_ranges};
 pub use sgcm::{
     Corrected, Correction, SampledPoint, SgcmCost, SgcmOptions, SgcmSource, solve_corrected,
 };
+pub use sticking::check_sticking;
 
 use crate::cancellation::Cancelled;
 use crate::continuation::SourceError;
@@ -37,7 +39,6 @@ use crate::monte_carlo::MonteCarloError;
 use crate::sampling::SamplingError;
 use crate::stationary::StationaryError;
 use crate::stationary::generator::RateError;
-use crate::system::System;
 
 /// Why a method cannot give a solution at all. Failed solves are data, see
 /// [`PointStatus`](crate::continuation::PointStatus).
@@ -57,6 +58,19 @@ pub enum MethodError {
     /// The drift depends on time.
     #[error(transparent)]
     Periodic(#[from] crate::system::PeriodicDrift),
+    /// States stay on a switching surface for a time, so that there is no density.
+    #[error(
+        "friction sticks: beside {axis} = {at} the drift of `{axis}` points toward {axis} = {at} from both sides (as at {state}), and no \
+         white noise acts on `{axis}`; a part of the probability then lies on {axis} = {at} itself, which no density holds"
+    )]
+    Sticks {
+        /// Name of the axis across which nothing moves.
+        axis: String,
+        /// Value of its coordinate there.
+        at: f64,
+        /// A state that stays, with the parameter's value.
+        state: String,
+    },
     /// The cells cannot be laid out.
     #[error(transparent)]
     Space(#[from] crate::space::SpaceError),
@@ -94,12 +108,15 @@ pub enum MethodError {
     Density(#[from] crate::density::DensityError),
 }
 
-/// Nothing, if no system depends on time: densities that follow a period are not computed yet.
-fn autonomous(systems: &[std::sync::Arc<dyn System>]) -> Result<(), MethodError> {
-    for system in systems {
+/// Nothing, if all along its path a problem has densities that do not change with time: no system depends on time, and nothing
+/// sticks to a surface.
+fn has_densities(problem: &Problem) -> Result<(), MethodError> {
+    for system in problem.family().along()? {
         system.autonomous()?;
     }
-    Ok(())
+    let axes = problem.space().axes().iter();
+    let ranges: Vec<(f64, f64)> = axes.map(|axis| (axis.from(), axis.to())).collect();
+    check_sticking(problem.family(), &ranges)
 }
 
 // Whatever part of a method was asked to stop, the method was.

@@ -36,10 +36,13 @@ pub(super) fn kinked_surfaces(
     surfaces
 }
 
-/// Whether the lower and upper end of each axis is a wall that the system cannot pass, all along the sweep.
+/// Whether the lower and upper end of each axis is a wall that the system cannot pass, all along the sweep, or belongs to a series.
 pub(super) fn closed_ends(systems: &[Arc<dyn System>], space: &CellSpace) -> Vec<[bool; 2]> {
     let axes = space.axes().iter().enumerate();
     axes.map(|(axis, cells)| {
+        if cells.is_modes() {
+            return [true; 2];
+        }
         let range = (cells.from(), cells.to());
         let walls = systems.iter().map(|system| system.walls(axis, range));
         walls

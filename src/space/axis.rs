@@ -5,12 +5,13 @@
 //! Its integral, the *cell coordinate* u(x), is closed, so finding a cell costs a few logarithms, and a
 //! face falls on every c_k. The bulk keeps a fixed share of the cells: too strong a grading starves it.
 //!
-//! An *axis of modes* carries a series in place of cells (`series.rs`): its nodes are those of a Gauss rule, and its "cells" are
-//! as wide as the weights, so that sums over cells are the rule.
+//! An *axis of modes* carries a series in place of cells (`series.rs`, `hermite.rs`): its nodes are those of a Gauss rule, and its
+//! "cells" hold the weights, so that sums over cells are the rule.
 
 use super::SpaceError;
 use super::grading::{BULK_SHARE, Grading, Piece, grading_terms};
-use super::series::{MOST_MODES, differentiation, gauss_legendre};
+use super::hermite::{gauss_hermite, normal_edges};
+use super::series::{MOST_MODES, Series, differentiation, gauss_legendre};
 
 /// Distance, in widths of a cell, within which two coordinates are one place.
 const SAME_PLACE: f64 = 1e-6;
@@ -22,7 +23,7 @@ pub struct Axis {
     /// Where the cell coordinate is half-way between a cell's edges, one a cell.
     nodes: Vec<f64>,
     pieces: Vec<Piece>,
-    is_modes: bool,
+    series: Option<Series>,
 }
 
 /// Modes that the finer axis of a check has more than the axis that is checked.
@@ -73,12 +74,7 @@ impl Axis {
     /// [`SpaceError::Range`] or [`SpaceError::Modes`].
     pub fn modes(from: f64, to: f64, count: usize) -> Result<Self, SpaceError> {
         Self::check(from, to, count.max(2))?;
-        if !(2..=MOST_MODES).contains(&count) {
-            return Err(SpaceError::Modes {
-                count,
-                most: MOST_MODES,
-            });
-        }
+        Self::check_modes(count)?;
         let rule = gauss_legendre(count);
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         let mut edges = vec![from];
@@ -96,13 +92,58 @@ impl Axis {
             edges,
             nodes: rule.nodes.iter().map(|s| middle + half * s).collect(),
             pieces: Vec::new(),
-            is_modes: true,
+            series: Some(Series::Legendre),
         })
     }
 
-    /// Whether it carries a series in place of cells: see [`Axis::modes`].
+    /// An axis of `count` Hermite modes: the density along it is a normal density of this mean and standard deviation, times a
+    /// polynomial of degree `count` - 1, given by its values at the nodes of Gauss's rule for the normal density. For white noise
+    /// behind a linear filter. The range reaches at least six standard deviations to either side.
+    ///
+    /// # Errors
+    /// [`SpaceError::Range`] where the deviation is not a positive number, or [`SpaceError::Modes`].
+    pub fn hermite(mean: f64, deviation: f64, count: usize) -> Result<Self, SpaceError> {
+        Self::check(mean - deviation, mean + deviation, count.max(2))?;
+        Self::check_modes(count)?;
+        let rule = gauss_hermite(count);
+        let place = |s: f64| mean + deviation * s;
+        Ok(Self {
+            edges: normal_edges(&rule).into_iter().map(place).collect(),
+            nodes: rule.nodes.into_iter().map(place).collect(),
+            pieces: Vec::new(),
+            series: Some(Series::Hermite { mean, deviation }),
+        })
+    }
+
+    /// The same axis with another number of modes.
+    ///
+    /// # Errors
+    /// [`SpaceError::Modes`]; an axis of cells becomes one of Legendre modes.
+    pub fn with_modes(&self, count: usize) -> Result<Self, SpaceError> {
+        match self.series {
+            Some(Series::Hermite { mean, deviation }) => Self::hermite(mean, deviation, count),
+            Some(Series::Legendre) | None => Self::modes(self.from(), self.to(), count),
+        }
+    }
+
+    /// Whether it carries a series in place of cells: see [`Axis::modes`] and [`Axis::hermite`].
     pub fn is_modes(&self) -> bool {
-        self.is_modes
+        self.series.is_some()
+    }
+
+    /// The series that it carries; `None` for cells.
+    pub fn series(&self) -> Option<Series> {
+        self.series
+    }
+
+    fn check_modes(count: usize) -> Result<(), SpaceError> {
+        match (2..=MOST_MODES).contains(&count) {
+            true => Ok(()),
+            false => Err(SpaceError::Modes {
+                count,
+                most: MOST_MODES,
+            }),
+        }
     }
 
     /// Of an axis of modes, the derivatives of the Lagrange polynomials of its nodes: entry `k · count + i` is ℓ_i'(node k).
@@ -170,7 +211,7 @@ impl Axis {
             edges,
             nodes,
             pieces,
-            is_modes: false,
+            series: None,
         }
     }
 
@@ -178,9 +219,9 @@ impl Axis {
     /// alike: faces stay on the points it is graded toward, and an even number of cells stays even, so that a face stays in the middle.
     /// An axis of modes, which converge exponentially, gets one more mode (none below 1).
     pub fn refined(&self, factor: f64) -> Self {
-        if self.is_modes {
+        if self.is_modes() {
             let count = self.count() + if factor > 1.0 { FINER_MODES } else { 0 };
-            let finer = Self::modes(self.from(), self.to(), count.min(MOST_MODES));
+            let finer = self.with_modes(count.min(MOST_MODES));
             return finer.unwrap_or_else(|_| self.clone());
         }
         let finer = |cells: usize| {
@@ -259,7 +300,7 @@ impl Axis {
 
     /// Whether all cells have the same width.
     pub fn is_uniform(&self) -> bool {
-        !self.is_modes && self.pieces.iter().all(|piece| piece.terms.is_empty())
+        !self.is_modes() && self.pieces.iter().all(|piece| piece.terms.is_empty())
     }
 
     /// The cell that holds `x`; `None` outside the range and for values that are not numbers.

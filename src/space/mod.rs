@@ -4,12 +4,14 @@
 mod axis;
 mod cells;
 mod grading;
+mod hermite;
 mod series;
 
 pub use axis::Axis;
 pub use cells::CellSpace;
 pub use grading::Grading;
-pub use series::MOST_MODES;
+pub(crate) use hermite::NORMAL_RANGE;
+pub use series::{MOST_MODES, Series};
 
 /// Why an axis or a cell space could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

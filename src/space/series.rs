@@ -11,6 +11,20 @@
 /// Largest number of modes of an axis: nodes are found by Newton's method to rounding up to there, and nobody needs more.
 pub const MOST_MODES: usize = 64;
 
+/// What carries the density along an axis in place of cells.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Series {
+    /// Legendre polynomials over the range: for states that stay in it and have no noise.
+    Legendre,
+    /// Hermite polynomials times the normal density that a linear filter of white noise has.
+    Hermite {
+        /// Mean of the normal density.
+        mean: f64,
+        /// Its standard deviation.
+        deviation: f64,
+    },
+}
+
 /// A rule on [-1, 1]: nodes, ascending, and weights, Σ = 2, exact for polynomials of degree 2 count - 1.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Rule {

@@ -14,9 +14,10 @@ use crate::method::{GeneratorMethodOptions, GeneratorSource, MethodOptions, Prob
 use crate::space::Grading;
 use crate::system::System;
 
-/// Cells an axis of the first coarse grid, by the number of axes.
+/// Cells an axis of the first coarse grid, by the number of axes that are cut into cells.
 const COARSE: [usize; 4] = [100, 40, 14, 8];
-/// Most cells an axis that are chosen, by the number of axes: what a sweep of some minutes can do.
+/// Most cells an axis that are chosen, by the number of axes that are cut into cells, less where modes carry others: what a sweep of
+/// some minutes can do.
 const MOST: [usize; 4] = [2000, 240, 60, 20];
 /// Cells an axis of the second coarse grid to those of the first.
 const FINER: f64 = 1.5;
@@ -42,8 +43,13 @@ impl Settings {
         if !self.axes.iter().any(is_open) {
             return Ok(());
         }
-        let place = self.axes.len().clamp(1, COARSE.len()) - 1;
-        let (first, most) = (COARSE[place], MOST[place]);
+        let carried = self
+            .axes
+            .iter()
+            .filter(|axis| axis.modes_by(kind).is_some())
+            .count();
+        let place = (self.axes.len() - carried).clamp(1, COARSE.len()) - 1;
+        let (first, most) = (COARSE[place], MOST[place] / (1 + carried));
         let second = even(first as f64 * FINER);
         let mut errors = Vec::new();
         for count in [first, second] {

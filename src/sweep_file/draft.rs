@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::continuation::LocateOptions;
 use crate::figure::{FigureStyle, Format, USUAL_KINDS};
 use crate::method::{GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions};
-use crate::system::{Interpretation, Model};
+use crate::system::{Interpretation, Model, NoiseKind};
 use crate::topology::DetectOptions;
 
 /// The chosen method, and the settings of all, so that a file can hold them all and one word switches.
@@ -134,6 +134,8 @@ pub(super) struct BinsDraft {
 pub(super) struct Draft {
     pub(super) title: Option<String>,
     pub(super) model: Option<Arc<Model>>,
+    /// What noise is; white where nothing is said.
+    pub(super) noise_kind: Option<NoiseKind>,
     /// Equations in place of a built-in model.
     pub(super) equations: EquationsDraft,
     /// Values of parameters by their names, in the order given.
@@ -166,6 +168,7 @@ impl Default for Draft {
         Self {
             title: None,
             model: None,
+            noise_kind: None,
             equations: EquationsDraft::default(),
             parameters: Vec::new(),
             parameter: None,

@@ -57,6 +57,7 @@ pub fn starting_files() -> &'static [StartingFile] {
         "lugre",
         "bouc_wen",
         "bliman_sorine",
+        "coloured_bistable",
     )
 }
 

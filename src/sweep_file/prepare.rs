@@ -11,7 +11,7 @@ use super::settings::{Modes, Settings, at_cells, cell_space};
 use super::sweep::Sweep;
 use crate::cancellation::Cancellation;
 use crate::method::{
-    PILOT_BOX, Problem, RangeError, SgcmOptions, automatic_modes, automatic_ranges,
+    PILOT_BOX, Problem, RangeError, SgcmOptions, automatic_modes, automatic_ranges, check_sticking,
 };
 use crate::space::Axis;
 use crate::system::System;
@@ -27,6 +27,7 @@ impl Settings {
         let ends = self.find_open_ranges(cancellation)?;
         // Formulas that are not finite there would leave coarse grids without a density.
         self.check_equations()?;
+        self.check_density()?;
         self.find_counts(&ends, cancellation)?;
         self.find_gradings(&ends);
         // Now of the cells that were found.
@@ -98,6 +99,27 @@ impl Settings {
         Ok(ends)
     }
 
+    /// Refuses systems of which a part of the probability lies on a surface: known once there are ranges, and before anything is
+    /// solved.
+    fn check_density(&self) -> Result<(), Report> {
+        let ranges: Option<Vec<(f64, f64)>> = self.axes.iter().map(|axis| axis.range).collect();
+        let Some(ranges) = ranges else {
+            return Ok(());
+        };
+        check_sticking(&self.family, &ranges).map_err(|error| {
+            let found = Diagnostic::new(error.to_string()).remedy(
+                "use a friction law with an internal state, such as `dahl` with a large `lambda`; or white noise; \
+                 or a smooth force, such as `tanh(y/v)` for `sign(y)` in equations of your own",
+            );
+            let mut places = [&["system", "noise", "kind"][..], &["system", "noise"], &["system"]].into_iter();
+            let entry = places.find_map(|path| self.document.root.find(path));
+            self.refuse(match entry {
+                Some(entry) => found.at(&entry.key_place, "no white noise acts where friction sticks"),
+                None => found,
+            })
+        })
+    }
+
     fn find_ranges(
         &self,
         ends: &[Arc<dyn System>],
@@ -143,6 +165,17 @@ impl Settings {
         let problem = self.clone().fixed()?.problem;
         let found = automatic_modes(&problem, &open, &self.method.generator, cancellation);
         let found = found.map_err(|error| self.refuse_cells(Diagnostic::new(error.to_string())))?;
+        let names: Vec<&str> = open.iter().map(|&axis| self.family.axis(axis)).collect();
+        let mut note = format!(
+            "modes: {} are chosen for {}; more change the watched densities by {:.1e} of their largest value",
+            found.count,
+            names.join(", "),
+            found.change
+        );
+        if !found.is_enough {
+            note += ", which is much: give `modes` for more, or `count` for cells";
+        }
+        self.chosen.push(note);
         for axis in open {
             self.axes[axis].modes = Some(Modes::Number(found.count));
         }

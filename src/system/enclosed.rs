@@ -35,6 +35,9 @@ impl System for Enclosed {
     fn bounds(&self, axis: usize) -> Option<(f64, f64)> {
         self.ranges.get(axis).copied()
     }
+    fn filtered_noise(&self, axis: usize) -> Option<(f64, f64)> {
+        self.system.filtered_noise(axis)
+    }
     fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
         self.system.switching_surfaces()
     }

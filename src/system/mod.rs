@@ -7,6 +7,7 @@
 //! [`TypedModel`] makes one of equations as text.
 
 mod bistable;
+mod coloured;
 pub mod contract;
 mod enclosed;
 #[cfg(test)]
@@ -25,6 +26,7 @@ mod symmetry;
 mod typed;
 
 pub use crate::formula::{LANES, Lanes};
+pub use coloured::{CORRELATION_TIME, ColouredNoiseError, NOISE_AXIS, NoiseKind};
 pub(crate) use enclosed::Enclosed;
 pub use facts::{PeriodicDrift, SwitchingSurface, Symmetry};
 pub use family::Family;
@@ -108,6 +110,13 @@ pub trait System: Send + Sync {
 
     /// Values that a coordinate can never leave (for Dahl's law |z| ≤ f_c/λ), where the model knows them.
     fn bounds(&self, axis: usize) -> Option<(f64, f64)> {
+        let _ = axis;
+        None
+    }
+
+    /// Mean and standard deviation of a coordinate that is white noise behind a linear filter, η' = -(η - mean)/τ + b ξ with constant
+    /// b and τ, upon which no other coordinate acts; its density is normal.
+    fn filtered_noise(&self, axis: usize) -> Option<(f64, f64)> {
         let _ = axis;
         None
     }

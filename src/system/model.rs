@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use super::{System, TypedEquations};
+use super::coloured::{ColouredNoiseError, coloured};
+use super::{NoiseKind, System, TypedEquations};
 
 /// One axis of a model's state.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -13,7 +14,8 @@ pub struct AxisDescription {
     pub symbol: String,
     /// Meaning in words.
     pub meaning: String,
-    /// Whether modes carry it unless a file says otherwise: the density along it is smooth inside its bounds, and no noise drives it.
+    /// Whether modes carry it unless a file says otherwise: the density along it is smooth inside its bounds and no noise drives it,
+    /// or it is white noise behind a filter.
     pub by_modes: bool,
 }
 
@@ -179,6 +181,7 @@ pub struct Model {
     /// Anything a user should know, one paragraph a string.
     pub notes: Vec<String>,
     definitions: Vec<(String, String)>,
+    noise_kind: NoiseKind,
     bind: Box<Binding>,
     typed: Option<Box<TypedEquations>>,
 }
@@ -274,6 +277,7 @@ impl Model {
             source: String::new(),
             notes: Vec::new(),
             definitions: Vec::new(),
+            noise_kind: NoiseKind::White,
             bind: Box::new(bind),
             typed: None,
         }
@@ -288,6 +292,47 @@ impl Model {
     pub(super) fn with_typed(self, typed: TypedEquations) -> Self {
         let typed = Some(Box::new(typed));
         Self { typed, ..self }
+    }
+
+    /// The model, which says of itself what its noise is.
+    pub(super) fn with_noise_kind(self, noise_kind: NoiseKind) -> Self {
+        Self { noise_kind, ..self }
+    }
+
+    /// The same model with coloured noise in place of white: each of its noises gets the correlation exp(-|s|/τ) at the same
+    /// intensity, an axis of its own (`noise`, of unit variance), and the model the parameter `tau`. As τ → 0 it becomes the white
+    /// noise, in Stratonovich's reading: of a model in Rust the drift is taken to be that of this reading.
+    ///
+    /// ```
+    /// use pbif::system::{Model, registry};
+    ///
+    /// let model = Model::with_coloured_noise(&registry::find("bistable").unwrap()).unwrap();
+    /// let system = model.system_with(&[("a", -0.1), ("sigma2", 0.2), ("tau", 0.4)]).unwrap();
+    /// // x' = a x - x³ + σ η/√(2τ), η' = -η/τ.
+    /// let drift = system.drift_at(0.0, &[1.0, 2.0]);
+    /// assert!((drift[0] - (-1.1 + 0.2_f64.sqrt() / 0.8_f64.sqrt() * 2.0)).abs() < 1e-14);
+    /// assert!((drift[1] + 5.0).abs() < 1e-14);
+    /// ```
+    ///
+    /// # Errors
+    /// [`ColouredNoiseError`].
+    pub fn with_coloured_noise(model: &Arc<Self>) -> Result<Arc<Self>, ColouredNoiseError> {
+        if let Some(typed) = model.typed() {
+            let coloured = typed.source().clone().with_coloured_noise().build();
+            return coloured.map_err(|error| ColouredNoiseError::Equations(error.to_string()));
+        }
+        // Any values will do: how many noises there are does not depend on them.
+        let values = model
+            .parameters
+            .iter()
+            .map(|one| one.default.unwrap_or(1.0));
+        let noises = model.bound(&values.collect::<Vec<_>>()).noise_axes().len();
+        coloured(model, noises).map(Arc::new)
+    }
+
+    /// What its noise is.
+    pub fn noise_kind(&self) -> NoiseKind {
+        self.noise_kind
     }
 
     /// The model with its equations, one a line, as a person writes them.
@@ -401,7 +446,12 @@ impl Model {
 
     /// The system with these parameters.
     pub fn system(&self, values: &ParameterValues) -> Arc<dyn System> {
-        (self.bind)(values.as_slice())
+        self.bound(values.as_slice())
+    }
+
+    /// The system with values in the order of the parameters.
+    pub(super) fn bound(&self, values: &[f64]) -> Arc<dyn System> {
+        (self.bind)(values)
     }
 
     /// The system with these named values; see [`Model::values`].

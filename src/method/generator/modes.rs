@@ -18,8 +18,12 @@ const TRIED: [usize; 10] = [3, 4, 5, 6, 8, 10, 12, 16, 20, 24];
 /// Change of a watched density, relative to its largest value, that more modes may still make.
 const CHANGE: f64 = 1e-4;
 
-/// Cells of the other axes on which modes are counted.
-const COARSE: usize = 32;
+/// Change up to which it may be the cells' doing that it no longer falls, and the share of the change before it that it has then.
+const FLOOR: f64 = 1e-3;
+const STALLED: f64 = 0.7;
+
+/// Cells of the other axes on which modes are counted, for one such axis and for more.
+const COARSE: [usize; 2] = [128, 32];
 
 /// The numbers of modes that are needed, and the change of what is watched that more would make.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,6 +32,8 @@ pub struct ModesFound {
     pub count: usize,
     /// Largest change of a watched density, relative to its largest value, when the next number was tried.
     pub change: f64,
+    /// Whether that is little; otherwise more modes than were tried are needed.
+    pub is_enough: bool,
 }
 
 /// Finds how many modes the axes `open` need (all alike) for what is watched along the path of a problem. The axes of `problem` are as
@@ -47,6 +53,7 @@ pub fn automatic_modes(
     let mut found = ModesFound {
         count: TRIED[0],
         change: f64::INFINITY,
+        is_enough: false,
     };
     for count in TRIED {
         let source = GeneratorSource::new(&coarse(problem, open, count)?, options)?;
@@ -56,8 +63,11 @@ pub fn automatic_modes(
             .collect();
         let now = now?;
         if let Some(before) = before {
-            found.change = change(&before, &now);
-            if found.change <= CHANGE {
+            let earlier = std::mem::replace(&mut found.change, change(&before, &now));
+            // Where more modes stop telling, what is left is the coarse cells' doing.
+            let is_floor = found.change <= FLOOR && found.change > STALLED * earlier;
+            if found.change <= CHANGE || is_floor {
+                found.is_enough = true;
                 return Ok(found);
             }
         }
@@ -73,11 +83,13 @@ type Densities = Vec<Vec<f64>>;
 /// The problem on coarse cells, with so many modes along some axes.
 fn coarse(problem: &Problem, open: &[usize], count: usize) -> Result<Problem, MethodError> {
     let axes = problem.space().axes().iter().enumerate();
+    let cut = axes.clone().filter(|(_, axis)| !axis.is_modes()).count();
+    let cells = COARSE[usize::from(cut > 1)];
     let axes: Result<Vec<Axis>, _> = axes
         .map(|(index, axis)| match axis.is_modes() {
-            true if open.contains(&index) => Axis::modes(axis.from(), axis.to(), count),
+            true if open.contains(&index) => axis.with_modes(count),
             true => Ok(axis.clone()),
-            false => Axis::uniform(axis.from(), axis.to(), axis.count().min(COARSE)),
+            false => Axis::uniform(axis.from(), axis.to(), axis.count().min(cells)),
         })
         .collect();
     problem.on(CellSpace::new(axes?)?)

@@ -9,7 +9,7 @@ use crate::continuation::{DensitySource, Session, SourceError, Subject};
 use crate::generator::{AdvectiveScheme, Generator, GeneratorError, GeneratorOptions, assemble};
 use crate::method::structure::{closed_ends, kinked_surfaces};
 use crate::method::watched::{Maps, Masses};
-use crate::method::{MethodError, Problem, autonomous};
+use crate::method::{MethodError, Problem, has_densities};
 use crate::space::CellSpace;
 use crate::stationary::generator::{RateOptions, RateSolver};
 use crate::system::{Enclosed, SwitchingSurface, System, SystemError};
@@ -38,7 +38,7 @@ impl GeneratorSource {
     /// [`MethodError`].
     pub fn new(problem: &Problem, options: &GeneratorMethodOptions) -> Result<Self, MethodError> {
         let (systems, space) = (problem.family().along()?, problem.space());
-        autonomous(&systems)?;
+        has_densities(problem)?;
         Ok(Self {
             problem: problem.checked_by(GeneratorMethodOptions::CELL_CHECK),
             options: options.clone(),

@@ -8,7 +8,7 @@ use crate::density::{EstimatedDensity, Moments};
 use crate::method::report::Reporter;
 use crate::method::structure::{closed_ends, kinked_surfaces};
 use crate::method::watched::{Maps, Masses};
-use crate::method::{MethodError, Problem, autonomous};
+use crate::method::{MethodError, Problem, has_densities};
 use crate::monte_carlo::{
     EnsembleRun, ErgodicRun, Estimate, MonteCarloError, Relaxation, ensemble, ergodic, relaxation,
 };
@@ -40,7 +40,7 @@ impl MonteCarloSource {
         cancellation: &Cancellation,
     ) -> Result<Self, MethodError> {
         let (systems, space) = (problem.family().along()?, problem.space());
-        autonomous(&systems)?;
+        has_densities(problem)?;
         let mut relaxed: Vec<Relaxation> = Vec::new();
         for system in &systems {
             relaxed.push(relaxation(

@@ -5,7 +5,7 @@ use super::SgcmOptions;
 use crate::cancellation::Cancellation;
 use crate::method::structure::{closed_ends, kinked_surfaces};
 use crate::method::time_step::time_step;
-use crate::method::{MethodError, Problem, autonomous};
+use crate::method::{MethodError, Problem, has_densities};
 use crate::monte_carlo::{Relaxation, StepBias, TOLERATED_BIAS, relaxation};
 use crate::sampling::{Pilot, pilot};
 use crate::system::SwitchingSurface;
@@ -35,7 +35,7 @@ pub(super) fn choose_steps(
     cancellation: &Cancellation,
 ) -> Result<Steps, MethodError> {
     let (systems, space) = (problem.family().along()?, problem.space());
-    autonomous(&systems)?;
+    has_densities(problem)?;
     let (mut pilots, mut relaxed) = (Vec::<Pilot>::new(), Vec::<Relaxation>::new());
     for system in &systems {
         let (system, seed) = (system.as_ref(), options.seed);

@@ -9,7 +9,7 @@ use crate::generator::AdvectiveScheme;
 use crate::method::{Correction, Estimator, StepChoice};
 use crate::sampling::Integrator;
 use crate::stationary::Solver;
-use crate::system::{Interpretation, Model, registry};
+use crate::system::{Interpretation, Model, NoiseKind, registry};
 
 /// Getter and setter of a key. The second argument is the name that `<…>` stands for in the key's path.
 #[derive(Debug, Clone, Copy)]
@@ -279,6 +279,7 @@ named!(
     Integrator,
     Interpretation,
     MethodKind,
+    NoiseKind,
     Solver,
     Typeface
 );

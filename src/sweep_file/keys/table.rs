@@ -12,7 +12,7 @@ use crate::sampling::Integrator;
 use crate::space::MOST_MODES;
 use crate::stationary::Solver;
 use crate::sweep_file::draft::MethodKind;
-use crate::system::{Interpretation, registry};
+use crate::system::{Interpretation, NoiseKind, registry};
 
 /// Most cells an axis may have: edges are stored, so a slip of the pen must not fill the memory.
 const MOST_CELLS: i128 = 1_000_000;
@@ -47,6 +47,9 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
         "Name of a system of your own, in words."),
     key("system.equations.<axis>", Kind::Formula, Rule("a built-in model, by `system.model`"), formulas!(drift),
         "Right side of the equation of an axis, without noise; one an axis, 1 to 4 of them, which also gives their order. docs/formulas.md has the language."),
+    key("system.noise.kind", Kind::Choice(NoiseKind::words), Rule("`white`"), optional!(noise_kind),
+        "`ornstein-uhlenbeck`: coloured noise in place of white, for built-in models too. Each noise keeps its intensity and gets a correlation \
+         that falls exponentially over the time `tau`, which is then a parameter; `noise` is an axis (docs/coloured-noise.md)."),
     key("system.noise.interpretation", Kind::Choice(Interpretation::words), Rule("to be given where it makes a difference"), optional!(equations.interpretation),
         "How noise is read whose amplitude depends on the axis that it drives."),
     key("system.noise.<axis>", Kind::Formulas, Rule("no noise on the axis"), formulas!(noise),
@@ -80,7 +83,7 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
     key("cells.<axis>.count", Kind::Integer(2, MOST_CELLS), Rule("found by two coarse solves for `cells.accuracy`"), of_axis!(count),
         "Number of cells along an axis. An even number puts a face in the middle."),
     key("cells.<axis>.modes", Kind::Count(2, MOST_MODES as i128), Rule("`auto` where the model marks the axis and `count` is not given"), of_axis!(modes),
-        "Number of modes that carry the density along the axis of an internal state without noise, in place of cells, by the generator; other methods use `count`. `auto` finds how many what is watched needs."),
+        "Number of modes that carry the density along the axis of an internal state without noise, or of coloured noise, in place of cells, by the generator; other methods use `count`. `auto` finds how many what is watched needs."),
     key("cells.<axis>.grade", Kind::Choice(automatic), Rule("cells of equal width"), of_axis!(grade),
         "`auto` narrows the cells toward the model's switching surfaces, to a quarter of the layer that holds the kink of the density; or a table with `at` and `smallest`."),
     key("cells.<axis>.grade.at", Kind::List(&Kind::Number(ANY)), Rule("cells of equal width"), of_axis!(grade_at),

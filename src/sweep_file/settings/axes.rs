@@ -1,7 +1,7 @@
 //! The cells of each axis: range, count, grading. What is given is checked here; what is left to the program is found later.
 
 use super::equations::model_in_words;
-use crate::space::{Axis, CellSpace, Grading, SpaceError};
+use crate::space::{Axis, CellSpace, Grading, NORMAL_RANGE, SpaceError};
 use crate::sweep_file::diagnostic::Diagnostic;
 use crate::sweep_file::document::Document;
 use crate::sweep_file::draft::{AxisDraft, Draft, MethodKind, Modes};
@@ -19,6 +19,8 @@ pub struct AxisSettings {
     pub count: Option<usize>,
     /// Where the cells get narrower.
     pub grade: Grade,
+    /// Mean and standard deviation of an axis of coloured noise: its modes are Hermite's.
+    pub filter: Option<(f64, f64)>,
     /// Number of modes that carry it in place of cells, by methods that can ([`MethodKind::takes_modes`]).
     pub modes: Option<Modes>,
 }
@@ -45,7 +47,12 @@ impl AxisSettings {
         let (from, to) = self.range?;
         match self.modes_by(method) {
             Some(Modes::Auto) => return None,
-            Some(Modes::Number(count)) => return Some(Axis::modes(from, to, count)),
+            Some(Modes::Number(count)) => {
+                return Some(match self.filter {
+                    Some((mean, deviation)) => Axis::hermite(mean, deviation, count),
+                    None => Axis::modes(from, to, count),
+                });
+            }
             None => {}
         }
         let count = self.count?;
@@ -105,11 +112,13 @@ fn read_axis(
 ) -> Option<AxisSettings> {
     let method = draft.method.kind;
     let by_modes = described.by_modes && method.takes_modes();
+    let filter = family.and_then(|family| filter(family, index));
     if by_modes && reader.entry(&["cells", name]).is_none() {
         return Some(AxisSettings {
             range: Some(bounds(family?, index)?),
             count: None,
             grade: Grade::Even,
+            filter,
             modes: Some(Modes::Auto),
         });
     }
@@ -119,6 +128,7 @@ fn read_axis(
             range: family.and_then(|family| bounds(family, index)),
             count: None,
             grade: Grade::Auto,
+            filter,
             modes: None,
         });
     };
@@ -141,6 +151,7 @@ fn read_axis(
         range: range?,
         count: axis.count,
         grade: grade?,
+        filter,
         modes,
     };
     if modes.is_some() && method.takes_modes() {
@@ -218,7 +229,15 @@ fn check_modes(
             .iter()
             .all(|system| system.walls(index, range) == [true; 2])
     };
-    let (why, remedy) = if systems
+    let (why, remedy) = if filter(family, index).is_some() {
+        if range == bounds(family, index) {
+            return Some(());
+        }
+        (
+            "the modes of noise have a range of their own",
+            format!("leave `from` and `to` out, or give `cells.{name}.count` in place of modes"),
+        )
+    } else if systems
         .iter()
         .any(|system| system.noise_axes().contains(&index))
     {
@@ -242,7 +261,7 @@ fn check_modes(
         return Some(());
     };
     let diagnostic = Diagnostic::new(format!("axis `{name}` cannot have modes: {why}"))
-        .allowed("modes carry a state without noise between the bounds that the model knows")
+        .allowed("modes carry a state without noise between the bounds that the model knows, or coloured noise")
         .remedy(remedy);
     let place = reader.place(&["cells", name, "modes"]);
     reader.report(match place.or_else(|| reader.place(&["cells", name])) {
@@ -252,8 +271,19 @@ fn check_modes(
     None
 }
 
-/// The widest range that the model's bounds of an axis take at the ends of the sweep.
+/// Mean and standard deviation of an axis of coloured noise, the same all along the sweep.
+fn filter(family: &Family, axis: usize) -> Option<(f64, f64)> {
+    let (from, to) = family.ends();
+    let at = |value: f64| family.at(value).ok()?.filtered_noise(axis);
+    at(from).filter(|one| at(to).as_ref() == Some(one))
+}
+
+/// The widest range that the model's bounds of an axis take at the ends of the sweep; of coloured noise, what holds nearly all of it.
 fn bounds(family: &Family, axis: usize) -> Option<(f64, f64)> {
+    if let Some((mean, deviation)) = filter(family, axis) {
+        let half = NORMAL_RANGE * deviation;
+        return Some((mean - half, mean + half));
+    }
     let (from, to) = family.ends();
     let at = |value: f64| family.at(value).ok()?.bounds(axis);
     let (one, other) = (at(from)?, at(to)?);

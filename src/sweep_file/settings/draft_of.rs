@@ -3,7 +3,7 @@
 use super::{AxisSettings, Grade, Settings};
 use crate::density::Observable;
 use crate::sweep_file::draft::{Auto, AxisDraft, BinsDraft, Draft, EquationsDraft};
-use crate::system::Model;
+use crate::system::{Model, NoiseKind};
 
 impl Settings {
     /// What a complete file says.
@@ -25,6 +25,7 @@ impl Settings {
         Draft {
             title: Some(self.title.clone()),
             model: (!is_typed).then(|| model.clone()),
+            noise_kind: (model.noise_kind() != NoiseKind::White).then(|| model.noise_kind()),
             equations: equations_draft(model),
             parameters: parameters.collect(),
             parameter: Some(parameter.to_owned()),

@@ -11,10 +11,15 @@ use crate::sweep_file::formula_place::inside;
 use crate::sweep_file::names::{list, nearest_name, quotable};
 use crate::sweep_file::reader::Reader;
 use crate::sweep_file::value::{Entry, Value};
-use crate::system::{FormulaPlace, Model, ParameterDescription, TypedModel, TypedModelError};
+use crate::system::{
+    CORRELATION_TIME, ColouredNoiseError, FormulaPlace, Model, NoiseKind, ParameterDescription,
+    TypedModel, TypedModelError,
+};
 
 /// Name of a model made of a file's equations, in messages and in stored runs.
 const NAME: &str = "equations";
+/// The key of `[system.noise]` that holds for built-in models too.
+const KIND: &str = "kind";
 /// The tables of equations, without the values of parameters.
 const TABLES: [&str; 5] = ["equations", "noise", "define", "bounds", "title"];
 
@@ -22,9 +27,17 @@ const TABLES: [&str; 5] = ["equations", "noise", "define", "bounds", "title"];
 pub(super) fn model(reader: &mut Reader<'_>, draft: &Draft) -> Option<Arc<Model>> {
     let has_model = reader.entry(&["system", "model"]);
     let mut tables = TABLES.iter();
-    let given = tables.find_map(|table| reader.entry(&["system", table]));
+    let given = tables.find_map(|table| {
+        let entry = reader.entry(&["system", table])?;
+        // What the noise is can be said of built-in models too.
+        let only_kind = *table == "noise" && {
+            let entries = reader.entries(&["system", "noise"]);
+            !entries.is_empty() && entries.iter().all(|entry| entry.key == KIND)
+        };
+        (!only_kind).then_some(entry)
+    });
     match (has_model, given) {
-        (Some(_), None) => draft.model.clone(),
+        (Some(_), None) => built_in(reader, draft),
         (Some(model), Some(given)) => {
             let title = format!("a built-in model, and `system.{}` too", given.key);
             let diagnostic = Diagnostic::new(title)
@@ -43,6 +56,28 @@ pub(super) fn model(reader: &mut Reader<'_>, draft: &Draft) -> Option<Arc<Model>
             None
         }
     }
+}
+
+/// The built-in model, with the noise that the file means.
+fn built_in(reader: &mut Reader<'_>, draft: &Draft) -> Option<Arc<Model>> {
+    let model = draft.model.as_ref()?;
+    if draft.noise_kind != Some(NoiseKind::OrnsteinUhlenbeck) {
+        return Some(Arc::clone(model));
+    }
+    let coloured = Model::with_coloured_noise(model);
+    let refused = |error: ColouredNoiseError| {
+        let diagnostic = Diagnostic::new(error.to_string());
+        let place = reader.place(&["system", "noise", KIND]);
+        reader.report(coloured_remedy(match place {
+            Some(place) => diagnostic.at(place, "coloured noise"),
+            None => diagnostic,
+        }));
+    };
+    coloured.map_err(refused).ok()
+}
+
+fn coloured_remedy(diagnostic: Diagnostic) -> Diagnostic {
+    diagnostic.remedy("use white noise (leave `kind` out), another model, or other names")
 }
 
 /// What messages call a model: one of a file's own equations has no name.
@@ -158,9 +193,13 @@ fn source(
     for (axis, [lower, upper]) in &equations.bounds {
         model = model.with_bounds(axis, lower, upper);
     }
-    match equations.interpretation {
+    let model = match equations.interpretation {
         Some(interpretation) => model.with_interpretation(interpretation),
         None => model,
+    };
+    match draft.noise_kind {
+        Some(NoiseKind::OrnsteinUhlenbeck) => model.with_coloured_noise(),
+        Some(NoiseKind::White) | None => model,
     }
 }
 
@@ -177,7 +216,8 @@ fn check_swept_name(reader: &mut Reader<'_>, draft: &Draft) {
         .flat_map(|(_, amplitudes)| amplitudes);
     let mut texts = drift.map(|(_, text)| text).chain(noise);
     let given = draft.parameters.iter().any(|(name, _)| name == swept);
-    if given || texts.any(|text| text.contains(swept)) {
+    let coloured = draft.noise_kind == Some(NoiseKind::OrnsteinUhlenbeck);
+    if given || coloured && swept == CORRELATION_TIME || texts.any(|text| text.contains(swept)) {
         return;
     }
     let title = format!(
@@ -240,7 +280,8 @@ fn check_noise(reader: &mut Reader<'_>, model: &Model) {
         return;
     }
     // Amplitudes that are no formulas are reported already.
-    if !reader.is_clean() && !reader.entries(&["system", "noise"]).is_empty() {
+    let mut entries = reader.entries(&["system", "noise"]).iter();
+    if !reader.is_clean() && entries.any(|entry| entry.key != KIND) {
         return;
     }
     let diagnostic = Diagnostic::new("no equation has noise, so that there is no stationary density")
@@ -321,6 +362,15 @@ fn diagnostic(
             plain("this noise", place)
                 .allowed("`interpretation = \"ito\"` or `interpretation = \"stratonovich\"`")
                 .remedy("add one of them to [system.noise]; noise of a physical system is mostly meant as Stratonovich")
+        }
+        TypedModelError::ColouredIto { .. } => {
+            let place = reader.place(&["system", "noise", "interpretation"]);
+            plain("not of coloured noise", place.cloned())
+                .remedy("leave `interpretation` out, or use white noise (leave `kind` out)")
+        }
+        TypedModelError::Coloured(_) => {
+            let place = reader.place(&["system", "noise", KIND]);
+            coloured_remedy(plain("coloured noise", place.cloned()))
         }
         TypedModelError::JumpingNoise { .. } => plain("these noises", table_place(reader, "noise")),
         TypedModelError::TimeWithoutPeriod { place } => {

@@ -125,8 +125,9 @@ fn report_missing(reader: &mut Reader<'_>, model: &Model, swept: Option<&str>) -
         }
         complete = false;
         let title = format!(
-            "model `{}` needs parameter `{}`",
-            model.name, parameter.name
+            "{} needs parameter `{}`",
+            model_in_words(model),
+            parameter.name
         );
         let mut diagnostic = Diagnostic::new(title)
             .allowed(parameter.range.words())

@@ -161,6 +161,7 @@ fn the_resolved_file_holds_every_key() {
         monte_carlo,
         parse(EQUATIONS, &[]).unwrap().to_toml(),
         parse(DAHL, &["cells.z.modes=5"]).unwrap().to_toml(),
+        parse(DAHL, &COLOURED).unwrap().to_toml(),
     ];
     let text = texts.join("\n# next\n");
     let tables = texts.map(|text| text.parse::<toml::Table>().unwrap());
@@ -340,6 +341,92 @@ fn an_internal_state_is_carried_by_modes_unless_cells_are_given() {
             .space()
             .shape(),
         [12, 12, 8]
+    );
+}
+
+/// Dahl's oscillator under coloured noise.
+const COLOURED: [&str; 2] = [
+    "system.noise.kind=ornstein-uhlenbeck",
+    "system.parameters.tau=0.5",
+];
+
+#[test]
+fn coloured_noise_adds_an_axis_and_a_parameter_and_is_written_down_again() {
+    let sets = [&COLOURED[..], &["cells.z.modes=4", "cells.noise.modes=3"]].concat();
+    let spec = parse(DAHL, &sets).unwrap();
+    assert_eq!(spec.observables.len(), 3);
+    assert_eq!(spec.axes[3].range, Some((-6.0, 6.0)));
+    let sweep = spec.prepare(&Cancellation::new()).unwrap();
+    assert_eq!(sweep.problem.space().shape(), [12, 12, 4, 3]);
+    let again = SweepFile::parse("a.toml", &sweep.to_toml())
+        .validate()
+        .unwrap();
+    assert_eq!(again.axes, sweep.settings.axes);
+    assert_eq!(again.to_toml(), sweep.to_toml());
+    // Its modes are found where nothing is said.
+    assert_eq!(
+        parse(DAHL, &COLOURED).unwrap().axes[3].modes,
+        Some(Modes::Auto)
+    );
+    let sampled = [&COLOURED[..], &["method.kind=sgcm"]].concat();
+    let sampled = parse(DAHL, &sampled).unwrap();
+    assert_eq!((sampled.axes[3].count, sampled.axes[3].modes), (None, None));
+    // Its correlation time can be swept, of equations too.
+    let typed = EQUATIONS.replace(
+        "interpretation = \"ito\"\n",
+        "kind = \"ornstein-uhlenbeck\"\n",
+    );
+    let typed = typed.replace("parameter = \"D\"", "parameter = \"tau\"");
+    let spec = parse(&typed, &["system.parameters.D=0.1"]).unwrap();
+    assert_eq!(spec.family.parameter(), "tau");
+    let text = spec.to_toml();
+    let again = SweepFile::parse("a.toml", &text).validate().unwrap();
+    assert_eq!(again.to_toml(), text);
+}
+
+#[test]
+fn coloured_noise_where_it_cannot_be_is_refused_with_the_remedy() {
+    let kind = "system.noise.kind=ornstein-uhlenbeck";
+    for (text, sets, words) in [
+        (DAHL, &[kind][..], "model `dahl` needs parameter `tau`"),
+        (
+            DAHL,
+            &[kind, "system.parameters.tau=0"],
+            "a finite number greater than zero",
+        ),
+        (
+            DAHL,
+            &[
+                COLOURED[0],
+                COLOURED[1],
+                "cells.noise={from=-1, to=1, modes=4}",
+            ],
+            "axis `noise` cannot have modes: the modes of noise have a range of their own",
+        ),
+        (
+            EQUATIONS,
+            &[kind, "system.parameters.tau=1"],
+            "goes to white noise in Stratonovich's reading only",
+        ),
+    ] {
+        let message = parse(text, sets).unwrap_err().to_string();
+        assert!(message.contains(words), "{sets:?}: {message}");
+    }
+}
+
+#[test]
+fn friction_that_sticks_is_refused_before_anything_is_solved() {
+    let sets = [COLOURED[0], COLOURED[1], "sweep.to=0.01"];
+    let spec = parse(FILE, &sets).unwrap();
+    let refused = spec.prepare(&Cancellation::new()).err().unwrap();
+    let message = refused.to_string();
+    assert!(
+        message.contains("friction sticks: beside y = 0"),
+        "{message}"
+    );
+    assert!(
+        message.contains("= help: use a friction law with an internal state"),
+        "{message}"
     );
 }
 

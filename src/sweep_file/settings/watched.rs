@@ -77,7 +77,9 @@ pub(super) fn read(
                 }
             }
         }
-        None if dimension >= 2 => observables.push(Observable::Joint(0, 1)),
+        None if dimension >= 2 && !has_modes(0) && !has_modes(1) => {
+            observables.push(Observable::Joint(0, 1));
+        }
         None => {}
     }
     if observables.is_empty() && reader.is_clean() {

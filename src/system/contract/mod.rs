@@ -11,6 +11,7 @@
 //! | [`System::period`] | drift and noise repeat after it; without one they do not change with time |
 //! | [`System::symmetry`] | the image of a state has the image of its drift, its noise and its exact density |
 //! | [`System::bounds`] | at a bound the drift points inward or along, and noise does not act across |
+//! | [`System::filtered_noise`] | its drift and noise are those of a linear filter with this mean and deviation |
 //! | [`System::exact_log_density`] | solves the stationary Fokker-Planck equation (central differences) |
 //! | [`System::switching_surfaces`] | drift or its slope jumps there |
 //!
@@ -75,6 +76,7 @@ pub fn verify(system: &dyn System, ranges: &[(f64, f64)]) -> Result<(), Contract
     trial.check_time()?;
     trial.check_symmetry()?;
     trial.check_bounds()?;
+    trial.check_filters()?;
     density::check(&trial)?;
     surfaces::check(&trial)
 }

@@ -256,6 +256,36 @@ impl<'a> Trial<'a> {
         Ok(())
     }
 
+    /// The drift of filtered noise is -rate (x - mean), the rate from its noise and its deviation, and the same at all states.
+    pub(super) fn check_filters(&self) -> Result<(), ContractViolation> {
+        for axis in 0..self.dimension() {
+            let Some((mean, deviation)) = self.system.filtered_noise(axis) else {
+                continue;
+            };
+            let mut rates = self.states.iter().map(|state| {
+                let rate = 0.5 * self.intensity(self.times[0], state, axis) / deviation.powi(2);
+                let drift = self.system.drift_at(self.times[0], state)[axis];
+                (state, rate, drift)
+            });
+            let first = rates.clone().next().map_or(f64::NAN, |(_, rate, _)| rate);
+            let fits = |(state, rate, drift): &(&Vec<f64>, f64, f64)| {
+                let wanted = -first * (state[axis] - mean);
+                let fitting = same(*rate, first, first)
+                    && same(*drift, wanted, self.drift_size[axis] + first * deviation);
+                fitting && first > 0.0
+            };
+            if let Some((state, ..)) = rates.find(|one| !fits(one)) {
+                return Err(ContractViolation::Filter {
+                    axis,
+                    mean,
+                    deviation,
+                    state: state.clone(),
+                });
+            }
+        }
+        Ok(())
+    }
+
     fn check_bound(&self, axis: usize, bound: f64, outward: f64) -> Result<(), ContractViolation> {
         for state in &self.states {
             let mut state = state.clone();

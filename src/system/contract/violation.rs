@@ -227,6 +227,21 @@ pub enum ContractViolation {
         /// Amplitude of a Wiener process there.
         amplitude: f64,
     },
+    /// A coordinate that is declared to be white noise behind a linear filter, and is not, or has another mean or deviation.
+    #[error(
+        "axis {axis} is declared to be filtered noise of mean {mean} and standard deviation {deviation}, which its drift and noise at \
+         {state:?} do not fit"
+    )]
+    Filter {
+        /// The axis.
+        axis: usize,
+        /// Declared mean.
+        mean: f64,
+        /// Declared standard deviation.
+        deviation: f64,
+        /// Where.
+        state: Vec<f64>,
+    },
     /// The exact density does not solve the stationary Fokker-Planck equation.
     #[error(
         "the exact density is not stationary: the Fokker-Planck equation over p leaves {residual} at {state:?}, \

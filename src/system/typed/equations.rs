@@ -8,9 +8,10 @@ use super::{FormulaPlace, Interpretation, TypedModel};
 use crate::formula::analysis::{Domain, HazardKind, Interval};
 use crate::formula::graph::{Expression, Symbol};
 use crate::formula::language::typeset_name;
+use crate::system::{CORRELATION_TIME, NoiseKind};
 
 /// The typed equations of a model, as they were typed and as they were read.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct TypedEquations {
     model: TypedModel,
     reading: Arc<Reading>,
@@ -105,7 +106,7 @@ impl TypedEquations {
         words
     }
 
-    /// Parameters that no equation, noise or bound contains, by name.
+    /// Parameters that no equation, noise or bound contains, by name; coloured noise uses its correlation time.
     pub fn unused_parameters(&self) -> Vec<&str> {
         let reading = &self.reading;
         let mut all: Vec<Expression> = reading.typed_drift.clone();
@@ -114,7 +115,11 @@ impl TypedEquations {
         all.extend(bounds.flat_map(|&(lower, upper)| [lower, upper]));
         let graph = reading.scope.graph();
         let names = reading.scope.symbols().parameters().iter().enumerate();
-        let unused = names.filter(|(number, _)| {
+        let coloured = self.model.noise_kind == NoiseKind::OrnsteinUhlenbeck;
+        let unused = names.filter(|(number, name)| {
+            if coloured && *name == CORRELATION_TIME {
+                return false;
+            }
             let symbol = Symbol::Parameter(*number);
             !all.iter().any(|&one| graph.contains(one, symbol))
         });

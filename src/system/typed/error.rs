@@ -7,6 +7,7 @@ use crate::MAX_DIMENSION;
 use crate::formula::language::FormulaError;
 use crate::formula::limits;
 use crate::formula::scope::SymbolError;
+use crate::system::ColouredNoiseError;
 
 /// Where a formula of a model stands.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -123,6 +124,18 @@ pub enum TypedModelError {
         /// The axis.
         axis: String,
     },
+    /// Coloured noise that is to be read in Itô's way.
+    #[error(
+        "a noise on `{axis}` has an amplitude that depends on `{axis}`: coloured noise goes to white noise in Stratonovich's reading \
+         only, never in Itô's"
+    )]
+    ColouredIto {
+        /// The axis.
+        axis: String,
+    },
+    /// Noise that cannot be coloured.
+    #[error(transparent)]
+    Coloured(#[from] ColouredNoiseError),
     /// A Stratonovich noise whose amplitude may jump where the coordinate that it drives moves through.
     #[error(
         "an amplitude may jump where {argument} = 0: Stratonovich's reading then has no drift correction; \

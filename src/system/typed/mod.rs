@@ -14,7 +14,8 @@ mod read;
 
 use std::sync::Arc;
 
-use super::{AxisDescription, Model, ParameterDescription};
+use super::coloured::coloured;
+use super::{AxisDescription, Model, NoiseKind, ParameterDescription};
 use crate::formula::language::typeset_name;
 
 pub use equations::{FormulaHazard, TypedEquations};
@@ -92,6 +93,7 @@ pub struct TypedModel {
     /// Wiener processes, each with the axes that it drives and its amplitudes there.
     processes: Vec<Vec<(String, String)>>,
     interpretation: Option<Interpretation>,
+    noise_kind: NoiseKind,
     /// Axis, lower and upper bound.
     bounds: Vec<(String, String, String)>,
     period: Option<String>,
@@ -116,6 +118,7 @@ impl TypedModel {
             definitions: Vec::new(),
             processes: Vec::new(),
             interpretation: None,
+            noise_kind: NoiseKind::White,
             bounds: Vec::new(),
             period: None,
             source: String::new(),
@@ -162,6 +165,14 @@ impl TypedModel {
     #[must_use]
     pub fn with_interpretation(mut self, interpretation: Interpretation) -> Self {
         self.interpretation = Some(interpretation);
+        self
+    }
+
+    /// The noises coloured, as [`Model::with_coloured_noise`] has it: each gets an axis of its own, and the model the parameter `tau`.
+    /// Where an amplitude depends on the axis that it drives there is but one reading, Stratonovich's, which need not be said.
+    #[must_use]
+    pub fn with_coloured_noise(mut self) -> Self {
+        self.noise_kind = NoiseKind::OrnsteinUhlenbeck;
         self
     }
 
@@ -249,9 +260,14 @@ impl TypedModel {
             .with_source(self.source.as_str())
             .with_notes(notes)
             .with_definitions(self.definitions.clone());
-        Ok(Arc::new(
-            model.with_typed(TypedEquations::new(self, reading)),
-        ))
+        let (kind, noises) = (self.noise_kind, reading.noise_axes.len());
+        let model = Arc::new(model.with_typed(TypedEquations::new(self, reading)));
+        match kind {
+            NoiseKind::White => Ok(model),
+            NoiseKind::OrnsteinUhlenbeck => coloured(&model, noises)
+                .map(Arc::new)
+                .map_err(|error| vec![error.into()]),
+        }
     }
 
     /// The equations as they were typed, one a line.
@@ -299,6 +315,11 @@ impl TypedModel {
     /// How the noise is read, where it was said.
     pub fn interpretation(&self) -> Option<Interpretation> {
         self.interpretation
+    }
+
+    /// What the noises are.
+    pub fn noise_kind(&self) -> NoiseKind {
+        self.noise_kind
     }
 
     /// Names and formulas of the definitions.

@@ -6,6 +6,7 @@ use crate::formula::analysis::KinkPlace;
 use crate::formula::graph::{Expression, Symbol, TooLarge};
 use crate::formula::scope::{DefinitionError, DefinitionFault, Scope, SymbolError, Symbols};
 use crate::formula::tape::{BindError, Program};
+use crate::system::NoiseKind;
 
 /// Axes and the coordinates on them that are constant on planes.
 type Planes = Vec<(usize, Expression)>;
@@ -155,7 +156,12 @@ impl Reader<'_> {
     ) -> Result<(Reading, Vec<String>), TypedModelError> {
         let period = self.period(&typed_drift, &noise)?;
         let drift_expressions = self.ito_drift(&typed_drift, &noise)?;
-        let (surfaces, notes) = self.surfaces(&drift_expressions)?;
+        let mut rough = drift_expressions.clone();
+        if self.model.noise_kind == NoiseKind::OrnsteinUhlenbeck {
+            // An amplitude is then a part of the drift.
+            rough.extend(noise.iter().flatten());
+        }
+        let (surfaces, notes) = self.surfaces(&rough)?;
         let scope = self.scope;
         let own = noise.iter().zip(&noise_axes);
         let amplitudes = own.map(|(process, &axis)| scope.compile(&process[axis..=axis]));
@@ -317,11 +323,25 @@ impl Reader<'_> {
         typed: &[Expression],
         noise: &[Vec<Expression>],
     ) -> Result<Vec<Expression>, TypedModelError> {
-        if self.model.interpretation == Some(Interpretation::Ito) {
+        let read = self.model.interpretation;
+        let coloured = self.model.noise_kind == NoiseKind::OrnsteinUhlenbeck;
+        // What comes through a filter is smooth: its drift is the one that was typed.
+        if coloured && read != Some(Interpretation::Ito) {
+            return Ok(typed.to_vec());
+        }
+        if read == Some(Interpretation::Ito) && !coloured {
             return Ok(typed.to_vec());
         }
         let (drift, jumps) = self.scope.graph_mut().ito_drift(typed, noise)?;
         let mut axes = (0..typed.len()).filter(|&axis| drift[axis] != typed[axis]);
+        if coloured {
+            return match axes.next() {
+                Some(axis) => Err(TypedModelError::ColouredIto {
+                    axis: self.model.axes[axis].name.clone(),
+                }),
+                None => Ok(typed.to_vec()),
+            };
+        }
         if self.model.interpretation.is_none() {
             let differs = axes.next().or_else(|| {
                 // An amplitude that is constant but for jumps.
