@@ -41,9 +41,9 @@ pub(super) fn gauss_hermite(count: usize) -> Rule {
         weights: vec![0.0; count],
     };
     let root = (count as f64).sqrt();
-    for index in 0..count.div_ceil(2) {
+    for (index, start) in starts.into_iter().enumerate().take(count.div_ceil(2)) {
         let mirror = count - 1 - index;
-        let mut s = if index == mirror { 0.0 } else { starts[index] };
+        let mut s = if index == mirror { 0.0 } else { start };
         for _ in 0..2 {
             let (before, value) = orthonormal(count, s);
             s -= value / (root * before);
@@ -73,7 +73,7 @@ pub(super) fn normal_edges(rule: &Rule) -> Vec<f64> {
     for index in 1..=count / 2 {
         edges[count - index] = -edges[index];
     }
-    if count % 2 == 0 {
+    if count.is_multiple_of(2) {
         edges[count / 2] = 0.0;
     }
     edges
