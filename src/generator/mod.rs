@@ -147,7 +147,8 @@ impl GeneratorError {
         let (Self::NoiseAxis { axis, .. }
         | Self::NotFinite { axis, .. }
         | Self::Overflow { axis }
-        | Self::Modes { axis }) = self
+        | Self::Modes { axis }
+        | Self::Filter { axis }) = self
         else {
             return words;
         };
