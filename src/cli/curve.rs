@@ -167,19 +167,9 @@ impl<'a> Job<'a> {
 
     /// Follows the curve; `None` when interrupted before there was one.
     fn follow(&self, cancellation: &Cancellation) -> Result<Option<Curve>, CommandError> {
-        let locate = &self.spec.settings.locate;
-        let swept = self.plane.sides()[0].length();
         let options = CurveOptions {
             largest_step: self.arguments.step,
-            tolerance: match locate.tolerance {
-                Some(tolerance) => tolerance / swept,
-                None => locate.relative_tolerance,
-            },
-            check_every: match locate.grid_check {
-                true => CurveOptions::default().check_every,
-                false => 0,
-            },
-            ..CurveOptions::default()
+            ..self.spec.curve_options(self.plane.sides()[0].length())
         };
         let source = match self.spec.source_in(&self.plane, cancellation) {
             Ok(source) => source,

@@ -14,6 +14,7 @@ mod grid;
 mod label;
 mod live;
 mod locate;
+pub mod map;
 mod observer;
 mod persistence;
 mod report;

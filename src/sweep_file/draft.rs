@@ -129,6 +129,17 @@ pub(super) struct BinsDraft {
     pub(super) count: Option<usize>,
 }
 
+/// What the file says of a map.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct MapDraft {
+    pub(super) parameter: Option<String>,
+    pub(super) from: Option<f64>,
+    pub(super) to: Option<f64>,
+    pub(super) points: Option<usize>,
+    pub(super) depth: Option<usize>,
+    pub(super) curves: Option<bool>,
+}
+
 /// What the file says.
 #[derive(Debug, Clone)]
 pub(super) struct Draft {
@@ -144,6 +155,8 @@ pub(super) struct Draft {
     pub(super) from: Option<f64>,
     pub(super) to: Option<f64>,
     pub(super) points: Option<usize>,
+    /// The second parameter of a map.
+    pub(super) map: MapDraft,
     /// Wanted error of the watched densities where counts are left to the program.
     pub(super) accuracy: f64,
     /// The axes in the order given.
@@ -175,6 +188,7 @@ impl Default for Draft {
             from: None,
             to: None,
             points: None,
+            map: MapDraft::default(),
             accuracy: ACCURACY,
             axes: Vec::new(),
             method: MethodSettings::default(),

@@ -59,5 +59,5 @@ pub use keys::{Key, help, keys};
 pub(crate) use memory::{bytes_in_words, machine_memory};
 pub use names::list;
 pub use report::Report;
-pub use settings::{AxisSettings, BinSettings, Grade, Modes, Settings};
+pub use settings::{AxisSettings, BinSettings, Grade, MapSettings, Modes, Settings};
 pub use sweep::{SolveError, Sweep};

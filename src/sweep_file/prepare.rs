@@ -14,7 +14,7 @@ use crate::method::{
     PILOT_BOX, Problem, RangeError, SgcmOptions, automatic_modes, automatic_ranges, check_sticking,
 };
 use crate::space::Axis;
-use crate::system::System;
+use crate::system::{ParameterValues, System};
 
 impl Settings {
     /// Finds the ranges and gradings that are left to the program, by free trajectories at both ends of the sweep, and asks whether
@@ -88,10 +88,9 @@ impl Settings {
         &mut self,
         cancellation: &Cancellation,
     ) -> Result<Vec<Arc<dyn System>>, Report> {
-        let (from, to) = self.family.ends();
-        let ends: Result<Vec<Arc<dyn System>>, _> =
-            [from, to].iter().map(|&end| self.family.at(end)).collect();
-        let ends = ends.map_err(|error| self.refuse(Diagnostic::new(error.to_string())))?;
+        let corners = self.corners().into_iter();
+        let model = self.family.model().clone();
+        let ends: Vec<Arc<dyn System>> = corners.map(|values| model.system(&values)).collect();
         let ranges = self.find_ranges(&ends, cancellation)?;
         for (axis, range) in self.axes.iter_mut().zip(ranges) {
             axis.range = Some(range);
@@ -118,6 +117,24 @@ impl Settings {
                 None => found,
             })
         })
+    }
+
+    /// The parameters at both ends of the sweep, or at the corners of the map's box: what is chosen once is chosen for these.
+    pub(super) fn corners(&self) -> Vec<ParameterValues> {
+        let (from, to) = self.family.ends();
+        let ends = [from, to].into_iter();
+        let ends: Vec<ParameterValues> = ends
+            .filter_map(|end| self.family.values_at(end).ok())
+            .collect();
+        let Some(map) = &self.map else {
+            return ends;
+        };
+        let model = self.family.model();
+        let with = |value: f64| {
+            let ends = ends.iter();
+            ends.filter_map(move |end| model.with(end, &map.parameter, value).ok())
+        };
+        with(map.from).chain(with(map.to)).collect()
     }
 
     fn find_ranges(

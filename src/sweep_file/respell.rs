@@ -28,9 +28,11 @@ pub(super) fn respelled(document: &Document) -> Document {
             respell_texts(node, &axes);
         });
     }
-    for_node(root, &["sweep", "parameter"], &mut |node| {
-        respell_texts(node, &parameters);
-    });
+    for table in ["sweep", "map"] {
+        for_node(root, &[table, "parameter"], &mut |node| {
+            respell_texts(node, &parameters);
+        });
+    }
     document
 }
 

@@ -2,8 +2,9 @@
 
 use super::settings::Settings;
 use crate::cancellation::Cancellation;
-use crate::continuation::curve::Plane;
-use crate::continuation::{Observer, SweepError, SweepResult, sweep};
+use crate::continuation::curve::{CurveOptions, Plane};
+use crate::continuation::map::{MapObserver, RegimeMap, regime_map};
+use crate::continuation::{DensitySource, Observer, SourceError, SweepError, SweepResult, sweep};
 use crate::method::{MethodError, MethodSource, Problem};
 use crate::system::Family;
 use crate::topology::PersistenceDetector;
@@ -29,10 +30,11 @@ pub enum SolveError {
 }
 
 impl Sweep {
-    /// The detector: its confidence holds for all densities of the sweep together.
+    /// The detector: its confidence holds for all densities of the sweep, or of the map's coarse grid, together.
     pub fn detector(&self) -> PersistenceDetector {
         let settings = &self.settings;
-        let looks = settings.points * settings.observables.len();
+        let rows = settings.map.as_ref().map_or(1, |map| map.points);
+        let looks = settings.points * rows * settings.observables.len();
         PersistenceDetector::new(settings.detect.clone(), looks)
     }
 
@@ -71,6 +73,18 @@ impl Sweep {
         MethodSource::new(&problem, &self.settings.method.chosen(), cancellation)
     }
 
+    /// The same as [`Sweep::source_in`] as whatever asks for sources in planes takes it, such as a map.
+    ///
+    /// # Errors
+    /// [`SourceError::Method`] with what [`Sweep::source_in`] says, [`SourceError::Interrupted`].
+    pub fn boxed_source_in(
+        &self,
+        plane: &Plane,
+        cancellation: &Cancellation,
+    ) -> Result<Box<dyn DensitySource>, SourceError> {
+        Ok(Box::new(self.source_in(plane, cancellation)?))
+    }
+
     /// Solves along the parameter and locates the changes; `observer` sees every point as it is done, `()` looks away.
     ///
     /// # Errors
@@ -91,6 +105,41 @@ impl Sweep {
             cancellation,
             observer,
         )?)
+    }
+
+    /// Makes the map of regimes that `[map]` asks for, `None` where it asks for none; `observer` is told how it goes.
+    ///
+    /// # Errors
+    /// [`SourceError`] where the method refuses, or a corner of the box is not allowed.
+    pub fn map(
+        &self,
+        cancellation: &Cancellation,
+        observer: &MapObserver<'_>,
+    ) -> Result<Option<RegimeMap>, SourceError> {
+        let settings = &self.settings;
+        let map = settings.map.as_ref();
+        let Some((map, plane)) = map.and_then(|map| Some((map, map.plane(&settings.family)?)))
+        else {
+            return Ok(None);
+        };
+        let options = map.options(settings.points, self.curve_options(plane.sides()[0].length()));
+        let source = |plane: &Plane| self.boxed_source_in(plane, cancellation);
+        let detector = self.detector();
+        regime_map(&source, &plane, &detector, &options, cancellation, observer).map(Some)
+    }
+
+    /// How `[locate]` wants curves, in a box whose first side is so long.
+    pub fn curve_options(&self, first: f64) -> CurveOptions {
+        let locate = &self.settings.locate;
+        let usual = CurveOptions::default();
+        CurveOptions {
+            tolerance: match locate.tolerance {
+                Some(tolerance) => tolerance / first,
+                None => locate.relative_tolerance,
+            },
+            check_every: if locate.grid_check { usual.check_every } else { 0 },
+            ..usual
+        }
     }
 
     /// The sweep as a complete sweep file. Read again it gives the same sweep.

@@ -50,12 +50,12 @@ impl Settings {
 
     /// What each parameter takes along the sweep.
     fn parameter_ranges(&self) -> Vec<(f64, f64)> {
-        let (from, to) = self.family.ends();
-        let at = |end: f64| {
-            let values = self.family.values_at(end);
-            values.map_or(Vec::new(), |values| values.as_slice().to_vec())
+        let corners = self.corners();
+        let (Some(first), Some(last)) = (corners.first(), corners.last()) else {
+            return Vec::new();
         };
-        at(from).into_iter().zip(at(to)).collect()
+        let pairs = first.as_slice().iter().zip(last.as_slice());
+        pairs.map(|(&a, &b)| (a, b)).collect()
     }
 
     fn not_finite(&self, hazard: &FormulaHazard, which: &str) -> Diagnostic {

@@ -26,7 +26,7 @@ impl PlaneSide {
     }
 }
 
-/// A box in the plane of two parameters, in which curves are followed. Clones are the same plane.
+/// A box in the plane of two parameters, in which curves are followed. Clones are the same plane; [`Plane::afresh`] is another one.
 ///
 /// A [`Family`](crate::system::Family) along [`Plane::path`] is what a source is made for.
 ///
@@ -106,6 +106,15 @@ impl Plane {
         })
     }
 
+    /// The same box with a path of its own, of which nothing is laid yet.
+    #[must_use]
+    pub fn afresh(&self) -> Self {
+        Self {
+            sides: self.sides.clone(),
+            legs: Arc::default(),
+        }
+    }
+
     /// Its two sides.
     pub fn sides(&self) -> &[PlaneSide; 2] {
         &self.sides
@@ -121,7 +130,7 @@ impl Plane {
     }
 
     /// Values of both parameters at a place of the box with sides of length one.
-    pub(super) fn values(&self, place: [f64; 2]) -> [f64; 2] {
+    pub(in crate::continuation) fn values(&self, place: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|k| {
             let side = &self.sides[k];
             // Both ends exact.
@@ -130,7 +139,7 @@ impl Plane {
     }
 
     /// The place of two values in the box with sides of length one.
-    pub(super) fn place(&self, values: [f64; 2]) -> [f64; 2] {
+    pub(in crate::continuation) fn place(&self, values: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|k| (values[k] - self.sides[k].from) / self.sides[k].length())
     }
 
@@ -147,7 +156,7 @@ impl Plane {
     }
 
     /// Begins a line at a place, wherever the path stood before; returns the path's coordinate there.
-    pub(super) fn begin(&self, place: [f64; 2]) -> f64 {
+    pub(in crate::continuation) fn begin(&self, place: [f64; 2]) -> f64 {
         let mut legs = self.legs.write().unwrap_or_else(PoisonError::into_inner);
         let begins = legs.last().map_or(0.0, Leg::ends) + RUN_UP;
         legs.push(Leg {
@@ -160,7 +169,7 @@ impl Plane {
     }
 
     /// Lays a leg from where the path stands to a place; returns the path's coordinate there.
-    pub(super) fn lay(&self, to: [f64; 2]) -> f64 {
+    pub(in crate::continuation) fn lay(&self, to: [f64; 2]) -> f64 {
         let mut legs = self.legs.write().unwrap_or_else(PoisonError::into_inner);
         let (begins, from) = legs
             .last()

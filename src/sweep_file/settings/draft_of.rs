@@ -2,7 +2,7 @@
 
 use super::{AxisSettings, Grade, Settings};
 use crate::density::Observable;
-use crate::sweep_file::draft::{Auto, AxisDraft, BinsDraft, Draft, EquationsDraft};
+use crate::sweep_file::draft::{Auto, AxisDraft, BinsDraft, Draft, EquationsDraft, MapDraft};
 use crate::system::{Model, NoiseKind};
 
 impl Settings {
@@ -32,6 +32,7 @@ impl Settings {
             from: Some(from),
             to: Some(to),
             points: Some(self.points),
+            map: self.map_draft(),
             axes: axes
                 .map(|(known, axis)| axis_draft(&known.name, axis))
                 .collect(),
@@ -47,6 +48,20 @@ impl Settings {
             figure_formats: self.figure_formats.clone(),
             figures_drawn: self.figures_drawn.clone(),
             figure_style: self.figure_style,
+        }
+    }
+
+    fn map_draft(&self) -> MapDraft {
+        let Some(map) = &self.map else {
+            return MapDraft::default();
+        };
+        MapDraft {
+            parameter: Some(map.parameter.clone()),
+            from: Some(map.from),
+            to: Some(map.to),
+            points: Some(map.points),
+            depth: Some(map.depth),
+            curves: Some(map.curves),
         }
     }
 

@@ -4,6 +4,7 @@ mod axes;
 mod draft_of;
 mod equations;
 mod figures;
+mod map;
 mod method;
 mod quantities;
 mod system;
@@ -19,6 +20,7 @@ use crate::topology::DetectOptions;
 
 pub use super::draft::Modes;
 pub use axes::{AxisSettings, Grade};
+pub use map::MapSettings;
 pub(super) use axes::{at_cells, cell_space};
 pub(super) use equations::value_place as formula_place;
 pub use quantities::BinSettings;
@@ -41,6 +43,8 @@ pub struct Settings {
     pub family: Family,
     /// Number of values, at least 2.
     pub points: usize,
+    /// The second parameter of a map of regimes; `None` for a sweep.
+    pub map: Option<MapSettings>,
     /// Wanted error of the watched densities, in total variation, where counts are left to the program.
     pub accuracy: f64,
     /// What was chosen for the program's part, in words.
@@ -88,6 +92,7 @@ impl Settings {
         let swept = known
             .as_ref()
             .and_then(|model| system::read(&mut reader, &draft, model));
+        let mapped = model.and_then(|model| map::read(&mut reader, &draft, model, draft.points));
         let family = swept.as_ref().map(|swept| &swept.family);
         let axes = model.and_then(|model| axes::read(&mut reader, &draft, model, family));
         let watched = model.map(|model| watched::read(&mut reader, &draft, model, axes.as_deref()));
@@ -111,10 +116,14 @@ impl Settings {
             return Err(reader.into_report());
         }
         let (model, parameter) = (swept.family.model(), swept.family.parameter());
-        let title = || format!("{}, sweep of {parameter}", model.title);
+        let title = || match &mapped {
+            Some(map) => format!("{}, map of {parameter} and {}", model.title, map.parameter),
+            None => format!("{}, sweep of {parameter}", model.title),
+        };
         Ok(Self {
             title: draft.title.clone().unwrap_or_else(title),
             points: swept.points,
+            map: mapped,
             family: swept.family,
             accuracy: draft.accuracy,
             chosen: Vec::new(),

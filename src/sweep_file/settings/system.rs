@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::equations::model_in_words;
+use super::map;
 use crate::continuation::evenly_spaced;
 use crate::sweep_file::diagnostic::{Diagnostic, Place};
 use crate::sweep_file::draft::Draft;
@@ -31,7 +32,7 @@ pub(super) fn read(reader: &mut Reader<'_>, draft: &Draft, model: &Arc<Model>) -
         let names = model.parameters.iter();
         nearest_name(name?, names.map(|parameter| parameter.name.as_str()))
     });
-    let fixed = read_parameters(reader, draft, model, meant);
+    let fixed = read_parameters(reader, draft, model, meant, map::held(draft));
     let (from, to) = (
         read_end(reader, model, swept, "from", draft.from),
         read_end(reader, model, swept, "to", draft.to),
@@ -51,7 +52,7 @@ pub(super) fn read(reader: &mut Reader<'_>, draft: &Draft, model: &Arc<Model>) -
     }
 }
 
-fn known_parameter<'m>(
+pub(super) fn known_parameter<'m>(
     reader: &mut Reader<'_>,
     model: &'m Model,
     name: &str,
@@ -81,6 +82,7 @@ fn read_parameters<'m>(
     draft: &Draft,
     model: &'m Model,
     swept: Option<&str>,
+    mapped: Option<(&str, f64)>,
 ) -> Option<Vec<(&'m str, f64)>> {
     let mut values = Vec::new();
     let mut complete = true;
@@ -110,16 +112,25 @@ fn read_parameters<'m>(
             complete = false;
         }
     }
-    complete &= report_missing(reader, model, swept);
+    let is_given = |name: &str| values.iter().any(|(known, _)| *known == name);
+    let mapped = mapped.filter(|(name, _)| !is_given(name) && Some(*name) != swept);
+    let named = mapped.and_then(|(name, value)| {
+        let mut known = model.parameters.iter();
+        Some((known.find(|parameter| parameter.name == name)?, value))
+    });
+    values.extend(named.map(|(parameter, value)| (parameter.name.as_str(), value)));
+    complete &= report_missing(reader, model, [swept, mapped.map(|one| one.0)]);
     complete.then_some(values)
 }
 
 /// Reports parameters without a default that are not given.
-fn report_missing(reader: &mut Reader<'_>, model: &Model, swept: Option<&str>) -> bool {
+fn report_missing(reader: &mut Reader<'_>, model: &Model, moved: [Option<&str>; 2]) -> bool {
+    let swept = moved[0];
     let mut complete = swept.is_some();
     for parameter in &model.parameters {
         let path = [PARAMETERS[0], PARAMETERS[1], &parameter.name];
-        let given = reader.entry(&path).is_some() || Some(parameter.name.as_str()) == swept;
+        let given =
+            reader.entry(&path).is_some() || moved.contains(&Some(parameter.name.as_str()));
         if given || parameter.default.is_some() || swept.is_none() {
             continue;
         }
@@ -145,7 +156,7 @@ fn report_missing(reader: &mut Reader<'_>, model: &Model, swept: Option<&str>) -
     complete
 }
 
-fn check_range(
+pub(super) fn check_range(
     reader: &mut Reader<'_>,
     model: &Model,
     parameter: &ParameterDescription,

@@ -1,0 +1,105 @@
+//! Where the signatures of a map change along its rows and columns, and which indicator tells where between two nodes.
+
+use super::lattice::{At, Lattice};
+use super::node::{Grid, Solved};
+use crate::continuation::Point;
+use crate::continuation::change::{Change, changes};
+use crate::continuation::root::between;
+use crate::topology::{Detector, IndicatorKind};
+
+/// A zero of an indicator between two neighbours of a row or a column. Places are those of the box with sides of length one.
+#[derive(Debug, Clone)]
+pub(super) struct Crossing {
+    pub(super) observable: usize,
+    pub(super) kind: IndicatorKind,
+    /// Where the indicator is, one coordinate an axis of the density.
+    pub(super) place: Vec<f64>,
+    /// Where it is about zero.
+    pub(super) at: [f64; 2],
+    pub(super) ends: [[f64; 2]; 2],
+}
+
+/// A change between two neighbours that no indicator tells the place of.
+#[derive(Debug, Clone)]
+pub(super) struct Blurred {
+    pub(super) observable: usize,
+    pub(super) ends: [[f64; 2]; 2],
+}
+
+/// A row or a column: its nodes in order, with their places along it.
+type Line<'g> = Vec<(usize, At, &'g Solved)>;
+
+/// All changes along rows and columns.
+pub(super) fn crossings(
+    grid: &Grid,
+    lattice: &Lattice,
+    detector: &dyn Detector,
+) -> (Vec<Crossing>, Vec<Blurred>) {
+    let (mut found, mut blurred) = (Vec::new(), Vec::new());
+    for side in 0..2 {
+        for line in lines(grid, lattice, side) {
+            // Densities are kept about changes only.
+            let runs = line.chunk_by(|a, b| {
+                let kept = a.2.point.is_some() && b.2.point.is_some();
+                kept && b.0 - a.0 <= lattice.coarse()
+            });
+            for run in runs.filter(|run| run.len() > 1) {
+                along(run, lattice, detector, &mut found, &mut blurred);
+            }
+        }
+    }
+    (found, blurred)
+}
+
+fn lines<'g>(grid: &'g Grid, lattice: &Lattice, side: usize) -> Vec<Line<'g>> {
+    let mut lines: Vec<Line<'g>> = vec![Vec::new(); lattice.last(1 - side) + 1];
+    for (at, solved) in grid.all() {
+        lines[at[1 - side]].push((at[side], at, solved));
+    }
+    for line in &mut lines {
+        line.sort_by_key(|one| one.0);
+    }
+    lines
+}
+
+/// The changes along a run of neighbours whose densities are there.
+fn along(
+    run: &[(usize, At, &Solved)],
+    lattice: &Lattice,
+    detector: &dyn Detector,
+    found: &mut Vec<Crossing>,
+    blurred: &mut Vec<Blurred>,
+) {
+    let solved: Vec<(At, &Point)> = run
+        .iter()
+        .filter_map(|&(_, at, solved)| Some((at, solved.point.as_ref()?)))
+        .filter(|(_, point)| !point.detections.is_empty())
+        .collect();
+    let points: Vec<&Point> = solved.iter().map(|one| one.1).collect();
+    let share = |index: usize| lattice.share(solved[index].0);
+    for change in changes(&points, detector) {
+        match crossing(&change, &share) {
+            Some(crossing) => found.push(crossing),
+            None => blurred.push(Blurred {
+                observable: change.observable,
+                ends: [share(change.left), share(change.right)],
+            }),
+        }
+    }
+}
+
+/// `None` where no indicator changes its sign.
+fn crossing(change: &Change, share: &dyn Fn(usize) -> [f64; 2]) -> Option<Crossing> {
+    let crossing = change.crossing()?;
+    let ends = [share(crossing.left), share(crossing.left + 1)];
+    let [low, high] = &crossing.ends;
+    let along = between((0.0, low.value), (1.0, high.value));
+    let nearer = if along < 0.5 { low } else { high };
+    Some(Crossing {
+        observable: change.observable,
+        kind: crossing.kind(),
+        place: nearer.place.clone(),
+        at: [0, 1].map(|k| (1.0 - along) * ends[0][k] + along * ends[1][k]),
+        ends,
+    })
+}

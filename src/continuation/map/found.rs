@@ -1,0 +1,60 @@
+//! What a map gives: nodes with their signatures, the curves between them, and what no curve explains.
+
+use crate::continuation::curve::{Curve, Plane};
+use crate::continuation::{PointStatus, Subject};
+use crate::topology::Signature;
+
+/// A solved place of a map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapNode {
+    /// Values of both parameters.
+    pub values: [f64; 2],
+    /// How often the coarse grid was halved for it.
+    pub level: usize,
+    /// How the solve went.
+    pub status: PointStatus,
+    /// The signature of every watched density, in the order of [`Subject::observables`]; empty without a density.
+    pub signatures: Vec<Signature>,
+    /// Why there is no density, where a sentence is known.
+    pub reason: Option<String>,
+}
+
+/// Places where a signature changes and no curve was followed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Untraced {
+    /// The observable, by its place in [`Subject::observables`].
+    pub observable: usize,
+    /// How many pairs of neighbouring nodes show it.
+    pub pairs: usize,
+    /// Values of both parameters between one of these pairs.
+    pub near: [f64; 2],
+    /// Why.
+    pub reason: String,
+}
+
+/// A map of regimes.
+#[derive(Debug, Clone)]
+pub struct RegimeMap {
+    /// What was watched.
+    pub subject: Subject,
+    /// The box.
+    pub plane: Plane,
+    /// The solved nodes, by the second parameter and then the first.
+    pub nodes: Vec<MapNode>,
+    /// The cells whose corners they are, lower and upper corner of each in the box with sides of length one.
+    pub cells: Vec<[[f64; 2]; 2]>,
+    /// The curves, in the order in which they were followed.
+    pub curves: Vec<Curve>,
+    /// Changes that no curve explains.
+    pub untraced: Vec<Untraced>,
+    /// Whether it was interrupted before it was complete.
+    pub interrupted: bool,
+}
+
+impl RegimeMap {
+    /// The place of an observable among those that are watched; `None` for one that is not.
+    pub(crate) fn place_of(&self, observable: crate::density::Observable) -> Option<usize> {
+        let mut observables = self.subject.observables.iter();
+        observables.position(|&one| one == observable)
+    }
+}

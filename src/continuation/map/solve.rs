@@ -1,0 +1,211 @@
+//! Solving the nodes of a map: the coarse grid in strips, then what neighbours that differ ask for, in parts of fixed length. Every strip
+//! and part is a session of its own along a path of its own.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+
+use rayon::prelude::*;
+
+use super::found::MapNode;
+use super::lattice::{At, Lattice, Leaf};
+use super::node::{Grid, Solved};
+use super::{MapObserver, MapProgress, SourceInPlane};
+use crate::cancellation::Cancellation;
+use crate::continuation::curve::Plane;
+use crate::continuation::{Finding, Point, PointStatus, Session, Solution, SolveReport, SourceError};
+use crate::topology::Detector;
+
+/// Coarse rows of a strip: its first node is solved without a neighbour, and all strips can be solved side by side.
+const ROWS: usize = 2;
+/// Nodes of a part of a refinement.
+const PART: usize = 16;
+
+/// What solves a map, and what is solved.
+pub(super) struct Solver<'a> {
+    source: &'a SourceInPlane<'a>,
+    plane: &'a Plane,
+    lattice: &'a Lattice,
+    detector: &'a dyn Detector,
+    cancellation: &'a Cancellation,
+    observer: &'a MapObserver<'a>,
+    grid: Mutex<Grid>,
+    done: AtomicUsize,
+    wanted: AtomicUsize,
+}
+
+impl<'a> Solver<'a> {
+    pub(super) fn new(
+        source: &'a SourceInPlane<'a>,
+        plane: &'a Plane,
+        lattice: &'a Lattice,
+        detector: &'a dyn Detector,
+        cancellation: &'a Cancellation,
+        observer: &'a MapObserver<'a>,
+    ) -> Self {
+        Self {
+            source,
+            plane,
+            lattice,
+            detector,
+            cancellation,
+            observer,
+            grid: Mutex::default(),
+            done: AtomicUsize::new(0),
+            wanted: AtomicUsize::new(0),
+        }
+    }
+
+    /// What is solved. A poisoned lock holds nodes as whole as any other.
+    pub(super) fn grid(&self) -> MutexGuard<'_, Grid> {
+        self.grid.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(super) fn into_nodes(self) -> Vec<MapNode> {
+        let grid = self.grid.into_inner();
+        grid.unwrap_or_else(PoisonError::into_inner).into_nodes()
+    }
+
+    /// Solves the coarse grid and refines it; gives the cells that are not halved further.
+    pub(super) fn solve_all(&self) -> Result<Vec<Leaf>, SourceError> {
+        let strips = self.lattice.strips(ROWS);
+        let coarse: Vec<At> = strips.concat();
+        self.solve_parts(&strips)?;
+        self.grid().let_go(&coarse, self.lattice, true);
+        let mut leaves = self.lattice.cells();
+        for level in 1..=self.lattice.depth() {
+            let least = self.lattice.coarse() >> level;
+            loop {
+                let (mixed, rest): (Vec<Leaf>, Vec<Leaf>) = leaves
+                    .into_iter()
+                    .partition(|&leaf| leaf.size > least && self.is_mixed(leaf));
+                leaves = rest;
+                if mixed.is_empty() || self.cancellation.is_cancelled() {
+                    leaves.extend(mixed);
+                    break;
+                }
+                let new = self.unsolved(&mixed);
+                let parts: Vec<Vec<At>> = new.chunks(PART).map(<[At]>::to_vec).collect();
+                self.solve_parts(&parts)?;
+                leaves.extend(mixed.into_iter().flat_map(Leaf::halves));
+            }
+        }
+        leaves.sort_by_key(|leaf| (leaf.corner[1], leaf.corner[0]));
+        Ok(leaves)
+    }
+
+    /// Whether signatures differ on the border of a cell.
+    fn is_mixed(&self, leaf: Leaf) -> bool {
+        let grid = self.grid();
+        leaf.border().any(|at| grid.differ(leaf.corner, at))
+    }
+
+    /// The places that halving these cells asks for, each near to the one before.
+    fn unsolved(&self, cells: &[Leaf]) -> Vec<At> {
+        let mut places: Vec<At> = cells.iter().flat_map(|leaf| leaf.middles()).collect();
+        places.sort_unstable();
+        places.dedup();
+        let grid = self.grid();
+        places.retain(|&at| grid.get(at).is_none());
+        let mut walked = Vec::with_capacity(places.len());
+        let mut here: At = [0, 0];
+        while !places.is_empty() {
+            let apart = |at: &At| {
+                let [x, y] = [0, 1].map(|side| at[side].abs_diff(here[side]));
+                x * x + y * y
+            };
+            let nearest = (0..places.len()).min_by_key(|&index| apart(&places[index]));
+            here = places.swap_remove(nearest.unwrap_or(0));
+            walked.push(here);
+        }
+        walked
+    }
+
+    /// Solves strips or parts side by side. Asked to stop, it leaves out what is not done.
+    fn solve_parts(&self, parts: &[Vec<At>]) -> Result<(), SourceError> {
+        let more = parts.iter().map(Vec::len).sum();
+        self.wanted.fetch_add(more, Ordering::Relaxed);
+        let solved = parts.par_iter().map(|part| self.solve_part(part));
+        solved.collect()
+    }
+
+    fn solve_part(&self, part: &[At]) -> Result<(), SourceError> {
+        let plane = self.plane.afresh();
+        let source = (self.source)(&plane)?;
+        let mut session = source.open(self.cancellation);
+        let mut behind = Vec::new();
+        for (index, &at) in part.iter().enumerate() {
+            if self.cancellation.is_cancelled() {
+                break;
+            }
+            let place = self.lattice.share(at);
+            let coordinate = match index {
+                0 => plane.begin(place),
+                _ => plane.lay(place),
+            };
+            let method = source.method();
+            let Some(solved) = self.solve_node(session.as_mut(), method, at, coordinate) else {
+                break;
+            };
+            let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+            (self.observer)(&MapProgress::Solved {
+                node: &solved.node,
+                done,
+                wanted: self.wanted.load(Ordering::Relaxed),
+            });
+            self.grid().insert(at, solved);
+            behind.push(at);
+            // Now and then: what is let go makes room for what comes.
+            if behind.len() == PART || index + 1 == part.len() {
+                self.grid().let_go(&behind, self.lattice, false);
+                behind.clear();
+            }
+        }
+        Ok(())
+    }
+
+    /// A node; `None` where the source was asked to stop.
+    fn solve_node(
+        &self,
+        session: &mut dyn Session,
+        method: &'static str,
+        at: At,
+        coordinate: f64,
+    ) -> Option<Solved> {
+        let clock = Instant::now();
+        let mut reason = None;
+        let solution = match session.solve(coordinate) {
+            Ok(solution) => solution.detached(),
+            Err(SourceError::Interrupted) => return None,
+            Err(SourceError::Method(error)) => {
+                let mut report = SolveReport::solved(method);
+                report.status = PointStatus::Failed;
+                report.findings = vec![Finding::Told(error.to_string())];
+                reason = Some(error.to_string());
+                Solution::without_density(report)
+            }
+        };
+        let densities = solution.densities;
+        let detections: Vec<_> = densities.iter().map(|one| self.detector.detect(one)).collect();
+        let node = MapNode {
+            values: self.plane.values(self.lattice.share(at)),
+            level: self.lattice.level(at),
+            status: solution.report.status,
+            signatures: detections.iter().map(|one| one.signature).collect(),
+            reason,
+        };
+        Some(Solved {
+            is_seen: detections.iter().all(|one| one.is_seen),
+            point: Some(Point {
+                value: coordinate,
+                report: solution.report,
+                moments: solution.moments,
+                densities,
+                detections,
+                distance: None,
+                seconds: clock.elapsed().as_secs_f64(),
+            }),
+            node,
+        })
+    }
+}

@@ -1,0 +1,216 @@
+//! The curves of a map: from each crossing that no curve passes yet, one is followed, several side by side.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+
+use super::crossing::{Blurred, Crossing};
+use super::found::Untraced;
+use super::{MapObserver, MapProgress, SourceInPlane};
+use crate::cancellation::Cancellation;
+use crate::continuation::SourceError;
+use crate::continuation::curve::{Curve, CurveError, CurveOptions, CurveStart, Plane, follow};
+use crate::topology::{Detector, IndicatorKind};
+
+/// Starts of one indicator that may fail before its other crossings are not tried.
+const MOST_FAILURES: usize = 4;
+/// How far beyond its two nodes a crossing may be passed, as a share of their distance: errors of nodes and curve.
+const BEYOND: f64 = 0.25;
+/// How near a curve of another indicator must pass for a crossing to be the same change, in sides of the box.
+const SAME: f64 = 4e-3;
+
+/// What follows the curves of a map.
+pub(super) struct Tracer<'a> {
+    pub(super) source: &'a SourceInPlane<'a>,
+    pub(super) plane: &'a Plane,
+    pub(super) detector: &'a dyn Detector,
+    pub(super) options: &'a CurveOptions,
+    pub(super) cancellation: &'a Cancellation,
+    pub(super) observer: &'a MapObserver<'a>,
+}
+
+/// A curve as a line in the box with sides of length one.
+struct Drawn {
+    observable: usize,
+    kind: IndicatorKind,
+    line: Vec<[f64; 2]>,
+}
+
+impl Tracer<'_> {
+    /// The curves, and what none explains.
+    pub(super) fn trace(
+        &self,
+        mut open: Vec<Crossing>,
+        blurred: Vec<Blurred>,
+    ) -> (Vec<Curve>, Vec<Untraced>) {
+        let mut curves = Vec::new();
+        let mut drawn: Vec<Drawn> = Vec::new();
+        let mut failures: Vec<(Crossing, String)> = Vec::new();
+        let met = AtomicUsize::new(0);
+        while !self.cancellation.is_cancelled() {
+            open.retain(|crossing| !drawn.iter().any(|curve| curve.explains(crossing)));
+            let starts = starts(&mut open, &failures);
+            if starts.is_empty() {
+                break;
+            }
+            let found = starts.par_iter().map(|start| self.follow(start, &met));
+            let found: Vec<Result<Curve, CurveError>> = found.collect();
+            for (start, found) in starts.into_iter().zip(found) {
+                match found {
+                    Ok(_) if drawn.iter().any(|curve| curve.explains(&start)) => {}
+                    Ok(curve) => {
+                        drawn.push(Drawn {
+                            observable: start.observable,
+                            kind: start.kind,
+                            line: self.line(&curve),
+                        });
+                        curves.push(curve);
+                    }
+                    Err(CurveError::Source(SourceError::Interrupted)) => {}
+                    Err(error) => failures.push((start, error.to_string())),
+                }
+            }
+        }
+        let untraced = match self.cancellation.is_cancelled() {
+            true => Vec::new(),
+            false => self.untraced(&drawn, &open, &failures, &blurred),
+        };
+        (curves, untraced)
+    }
+
+    fn follow(&self, start: &Crossing, met: &AtomicUsize) -> Result<Curve, CurveError> {
+        let plane = self.plane.afresh();
+        let source = (self.source)(&plane)?;
+        let begins = CurveStart {
+            values: plane.values(start.at),
+            observable: start.observable,
+            kind: start.kind,
+            place: start.place.clone(),
+        };
+        let mut observer = |values: [f64; 2]| {
+            let done = met.fetch_add(1, Ordering::Relaxed) + 1;
+            (self.observer)(&MapProgress::Met { values, done });
+        };
+        let (options, cancellation) = (self.options, self.cancellation);
+        let detector = self.detector;
+        follow(source.as_ref(), &plane, detector, &begins, options, cancellation, &mut observer)
+    }
+
+    fn line(&self, curve: &Curve) -> Vec<[f64; 2]> {
+        let points = curve.points.iter();
+        points.map(|point| self.plane.place(point.values)).collect()
+    }
+
+    /// Changes without a curve, one an observable.
+    fn untraced(
+        &self,
+        drawn: &[Drawn],
+        open: &[Crossing],
+        failures: &[(Crossing, String)],
+        blurred: &[Blurred],
+    ) -> Vec<Untraced> {
+        const NO_INDICATOR: &str = "no indicator tells where between two nodes it changes";
+        let is_open = |ends: &[[f64; 2]; 2], observable: usize| {
+            let mut curves = drawn.iter().filter(|curve| curve.observable == observable);
+            !curves.any(|curve| curve.passes(ends).is_some())
+        };
+        let mut pairs: Vec<(usize, [[f64; 2]; 2], &str)> = Vec::new();
+        for (crossing, reason) in failures {
+            pairs.push((crossing.observable, crossing.ends, reason));
+        }
+        pairs.extend(open.iter().map(|one| {
+            let same = failures.iter().find(|failed| is_alike(&failed.0, one));
+            let reason = same.map_or("its curve was not followed", |failed| &failed.1);
+            (one.observable, one.ends, reason)
+        }));
+        pairs.extend(blurred.iter().map(|one| (one.observable, one.ends, NO_INDICATOR)));
+        pairs.retain(|(observable, ends, _)| is_open(ends, *observable));
+        let mut found: Vec<Untraced> = Vec::new();
+        for (observable, [a, b], reason) in pairs {
+            let known = found
+                .iter_mut()
+                .find(|one| one.observable == observable && one.reason == reason);
+            if let Some(known) = known {
+                known.pairs += 1;
+                continue;
+            }
+            found.push(Untraced {
+                observable,
+                pairs: 1,
+                near: self.plane.values([0, 1].map(|k| 0.5 * (a[k] + b[k]))),
+                reason: reason.to_owned(),
+            });
+        }
+        found
+    }
+}
+
+/// Takes one crossing of every indicator from those that are open: the middle one, away from ends of curves where they turn and meet.
+fn starts(open: &mut Vec<Crossing>, failures: &[(Crossing, String)]) -> Vec<Crossing> {
+    let mut starts: Vec<Crossing> = Vec::new();
+    let mut seen: Vec<(usize, IndicatorKind)> = Vec::new();
+    for crossing in open.iter() {
+        let key = (crossing.observable, crossing.kind);
+        let failed = failures.iter().filter(|failed| is_alike(&failed.0, crossing));
+        if !seen.contains(&key) && failed.count() < MOST_FAILURES {
+            seen.push(key);
+        }
+    }
+    for key in seen {
+        let of_key = |one: &Crossing| (one.observable, one.kind) == key;
+        let places: Vec<usize> = (0..open.len()).filter(|&index| of_key(&open[index])).collect();
+        if let Some(&middle) = places.get(places.len() / 2) {
+            starts.push(open.remove(middle));
+        }
+    }
+    starts
+}
+
+fn is_alike(a: &Crossing, b: &Crossing) -> bool {
+    a.observable == b.observable && a.kind == b.kind
+}
+
+impl Drawn {
+    /// Whether a crossing is one with this curve.
+    fn explains(&self, crossing: &Crossing) -> bool {
+        let passed = self.passes(&crossing.ends).filter(|_| self.observable == crossing.observable);
+        passed.is_some_and(|at| {
+            let apart = (at[0] - crossing.at[0]).hypot(at[1] - crossing.at[1]);
+            self.kind == crossing.kind || apart < SAME
+        })
+    }
+
+    /// Where the curve passes between two nodes, or a little beyond them.
+    fn passes(&self, ends: &[[f64; 2]; 2]) -> Option<[f64; 2]> {
+        let [a, b] = *ends;
+        let wider = |from: [f64; 2], to: [f64; 2]| [0, 1].map(|k| to[k] + BEYOND * (to[k] - from[k]));
+        let (from, to) = (wider(b, a), wider(a, b));
+        let mut pieces = self.line.windows(2);
+        pieces.find_map(|piece| meeting([from, to], [piece[0], piece[1]]))
+    }
+}
+
+/// Where two straight lines meet, if they do.
+fn meeting([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
+    let cross = |u: [f64; 2], v: [f64; 2]| u[0] * v[1] - u[1] * v[0];
+    let minus = |u: [f64; 2], v: [f64; 2]| [u[0] - v[0], u[1] - v[1]];
+    let (first, second, gap) = (minus(b, a), minus(d, c), minus(c, a));
+    let across = cross(first, second);
+    let (along, beside) = (cross(gap, second) / across, cross(gap, first) / across);
+    // Parallel lines give numbers that are no shares.
+    let inside = (0.0..=1.0).contains(&along) && (-1e-9..=1.0 + 1e-9).contains(&beside);
+    inside.then(|| [0, 1].map(|k| a[k] + along * first[k]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_meet_where_they_cross() {
+        let met = meeting([[0.0, 0.0], [1.0, 0.0]], [[0.25, -1.0], [0.25, 1.0]]);
+        assert_eq!(met, Some([0.25, 0.0]));
+        assert_eq!(meeting([[0.0, 0.0], [1.0, 0.0]], [[1.25, -1.0], [1.25, 1.0]]), None);
+        assert_eq!(meeting([[0.0, 0.0], [1.0, 0.0]], [[0.0, 1.0], [1.0, 1.0]]), None);
+    }
+}
