@@ -7,6 +7,7 @@ mod curve;
 mod detect;
 mod explore;
 mod interrupts;
+mod map;
 mod merge;
 mod new;
 mod output;

@@ -36,6 +36,9 @@ pub(super) fn run(
     arguments: &SweepArguments,
 ) -> Result<Outcome, CommandError> {
     let home = output_path(name, arguments.out.as_deref());
+    if spec.settings.map.is_some() {
+        return super::map::run(spec, &home, arguments);
+    }
     let shard = arguments.shard;
     let path = match shard {
         Some(shard) => {

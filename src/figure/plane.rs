@@ -64,10 +64,7 @@ struct Scene<'a> {
 impl Scene<'_> {
     /// Symbol of a side's parameter.
     fn symbol(&self, side: usize) -> String {
-        let name = &self.curve.plane.sides()[side].parameter;
-        let mut parameters = self.family.model().parameters.iter();
-        let known = parameters.find(|parameter| parameter.name == *name);
-        symbols::variable(known.map_or(name.as_str(), |parameter| parameter.symbol.as_str()))
+        symbol_of(self.family, &self.curve.plane.sides()[side].parameter)
     }
 
     fn draw(&self, title: &str) -> Result<Page, DrawError> {
@@ -93,7 +90,7 @@ impl Scene<'_> {
         let page = Page::new(look, width, below + legend.height() + MARGIN);
         heading.draw(&page)?;
         let panel = page.panel(rect, x, y);
-        self.draw_curve(&panel)?;
+        draw_line(&panel, self.curve, Stroke::curve(0))?;
         frame::border(&page, rect)?;
         across.draw_below(&page, rect, true)?;
         up.draw_left(&page, rect, true)?;
@@ -107,74 +104,13 @@ impl Scene<'_> {
         let density = names::density(self.family, self.curve.observable);
         let line = format!("{} of {density} is 0", self.curve.kind.name());
         let mut entries = vec![(Sample::Curve(stroke), line)];
-        if self.is_band_seen(rect) {
-            let band = Stroke::solid(stroke.colour.at(BAND), 8.0);
-            entries.push((Sample::Curve(band), "its error".to_owned()));
-        }
-        let doubtful = |point: &CurvePoint| point.status != BifurcationStatus::Located;
-        if self.curve.points.iter().any(doubtful) {
-            entries.push((Sample::Curve(dashed()), "not located".to_owned()));
-        }
+        entries.extend(remarks(self.curve, stroke, rect));
         entries
-    }
-
-    /// Whether the band is wider than the line somewhere.
-    fn is_band_seen(&self, rect: Rectangle) -> bool {
-        let shorter = rect.width.min(rect.height);
-        let mut points = self.curve.points.iter();
-        points.any(|point| 2.0 * point.error * shorter > SEEN)
-    }
-
-    fn draw_curve(&self, panel: &Panel) -> Result<(), DrawError> {
-        let points = &self.curve.points;
-        let edge = |sign: f64| {
-            let points = points.iter();
-            points.map(move |point| {
-                let [x, y] = [0, 1].map(|k| point.values[k] + sign * point.to_edge[k]);
-                self.kept(x, y)
-            })
-        };
-        let mut outline: Vec<(f64, f64)> = edge(1.0).collect();
-        outline.extend(edge(-1.0).collect::<Vec<_>>().into_iter().rev());
-        let colour = Stroke::curve(0).colour;
-        panel.draw(&outline, Shape::Area(colour.at(BAND)))?;
-        for (places, located) in self.pieces() {
-            let stroke = if located { Stroke::curve(0) } else { dashed() };
-            panel.draw(&places, Shape::Line(stroke))?;
-        }
-        Ok(())
-    }
-
-    /// Pieces of the line of which both ends are located, or not.
-    fn pieces(&self) -> Vec<(Vec<(f64, f64)>, bool)> {
-        let mut pieces: Vec<(Vec<(f64, f64)>, bool)> = Vec::new();
-        for pair in self.curve.points.windows(2) {
-            let mut both = pair.iter();
-            let located = both.all(|point| point.status == BifurcationStatus::Located);
-            let [a, b] = [0, 1].map(|k| self.kept(pair[k].values[0], pair[k].values[1]));
-            match pieces.last_mut().filter(|piece| piece.1 == located) {
-                Some((places, _)) => places.push(b),
-                None => pieces.push((vec![a, b], located)),
-            }
-        }
-        pieces
-    }
-
-    /// A place moved into the box.
-    fn kept(&self, x: f64, y: f64) -> (f64, f64) {
-        let [first, second] = self.curve.plane.sides();
-        (
-            x.clamp(first.from, first.to),
-            y.clamp(second.from, second.to),
-        )
     }
 
     /// The start with its label and the signatures on both sides, and the ends with theirs.
     fn draw_marks(&self, page: &Page, panel: &Panel, rect: Rectangle) -> Result<(), DrawError> {
-        let place = |point: &CurvePoint| {
-            let (x, y) = self.kept(point.values[0], point.values[1]);
-            (x, y)
-        };
+        let place = |point: &CurvePoint| kept(self.curve, point.values[0], point.values[1]);
         for end in &self.curve.ends {
             let Some(point) = self.curve.points.get(end.point) else {
                 continue;
@@ -252,11 +188,77 @@ impl Scene<'_> {
     }
 }
 
-fn dashed() -> Stroke {
+/// What a legend says beside the meaning of a curve's line: its band, where it is wider than the line, and what dashes mean.
+pub(super) fn remarks(curve: &Curve, stroke: Stroke, rect: Rectangle) -> Vec<(Sample, String)> {
+    let mut entries = Vec::new();
+    let shorter = rect.width.min(rect.height);
+    let is_seen = |point: &CurvePoint| 2.0 * point.error * shorter > SEEN;
+    if curve.points.iter().any(is_seen) {
+        let band = Stroke::solid(stroke.colour.at(BAND), 8.0);
+        entries.push((Sample::Curve(band), "its error".to_owned()));
+    }
+    let doubtful = |point: &CurvePoint| point.status != BifurcationStatus::Located;
+    if curve.points.iter().any(doubtful) {
+        entries.push((Sample::Curve(dashed(stroke)), "not located".to_owned()));
+    }
+    entries
+}
+
+/// Draws a curve with its band, in dashes where it is not located.
+pub(super) fn draw_line(panel: &Panel, curve: &Curve, stroke: Stroke) -> Result<(), DrawError> {
+    let edge = |sign: f64| {
+        let points = curve.points.iter();
+        points.map(move |point| {
+            let [x, y] = [0, 1].map(|k| point.values[k] + sign * point.to_edge[k]);
+            kept(curve, x, y)
+        })
+    };
+    let mut outline: Vec<(f64, f64)> = edge(1.0).collect();
+    outline.extend(edge(-1.0).collect::<Vec<_>>().into_iter().rev());
+    panel.draw(&outline, Shape::Area(stroke.colour.at(BAND)))?;
+    for (places, located) in pieces(curve) {
+        let stroke = if located { stroke } else { dashed(stroke) };
+        panel.draw(&places, Shape::Line(stroke))?;
+    }
+    Ok(())
+}
+
+/// Pieces of the line of which both ends are located, or not.
+fn pieces(curve: &Curve) -> Vec<(Vec<(f64, f64)>, bool)> {
+    let mut pieces: Vec<(Vec<(f64, f64)>, bool)> = Vec::new();
+    for pair in curve.points.windows(2) {
+        let mut both = pair.iter();
+        let located = both.all(|point| point.status == BifurcationStatus::Located);
+        let [a, b] = [0, 1].map(|k| kept(curve, pair[k].values[0], pair[k].values[1]));
+        match pieces.last_mut().filter(|piece| piece.1 == located) {
+            Some((places, _)) => places.push(b),
+            None => pieces.push((vec![a, b], located)),
+        }
+    }
+    pieces
+}
+
+/// A place moved into the box.
+fn kept(curve: &Curve, x: f64, y: f64) -> (f64, f64) {
+    let [first, second] = curve.plane.sides();
+    (
+        x.clamp(first.from, first.to),
+        y.clamp(second.from, second.to),
+    )
+}
+
+fn dashed(stroke: Stroke) -> Stroke {
     Stroke {
         dash: DASHES,
-        ..Stroke::curve(0)
+        ..stroke
     }
+}
+
+/// Symbol of a parameter.
+pub(super) fn symbol_of(family: &Family, name: &str) -> String {
+    let mut parameters = family.model().parameters.iter();
+    let known = parameters.find(|parameter| parameter.name == name);
+    symbols::variable(known.map_or(name, |parameter| parameter.symbol.as_str()))
 }
 
 /// Writes beside a point, above it and toward the middle of the panel, where that is free.

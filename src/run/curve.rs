@@ -6,9 +6,9 @@ use serde_json::json;
 
 use super::RunError;
 use super::atomic::{sync_all_below, write_atomically};
-use super::columns::{Columns, flag, number, word};
+use super::columns::{Column, Columns, flag, number, word};
 use super::staging::Staging;
-use crate::continuation::curve::{Curve, CurvePoint, CurveWork};
+use crate::continuation::curve::{Curve, CurvePoint, CurveWork, Plane};
 use crate::system::Family;
 
 /// Everything a curve leaves in its folder, the file that marks it as one first.
@@ -19,7 +19,18 @@ const ENTRIES: [&str; 3] = ["curve.json", "curves.csv", "figures"];
 /// # Errors
 /// [`RunError::Table`].
 pub fn curves_csv(family: &Family, curve: &Curve, start: &str) -> Result<String, RunError> {
-    type Row<'a> = (String, &'a CurvePoint);
+    Columns(columns(family, &curve.plane)).csv(&rows(curve, start))
+}
+
+/// A point of a curve as a row of a table.
+pub(super) struct CurveRow<'a> {
+    pub(super) label: String,
+    pub(super) curve: &'a Curve,
+    pub(super) point: &'a CurvePoint,
+}
+
+/// The rows of a curve, from end to end.
+pub(super) fn rows<'a>(curve: &'a Curve, start: &str) -> Vec<CurveRow<'a>> {
     let label = |index: usize| {
         let mut ends = curve.ends.iter();
         match ends.find(|end| end.point == index) {
@@ -29,40 +40,51 @@ pub fn curves_csv(family: &Family, curve: &Curve, start: &str) -> Result<String,
         }
     };
     let points = curve.points.iter().enumerate();
-    let rows: Vec<Row<'_>> = points.map(|(index, point)| (label(index), point)).collect();
-    let [first, second] = curve
-        .plane
-        .sides()
-        .each_ref()
-        .map(|side| side.parameter.clone());
-    let mut columns = vec![
-        word("label", |row: &Row<'_>| row.0.clone()),
-        number(first.clone(), |row: &Row<'_>| row.1.values[0]),
-        number(second.clone(), |row: &Row<'_>| row.1.values[1]),
-        number("error", |row: &Row<'_>| row.1.error),
-        number(format!("edge_{first}"), |row: &Row<'_>| row.1.to_edge[0]),
-        number(format!("edge_{second}"), |row: &Row<'_>| row.1.to_edge[1]),
-        word("observable", |_| curve.observable.name(family)),
-        word("method", |_| curve.kind.name().to_owned()),
-        number("indicator", |row: &Row<'_>| row.1.indicator),
+    let row = |(index, point)| CurveRow {
+        label: label(index),
+        curve,
+        point,
+    };
+    points.map(row).collect()
+}
+
+/// The columns of curves in a plane.
+pub(super) fn columns<'a>(family: &'a Family, plane: &Plane) -> Vec<Column<'a, CurveRow<'a>>> {
+    type Row<'a> = CurveRow<'a>;
+    let [first, second] = plane.sides().each_ref().map(|side| side.parameter.clone());
+    vec![
+        word("label", |row: &Row<'_>| row.label.clone()),
+        number(first.clone(), |row: &Row<'_>| row.point.values[0]),
+        number(second.clone(), |row: &Row<'_>| row.point.values[1]),
+        number("error", |row: &Row<'_>| row.point.error),
+        number(format!("edge_{first}"), |row: &Row<'_>| {
+            row.point.to_edge[0]
+        }),
+        number(format!("edge_{second}"), |row: &Row<'_>| {
+            row.point.to_edge[1]
+        }),
+        word("observable", |row: &Row<'_>| {
+            row.curve.observable.name(family)
+        }),
+        word("method", |row: &Row<'_>| row.curve.kind.name().to_owned()),
+        number("indicator", |row: &Row<'_>| row.point.indicator),
         number(format!("indicator_by_{first}"), |row: &Row<'_>| {
-            row.1.gradient[0]
+            row.point.gradient[0]
         }),
         number(format!("indicator_by_{second}"), |row: &Row<'_>| {
-            row.1.gradient[1]
+            row.point.gradient[1]
         }),
-        number("arclength", |row: &Row<'_>| row.1.arclength),
-        number("slope", |row: &Row<'_>| row.1.tangent[1] / row.1.tangent[0]),
-        flag("checked", |row: &Row<'_>| row.1.checked),
-        word("status", |row: &Row<'_>| row.1.status.word().to_owned()),
-    ];
-    columns.extend([
-        number("error_solver", |row: &Row<'_>| row.1.parts.solver),
-        number("error_grid", |row: &Row<'_>| row.1.parts.grid),
-        number("error_sampling", |row: &Row<'_>| row.1.parts.sampling),
-        number("error_leak", |row: &Row<'_>| row.1.parts.leak),
-    ]);
-    Columns(columns).csv(&rows)
+        number("arclength", |row: &Row<'_>| row.point.arclength),
+        number("slope", |row: &Row<'_>| {
+            row.point.tangent[1] / row.point.tangent[0]
+        }),
+        flag("checked", |row: &Row<'_>| row.point.checked),
+        word("status", |row: &Row<'_>| row.point.status.word().to_owned()),
+        number("error_solver", |row: &Row<'_>| row.point.parts.solver),
+        number("error_grid", |row: &Row<'_>| row.point.parts.grid),
+        number("error_sampling", |row: &Row<'_>| row.point.parts.sampling),
+        number("error_leak", |row: &Row<'_>| row.point.parts.leak),
+    ]
 }
 
 /// What there is to know of a curve beside its points, as JSON.
@@ -80,13 +102,6 @@ fn curve_json(
         })
     };
     let sides = curve.plane.sides().iter();
-    let ends = curve.ends.iter().map(|end| {
-        json!({
-            "label": end.label,
-            "reason": end.reason.words(&curve.plane),
-            "point": end.point,
-        })
-    });
     let text = json!({
         "program": env!("CARGO_PKG_NAME"),
         "version": env!("CARGO_PKG_VERSION"),
@@ -98,12 +113,24 @@ fn curve_json(
             .collect::<Vec<_>>(),
         "points": curve.points.len(),
         "start": curve.start,
-        "ends": ends.collect::<Vec<_>>(),
+        "ends": ends_json(curve),
         "work": work(&curve.work),
         "check_work": work(&curve.check_work),
         "sweep_file": sweep,
     });
     Ok(serde_json::to_string_pretty(&text)? + "\n")
+}
+
+/// The ends of a curve with their reasons.
+pub(super) fn ends_json(curve: &Curve) -> Vec<serde_json::Value> {
+    let ends = curve.ends.iter().map(|end| {
+        json!({
+            "label": end.label,
+            "reason": end.reason.words(&curve.plane),
+            "point": end.point,
+        })
+    });
+    ends.collect()
 }
 
 /// A curve's folder in the making. Dropped before it is in place, it leaves what was there.

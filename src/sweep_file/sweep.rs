@@ -122,7 +122,10 @@ impl Sweep {
         else {
             return Ok(None);
         };
-        let options = map.options(settings.points, self.curve_options(plane.sides()[0].length()));
+        let options = map.options(
+            settings.points,
+            self.curve_options(plane.sides()[0].length()),
+        );
         let source = |plane: &Plane| self.boxed_source_in(plane, cancellation);
         let detector = self.detector();
         regime_map(&source, &plane, &detector, &options, cancellation, observer).map(Some)
@@ -137,7 +140,11 @@ impl Sweep {
                 Some(tolerance) => tolerance / first,
                 None => locate.relative_tolerance,
             },
-            check_every: if locate.grid_check { usual.check_every } else { 0 },
+            check_every: if locate.grid_check {
+                usual.check_every
+            } else {
+                0
+            },
             ..usual
         }
     }

@@ -62,6 +62,18 @@ impl Progress {
         }
     }
 
+    /// So many of those that are wanted are done.
+    pub(in crate::cli) fn count(&self, text: &str, done: usize, wanted: usize) {
+        match &self.bar {
+            Some(bar) => {
+                bar.set_length(wanted as u64);
+                bar.set_position(done as u64);
+                bar.set_message(text.to_owned());
+            }
+            None => self.line(&format!("{done:4} of {wanted:4}  {text}")),
+        }
+    }
+
     /// A step of something else than a sweep begins.
     pub(in crate::cli) fn step(&self, text: &str, done: usize, total: usize) {
         match &self.bar {

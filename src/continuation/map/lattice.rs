@@ -74,7 +74,8 @@ impl Lattice {
     pub(super) fn cells(&self) -> Vec<Leaf> {
         let size = self.coarse();
         let columns = 0..self.counts[0] - 1;
-        let cells = columns.flat_map(|i| (0..self.counts[1] - 1).map(move |j| [i * size, j * size]));
+        let cells =
+            columns.flat_map(|i| (0..self.counts[1] - 1).map(move |j| [i * size, j * size]));
         cells.map(|corner| Leaf { corner, size }).collect()
     }
 
@@ -149,7 +150,11 @@ mod tests {
         let lattice = Lattice::new([3, 3], 2);
         let cell = lattice.cells()[1];
         assert_eq!((cell.corner, cell.size), ([0, 4], 4));
-        let corner = |at: &At| cell.halves().iter().any(|half| half.border().any(|one| one == *at));
+        let corner = |at: &At| {
+            cell.halves()
+                .iter()
+                .any(|half| half.border().any(|one| one == *at))
+        };
         assert!(cell.middles().iter().all(corner));
         assert!(cell.middles().iter().all(|&at| lattice.level(at) == 1));
         assert_eq!(lattice.level([4, 4]), 0);

@@ -36,7 +36,9 @@ impl Grid {
 
     /// All nodes with their places, by rows.
     pub(super) fn all(&self) -> impl Iterator<Item = (At, &Solved)> {
-        self.0.iter().map(|(&(row, column), solved)| ([column, row], solved))
+        self.0
+            .iter()
+            .map(|(&(row, column), solved)| ([column, row], solved))
     }
 
     pub(super) fn into_nodes(self) -> Vec<MapNode> {

@@ -57,7 +57,10 @@ impl RegimeMap {
                 kinds.len() - 1
             });
             let place = self.plane.place(node.values);
-            let is_beside = self.lines(observable).iter().any(|line| distance(line, place) < reach);
+            let is_beside = self
+                .lines(observable)
+                .iter()
+                .any(|line| distance(line, place) < reach);
             seeds.push((canvas.pixel(place), kind as u32, is_beside));
         }
         let owners = canvas.flooded(&walls, &seeds);
@@ -80,7 +83,10 @@ impl RegimeMap {
 
     /// How far from a curve a node must be, in sides of the box.
     fn reach(&self) -> f64 {
-        let smallest = self.cells.iter().map(|[low, high]| (high[0] - low[0]).max(high[1] - low[1]));
+        let smallest = self
+            .cells
+            .iter()
+            .map(|[low, high]| (high[0] - low[0]).max(high[1] - low[1]));
         BESIDE * smallest.fold(f64::INFINITY, f64::min).min(1.0)
     }
 
@@ -116,7 +122,10 @@ impl RegimeMap {
         let mut order: Vec<usize> = (0..count).collect();
         order.sort_by(|&a, &b| regions[b].share.total_cmp(&regions[a].share));
         let mut place = vec![0; count];
-        order.iter().enumerate().for_each(|(new, &old)| place[old] = new);
+        order
+            .iter()
+            .enumerate()
+            .for_each(|(new, &old)| place[old] = new);
         pixels.iter_mut().for_each(|pixel| *pixel = place[*pixel]);
         RegionPicture {
             size: canvas.size,
@@ -269,7 +278,9 @@ impl Canvas {
             });
             !inner || count < 4
         };
-        let mut front: Vec<usize> = (0..numbers.len()).filter(|&pixel| is_border(pixel)).collect();
+        let mut front: Vec<usize> = (0..numbers.len())
+            .filter(|&pixel| is_border(pixel))
+            .collect();
         front.iter().for_each(|&pixel| depth[pixel] = 0);
         let mut steps = 0;
         while !front.is_empty() {

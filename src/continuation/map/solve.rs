@@ -13,7 +13,9 @@ use super::node::{Grid, Solved};
 use super::{MapObserver, MapProgress, SourceInPlane};
 use crate::cancellation::Cancellation;
 use crate::continuation::curve::Plane;
-use crate::continuation::{Finding, Point, PointStatus, Session, Solution, SolveReport, SourceError};
+use crate::continuation::{
+    Finding, Point, PointStatus, Session, Solution, SolveReport, SourceError,
+};
 use crate::topology::Detector;
 
 /// Coarse rows of a strip: its first node is solved without a neighbour, and all strips can be solved side by side.
@@ -186,7 +188,10 @@ impl<'a> Solver<'a> {
             }
         };
         let densities = solution.densities;
-        let detections: Vec<_> = densities.iter().map(|one| self.detector.detect(one)).collect();
+        let detections: Vec<_> = densities
+            .iter()
+            .map(|one| self.detector.detect(one))
+            .collect();
         let node = MapNode {
             values: self.plane.values(self.lattice.share(at)),
             level: self.lattice.level(at),

@@ -29,6 +29,11 @@ pub(super) struct Tracer<'a> {
     pub(super) observer: &'a MapObserver<'a>,
 }
 
+/// Fewest points of a curve: with fewer its indicator exists on a single line of the plane, such as the one on which a system is symmetric.
+const FEWEST: usize = 3;
+/// A curve whose middle error is larger is none that a map could show, in sides of the box.
+const VAGUE: f64 = 0.05;
+
 /// A curve as a line in the box with sides of length one.
 struct Drawn {
     observable: usize,
@@ -46,6 +51,7 @@ impl Tracer<'_> {
         let mut curves = Vec::new();
         let mut drawn: Vec<Drawn> = Vec::new();
         let mut failures: Vec<(Crossing, String)> = Vec::new();
+        let mut vague: Vec<(Crossing, String)> = Vec::new();
         let met = AtomicUsize::new(0);
         while !self.cancellation.is_cancelled() {
             open.retain(|crossing| !drawn.iter().any(|curve| curve.explains(crossing)));
@@ -59,12 +65,21 @@ impl Tracer<'_> {
                 match found {
                     Ok(_) if drawn.iter().any(|curve| curve.explains(&start)) => {}
                     Ok(curve) => {
+                        let line = self.line(&curve);
                         drawn.push(Drawn {
                             observable: start.observable,
                             kind: start.kind,
-                            line: self.line(&curve),
+                            line,
                         });
-                        curves.push(curve);
+                        let error = middle_error(&curve);
+                        if error > VAGUE {
+                            let reason = format!(
+                                "its curve is uncertain by {error:.1} of the sides of the box: the cells do not resolve it"
+                            );
+                            vague.push((start, reason));
+                        } else if curve.points.len() >= FEWEST {
+                            curves.push(curve);
+                        }
                     }
                     Err(CurveError::Source(SourceError::Interrupted)) => {}
                     Err(error) => failures.push((start, error.to_string())),
@@ -73,7 +88,15 @@ impl Tracer<'_> {
         }
         let untraced = match self.cancellation.is_cancelled() {
             true => Vec::new(),
-            false => self.untraced(&drawn, &open, &failures, &blurred),
+            false => {
+                let mut untraced = self.untraced(&drawn, &open, &failures, &blurred);
+                untraced.extend(
+                    vague
+                        .iter()
+                        .map(|(start, reason)| self.vague(start, reason)),
+                );
+                untraced
+            }
         };
         (curves, untraced)
     }
@@ -93,7 +116,15 @@ impl Tracer<'_> {
         };
         let (options, cancellation) = (self.options, self.cancellation);
         let detector = self.detector;
-        follow(source.as_ref(), &plane, detector, &begins, options, cancellation, &mut observer)
+        follow(
+            source.as_ref(),
+            &plane,
+            detector,
+            &begins,
+            options,
+            cancellation,
+            &mut observer,
+        )
     }
 
     fn line(&self, curve: &Curve) -> Vec<[f64; 2]> {
@@ -101,7 +132,17 @@ impl Tracer<'_> {
         points.map(|point| self.plane.place(point.values)).collect()
     }
 
-    /// Changes without a curve, one an observable.
+    /// A change whose curve says too little.
+    fn vague(&self, start: &Crossing, reason: &str) -> Untraced {
+        Untraced {
+            observable: start.observable,
+            pairs: 1,
+            near: self.plane.values(start.at),
+            reason: reason.to_owned(),
+        }
+    }
+
+    /// Changes without a curve, one an observable and reason.
     fn untraced(
         &self,
         drawn: &[Drawn],
@@ -123,7 +164,11 @@ impl Tracer<'_> {
             let reason = same.map_or("its curve was not followed", |failed| &failed.1);
             (one.observable, one.ends, reason)
         }));
-        pairs.extend(blurred.iter().map(|one| (one.observable, one.ends, NO_INDICATOR)));
+        pairs.extend(
+            blurred
+                .iter()
+                .map(|one| (one.observable, one.ends, NO_INDICATOR)),
+        );
         pairs.retain(|(observable, ends, _)| is_open(ends, *observable));
         let mut found: Vec<Untraced> = Vec::new();
         for (observable, [a, b], reason) in pairs {
@@ -151,14 +196,18 @@ fn starts(open: &mut Vec<Crossing>, failures: &[(Crossing, String)]) -> Vec<Cros
     let mut seen: Vec<(usize, IndicatorKind)> = Vec::new();
     for crossing in open.iter() {
         let key = (crossing.observable, crossing.kind);
-        let failed = failures.iter().filter(|failed| is_alike(&failed.0, crossing));
+        let failed = failures
+            .iter()
+            .filter(|failed| is_alike(&failed.0, crossing));
         if !seen.contains(&key) && failed.count() < MOST_FAILURES {
             seen.push(key);
         }
     }
     for key in seen {
         let of_key = |one: &Crossing| (one.observable, one.kind) == key;
-        let places: Vec<usize> = (0..open.len()).filter(|&index| of_key(&open[index])).collect();
+        let places: Vec<usize> = (0..open.len())
+            .filter(|&index| of_key(&open[index]))
+            .collect();
         if let Some(&middle) = places.get(places.len() / 2) {
             starts.push(open.remove(middle));
         }
@@ -173,7 +222,9 @@ fn is_alike(a: &Crossing, b: &Crossing) -> bool {
 impl Drawn {
     /// Whether a crossing is one with this curve.
     fn explains(&self, crossing: &Crossing) -> bool {
-        let passed = self.passes(&crossing.ends).filter(|_| self.observable == crossing.observable);
+        let passed = self
+            .passes(&crossing.ends)
+            .filter(|_| self.observable == crossing.observable);
         passed.is_some_and(|at| {
             let apart = (at[0] - crossing.at[0]).hypot(at[1] - crossing.at[1]);
             self.kind == crossing.kind || apart < SAME
@@ -183,11 +234,19 @@ impl Drawn {
     /// Where the curve passes between two nodes, or a little beyond them.
     fn passes(&self, ends: &[[f64; 2]; 2]) -> Option<[f64; 2]> {
         let [a, b] = *ends;
-        let wider = |from: [f64; 2], to: [f64; 2]| [0, 1].map(|k| to[k] + BEYOND * (to[k] - from[k]));
+        let wider =
+            |from: [f64; 2], to: [f64; 2]| [0, 1].map(|k| to[k] + BEYOND * (to[k] - from[k]));
         let (from, to) = (wider(b, a), wider(a, b));
         let mut pieces = self.line.windows(2);
         pieces.find_map(|piece| meeting([from, to], [piece[0], piece[1]]))
     }
+}
+
+/// The error that half of the points of a curve exceed.
+fn middle_error(curve: &Curve) -> f64 {
+    let mut errors: Vec<f64> = curve.points.iter().map(|point| point.error).collect();
+    errors.sort_by(f64::total_cmp);
+    errors.get(errors.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// Where two straight lines meet, if they do.
@@ -210,7 +269,13 @@ mod tests {
     fn lines_meet_where_they_cross() {
         let met = meeting([[0.0, 0.0], [1.0, 0.0]], [[0.25, -1.0], [0.25, 1.0]]);
         assert_eq!(met, Some([0.25, 0.0]));
-        assert_eq!(meeting([[0.0, 0.0], [1.0, 0.0]], [[1.25, -1.0], [1.25, 1.0]]), None);
-        assert_eq!(meeting([[0.0, 0.0], [1.0, 0.0]], [[0.0, 1.0], [1.0, 1.0]]), None);
+        assert_eq!(
+            meeting([[0.0, 0.0], [1.0, 0.0]], [[1.25, -1.0], [1.25, 1.0]]),
+            None
+        );
+        assert_eq!(
+            meeting([[0.0, 0.0], [1.0, 0.0]], [[0.0, 1.0], [1.0, 1.0]]),
+            None
+        );
     }
 }

@@ -52,20 +52,50 @@ impl Picture {
         palette.extend([255, 255, 255]);
         let mut opacity = vec![255; COLOURS];
         opacity.push(0);
-        let mut bytes = Vec::new();
-        let mut encoder = png::Encoder::new(&mut bytes, self.width as u32, self.height as u32);
-        encoder.set_color(png::ColorType::Indexed);
-        encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_palette(palette);
-        encoder.set_trns(opacity);
-        encoder.set_compression(png::Compression::High);
-        // Rows of a map repeat: the filter `up` turns them into zeros.
-        encoder.set_filter(png::Filter::Up);
-        let mut writer = encoder.write_header()?;
-        writer.write_image_data(&self.indices)?;
-        writer.finish()?;
-        Ok(bytes)
+        encoded((self.width, self.height), palette, opacity, &self.indices)
     }
+}
+
+/// A picture of areas, each of one colour, as an indexed PNG: the pixel `(column, row)`, counted from the **lower** left, has the colour with the
+/// number that `number` gives, of at most 256.
+///
+/// # Errors
+/// [`DrawError::Png`].
+pub(in crate::figure) fn patches(
+    (width, height): (usize, usize),
+    colours: &[(u8, u8, u8)],
+    number: impl Fn(usize, usize) -> usize,
+) -> Result<Vec<u8>, DrawError> {
+    let palette = colours.iter().flat_map(|&(r, g, b)| [r, g, b]).collect();
+    let rows = (0..height).rev();
+    let pixels = rows.flat_map(|row| (0..width).map(move |column| (column, row)));
+    let last = colours.len().saturating_sub(1);
+    let indices: Vec<u8> = pixels
+        .map(|(column, row)| number(column, row).min(last) as u8)
+        .collect();
+    encoded((width, height), palette, vec![255; colours.len()], &indices)
+}
+
+/// Pixels that are places in a palette, rows from the upper one downward.
+fn encoded(
+    (width, height): (usize, usize),
+    palette: Vec<u8>,
+    opacity: Vec<u8>,
+    indices: &[u8],
+) -> Result<Vec<u8>, DrawError> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
+    encoder.set_color(png::ColorType::Indexed);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_palette(palette);
+    encoder.set_trns(opacity);
+    encoder.set_compression(png::Compression::High);
+    // Rows of a map repeat: the filter `up` turns them into zeros.
+    encoder.set_filter(png::Filter::Up);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(indices)?;
+    writer.finish()?;
+    Ok(bytes)
 }
 
 /// For each of `count` pixels over `from..to`, the interval of `edges` (ascending) that holds its middle.

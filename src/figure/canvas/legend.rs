@@ -38,6 +38,8 @@ pub(in crate::figure) enum Sample {
     Ring,
     /// A hatched box.
     Hatched,
+    /// A box of one colour.
+    Box(Colour),
 }
 
 /// A legend laid out in rows.
@@ -153,6 +155,7 @@ fn draw_sample(page: &Page, sample: Sample, (x, y): (f64, f64)) -> Result<(), Dr
             page.draw(&corners, ground(0.2))?;
             ring(|points, shape| page.draw(points, shape), middle)
         }
+        Sample::Box(colour) => page.draw(&corners, Shape::Area(colour)),
         Sample::Hatched => super::hatch::draw(page, (x, x + SAMPLE), (y - half, y + half)),
     }
 }

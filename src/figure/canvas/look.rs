@@ -157,7 +157,7 @@ impl Look {
     }
 
     /// A colour on this ground, and its opacity.
-    pub(super) fn resolve(&self, colour: Colour) -> ((u8, u8, u8), f64) {
+    pub(in crate::figure) fn resolve(&self, colour: Colour) -> ((u8, u8, u8), f64) {
         let rgb = if self.is_dark {
             colour.dark
         } else {

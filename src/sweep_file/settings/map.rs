@@ -86,8 +86,9 @@ pub(super) fn read(
         }
     }
     if from == to || !(to - from).is_finite() {
-        let diagnostic = Diagnostic::new(format!("the map goes from {from} to {to} along `{name}`"))
-            .allowed("two different ends, in either order");
+        let diagnostic =
+            Diagnostic::new(format!("the map goes from {from} to {to} along `{name}`"))
+                .allowed("two different ends, in either order");
         reader.report(match reader.place(&["map", "to"]) {
             Some(place) => diagnostic.at(place, "no range"),
             None => diagnostic,

@@ -20,9 +20,9 @@ use crate::topology::DetectOptions;
 
 pub use super::draft::Modes;
 pub use axes::{AxisSettings, Grade};
-pub use map::MapSettings;
 pub(super) use axes::{at_cells, cell_space};
 pub(super) use equations::value_place as formula_place;
+pub use map::MapSettings;
 pub use quantities::BinSettings;
 pub(super) use quantities::quantity_name;
 

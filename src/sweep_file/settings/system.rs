@@ -129,8 +129,7 @@ fn report_missing(reader: &mut Reader<'_>, model: &Model, moved: [Option<&str>; 
     let mut complete = swept.is_some();
     for parameter in &model.parameters {
         let path = [PARAMETERS[0], PARAMETERS[1], &parameter.name];
-        let given =
-            reader.entry(&path).is_some() || moved.contains(&Some(parameter.name.as_str()));
+        let given = reader.entry(&path).is_some() || moved.contains(&Some(parameter.name.as_str()));
         if given || parameter.default.is_some() || swept.is_none() {
             continue;
         }

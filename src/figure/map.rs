@@ -1,0 +1,390 @@
+//! A map of regimes: regions of one signature in pale colours with their words, and the curves between them with their bands.
+
+use plotters_backend::text_anchor::HPos;
+
+use super::FigureError;
+use super::canvas::DrawError;
+use super::canvas::frame::{self, Scale};
+use super::canvas::heat::patches;
+use super::canvas::legend::{Legend, Sample};
+use super::canvas::look::Look;
+use super::canvas::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
+use super::canvas::render;
+use super::canvas::style::{BLANK, Colour, INK, MARGIN, PAPER, Stroke, TICK_TEXT};
+use super::canvas::symbols;
+use super::drawn::Figure;
+use super::names;
+use super::plane::{draw_line, remarks, symbol_of};
+use super::style::FigureStyle;
+use crate::continuation::curve::{Curve, EndReason};
+use crate::continuation::map::{RegimeMap, RegionPicture};
+use crate::system::Family;
+use crate::topology::{IndicatorKind, Signature};
+
+/// Size of the panel on a page of its own width, in pixels, and that width.
+const PANEL: (f64, f64) = (390.0, 300.0);
+const USUAL: f64 = 480.0;
+/// Room right of the panel, for half a label.
+const BESIDE: f64 = 14.0;
+/// Pixels of the picture of the regions to a figure pixel.
+const FINE: f64 = 2.0;
+/// How much of a curve's colour is in the ground of a region.
+const TINT: f64 = 0.26;
+/// Colours of grounds, by their numbers among those of curves: what the first curves are drawn in comes last.
+const GROUNDS: [usize; 6] = [5, 6, 2, 3, 1, 0];
+/// Radius of the dots where curves end inside the box, in pixels.
+const DOT: f64 = 3.0;
+
+/// One figure an observable of a map, `map_x` or `map_xy`. `title` (plain text, may be empty) stands above it.
+///
+/// # Errors
+/// [`FigureError::Draw`].
+pub fn map_figures(
+    map: &RegimeMap,
+    title: &str,
+    style: &FigureStyle,
+) -> Result<Vec<Figure>, FigureError> {
+    let family = &map.subject.family;
+    let look = style.look();
+    let mut figures = Vec::new();
+    for (index, &observable) in map.subject.observables.iter().enumerate() {
+        let curves = map
+            .curves
+            .iter()
+            .filter(|curve| curve.observable == observable);
+        let scene = Scene {
+            map,
+            index,
+            curves: curves.collect(),
+            family,
+            look: &look,
+        };
+        let name = format!("map_{}", names::file(family, observable));
+        let (page, words) = scene.draw(title)?;
+        figures.push(Figure::new(
+            &name,
+            (scene.caption(&words), scene.data()),
+            &page,
+        ));
+    }
+    Ok(figures)
+}
+
+struct Scene<'a> {
+    map: &'a RegimeMap,
+    /// The observable among those that are watched.
+    index: usize,
+    curves: Vec<&'a Curve>,
+    family: &'a Family,
+    look: &'a Look,
+}
+
+/// The regions as they are drawn: their picture, and the number of the colour of each.
+struct Ground {
+    picture: RegionPicture,
+    /// The different signatures, those of larger regions first.
+    kinds: Vec<Option<Signature>>,
+}
+
+impl Ground {
+    fn kind_of(&self, region: usize) -> usize {
+        let signature = self.picture.regions[region].signature;
+        let mut kinds = self.kinds.iter();
+        kinds.position(|one| *one == signature).unwrap_or(0)
+    }
+}
+
+fn words(signature: Option<Signature>) -> String {
+    signature.map_or_else(|| "no steady state".to_owned(), |one| one.to_string())
+}
+
+impl Scene<'_> {
+    fn draw(&self, title: &str) -> Result<(Page, Vec<String>), DrawError> {
+        let look = self.look;
+        let [first, second] = self.map.plane.sides();
+        let (x, y) = ((first.from, first.to), (second.from, second.to));
+        let high = look.height(PANEL.1, USUAL);
+        let up = Scale::vertical(look, y, high, &symbol_of(self.family, &second.parameter))?;
+        let left = MARGIN + up.left();
+        let wide = look.fill(PANEL.0, left + BESIDE + MARGIN);
+        let width = left + wide + BESIDE + MARGIN;
+        let across = Scale::horizontal(look, x, wide, &symbol_of(self.family, &first.parameter))?;
+        let heading = Heading::new(look, title, width)?;
+        let rect = Rectangle {
+            left,
+            top: heading.height() + 6.0,
+            width: wide,
+            height: high,
+        };
+        let ground = self.ground(rect);
+        let places = match &ground {
+            Some(ground) => self.word_places(ground, rect)?,
+            None => Vec::new(),
+        };
+        let legend = self.legend(ground.as_ref(), &places, rect)?;
+        let below = rect.bottom() + Scale::below();
+        let page = Page::new(look, width, below + legend.height() + MARGIN);
+        heading.draw(&page)?;
+        let panel = page.panel(rect, x, y);
+        if let Some(ground) = &ground {
+            let png = self.picture(ground)?;
+            panel.draw(&[(x.0, y.1), (x.1, y.0)], Shape::Image(png))?;
+        }
+        for curve in &self.curves {
+            draw_line(&panel, curve, self.stroke(curve.kind))?;
+        }
+        self.draw_ends(&panel)?;
+        frame::border(&page, rect)?;
+        across.draw_below(&page, rect, true)?;
+        up.draw_left(&page, rect, true)?;
+        for (at, text) in places.iter().flatten() {
+            let mut text = lettering(symbols::plain(text), HPos::Center);
+            text.size = TICK_TEXT;
+            page.text(*at, text)?;
+        }
+        legend.draw(&page, left + 0.5 * wide, below)?;
+        let kinds = ground.map(|ground| ground.kinds).unwrap_or_default();
+        Ok((page, kinds.into_iter().map(words).collect()))
+    }
+
+    fn ground(&self, rect: Rectangle) -> Option<Ground> {
+        let size = [rect.width, rect.height].map(|length| (FINE * length).round() as usize);
+        let picture = self.map.regions(self.index, size)?;
+        let mut kinds: Vec<Option<Signature>> = Vec::new();
+        for region in &picture.regions {
+            if !kinds.contains(&region.signature) {
+                kinds.push(region.signature);
+            }
+        }
+        Some(Ground { picture, kinds })
+    }
+
+    /// The colour of a region's ground.
+    fn tint(&self, ground: &Ground, kind: usize) -> (u8, u8, u8) {
+        if ground.kinds.get(kind).copied().flatten().is_none() {
+            return self.look.resolve(BLANK).0;
+        }
+        let (own, paper) = (
+            self.look
+                .resolve(Stroke::curve(GROUNDS[kind % GROUNDS.len()]).colour)
+                .0,
+            PAPER,
+        );
+        let paper = self.look.resolve(paper).0;
+        let mix = |own: u8, paper: u8| {
+            (TINT * f64::from(own) + (1.0 - TINT) * f64::from(paper)).round() as u8
+        };
+        (
+            mix(own.0, paper.0),
+            mix(own.1, paper.1),
+            mix(own.2, paper.2),
+        )
+    }
+
+    fn picture(&self, ground: &Ground) -> Result<Vec<u8>, DrawError> {
+        let colours: Vec<(u8, u8, u8)> = (0..ground.kinds.len())
+            .map(|kind| self.tint(ground, kind))
+            .collect();
+        let [width, height] = ground.picture.size;
+        patches((width, height), &colours, |column, row| {
+            ground.kind_of(ground.picture.pixels[row * width + column])
+        })
+    }
+
+    /// Where each region's words stand, on the page, with the words; `None` where they have no room.
+    fn word_places(&self, ground: &Ground, rect: Rectangle) -> Result<Vec<Placed>, DrawError> {
+        let room = Room::new(&ground.picture);
+        let mut places = Vec::new();
+        for (number, region) in ground.picture.regions.iter().enumerate() {
+            let text = words(region.signature);
+            let wide = render::text_width(self.look, &symbols::plain(&text), TICK_TEXT, false)?;
+            let half = [0.5 * wide + 6.0, 0.5 * TICK_TEXT + 5.0].map(|length| FINE * length);
+            let best = room.best(number, half);
+            places.push(best.map(|[column, row]| {
+                let at = (
+                    rect.left + (column as f64 + 0.5) / FINE,
+                    rect.bottom() - (row as f64 + 0.5) / FINE,
+                );
+                (at, text)
+            }));
+        }
+        Ok(places)
+    }
+
+    /// The line of an indicator: a colour each.
+    fn stroke(&self, kind: IndicatorKind) -> Stroke {
+        let mut kinds: Vec<&str> = Vec::new();
+        for curve in &self.curves {
+            if !kinds.contains(&curve.kind.name()) {
+                kinds.push(curve.kind.name());
+            }
+        }
+        let number = kinds.iter().position(|name| *name == kind.name());
+        Stroke {
+            dash: &[],
+            ..Stroke::curve(number.unwrap_or(0))
+        }
+    }
+
+    fn legend(
+        &self,
+        ground: Option<&Ground>,
+        places: &[Placed],
+        rect: Rectangle,
+    ) -> Result<Legend, DrawError> {
+        let mut entries: Vec<(Sample, String)> = Vec::new();
+        let density = names::density(self.family, self.map.subject.observables[self.index]);
+        for curve in &self.curves {
+            let stroke = self.stroke(curve.kind);
+            let line = format!("{} of {density} is 0", curve.kind.name());
+            for entry in [(Sample::Curve(stroke), line)]
+                .into_iter()
+                .chain(remarks(curve, stroke, rect))
+            {
+                if !entries.iter().any(|known| known.1 == entry.1) {
+                    entries.push(entry);
+                }
+            }
+        }
+        for (kind, signature) in ground
+            .iter()
+            .flat_map(|ground| ground.kinds.iter().enumerate())
+        {
+            let text = words(*signature);
+            let is_written = places.iter().flatten().any(|placed| placed.1 == text);
+            if let (false, Some(ground)) = (is_written, ground) {
+                let colour = Colour::fixed(self.tint(ground, kind));
+                entries.push((Sample::Box(colour), symbols::plain(&text)));
+            }
+        }
+        Legend::new(self.look, entries, rect.right() - MARGIN)
+    }
+
+    /// Where curves end inside the box.
+    fn draw_ends(&self, panel: &Panel) -> Result<(), DrawError> {
+        for curve in &self.curves {
+            let inside = curve
+                .ends
+                .iter()
+                .filter(|end| !matches!(end.reason, EndReason::Border(_) | EndReason::Closed));
+            for point in inside.filter_map(|end| curve.points.get(end.point)) {
+                let at = (point.values[0], point.values[1]);
+                let rim = Stroke::solid(INK, 1.2);
+                panel.draw(&[at], Shape::Dot(DOT, PAPER, rim))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn caption(&self, words: &[String]) -> String {
+        let [first, second] = self.map.plane.sides();
+        let mut text = format!(
+            "Regimes of the density of {} in the plane of {} and {}: {}.",
+            self.map.subject.observables[self.index].name(self.family),
+            first.parameter,
+            second.parameter,
+            words.join(", "),
+        );
+        for curve in &self.curves {
+            let ends = curve.ends.iter().map(|end| end.reason.words(&curve.plane));
+            let ends: Vec<String> = ends.collect();
+            text += &format!(
+                " On a line the {} is zero ({} points; {}).",
+                curve.kind.name(),
+                curve.points.len(),
+                ends.join("; "),
+            );
+        }
+        if self.map.interrupted {
+            text += " The map was interrupted before it was complete.";
+        }
+        text + "\n"
+    }
+
+    /// The curves, and the words of the regions.
+    fn data(&self) -> String {
+        let [first, second] = self.map.plane.sides();
+        let mut text = format!("kind,{},{},words\n", first.parameter, second.parameter);
+        for (number, curve) in self.curves.iter().enumerate() {
+            for point in &curve.points {
+                let [x, y] = point.values;
+                text += &format!("curve {},{x},{y},{}\n", number + 1, curve.kind.name());
+            }
+        }
+        for node in &self.map.nodes {
+            let [x, y] = node.values;
+            let signature = node.signatures.get(self.index).copied();
+            text += &format!("node,{x},{y},{}\n", words(signature));
+        }
+        text
+    }
+}
+
+/// Place on the page and words.
+type Placed = Option<((f64, f64), String)>;
+
+/// How far each pixel is from the border of its region, to the left and right, and up and down.
+struct Room<'p> {
+    picture: &'p RegionPicture,
+    across: Vec<u32>,
+    upright: Vec<u32>,
+}
+
+impl<'p> Room<'p> {
+    fn new(picture: &'p RegionPicture) -> Self {
+        let [width, height] = picture.size;
+        let mut across = vec![0; picture.pixels.len()];
+        let mut upright = vec![0; picture.pixels.len()];
+        for row in 0..height {
+            let line = (0..width).map(|column| row * width + column);
+            run_lengths(&line.collect::<Vec<_>>(), &picture.pixels, &mut across);
+        }
+        for column in 0..width {
+            let line = (0..height).map(|row| row * width + column);
+            run_lengths(&line.collect::<Vec<_>>(), &picture.pixels, &mut upright);
+        }
+        Self {
+            picture,
+            across,
+            upright,
+        }
+    }
+
+    /// The column and row of a region at which words of this half width and half height have most room; `None` where they have too little.
+    fn best(&self, region: usize, [half_width, half_height]: [f64; 2]) -> Option<[usize; 2]> {
+        let [width, height] = self.picture.size;
+        let (reach, tall) = (half_width as usize, half_height as usize);
+        let mut best: Option<(f64, usize)> = None;
+        for (pixel, &owner) in self.picture.pixels.iter().enumerate() {
+            if owner != region {
+                continue;
+            }
+            let (column, row) = (pixel % width, pixel / width);
+            if column < reach || column + reach >= width || row < tall || row + tall >= height {
+                continue;
+            }
+            // The narrowest place up and down along the words, not only in their middle.
+            let along = [-1.0, -0.5, 0.0, 0.5, 1.0].map(|share| {
+                let column = (column as f64 + share * half_width) as usize;
+                self.upright[row * width + column.min(width - 1)]
+            });
+            let lowest = along.into_iter().min().unwrap_or(0);
+            let score =
+                (f64::from(self.across[pixel]) / half_width).min(f64::from(lowest) / half_height);
+            if best.is_none_or(|(known, _)| score > known) {
+                best = Some((score, pixel));
+            }
+        }
+        let (_, pixel) = best.filter(|(score, _)| *score >= 1.0)?;
+        Some([pixel % width, pixel / width])
+    }
+}
+
+/// For the pixels of a line, the distance to the nearer end of the run of one region that each is in.
+fn run_lengths(line: &[usize], owners: &[usize], lengths: &mut [u32]) {
+    for run in line.chunk_by(|&a, &b| owners[a] == owners[b]) {
+        for (index, &pixel) in run.iter().enumerate() {
+            lengths[pixel] = index.min(run.len() - 1 - index) as u32;
+        }
+    }
+}

@@ -1,0 +1,290 @@
+//! Maps of regimes over two parameters, against signatures and curves that are known exactly.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use std::process::Command;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use pbif::cancellation::Cancellation;
+use pbif::continuation::BifurcationStatus;
+use pbif::continuation::map::{MapProgress, RegimeMap};
+use pbif::sweep_file::SweepFile;
+use pbif::topology::Signature;
+
+/// Additive noise: peaks of the density are zeros of the drift, and there are two where 27 h² < 4 a³.
+const CUSP: &str = r#"
+[system.equations]
+x = "h + a x - x^3"
+[system.noise]
+x = "sqrt(sigma2)"
+[system.parameters]
+a = 0.0
+h = 0.0
+sigma2 = 0.1
+[sweep]
+parameter = "h"
+from = -0.5
+to = 0.5
+points = 11
+[map]
+parameter = "a"
+from = -0.4
+to = 1.0
+depth = 1
+[cells]
+x = { from = -2.5, to = 2.5, count = 200 }
+"#;
+
+/// With damping -a + bH the crater opens at a = 0, and x splits at a = 0.540903 √(b σ²).
+const RAYLEIGH: &str = r#"
+[system]
+model = "rayleigh"
+[system.parameters]
+b = 0.1
+[sweep]
+parameter = "a"
+from = -0.02
+to = 0.06
+points = 5
+[map]
+parameter = "sigma2"
+from = 0.01
+to = 0.03
+points = 4
+depth = 1
+[cells]
+x = { from = -2.8, to = 2.8, count = 50 }
+y = { from = -2.8, to = 2.8, count = 50 }
+[detect]
+marginals = ["x"]
+joint = [["x", "y"]]
+[locate]
+relative_tolerance = 1e-3
+"#;
+
+fn mapped(text: &str, settings: &[&str]) -> RegimeMap {
+    let never = Cancellation::new();
+    let mut file = SweepFile::parse("map.toml", text);
+    let settings = file.set_all("--set", settings).validate().unwrap();
+    let sweep = settings.prepare(&never).unwrap();
+    sweep.map(&never, &|_| ()).unwrap().unwrap()
+}
+
+/// Distance of a point from the fold of the cusp, in a box with sides of these lengths.
+fn off_the_fold([h, a]: [f64; 2], [of_h, of_a]: [f64; 2]) -> f64 {
+    (27.0 * h * h - 4.0 * a.powi(3)) / (54.0 * h * of_h).hypot(12.0 * a * a * of_a)
+}
+
+#[test]
+fn a_tilted_double_well_has_two_peaks_within_the_cusp_and_one_outside() {
+    let map = mapped(CUSP, &[]);
+    let coarse = map.nodes.iter().filter(|node| node.level == 0).count();
+    assert_eq!(coarse, 121);
+    // Refined where the fold passes, and only there.
+    assert!((150..300).contains(&map.nodes.len()), "{}", map.nodes.len());
+    for node in &map.nodes {
+        let [h, a] = node.values;
+        let two = a > 0.0 && 27.0 * h * h < 4.0 * a.powi(3);
+        // A shallow peak is counted a little after its birth.
+        let late = a > -0.05 && off_the_fold(node.values, [1.0, 1.4]).abs() < 0.03;
+        let peaks = if two { 2 } else { 1 };
+        assert!(
+            late || node.signatures == [Signature::of_peaks(peaks)],
+            "{node:?}"
+        );
+    }
+    // Both branches of the fold, each once, and nothing else.
+    assert_eq!(map.curves.len(), 2, "{:?}", map.untraced);
+    for curve in &map.curves {
+        for point in &curve.points {
+            let off = off_the_fold(point.values, [1.0, 1.4]).abs();
+            assert!(off <= 1e-4 && off <= point.error, "{point:?}: {off:.1e}");
+        }
+        let highest = curve.points.iter().map(|point| point.values[0].abs());
+        assert!((highest.fold(0.0, f64::max) - 0.3849).abs() < 1e-3);
+        assert_eq!(
+            curve
+                .points
+                .iter()
+                .filter(|p| p.status == BifurcationStatus::Located)
+                .count(),
+            curve.points.len()
+        );
+    }
+    let sides: f64 = map
+        .curves
+        .iter()
+        .map(|curve| curve.points[curve.start].values[0].signum())
+        .sum();
+    assert_eq!(sides, 0.0);
+    assert!(map.untraced.is_empty(), "{:?}", map.untraced);
+
+    // ∫ 2 · 2 (a/3)^{3/2} da up to 1, over the box of 1 by 1.4.
+    let exact = 1.6 / 3.0_f64.powf(1.5) / 1.4;
+    let picture = map.regions(0, [280, 280]).unwrap();
+    let two = picture
+        .regions
+        .iter()
+        .filter(|one| one.signature == Some(Signature::of_peaks(2)));
+    let two: Vec<_> = two.filter(|region| region.share > 1e-3).collect();
+    assert_eq!(two.len(), 1);
+    assert!(
+        (two[0].share - exact).abs() < 0.01,
+        "{} {exact}",
+        two[0].share
+    );
+    let [h, a] = two[0].inside;
+    assert!(27.0 * h * h < 4.0 * a.powi(3));
+}
+
+#[test]
+fn a_map_is_the_same_on_any_number_of_threads() {
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| mapped(RAYLEIGH, &["map.depth=0"]))
+    };
+    let (one, three) = (on(1), on(3));
+    assert_eq!(one.nodes, three.nodes);
+    assert_eq!(one.curves.len(), three.curves.len());
+    for (a, b) in one.curves.iter().zip(&three.curves) {
+        assert_eq!(a.points, b.points);
+    }
+    assert_eq!(one.untraced, three.untraced);
+}
+
+#[test]
+fn the_map_of_energy_dependent_damping_has_its_two_curves() {
+    let map = mapped(RAYLEIGH, &[]);
+    let of = |name: &str| {
+        let family = &map.subject.family;
+        let curves = map.curves.iter();
+        curves.filter(move |curve| curve.observable.name(family) == name)
+    };
+    let (split, opens): (Vec<_>, Vec<_>) = (of("x").collect(), of("xy").collect());
+    assert_eq!((split.len(), opens.len()), (1, 1), "{:?}", map.untraced);
+    for point in &split[0].points {
+        let [a, sigma2] = point.values;
+        let off = (a - 0.540_903 * (0.1 * sigma2).sqrt()) / 0.08;
+        assert!(off.abs() <= 2.0 * point.error, "{point:?}: {off:.1e}");
+    }
+    for point in &opens[0].points {
+        assert!((point.values[0] / 0.08).abs() <= point.error, "{point:?}");
+    }
+    let [a, b] = [0.01, 0.03].map(|sigma2: f64| 0.540_903 * (0.1 * sigma2).sqrt());
+    let picture = map.regions(0, [200, 200]).unwrap();
+    let one = picture
+        .regions
+        .iter()
+        .find(|one| one.signature == Some(Signature::of_peaks(1)));
+    // Nearly a trapezium.
+    let share = (0.5 * (a + b) + 0.02) / 0.08;
+    assert!(
+        (one.unwrap().share - share).abs() < 0.02,
+        "{} {share}",
+        one.unwrap().share
+    );
+}
+
+#[test]
+fn a_cancelled_map_keeps_what_was_done_and_says_so() {
+    let cancellation = Cancellation::new();
+    let sweep = SweepFile::parse("map.toml", CUSP).validate().unwrap();
+    let sweep = sweep.prepare(&cancellation).unwrap();
+    let seen = AtomicUsize::new(0);
+    let observer = |told: &MapProgress<'_>| {
+        if let MapProgress::Solved { .. } = told
+            && seen.fetch_add(1, Ordering::Relaxed) == 30
+        {
+            cancellation.cancel();
+        }
+    };
+    let map = sweep.map(&cancellation, &observer).unwrap().unwrap();
+    assert!(map.interrupted);
+    assert!((30..100).contains(&map.nodes.len()), "{}", map.nodes.len());
+    assert!(map.curves.is_empty() && map.untraced.is_empty());
+    assert!(map.regions(0, [40, 40]).is_some());
+}
+
+fn pbif(arguments: &[&str]) -> std::process::Output {
+    Command::new(env!("CARGO_BIN_EXE_pbif"))
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+#[test]
+fn the_program_makes_maps_and_says_what_is_wrong_with_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (file, out) = (at("cusp.toml"), at("out"));
+    std::fs::write(&file, CUSP).unwrap();
+    let sweep = |more: &[&str]| {
+        let mut arguments = vec!["sweep", file.as_str(), "--quiet", "--out", out.as_str()];
+        arguments.extend(more);
+        pbif(&arguments)
+    };
+    let output = sweep(&[]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        text.contains("map of h and a") && text.contains("C2 "),
+        "{text}"
+    );
+    for name in [
+        "map.json",
+        "map.csv",
+        "curves.csv",
+        "figures/map_x.svg",
+        "figures/map_x.png",
+    ] {
+        assert!(folder.path().join("out").join(name).is_file(), "{name}");
+    }
+    let table = std::fs::read_to_string(at("out/map.csv")).unwrap();
+    assert!(
+        table.starts_with("h,a,signature_x,status,level,reason\n"),
+        "{table}"
+    );
+    assert!(table.lines().any(|line| line.contains(",2 peaks,")));
+    let curves = std::fs::read_to_string(at("out/curves.csv")).unwrap();
+    assert!(curves.starts_with("curve,label,h,a,error,"));
+    assert!(curves.lines().any(|line| line.starts_with("C2,start,")));
+
+    let refused = |more: &[&str], says: &[&str]| {
+        let output = sweep(more);
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        let text = String::from_utf8(output.stderr).unwrap();
+        for words in says {
+            assert!(text.contains(words), "{words}:\n{text}");
+        }
+    };
+    refused(
+        &["--resume"],
+        &["cannot be gone on with", "leave `--resume` out"],
+    );
+    refused(
+        &["--set", "map.parameter=h"],
+        &["is the swept one, `h`", "a and sigma2"],
+    );
+    refused(&["--set", "map.parameter=b"], &["no parameter `b`"]);
+    refused(&["--set", "map.to=-0.4"], &["from -0.4 to -0.4 along `a`"]);
+    refused(
+        &["--set", "map.depth=9"],
+        &["`map.depth` cannot be `9`", "from 0 to 8"],
+    );
+    std::fs::write(&file, CUSP.replace("to = 1.0\n", "")).unwrap();
+    refused(&[], &["missing key `map.to`"]);
+}
+
+#[test]
+fn a_noise_that_one_corner_does_not_allow_is_refused_or_told() {
+    // Noise of negative intensity at the lower end of the second parameter.
+    let text = CUSP.replace(
+        "parameter = \"a\"\nfrom = -0.4\nto = 1.0",
+        "parameter = \"sigma2\"\nfrom = -0.1\nto = 0.5",
+    );
+    let sweep = SweepFile::parse("map.toml", &text).validate().unwrap();
+    let report = sweep.prepare(&Cancellation::new()).unwrap_err().to_string();
+    assert!(report.contains("sqrt"), "{report}");
+}
