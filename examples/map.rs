@@ -20,8 +20,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         counts: [9, 5],
         ..MapOptions::default()
     };
-    let (detector, observer) = (sweep.detector(), |_: &_| ());
-    let map = regime_map(&source, &plane, &detector, &options, &never, &observer)?;
+    let detector = sweep.detector();
+    let map = regime_map(&source, &plane, &detector, &options, &never, &|_| ())?;
     for node in map.nodes.iter().filter(|node| node.level == 0) {
         let [a, sigma2] = node.values;
         println!("a = {a:5.2}, sigma2 = {sigma2:.1}: {}", node.signatures[0]);

@@ -216,7 +216,7 @@ fn the_fold_of_a_cusp_is_followed_within_its_error_whichever_parameter_is_first(
 }
 
 #[test]
-fn into_the_cusp_the_fold_is_followed_until_it_turns_on_the_spot() {
+fn the_cusp_in_which_two_folds_meet_is_located() {
     let (sweep, result) = swept(CUSP, &[]);
     let plane = Plane::new(("h", -0.7, 0.7), ("a", -0.4, 1.0)).unwrap();
     let curve = curve(
@@ -225,13 +225,15 @@ fn into_the_cusp_the_fold_is_followed_until_it_turns_on_the_spot() {
         &plane,
         1.0,
     );
-    let [h, a] = curve.points[0].values;
-    assert!(h.abs() < 1e-3 && a.abs() < 2e-2, "{h} {a}");
-    let reason = &curve.ends[0].reason;
-    assert!(
-        matches!(reason, EndReason::NotConverged | EndReason::FeatureLost),
-        "{reason:?}"
-    );
+    assert_eq!(ends(&curve), [&EndReason::Cusp, &EndReason::Border(1)]);
+    assert_eq!(curve.ends[0].label, "CP1");
+    let cusp = &curve.points[0];
+    let off = (cusp.values[0] / 1.4).hypot(cusp.values[1] / 1.4);
+    assert!(off <= cusp.error && cusp.error <= 1e-4, "{cusp:?}");
+    assert_eq!(cusp.status, BifurcationStatus::Located);
+    // Peak, valley and inflection are one at x = 0.
+    assert!(cusp.place[0].abs() < 1e-3, "{cusp:?}");
+    assert_eq!(curve.points[curve.start].arclength, 0.0);
 }
 
 #[test]
@@ -541,4 +543,95 @@ fn the_program_follows_a_row_of_a_run_and_says_what_is_wrong() {
         output.status.code() == Some(2) && said.contains("99.0.0"),
         "{said}"
     );
+}
+
+/// With linear damping the density is exp(-(2κ/σ²)(y²/2 + V)): peaks of the joint density are zeros of the spring's force.
+const TILTED: &str = r#"
+[system.equations]
+x = "y"
+y = "-0.5 y + h + a x - x^3"
+[system.noise]
+y = "sqrt(0.2)"
+[system.parameters]
+a = 1.0
+h = 0.3
+[sweep]
+parameter = "h"
+from = 0.25
+to = 0.5
+points = 6
+[cells]
+x = { from = -2.2, to = 2.4, count = 80 }
+y = { from = -2.0, to = 2.0, count = 50 }
+[detect]
+marginals = []
+joint = [["x", "y"]]
+[locate]
+relative_tolerance = 1e-3
+"#;
+
+#[test]
+fn the_fold_of_a_joint_density_is_followed_along_that_of_the_force() {
+    let (sweep, result) = swept(TILTED, &[]);
+    let plane = Plane::new(("h", 0.1, 0.6), ("a", 0.7, 1.2)).unwrap();
+    let curve = curve(
+        &sweep,
+        row(&result, "xy", "slope at the shoulder"),
+        &plane,
+        1.0,
+    );
+    assert_eq!(ends(&curve), [&EndReason::Border(1), &EndReason::Border(1)]);
+    for point in &curve.points {
+        let off = off_the_fold(point.values, [0.5, 0.5]).abs();
+        assert!(
+            off <= point.error && point.error < 0.02,
+            "{point:?}: {off:.1e}"
+        );
+    }
+    // On the line a = 1 at h = 2/√27.
+    let at_one = &curve.points[curve.start].values;
+    assert!((at_one[0] - 0.384_900).abs() < 1e-3, "{at_one:?}");
+}
+
+/// With damping c - bH + H² the density is exp(-(2/σ²)(cH - bH²/2 + H³/3)): a ring is born where c = b²/4, at H = b/2.
+const RING: &str = r#"
+[system.equations]
+x = "y"
+y = "-(c - b H + H^2) y - x"
+[system.noise]
+y = "sqrt(0.02)"
+[system.define]
+H = "(x^2 + y^2)/2"
+[system.parameters]
+c = 0.2
+b = 1.0
+[sweep]
+parameter = "c"
+from = 0.19
+to = 0.28
+points = 7
+[cells]
+x = { from = -2.0, to = 2.0, count = 64 }
+y = { from = -2.0, to = 2.0, count = 64 }
+[detect]
+marginals = []
+joint = [["x", "y"]]
+[locate]
+relative_tolerance = 5e-3
+"#;
+
+#[test]
+fn the_birth_of_a_ring_is_followed_along_its_exact_curve() {
+    let (sweep, result) = swept(RING, &[]);
+    let plane = Plane::new(("c", 0.19, 0.31), ("b", 0.92, 1.08)).unwrap();
+    let curve = curve(&sweep, row(&result, "xy", "slope to the ring"), &plane, 1.0);
+    assert_eq!(ends(&curve), [&EndReason::Border(1), &EndReason::Border(1)]);
+    for point in &curve.points {
+        let [c, b] = point.values;
+        let off = ((c - 0.25 * b * b) / 0.12) / 1.0_f64.hypot(0.5 * b * 0.16 / 0.12);
+        assert!(
+            off.abs() <= point.error && point.error < 0.05,
+            "{point:?}: {off:.1e}"
+        );
+    }
 }

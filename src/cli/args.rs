@@ -21,6 +21,7 @@ Examples:
   pbif sweep sweeps/coulomb_fc.toml --resume   go on with it after an interrupt, a kill or a full disk
   pbif sweep sweeps/coulomb_fc.toml --shard 1/4   one of four shards, on a machine of its own; `pbif merge output/coulomb_fc` joins them
   pbif sweep sweeps/coulomb_fc.toml --set sweep.points=11 --set cells.x.count=30 --out trial
+  pbif sweep sweeps/cusp.toml        a map: regimes over two parameters, where the file has [map]
   pbif compare sweeps/coulomb_fc.toml                          the methods side by side
   pbif curve output/coulomb_fc --row PB1 --second sigma2 --from 0.005 --to 0.02   PB1 in a plane of two parameters
   pbif detect output/coulomb_fc --set detect.confidence=0.99   detect again, without solving

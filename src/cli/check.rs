@@ -124,6 +124,18 @@ fn monte_carlo_costs(spec: &Sweep, cost: &MonteCarloCost) -> Vec<String> {
 
 /// How many points, and where the first lie.
 fn points(spec: &Sweep) -> String {
+    if let Some(map) = &spec.settings.map {
+        let (columns, rows) = (spec.settings.points, map.points);
+        let curves = if map.curves {
+            ", and those of the curves"
+        } else {
+            ""
+        };
+        return format!(
+            "points: {columns} x {rows} = {} of the coarse grid of the map, more where signatures differ{curves}",
+            columns * rows
+        );
+    }
     let values = evenly_spaced(spec.problem.family().ends(), spec.settings.points);
     let first: Vec<String> = values.iter().take(3).map(f64::to_string).collect();
     format!(
@@ -138,7 +150,7 @@ fn points(spec: &Sweep) -> String {
 fn notes(spec: &Sweep) -> Vec<String> {
     let mut notes = misplaced_faces(spec);
     notes.extend(equations::notes(spec));
-    if spec.settings.points > MANY_POINTS {
+    if spec.settings.points > MANY_POINTS && spec.settings.map.is_none() {
         notes.push(format!(
             "{} points is a long sweep; changes are located between points, so fewer will do",
             spec.settings.points

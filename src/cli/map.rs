@@ -121,6 +121,19 @@ fn summary(map: &RegimeMap) -> String {
     for (index, curve) in map.curves.iter().enumerate() {
         text += &line(map, index, curve);
     }
+    for point in map.codimension_two() {
+        let values = [first, second].into_iter().enumerate().map(|(k, side)| {
+            let (value, _) = format_with_error(point.values[k], point.error * side.length());
+            format!("{} = {value}", side.parameter)
+        });
+        let values = values.collect::<Vec<_>>().join("  ");
+        let curves = point.curves.iter().map(|index| format!("C{}", index + 1));
+        let curves = curves.collect::<Vec<_>>().join(" and ");
+        text += &format!(
+            "{}  {values}  cusp, where {curves} end; known to {:.1e} of the sides of the box\n",
+            point.label, point.error
+        );
+    }
     for one in &map.untraced {
         let observable = map.subject.observables.get(one.observable);
         let pairs = match one.pairs {

@@ -133,7 +133,7 @@ impl Scene<'_> {
         for curve in &self.curves {
             draw_line(&panel, curve, self.stroke(curve.kind))?;
         }
-        self.draw_ends(&panel)?;
+        self.draw_ends(&page, &panel)?;
         frame::border(&page, rect)?;
         across.draw_below(&page, rect, true)?;
         up.draw_left(&page, rect, true)?;
@@ -260,8 +260,8 @@ impl Scene<'_> {
         Legend::new(self.look, entries, rect.right() - MARGIN)
     }
 
-    /// Where curves end inside the box.
-    fn draw_ends(&self, panel: &Panel) -> Result<(), DrawError> {
+    /// Where curves end inside the box, and the labels of points of codimension two.
+    fn draw_ends(&self, page: &Page, panel: &Panel) -> Result<(), DrawError> {
         for curve in &self.curves {
             let inside = curve
                 .ends
@@ -272,6 +272,13 @@ impl Scene<'_> {
                 let rim = Stroke::solid(INK, 1.2);
                 panel.draw(&[at], Shape::Dot(DOT, PAPER, rim))?;
             }
+        }
+        let points = self.map.codimension_two().into_iter();
+        for point in points.filter(|point| point.observable == self.index) {
+            let (x, y) = panel.place((point.values[0], point.values[1]));
+            let mut text = lettering(symbols::plain(&point.label), HPos::Left);
+            text.size = TICK_TEXT;
+            page.text((x + 2.5 * DOT, y + 2.5 * DOT), text)?;
         }
         Ok(())
     }

@@ -8,11 +8,18 @@ use super::RunError;
 use super::atomic::{sync_all_below, write_atomically};
 use super::columns::{Columns, count, number, word};
 use super::curve::{columns, ends_json, rows};
+use super::number::format_number;
 use super::staging::Staging;
-use crate::continuation::map::{MapNode, RegimeMap};
+use crate::continuation::map::{CodimensionTwo, MapNode, RegimeMap};
 
 /// Everything a map leaves in its folder, the file that marks it as one first.
-const ENTRIES: [&str; 4] = ["map.json", "map.csv", "curves.csv", "figures"];
+const ENTRIES: [&str; 5] = [
+    "map.json",
+    "map.csv",
+    "curves.csv",
+    "codimension_two.csv",
+    "figures",
+];
 /// Columns and rows of the picture that regions are measured in.
 const PICTURE: [usize; 2] = [300, 300];
 
@@ -68,6 +75,38 @@ fn curves_csv(map: &RegimeMap) -> Result<String, RunError> {
         text = Columns(all).header()?;
     }
     Ok(text)
+}
+
+/// The table of the points of codimension two.
+fn codimension_two_csv(map: &RegimeMap) -> Result<String, RunError> {
+    let family = &map.subject.family;
+    let names = map
+        .plane
+        .sides()
+        .each_ref()
+        .map(|side| side.parameter.clone());
+    let [first, second] = names;
+    let columns = vec![
+        word("label", |one: &CodimensionTwo| one.label.clone()),
+        number(first, |one: &CodimensionTwo| one.values[0]),
+        number(second, |one: &CodimensionTwo| one.values[1]),
+        number("error", |one: &CodimensionTwo| one.error),
+        word("observable", |one: &CodimensionTwo| {
+            let observable = map.subject.observables.get(one.observable);
+            observable.map(|one| one.name(family)).unwrap_or_default()
+        }),
+        word("place", |one: &CodimensionTwo| {
+            joined(one.place.iter().map(|&x| format_number(x)))
+        }),
+        word("curves", |one: &CodimensionTwo| {
+            joined(one.curves.iter().map(|&index| curve_name(index)))
+        }),
+    ];
+    Columns(columns).csv(&map.codimension_two())
+}
+
+fn joined(words: impl Iterator<Item = String>) -> String {
+    words.collect::<Vec<_>>().join(" ")
 }
 
 /// What a curve of a map is called, by its place.
@@ -162,6 +201,7 @@ impl MapFolder {
         for (name, text) in [
             ("map.csv", map_csv(map)?),
             ("curves.csv", curves_csv(map)?),
+            ("codimension_two.csv", codimension_two_csv(map)?),
             ("map.json", map_json(map, sweep, seconds)?),
         ] {
             write_atomically(&self.staging.fresh().join(name), text.as_bytes())?;

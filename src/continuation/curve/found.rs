@@ -44,6 +44,8 @@ pub enum EndReason {
     NoDensity(String),
     /// The feature whose indicator was followed is not there beyond.
     FeatureLost,
+    /// Two folds meet in a cusp: the last point, found from how both parameters depend on the place of the fold.
+    Cusp,
     /// The indicator changes in no direction: curves meet, or turn on the spot.
     Singular,
     /// However short the step, the curve was not met again.
@@ -56,12 +58,13 @@ pub enum EndReason {
 
 impl EndReason {
     /// The letters of its label, as AUTO has them: `EP` an end of the box, `CL` closed, `MX` no density or no
-    /// convergence; `FL` feature lost, `SP` singular point, `UN` unfinished.
+    /// convergence; `CP` cusp, `FL` feature lost, `SP` singular point, `UN` unfinished.
     pub fn prefix(&self) -> &'static str {
         match self {
             Self::Border(_) => "EP",
             Self::Closed => "CL",
             Self::NoDensity(_) | Self::NotConverged => "MX",
+            Self::Cusp => "CP",
             Self::FeatureLost => "FL",
             Self::Singular => "SP",
             Self::TooManyPoints | Self::Interrupted => "UN",
@@ -77,6 +80,7 @@ impl EndReason {
             }
             Self::Closed => "closed curve".to_owned(),
             Self::NoDensity(reason) => format!("no density beyond: {reason}"),
+            Self::Cusp => "cusp: two folds meet".to_owned(),
             Self::FeatureLost => "the feature is lost".to_owned(),
             Self::Singular => "the indicator changes in no direction".to_owned(),
             Self::NotConverged => "the curve was not met again".to_owned(),

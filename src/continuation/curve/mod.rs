@@ -6,6 +6,7 @@
 //! interpolated along the curve. This module knows an indicator and sessions, and nothing of cells.
 
 mod check;
+mod cusp;
 mod found;
 mod plane;
 mod reading;
@@ -154,7 +155,7 @@ pub fn follow(
         options,
         cancellation,
     };
-    let walked = follower.both_ways(observer)?;
+    let mut walked = follower.both_ways(observer)?;
     let checks = check::Checks {
         source,
         plane,
@@ -163,14 +164,16 @@ pub fn follow(
         options,
         cancellation,
     };
-    let (points, check_work) = checks.judged(&walked);
+    let (mut points, check_work) = checks.judged(&walked);
+    let how = (start.kind, plane, options.tolerance);
+    cusp::add_cusps(&mut points, &mut walked.ends, &mut walked.start, how);
     Ok(Curve {
         plane: plane.clone(),
         observable,
         kind: start.kind,
-        points,
         start: walked.start,
-        ends: labelled(walked.ends, walked.points.len()),
+        ends: labelled(walked.ends, points.len()),
+        points,
         work: walked.work,
         check_work,
     })

@@ -12,7 +12,7 @@ mod regions;
 mod solve;
 mod trace;
 
-pub use found::{MapNode, RegimeMap, Untraced};
+pub use found::{CodimensionTwo, MapNode, RegimeMap, Untraced};
 pub use regions::{Region, RegionPicture};
 
 use super::curve::{CurveOptions, Plane};
