@@ -17,7 +17,7 @@ pub use plane::{Plane, PlaneSide};
 
 use found::labelled;
 
-use super::{DensitySource, LabelledPoint, SourceError, Subject};
+use super::{BifurcationStatus, DensitySource, LabelledPoint, SourceError, Subject};
 use crate::cancellation::Cancellation;
 use crate::density::Observable;
 use crate::topology::{Detector, IndicatorKind};
@@ -165,6 +165,12 @@ pub fn follow(
         cancellation,
     };
     let (mut points, check_work) = checks.judged(&walked);
+    // A zero beside which there is no curve is not one of a smooth indicator.
+    if let [alone] = points.as_mut_slice()
+        && alone.status == BifurcationStatus::Located
+    {
+        alone.status = BifurcationStatus::Unconfirmed;
+    }
     let how = (start.kind, plane, options.tolerance);
     cusp::add_cusps(&mut points, &mut walked.ends, &mut walked.start, how);
     Ok(Curve {

@@ -9,7 +9,9 @@ use super::found::Untraced;
 use super::{MapObserver, MapProgress, SourceInPlane};
 use crate::cancellation::Cancellation;
 use crate::continuation::SourceError;
-use crate::continuation::curve::{Curve, CurveError, CurveOptions, CurveStart, Plane, follow};
+use crate::continuation::curve::{
+    Curve, CurveError, CurveOptions, CurveStart, EndReason, Plane, follow,
+};
 use crate::topology::{Detector, IndicatorKind};
 
 /// Starts of one indicator that may fail before its other crossings are not tried.
@@ -79,6 +81,9 @@ impl Tracer<'_> {
                             vague.push((start, reason));
                         } else if curve.points.len() >= FEWEST {
                             curves.push(curve);
+                        } else if is_broken(&curve) {
+                            let reason = "its curve was not met again beside the crossing";
+                            vague.push((start, reason.to_owned()));
                         }
                     }
                     Err(CurveError::Source(SourceError::Interrupted)) => {}
@@ -240,6 +245,17 @@ impl Drawn {
         let mut pieces = self.line.windows(2);
         pieces.find_map(|piece| meeting([from, to], [piece[0], piece[1]]))
     }
+}
+
+/// Whether a curve ends for want of convergence, not of its feature.
+fn is_broken(curve: &Curve) -> bool {
+    let mut ends = curve.ends.iter();
+    ends.any(|end| {
+        matches!(
+            end.reason,
+            EndReason::NotConverged | EndReason::NoDensity(_)
+        )
+    })
 }
 
 /// The error that half of the points of a curve exceed.

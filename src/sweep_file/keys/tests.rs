@@ -109,7 +109,7 @@ fn example(key: &Key) -> crate::sweep_file::value::Plain {
     let of = |kind: Kind| match kind {
         Kind::Text | Kind::Printable => text("y"),
         Kind::Number(_) => Plain::Number(0.625),
-        Kind::Integer(..) => Plain::Integer(77),
+        Kind::Integer(_, most) => Plain::Integer(most.min(77)),
         Kind::Count(..) => Plain::Integer(17),
         Kind::Step => Plain::Number(0.375),
         Kind::Width => text("slide"),
