@@ -4,7 +4,8 @@
 //! indicator passes zero there: the slope between a peak and the saddle where it merges, or from a ring's inside to the ring.
 
 use super::Point;
-use crate::topology::{Feature, FeatureKind, IndicatorKind, Verdict};
+use crate::density::EstimatedDensity;
+use crate::topology::{Feature, FeatureKind, IndicatorKind, Verdict, born_at_kink};
 
 /// Kinds that make a signature.
 pub(super) const COUNTED: [FeatureKind; 3] =
@@ -39,10 +40,14 @@ pub(super) fn events(a: &Point, b: &Point, observable: usize) -> Vec<Event> {
             &lengths,
         );
         let centre = a.densities[observable].structure.centre.as_deref();
+        let density = |above: bool| match above {
+            true => &b.densities[observable],
+            false => &a.densities[observable],
+        };
         let event = |feature: &Feature, above: bool| Event {
             feature: kind,
             above,
-            indicator: indicator(feature),
+            indicator: indicator(density(above), feature),
             from_centre: centre.map_or(f64::INFINITY, |centre| {
                 distance(&feature.position, centre, &lengths)
             }),
@@ -103,7 +108,7 @@ fn unpaired<'a>(
 }
 
 /// The indicator that is zero where a feature is born.
-fn indicator(feature: &Feature) -> Option<(IndicatorKind, Vec<f64>)> {
+fn indicator(density: &EstimatedDensity, feature: &Feature) -> Option<(IndicatorKind, Vec<f64>)> {
     let partner = feature.partner.as_ref()?;
     let between = || {
         let pairs = feature.position.iter().zip(partner);
@@ -118,7 +123,8 @@ fn indicator(feature: &Feature) -> Option<(IndicatorKind, Vec<f64>)> {
             (FeatureKind::Ring, ..) => (IndicatorKind::Ring, partner.clone()),
             (FeatureKind::Peak, [peak], [valley]) => {
                 let rising = valley < peak;
-                (IndicatorKind::Shoulder { rising }, between())
+                let at_kink = born_at_kink(density, feature, *valley);
+                at_kink.unwrap_or_else(|| (IndicatorKind::Shoulder { rising }, between()))
             }
             (FeatureKind::Peak | FeatureKind::Crater, [_, _], _) => {
                 (IndicatorKind::Fold, between())

@@ -419,6 +419,71 @@ fn a_kink_is_located_from_its_jump_and_needs_no_grid() {
     assert!((rows[0].value - 0.1).abs() <= rows[0].error && rows[0].error < 1e-6);
 }
 
+/// With a kink at 0.4; mirrored for sign -1.
+fn kinked<F: Fn(f64, f64) -> f64 + Clone + Send + Sync + 'static>(
+    sign: f64,
+    structure: fn(f64) -> Structure,
+    log_density: F,
+) -> Exact<impl Formula> {
+    Exact::new(1, 100, structure, move |theta: f64, at: &[f64]| {
+        log_density(theta, sign * at[0] - 0.4).exp()
+    })
+}
+
+#[test]
+fn a_pair_born_at_a_kink_that_is_no_centre_is_located_by_the_slope_beside_it() {
+    fn kink(at: f64) -> Structure {
+        Structure {
+            kinks: vec![Kink {
+                axis: 0,
+                at,
+                jump: vec![1.0],
+            }],
+            ..Structure::default()
+        }
+    }
+    for sign in [1.0, -1.0] {
+        let structure: fn(f64) -> Structure = match sign > 0.0 {
+            true => |_| kink(0.4),
+            false => |_| kink(-0.4),
+        };
+        // Slopes 1.2 ± 2θ beside the kink, and -2 from there on: it becomes a valley below a peak at θ = 0.6.
+        let notch = kinked(sign, structure, |theta: f64, u: f64| {
+            1.2 * u - u * u + 2.0 * theta * u.abs()
+        });
+        let result = run(&notch, (0.23, 1.0, 12), 1e-4);
+        let found = rows(&result);
+        assert_eq!(found.len(), 1, "{found:?}");
+        let row = found[0];
+        assert_eq!(
+            words(row),
+            "1 peak → 2 peaks, peak and valley are born at a kink"
+        );
+        assert_eq!(row.status, Some(BifurcationStatus::Located), "{row:?}");
+        assert!(
+            (row.value - 0.6).abs() <= row.error && row.error < 1e-4,
+            "{row:?}"
+        );
+        // Above the kink the slope is -θ + 2u - 3u²: a tip and a valley from 0 on, until valley and peak vanish at 1/3.
+        let tip = kinked(sign, structure, |theta: f64, u: f64| match u < 0.0 {
+            true => u,
+            false => -theta * u + u * u - u.powi(3),
+        });
+        let result = run(&tip, (-0.31, 0.5, 12), 1e-4);
+        let found = rows(&result);
+        let told: Vec<String> = found.iter().map(|row| words(row)).collect();
+        let expected = [
+            "1 peak → 2 peaks, peak and valley are born at a kink",
+            "2 peaks → 1 peak, peak and valley vanish",
+        ];
+        assert_eq!(told, expected);
+        for (row, truth) in found.iter().zip([0.0, 1.0 / 3.0]) {
+            assert_eq!(row.status, Some(BifurcationStatus::Located), "{row:?}");
+            assert!((row.value - truth).abs() <= row.error, "{row:?}");
+        }
+    }
+}
+
 #[test]
 fn densities_that_change_fast_get_values_between() {
     // A peak that moves by four of its widths a step.

@@ -34,6 +34,10 @@ pub(super) fn change(
         (Some(IndicatorKind::Shoulder { .. }), ..) if several => "peaks and valleys vanish",
         (Some(IndicatorKind::Shoulder { .. }), _, Greater) => "peak and valley are born",
         (Some(IndicatorKind::Shoulder { .. }), ..) => "peak and valley vanish",
+        (Some(IndicatorKind::BesideKink { .. }), _, Greater) => {
+            "peak and valley are born at a kink"
+        }
+        (Some(IndicatorKind::BesideKink { .. }), ..) => "peak and valley vanish at a kink",
         (Some(IndicatorKind::Fold), Equal, Greater) => "peak and saddle are born",
         (Some(IndicatorKind::Fold), Equal, _) => "peak and saddle vanish",
         _ if after.rings > before.rings && craters == Greater => {

@@ -2,7 +2,9 @@
 
 use super::critical::{Critical, height_above};
 use super::field::Field;
-use super::indicator::{Found, at_centre, corrected, fold, put_right, ring_slope, shoulder};
+use super::indicator::{
+    Found, at_centre, beside_kink, corrected, fold, put_right, ring_slope, shoulder,
+};
 use super::persistence::{Component, Grid, components};
 use super::refine::refine;
 use super::ridge;
@@ -297,6 +299,9 @@ impl Detector for PersistenceDetector {
     ) -> Option<Indicator> {
         match kind {
             IndicatorKind::Shoulder { rising } => shoulder(density, *near.first()?, rising),
+            IndicatorKind::BesideKink { above, is_valley } => {
+                beside_kink(density, *near.first()?, above, is_valley)
+            }
             IndicatorKind::Fold => fold(density, near),
             IndicatorKind::Ring => ring_slope(density, near),
             kind => at_centre(density).into_iter().find(|one| one.kind == kind),

@@ -24,8 +24,8 @@ mod calibration_tests;
 mod invariance_tests;
 
 pub use detector::PersistenceDetector;
-pub(crate) use indicator::two_sided_limit;
 pub use indicator::{Indicator, IndicatorKind};
+pub(crate) use indicator::{born_at_kink, two_sided_limit};
 pub use signature::Signature;
 
 use crate::density::EstimatedDensity;

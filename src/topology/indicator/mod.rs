@@ -8,11 +8,13 @@
 //! | one peak splits at a centre of symmetry | curvature p''/p at the centre |
 //! | the same at a kink | slope p'/p on the upper side of the kink |
 //! | a peak and a valley are born together elsewhere | slope \|p'\|/p at the inflection between them |
+//! | the same at a kink that is no centre | slope p'/p on one side of the kink |
 //! | joint density, smooth centre | the two curvatures of p/p along its principal directions |
 //! | joint density, centre on a kink | slope across the kink; curvature along it |
 //!
 //! All are relative to the density at the place, so that its scale does not matter.
 
+mod beside;
 mod centre;
 mod fold;
 mod pair;
@@ -23,6 +25,8 @@ mod smooth;
 mod tests;
 mod window;
 
+pub(super) use beside::beside_kink;
+pub(crate) use beside::born_at_kink;
 pub(super) use centre::{Found, at_centre, corrected};
 pub(super) use fold::fold;
 pub(super) use pair::put_right;
@@ -51,6 +55,13 @@ pub enum IndicatorKind {
         /// Whether the density rises with the coordinate between the two.
         rising: bool,
     },
+    /// Slope of a marginal on one side of a kink, away from it; positive when the kink is an extremum and another one lies on that side.
+    BesideKink {
+        /// Whether the side is that of larger coordinates.
+        above: bool,
+        /// Whether the kink is the valley of the two.
+        is_valley: bool,
+    },
     /// Slope along a ridge or trench of a joint density where it is nearest to level, positive when a peak and a saddle (a
     /// saddle and a crater) are there.
     Fold,
@@ -68,13 +79,14 @@ impl IndicatorKind {
             Self::LowerCurvature => "lower curvature at the centre",
             Self::UpperCurvature => "upper curvature at the centre",
             Self::Shoulder { .. } => "slope at the inflection",
+            Self::BesideKink { .. } => "slope beside the kink",
             Self::Fold => "slope at the shoulder",
             Self::Ring => "slope to the ring",
         }
     }
 
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 13] = [
         Self::Curvature,
         Self::KinkSlope,
         Self::CurvatureAlongKink,
@@ -82,15 +94,29 @@ impl IndicatorKind {
         Self::UpperCurvature,
         Self::Shoulder { rising: true },
         Self::Shoulder { rising: false },
+        Self::beside_kink(false, false),
+        Self::beside_kink(false, true),
+        Self::beside_kink(true, false),
+        Self::beside_kink(true, true),
         Self::Fold,
         Self::Ring,
     ];
+
+    const fn beside_kink(above: bool, is_valley: bool) -> Self {
+        Self::BesideKink { above, is_valley }
+    }
 
     /// Words that no other indicator has, for files that are read again.
     pub fn code(self) -> &'static str {
         match self {
             Self::Shoulder { rising: true } => "slope at the rising inflection",
             Self::Shoulder { rising: false } => "slope at the falling inflection",
+            Self::BesideKink { above, is_valley } => match (above, is_valley) {
+                (false, false) => "slope below the kink of a peak",
+                (false, true) => "slope below the kink of a valley",
+                (true, false) => "slope above the kink of a peak",
+                (true, true) => "slope above the kink of a valley",
+            },
             kind => kind.name(),
         }
     }

@@ -1,0 +1,66 @@
+//! The indicator of a peak and a valley that are born together at a kink which is no centre of symmetry: one of them is the kink, the other
+//! comes out of it on one side.
+//!
+//! There the slope on that side, away from the kink, changes its sign while that on the other side does not. It goes through zero linearly, and
+//! nothing else does: there is no inflection.
+
+use super::{Indicator, IndicatorKind};
+use crate::density::EstimatedDensity;
+use crate::topology::Feature;
+use crate::topology::field::{Field, Jet};
+
+/// Distance from the kink at which its sides are told apart, as a share of the range.
+const ASIDE: f64 = 1e-9;
+
+/// The slope beside the kink nearest to a place; `None` for joint densities, sampled ones, and kinks on no face.
+pub(crate) fn beside_kink(
+    estimated: &EstimatedDensity,
+    near: f64,
+    above: bool,
+    is_valley: bool,
+) -> Option<Indicator> {
+    let [axis] = estimated.density.axes.as_slice() else {
+        return None;
+    };
+    let distance = |at: f64| (at - near).abs();
+    let kinks = estimated.structure.kinks.iter().map(|kink| kink.at);
+    let at = kinks.min_by(|a, b| distance(*a).total_cmp(&distance(*b)))?;
+    axis.face_at(at)?;
+    let field = Field::new(estimated).filter(|_| !estimated.is_noisy())?;
+    let side = if above { 1.0 } else { -1.0 };
+    let place = [at + side * ASIDE * field.unit(0)];
+    let (fine, rough) = (field.stencil(&place, 0)?, field.stencil(&place, 1)?);
+    let sign = if is_valley { side } else { -side };
+    let of = |jet: Jet| sign * jet.first[0] / (field.unit(0) * jet.value);
+    Indicator::derive(
+        estimated,
+        IndicatorKind::BesideKink { above, is_valley },
+        vec![at],
+        |values| of(fine.jet(values)),
+        |values| of(rough.jet(values)),
+    )
+}
+
+/// The indicator of a peak that was born, or vanishes, with its valley at a kink: one of the two lies on it.
+pub(crate) fn born_at_kink(
+    estimated: &EstimatedDensity,
+    peak: &Feature,
+    valley: f64,
+) -> Option<(IndicatorKind, Vec<f64>)> {
+    let ([axis], &[peak]) = (estimated.density.axes.as_slice(), peak.position.as_slice()) else {
+        return None;
+    };
+    if estimated.is_noisy() {
+        return None;
+    }
+    let is_kink = |at: f64| {
+        let mut kinks = estimated.structure.kinks.iter();
+        kinks.any(|kink| axis.is_same_place(kink.at, at) && axis.face_at(at).is_some())
+    };
+    let kind = |above: bool, is_valley: bool| IndicatorKind::BesideKink { above, is_valley };
+    match (is_kink(valley), is_kink(peak)) {
+        (true, false) => Some((kind(peak > valley, true), vec![valley])),
+        (false, true) => Some((kind(valley > peak, false), vec![peak])),
+        _ => None,
+    }
+}
