@@ -27,20 +27,25 @@
 
 pub mod bytes;
 pub mod cancellation;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod compare;
 pub mod continuation;
 pub mod density;
+#[cfg(feature = "cli")]
 pub mod explore;
+#[cfg(feature = "figures")]
 pub mod figure;
 pub mod formula;
 pub mod generator;
 pub mod method;
 pub mod monte_carlo;
+#[cfg(feature = "store")]
 pub mod run;
 pub mod sampling;
 pub mod space;
 pub mod stationary;
+#[cfg(feature = "store")]
 pub mod sweep_file;
 pub mod system;
 pub mod topology;

@@ -2,15 +2,21 @@
 //!
 //! The indicator's zero on the finer grid is found by a secant that starts with the slope known from the coarser one. The
 //! finer value is the better one and is kept. With r times as many cells an axis and order p its error is 1/(rᵖ - 1) of the
-//! distance between both; a bound for all r from 1.25 and p from 2 on is stated.
+//! distance between both: what order two gives is stated, and never less than the distance itself.
 
 use super::root::Root;
 use super::span::Span;
-use super::{Session, SourceError};
+use super::{CellCheck, Session, SourceError};
 use crate::topology::{Detector, IndicatorKind};
 
-/// Error of the finer value over its distance to the coarser one: 1/(1.25² - 1).
-pub(super) const SHARE_OF_DISTANCE: f64 = 1.0 / (1.25 * 1.25 - 1.0);
+/// Error of a value on finer cells over its distance to the value on those that it checks, see above.
+pub(super) fn share_of_distance(check: CellCheck) -> f64 {
+    match check {
+        CellCheck::OnFinerCells { ratio } => (ratio * ratio - 1.0).recip().max(1.0),
+        CellCheck::Impossible | CellCheck::Needless => 1.0,
+    }
+}
+
 /// Solves on the finer grid for one value.
 const MOST_SOLVES: usize = 4;
 /// A step below this share of the tolerance ends the search.

@@ -1,7 +1,7 @@
 //! The rows of a sweep: every change of signature with its value, error, bracket and status.
 
 use super::change::{Change, Found, changes};
-use super::grid::{Checked, Checks, GridCheck, Leak, SHARE_OF_DISTANCE};
+use super::grid::{Checked, Checks, GridCheck, Leak, share_of_distance};
 use super::label::{self, BifurcationStatus, LabelledPoint, PointType};
 use super::root::{Root, root};
 use super::{Goal, Point, PointStatus, Subject, persistence, words};
@@ -261,7 +261,7 @@ fn by_indicator(
         .flatten();
     match &on_finer {
         Some(GridCheck::Confirmed(value)) => {
-            found.error.grid = SHARE_OF_DISTANCE * (value - found.value).abs();
+            found.error.grid = share_of_distance(subject.cell_check) * (value - found.value).abs();
             found.value = *value;
         }
         Some(GridCheck::Failed(reason)) => failed = Some(format!("on finer cells: {reason}")),

@@ -35,7 +35,7 @@ impl<F: Formula> Exact<F> {
                 1 => Observable::Marginal(0),
                 _ => Observable::Joint(0, 1),
             }],
-            cell_check: CellCheck::OnFinerCells,
+            cell_check: CellCheck::OnFinerCells { ratio: 1.25 },
         };
         Self {
             subject,

@@ -22,10 +22,13 @@ pub struct Subject {
 }
 
 /// Whether it can be checked what cells do to densities, beyond the errors that these state.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CellCheck {
     /// By the same source on finer cells: [`DensitySource::finer`].
-    OnFinerCells,
+    OnFinerCells {
+        /// Cells of an axis there over those here, above one; the smallest of all axes.
+        ratio: f64,
+    },
     /// It cannot: the cells move what is found, and finer ones would bring a noise of their own.
     Impossible,
     /// It need not: cells only count.
@@ -188,7 +191,7 @@ pub trait DensitySource: Send + Sync {
     fn open(&self, cancellation: &Cancellation) -> Box<dyn Session>;
 
     /// The same source on finer cells, to check what was found; `None` where there is none, or it would say nothing (sampling
-    /// errors differ from grid to grid).
+    /// errors differ from grid to grid). Its densities are compared, so that they need state no error of their own.
     ///
     /// # Errors
     /// [`SourceError::Method`] when it cannot be made.
@@ -196,7 +199,8 @@ pub trait DensitySource: Send + Sync {
         Ok(None)
     }
 
-    /// The same source with ends of Ω that let nothing out, to tell what the mass that leaves does; `None` where there is none.
+    /// The same source with ends of Ω that let nothing out, to tell what the mass that leaves does; `None` where there is none. Its
+    /// densities need state no error of their own.
     fn enclosed(&self) -> Option<Box<dyn DensitySource>> {
         None
     }

@@ -323,7 +323,10 @@ impl Run<'_> {
             &self.options,
             &mut checks,
         );
-        let can_check = self.source.subject().cell_check == CellCheck::OnFinerCells;
+        let can_check = matches!(
+            self.source.subject().cell_check,
+            CellCheck::OnFinerCells { .. }
+        );
         let seen = checks.seen().map_err(SweepError::Observer)?;
         // What is not checked yet is checked by a run that goes on.
         self.interrupted |= wanted && self.cancellation.is_cancelled();

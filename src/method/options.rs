@@ -1,6 +1,7 @@
 //! Which method, and what the settings of all methods share. Each method's settings and defaults stand in its wing.
 
 use crate::continuation::CellCheck;
+use crate::space::CellSpace;
 
 use super::{GeneratorMethodOptions, MonteCarloOptions, SgcmOptions};
 
@@ -37,10 +38,10 @@ impl MethodOptions {
         }
     }
 
-    /// Whether what cells do to the densities can be checked.
-    pub fn cell_check(&self) -> CellCheck {
+    /// Whether what the cells of this space do to the densities can be checked.
+    pub fn cell_check(&self, space: &CellSpace) -> CellCheck {
         match self {
-            Self::Generator(_) => GeneratorMethodOptions::CELL_CHECK,
+            Self::Generator(_) => GeneratorMethodOptions::cell_check(space),
             Self::Sgcm(_) => SgcmOptions::CELL_CHECK,
             Self::MonteCarlo(_) => MonteCarloOptions::CELL_CHECK,
         }

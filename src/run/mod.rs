@@ -37,6 +37,7 @@ mod stored_tests;
 mod tests;
 mod tree;
 
+#[cfg(feature = "cli")]
 pub(crate) use atomic::write_atomically;
 pub use bifurcations::{
     bifurcations_csv, bifurcations_json, bifurcations_markdown, bifurcations_tex,

@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, SymmetricEigen};
 use super::series::Rule;
 
 /// Standard deviations on either side of the mean that an axis of Hermite modes spans at least: 2e-9 of the mass lies beyond.
-pub(crate) const NORMAL_RANGE: f64 = 6.0;
+pub const NORMAL_RANGE: f64 = 6.0;
 
 /// Distance of the ends of the range from the outermost nodes, in standard deviations.
 const BEYOND_NODES: f64 = 0.5;

@@ -10,7 +10,7 @@ mod series;
 pub use axis::Axis;
 pub use cells::CellSpace;
 pub use grading::Grading;
-pub(crate) use hermite::NORMAL_RANGE;
+pub use hermite::NORMAL_RANGE;
 pub use series::{MOST_MODES, Series};
 
 /// Why an axis or a cell space could not be made.

@@ -51,7 +51,10 @@ impl Settings {
             .bin_axes()
             .map_err(|diagnostic| self.refuse(*diagnostic))?;
         let problem = Problem::watching(self.family.clone(), space, self.observables.clone(), bins)
-            .map(|problem| problem.checked_by(self.method.chosen().cell_check()))
+            .map(|problem| {
+                let check = self.method.chosen().cell_check(problem.space());
+                problem.checked_by(check)
+            })
             .map_err(|error| self.refuse(Diagnostic::new(error.to_string())))?;
         Ok(Sweep {
             settings: self,

@@ -7,7 +7,7 @@ use super::reading::{Missing, Reader};
 use super::walk::{Node, Walked};
 use super::{CurveOptions, CurvePoint, CurveStart, CurveWork, Plane};
 use crate::cancellation::Cancellation;
-use crate::continuation::grid::SHARE_OF_DISTANCE;
+use crate::continuation::grid::share_of_distance;
 use crate::continuation::locate::{MOST_NEGATIVE, QUIET, negative_share};
 use crate::continuation::{BifurcationStatus, DensitySource, ErrorParts, PointStatus};
 use crate::topology::{Detector, IndicatorKind, two_sided_limit};
@@ -83,9 +83,10 @@ impl Checks<'_> {
             }
         }
         checks.retain(|check| check.finer.is_some() || check.enclosed.is_some());
+        let of_distance = share_of_distance(self.source.subject().cell_check);
         let nodes = walked.points.iter().enumerate();
         let points = nodes.map(|(index, node)| {
-            let check = between(&checks, &walked.points, index);
+            let check = between(&checks, &walked.points, index, of_distance);
             self.point(node, &check)
         });
         (points.collect(), work)
@@ -214,7 +215,7 @@ struct Interpolated {
 }
 
 /// Between the nearest checked points on either side.
-fn between(checks: &[Check], nodes: &[Node], index: usize) -> Interpolated {
+fn between(checks: &[Check], nodes: &[Node], index: usize, of_distance: f64) -> Interpolated {
     let after = checks.partition_point(|check| check.index < index);
     let above = checks.get(after);
     let below = match above {
@@ -252,7 +253,7 @@ fn between(checks: &[Check], nodes: &[Node], index: usize) -> Interpolated {
     let shows = |what: Shown| nearest.finer == Some(what) || nearest.enclosed == Some(what);
     Interpolated {
         shift: pair.map_or(0.0, |(a, b)| (1.0 - share) * a + share * b),
-        grid: pair.map(|_| SHARE_OF_DISTANCE * largest + from_neighbours),
+        grid: pair.map(|_| of_distance * largest + from_neighbours),
         leak: leaks[0].max(leaks[1]),
         is_own: below.index == index,
         status: if nearest.finer == Some(Shown::Nothing) {

@@ -3,6 +3,7 @@
 use crate::continuation::CellCheck;
 use crate::generator::AdvectiveScheme;
 use crate::method::options::ESCAPE_LIMIT;
+use crate::space::{Axis, CellSpace};
 
 /// Settings of the generator method.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,8 +20,32 @@ pub struct GeneratorMethodOptions {
 }
 
 impl GeneratorMethodOptions {
-    /// On finer cells: a scheme of high order shows there what the cells do.
-    pub const CELL_CHECK: CellCheck = CellCheck::OnFinerCells;
+    /// On finer cells: a scheme of high order shows there what the cells of this space do.
+    pub fn cell_check(space: &CellSpace) -> CellCheck {
+        let finer = finer_axes(space);
+        let pairs = finer.iter().zip(space.axes());
+        let cut = pairs.filter(|(_, axis)| !axis.is_modes());
+        let ratios = cut.map(|(finer, axis)| finer.count() as f64 / axis.count() as f64);
+        CellCheck::OnFinerCells {
+            ratio: ratios.fold(FINER[0], f64::min),
+        }
+    }
+}
+
+/// Cells an axis of the finer grid over those of this one, with up to two axes that are cut into cells and with more.
+const FINER: [f64; 2] = [1.5, 1.25];
+
+/// The axes of the grid that checks what is found on this one.
+pub(super) fn finer_axes(space: &CellSpace) -> Vec<Axis> {
+    let factor = finer_factor(space);
+    let axes = space.axes().iter();
+    axes.map(|axis| axis.refined(factor)).collect()
+}
+
+/// Which of the factors is meant.
+pub(super) fn finer_factor(space: &CellSpace) -> f64 {
+    let cut = space.axes().iter().filter(|axis| !axis.is_modes());
+    FINER[usize::from(cut.count() > 2)]
 }
 
 impl Default for GeneratorMethodOptions {

@@ -54,6 +54,16 @@ impl Relaxation {
         })
     }
 
+    /// A time that is known roughly, of a steady state with these masses.
+    pub(super) fn rough(time: f64, mass: &[f64]) -> Self {
+        Self {
+            time,
+            mode: Arc::new(uneven(mass)),
+            change: UNKNOWN_CHANGE,
+            age: 0,
+        }
+    }
+
     /// Number of cells that it is on.
     pub(super) fn cells(&self) -> usize {
         self.mode.len()

@@ -9,6 +9,7 @@
 use std::sync::Arc;
 
 use super::GeneratorSource;
+use super::coarse::rough_relaxation;
 use super::memory;
 use super::one_axis;
 use super::relaxation::Relaxation;
@@ -62,8 +63,8 @@ struct Solved {
     value: f64,
     system: Arc<dyn System>,
     steady: RateSteadyState,
-    /// The generator by the second scheme.
-    second: Generator,
+    /// The generator by the second scheme; `None` in a check, which states no error of its own.
+    second: Option<Generator>,
 }
 
 /// A solution, and the trail that leads on from it where there is one.
@@ -110,7 +111,7 @@ impl GeneratorSession {
         let Some(mut trail) = trail else {
             return Ok(solution);
         };
-        if before.is_none() {
+        if before.is_none() && !self.source.checks {
             trail.slope = self.slope(&solved)?.map(Arc::new);
         }
         let unknowns = Arc::new(solved.steady.mass);
@@ -145,7 +146,11 @@ impl GeneratorSession {
         // The solve leaves a core idle most of the time.
         let (steady, second) = rayon::join(
             || solver.solve(&generator.matrix, &generator.escape, guess),
-            || source.assemble(system.as_ref(), companion(source.options.scheme)),
+            || {
+                let wanted = (!source.checks).then(|| companion(source.options.scheme));
+                let second = wanted.map(|scheme| source.assemble(system.as_ref(), scheme));
+                second.transpose()
+            },
         );
         if solver.factorisations() > factorisations {
             self.stand.factorised = Some(value);
@@ -174,7 +179,7 @@ impl GeneratorSession {
         if !finite {
             return Ok((Solution::without_density(reporter.report), None));
         }
-        let relaxation = relaxation(&mut self.solver, solved, before);
+        let relaxation = self.relaxation(solved, before);
         let time = relaxation.as_ref().map(|known| known.time);
         let Some(share) = reporter.escaping_share(time, self.source.options.escape_limit) else {
             return Ok((Solution::without_density(reporter.report), None));
@@ -206,6 +211,22 @@ impl GeneratorSession {
         ))
     }
 
+    /// The time in which deviations die out, where mass escapes: a neighbour's, or that of fewer cells, where it will do.
+    fn relaxation(&mut self, solved: &Solved, before: Option<&Trail>) -> Option<Relaxation> {
+        let (rate, mass) = (solved.steady.info.escape_rate, &solved.steady.mass);
+        if self.source.checks || rate <= NO_ESCAPE {
+            return None;
+        }
+        let neighbour = before.and_then(|trail| trail.relaxation.as_deref());
+        let carried = |known: &Relaxation| Relaxation::carried(known, rate, QUIET_ESCAPE);
+        let near = match neighbour {
+            Some(known) => carried(known),
+            None => rough_relaxation(&self.source, solved.value, &self.cancellation)
+                .and_then(|time| carried(&Relaxation::rough(time, mass))),
+        };
+        near.or_else(|| Relaxation::compute(&mut self.solver, mass, neighbour))
+    }
+
     /// Densities with the difference to the second scheme as their error, and that difference of the unknowns.
     fn densities(
         &mut self,
@@ -215,10 +236,14 @@ impl GeneratorSession {
     ) -> Result<(Vec<EstimatedDensity>, Vec<f64>), MethodError> {
         let problem = &self.source.problem;
         let (system, space) = (solved.system.as_ref(), problem.space());
-        let (unknowns, second) = (&solved.steady.mass, &solved.second.matrix);
-        let change = self
-            .solver
-            .sensitivity_within(second, unknowns, expected, ROUGH)?;
+        let unknowns = &solved.steady.mass;
+        let change = match &solved.second {
+            Some(second) => {
+                let solver = &mut self.solver;
+                solver.sensitivity_within(&second.matrix, unknowns, expected, ROUGH)?
+            }
+            None => vec![0.0; unknowns.len()],
+        };
         let changed: Vec<f64> = unknowns.iter().zip(&change).map(|(u, du)| u + du).collect();
         let changed = cell_masses(system, space, &changed);
         let difference: Vec<f64> = changed.iter().zip(masses).map(|(b, a)| b - a).collect();
@@ -263,22 +288,6 @@ fn reporter<'a>(space: &'a CellSpace, info: &RateInfo) -> Reporter<'a> {
     report.own.factorisations = info.factorisations;
     report.own.negative_mass = info.negative_mass;
     reporter
-}
-
-/// The time in which deviations die out, where mass escapes: a neighbour's where it will do.
-fn relaxation(
-    solver: &mut RateSolver,
-    solved: &Solved,
-    before: Option<&Trail>,
-) -> Option<Relaxation> {
-    let rate = solved.steady.info.escape_rate;
-    let neighbour = before.and_then(|trail| trail.relaxation.as_deref());
-    if rate <= NO_ESCAPE {
-        return None;
-    }
-    neighbour
-        .and_then(|known| Relaxation::carried(known, rate, QUIET_ESCAPE))
-        .or_else(|| Relaxation::compute(solver, &solved.steady.mass, neighbour))
 }
 
 /// What a point leaves for its neighbour, with the points before.

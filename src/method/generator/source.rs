@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::GeneratorMethodOptions;
+use super::options::{finer_axes, finer_factor};
 use super::session::GeneratorSession;
 use crate::cancellation::Cancellation;
 use crate::continuation::{DensitySource, Session, SourceError, Subject};
@@ -17,9 +18,6 @@ use crate::system::{Enclosed, SwitchingSurface, System, SystemError};
 /// Name of the method in tables.
 pub(super) const METHOD: &str = "generator";
 
-/// Cells an axis of the finer grid over those of this one, with up to two axes that are cut into cells and with more.
-const FINER: [f64; 2] = [1.5, 1.25];
-
 /// Densities along a path by the generator.
 #[derive(Debug, Clone)]
 pub struct GeneratorSource {
@@ -29,6 +27,9 @@ pub struct GeneratorSource {
     pub(super) kinked: Vec<SwitchingSurface>,
     /// Whether nothing leaves Ω, whatever the system does there.
     pub(super) enclosed: bool,
+    /// Whether densities are all that is asked for: a check compares them with what another source found, whose errors and relaxation
+    /// are known.
+    pub(super) checks: bool,
 }
 
 impl GeneratorSource {
@@ -40,11 +41,12 @@ impl GeneratorSource {
         let (systems, space) = (problem.family().along()?, problem.space());
         has_densities(problem)?;
         Ok(Self {
-            problem: problem.checked_by(GeneratorMethodOptions::CELL_CHECK),
+            problem: problem.checked_by(GeneratorMethodOptions::cell_check(space)),
             options: options.clone(),
             closed_ends: closed_ends(&systems, space),
             kinked: kinked_surfaces(&systems, space),
             enclosed: false,
+            checks: false,
         })
     }
 
@@ -65,12 +67,13 @@ impl GeneratorSource {
     /// The same on finer cells.
     fn refined(&self) -> Result<Self, MethodError> {
         let space = self.problem.space();
-        let cut = space.axes().iter().filter(|axis| !axis.is_modes()).count();
-        let factor = FINER[usize::from(cut > 2)];
-        let axes = space.axes().iter();
-        let finer = CellSpace::new(axes.map(|axis| axis.refined(factor)).collect())?;
-        let problem = self.problem.on(finer)?.with_finer_bins(factor);
-        Self::new(&problem, &self.options)
+        let finer = CellSpace::new(finer_axes(space))?;
+        let problem = self.problem.on(finer)?;
+        let problem = problem.with_finer_bins(finer_factor(space));
+        Ok(Self {
+            checks: true,
+            ..Self::new(&problem, &self.options)?
+        })
     }
 
     /// What turns masses into what is watched at a value of the path.
@@ -130,6 +133,7 @@ impl DensitySource for GeneratorSource {
         let closed_ends = vec![[true; 2]; self.closed_ends.len()];
         Some(Box::new(Self {
             enclosed: true,
+            checks: true,
             closed_ends,
             ..self.clone()
         }))

@@ -284,7 +284,7 @@ fn factorise_rows<T: Number>(
         for (slot, &source) in rows[from..].iter_mut().zip(forward) {
             *slot = old[source as usize];
         }
-        exchange(before, forward);
+        exchange(before.as_dyn_stride_mut(), forward);
         let panel = panel.as_ref();
         let (top, below) = panel.split_at_row(width);
         by_columns(after.as_dyn_stride_mut(), 0, &|_, mut columns| {
@@ -317,17 +317,24 @@ fn drop_small<T: Number>(block: Block<'_, T>) {
     }
 }
 
-/// Reorders the rows of a block: row `source[i]` goes to place `i`.
-fn exchange<T: Number>(
-    mut block: MatMut<'_, T, usize, usize, impl faer::Stride, impl faer::Stride>,
-    source: &[u32],
-) {
-    let mut old = Vec::with_capacity(source.len());
-    for column in 0..block.ncols() {
-        old.clear();
-        old.extend((0..source.len()).map(|row| block[(row, column)]));
-        for (row, &from) in source.iter().enumerate() {
-            block[(row, column)] = old[from as usize];
+/// Reorders the rows of a block, whose columns are contiguous: row `source[i]` goes to place `i`. Most stay where they are.
+fn exchange<T: Number>(block: Block<'_, T>, source: &[u32]) {
+    let places = 0u32..;
+    let moved = places.zip(source).filter(|(place, from)| place != *from);
+    let moved: Vec<(u32, u32)> = moved.map(|(place, &from)| (place, from)).collect();
+    let Some(block) = block.try_as_col_major_mut().filter(|_| !moved.is_empty()) else {
+        return;
+    };
+    let mut taken = Vec::with_capacity(moved.len());
+    for column in block.col_iter_mut() {
+        let Some(column) = column.try_as_col_major_mut() else {
+            return;
+        };
+        let column = column.as_slice_mut();
+        taken.clear();
+        taken.extend(moved.iter().map(|&(_, from)| column[from as usize]));
+        for (&(place, _), &value) in moved.iter().zip(&taken) {
+            column[place as usize] = value;
         }
     }
 }
