@@ -9,7 +9,9 @@ use clap::{Args, Parser, Subcommand};
 use crate::continuation::Shard;
 use crate::continuation::curve::CurveOptions;
 use crate::sweep_file;
-pub(crate) use runs::MergeArguments;
+pub(crate) use runs::{
+    CleanArguments, ExportArguments, ListArguments, MergeArguments, ShowArguments,
+};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -187,6 +189,51 @@ pub(super) enum Command {
         /// What to check.
         #[command(flatten)]
         run: VerifyArguments,
+    },
+    /// List runs: what, when, how far, and what was found; earlier versions and shards too
+    #[command(after_help = runs::LIST_EXAMPLES)]
+    List {
+        /// Where to look.
+        #[command(flatten)]
+        run: ListArguments,
+    },
+    /// Show a run: its sweep, how it ended, what was found
+    #[command(after_help = runs::SHOW_EXAMPLES)]
+    Show {
+        /// What to show.
+        #[command(flatten)]
+        run: ShowArguments,
+    },
+    /// Remove earlier versions and unfinished runs, after asking
+    #[command(after_help = runs::CLEAN_EXAMPLES)]
+    Clean {
+        /// What to remove.
+        #[command(flatten)]
+        run: CleanArguments,
+    },
+    /// Write the densities of a run for other programs: NetCDF, NumPy, tables
+    #[command(after_help = runs::EXPORT_EXAMPLES)]
+    Export {
+        /// What to write.
+        #[command(flatten)]
+        run: ExportArguments,
+    },
+    /// Print the completions of a shell, to be sourced
+    #[command(
+        after_help = "Examples:\n  source <(pbif completions bash)\n  pbif completions fish > ~/.config/fish/completions/pbif.fish"
+    )]
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page, or write one a command into a folder
+    #[command(
+        after_help = "Examples:\n  pbif man | man -l -\n  pbif man --out ~/.local/share/man/man1"
+    )]
+    Man {
+        /// Folder for pbif.1, pbif-sweep.1, …
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
     },
     /// List the models, or show one: equations, axes, parameters, domain, source
     #[command(after_help = "Examples:\n  pbif systems\n  pbif systems dahl")]

@@ -103,6 +103,7 @@ fn write(spec: &Sweep, of: usize, result: &SweepResult, path: &Path) -> Result<(
     manifest.largest_distance = result.largest_distance();
     manifest.warnings = warnings::of_points(spec.problem.family(), &result.points);
     manifest.ending = Ending::Interrupted;
+    manifest.made.end();
     folder.write_manifest(&manifest)?;
     Ok(folder.seal()?)
 }

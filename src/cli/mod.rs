@@ -2,16 +2,21 @@
 
 mod args;
 mod check;
+mod clean;
 mod compare;
 mod curve;
 mod detect;
 mod explore;
+mod export;
 mod interrupts;
+mod list;
+mod manual;
 mod map;
 mod merge;
 mod new;
 mod output;
 mod plot;
+mod show;
 mod stored;
 mod sweep;
 mod systems;
@@ -161,6 +166,12 @@ fn dispatch(command: &Command) -> Result<Outcome, CommandError> {
         Command::Detect { run } => detect::run(run),
         Command::Plot { run } => plot::run(run),
         Command::Explore { run } => explore::run(run),
+        Command::List { run } => list::run(run),
+        Command::Show { run } => show::run(run),
+        Command::Clean { run } => clean::run(run),
+        Command::Export { run } => export::run(run),
+        Command::Completions { shell } => print(&manual::completions(*shell)),
+        Command::Man { out } => manual::run(out.as_deref()),
         Command::Merge { run } => merge::run(run),
         Command::Verify { run } => verify::run(run),
         Command::New { file, like } => print(&new::run(file.as_deref(), like.as_deref())?),

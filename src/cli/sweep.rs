@@ -248,6 +248,7 @@ impl<'a> Run<'a> {
         } else {
             Ending::Complete
         };
+        self.manifest.made.end();
         self.folder.write_manifest(&self.manifest)?;
         self.folder.seal()?;
         if !result.interrupted {

@@ -57,6 +57,15 @@ impl FolderLock {
     }
 }
 
+/// Who writes to a folder now; `None` where nobody does, or there is no telling.
+pub(super) fn holder_of(folder: &Path) -> Option<String> {
+    let mut file = File::open(folder.join(NAME)).ok()?;
+    match file.try_lock_shared() {
+        Err(TryLockError::WouldBlock) => Some(holder(&mut file)),
+        _ => None,
+    }
+}
+
 impl Drop for FolderLock {
     fn drop(&mut self) {
         // Removed while it is still held, so that nobody else's file is.
@@ -108,7 +117,10 @@ mod tests {
         let error = FolderLock::take(home.path()).unwrap_err();
         let words = format!("process {}", std::process::id());
         assert!(error.to_string().contains(&words), "{error}");
+        let words = format!("process {}", std::process::id());
+        assert!(holder_of(home.path()).unwrap().contains(&words));
         drop(lock);
+        assert_eq!(holder_of(home.path()), None);
         assert_eq!(std::fs::read_dir(home.path()).unwrap().count(), 0);
         // What a killed process leaves is a file without a lock.
         std::fs::write(home.path().join(NAME), "process 1 on elsewhere").unwrap();

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{RunError, stored_run::hash};
+use super::{Provenance, RunError, stored_run::hash};
 
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -59,6 +59,8 @@ pub struct Manifest {
     pub points: usize,
     /// Largest Hellinger distance between neighbouring densities; `None` with fewer than two.
     pub largest_distance: Option<f64>,
+    /// By what and when it was made.
+    pub made: Provenance,
     /// Seconds a phase.
     pub seconds: PhaseSeconds,
     /// Warnings, one sentence each, with the parameter values they concern.
@@ -85,6 +87,7 @@ impl Manifest {
             ending: Ending::Running,
             points: 0,
             largest_distance: None,
+            made: Provenance::of_this_process(),
             seconds: PhaseSeconds::default(),
             warnings: Vec::new(),
         })

@@ -8,10 +8,13 @@ mod bifurcations;
 mod cell;
 mod checks;
 mod checksums;
+mod clean;
 mod columns;
 mod compare;
 mod curve;
+mod date;
 mod exchange;
+mod export;
 mod features_table;
 mod findings;
 mod folder;
@@ -23,6 +26,7 @@ mod manifest;
 mod map;
 mod number;
 mod points_table;
+mod provenance;
 mod reopen;
 mod sentences;
 mod shards;
@@ -33,6 +37,7 @@ mod stored_densities;
 mod stored_run;
 #[cfg(test)]
 mod stored_tests;
+mod summary;
 #[cfg(test)]
 mod tests;
 mod tree;
@@ -43,8 +48,11 @@ pub use bifurcations::{
     bifurcations_csv, bifurcations_json, bifurcations_markdown, bifurcations_tex,
 };
 pub use checksums::{Checked, Damage};
+pub use clean::{Removable, removable_runs, remove_run};
 pub use compare::{CompareFolder, CompareTable, ComparedRun, compare_tables};
 pub use curve::{CurveFolder, curves_csv};
+pub use date::date_in_utc;
+pub use export::{ExportFormat, export};
 pub use features_table::features_csv;
 pub use folder::RunFolder;
 pub use journal::{Journal, JournalledSource};
@@ -52,11 +60,13 @@ pub use manifest::{Ending, Manifest, PhaseSeconds};
 pub use map::{MapFolder, map_csv};
 pub use number::{format_number, format_with_error};
 pub use points_table::points_csv;
+pub use provenance::Provenance;
 pub use sentences::finding_in_words;
 pub use shards::{Gathered, GatheredSource, Shards, shard_folder};
 pub use staged::StagedRun;
 pub use store::DensityStore;
 pub use stored_run::StoredRun;
+pub use summary::{FoundRow, RunSummary, find_runs};
 
 use std::path::PathBuf;
 
@@ -173,6 +183,17 @@ pub enum RunError {
         path: PathBuf,
         /// What differs, key by key.
         differences: Vec<String>,
+    },
+    /// A run without densities.
+    #[error("the run has no density at any value: nothing to export")]
+    NothingToExport,
+    /// A format that cannot hold what is exported.
+    #[error("cannot export to {}: {message}", path.display())]
+    Export {
+        /// The file.
+        path: PathBuf,
+        /// What the format's library says.
+        message: String,
     },
     /// A folder without shards.
     #[error("`{}` holds no shards of a sweep", path.display())]

@@ -13,7 +13,7 @@ use zarrs::array::{Array, ArrayBuilder, data_type};
 use zarrs::storage::store::MemoryStore;
 use zarrs::storage::{ListableStorageTraits, ReadableStorageTraits};
 
-use super::arrays::{Layout, PARAMETER_CHUNK, REPLICATE_CHUNK};
+use super::arrays::{KINK_AT, Layout, PARAMETER_CHUNK, REPLICATE_CHUNK};
 use super::exchange::Fresh;
 use super::{RunError, atomic::write_atomically};
 use crate::density::{EstimatedDensity, Variants};
@@ -29,6 +29,8 @@ pub struct DensityStore {
     axes: Vec<Layout>,
     /// Every array so far with a dimension along the parameter.
     arrays: Vec<Layout>,
+    /// Where the chunks of the last parameter value stand already: a store, and the place in it.
+    written: Option<(PathBuf, u64)>,
 }
 
 impl DensityStore {
@@ -39,6 +41,7 @@ impl DensityStore {
             values: Vec::new(),
             axes: Vec::new(),
             arrays: Vec::new(),
+            written: None,
         }
     }
 
@@ -57,7 +60,7 @@ impl DensityStore {
     }
 
     /// Replaces the whole store by the given densities, in their order; the old one stays until the new one is
-    /// complete.
+    /// complete. Densities that were appended before must be the same: their chunks are linked, not written again.
     ///
     /// # Errors
     /// As [`DensityStore::append`].
@@ -72,8 +75,12 @@ impl DensityStore {
         let fresh = Fresh::beside(&self.path)?;
         let mut store = Self::new(&fresh.path);
         for (value, densities) in densities {
+            let mut known = self.values.iter();
+            let place = known.position(|one| one.to_bits() == value.to_bits());
+            store.written = place.map(|place| (self.path.clone(), place as u64));
             store.add(family, *value, densities)?;
         }
+        store.written = None;
         store.write_all_metadata(family)?;
         fresh.take_place(&self.path)?;
         store.path.clone_from(&self.path);
@@ -157,7 +164,32 @@ impl DensityStore {
         let layout = self.register(layout);
         let mut place = vec![0; layout.dimensions.len()];
         place[0] = self.values.len() as u64 - 1;
-        self.write_chunk(&layout, &place, values)
+        match self.link_chunk(&layout, &place) {
+            true => Ok(()),
+            false => self.write_chunk(&layout, &place, values),
+        }
+    }
+
+    /// Gives the chunk of the last parameter value that is written already a second place; `false` where it is not, or the file system cannot.
+    fn link_chunk(&self, layout: &Layout, place: &[u64]) -> bool {
+        let Some((store, index)) = &self.written else {
+            return false;
+        };
+        // The numbers of kinks depend on the order of the values.
+        if layout.attributes.contains_key(KINK_AT) {
+            return false;
+        }
+        let file = |store: &Path, first: u64| {
+            let numbers = [&[first], &place[1..]].concat();
+            let names = numbers.iter().map(u64::to_string);
+            let folder = store.join(&layout.name).join("c");
+            names.fold(folder, |path, name| path.join(name))
+        };
+        let (from, to) = (file(store, *index), file(&self.path, place[0]));
+        let folder = to
+            .parent()
+            .is_some_and(|folder| std::fs::create_dir_all(folder).is_ok());
+        folder && std::fs::hard_link(from, to).is_ok()
     }
 
     /// Writes replicates at the last parameter value, chunk by chunk; what a chunk does not fill is NaN.
@@ -173,6 +205,9 @@ impl DensityStore {
             values.resize(length, f64::NAN);
             let mut place = vec![0; layout.dimensions.len()];
             (place[0], place[1]) = (self.values.len() as u64 - 1, number as u64);
+            if self.link_chunk(&layout, &place) {
+                continue;
+            }
             self.write_chunk(&layout, &place, &values)?;
         }
         Ok(())

@@ -88,6 +88,16 @@ impl StoredRun {
         &self.path
     }
 
+    /// The resolved sweep: every key, as JSON.
+    pub fn sweep(&self) -> &serde_json::Value {
+        &self.manifest.sweep
+    }
+
+    /// Version of the program that made it.
+    pub fn version(&self) -> &str {
+        &self.manifest.version
+    }
+
     /// The resolved sweep file as TOML.
     pub fn resolved(&self) -> &str {
         &self.resolved

@@ -230,6 +230,46 @@ fn a_store_in_its_final_order_holds_the_same() {
 }
 
 #[test]
+fn chunks_that_are_linked_are_those_that_would_be_written() {
+    let points = [
+        point(0.5, Some(9), 2),
+        point(-0.5, Some(3), 1),
+        point(0.25, None, 2),
+    ];
+    let folder = tempfile::tempdir().unwrap();
+    let places = ["grown", "whole"].map(|name| folder.path().join(name));
+    let mut sorted = points
+        .each_ref()
+        .map(|point| (point.value, point.densities.as_slice()));
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for (place, grown) in places.iter().zip([true, false]) {
+        let mut store = DensityStore::new(place);
+        for point in points.iter().filter(|_| grown) {
+            store
+                .append(&coulomb(), point.value, &point.densities)
+                .unwrap();
+        }
+        store.replace(&coulomb(), &sorted).unwrap();
+    }
+    let [grown, whole] = places.map(|place| {
+        let (mut open, mut files) = (vec![place.clone()], std::collections::BTreeMap::new());
+        while let Some(folder) = open.pop() {
+            for entry in std::fs::read_dir(folder).unwrap().flatten() {
+                match entry.file_type().unwrap().is_dir() {
+                    true => open.push(entry.path()),
+                    false => {
+                        let name = entry.path().strip_prefix(&place).unwrap().to_owned();
+                        files.insert(name, std::fs::read(entry.path()).unwrap());
+                    }
+                }
+            }
+        }
+        files
+    });
+    assert!(grown.len() > 20 && grown == whole);
+}
+
+#[test]
 fn runs_of_earlier_versions_load_without_what_they_lack() {
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), &[point(0.5, None, 2)]);

@@ -1,4 +1,4 @@
-//! Arguments of the commands that keep runs: putting shards together.
+//! Arguments of the commands that keep runs: listing, showing, exporting, removing them, and putting shards together.
 
 use std::path::PathBuf;
 
@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::Work;
 use crate::continuation::Shard;
+use crate::run::ExportFormat;
 
 pub(super) const MERGE_EXAMPLES: &str = "\
 Examples:
@@ -34,6 +35,95 @@ pub(crate) struct MergeArguments {
     /// How to work.
     #[command(flatten)]
     pub(crate) work: Work,
+}
+
+pub(super) const LIST_EXAMPLES: &str = "\
+Examples:
+  pbif list                     the runs below output/
+  pbif list output/coulomb_fc   one run with its earlier versions and shards";
+
+pub(super) const SHOW_EXAMPLES: &str = "\
+Examples:
+  pbif show output/coulomb_fc
+  pbif show output/coulomb_fc --sweep > again.toml   the complete sweep file of the run, every default filled in
+  pbif show output/coulomb_fc/previous/1";
+
+pub(super) const CLEAN_EXAMPLES: &str = "\
+Examples:
+  pbif clean output/coulomb_fc              lists what may go, and asks
+  pbif clean output --earlier --yes         every earlier version below output/, without asking
+
+What may go: earlier versions (previous/), unfinished runs, and shards that were merged. Only files that pbif wrote are removed: notes
+and figures that were changed stay.
+
+Exit status: 0 removed, or nothing to remove; 1 not removed because the answer was no; 2 cannot ask or remove.";
+
+pub(super) const EXPORT_EXAMPLES: &str = "\
+Examples:
+  pbif export output/coulomb_fc --format netcdf            output/coulomb_fc.nc, for xarray, MATLAB, Octave, Julia, ...
+  pbif export output/coulomb_fc --format npz --out a.npz   for numpy.load
+  pbif export output/coulomb_fc --format csv --out tables  a folder with a table a density
+
+Densities (∫ = 1) with their errors, centres and edges of the cells, means and standard deviations, at every value that has a density.
+xarray and zarr read the run's densities.zarr as it is. Programs that read a run: examples/python/, examples/octave/";
+
+/// Where runs are looked for.
+#[derive(Debug, Args)]
+pub(crate) struct ListArguments {
+    /// Folder of runs, or of one run
+    #[arg(default_value = "output")]
+    pub(crate) folder: PathBuf,
+}
+
+/// A run that is shown.
+#[derive(Debug, Args)]
+pub(crate) struct ShowArguments {
+    /// Folder of a run, as `pbif sweep` left it
+    pub(crate) run: PathBuf,
+    /// Print the complete sweep file of the run alone
+    #[arg(long)]
+    pub(crate) sweep: bool,
+}
+
+/// Runs that are removed.
+#[derive(Debug, Args)]
+pub(crate) struct CleanArguments {
+    /// Folder of a run, or of several
+    pub(crate) folder: PathBuf,
+    /// Earlier versions alone
+    #[arg(long)]
+    pub(crate) earlier: bool,
+    /// Unfinished runs alone
+    #[arg(long)]
+    pub(crate) unfinished: bool,
+    /// Do not ask
+    #[arg(long)]
+    pub(crate) yes: bool,
+}
+
+/// A run that is written for other programs.
+#[derive(Debug, Args)]
+pub(crate) struct ExportArguments {
+    /// Folder of a run, as `pbif sweep` left it
+    pub(crate) run: PathBuf,
+    /// What to write
+    #[arg(long, value_name = "FORMAT", value_parser = format, default_value = "netcdf")]
+    pub(crate) format: ExportFormat,
+    /// File, or folder of tables; it must not be there yet [default: RUN.nc, RUN.npz or RUN-csv]
+    #[arg(long, value_name = "PATH")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+/// The format of a name.
+fn format(text: &str) -> Result<ExportFormat, String> {
+    let mut known = ExportFormat::ALL.into_iter();
+    let found = known.find(|format| format.name() == text);
+    found.ok_or_else(|| {
+        format!(
+            "allowed: {}",
+            ExportFormat::ALL.map(ExportFormat::name).join(", ")
+        )
+    })
 }
 
 /// The shard that `K/N` names.

@@ -1,0 +1,222 @@
+//! A run for other programs: its densities with their axes as one NetCDF or NumPy file, or as tables of text.
+
+mod csv;
+mod netcdf;
+mod npz;
+
+use std::path::Path;
+
+use super::RunError;
+use super::arrays;
+use crate::continuation::{Point, Subject};
+use crate::density::{EstimatedDensity, Variants};
+use crate::system::Family;
+
+/// What a run can be written as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ExportFormat {
+    /// NetCDF classic with 64-bit offsets, one file.
+    NetCdf,
+    /// NumPy's archive of arrays, one file.
+    Npz,
+    /// A folder with a table a density.
+    Csv,
+}
+
+impl ExportFormat {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::NetCdf, Self::Npz, Self::Csv];
+
+    /// Name used on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NetCdf => "netcdf",
+            Self::Npz => "npz",
+            Self::Csv => "csv",
+        }
+    }
+
+    /// Ending of the name of its file or folder.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::NetCdf => ".nc",
+            Self::Npz => ".npz",
+            Self::Csv => "-csv",
+        }
+    }
+}
+
+/// A named array with its dimensions.
+struct Array {
+    name: String,
+    /// Names and lengths, the slowest first.
+    dimensions: Vec<(String, usize)>,
+    values: Vec<f64>,
+    long_name: String,
+}
+
+impl Array {
+    fn line(name: &str, values: Vec<f64>, long_name: String) -> Self {
+        Self {
+            name: name.to_owned(),
+            dimensions: vec![(name.to_owned(), values.len())],
+            values,
+            long_name,
+        }
+    }
+}
+
+/// Everything that is exported: coordinates first, then moments, then densities, one value of the parameter after the other.
+struct DataSet {
+    title: String,
+    arrays: Vec<Array>,
+}
+
+/// Writes the densities and moments of a run's points to a file, or to a folder of tables. Points without a density are left out. The arrays have the names of
+/// `densities.zarr`: `p_x` with dimensions of the parameter and `x`, normalised to ∫ = 1, its standard error `p_x_error`, its second discretisation
+/// `p_x_second`; centres `x` and edges `x_edges` of the cells; `mean_x` and `sd_x`.
+///
+/// # Errors
+/// [`RunError::Write`], [`RunError::Export`] when the format cannot hold it, [`RunError::NothingToExport`] when no point has a density.
+pub fn export(
+    subject: &Subject,
+    points: &[Point],
+    title: &str,
+    format: ExportFormat,
+    path: &Path,
+) -> Result<(), RunError> {
+    let solved = points.iter().filter(|point| !point.densities.is_empty());
+    let solved: Vec<&Point> = solved.collect();
+    if solved.is_empty() {
+        return Err(RunError::NothingToExport);
+    }
+    match format {
+        ExportFormat::Csv => csv::write(subject, &solved, path),
+        ExportFormat::Npz => npz::write(&data_set(subject, &solved, title), path),
+        ExportFormat::NetCdf => netcdf::write(&data_set(subject, &solved, title), path),
+    }
+}
+
+fn data_set(subject: &Subject, points: &[&Point], title: &str) -> DataSet {
+    let family = &subject.family;
+    let parameter = family.parameter();
+    let values = points.iter().map(|point| point.value).collect();
+    let mut arrays = vec![Array::line(
+        parameter,
+        values,
+        format!("parameter {parameter}"),
+    )];
+    let Some(first) = points.first() else {
+        return DataSet {
+            title: title.to_owned(),
+            arrays,
+        };
+    };
+    for density in &first.densities {
+        for (number, axis) in density.observable.axes().iter().zip(&density.density.axes) {
+            let name = family.axis(*number);
+            if arrays.iter().all(|known| known.name != name) {
+                let edges = arrays::edges(name);
+                arrays.push(Array::line(
+                    name,
+                    axis.centres(),
+                    format!("centres of the cells of {name}"),
+                ));
+                arrays.push(Array::line(
+                    &edges,
+                    axis.edges().to_vec(),
+                    format!("edges of the cells of {name}"),
+                ));
+            }
+        }
+    }
+    arrays.extend(moments(family, points));
+    for (index, density) in first.densities.iter().enumerate() {
+        arrays.extend(densities(family, points, index, density));
+    }
+    DataSet {
+        title: title.to_owned(),
+        arrays,
+    }
+}
+
+/// Means and standard deviations.
+fn moments(family: &Family, points: &[&Point]) -> Vec<Array> {
+    let count = points.iter().map(|point| point.moments.len()).max();
+    let along = vec![(family.parameter().to_owned(), points.len())];
+    let of = |axis: usize, name: &str, long: &str, deviation: bool| {
+        let values = points.iter().map(|point| match point.moments.get(axis) {
+            Some(moments) if deviation => moments.standard_deviation,
+            Some(moments) => moments.mean,
+            None => f64::NAN,
+        });
+        let quantity = family.axis(axis);
+        Array {
+            name: format!("{name}_{quantity}"),
+            dimensions: along.clone(),
+            values: values.collect(),
+            long_name: format!("{long} of {quantity}"),
+        }
+    };
+    let axes = 0..count.unwrap_or(0);
+    axes.flat_map(|axis| {
+        [
+            of(axis, "mean", "mean", false),
+            of(axis, "sd", "standard deviation", true),
+        ]
+    })
+    .collect()
+}
+
+/// A density, its error, and its second discretisation where there is one.
+fn densities(
+    family: &Family,
+    points: &[&Point],
+    index: usize,
+    like: &EstimatedDensity,
+) -> Vec<Array> {
+    let mut dimensions = vec![(family.parameter().to_owned(), points.len())];
+    let mut cells = 1;
+    for (number, axis) in like.observable.axes().iter().zip(&like.density.axes) {
+        dimensions.push((family.axis(*number).to_owned(), axis.count()));
+        cells *= axis.count();
+    }
+    let all = |name: String, of: &dyn Fn(&EstimatedDensity) -> Option<Vec<f64>>, long: &str| {
+        let values = points.iter().flat_map(|point| {
+            let found = point.densities.get(index).and_then(of);
+            found
+                .filter(|values| values.len() == cells)
+                .unwrap_or(vec![f64::NAN; cells])
+        });
+        let observable = like.observable.name(family);
+        Array {
+            name,
+            dimensions: dimensions.clone(),
+            values: values.collect(),
+            long_name: format!("{long} of {observable}"),
+        }
+    };
+    let observable = like.observable;
+    let density = |one: &EstimatedDensity| Some(one.density.values.clone());
+    let error = |one: &EstimatedDensity| Some(one.standard_error.clone());
+    let second = |one: &EstimatedDensity| match &one.variants {
+        Variants::Scheme(second) => Some(second.clone()),
+        _ => None,
+    };
+    let mut arrays = vec![
+        all(arrays::density(family, observable), &density, "density"),
+        all(
+            arrays::error(family, observable),
+            &error,
+            "standard error of the density",
+        ),
+    ];
+    if matches!(like.variants, Variants::Scheme(_)) {
+        let name = arrays::second(family, observable);
+        arrays.push(all(name, &second, "density by a second discretisation"));
+    }
+    arrays
+}
+
+#[cfg(test)]
+mod tests;

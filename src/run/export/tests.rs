@@ -1,0 +1,132 @@
+//! Exports, read back by the same libraries and byte by byte.
+
+use super::*;
+use crate::continuation::{CellCheck, SolveReport};
+use crate::density::{Density, Moments, NEGLIGIBLE, Observable, Structure};
+use crate::space::Axis;
+use crate::system::examples::coulomb;
+
+fn subject() -> Subject {
+    Subject {
+        family: coulomb(),
+        observables: vec![Observable::Marginal(0), Observable::Joint(0, 1)],
+        cell_check: CellCheck::Needless,
+    }
+}
+
+/// Densities of 2 and 2 × 3 cells whose values are their numbers.
+fn point(value: f64, solved: bool) -> Point {
+    let axes = [
+        Axis::uniform(-1.0, 1.0, 2).unwrap(),
+        Axis::uniform(0.0, 3.0, 3).unwrap(),
+    ];
+    let density = |observable: Observable| {
+        let axes: Vec<Axis> = observable
+            .axes()
+            .iter()
+            .map(|&axis| axes[axis].clone())
+            .collect();
+        let cells: usize = axes.iter().map(Axis::count).product();
+        let values: Vec<f64> = (0..cells).map(|cell| value + cell as f64).collect();
+        EstimatedDensity {
+            observable,
+            standard_error: vec![0.25; cells],
+            variants: Variants::Scheme(values.iter().map(|value| -value).collect()),
+            density: Density { axes, values },
+            structure: Structure {
+                centre: None,
+                kinks: Vec::new(),
+            },
+            negligible: NEGLIGIBLE,
+        }
+    };
+    let densities = subject().observables.into_iter().map(density);
+    Point {
+        value,
+        report: SolveReport::solved("generator"),
+        moments: vec![
+            Moments {
+                mean: 0.5,
+                standard_deviation: 2.0
+            };
+            if solved { 2 } else { 0 }
+        ],
+        densities: densities.filter(|_| solved).collect(),
+        detections: Vec::new(),
+        distance: None,
+        seconds: 0.0,
+    }
+}
+
+fn exported(format: ExportFormat) -> (tempfile::TempDir, std::path::PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("export");
+    let points = [point(0.125, true), point(0.25, false), point(0.5, true)];
+    export(&subject(), &points, "a title", format, &path).unwrap();
+    (folder, path)
+}
+
+#[test]
+fn netcdf_holds_every_array_with_its_dimensions() {
+    let (_folder, path) = exported(ExportFormat::NetCdf);
+    let mut file = netcdf3::FileReader::open(&path).unwrap();
+    assert_eq!(
+        file.data_set().get_global_attr_as_string("title"),
+        Some("a title".to_owned())
+    );
+    let names = |array: &str| file.data_set().get_var(array).unwrap().dim_names();
+    assert_eq!(names("p_xy"), ["f_c", "x", "y"]);
+    assert_eq!(names("x_edges"), ["x_edges"]);
+    let mut read = |name: &str| file.read_var_f64(name).unwrap();
+    assert_eq!(read("f_c"), [0.125, 0.5]);
+    assert_eq!(read("x"), [-0.5, 0.5]);
+    assert_eq!(read("y_edges"), [0.0, 1.0, 2.0, 3.0]);
+    assert_eq!(read("p_x"), [0.125, 1.125, 0.5, 1.5]);
+    assert_eq!(read("p_x_second"), [-0.125, -1.125, -0.5, -1.5]);
+    assert_eq!(read("p_xy")[6..], [0.5, 1.5, 2.5, 3.5, 4.5, 5.5]);
+    assert_eq!(read("p_xy_error"), [0.25; 12]);
+    assert_eq!((read("mean_y"), read("sd_y")), (vec![0.5; 2], vec![2.0; 2]));
+}
+
+#[test]
+fn npz_is_an_archive_of_arrays_as_numpy_writes_them() {
+    let (_folder, path) = exported(ExportFormat::Npz);
+    let mut archive = zip::ZipArchive::new(std::fs::File::open(&path).unwrap()).unwrap();
+    let mut bytes = Vec::new();
+    std::io::Read::read_to_end(&mut archive.by_name("p_x.npy").unwrap(), &mut bytes).unwrap();
+    assert_eq!(&bytes[..8], b"\x93NUMPY\x01\x00");
+    let header = u16::from_le_bytes([bytes[8], bytes[9]]) as usize;
+    assert_eq!((10 + header) % 64, 0);
+    let text = std::str::from_utf8(&bytes[10..10 + header]).unwrap();
+    assert!(text.starts_with("{'descr': '<f8', 'fortran_order': False, 'shape': (2, 2, ), }"));
+    assert!(text.ends_with('\n'));
+    let (words, rest) = bytes[10 + header..].as_chunks::<8>();
+    let values: Vec<f64> = words.iter().map(|word| f64::from_le_bytes(*word)).collect();
+    assert_eq!((values, rest.len()), (vec![0.125, 1.125, 0.5, 1.5], 0));
+    assert!(archive.by_name("sd_x.npy").is_ok() && archive.by_name("p_xy_error.npy").is_ok());
+}
+
+#[test]
+fn tables_have_a_row_a_cell() {
+    let (_folder, path) = exported(ExportFormat::Csv);
+    let table = |name: &str| std::fs::read_to_string(path.join(name)).unwrap();
+    assert_eq!(
+        table("p_x.csv"),
+        "f_c,x,p_x,p_x_error\n0.125,-0.5,0.125,0.25\n0.125,0.5,1.125,0.25\n0.5,-0.5,0.5,0.25\n0.5,0.5,1.5,0.25\n"
+    );
+    let joint = table("p_xy.csv");
+    assert!(joint.starts_with(
+        "f_c,x,y,p_xy,p_xy_error\n0.125,-0.5,0.5,0.125,0.25\n0.125,-0.5,1.5,1.125,0.25\n"
+    ));
+    assert_eq!(joint.lines().count(), 1 + 12);
+}
+
+#[test]
+fn a_run_without_densities_has_nothing_to_export() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("export");
+    let points = [point(0.25, false)];
+    let error = export(&subject(), &points, "", ExportFormat::Npz, &path).unwrap_err();
+    assert!(matches!(error, RunError::NothingToExport));
+    assert!(!path.exists());
+}
