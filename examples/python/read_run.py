@@ -38,6 +38,8 @@ with open(asked.run / "bifurcations.csv", newline="") as table:
         if row["status"] and row["observable"] == asked.axis:
             print(f"{row['label']}: {parameter} = {row['value']} ± {row['error']}, {row['before']} -> {row['after']} ({row['status']})")
             plt.axvline(float(row["value"]), color="white", linestyle="--")
+plt.xlabel(parameter)
+plt.ylabel(asked.axis)
 plt.title(manifest["sweep"]["title"])
 plt.savefig(asked.out, dpi=150)
 print(asked.out)
