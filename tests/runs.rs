@@ -40,12 +40,13 @@ fn assert_says(text: &str, words: &[&str]) {
     }
 }
 
-/// Makes a run unfinished, as a kill leaves it.
+/// Makes a run unfinished, as a kill before its figures leaves it.
 fn unfinish(run: &Path) {
     let file = run.join("run.json");
     let text = std::fs::read_to_string(&file).unwrap();
     std::fs::write(&file, text.replace("\"complete\"", "\"running\"")).unwrap();
     std::fs::remove_file(run.join("checksums.sha256")).unwrap();
+    std::fs::remove_dir_all(run.join("figures")).unwrap();
 }
 
 #[test]

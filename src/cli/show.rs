@@ -23,7 +23,7 @@ fn text(summary: &RunSummary) -> String {
     let (parameter, from, to) = &summary.parameter;
     let (from, to) = (format_number(*from), format_number(*to));
     let mut text = format!("{}\n  {}\n", run.path().display(), summary.title);
-    let mut line = |name: &str, words: String| text += &format!("  {name:9} {words}\n");
+    let mut line = |name: &str, words: String| text += &format!("  {name:10} {words}\n");
     line("system", summary.model.clone());
     line("parameters", parameters(summary));
     line(
