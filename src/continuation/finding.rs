@@ -79,6 +79,13 @@ pub enum Finding {
         /// Largest cell Péclet number of damping and friction.
         peclet: f64,
     },
+    /// The last modes of a series matter to the density along its axis.
+    UnresolvedSeries {
+        /// The axis.
+        axis: usize,
+        /// Total variation between the density by all modes and by all but the last two.
+        change: f64,
+    },
     /// The cells at a switching surface are wider than the layer that holds the kink of the density.
     SmearedKink {
         /// The axis across the surface.
@@ -183,6 +190,7 @@ impl Finding {
             Self::NegativeDensity { mass } => plain("negative-density", &[mass]),
             Self::NegativeCells { mass, watched } => plain("negative-cells", &[mass, watched]),
             Self::WideCells { axis, peclet } => along("wide-cells", axis, &[peclet]),
+            Self::UnresolvedSeries { axis, change } => along("unresolved-series", axis, &[change]),
             Self::SmearedKink { axis, widths } => along("smeared-kink", axis, &[widths]),
             Self::SurfaceOffFaces { axis, at } => along("surface-off-faces", axis, &[at]),
             Self::NumericalDiffusion { share } => plain("numerical-diffusion", &[share]),
@@ -234,6 +242,7 @@ impl Finding {
             ("negative-density", None, &[mass]) => Self::NegativeDensity { mass },
             ("negative-cells", None, &[mass, watched]) => Self::NegativeCells { mass, watched },
             ("wide-cells", Some(axis), &[peclet]) => Self::WideCells { axis, peclet },
+            ("unresolved-series", Some(axis), &[change]) => Self::UnresolvedSeries { axis, change },
             ("smeared-kink", Some(axis), &[widths]) => Self::SmearedKink { axis, widths },
             ("surface-off-faces", Some(axis), &[at]) => Self::SurfaceOffFaces { axis, at },
             ("numerical-diffusion", None, &[share]) => Self::NumericalDiffusion { share },
@@ -358,7 +367,11 @@ pub(crate) fn every_finding() -> Vec<Finding> {
             axis: 1,
             widths: 3.5,
         }),
-        F::SmearedKink { .. } => Some(F::SurfaceOffFaces { axis: 1, at: 0.1 }),
+        F::SmearedKink { .. } => Some(F::UnresolvedSeries {
+            axis: 2,
+            change: 0.03,
+        }),
+        F::UnresolvedSeries { .. } => Some(F::SurfaceOffFaces { axis: 1, at: 0.1 }),
         F::SurfaceOffFaces { .. } => Some(F::NumericalDiffusion { share: 0.2 }),
         F::NumericalDiffusion { .. } => Some(shifted(ShiftedQuantity::Variance(0))),
         F::StepBias { quantity, .. } => Some(match quantity {

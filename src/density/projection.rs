@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::series_map::{SeriesMap, laid_out};
 use super::spread::{Averages, Coordinate, Detail, Spread};
 use super::{Density, DensityError, Moments, Observable, cell_volumes};
 use crate::space::{Axis, CellSpace};
@@ -15,6 +16,8 @@ pub struct Projection {
     sums: Sums,
     /// From what is summed to the cells of the observable, where that takes more than sums.
     spread: Option<Arc<Spread>>,
+    /// The same for axes of modes.
+    series: Option<Arc<SeriesMap>>,
     volumes: Vec<f64>,
 }
 
@@ -76,8 +79,33 @@ impl Projection {
         Ok(Self {
             sums: Sums::new(space, &kept),
             spread: None,
+            series: None,
             volumes: cell_volumes(&axes),
             axes,
+        })
+    }
+
+    /// Works out the map with bins of equal width along axes of modes, of which the masses are integrals of the series; the maps of all
+    /// modes and of fewer (`is_coarse`) differ by what the last modes do to the density. Without such axes it is that of
+    /// [`Projection::new`].
+    ///
+    /// # Errors
+    /// [`DensityError::Axis`] or [`DensityError::RepeatedAxis`].
+    pub fn of_series(
+        space: &CellSpace,
+        observable: Observable,
+        is_coarse: bool,
+    ) -> Result<Self, DensityError> {
+        let nodes = Self::new(space, observable)?;
+        let Some(series) = SeriesMap::new(space, observable, is_coarse) else {
+            return Ok(nodes);
+        };
+        let axes: Vec<Axis> = nodes.axes.iter().map(laid_out).collect();
+        Ok(Self {
+            series: Some(Arc::new(series)),
+            volumes: cell_volumes(&axes),
+            axes,
+            ..nodes
         })
     }
 
@@ -114,6 +142,7 @@ impl Projection {
         Ok(Self {
             sums: Sums::new(space, spread.axes()),
             spread: Some(Arc::new(spread)),
+            series: None,
             volumes: cell_volumes(&axes),
             axes,
         })
@@ -136,6 +165,9 @@ impl Projection {
     /// [`DensityError::Length`].
     pub fn masses(&self, mass: &[f64]) -> Result<Vec<f64>, DensityError> {
         let sums = self.sums.of(mass)?;
+        if let Some(series) = &self.series {
+            return Ok(series.masses(sums));
+        }
         let Some(spread) = &self.spread else {
             return Ok(sums);
         };

@@ -3,7 +3,7 @@
 use super::MethodError;
 use super::watched::Fixed;
 use crate::continuation::{CellCheck, Subject};
-use crate::density::{DensityError, Observable, Projection};
+use crate::density::{DensityError, Observable, Projection, laid_out};
 use crate::space::{Axis, CellSpace};
 use crate::system::Family;
 
@@ -114,7 +114,8 @@ impl Problem {
     pub fn axes_of(&self, observable: Observable) -> Vec<Axis> {
         let all = || self.space.axes().iter().chain(&self.bins);
         let axes = observable.axes().into_iter();
-        axes.filter_map(|axis| all().nth(axis).cloned()).collect()
+        axes.filter_map(|axis| all().nth(axis).map(laid_out))
+            .collect()
     }
 
     pub(super) fn fixed(&self) -> &Fixed {

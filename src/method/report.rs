@@ -19,6 +19,9 @@ const NUMERICAL_DIFFUSION_LIMIT: f64 = 0.1;
 /// Share of the mass that may leave within one relaxation time without a word.
 pub(super) const QUIET_ESCAPE: f64 = 1e-3;
 
+/// Change of a density along an axis of modes by its last modes, in total variation, above which it is worth a word.
+const SERIES_LIMIT: f64 = 0.01;
+
 /// A burn-in below this many autocorrelation times does not forget the start.
 const SHORT_BURN_IN: f64 = 5.0;
 
@@ -80,6 +83,17 @@ impl<'a> Reporter<'a> {
                 mass: cells,
                 watched,
             });
+        }
+    }
+
+    /// Densities along axes of modes, each with what its last modes change, in total variation.
+    pub(super) fn series(&mut self, changes: &[(usize, f64)]) {
+        for axis in 0..self.space.dimension() {
+            let own = changes.iter().filter(|(changed, _)| *changed == axis);
+            let change = own.map(|(_, change)| *change).fold(0.0, f64::max);
+            if change > SERIES_LIMIT {
+                self.tell(Finding::UnresolvedSeries { axis, change });
+            }
         }
     }
 

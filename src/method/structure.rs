@@ -98,7 +98,10 @@ fn kink(
     let noise: Vec<usize> = (0..system.noise_axes().len())
         .filter(|&channel| system.noise_axes()[channel] == surface.axis)
         .collect();
-    let other = axes.iter().find(|&&axis| axis != surface.axis);
+    // Along an axis of modes nodes are no bins: the mean of all holds for each.
+    let other = axes
+        .iter()
+        .find(|&&axis| axis != surface.axis && !space.axes()[axis].is_modes());
     let bins = other.map_or(1, |&axis| space.axes()[axis].count());
     let (mut sums, mut weights) = (vec![0.0; bins], vec![0.0; bins]);
     for index in beside(space, surface) {

@@ -7,7 +7,7 @@ use super::{MethodError, Problem};
 use crate::density::{
     Coordinate, Detail, EstimatedDensity, Moments, NEGLIGIBLE_OF_QUANTITIES, Observable,
     Projection, QuantityMoments, Structure, estimate_from_difference, estimate_from_second,
-    estimate_projected,
+    estimate_projected, total_variation,
 };
 use crate::system::{BoundQuantity, LANES, SwitchingSurface, System, proved_symmetry};
 
@@ -77,7 +77,12 @@ impl Problem {
         let watched = self.observables().iter().map(|observable| {
             let axes = observable.axes();
             if axes.iter().all(|&axis| axis < space.dimension()) {
-                return Ok(None);
+                let has_modes = |&axis: &usize| space.axes()[axis].is_modes();
+                if !axes.iter().any(has_modes) {
+                    return Ok(None);
+                }
+                let map = |is_coarse| Projection::of_series(space, *observable, is_coarse);
+                return Ok(Some((map(false)?, Some(map(true)?))));
             }
             let coordinates: Vec<Coordinate> = axes.into_iter().map(coordinate).collect();
             let map = |detail| Projection::of_quantities(space, &coordinates, detail, &planes);
@@ -122,6 +127,26 @@ impl Maps {
             }
         });
         densities.collect()
+    }
+
+    /// Axes of modes of the watched densities, with what the last modes change in each, in total variation.
+    pub(super) fn changes_by_last_modes(
+        &self,
+        problem: &Problem,
+        masses: &[f64],
+    ) -> Result<Vec<(usize, f64)>, MethodError> {
+        let space = problem.space();
+        let mut changes = Vec::new();
+        for (observable, maps) in problem.observables().iter().zip(&self.watched) {
+            let axes = observable.axes().into_iter();
+            let carried = |&axis: &usize| axis < space.dimension() && space.axes()[axis].is_modes();
+            let carried: Vec<usize> = axes.filter(carried).collect();
+            if let (false, Some((all, Some(fewer)))) = (carried.is_empty(), maps) {
+                let change = total_variation(&all.density(masses)?, &fewer.density(masses)?)?;
+                changes.extend(carried.into_iter().map(|axis| (axis, change)));
+            }
+        }
+        Ok(changes)
     }
 
     /// The watched densities of sampled masses, with their replicates.

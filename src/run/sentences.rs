@@ -92,6 +92,13 @@ fn cells_in_words(family: &Family, finding: &Finding) -> Option<String> {
                 false => format!("{peclet:.1e}"),
             }
         ),
+        Finding::UnresolvedSeries { axis, change } => {
+            let axis = family.axis(axis);
+            format!(
+                "the density along {axis} has not converged in the modes: the last two of them change it by {change:.1e} in total variation, \
+                 so that its details are not certain; give more `modes` along {axis}, or cells"
+            )
+        }
         Finding::SmearedKink { axis, widths } => {
             let axis = family.axis(axis);
             format!(

@@ -10,8 +10,12 @@
 
 use super::SpaceError;
 use super::grading::{BULK_SHARE, Grading, Piece, grading_terms};
-use super::hermite::{gauss_hermite, normal_edges};
-use super::series::{MOST_MODES, Series, differentiation, gauss_legendre};
+use super::hermite::{
+    NORMAL_RANGE, gauss_hermite, hermite_integrals, hermite_values, normal_edges,
+};
+use super::series::{
+    MOST_MODES, Series, differentiation, gauss_legendre, legendre_integrals, legendre_values,
+};
 
 /// Distance, in widths of a cell, within which two coordinates are one place.
 const SAME_PLACE: f64 = 1e-6;
@@ -134,6 +138,48 @@ impl Axis {
     /// The series that it carries; `None` for cells.
     pub fn series(&self) -> Option<Series> {
         self.series
+    }
+
+    /// Of an axis of modes, the integrals of the series over bins with these edges: entry `bin · count + node` is what the mass at a
+    /// node adds to a bin, by the first `used` modes.
+    pub(crate) fn series_weights(&self, edges: &[f64], used: usize) -> Vec<f64> {
+        let (middle, half, is_hermite) = match self.series {
+            Some(Series::Hermite { mean, deviation }) => (mean, deviation, true),
+            Some(Series::Legendre) | None => {
+                let (from, to) = (self.from(), self.to());
+                (0.5 * (from + to), 0.5 * (to - from), false)
+            }
+        };
+        let place = |x: &f64| (x - middle) / half;
+        let at = |s: f64| match is_hermite {
+            true => hermite_values(used, s),
+            false => legendre_values(used, s),
+        };
+        let below = |s: f64| match is_hermite {
+            true => hermite_integrals(used, s),
+            false => legendre_integrals(used, s),
+        };
+        let nodes: Vec<Vec<f64>> = self.nodes.iter().map(|x| at(place(x))).collect();
+        let integrals: Vec<Vec<f64>> = edges.iter().map(|x| below(place(x))).collect();
+        let mut weights = Vec::with_capacity(nodes.len() * integrals.len());
+        for bin in integrals.windows(2) {
+            for node in &nodes {
+                let terms = node.iter().zip(&bin[0]).zip(&bin[1]);
+                weights.push(terms.map(|((value, low), high)| value * (high - low)).sum());
+            }
+        }
+        weights
+    }
+
+    /// The ends between which a series is laid out: those of the axis, but six deviations of a normal density.
+    pub(crate) fn series_range(&self) -> (f64, f64) {
+        match self.series {
+            Some(Series::Hermite { mean, deviation }) => {
+                let half = NORMAL_RANGE * deviation;
+                (mean - half, mean + half)
+            }
+            Some(Series::Legendre) | None => (self.from(), self.to()),
+        }
     }
 
     fn check_modes(count: usize) -> Result<(), SpaceError> {

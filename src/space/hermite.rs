@@ -24,6 +24,34 @@ fn orthonormal(n: usize, s: f64) -> (f64, f64) {
     (before, value)
 }
 
+/// Orthonormal Hermite polynomials h_n(s) for n < count, of which the moments of masses at nodes are made.
+pub(super) fn hermite_values(count: usize, s: f64) -> Vec<f64> {
+    let mut values = vec![1.0, s];
+    for n in 2..count {
+        let k = n as f64;
+        values.push((s * values[n - 1] - (k - 1.0).sqrt() * values[n - 2]) / k.sqrt());
+    }
+    values.truncate(count);
+    values
+}
+
+/// ∫_{-∞}^s w h_n for n < count, which is -w h_{n-1}/√n: what each moment adds to the mass below s.
+pub(super) fn hermite_integrals(count: usize, s: f64) -> Vec<f64> {
+    let values = hermite_values(count, s);
+    let density = (-0.5 * s * s).exp() / (2.0 * std::f64::consts::PI).sqrt();
+    (0..count)
+        .map(|n| match n {
+            0 => normal_below(s),
+            n => -density * values[n - 1] / (n as f64).sqrt(),
+        })
+        .collect()
+}
+
+/// ∫_{-∞}^x of the standard normal density.
+fn normal_below(x: f64) -> f64 {
+    0.5 * statrs::function::erf::erfc(-x * std::f64::consts::FRAC_1_SQRT_2)
+}
+
 /// Gauss's rule for the standard normal density with `count` ≥ 2 nodes, Σ weights = 1, symmetric to the last bit.
 pub(super) fn gauss_hermite(count: usize) -> Rule {
     let jacobi = DMatrix::from_fn(count, count, |i, j| match i.abs_diff(j) {
@@ -81,11 +109,10 @@ pub(super) fn normal_edges(rule: &Rule) -> Vec<f64> {
 
 /// The x with ∫_{-∞}^x of the standard normal density = `share`, up to 1/2 or a little more, by bisection.
 fn normal_quantile(share: f64) -> f64 {
-    let below = |x: f64| 0.5 * statrs::function::erf::erfc(-x * std::f64::consts::FRAC_1_SQRT_2);
     let (mut low, mut high) = (-37.0, 37.0);
     for _ in 0..100 {
         let middle = 0.5 * (low + high);
-        if below(middle) < share {
+        if normal_below(middle) < share {
             low = middle;
         } else {
             high = middle;

@@ -73,6 +73,28 @@ pub(super) fn gauss_legendre(count: usize) -> Rule {
     rule
 }
 
+/// P_n(s) for n < count, of which the moments Σ_k u_k P_n(s_k) of masses at nodes are made.
+pub(super) fn legendre_values(count: usize, s: f64) -> Vec<f64> {
+    let mut values = vec![1.0, s];
+    for n in 2..count {
+        let k = n as f64;
+        values.push(((2.0 * k - 1.0) * s * values[n - 1] - (k - 1.0) * values[n - 2]) / k);
+    }
+    values.truncate(count);
+    values
+}
+
+/// ∫_{-1}^s (2n + 1)/2 P_n for n < count, which is ½ (P_{n+1} - P_{n-1}): what each moment adds to the mass below s.
+pub(super) fn legendre_integrals(count: usize, s: f64) -> Vec<f64> {
+    let values = legendre_values(count + 1, s);
+    (0..count)
+        .map(|n| match n {
+            0 => 0.5 * (s + 1.0),
+            n => 0.5 * (values[n + 1] - values[n - 1]),
+        })
+        .collect()
+}
+
 /// Derivatives of the Lagrange polynomials of some nodes at these nodes: entry `k · n + i` is ℓ_i'(s_k). Rows sum to zero.
 pub(super) fn differentiation(nodes: &[f64]) -> Vec<f64> {
     let n = nodes.len();

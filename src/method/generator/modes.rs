@@ -110,7 +110,7 @@ fn densities(
     }
     let masses = cell_masses(system.as_ref(), problem.space(), &steady.mass);
     let density = |&observable| {
-        let projection = Projection::new(problem.space(), observable)?;
+        let projection = Projection::of_series(problem.space(), observable, false)?;
         Ok(projection.density(&masses)?.values)
     };
     let densities: Result<_, MethodError> = problem.observables().iter().map(density).collect();

@@ -196,9 +196,11 @@ impl GeneratorSession {
             .iter()
             .map(|one| negative_mass(&one.density.masses()));
         let watched = watched.fold(0.0, f64::max);
+        let maps = self.source.maps(solved.value)?;
+        reporter.series(&maps.changes_by_last_modes(&self.source.problem, &masses)?);
         reporter.negative_mass(negative_mass(&summed_over_modes(&space, &masses)), watched);
         let mut moments = moments_of(&space, unknowns);
-        moments.extend(self.source.maps(solved.value)?.moments(&masses)?);
+        moments.extend(maps.moments(&masses)?);
         let solution = Solution {
             report: reporter.report,
             moments,

@@ -327,6 +327,27 @@ fn an_internal_state_is_carried_by_modes_unless_cells_are_given() {
         .validate()
         .unwrap();
     assert_eq!(again.axes, sweep.settings.axes);
+    // Where it is asked for it is laid out over bins; quantities of the other axes are watched too.
+    let asked = [
+        "cells.z.modes=5",
+        "detect.marginals=[\"z\"]",
+        "detect.joint=[[\"y\", \"z\"]]",
+        "watch.power=\"y^2\"",
+    ];
+    let sweep = parse(DAHL, &asked)
+        .unwrap()
+        .prepare(&Cancellation::new())
+        .unwrap();
+    let problem = &sweep.problem;
+    let laid = |observable: &Observable| -> Vec<usize> {
+        problem
+            .axes_of(*observable)
+            .iter()
+            .map(|axis| axis.count())
+            .collect()
+    };
+    let laid: Vec<Vec<usize>> = problem.observables().iter().map(laid).collect();
+    assert_eq!(laid, [vec![60], vec![12, 60]]);
     // Methods that take no modes have cells there, as many as the program finds.
     let sampled = parse(DAHL, &["method.kind=sgcm"]).unwrap();
     assert_eq!((sampled.axes[2].count, sampled.axes[2].modes), (None, None));
@@ -451,8 +472,8 @@ fn modes_where_they_cannot_be_are_refused_with_the_remedy() {
             "an integer from 2 to 64, or `\"auto\"`",
         ),
         (
-            &["detect.marginals=[\"z\"]"],
-            "the density along axis `z`, which modes carry, is not watched",
+            &["watch.power=\"y z\""],
+            "`power` needs cells along `z`, which modes carry",
         ),
     ] {
         let message = refusal(sets);

@@ -42,10 +42,6 @@ pub(super) fn read(
             let items = reader.items(&["detect", "marginals"]);
             for (text, item) in texts.iter().zip(items) {
                 if let Some(axis) = coordinate(reader, model, &mut given, text, &item.place) {
-                    if axis < dimension && has_modes(axis) {
-                        refuse_modes(reader, text, &item.place);
-                        continue;
-                    }
                     let marginal = Observable::Marginal(axis);
                     watch(reader, &mut observables, marginal, &item.place);
                 }
@@ -60,18 +56,20 @@ pub(super) fn read(
         Some(pairs) => {
             let items = reader.items(&["detect", "joint"]);
             for ([one, other], item) in pairs.iter().zip(items) {
-                let carried = |name: &&String| {
-                    let index = model.axes.iter().position(|axis| axis.name == **name);
-                    index.is_some_and(has_modes)
-                };
-                if let Some(name) = [one, other].into_iter().find(carried) {
-                    refuse_modes(reader, name, &item.place);
-                    continue;
-                }
                 let place = |index: usize| item.items().get(index).unwrap_or(item).place.clone();
                 let one = coordinate(reader, model, &mut given, one, &place(0));
                 let other = coordinate(reader, model, &mut given, other, &place(1));
                 if let (Some(one), Some(other)) = (one, other) {
+                    let carried = [one, other]
+                        .into_iter()
+                        .find(|&axis| axis < dimension && has_modes(axis));
+                    let quantity = [one, other].into_iter().find(|&axis| axis >= dimension);
+                    if let (Some(axis), Some(quantity)) = (carried, quantity) {
+                        let quantity = given[quantity - dimension].name.clone();
+                        let name = &model.axes[axis].name;
+                        refuse_modes(reader, &quantity, name, Some(&item.place));
+                        continue;
+                    }
                     let joint = Observable::Joint(one, other);
                     watch(reader, &mut observables, joint, &item.place);
                 }
@@ -102,14 +100,11 @@ pub(super) fn read(
         })
         .collect();
     let averaged = read_all(reader, model, &averaged);
-    if !(quantities.is_empty() && averaged.is_empty())
-        && let Some(axis) = (0..dimension).find(|&axis| has_modes(axis))
-    {
-        let name = &model.axes[axis].name;
-        let title = format!("quantities are not watched where modes carry an axis, here `{name}`");
-        let remedy =
-            format!("give `cells.{name}.count` in place of modes, or leave the formulas out");
-        reader.report(Diagnostic::new(title).remedy(remedy));
+    for quantity in quantities.iter().chain(&averaged) {
+        let mut axes = quantity.states().iter().enumerate();
+        if let Some((axis, _)) = axes.find(|(axis, depends)| **depends && has_modes(*axis)) {
+            refuse_modes(reader, quantity.name(), &model.axes[axis].name, None);
+        }
     }
     Watched {
         observables,
@@ -118,15 +113,15 @@ pub(super) fn read(
     }
 }
 
-/// Reports that the density along an axis of modes is not watched.
-fn refuse_modes(reader: &mut Reader<'_>, name: &str, at: &Place) {
-    let title = format!("the density along axis `{name}`, which modes carry, is not watched");
-    let remedy = format!("give `cells.{name}.count` in place of modes, or leave it out here");
-    reader.report(
-        Diagnostic::new(title)
-            .at(at, "carried by modes")
-            .remedy(remedy),
-    );
+/// Reports a quantity with an axis of modes: what is a quantity is made from masses of cells.
+fn refuse_modes(reader: &mut Reader<'_>, quantity: &str, name: &str, at: Option<&Place>) {
+    let title = format!("`{quantity}` needs cells along `{name}`, which modes carry");
+    let remedy = format!("give `cells.{name}.count` in place of modes, or leave the formula out");
+    let diagnostic = Diagnostic::new(title).remedy(remedy);
+    reader.report(match at {
+        Some(at) => diagnostic.at(at, "carried by modes"),
+        None => diagnostic,
+    });
 }
 
 /// The number of an axis, or of a quantity, numbered on from the axes.
