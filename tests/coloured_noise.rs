@@ -8,6 +8,7 @@
 use std::sync::Arc;
 
 use pbif::cancellation::Cancellation;
+use pbif::density::{Density, Observable, Projection, total_variation};
 use pbif::generator::{AdvectiveScheme, GeneratorOptions, assemble, cell_masses};
 use pbif::space::{Axis, CellSpace};
 use pbif::stationary::generator::{RateOptions, RateSolver};
@@ -133,6 +134,50 @@ fn the_density_of_a_linear_oscillator_converges_exponentially_in_the_modes() {
         "{three:e} {five:e} {eight:e}"
     );
     assert!(eight < 1e-3, "{eight:e}");
+}
+
+#[test]
+fn the_joint_density_with_the_noise_comes_from_the_series_within_its_stated_error() {
+    let tau = 0.5;
+    let [_, yy, _, y_noise] = lyapunov(tau);
+    let system = linear(tau);
+    let cells = Axis::uniform(-2.6, 2.6, 40).unwrap();
+    let distances = |modes: usize| -> (f64, f64) {
+        let axes = vec![
+            cells.clone(),
+            cells.clone(),
+            Axis::hermite(0.0, 1.0, modes).unwrap(),
+        ];
+        let space = CellSpace::new(axes).unwrap();
+        let unknowns = solve(&*system, &space, AdvectiveScheme::Upwind5);
+        let masses = cell_masses(&*system, &space, &unknowns);
+        let [all, fewer] = [false, true].map(|is_coarse| {
+            let map = Projection::of_series(&space, Observable::Joint(1, 2), is_coarse).unwrap();
+            map.density(&masses).unwrap()
+        });
+        // The normal density of y and η with their exact correlation.
+        let free = 1.0 - y_noise * y_noise / yy;
+        let log = |y: f64, s: f64| -0.5 * (s * s - 2.0 * y * s * y_noise / yy + y * y / yy) / free;
+        let [ys, noises] = [0, 1].map(|axis: usize| all.axes[axis].centres());
+        let places = ys
+            .iter()
+            .flat_map(|&y| noises.iter().map(move |&s| log(y, s).exp()));
+        let values: Vec<f64> = places.collect();
+        let total: f64 = values.iter().zip(all.volumes()).map(|(p, v)| p * v).sum();
+        let exact = Density {
+            axes: all.axes.clone(),
+            values: values.iter().map(|p| p / total).collect(),
+        };
+        let off = total_variation(&all, &exact).unwrap();
+        (off, total_variation(&all, &fewer).unwrap())
+    };
+    let (few, stated_of_few) = distances(4);
+    let (many, _) = distances(8);
+    assert!(
+        few < stated_of_few && few > 1e-3,
+        "{few:e} {stated_of_few:e}"
+    );
+    assert!(many < 2e-3 && many < 0.2 * few, "{many:e} {few:e}");
 }
 
 /// Masses of the cells of x alone.

@@ -192,9 +192,12 @@ impl GeneratorSession {
         }
         let expected = before.and_then(|trail| trail.difference_at(solved.value));
         let (densities, difference) = self.densities(solved, &masses, expected.as_deref())?;
-        let watched = densities
+        // What is negative along a series is told of its modes.
+        let carried = |axis: &usize| space.axes().get(*axis).is_some_and(|axis| axis.is_modes());
+        let by_cells = densities
             .iter()
-            .map(|one| negative_mass(&one.density.masses()));
+            .filter(|one| !one.observable.axes().iter().any(carried));
+        let watched = by_cells.map(|one| negative_mass(&one.density.masses()));
         let watched = watched.fold(0.0, f64::max);
         let maps = self.source.maps(solved.value)?;
         reporter.series(&maps.changes_by_last_modes(&self.source.problem, &masses)?);
