@@ -368,7 +368,7 @@ pub(crate) fn every_finding() -> Vec<Finding> {
             widths: 3.5,
         }),
         F::SmearedKink { .. } => Some(F::UnresolvedSeries {
-            axis: 2,
+            axis: 1,
             change: 0.03,
         }),
         F::UnresolvedSeries { .. } => Some(F::SurfaceOffFaces { axis: 1, at: 0.1 }),
