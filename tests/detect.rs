@@ -164,12 +164,16 @@ fn unchanged_settings_change_no_byte() {
             &without(before.clone(), "run.json"),
             "in place",
         );
-        // The version before is a complete run, the manifest differs in its seconds alone.
+        // The version before is a complete run, the manifest differs in its seconds and dates alone.
         assert_same(&files(&run.join("previous/1")), &before, "previous");
         let (mut now, mut then) = (manifest(&run), manifest(&run.join("previous/1")));
         assert!(now["seconds"]["detect"].as_f64().unwrap() > 0.0);
         assert_eq!(now["seconds"]["sweep"], then["seconds"]["sweep"]);
         (now["seconds"], then["seconds"]) = Default::default();
+        for date in ["started", "ended"] {
+            assert!(then["made"][date].is_string(), "{date}");
+            (now["made"][date], then["made"][date]) = Default::default();
+        }
         assert_eq!(now, then);
     }
 }

@@ -155,6 +155,7 @@ fn the_resolved_file_holds_every_key() {
             .to_toml()
     });
     let [generator, sgcm, monte_carlo] = texts;
+    let map = ["map.parameter=\"sigma2\"", "map.from=0.005", "map.to=0.02"];
     let texts = [
         generator,
         sgcm,
@@ -162,6 +163,7 @@ fn the_resolved_file_holds_every_key() {
         parse(EQUATIONS, &[]).unwrap().to_toml(),
         parse(DAHL, &["cells.z.modes=5"]).unwrap().to_toml(),
         parse(DAHL, &COLOURED).unwrap().to_toml(),
+        parse(FILE, &map).unwrap().to_toml(),
     ];
     let text = texts.join("\n# next\n");
     let tables = texts.map(|text| text.parse::<toml::Table>().unwrap());
