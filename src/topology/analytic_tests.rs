@@ -407,6 +407,26 @@ fn the_birth_of_a_peak_beside_another_is_where_the_slope_between_passes_zero() {
 }
 
 #[test]
+fn a_crater_about_to_close_is_one_however_its_floor_lies_among_the_cells() {
+    // log p = b u² - u⁴ + v² - v⁴: a crater of relative depth b²/4 among four peaks. Its floor is a trench, and of the four cells at
+    // the centre the two along it are both lower than their neighbours.
+    for count in [50, 51, 100] {
+        let axis = uniform(2.5, count);
+        for step in 0..6 {
+            let (sine, cosine) = (0.27 * f64::from(step)).sin_cos();
+            for b in [0.1, 0.2, 0.4] {
+                let density = joint(&axis, &axis, |x, y| {
+                    let (u, v) = (cosine * x + sine * y, cosine * y - sine * x);
+                    (b * u * u - u.powi(4) + v * v - v.powi(4)).exp()
+                });
+                let detection = detect(&density);
+                assert_eq!(detection.signature.craters, 1, "{count} {step} {b}");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_rim_that_is_nearly_level_has_its_peaks() {
     // Heights along the rim differ by 1e-4 of the density and less, a tenth of what oblique cells make of it.
     let axis = uniform(2.0, 60);

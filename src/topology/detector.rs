@@ -22,6 +22,9 @@ const ABSENT_LISTED: usize = 4;
 /// How many components of each kind are looked at between the cells at most.
 const MOST_LOOKED: usize = 48;
 
+/// Extrema found from different cells closer than this, in widths of a cell, are one.
+const ONE_PLACE: f64 = 0.05;
+
 /// Peaks, valleys and craters of densities over one or two axes by persistence.
 ///
 /// - A peak is present when it stands above its saddle by more than noise makes at the chosen confidence
@@ -73,6 +76,7 @@ impl PersistenceDetector {
         let field = Field::new(estimated).filter(|_| is_smooth(estimated));
         let mut absent = 0;
         let mut looked = 0;
+        let mut places: Vec<Vec<f64>> = Vec::new();
         let mut candidates: Vec<Candidate> = found
             .into_iter()
             .filter_map(|component| {
@@ -89,7 +93,8 @@ impl PersistenceDetector {
                 looked += 1;
                 let refined = field
                     .as_ref()
-                    .and_then(|field| height(field, estimated, &component, is_crater));
+                    .and_then(|field| height(field, estimated, &component, is_crater))
+                    .map(|refined| refined.unless_known(&mut places, estimated));
                 let (persistence, standard_error, mut judgement) = match refined {
                     Some((height, error)) => {
                         (height.max(0.0), error, limits.judge_exact(height, error))
@@ -134,14 +139,44 @@ pub(super) fn is_smooth(estimated: &EstimatedDensity) -> bool {
     !estimated.is_noisy() && (is_marginal || estimated.structure.kinks.is_empty())
 }
 
-/// Height of a component's critical point over the saddle where it dies (of a crater its depth below), between the cells, with
-/// its error; `None` for the one that never dies.
+/// A component between the cells.
+struct Refined {
+    /// Height of its critical point over the saddle where it dies, of a crater its depth below.
+    height: f64,
+    error: f64,
+    /// Where the critical point is.
+    position: Vec<f64>,
+}
+
+impl Refined {
+    /// Height and error; none where the critical point is one of the `places` of others, to which it is added otherwise: cells to both
+    /// sides of one extremum may each be lower than their neighbours.
+    fn unless_known(self, places: &mut Vec<Vec<f64>>, estimated: &EstimatedDensity) -> (f64, f64) {
+        let axes = &estimated.density.axes;
+        let is_here = |other: &Vec<f64>| {
+            let pairs = other.iter().zip(&self.position).zip(axes);
+            pairs.into_iter().all(|((other, own), axis)| {
+                let width = axis.find(*own).map_or(0.0, |cell| axis.width(cell));
+                (other - own).abs() < ONE_PLACE * width
+            })
+        };
+        if places.iter().any(is_here) {
+            return (0.0, self.error);
+        }
+        if self.height > 0.0 {
+            places.push(self.position);
+        }
+        (self.height, self.error)
+    }
+}
+
+/// A component between the cells; `None` for the one that never dies.
 fn height(
     field: &Field<'_>,
     estimated: &EstimatedDensity,
     component: &Component,
     is_crater: bool,
-) -> Option<(f64, f64)> {
+) -> Option<Refined> {
     let death = component.death?;
     let values = &estimated.density.values;
     let kind = if is_crater {
@@ -162,7 +197,11 @@ fn height(
     // Else a cell that is the highest around it only because of how the cells lie.
     let is_of_kind =
         extremum.is_of_kind(kind, height) && extremum.is_level(height) && saddle.is_level(height);
-    Some((if is_of_kind { height } else { 0.0 }, error))
+    Some(Refined {
+        height: if is_of_kind { height } else { 0.0 },
+        error,
+        position: extremum.position,
+    })
 }
 
 impl Candidate {
