@@ -42,7 +42,6 @@ mod summary;
 mod tests;
 mod tree;
 
-#[cfg(feature = "cli")]
 pub(crate) use atomic::write_atomically;
 pub use bifurcations::{
     bifurcations_csv, bifurcations_json, bifurcations_markdown, bifurcations_tex,
