@@ -18,8 +18,9 @@ use super::{names, select};
 const SMALL: f64 = 190.0;
 /// Narrowest map on a sheet, where the page is given, and the highest one.
 const SMALLEST: f64 = 104.0;
-/// Gap between maps on a sheet.
+/// Gap between maps on a sheet, and that between the labels of their ticks.
 const BETWEEN: f64 = 14.0;
+const BETWEEN_LABELS: f64 = 8.0;
 /// The densities of a sheet share their scale unless the largest values differ by more than this factor.
 const COMPARABLE: f64 = 3.0;
 const TALLEST_SMALL: f64 = 230.0;
@@ -41,15 +42,15 @@ struct Sheet {
 
 impl Sheet {
     /// Arranges maps in as many columns as there is room for between what stands left and right of them all, `beside` pixels;
-    /// on a given page none is narrower than `least`.
-    fn new(look: &Look, found: &[Found<'_>], beside: f64, least: f64) -> Self {
+    /// on a given page none is narrower than `least`. Columns are `between` pixels apart.
+    fn new(look: &Look, found: &[Found<'_>], (beside, between): (f64, f64), least: f64) -> Self {
         let own_columns = match found.len() {
             2 | 4 => 2,
             10.. => 4,
             _ => 3,
         };
         let width = |columns: usize| {
-            let gaps = (columns - 1) as f64 * BETWEEN;
+            let gaps = (columns - 1) as f64 * between;
             look.fill(SMALL * columns as f64, beside + gaps) / columns as f64
         };
         let columns = match look.page {
@@ -66,7 +67,7 @@ impl Sheet {
         };
         let side = (width(columns), width(columns).min(TALLEST_SMALL));
         let rows = found.len().div_ceil(columns);
-        let step = (side.0 + BETWEEN, side.1 + BETWEEN + 1.4 * TEXT);
+        let step = (side.0 + between, side.1 + BETWEEN + 1.4 * TEXT);
         let own: Vec<f64> = found
             .iter()
             .map(|found| select::largest([found.density()]))
@@ -140,12 +141,15 @@ pub(super) fn draw(
     }
     let vertical = |high: f64| Scale::vertical(look, y, high, &names::axis(family, second));
     // The bar and the labels of the ordinate hardly depend on how high the maps are: a first sheet measures them.
-    let first_sheet = Sheet::new(look, &found, 140.0, least);
+    let first_sheet = Sheet::new(look, &found, (140.0, BETWEEN), least);
     let bar_width = first_sheet.bar(look, &density)?.width();
     let left = MARGIN + vertical(first_sheet.side.1)?.left();
-    let sheet = Sheet::new(look, &found, left + bar_width + MARGIN, least);
+    let horizontal = |long: f64| Scale::horizontal(look, x, long, &names::axis(family, first));
+    let beyond = horizontal(first_sheet.side.0)?.beyond(first_sheet.side.0);
+    let between = BETWEEN.max(beyond + BETWEEN_LABELS);
+    let sheet = Sheet::new(look, &found, (left + bar_width + MARGIN, between), least);
     let bar = sheet.bar(look, &density)?;
-    let across = Scale::horizontal(look, x, sheet.side.0, &names::axis(family, first))?;
+    let across = horizontal(sheet.side.0)?;
     let up = vertical(sheet.side.1)?;
     let left = MARGIN + up.left();
     let width = look

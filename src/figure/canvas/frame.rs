@@ -166,6 +166,18 @@ impl Scale {
         &self.title
     }
 
+    /// How far the labels of a horizontal axis of this length reach beyond its two ends together, in pixels.
+    pub(in crate::figure) fn beyond(&self, length: f64) -> f64 {
+        let ticks = &self.ticks.major;
+        let ends = ticks.first().zip(ticks.last());
+        let half = 0.5 * self.widest;
+        ends.map_or(0.0, |(first, last)| {
+            let before = half - self.share(first.value) * length;
+            let after = half - (1.0 - self.share(last.value)) * length;
+            before.max(0.0) + after.max(0.0)
+        })
+    }
+
     /// Labelled ticks: share of the way, and label.
     pub(super) fn labels(&self) -> impl Iterator<Item = (f64, &str)> + '_ {
         let ticks = self.ticks.major.iter();
