@@ -29,12 +29,7 @@ const PICTURE: [usize; 2] = [300, 300];
 /// [`RunError::Table`].
 pub fn map_csv(map: &RegimeMap) -> Result<String, RunError> {
     let family = &map.subject.family;
-    let names = map
-        .plane
-        .sides()
-        .each_ref()
-        .map(|side| side.parameter.clone());
-    let [first, second] = names;
+    let [first, second] = parameters(map);
     let mut columns = vec![
         number(first, |node: &MapNode| node.values[0]),
         number(second, |node: &MapNode| node.values[1]),
@@ -77,15 +72,16 @@ fn curves_csv(map: &RegimeMap) -> Result<String, RunError> {
     Ok(text)
 }
 
+/// Names of both parameters.
+fn parameters(map: &RegimeMap) -> [String; 2] {
+    let sides = map.plane.sides();
+    sides.each_ref().map(|side| side.parameter.clone())
+}
+
 /// The table of the points of codimension two.
 fn codimension_two_csv(map: &RegimeMap) -> Result<String, RunError> {
     let family = &map.subject.family;
-    let names = map
-        .plane
-        .sides()
-        .each_ref()
-        .map(|side| side.parameter.clone());
-    let [first, second] = names;
+    let [first, second] = parameters(map);
     let columns = vec![
         word("label", |one: &CodimensionTwo| one.label.clone()),
         number(first, |one: &CodimensionTwo| one.values[0]),
