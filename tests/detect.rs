@@ -89,8 +89,8 @@ fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
                 .to_str()
                 .unwrap()
                 .to_owned();
-            // The manifest has other seconds, and with it another checksum.
-            if name == "checksums.sha256" {
+            // The manifest has other seconds, and with it what is made from it.
+            if ["checksums.sha256", "ro-crate-metadata.json"].contains(&&*name) {
                 continue;
             }
             if path.is_file() {

@@ -108,7 +108,8 @@ fn files(run: &Path) -> BTreeMap<String, Vec<u8>> {
             let name = path.strip_prefix(run).unwrap().to_str().unwrap().to_owned();
             if path.is_dir() {
                 open.push(path);
-            } else if name != "run.json" && name != "checksums.sha256" {
+            } else if !["run.json", "checksums.sha256", "ro-crate-metadata.json"].contains(&&*name)
+            {
                 found.insert(name, std::fs::read(path).unwrap());
             }
         }

@@ -52,8 +52,10 @@ fn text(summary: &RunSummary) -> String {
     line(
         "by",
         format!(
-            "pbif {}, seed {}, {} threads",
+            "pbif {}{}, seed {}, {} threads",
             run.version(),
+            run.commit()
+                .map_or_else(String::new, |commit| format!(" of commit {commit}")),
             run.seed(),
             run.threads()
         ),

@@ -1,7 +1,10 @@
 //! Files that appear whole or not at all: written beside their place, then renamed into it.
 
+use std::fs::File;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use super::RunError;
 
@@ -40,44 +43,80 @@ fn write(path: &Path, bytes: &[u8], durably: bool) -> Result<(), RunError> {
 
 /// Makes the names in a folder durable, where the system lets folders be synchronised.
 pub(super) fn sync_folder(folder: &Path) {
-    if let Ok(folder) = std::fs::File::open(folder) {
+    if let Ok(folder) = File::open(folder) {
         // A file system that cannot has nothing to be waited for.
         let _ = folder.sync_all();
     }
 }
 
-/// Waits until everything below a folder is on the disk.
+/// Files that the disk is asked to take side by side: it puts what is asked for at one time into one go.
+const AT_ONCE: usize = 16;
+
+/// Waits until files, and folders with all that they hold, are on the disk; those that are not there are left out. Only they are waited for, not what other
+/// programs write meanwhile.
 ///
 /// # Errors
-/// [`RunError::Write`] when the disk takes it not.
-#[cfg(target_os = "linux")]
-pub(super) fn sync_all_below(folder: &Path) -> Result<(), RunError> {
-    let failed = |source| RunError::Write {
-        path: folder.to_owned(),
-        source,
-    };
-    // One call for thousands of small files.
-    let open = std::fs::File::open(folder).map_err(failed)?;
-    rustix::fs::syncfs(open).map_err(|error| failed(error.into()))
-}
-
-/// See above: file by file.
-#[cfg(not(target_os = "linux"))]
-pub(super) fn sync_all_below(folder: &Path) -> Result<(), RunError> {
-    let failed = |source| RunError::Write {
-        path: folder.to_owned(),
-        source,
-    };
-    for entry in std::fs::read_dir(folder).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
+/// [`RunError::Read`] when a folder cannot be read, [`RunError::Write`] when the disk takes a file not.
+pub(super) fn sync_all(places: &[PathBuf]) -> Result<(), RunError> {
+    let (mut files, mut folders) = (Vec::new(), Vec::new());
+    let mut open: Vec<PathBuf> = places.to_vec();
+    while let Some(path) = open.pop() {
         if path.is_dir() {
-            sync_all_below(&path)?;
-        } else if let Ok(file) = std::fs::File::options().write(true).open(&path) {
-            file.sync_all().map_err(failed)?;
+            for entry in std::fs::read_dir(&path).map_err(|source| unreadable(&path, source))? {
+                open.push(entry.map_err(|source| unreadable(&path, source))?.path());
+            }
+            folders.push(path);
+        } else if path.is_file() {
+            files.push(path);
         }
     }
-    sync_folder(folder);
-    Ok(())
+    sync_each(&files)?;
+    // Names of files that are not on the disk would be worth nothing.
+    sync_each(&folders)
+}
+
+fn unreadable(path: &Path, source: std::io::Error) -> RunError {
+    RunError::Read {
+        path: path.to_owned(),
+        source,
+    }
+}
+
+fn sync_each(paths: &[PathBuf]) -> Result<(), RunError> {
+    let next = AtomicUsize::new(0);
+    let failure = Mutex::new(None);
+    let work = || {
+        while let Some(path) = paths.get(next.fetch_add(1, Ordering::Relaxed)) {
+            if let Err(error) = sync_one(path) {
+                let mut failure = failure.lock().unwrap_or_else(PoisonError::into_inner);
+                failure.get_or_insert(error);
+            }
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 1..AT_ONCE.min(paths.len()) {
+            // Where there is no thread to be had, the others do its work.
+            let _ = std::thread::Builder::new().spawn_scoped(scope, work);
+        }
+        work();
+    });
+    let failure = failure.into_inner().unwrap_or_else(PoisonError::into_inner);
+    failure.map_or(Ok(()), Err)
+}
+
+fn sync_one(path: &Path) -> Result<(), RunError> {
+    if path.is_dir() {
+        sync_folder(path);
+        return Ok(());
+    }
+    // Some systems synchronise only what may be written.
+    let mut options = File::options();
+    options.read(true).write(cfg!(windows));
+    let synced = options.open(path).and_then(|file| file.sync_all());
+    synced.map_err(|source| RunError::Write {
+        path: path.to_owned(),
+        source,
+    })
 }
 
 /// Temporary files are private by default; results should be as readable as any other new file.
@@ -96,5 +135,23 @@ impl NewFilePermissions for tempfile::Builder<'_, '_> {
     #[cfg(not(unix))]
     fn permissions_of_new_files(&mut self) -> &mut Self {
         self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn everything_below_is_waited_for_and_what_is_not_there_is_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let deep = folder.path().join("a/b/c");
+        std::fs::create_dir_all(&deep).unwrap();
+        for number in 0..100 {
+            std::fs::write(deep.join(number.to_string()), "x").unwrap();
+        }
+        sync_all(&[folder.path().join("a"), folder.path().join("missing")]).unwrap();
+        assert!(sync_one(&deep.join("gone")).is_err());
+        sync_all(&[]).unwrap();
     }
 }

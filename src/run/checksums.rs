@@ -8,7 +8,7 @@ use sha2::{Digest as _, Sha256};
 use super::RunError;
 use super::atomic::write_durably;
 use super::folder::ENTRIES;
-use super::journal;
+use super::{journal, research_object};
 
 /// Name of the file.
 pub(super) const NAME: &str = "checksums.sha256";
@@ -117,7 +117,9 @@ pub(super) fn reopen(run: &Path) {
             let _ = std::fs::remove_file(run.join(name));
         }
     }
-    let _ = std::fs::remove_file(run.join(NAME));
+    for name in [NAME, research_object::NAME] {
+        let _ = std::fs::remove_file(run.join(name));
+    }
 }
 
 fn is_summed(entry: &str) -> bool {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 
 use super::RunError;
-use super::atomic::{sync_all_below, write_atomically};
+use super::atomic::{sync_all, write_atomically};
 use super::columns::{Column, Columns, flag, number, word};
 use super::staging::Staging;
 use crate::continuation::curve::{Curve, CurvePoint, CurveWork, Plane};
@@ -179,7 +179,7 @@ impl CurveFolder {
     /// # Errors
     /// [`RunError::Read`] or [`RunError::Write`].
     pub fn take_place(self) -> Result<Vec<PathBuf>, RunError> {
-        sync_all_below(&self.staging.fresh())?;
+        sync_all(&[self.staging.fresh()])?;
         Ok(self.staging.take_place(&[])?.files)
     }
 }

@@ -2,18 +2,19 @@
 
 use std::path::{Path, PathBuf};
 
-use super::atomic::{sync_all_below, write_atomically, write_durably};
+use super::atomic::{sync_all, write_atomically, write_durably};
 use super::growing::GrowingTable;
 use super::{
     DensityStore, Ending, Manifest, RunError, bifurcations, checks, checksums, features_table,
-    journal, lock::FolderLock, points_table, staging::Staging,
+    journal, lock::FolderLock, points_table, research_object, staging::Staging,
 };
 use crate::continuation::{Point, Subject, SweepResult};
 use crate::density::EstimatedDensity;
 
 /// Everything a run may leave in its folder, the file that marks it as one first.
-pub(super) const ENTRIES: [&str; 15] = [
+pub(super) const ENTRIES: [&str; 16] = [
     "run.json",
+    research_object::NAME,
     checksums::NAME,
     journal::NAME,
     "points.csv",
@@ -112,7 +113,13 @@ impl RunFolder {
     /// [`RunError::Json`] or [`RunError::Write`].
     pub fn write_manifest(&self, manifest: &Manifest) -> Result<(), RunError> {
         if manifest.ending != Ending::Running {
-            sync_all_below(&self.path)?;
+            // The journal of a complete run is about to be removed.
+            let complete = manifest.ending == Ending::Complete;
+            let kept = ENTRIES
+                .iter()
+                .filter(|entry| !(complete && **entry == journal::NAME));
+            let places: Vec<PathBuf> = kept.map(|entry| self.path.join(entry)).collect();
+            sync_all(&places)?;
         }
         let text = serde_json::to_string_pretty(manifest)? + "\n";
         write_durably(&self.path.join("run.json"), text.as_bytes())
@@ -175,11 +182,12 @@ impl RunFolder {
         Ok(())
     }
 
-    /// Writes the checksums of all files of a run that has ended, see `docs/run-folder.md`.
+    /// Describes a run that has ended for archives, and writes the checksums of all its files, see `docs/run-folder.md`.
     ///
     /// # Errors
-    /// [`RunError::Read`] or [`RunError::Write`].
+    /// [`RunError::Read`], [`RunError::Manifest`] or [`RunError::Write`].
     pub fn seal(&self) -> Result<(), RunError> {
+        research_object::write(&self.path)?;
         checksums::write(&self.path)
     }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use super::RunError;
-use super::atomic::{sync_all_below, write_atomically};
+use super::atomic::{sync_all, write_atomically};
 use super::columns::{Columns, count, number, word};
 use super::curve::{columns, ends_json, rows};
 use super::number::format_number;
@@ -210,7 +210,7 @@ impl MapFolder {
     /// # Errors
     /// [`RunError::Read`] or [`RunError::Write`].
     pub fn take_place(self) -> Result<Vec<PathBuf>, RunError> {
-        sync_all_below(&self.staging.fresh())?;
+        sync_all(&[self.staging.fresh()])?;
         Ok(self.staging.take_place(&[])?.files)
     }
 }

@@ -28,6 +28,7 @@ mod number;
 mod points_table;
 mod provenance;
 mod reopen;
+mod research_object;
 mod sentences;
 mod shards;
 mod staged;

@@ -14,10 +14,21 @@ pub struct Provenance {
     /// When the run ended; `None` before.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ended: Option<String>,
-    /// The commit that the program was built from, with `-dirty` where files were changed: what `PBIF_COMMIT` said at its build; `None` where it was not
-    /// given.
+    /// The commit that the program was built from, with `-dirty` where files were changed since: of the repository, of the package, or what `PBIF_COMMIT`
+    /// said at its build; `None` where nothing tells.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub commit: Option<&'static str>,
+    /// The compiler with its version.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub compiler: Option<&'static str>,
+    /// What the program was compiled for, such as `x86_64-unknown-linux-gnu`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub target: Option<&'static str>,
+    /// Instruction sets that all of the program was compiled for, which every processor must have that runs it.
+    pub target_features: Vec<&'static str>,
+    /// Level of optimisation that the program was compiled with, such as `3`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub optimisation: Option<&'static str>,
     /// Operating system.
     pub system: &'static str,
     /// Kind of processor.
@@ -32,7 +43,12 @@ impl Provenance {
         Self {
             started: date_in_utc(SystemTime::now()),
             ended: None,
-            commit: option_env!("PBIF_COMMIT").filter(|commit| !commit.is_empty()),
+            commit: known(option_env!("PBIF_COMMIT")),
+            compiler: known(option_env!("PBIF_COMPILER")),
+            target: known(option_env!("PBIF_TARGET")),
+            target_features: known(option_env!("PBIF_TARGET_FEATURES"))
+                .map_or_else(Vec::new, |features| features.split(',').collect()),
+            optimisation: known(option_env!("PBIF_OPTIMISATION")),
             system: std::env::consts::OS,
             architecture: std::env::consts::ARCH,
             instruction_sets: instruction_sets(),
@@ -43,6 +59,11 @@ impl Provenance {
     pub fn end(&mut self) {
         self.ended = Some(date_in_utc(SystemTime::now()));
     }
+}
+
+/// What the build could not find out is empty.
+fn known(text: Option<&'static str>) -> Option<&'static str> {
+    text.filter(|text| !text.is_empty())
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -61,4 +82,24 @@ fn instruction_sets() -> Vec<&'static str> {
 #[cfg(not(target_arch = "x86_64"))]
 fn instruction_sets() -> Vec<&'static str> {
     Vec::new()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_build_says_by_what_it_was_made() {
+        let made = Provenance::of_this_process();
+        assert!(made.compiler.unwrap().starts_with("rustc "), "{made:?}");
+        assert!(made.target.unwrap().contains(made.architecture), "{made:?}");
+        assert!(["0", "1", "2", "3", "s", "z"].contains(&made.optimisation.unwrap()));
+        if let Some(commit) = made.commit {
+            let digits = commit.trim_end_matches("-dirty");
+            assert!(
+                digits.len() >= 7 && digits.bytes().all(|byte| byte.is_ascii_hexdigit()),
+                "{commit}"
+            );
+        }
+    }
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::staging::Staging;
 use super::tree::link_tree;
-use super::{RunError, RunFolder, checksums, exchange, folder, journal};
+use super::{RunError, RunFolder, checksums, exchange, folder, journal, research_object};
 
 /// What a sweep solved for: it stays when the run is detected again.
 const SOLVED: [&str; 2] = ["densities.zarr", "checks.csv"];
@@ -57,6 +57,7 @@ impl StagedRun {
         let staying: &[&str] = if self.same { &staying } else { &[] };
         let home = self.staging.home().to_owned();
         let placed = self.staging.take_place(staying)?;
+        research_object::write(&home)?;
         checksums::write(&home)?;
         Ok(placed.files)
     }

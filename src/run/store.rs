@@ -31,7 +31,13 @@ pub struct DensityStore {
     arrays: Vec<Layout>,
     /// Where the chunks of the last parameter value stand already: a store, and the place in it.
     written: Option<(PathBuf, u64)>,
+    /// Arrays with the lengths that their metadata say.
+    described: Vec<Layout>,
 }
+
+/// Places along the parameter that a growing store has room for are a multiple of this: what is not done yet is NaN, and the metadata of all arrays need not be
+/// written for every point.
+const ROOM: u64 = 64;
 
 impl DensityStore {
     /// A store that will be made at `path` with the first density.
@@ -42,10 +48,12 @@ impl DensityStore {
             axes: Vec::new(),
             arrays: Vec::new(),
             written: None,
+            described: Vec::new(),
         }
     }
 
-    /// Adds the densities of one parameter value at the end.
+    /// Adds the densities of one parameter value at the end. Until it is [replaced](DensityStore::replace), the store has room for more: places without a density
+    /// are NaN, in the parameter too.
     ///
     /// # Errors
     /// [`RunError::Store`] or [`RunError::Write`].
@@ -56,7 +64,9 @@ impl DensityStore {
         densities: &[EstimatedDensity],
     ) -> Result<(), RunError> {
         self.add(family, value, densities)?;
-        self.write_all_metadata(family)
+        self.write_parameter(family)?;
+        let room = (self.values.len() as u64).next_multiple_of(ROOM);
+        self.write_all_metadata(family, room)
     }
 
     /// Replaces the whole store by the given densities, in their order; the old one stays until the new one is
@@ -79,9 +89,13 @@ impl DensityStore {
             let place = known.position(|one| one.to_bits() == value.to_bits());
             store.written = place.map(|place| (self.path.clone(), place as u64));
             store.add(family, *value, densities)?;
+            if (store.values.len() as u64).is_multiple_of(PARAMETER_CHUNK) {
+                store.write_parameter(family)?;
+            }
         }
         store.written = None;
-        store.write_all_metadata(family)?;
+        store.write_parameter(family)?;
+        store.write_all_metadata(family, store.values.len() as u64)?;
         fresh.take_place(&self.path)?;
         store.path.clone_from(&self.path);
         *self = store;
@@ -107,17 +121,27 @@ impl DensityStore {
         for estimate in densities {
             self.write_estimate(family, estimate)?;
         }
-        self.write_parameter(family)
+        Ok(())
     }
 
-    /// Writes the metadata of every array at the present number of parameter values, and last that of the store.
-    fn write_all_metadata(&self, family: &Family) -> Result<(), RunError> {
-        let parameter = Layout::parameter(family, self.values.len() as u64);
+    /// Writes the metadata of every array with places for `count` parameter values, and last that of the store; nothing where it stands already.
+    fn write_all_metadata(&mut self, family: &Family, count: u64) -> Result<(), RunError> {
+        let mut layouts = self.axes.clone();
+        layouts.push(Layout::parameter(family, count));
+        layouts.extend(self.arrays.iter().cloned().map(|mut layout| {
+            layout.dimensions[0].1 = count;
+            layout
+        }));
+        if layouts == self.described {
+            return Ok(());
+        }
         let mut metadata = Map::new();
-        for layout in self.axes.iter().chain([&parameter]).chain(&self.arrays) {
+        for layout in &layouts {
             self.write_metadata(layout, &mut metadata)?;
         }
-        self.write_root(family, metadata)
+        self.write_root(family, metadata)?;
+        self.described = layouts;
+        Ok(())
     }
 
     /// Writes the chunks of one density at the last parameter value.
@@ -236,7 +260,7 @@ impl DensityStore {
         let layout = Layout::parameter(family, count);
         let index = (count - 1) / PARAMETER_CHUNK;
         let mut chunk = self.values[(index * PARAMETER_CHUNK) as usize..].to_vec();
-        chunk.resize(PARAMETER_CHUNK as usize, 0.0);
+        chunk.resize(PARAMETER_CHUNK as usize, f64::NAN);
         self.write_chunk(&layout, &[index], &chunk)
     }
 

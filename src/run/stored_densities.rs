@@ -60,7 +60,10 @@ impl StoredDensities {
     ) -> Result<Self, RunError> {
         let opened = Opened::new(path)?;
         let family = &subject.family;
-        let values = opened.whole(family.parameter())?;
+        let mut values = opened.whole(family.parameter())?;
+        // A store that grows has room for values that are not solved yet.
+        let solved = values.iter().position(|value| value.is_nan());
+        values.truncate(solved.unwrap_or(values.len()));
         let observed = subject
             .observables
             .iter()

@@ -43,6 +43,9 @@ struct StoredManifest {
     points: Option<usize>,
     seconds: PhaseSeconds,
     warnings: Vec<String>,
+    /// Runs of early versions do not say by what they were made.
+    #[serde(default)]
+    made: serde_json::Value,
 }
 
 impl StoredRun {
@@ -96,6 +99,11 @@ impl StoredRun {
     /// Version of the program that made it.
     pub fn version(&self) -> &str {
         &self.manifest.version
+    }
+
+    /// The commit that the program was built from, with `-dirty` where files were changed; `None` where the run does not say.
+    pub fn commit(&self) -> Option<&str> {
+        self.manifest.made["commit"].as_str()
     }
 
     /// The resolved sweep file as TOML.

@@ -160,7 +160,16 @@ fn the_store_reads_back_in_ascending_order_with_names() {
         points.push(point);
     }
     let store = folder.path().join("densities.zarr");
-    assert_eq!(read_array(&store, "f_c"), (vec![2], vec![0.01, -0.02]));
+    // Room for more, in which there is nothing yet.
+    for (name, bins) in [("f_c", 1), ("p_x", 2)] {
+        let (shape, values) = read_array(&store, name);
+        assert_eq!(shape[0], 64, "{name}");
+        assert!(
+            values[2 * bins..].iter().all(|value| value.is_nan()),
+            "{name}"
+        );
+    }
+    assert_eq!(read_array(&store, "f_c").1[..2], [0.01, -0.02]);
     points.sort_by(|a, b| a.value.total_cmp(&b.value));
     run.finish(&result(points)).unwrap();
     assert_eq!(read_array(&store, "f_c"), (vec![2], vec![-0.02, 0.01]));

@@ -8,6 +8,7 @@ mod bound;
 mod lanes;
 mod sessions;
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
@@ -234,11 +235,18 @@ impl Live {
     }
 }
 
+/// What a request is told when the program itself is at fault.
+const FAULT: &str = "the program met an error of its own at these values, which its terminal shows; other values can go on being asked for";
+
+/// The answer to a request. A panic is one too: it ends neither the server nor other requests. What it may leave behind is not used again: a session is kept only after
+/// a solve that came back.
 fn answer<T: Serialize>(make: impl FnOnce() -> Result<T, Stop>) -> Vec<u8> {
-    let answer = match make() {
-        Ok(done) => Answer::Done(done),
-        Err(Stop::Refused(reason)) => Answer::Refused(reason),
-        Err(Stop::Stale) => Answer::Stale(true),
+    let made = catch_unwind(AssertUnwindSafe(make));
+    let answer = match made {
+        Ok(Ok(done)) => Answer::Done(done),
+        Ok(Err(Stop::Refused(reason))) => Answer::Refused(reason),
+        Ok(Err(Stop::Stale)) => Answer::Stale(true),
+        Err(_) => Answer::Refused(FAULT.to_owned()),
     };
     serde_json::to_vec(&answer).unwrap_or_default()
 }
@@ -265,4 +273,21 @@ fn doubles(values: &[f64]) -> String {
         .flat_map(|value| value.to_le_bytes())
         .collect();
     STANDARD.encode(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[allow(clippy::panic)]
+    fn a_panic_is_an_answer() {
+        let told: fn() -> Result<(), Stop> = || panic!("an error of the program");
+        let told = String::from_utf8(answer(told)).unwrap();
+        assert!(
+            told.starts_with("{\"refused\":\"the program met an error"),
+            "{told}"
+        );
+        assert_eq!(answer(|| Ok::<_, Stop>(7)), b"{\"done\":7}");
+    }
 }

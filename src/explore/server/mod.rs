@@ -4,6 +4,7 @@ mod guard;
 mod http;
 
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
@@ -83,7 +84,8 @@ impl LiveServer {
                 active.fetch_add(1, Ordering::SeqCst);
                 let active = &active;
                 let started = std::thread::Builder::new().spawn_scoped(scope, move || {
-                    self.converse(&mut stream);
+                    // A panic of one conversation must not end the others: unwound, it would end the scope.
+                    let _ = catch_unwind(AssertUnwindSafe(|| self.converse(&mut stream)));
                     active.fetch_sub(1, Ordering::SeqCst);
                 });
                 if started.is_err() {

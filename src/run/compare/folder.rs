@@ -7,7 +7,7 @@ use super::{
     compare_tex, densities_csv, distances_csv,
 };
 use crate::run::RunError;
-use crate::run::atomic::{sync_all_below, write_atomically};
+use crate::run::atomic::{sync_all, write_atomically};
 use crate::run::staging::Staging;
 
 /// Everything a comparison leaves in its folder, the file that marks it as one first.
@@ -69,7 +69,7 @@ impl CompareFolder {
     /// # Errors
     /// [`RunError::Read`] or [`RunError::Write`].
     pub fn take_place(self) -> Result<Vec<PathBuf>, RunError> {
-        sync_all_below(&self.staging.fresh())?;
+        sync_all(&[self.staging.fresh()])?;
         Ok(self.staging.take_place(&[])?.files)
     }
 }
