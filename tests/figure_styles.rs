@@ -11,7 +11,7 @@ use std::sync::{Arc, OnceLock};
 use proptest::prelude::*;
 use resvg::usvg::{self, fontdb};
 
-use pbif::continuation::SweepResult;
+use pbif::continuation::{LabelledPoint, PointType, SweepResult};
 use pbif::figure::{
     ColourMap, Figure, FigureStyle, FigureWidth, Figures, Ground, Typeface, matches_figure,
 };
@@ -118,11 +118,42 @@ fn every_figure_reads_in_every_named_width() {
     }
 }
 
+/// Gives a sweep so many labelled changes, close to each other where there are many, of its observables by turns.
+fn with_labels(result: &mut SweepResult, count: usize) {
+    let Some(row) = result
+        .labels
+        .iter()
+        .find(|row| row.kind == PointType::Bifurcation)
+        .cloned()
+    else {
+        return;
+    };
+    let (from, to) = (
+        result.points[0].value,
+        result.points[result.points.len() - 1].value,
+    );
+    result
+        .labels
+        .retain(|row| row.kind != PointType::Bifurcation);
+    result.labels.extend((0..count).map(|number| {
+        let value = from + (to - from) * (number as f64 / count as f64).powi(3);
+        let observables = &result.subject.observables;
+        LabelledPoint {
+            label: format!("PB{}", number + 1),
+            value,
+            lower: value,
+            upper: value,
+            observable: Some(observables[number % observables.len()]),
+            ..row.clone()
+        }
+    }));
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 6, ..ProptestConfig::default() })]
 
     #[test]
-    fn figures_read_at_any_size(width in 60.0..400.0f64, share in 0.0..1.0f64, scale in -3.0..3.0f64) {
+    fn figures_read_at_any_size(width in 60.0..400.0f64, share in 0.0..1.0f64, scale in -3.0..3.0f64, count in 0..14usize) {
         // Text from the smallest allowed to the largest that has room.
         let largest = FigureStyle { text: Some(1.0), ..FigureStyle::default() };
         let most = (width / largest.widths().0).min(40.0);
@@ -133,7 +164,9 @@ proptest! {
         };
         if style.has_room() {
             let spread = 10f64.powf(scale);
-            for figure in drawn(&rayleigh(("rayleigh", "a"), spread, &uniform()), &style) {
+            let mut result = rayleigh(("rayleigh", "a"), spread, &uniform());
+            with_labels(&mut result, count);
+            for figure in drawn(&result, &style) {
                 assert_readable(&figure, &style);
             }
         }

@@ -249,6 +249,9 @@ fn a_figure_is_drawn_by_its_name() {
             "indicator_x",
             "indicator_y",
             "indicator_xy",
+            "homology_x",
+            "homology_y",
+            "homology_xy",
             "health"
         ]
     );

@@ -3,6 +3,7 @@
 use crate::continuation::{BifurcationStatus, LabelledPoint, Point, PointType, SweepResult};
 use crate::density::Observable;
 use crate::space::Axis;
+use crate::system::Family;
 
 use super::canvas::symbols;
 use super::told::Shows;
@@ -13,7 +14,12 @@ pub(super) fn caption(result: &SweepResult, shows: &Shows<'_>) -> String {
     if seen.is_empty() {
         return seen;
     }
-    let parts = [seen, system(result), method(result), marked(result, shows)];
+    let parts = [
+        seen,
+        system_of(&result.subject.family),
+        method(result),
+        marked(result, shows),
+    ];
     let parts: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
     let version = env!("CARGO_PKG_VERSION");
     format!("{} Computed with pbif {version}.\n", parts.join(" "))
@@ -28,7 +34,8 @@ fn density(result: &SweepResult, observable: usize) -> String {
     )
 }
 
-fn number(value: f64) -> String {
+/// A number as captions have it.
+pub(super) fn number(value: f64) -> String {
     let value = symbols::rounded(value);
     match value == 0.0 || (1e-4..1e6).contains(&value.abs()) {
         true => format!("{value}"),
@@ -38,13 +45,19 @@ fn number(value: f64) -> String {
 
 /// ` at f_c = -0.02, 0 and 0.01`.
 fn at(result: &SweepResult, points: &[&Point]) -> String {
-    let values: Vec<String> = points.iter().map(|point| number(point.value)).collect();
+    let values: Vec<f64> = points.iter().map(|point| point.value).collect();
+    at_values(&result.subject.family, &values)
+}
+
+/// The same of any values.
+pub(super) fn at_values(family: &Family, values: &[f64]) -> String {
+    let values: Vec<String> = values.iter().map(|&value| number(value)).collect();
     let values = match values.as_slice() {
         [] => return String::new(),
         [rest @ .., last] if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
         all => all.join(", "),
     };
-    format!(" at {} = {values}", result.subject.family.parameter())
+    format!(" at {} = {values}", family.parameter())
 }
 
 /// A value to the second digit of its error.
@@ -64,7 +77,10 @@ fn located(value: f64, error: f64) -> String {
 fn seen(result: &SweepResult, shows: &Shows<'_>) -> String {
     let parameter = result.subject.family.parameter();
     match shows {
-        Shows::Nothing => String::new(),
+        Shows::Nothing
+        | Shows::ComparedMarginals
+        | Shows::ComparedJoint(_)
+        | Shows::TimeToAccuracy => String::new(),
         Shows::Diagram(observable) => format!(
             "Steady-state marginal density {} over {parameter} (colours), with its peaks (solid) and valleys (dashed).",
             density(result, *observable)
@@ -86,6 +102,11 @@ fn seen(result: &SweepResult, shows: &Shows<'_>) -> String {
              systematic errors and two standard errors of sampling.",
             density(result, *observable)
         ),
+        Shows::Homology(observable) => format!(
+            "Betti numbers of the sets where the steady-state density {} exceeds a level: their pieces and holes, over {parameter} and the level as a share of \
+             the highest peak.",
+            density(result, *observable)
+        ),
         Shows::Health => format!(
             "How well each value of {parameter} was solved: what is left of the equation, what leaves the domain, and the Hellinger \
              distance between neighbouring densities."
@@ -94,8 +115,7 @@ fn seen(result: &SweepResult, shows: &Shows<'_>) -> String {
 }
 
 /// The system with its parameters.
-fn system(result: &SweepResult) -> String {
-    let family = &result.subject.family;
+pub(super) fn system_of(family: &Family) -> String {
     let model = family.model();
     let equations = model.equations.join("; ");
     let fixed: Vec<String> = family

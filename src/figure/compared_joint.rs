@@ -12,6 +12,7 @@ use super::canvas::page::{Heading, Page, Rectangle};
 use super::canvas::style::{MARGIN, TEXT};
 use super::joint::{Found, draw_map, windows, write_above};
 use super::sketch::{ComparisonScene, Sketch};
+use super::told::Shows;
 use super::{names, select};
 
 /// Side of a map, in pixels.
@@ -45,7 +46,8 @@ pub(super) fn sketches<'a>(scene: &'a ComparisonScene<'a>) -> Vec<Sketch<'a>> {
         .filter(|observable| matches!(observable, Observable::Joint(..)))
         .map(|&observable| {
             let name = format!("joint_{}", names::file(scene.family(), observable));
-            Sketch::new(name, move || draw(scene, observable))
+            let sketch = Sketch::new(name, move || draw(scene, observable));
+            sketch.showing(Shows::ComparedJoint(observable))
         })
         .collect()
 }

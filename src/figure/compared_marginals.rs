@@ -15,6 +15,7 @@ use super::canvas::style::{ERROR_LINE, INK, MARGIN, Stroke, TEXT};
 use super::joint::lettered;
 use super::marginals::{cells, curve};
 use super::sketch::{ComparisonScene, Sketch};
+use super::told::Shows;
 use super::{names, select};
 
 /// Size of a panel, in pixels.
@@ -47,7 +48,7 @@ struct Laid<'a> {
 
 /// The figure of all marginals.
 pub(super) fn sketches<'a>(scene: &'a ComparisonScene<'a>) -> Vec<Sketch<'a>> {
-    vec![Sketch::new("marginals", || draw(scene))]
+    vec![Sketch::new("marginals", || draw(scene)).showing(Shows::ComparedMarginals)]
 }
 
 /// The figure; `None` if there is nothing to draw.

@@ -3,29 +3,29 @@
 use crate::continuation::{Point, SweepResult};
 use crate::density::{EstimatedDensity, Observable};
 
-use super::select;
 use super::told::Shows;
+use super::{homology, select};
 
 /// A table as it grows.
-struct Table {
-    text: String,
+pub(super) struct Table {
+    pub(super) text: String,
 }
 
 impl Table {
-    fn new(columns: &[&str]) -> Self {
+    pub(super) fn new(columns: &[&str]) -> Self {
         Self {
             text: columns.join(",") + "\n",
         }
     }
 
-    fn row(&mut self, cells: &[String]) {
+    pub(super) fn row(&mut self, cells: &[String]) {
         self.text.push_str(&cells.join(","));
         self.text.push('\n');
     }
 }
 
 /// The shortest text that reads back as the same number; empty for values that are none.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     match value {
         value if !value.is_finite() => String::new(),
         0.0 => "0".to_owned(),
@@ -38,7 +38,10 @@ fn number(value: f64) -> String {
 pub(super) fn table(result: &SweepResult, shows: &Shows<'_>) -> String {
     let every: Vec<&Point> = result.points.iter().collect();
     match shows {
-        Shows::Nothing => String::new(),
+        Shows::Nothing
+        | Shows::ComparedMarginals
+        | Shows::ComparedJoint(_)
+        | Shows::TimeToAccuracy => String::new(),
         Shows::Diagram(observable) => marginals(result, &[*observable], &every),
         Shows::Marginals(points) => {
             let observables = result.subject.observables.iter().enumerate();
@@ -51,6 +54,7 @@ pub(super) fn table(result: &SweepResult, shows: &Shows<'_>) -> String {
         Shows::Joint(observable, points, _) => joint(result, *observable, points),
         Shows::Peaks(observable) => peaks(result, *observable),
         Shows::Indicators(observable) => indicators(result, *observable),
+        Shows::Homology(observable) => levels(result, *observable),
         Shows::Health => health(result),
     }
 }
@@ -180,6 +184,24 @@ fn indicators(result: &SweepResult, observable: usize) -> String {
                 number(one.value),
                 number(one.systematic_error),
                 number(one.sampling_error),
+            ]);
+        }
+    }
+    table.text
+}
+
+/// Levels are shares of the highest peak, as they are drawn.
+fn levels(result: &SweepResult, observable: usize) -> String {
+    let parameter = result.subject.family.parameter();
+    let mut table = Table::new(&[parameter, "level_from", "level_to", "pieces", "holes"]);
+    for point in &result.points {
+        for slab in homology::slabs(homology::features(point, observable)) {
+            table.row(&[
+                number(point.value),
+                number(slab.from),
+                number(slab.to),
+                slab.pieces.to_string(),
+                slab.holes.to_string(),
             ]);
         }
     }

@@ -105,7 +105,7 @@ fn densities(result: &SweepResult, observable: usize) -> Vec<Option<&Density>> {
 }
 
 /// Ends of the columns: half-way between neighbouring values, and the ends of the range.
-fn column_edges(points: &[Point], range: (f64, f64)) -> Vec<f64> {
+pub(super) fn column_edges(points: &[Point], range: (f64, f64)) -> Vec<f64> {
     let mut edges = vec![range.0];
     edges.extend(
         points

@@ -5,19 +5,18 @@ use super::canvas::{DrawError, pdf, render};
 use super::select;
 use super::sketch::{ComparisonScene, Sketch, SweepScene};
 use super::style::FigureStyle;
-use super::told::Shows;
 use super::{
-    FigureError, compared_joint, compared_marginals, diagram, health, indicator, joint, marginals,
-    pairs, peaks, section, surface, time_to_accuracy,
+    FigureError, compared_joint, compared_marginals, diagram, health, homology, indicator, joint,
+    marginals, pairs, peaks, section, surface, time_to_accuracy,
 };
-use super::{caption, data};
+use super::{caption, compared_told, data};
 use crate::compare::Comparison;
 use crate::continuation::{CellCheck, Subject, SweepResult};
 use crate::density::Observable;
 use crate::system::Family;
 
 /// The kinds of figures of a sweep, in the order in which they are drawn: a new kind is one line here.
-const OF_SWEEPS: [for<'a> fn(&'a SweepScene<'a>) -> Vec<Sketch<'a>>; 9] = [
+const OF_SWEEPS: [for<'a> fn(&'a SweepScene<'a>) -> Vec<Sketch<'a>>; 10] = [
     diagram::sketches,
     marginals::sketches,
     joint::sketches,
@@ -26,6 +25,7 @@ const OF_SWEEPS: [for<'a> fn(&'a SweepScene<'a>) -> Vec<Sketch<'a>>; 9] = [
     section::sketches,
     peaks::sketches,
     indicator::sketches,
+    homology::sketches,
     health::sketches,
 ];
 
@@ -37,7 +37,7 @@ const OF_COMPARISONS: [for<'a> fn(&'a ComparisonScene<'a>) -> Vec<Sketch<'a>>; 3
 ];
 
 /// The kinds of figures of a sweep: what the names of all figures of a kind begin with.
-pub const KINDS: [&str; 11] = [
+pub const KINDS: [&str; 12] = [
     "diagram",
     "marginals",
     "joint",
@@ -48,6 +48,7 @@ pub const KINDS: [&str; 11] = [
     "conditional",
     "peaks",
     "indicator",
+    "homology",
     "health",
 ];
 /// The kinds that are drawn where none is named.
@@ -80,10 +81,9 @@ pub fn sweep_figures(family: &Family, observables: &[Observable]) -> Vec<String>
 pub struct Figure {
     /// Name of its file without the extension, such as `diagram_x`.
     pub name: String,
-    /// What is to be printed below it: what is seen, of which system, by which method, what is marked. Empty for figures of a comparison,
-    /// whose tables tell.
+    /// What is to be printed below it: what is seen, of which system, by which method, what is marked.
     pub caption: String,
-    /// The numbers it was drawn from, as CSV with a header; empty for figures of a comparison, which have tables of their own.
+    /// The numbers it was drawn from, as CSV with a header.
     pub data: String,
     svg: String,
     /// Pixels of a PNG to the inch.
@@ -172,14 +172,17 @@ impl<'a> Figures<'a> {
         let Some(page) = sketch.draw()? else {
             return Ok(None);
         };
-        let result = match &self.0 {
-            Scene::Sweep(scene) => Some(scene.result),
-            Scene::Comparison(_) => None,
+        let shows = &sketch.shows;
+        let texts = match &self.0 {
+            Scene::Sweep(scene) => (
+                caption::caption(scene.result, shows),
+                data::table(scene.result, shows),
+            ),
+            Scene::Comparison(scene) => (
+                compared_told::caption(scene.comparison, shows),
+                compared_told::table(scene.comparison, shows),
+            ),
         };
-        let told = |tell: fn(&SweepResult, &Shows<'_>) -> String| {
-            result.map_or_else(String::new, |result| tell(result, &sketch.shows))
-        };
-        let texts = (told(caption::caption), told(data::table));
         Ok(Some(Figure::new(&sketch.name, texts, &page)))
     }
 

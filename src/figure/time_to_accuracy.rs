@@ -10,6 +10,7 @@ use super::canvas::{DrawError, symbols};
 use super::compared_marginals::stroke;
 use super::names;
 use super::sketch::{ComparisonScene, Sketch};
+use super::told::Shows;
 
 /// Size of the panel, in pixels.
 const PANEL: (f64, f64) = (390.0, 270.0);
@@ -35,7 +36,7 @@ fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
 
 /// The figure, where errors were measured.
 pub(super) fn sketches<'a>(scene: &'a ComparisonScene<'a>) -> Vec<Sketch<'a>> {
-    vec![Sketch::new("time_to_accuracy", || draw(scene))]
+    vec![Sketch::new("time_to_accuracy", || draw(scene)).showing(Shows::TimeToAccuracy)]
 }
 
 /// The figure; `None` if nothing was measured.

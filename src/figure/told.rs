@@ -1,11 +1,12 @@
 //! What a figure of a sweep shows: from this its table and its caption are made.
 
 use crate::continuation::Point;
+use crate::density::Observable;
 
 /// What is seen of a sweep, with the number of an observable where it is one's.
 #[derive(Clone)]
 pub(super) enum Shows<'a> {
-    /// What has no table of its own: the figures of a comparison.
+    /// What has no table of its own.
     Nothing,
     /// The density of a marginal over the parameter, with its branches.
     Diagram(usize),
@@ -17,6 +18,14 @@ pub(super) enum Shows<'a> {
     Peaks(usize),
     /// Indicators of an observable.
     Indicators(usize),
+    /// Numbers of pieces and holes of a density's sets above a level.
+    Homology(usize),
     /// How well the points were solved.
     Health,
+    /// Of a comparison: all marginals by every method.
+    ComparedMarginals,
+    /// Of a comparison: a joint density by every method.
+    ComparedJoint(Observable),
+    /// Of a comparison: error against time.
+    TimeToAccuracy,
 }

@@ -1,0 +1,305 @@
+//! The homological picture of a density: of the set where it exceeds a level, the number of pieces and of holes (its Betti numbers), over the parameter and the
+//! level. Peaks are where pieces appear as the level falls, saddles where they merge, bottoms of craters where holes close; a P-bifurcation is a change at some level.
+
+use crate::continuation::Point;
+use crate::density::Observable;
+use crate::topology::{Feature, FeatureKind, Verdict};
+
+use super::along::parameter_range;
+use super::bifurcations::Labels;
+use super::canvas::frame::{self, Scale};
+use super::canvas::legend::{Legend, Sample};
+use super::canvas::look::Look;
+use super::canvas::page::{Heading, Page, Panel, Rectangle, Shape};
+use super::canvas::style::{Colour, MARGIN, PNG_SCALE};
+use super::canvas::{DrawError, hatch, heat};
+use super::diagram::column_edges;
+use super::names;
+use super::sketch::{Sketch, SweepScene};
+use super::told::Shows;
+
+/// Size of the map on a page of its own width, in pixels, and that width.
+const MAP: (f64, f64) = (390.0, 220.0);
+const USUAL: f64 = 480.0;
+/// Room right of the map, for half a label.
+const BESIDE: f64 = 14.0;
+/// How much of a curve's colour is in an area.
+const TINT: f64 = 0.42;
+
+/// Levels between which the numbers do not change, as shares of the highest peak.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Slab {
+    pub(super) from: f64,
+    pub(super) to: f64,
+    /// Pieces of the set above a level between both: its Betti number β₀.
+    pub(super) pieces: usize,
+    /// Holes in it: β₁.
+    pub(super) holes: usize,
+}
+
+/// A picture an observed density.
+pub(super) fn sketches<'a>(scene: &'a SweepScene<'a>) -> Vec<Sketch<'a>> {
+    let observables = scene.result.subject.observables.iter().enumerate();
+    observables
+        .map(|(number, &observable)| {
+            let name = format!("homology_{}", names::file(scene.family(), observable));
+            Sketch::new(name, move || draw(scene, number)).showing(Shows::Homology(number))
+        })
+        .collect()
+}
+
+/// What was found in an observable's density at a point.
+pub(super) fn features(point: &Point, observable: usize) -> &[Feature] {
+    let detection = point.detections.get(observable);
+    detection.map_or(&[], |detection| &detection.features)
+}
+
+/// The levels of a density from zero to its highest peak, from the features that are there; empty without any.
+pub(super) fn slabs(features: &[Feature]) -> Vec<Slab> {
+    let there = |kinds: &'static [FeatureKind]| {
+        let features = features.iter();
+        features.filter(move |one| one.verdict == Verdict::Present && kinds.contains(&one.kind))
+    };
+    let summits = || there(&[FeatureKind::Peak, FeatureKind::Ring]);
+    let top = summits().map(|one| one.density).fold(0.0, f64::max);
+    if !(top > 0.0 && top.is_finite()) {
+        return Vec::new();
+    }
+    // The highest piece is there from the bottom on: what it stands on is the ground of rounding.
+    let highest = summits().max_by(|a, b| a.persistence.total_cmp(&b.persistence));
+    let piece = |one: &Feature| {
+        let lasts = highest.is_some_and(|highest| std::ptr::eq(highest, one));
+        let foot = if lasts {
+            0.0
+        } else {
+            one.density - one.persistence
+        };
+        (foot / top, one.density / top)
+    };
+    let hole = |one: &Feature| (one.density / top, (one.density + one.persistence) / top);
+    let pieces: Vec<(f64, f64)> = summits().map(piece).collect();
+    let holes: Vec<(f64, f64)> = there(&[FeatureKind::Crater]).map(hole).collect();
+    let ends = pieces
+        .iter()
+        .chain(&holes)
+        .flat_map(|&(from, to)| [from, to]);
+    let mut levels: Vec<f64> = ends
+        .chain([0.0, 1.0])
+        .map(|level| level.clamp(0.0, 1.0))
+        .collect();
+    levels.sort_by(f64::total_cmp);
+    levels.dedup();
+    let count = |all: &[(f64, f64)], level: f64| {
+        let holds = |&&(from, to): &&(f64, f64)| from < level && level <= to;
+        all.iter().filter(holds).count()
+    };
+    let slab = |pair: &[f64]| {
+        let middle = 0.5 * (pair[0] + pair[1]);
+        Slab {
+            from: pair[0],
+            to: pair[1],
+            pieces: count(&pieces, middle),
+            holes: count(&holes, middle),
+        }
+    };
+    levels.windows(2).map(slab).collect()
+}
+
+/// `2 pieces, 1 hole`.
+fn words((pieces, holes): (usize, usize)) -> String {
+    let counted = |count: usize, word: &str| match count {
+        1 => format!("1 {word}"),
+        count => format!("{count} {word}s"),
+    };
+    match holes {
+        0 => counted(pieces, "piece"),
+        holes => format!("{}, {}", counted(pieces, "piece"), counted(holes, "hole")),
+    }
+}
+
+/// The figure; `None` without a feature.
+fn draw(scene: &SweepScene<'_>, number: usize) -> Result<Option<Page>, DrawError> {
+    let (result, family, look) = (scene.result, scene.family(), &scene.look);
+    let watched: Observable = result.subject.observables[number];
+    let columns: Vec<Vec<Slab>> = result
+        .points
+        .iter()
+        .map(|point| slabs(features(point, number)))
+        .collect();
+    let mut kinds: Vec<(usize, usize)> = (columns
+        .iter()
+        .flatten()
+        .map(|slab| (slab.holes, slab.pieces)))
+    .collect();
+    if kinds.is_empty() {
+        return Ok(None);
+    }
+    kinds.sort_unstable();
+    kinds.dedup();
+    let kinds: Vec<(usize, usize)> = kinds
+        .into_iter()
+        .map(|(holes, pieces)| (pieces, holes))
+        .collect();
+    let colours: Vec<(u8, u8, u8)> = (0..kinds.len()).map(|kind| look.tint(kind, TINT)).collect();
+
+    let range = parameter_range(&result.points);
+    let high = look.height(MAP.1, USUAL);
+    let title = format!("level / max {}", names::density(family, watched));
+    let up = Scale::vertical(look, (0.0, 1.0), high, &title)?;
+    let left = MARGIN + up.left();
+    let wide = look.fill(MAP.0, left + BESIDE + MARGIN);
+    let width = left + wide + BESIDE + MARGIN;
+    let across = Scale::horizontal(look, range, wide, &names::parameter(family))?;
+    let heading = Heading::new(look, scene.title, width)?;
+    let labels = Labels::new(look, result, Some(watched), range, (left, wide))?;
+    let map = Rectangle {
+        left,
+        top: heading.height() + labels.height(),
+        width: wide,
+        height: high,
+    };
+    let entries = kinds.iter().zip(&colours);
+    let entries = entries.map(|(&kind, &colour)| (Sample::Box(Colour::fixed(colour)), words(kind)));
+    let entries: Vec<_> = entries.chain(labels.entries()).collect();
+    let legend = Legend::new(look, entries, width - 2.0 * MARGIN)?;
+    let below = map.bottom() + Scale::below();
+    let page = Page::new(look, width, below + legend.height() + MARGIN);
+    heading.draw(&page)?;
+    let panel = page.panel(map, range, (0.0, 1.0));
+    let edges = column_edges(&result.points, range);
+    draw_areas((&panel, map), &columns, (&kinds, colours), (&edges, range))?;
+    hatch_columns(&page, &panel, &columns, &edges)?;
+    labels.draw_plain(&panel, (0.0, 1.0))?;
+    frame::border(&page, map)?;
+    labels.draw_texts(&page, map)?;
+    across.draw_below(&page, map, true)?;
+    up.draw_left(&page, map, true)?;
+    legend.draw(&page, map.left + 0.5 * map.width, below)?;
+    Ok(Some(page))
+}
+
+/// The areas of equal numbers, as a picture.
+fn draw_areas(
+    (panel, map): (&Panel, Rectangle),
+    columns: &[Vec<Slab>],
+    (kinds, colours): (&[(usize, usize)], Vec<(u8, u8, u8)>),
+    (edges, range): (&[f64], (f64, f64)),
+) -> Result<(), DrawError> {
+    let size = [map.width, map.height].map(|length| (PNG_SCALE * length).round() as usize);
+    let point_of = heat::nearest(edges, range, size[0]);
+    let picture = heat::patches((size[0], size[1]), &colours, |column, row| {
+        let level = (row as f64 + 0.5) / size[1] as f64;
+        let slabs = &columns[point_of[column]];
+        let slab = slabs.iter().find(|slab| level <= slab.to);
+        let kind = slab.map(|slab| (slab.pieces, slab.holes));
+        let known = kinds.iter().position(|one| Some(*one) == kind);
+        known.unwrap_or(0)
+    })?;
+    panel.draw(&[(range.0, 1.0), (range.1, 0.0)], Shape::Image(picture))
+}
+
+/// Hatches values without any feature.
+fn hatch_columns(
+    page: &Page,
+    panel: &Panel,
+    columns: &[Vec<Slab>],
+    edges: &[f64],
+) -> Result<(), DrawError> {
+    for (column, _) in columns
+        .iter()
+        .enumerate()
+        .filter(|(_, slabs)| slabs.is_empty())
+    {
+        let (left, top) = panel.place((edges[column], 1.0));
+        let (right, bottom) = panel.place((edges[column + 1], 0.0));
+        hatch::draw(page, (left, right), (top, bottom))?;
+    }
+    Ok(())
+}
+
+impl Look {
+    /// An opaque colour of areas with text or lines over them: so much of the curve with this number, the rest paper.
+    fn tint(&self, number: usize, share: f64) -> (u8, u8, u8) {
+        use super::canvas::style::{PAPER, Stroke};
+        /// By their numbers among curves: the strongest colours come last.
+        const ORDER: [usize; 6] = [5, 6, 2, 3, 1, 0];
+        let own = self
+            .resolve(Stroke::curve(ORDER[number % ORDER.len()]).colour)
+            .0;
+        let paper = self.resolve(PAPER).0;
+        let mix = |own: u8, paper: u8| {
+            (share * f64::from(own) + (1.0 - share) * f64::from(paper)).round() as u8
+        };
+        (
+            mix(own.0, paper.0),
+            mix(own.1, paper.1),
+            mix(own.2, paper.2),
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn feature(kind: FeatureKind, density: f64, persistence: f64, verdict: Verdict) -> Feature {
+        Feature {
+            kind,
+            position: vec![0.0, 0.0],
+            density,
+            persistence,
+            standard_error: 0.0,
+            significance: 1.0,
+            verdict,
+            partner: None,
+        }
+    }
+
+    #[test]
+    fn pieces_and_holes_are_counted_between_the_levels_where_they_change() {
+        use FeatureKind::{Crater, Peak, Ring, Valley};
+        use Verdict::{Absent, Present};
+        // A rim from 0.5 to 2 with two peaks on it, merged at 0.8; its crater goes down to 0.2.
+        let features = vec![
+            feature(Peak, 2.0, 1.999, Present),
+            feature(Peak, 1.6, 0.8, Present),
+            feature(Peak, 1.9, 0.01, Absent),
+            feature(Valley, 0.8, 0.8, Present),
+            feature(Crater, 0.2, 0.3, Present),
+        ];
+        let found: Vec<_> = slabs(&features)
+            .iter()
+            .map(|slab| (slab.from, slab.to, slab.pieces, slab.holes))
+            .collect();
+        let wanted = [
+            (0.0, 0.1, 1, 0),
+            (0.1, 0.25, 1, 1),
+            (0.25, 0.4, 1, 0),
+            (0.4, 0.8, 2, 0),
+            (0.8, 1.0, 1, 0),
+        ];
+        assert_eq!(found.len(), wanted.len(), "{found:?}");
+        for (found, wanted) in found.iter().zip(&wanted) {
+            assert!(
+                (found.0 - wanted.0).abs() < 1e-12 && (found.1 - wanted.1).abs() < 1e-12,
+                "{found:?}"
+            );
+            assert_eq!((found.2, found.3), (wanted.2, wanted.3));
+        }
+        // A ring is one piece with a hole up to its top, as far as its rim is level.
+        let ring = vec![
+            feature(Ring, 1.0, 0.999, Present),
+            feature(Crater, 0.4, 0.6, Present),
+        ];
+        let found = slabs(&ring);
+        assert_eq!(
+            found
+                .iter()
+                .map(|slab| (slab.pieces, slab.holes))
+                .collect::<Vec<_>>(),
+            [(1, 0), (1, 1)]
+        );
+        assert!(slabs(&[]).is_empty());
+        assert_eq!(words((2, 1)), "2 pieces, 1 hole");
+    }
+}
