@@ -229,3 +229,40 @@ fn shells_and_man_are_told_of_every_command() {
         &["shard"],
     );
 }
+
+#[test]
+fn points_are_solved_again_and_runs_are_cited() {
+    let folder = TempDir::new().unwrap();
+    let home = folder.path();
+    sweep(home, &["--out", "a"]);
+    let text = printed(home, &["verify", "a", "--recompute", "3"], 0);
+    assert_says(
+        &text,
+        &[
+            "files are as the run left them",
+            "3 of 3 points that were solved again",
+        ],
+    );
+    // More than there are is all of them. Without checksums a strange density is found by solving alone.
+    let chunk = |index: usize| home.join(format!("a/densities.zarr/p_x/c/{index}/0"));
+    std::fs::copy(chunk(0), chunk(5)).unwrap();
+    std::fs::remove_file(home.join("a/checksums.sha256")).unwrap();
+    let text = printed(home, &["verify", "a", "--recompute", "1000"], 1);
+    assert_says(&text, &["no checksums", "ANOTHER density"]);
+    assert_eq!(text.matches("ANOTHER").count(), 1, "{text}");
+    let text = printed(home, &["cite", "a"], 0);
+    assert_says(
+        &text,
+        &[
+            "@software{pbif,",
+            "version = {0.1.0}",
+            "@misc{model-bistable,",
+            "@article{scharfetter1969,",
+        ],
+    );
+    assert_says(&printed(home, &["cite"], 0), &["@software{pbif,"]);
+    assert_says(
+        &printed(home, &["cite", "nothing"], 2),
+        &["is not the folder of a run"],
+    );
+}

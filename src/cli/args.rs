@@ -183,12 +183,20 @@ pub(super) enum Command {
     },
     /// Check that every file of a run is as the run left it
     #[command(
-        after_help = "Examples:\n  pbif verify output/coulomb_fc\n\nExit status: 0 every file is; 1 one is not, or the run has no checksums yet."
+        after_help = "Examples:\n  pbif verify output/coulomb_fc\n  pbif verify output/coulomb_fc --recompute 3\n\nExit status: 0 every file is; 1 one is not, or the run has no checksums yet, or a point is solved to another density."
     )]
     Verify {
         /// What to check.
         #[command(flatten)]
         run: VerifyArguments,
+    },
+    /// Print BibTeX entries: the program, and the model and method of a run
+    #[command(
+        after_help = "Examples:\n  pbif cite\n  pbif cite output/coulomb_fc >> references.bib\n\nOf a run: the version and commit that made it, its equations with their source, and what its method is from."
+    )]
+    Cite {
+        /// Folder of a run, as `pbif sweep` left it
+        run: Option<PathBuf>,
     },
     /// List runs: what, when, how far, and what was found; earlier versions and shards too
     #[command(after_help = runs::LIST_EXAMPLES)]
@@ -364,6 +372,9 @@ pub(crate) struct CurveArguments {
 pub(crate) struct VerifyArguments {
     /// Folder of a run, as `pbif sweep` left it
     pub(crate) run: PathBuf,
+    /// Solve so many points again, picked at random, and compare with the stored densities
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub(crate) recompute: usize,
 }
 
 /// A stored run that is drawn again.

@@ -2,6 +2,7 @@
 
 mod args;
 mod check;
+mod cite;
 mod clean;
 mod compare;
 mod curve;
@@ -173,6 +174,7 @@ fn dispatch(command: &Command) -> Result<Outcome, CommandError> {
         Command::Completions { shell } => print(&manual::completions(*shell)),
         Command::Man { out } => manual::run(out.as_deref()),
         Command::Merge { run } => merge::run(run),
+        Command::Cite { run } => cite::run(run.as_deref()),
         Command::Verify { run } => verify::run(run),
         Command::New { file, like } => print(&new::run(file.as_deref(), like.as_deref())?),
         Command::Systems { name: None } => print(&systems::list()),

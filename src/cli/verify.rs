@@ -1,21 +1,45 @@
-//! `pbif verify`: whether the files of a run are those that it left.
+//! `pbif verify`: whether the files of a run are those that it left, and its densities those of the equations.
+
+use std::hash::{BuildHasher as _, RandomState};
 
 use super::args::VerifyArguments;
-use super::{CommandError, Outcome, conclude, print};
-use crate::run::{Damage, StoredRun};
+use super::{CommandError, Outcome, conclude, interruptible};
+use crate::cancellation::Cancellation;
+use crate::continuation::Point;
+use crate::run::{Damage, StoredRun, format_number};
 
-/// Checks every file against its checksum and prints those that are not as they were.
+/// Checks every file against its checksum and prints those that are not as they were; solves some points again where that is asked for.
 ///
 /// # Errors
-/// [`CommandError::Run`] when the run cannot be read.
+/// [`CommandError::Run`] when the run cannot be read, or a point not be solved.
 pub(super) fn run(arguments: &VerifyArguments) -> Result<Outcome, CommandError> {
     let run = StoredRun::open(&arguments.run)?;
+    let (mut text, mut outcome) = files(&run)?;
+    if arguments.recompute > 0 && outcome_allows(&run, outcome)? {
+        let (threads, cancellation) = interruptible(None)?;
+        let again = threads.install(|| recomputed(&run, arguments.recompute, &cancellation))?;
+        text += &again.0;
+        outcome = match again.1 {
+            Outcome::Complete => outcome,
+            again => again,
+        };
+    }
+    conclude(&text, outcome, run.path())
+}
+
+/// Densities are compared where they are as the run left them, or nothing is known of that.
+fn outcome_allows(run: &StoredRun, outcome: Outcome) -> Result<bool, CommandError> {
+    Ok(outcome == Outcome::Complete || run.damage()?.is_none())
+}
+
+fn files(run: &StoredRun) -> Result<(String, Outcome), CommandError> {
     let Some((whole, damaged)) = run.damage()? else {
         let text = "no checksums: the run is not finished, or of an early version\n";
-        return conclude(text, Outcome::Partial, run.path());
+        return Ok((text.to_owned(), Outcome::Partial));
     };
     if damaged.is_empty() {
-        return print(&format!("{whole} files are as the run left them\n"));
+        let text = format!("{whole} files are as the run left them\n");
+        return Ok((text, Outcome::Complete));
     }
     let mut text = String::new();
     for (path, damage) in &damaged {
@@ -29,5 +53,51 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<Outcome, CommandError> 
         "{bad} of {} files are not as the run left them\n",
         whole + bad
     );
-    conclude(&text, Outcome::Partial, run.path())
+    Ok((text, Outcome::Partial))
+}
+
+/// Solves points again; those that are not what is stored are said.
+fn recomputed(
+    run: &StoredRun,
+    count: usize,
+    cancellation: &Cancellation,
+) -> Result<(String, Outcome), CommandError> {
+    let sweep = run.sweep_file().validate()?.fixed()?;
+    let points = picked(run.solved_points(&sweep)?, count);
+    let parameter = sweep.problem.family().parameter();
+    let (mut text, mut good) = (String::new(), 0);
+    for point in &points {
+        let found = match run.recompute(&sweep, point, cancellation) {
+            Err(_) if cancellation.is_cancelled() => return Ok((text, Outcome::Interrupted)),
+            found => found?,
+        };
+        let word = match found.agrees() {
+            true => "the same density",
+            false => "ANOTHER density",
+        };
+        good += usize::from(found.agrees());
+        text += &format!(
+            "  {parameter} = {}: {word}, total variation {:.1e} of at most {:.1e}\n",
+            format_number(found.value),
+            found.apart,
+            found.allowed
+        );
+    }
+    let all = points.len();
+    text += &format!("{good} of {all} points that were solved again have the stored densities\n");
+    let outcome = match good == all {
+        true => Outcome::Complete,
+        false => Outcome::Partial,
+    };
+    Ok((text, outcome))
+}
+
+/// So many of the points, at random, in their order.
+fn picked(mut points: Vec<Point>, count: usize) -> Vec<Point> {
+    let random = RandomState::new();
+    while points.len() > count {
+        let place = random.hash_one(points.len()) % points.len() as u64;
+        points.remove(place as usize);
+    }
+    points
 }

@@ -11,7 +11,7 @@ use super::canvas::frame::{self, Scale};
 use super::canvas::legend::{Legend, Sample};
 use super::canvas::look::Look;
 use super::canvas::page::{Heading, Page, Panel, Rectangle, Shape};
-use super::canvas::style::{Colour, MARGIN, PNG_SCALE};
+use super::canvas::style::{Colour, MARGIN, PAPER, PNG_SCALE, Stroke};
 use super::canvas::{DrawError, hatch, heat};
 use super::diagram::column_edges;
 use super::names;
@@ -25,6 +25,8 @@ const USUAL: f64 = 480.0;
 const BESIDE: f64 = 14.0;
 /// How much of a curve's colour is in an area.
 const TINT: f64 = 0.42;
+/// Colours of areas, by their numbers among curves: the strongest come last.
+const ORDER: [usize; 6] = [5, 6, 2, 3, 1, 0];
 
 /// Levels between which the numbers do not change, as shares of the highest peak.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -117,6 +119,40 @@ fn words((pieces, holes): (usize, usize)) -> String {
     }
 }
 
+/// The numbers of pieces and of holes that occur, with their colours.
+struct Kinds {
+    numbers: Vec<(usize, usize)>,
+    colours: Vec<(u8, u8, u8)>,
+}
+
+impl Kinds {
+    fn of(look: &Look, columns: &[Vec<Slab>]) -> Self {
+        let slabs = columns.iter().flatten();
+        let mut numbers: Vec<(usize, usize)> =
+            slabs.map(|slab| (slab.pieces, slab.holes)).collect();
+        numbers.sort_unstable_by_key(|&(pieces, holes)| (holes, pieces));
+        numbers.dedup();
+        Self {
+            colours: (0..numbers.len()).map(|kind| tint(look, kind)).collect(),
+            numbers,
+        }
+    }
+}
+
+/// An opaque colour of areas with lines over them: so much of the curve with this number, the rest paper.
+fn tint(look: &Look, number: usize) -> (u8, u8, u8) {
+    let stroke = Stroke::curve(ORDER[number % ORDER.len()]);
+    let (own, paper) = (look.resolve(stroke.colour).0, look.resolve(PAPER).0);
+    let mix = |own: u8, paper: u8| {
+        (TINT * f64::from(own) + (1.0 - TINT) * f64::from(paper)).round() as u8
+    };
+    (
+        mix(own.0, paper.0),
+        mix(own.1, paper.1),
+        mix(own.2, paper.2),
+    )
+}
+
 /// The figure; `None` without a feature.
 fn draw(scene: &SweepScene<'_>, number: usize) -> Result<Option<Page>, DrawError> {
     let (result, family, look) = (scene.result, scene.family(), &scene.look);
@@ -126,22 +162,10 @@ fn draw(scene: &SweepScene<'_>, number: usize) -> Result<Option<Page>, DrawError
         .iter()
         .map(|point| slabs(features(point, number)))
         .collect();
-    let mut kinds: Vec<(usize, usize)> = (columns
-        .iter()
-        .flatten()
-        .map(|slab| (slab.holes, slab.pieces)))
-    .collect();
-    if kinds.is_empty() {
+    let kinds = Kinds::of(look, &columns);
+    if kinds.numbers.is_empty() {
         return Ok(None);
     }
-    kinds.sort_unstable();
-    kinds.dedup();
-    let kinds: Vec<(usize, usize)> = kinds
-        .into_iter()
-        .map(|(holes, pieces)| (pieces, holes))
-        .collect();
-    let colours: Vec<(u8, u8, u8)> = (0..kinds.len()).map(|kind| look.tint(kind, TINT)).collect();
-
     let range = parameter_range(&result.points);
     let high = look.height(MAP.1, USUAL);
     let title = format!("level / max {}", names::density(family, watched));
@@ -158,7 +182,7 @@ fn draw(scene: &SweepScene<'_>, number: usize) -> Result<Option<Page>, DrawError
         width: wide,
         height: high,
     };
-    let entries = kinds.iter().zip(&colours);
+    let entries = kinds.numbers.iter().zip(&kinds.colours);
     let entries = entries.map(|(&kind, &colour)| (Sample::Box(Colour::fixed(colour)), words(kind)));
     let entries: Vec<_> = entries.chain(labels.entries()).collect();
     let legend = Legend::new(look, entries, width - 2.0 * MARGIN)?;
@@ -167,7 +191,7 @@ fn draw(scene: &SweepScene<'_>, number: usize) -> Result<Option<Page>, DrawError
     heading.draw(&page)?;
     let panel = page.panel(map, range, (0.0, 1.0));
     let edges = column_edges(&result.points, range);
-    draw_areas((&panel, map), &columns, (&kinds, colours), (&edges, range))?;
+    draw_areas((&panel, map), &columns, &kinds, (&edges, range))?;
     hatch_columns(&page, &panel, &columns, &edges)?;
     labels.draw_plain(&panel, (0.0, 1.0))?;
     frame::border(&page, map)?;
@@ -182,17 +206,17 @@ fn draw(scene: &SweepScene<'_>, number: usize) -> Result<Option<Page>, DrawError
 fn draw_areas(
     (panel, map): (&Panel, Rectangle),
     columns: &[Vec<Slab>],
-    (kinds, colours): (&[(usize, usize)], Vec<(u8, u8, u8)>),
+    kinds: &Kinds,
     (edges, range): (&[f64], (f64, f64)),
 ) -> Result<(), DrawError> {
     let size = [map.width, map.height].map(|length| (PNG_SCALE * length).round() as usize);
     let point_of = heat::nearest(edges, range, size[0]);
-    let picture = heat::patches((size[0], size[1]), &colours, |column, row| {
+    let picture = heat::patches((size[0], size[1]), &kinds.colours, |column, row| {
         let level = (row as f64 + 0.5) / size[1] as f64;
         let slabs = &columns[point_of[column]];
         let slab = slabs.iter().find(|slab| level <= slab.to);
         let kind = slab.map(|slab| (slab.pieces, slab.holes));
-        let known = kinds.iter().position(|one| Some(*one) == kind);
+        let known = kinds.numbers.iter().position(|one| Some(*one) == kind);
         known.unwrap_or(0)
     })?;
     panel.draw(&[(range.0, 1.0), (range.1, 0.0)], Shape::Image(picture))
@@ -215,27 +239,6 @@ fn hatch_columns(
         hatch::draw(page, (left, right), (top, bottom))?;
     }
     Ok(())
-}
-
-impl Look {
-    /// An opaque colour of areas with text or lines over them: so much of the curve with this number, the rest paper.
-    fn tint(&self, number: usize, share: f64) -> (u8, u8, u8) {
-        use super::canvas::style::{PAPER, Stroke};
-        /// By their numbers among curves: the strongest colours come last.
-        const ORDER: [usize; 6] = [5, 6, 2, 3, 1, 0];
-        let own = self
-            .resolve(Stroke::curve(ORDER[number % ORDER.len()]).colour)
-            .0;
-        let paper = self.resolve(PAPER).0;
-        let mix = |own: u8, paper: u8| {
-            (share * f64::from(own) + (1.0 - share) * f64::from(paper)).round() as u8
-        };
-        (
-            mix(own.0, paper.0),
-            mix(own.1, paper.1),
-            mix(own.2, paper.2),
-        )
-    }
 }
 
 #[cfg(test)]

@@ -27,6 +27,7 @@ mod map;
 mod number;
 mod points_table;
 mod provenance;
+mod recompute;
 mod reopen;
 mod research_object;
 mod sentences;
@@ -61,6 +62,7 @@ pub use map::{MapFolder, map_csv};
 pub use number::{format_number, format_with_error};
 pub use points_table::points_csv;
 pub use provenance::Provenance;
+pub use recompute::Recomputed;
 pub use sentences::finding_in_words;
 pub use shards::{Gathered, GatheredSource, Shards, shard_folder};
 pub use staged::StagedRun;
@@ -262,6 +264,16 @@ pub enum RunError {
         found: String,
         /// This program and version.
         wanted: String,
+    },
+    /// A point that cannot be solved again.
+    #[error("{parameter} = {value} cannot be solved again: {message}")]
+    Recompute {
+        /// The swept parameter.
+        parameter: String,
+        /// Its value.
+        value: f64,
+        /// Why not.
+        message: String,
     },
     /// A sweep that was changed after the run.
     #[error("the sweep in {} is not the one that was run: its hash does not fit", path.display())]

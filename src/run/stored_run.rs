@@ -106,6 +106,11 @@ impl StoredRun {
         self.manifest.made["commit"].as_str()
     }
 
+    /// When the run was begun, in UTC (ISO 8601); `None` where it does not say.
+    pub fn started(&self) -> Option<&str> {
+        self.manifest.made["started"].as_str()
+    }
+
     /// The resolved sweep file as TOML.
     pub fn resolved(&self) -> &str {
         &self.resolved
