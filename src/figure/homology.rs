@@ -25,6 +25,8 @@ const USUAL: f64 = 480.0;
 const BESIDE: f64 = 14.0;
 /// How much of a curve's colour is in an area.
 const TINT: f64 = 0.42;
+/// Levels nearer to each other are one.
+const SAME: f64 = 1e-9;
 /// Colours of areas, by their numbers among curves: the strongest come last.
 const ORDER: [usize; 6] = [5, 6, 2, 3, 1, 0];
 
@@ -90,7 +92,11 @@ pub(super) fn slabs(features: &[Feature]) -> Vec<Slab> {
         .map(|level| level.clamp(0.0, 1.0))
         .collect();
     levels.sort_by(f64::total_cmp);
-    levels.dedup();
+    // Symmetric peaks are as high as each other up to rounding.
+    levels.dedup_by(|level, before| *level - *before < SAME);
+    if let Some(last) = levels.last_mut() {
+        *last = 1.0;
+    }
     let count = |all: &[(f64, f64)], level: f64| {
         let holds = |&&(from, to): &&(f64, f64)| from < level && level <= to;
         all.iter().filter(holds).count()

@@ -18,6 +18,7 @@ pub(super) mod look;
 pub(super) mod page;
 pub(super) mod pdf;
 pub(super) mod render;
+mod scale;
 pub(super) mod space;
 mod stock;
 pub(super) mod style;
