@@ -7,6 +7,17 @@ use crate::continuation::{DensitySource as _, Session, Solution, SourceError};
 /// Sessions that are kept: the shown state, its preview, the sweep, and the parameter that moved before.
 const MOST: usize = 4;
 
+/// A session remembers what it has solved, about so many bytes a cell each time, and solves the next from the nearest; before it has so much in all, it begins anew.
+const REMEMBERED: usize = 16;
+const MOST_REMEMBERED: usize = 64 << 20;
+/// Solves of a session at least, however many cells it has: the first takes longer than all others.
+const FEWEST_SOLVES: usize = 32;
+
+/// Solves after which a session on so many cells begins anew.
+fn solves_on(cells: usize) -> usize {
+    (MOST_REMEMBERED / (REMEMBERED * cells.max(1))).max(FEWEST_SOLVES)
+}
+
 /// Open sessions, the one used last at the end.
 #[derive(Default)]
 pub(super) struct Sessions {
@@ -17,6 +28,8 @@ struct Open {
     key: Vec<u64>,
     session: Box<dyn Session>,
     cancellation: Cancellation,
+    /// Solves before it begins anew.
+    left: usize,
 }
 
 /// Why there is no solution.
@@ -41,7 +54,7 @@ impl Sessions {
         let known = self.open.iter().position(|open| open.key == bound.key);
         let known = known.map(|index| self.open.remove(index));
         // A session that was cancelled does not work any more.
-        let usable = known.filter(|open| !open.cancellation.is_cancelled());
+        let usable = known.filter(|open| !open.cancellation.is_cancelled() && open.left > 0);
         let mut open = match usable {
             Some(open) if begin(&open.cancellation) => open,
             Some(open) => {
@@ -65,13 +78,33 @@ impl Sessions {
                     key: bound.key.clone(),
                     session: source.open(&cancellation),
                     cancellation,
+                    left: solves_on(bound.sweep.problem.space().n_cells()),
                 }
             }
         };
+        open.left -= 1;
         let solution = open.session.solve(bound.value).map(Solution::detached);
         if !open.cancellation.is_cancelled() {
             self.open.push(open);
         }
         solution.map_err(Solving::Source)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_sessions_remember_is_bounded() {
+        for cells in [1, 400, 10_000, 1_000_000] {
+            let solves = solves_on(cells);
+            let bytes = solves * cells * REMEMBERED;
+            assert!(
+                bytes <= MOST_REMEMBERED || solves == FEWEST_SOLVES,
+                "{cells}: {solves}"
+            );
+        }
+        assert_eq!(solves_on(10_000), 419);
     }
 }
