@@ -2,13 +2,15 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+mod common;
+
+use common::pbif;
 use pbif::cancellation::Cancellation;
 use pbif::continuation::curve::{
     Curve, CurveError, CurveOptions, CurvePoint, CurveStart, EndReason, Plane, follow,
 };
 use pbif::continuation::{BifurcationStatus, LabelledPoint, SweepResult};
 use pbif::sweep_file::{Sweep, SweepFile};
-use std::process::Command;
 
 /// Additive noise: peaks of the density are zeros of the drift, and two of them fold where 27 h² = 4 a³.
 const CUSP: &str = r#"
@@ -281,6 +283,25 @@ fn sweeps_over_one_parameter_lie_in_the_band_of_coulomb_friction() {
             point.values
         );
     }
+    // Between them f_c is nearly linear in σ.
+    for sigma2 in [0.04, 0.06_f64] {
+        let setting = format!("system.parameters.sigma2={sigma2}");
+        let (_, result) = swept(COULOMB, &[&setting]);
+        let alone = row(&result, "x", "curvature at the centre");
+        let after = merger
+            .points
+            .partition_point(|point| point.values[1] < sigma2);
+        let [a, b] = [&merger.points[after - 1], &merger.points[after]];
+        let [s, t] = [a, b].map(|point| point.values[1].sqrt());
+        let share = (sigma2.sqrt() - s) / (t - s);
+        let along = (1.0 - share) * a.values[0] + share * b.values[0];
+        let off = (alone.value - along).abs();
+        assert!(
+            off <= 0.04 * a.error.max(b.error),
+            "{} {along}",
+            alone.value
+        );
+    }
     // A factorisation serves several solves, and none is spent on corrections but a few at the beginning and the ends.
     let (points, work) = (merger.points.len(), merger.work);
     assert!(
@@ -297,6 +318,48 @@ fn sweeps_over_one_parameter_lie_in_the_band_of_coulomb_friction() {
             .all(|point| point.status == BifurcationStatus::Located)
     );
     assert_eq!(kink.check_work.solves, 0);
+}
+
+#[test]
+fn with_a_linear_spring_friction_at_the_change_is_proportional_to_sigma_from_either_parameter() {
+    let linear = COULOMB.replace("mu = 0.05", "mu = 0.0");
+    let (sweep, result) = swept(&linear, &[]);
+    let found = row(&result, "x", "curvature at the centre");
+    let plane = Plane::new(("f_c", -0.03, 0.01), ("sigma2", 0.03, 0.07)).unwrap();
+    let first = curve(&sweep, found, &plane, 0.05);
+    let begins = &first.points[first.start];
+    // States scale with σ, and forces with them.
+    let ratio = begins.values[0] / begins.values[1].sqrt();
+    let off = |[f_c, sigma2]: [f64; 2]| {
+        let slope = 0.5 * ratio / sigma2.sqrt();
+        (f_c - ratio * sigma2.sqrt()) / 0.04 / 1.0_f64.hypot(slope)
+    };
+    for point in &first.points {
+        let off = off(point.values).abs();
+        assert!(off <= begins.error + point.error, "{point:?}: {off:.1e}");
+    }
+
+    // The other parameter first, begun elsewhere.
+    let held = first.points[first.points.len() / 4].values;
+    let other = linear.replace("sigma2 = 0.05\n", "");
+    let settings = [
+        "sweep.parameter=sigma2".to_owned(),
+        "sweep.from=0.03".to_owned(),
+        "sweep.to=0.07".to_owned(),
+        format!("system.parameters.f_c={}", held[0]),
+    ];
+    let (sweep, result) = swept(&other, &settings.each_ref().map(String::as_str));
+    let found = row(&result, "x", "curvature at the centre");
+    let plane = Plane::new(("sigma2", 0.03, 0.07), ("f_c", -0.03, 0.01)).unwrap();
+    let second = curve(&sweep, found, &plane, held[0]);
+    assert_eq!(
+        ends(&second),
+        [&EndReason::Border(0), &EndReason::Border(0)]
+    );
+    for point in &second.points {
+        let off = off([point.values[1], point.values[0]]).abs();
+        assert!(off <= begins.error + point.error, "{point:?}: {off:.1e}");
+    }
 }
 
 /// Root c of ∫ (c - y²/2) exp(c y² - y⁴/4) dy: p''(0) of the marginal of x, in units of b σ² = 1.
@@ -415,13 +478,6 @@ fn a_cancelled_curve_says_so() {
     assert_eq!(curve.points.len(), 5);
 }
 
-fn pbif(arguments: &[&str]) -> std::process::Output {
-    Command::new(env!("CARGO_BIN_EXE_pbif"))
-        .args(arguments)
-        .output()
-        .unwrap()
-}
-
 #[test]
 fn the_program_follows_a_row_of_a_run_and_says_what_is_wrong() {
     let folder = tempfile::tempdir().unwrap();
@@ -470,11 +526,11 @@ fn the_program_follows_a_row_of_a_run_and_says_what_is_wrong() {
         lines
             .next()
             .unwrap()
-            .starts_with("label,h,a,error,edge_h,edge_a,observable,method,indicator,")
+            .starts_with("curve,label,h,a,error,edge_h,edge_a,observable,method,indicator,")
     );
     for line in lines {
         let cells: Vec<&str> = line.split(',').collect();
-        let [h, a, error] = [1, 2, 3].map(|k| cells[k].parse::<f64>().unwrap());
+        let [h, a, error] = [2, 3, 4].map(|k| cells[k].parse::<f64>().unwrap());
         assert!(off_the_fold([h, a], [1.4, 1.4]).abs() <= error, "{line}");
     }
     for file in ["curve.json", "figures/curve.svg", "figures/curve.png"] {

@@ -2,13 +2,17 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use std::process::Command;
+mod common;
+
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use common::pbif;
 use pbif::cancellation::Cancellation;
 use pbif::continuation::BifurcationStatus;
 use pbif::continuation::curve::CurvePoint;
-use pbif::continuation::map::{MapProgress, RegimeMap};
+use pbif::continuation::map::{MapNode, MapProgress, RegimeMap};
+use pbif::run::MapCheckpoint;
 use pbif::sweep_file::SweepFile;
 use pbif::topology::Signature;
 
@@ -148,6 +152,16 @@ fn a_tilted_double_well_has_two_peaks_within_the_cusp_and_one_outside() {
     );
     let [h, a] = two[0].inside;
     assert!(27.0 * h * h < 4.0 * a.powi(3));
+
+    // A density of each regime.
+    let peaks = map.samples.iter().map(|sample| {
+        let values = &sample.density.values;
+        values
+            .windows(3)
+            .filter(|three| three[1] > three[0] && three[1] >= three[2])
+            .count()
+    });
+    assert_eq!(peaks.collect::<Vec<_>>(), [1, 2]);
 }
 
 #[test]
@@ -222,11 +236,72 @@ fn a_cancelled_map_keeps_what_was_done_and_says_so() {
     assert!(map.regions(0, [40, 40]).is_some());
 }
 
-fn pbif(arguments: &[&str]) -> std::process::Output {
-    Command::new(env!("CARGO_BIN_EXE_pbif"))
-        .args(arguments)
-        .output()
+#[test]
+fn a_map_goes_on_from_what_was_solved_and_solves_only_what_it_must() {
+    let cancellation = Cancellation::new();
+    let sweep = SweepFile::parse("map.toml", CUSP).validate().unwrap();
+    let sweep = sweep.prepare(&cancellation).unwrap();
+    let solved = AtomicUsize::new(0);
+    let count = |told: &MapProgress<'_>| {
+        if let MapProgress::Solved { .. } = told {
+            solved.fetch_add(1, Ordering::Relaxed);
+        }
+    };
+    let whole = sweep.map(&cancellation, &count).unwrap().unwrap();
+    assert_eq!(solved.swap(0, Ordering::Relaxed), whole.nodes.len());
+    // As after an interrupt: of the coarse grid the lower seven rows, and a node that is of no lattice.
+    let mut known: Vec<MapNode> = whole.nodes.iter().take(77).cloned().collect();
+    known.retain(|node| node.level == 0);
+    known.push(MapNode {
+        values: [0.0123, 0.0456],
+        ..known[0].clone()
+    });
+    let again = sweep
+        .map_from(&known, &cancellation, &count)
         .unwrap()
+        .unwrap();
+    let anew = solved.load(Ordering::Relaxed);
+    // Those that are far from a change are taken as they are.
+    assert!(anew < whole.nodes.len(), "{anew} of {}", whole.nodes.len());
+    let told = |map: &RegimeMap| -> Vec<([f64; 2], usize, Vec<Signature>)> {
+        let nodes = map.nodes.iter();
+        nodes
+            .map(|node| (node.values, node.level, node.signatures.clone()))
+            .collect()
+    };
+    assert_eq!(told(&again), told(&whole));
+    assert_eq!(again.curves.len(), whole.curves.len());
+    assert!(again.untraced.is_empty(), "{:?}", again.untraced);
+}
+
+#[test]
+fn the_program_goes_on_with_a_map_that_was_killed() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (file, out) = (at("cusp.toml"), at("out"));
+    std::fs::write(&file, CUSP).unwrap();
+    let never = Cancellation::new();
+    let sweep = SweepFile::parse("cusp.toml", CUSP).validate().unwrap();
+    let sweep = sweep.prepare(&never).unwrap();
+    let nodes = Mutex::new(Vec::new());
+    let observer = |told: &MapProgress<'_>| {
+        if let MapProgress::Solved { node, .. } = told {
+            nodes.lock().unwrap().push((*node).clone());
+        }
+    };
+    sweep.map(&never, &observer).unwrap();
+    let nodes = nodes.into_inner().unwrap();
+    // What a kill leaves: the nodes so far, and nothing else.
+    std::fs::create_dir(&out).unwrap();
+    let checkpoint = MapCheckpoint::new(out.as_ref(), &sweep.to_toml());
+    checkpoint.write(&nodes[..60]).unwrap();
+    let output = pbif(&["sweep", &file, "--out", &out, "--resume"]);
+    // On these cells the cusp itself is not known well enough to be located.
+    assert!(output.status.code() <= Some(1), "{output:?}");
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("going on after 60 nodes"), "{said}");
+    assert!(checkpoint.read().unwrap().is_empty());
+    assert!(folder.path().join("out/map.csv").is_file());
 }
 
 #[test]
@@ -251,6 +326,8 @@ fn the_program_makes_maps_and_says_what_is_wrong_with_them() {
         "map.csv",
         "curves.csv",
         "codimension_two.csv",
+        "codimension_two.tex",
+        "densities/x.csv",
         "figures/map_x.svg",
         "figures/map_x.png",
     ] {
@@ -274,10 +351,19 @@ fn the_program_makes_maps_and_says_what_is_wrong_with_them() {
             assert!(text.contains(words), "{words}:\n{text}");
         }
     };
-    refused(
-        &["--resume"],
-        &["cannot be gone on with", "leave `--resume` out"],
+    // Complete, there is nothing to go on with; of another sweep it is refused.
+    let again = sweep(&["--resume"]);
+    assert_eq!(again.status.code(), Some(0), "{again:?}");
+    assert!(
+        String::from_utf8(again.stdout)
+            .unwrap()
+            .contains("the map is complete")
     );
+    refused(
+        &["--resume", "--set", "map.points=6"],
+        &["is of another sweep", "map.points"],
+    );
+    refused(&["--shard", "1/2"], &["cannot be made in shards"]);
     refused(
         &["--set", "map.parameter=h"],
         &["is the swept one, `h`", "`sigma2`"],

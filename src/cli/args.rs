@@ -56,7 +56,7 @@ Examples:
   pbif curve sweeps/bistable.toml --second sigma2 --from 0.2 --to 1
 
 From the located row on, the zero of its indicator is followed in both directions until it leaves the box, closes, or its
-feature is lost. curves.csv, curve.json and a figure of the plane go to RUN/curves/ROW-SECOND/ (of a sweep file, which is swept
+feature is lost; then the curves that start from its cusps and degenerate splits. curves.csv, codimension_two.csv, curve.json and a figure of the plane go to RUN/curves/ROW-SECOND/ (of a sweep file, which is swept
 first, to output/NAME-ROW-SECOND/) or --out; an earlier curve is kept below its folder previous/.
 What the columns mean, and how far to trust them: docs/curves.md
 
@@ -352,6 +352,9 @@ pub(crate) struct CurveArguments {
     /// Upper end of the box in the swept parameter [default: that of the sweep]
     #[arg(long, value_name = "VALUE", allow_negative_numbers = true, value_parser = finite)]
     pub(crate) first_to: Option<f64>,
+    /// Follow this curve alone, not those that start from its points of codimension two
+    #[arg(long)]
+    pub(crate) alone: bool,
     /// Longest step between points, as a share of the sides of the box
     #[arg(long, value_name = "SHARE", default_value_t = CurveOptions::default().largest_step, value_parser = share)]
     pub(crate) step: f64,

@@ -10,7 +10,10 @@ use super::output::OutputFolder;
 use super::stored::Stored;
 use super::{CommandError, Outcome};
 use crate::cancellation::Cancellation;
-use crate::continuation::curve::{Curve, CurveError, CurveOptions, CurveStart, Plane, follow};
+use crate::continuation::curve::{
+    CodimensionTwo, CodimensionTwoKind, Curve, CurveError, CurveOptions, CurveStart, CurveTree,
+    Plane, codimension_two, follow, follow_all,
+};
 use crate::continuation::{BifurcationStatus, LabelledPoint, SourceError, SweepResult};
 use crate::figure::{curve_figure, write_figures};
 use crate::method::MethodError;
@@ -36,7 +39,7 @@ pub(super) fn run(arguments: &CurveArguments) -> Result<Outcome, CommandError> {
         let output = OutputFolder::prepare(&job.home())?;
         let folder = CurveFolder::new(output.path())?;
         match job.follow(&cancellation)? {
-            Some(curve) => job.conclude(&curve, folder, output.path()),
+            Some(tree) => job.conclude(&tree, folder, output.path()),
             None => {
                 super::print("interrupted: nothing was written\n")?;
                 Ok(Outcome::Interrupted)
@@ -165,8 +168,8 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Follows the curve; `None` when interrupted before there was one.
-    fn follow(&self, cancellation: &Cancellation) -> Result<Option<Curve>, CommandError> {
+    /// Follows the curve, and those that start from it; `None` when interrupted before there was one.
+    fn follow(&self, cancellation: &Cancellation) -> Result<Option<CurveTree>, CommandError> {
         let options = CurveOptions {
             largest_step: self.arguments.step,
             ..self.spec.curve_options(self.plane.sides()[0].length())
@@ -194,88 +197,122 @@ impl<'a> Job<'a> {
             );
         };
         let detector = self.spec.detector();
-        let found = follow(
-            &source,
-            &self.plane,
-            &detector,
-            &self.start,
-            &options,
-            cancellation,
-            &mut observer,
-        );
+        let (source, plane, start) = (&source, &self.plane, &self.start);
+        let observer = &mut observer;
+        let found = match self.arguments.alone {
+            false => follow_all(
+                source,
+                plane,
+                &detector,
+                start,
+                &options,
+                cancellation,
+                observer,
+            ),
+            true => follow(
+                source,
+                plane,
+                &detector,
+                start,
+                &options,
+                cancellation,
+                observer,
+            )
+            .map(CurveTree::from),
+        };
         match found {
-            Ok(curve) => Ok(Some(curve)),
+            Ok(tree) => Ok(Some(tree)),
             Err(CurveError::Source(SourceError::Interrupted)) => Ok(None),
             Err(error) => Err(refused(error)),
         }
     }
 
-    /// Writes the curve and prints what it is.
+    /// Writes the curves and prints what they are.
     fn conclude(
         &self,
-        curve: &Curve,
+        tree: &CurveTree,
         folder: CurveFolder,
         home: &Path,
     ) -> Result<Outcome, CommandError> {
         let (family, settings) = (self.spec.problem.family(), &self.spec.settings);
-        folder.write(family, curve, &self.row.label, &self.spec.to_toml())?;
+        let (label, sweep) = (&self.row.label, self.spec.to_toml());
+        folder.write(family, &self.plane, tree, (label, &sweep))?;
         let style = &settings.figure_style;
-        let figure = curve_figure(curve, self.row, family, &settings.title, style)?;
+        let figure = curve_figure(&tree.curves, self.row, family, &settings.title, style)?;
         write_figures(&[figure], &settings.figure_formats, &folder.figures())?;
         let files = folder.take_place()?;
-        let mut text = self.summary(curve);
+        let mut text = self.summary(tree);
         text += "files\n";
         for file in files {
             text += &format!("  {}\n", file.display());
         }
-        super::conclude(&text, outcome(curve), home)
+        super::conclude(&text, outcome(tree), home)
     }
 
-    fn summary(&self, curve: &Curve) -> String {
+    fn summary(&self, tree: &CurveTree) -> String {
+        let mut text = String::new();
+        for (index, curve) in tree.curves.iter().enumerate() {
+            text += &self.told(tree, index, curve);
+        }
+        for point in codimension_two(&tree.curves) {
+            text += &codimension_line(&point, &self.plane);
+        }
+        for missed in &tree.missed {
+            text += &format!(
+                "not followed: {} is zero near {}: {}\n",
+                missed.start.kind.name(),
+                place(&self.plane, missed.start.values, 1e-3),
+                missed.reason
+            );
+        }
+        text
+    }
+
+    /// A curve with its ends.
+    fn told(&self, tree: &CurveTree, index: usize, curve: &Curve) -> String {
         let family = self.spec.problem.family();
         let [first, second] = curve.plane.sides();
-        let mut text = format!(
-            "{} of {} is zero, followed from {} in the plane of {} and {}\n",
+        let what = format!(
+            "{} of {} is zero",
             curve.kind.name(),
-            curve.observable.name(family),
-            self.row.label,
-            first.parameter,
-            second.parameter
+            curve.observable.name(family)
         );
+        let number = match tree.curves.len() {
+            1 => String::new(),
+            _ => format!("C{}  ", index + 1),
+        };
+        let mut text = match index {
+            0 => format!(
+                "{number}{what}, followed from {} in the plane of {} and {}\n",
+                self.row.label, first.parameter, second.parameter
+            ),
+            _ => format!("{number}{what}\n"),
+        };
         let mut line = |label: &str, index: usize, words: &str| {
-            let Some(point) = curve.points.get(index) else {
-                return;
-            };
-            let values = [first, second].into_iter().enumerate().map(|(k, side)| {
-                let error = point.error * side.length();
-                format!(
-                    "{} = {}",
-                    side.parameter,
-                    format_with_error(point.values[k], error).0
-                )
-            });
-            let values = values.collect::<Vec<_>>().join("  ");
-            text += &format!("  {label:<4} {values}  {words}\n");
+            if let Some(point) = curve.points.get(index) {
+                let values = place(&curve.plane, point.values, point.error);
+                text += &format!("  {label:<4} {values}  {words}\n");
+            }
         };
         let first_end = curve.ends.first().filter(|_| curve.ends.len() > 1);
         if let Some(end) = first_end {
             line(&end.label, end.point, &end.reason.words(&curve.plane));
         }
-        line(&self.row.label, curve.start, "start");
+        if index == 0 {
+            line(&self.row.label, curve.start, "start");
+        }
+        for split in &curve.degenerate {
+            let words = "degenerate split: from here on peaks are born away from the centre";
+            line(&split.label, split.point, words);
+        }
         if let Some(end) = curve.ends.last() {
             line(&end.label, end.point, &end.reason.words(&curve.plane));
         }
-        let largest = curve
-            .points
-            .iter()
-            .map(|point| point.error)
-            .fold(0.0, f64::max);
+        let errors = curve.points.iter().map(|point| point.error);
+        let largest = errors.fold(0.0, f64::max);
         let checked = curve.points.iter().filter(|point| point.checked).count();
-        let located = curve
-            .points
-            .iter()
-            .filter(|point| is_located(point.status))
-            .count();
+        let located = curve.points.iter();
+        let located = located.filter(|point| is_located(point.status)).count();
         text += &format!(
             "  {} points, {located} of them located, {checked} checked; largest error {largest:.1e} of the sides of the box\n",
             curve.points.len()
@@ -284,16 +321,45 @@ impl<'a> Job<'a> {
     }
 }
 
+/// Values of both parameters to the digits that an error, a share of the sides of the box, leaves.
+fn place(plane: &Plane, values: [f64; 2], error: f64) -> String {
+    let sides = plane.sides().iter().zip(values);
+    let values = sides.map(|(side, value)| {
+        let (value, _) = format_with_error(value, error * side.length());
+        format!("{} = {value}", side.parameter)
+    });
+    values.collect::<Vec<_>>().join("  ")
+}
+
+/// A point of codimension two in a line.
+pub(super) fn codimension_line(point: &CodimensionTwo, plane: &Plane) -> String {
+    let curves = point.curves.iter().map(|index| format!("C{}", index + 1));
+    let curves = curves.collect::<Vec<_>>().join(" and ");
+    let words = match point.kind {
+        CodimensionTwoKind::Cusp => format!("cusp of {curves}"),
+        CodimensionTwoKind::DegenerateSplit => format!(
+            "degenerate split of {curves}: births at the centre turn into births away from it"
+        ),
+        CodimensionTwoKind::Crossing => format!("crossing of {curves}"),
+    };
+    format!(
+        "{}  {}  {words}; known to {:.1e} of the sides of the box\n",
+        point.label,
+        place(plane, point.values, point.error),
+        point.error
+    )
+}
+
 fn is_located(status: BifurcationStatus) -> bool {
     status == BifurcationStatus::Located
 }
 
-/// How a command ends that gives this curve.
-fn outcome(curve: &Curve) -> Outcome {
-    let mut points = curve.points.iter();
-    if curve.is_interrupted() {
+/// How a command ends that gives these curves.
+fn outcome(tree: &CurveTree) -> Outcome {
+    let mut points = tree.curves.iter().flat_map(|curve| &curve.points);
+    if tree.curves.iter().any(Curve::is_interrupted) {
         Outcome::Interrupted
-    } else if points.all(|point| is_located(point.status)) {
+    } else if tree.missed.is_empty() && points.all(|point| is_located(point.status)) {
         Outcome::Complete
     } else {
         Outcome::Partial

@@ -1,9 +1,12 @@
 //! `pbif sweep` on a file with `[map]`: the signatures over a box of two parameters, and the curves between them.
 
+use std::io::Write as _;
 use std::path::Path;
-use std::time::Instant;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use super::args::SweepArguments;
+use super::curve::codimension_line;
 use super::output::OutputFolder;
 use super::sweep::progress::Progress;
 use super::{CommandError, Outcome};
@@ -11,11 +14,13 @@ use crate::cancellation::Cancellation;
 use crate::continuation::BifurcationStatus;
 use crate::continuation::SourceError;
 use crate::continuation::curve::Curve;
-use crate::continuation::map::{MapProgress, RegimeMap};
+use crate::continuation::map::{MapNode, MapProgress, RegimeMap};
 use crate::figure::{map_figures, write_figures};
-use crate::run::{MapFolder, format_with_error};
+use crate::run::{MapCheckpoint, MapFolder, format_with_error};
 use crate::sweep_file::{Diagnostic, Sweep};
 
+/// How often what is solved is written.
+const EVERY: Duration = Duration::from_secs(2);
 /// Columns and rows of the picture that shares of regions are counted in.
 const PICTURE: [usize; 2] = [300, 300];
 /// Regions smaller than this share of the box are not listed.
@@ -35,17 +40,26 @@ pub(super) fn run(
             .remedy("leave `--shard` out: its strips run side by side on the cores of one machine");
         return Err(CommandError::Input(report.into()));
     }
-    if arguments.resume {
-        let report = Diagnostic::new("a map of regimes cannot be gone on with")
-            .remedy("leave `--resume` out: a map is made anew, and an earlier one is kept");
-        return Err(CommandError::Input(report.into()));
-    }
     let output = OutputFolder::prepare(folder)?;
     let home = MapFolder::new(output.path())?;
+    let checkpoint = MapCheckpoint::new(output.path(), &spec.to_toml());
+    let known = match arguments.resume {
+        true => checkpoint.read()?,
+        false => Vec::new(),
+    };
+    if arguments.resume && known.is_empty() && is_complete(spec, output.path())? {
+        super::print("the map is complete: there is nothing to go on with\n")?;
+        return Ok(Outcome::Complete);
+    }
     let (threads, cancellation) = super::interruptible(arguments.work.threads)?;
     threads.install(|| {
         let clock = Instant::now();
-        let map = made(spec, arguments.work.quiet, &cancellation)?;
+        let job = Job {
+            spec,
+            checkpoint: &checkpoint,
+            quiet: arguments.work.quiet,
+        };
+        let map = job.made(known, &cancellation)?;
         let Some(map) = map.filter(|map| !map.nodes.is_empty()) else {
             super::print("interrupted: nothing was written\n")?;
             return Ok(Outcome::Interrupted);
@@ -55,6 +69,9 @@ pub(super) fn run(
         let figures = map_figures(&map, &settings.title, &settings.figure_style)?;
         write_figures(&figures, &settings.figure_formats, &home.figures())?;
         let mut text = summary(&map);
+        if !map.interrupted {
+            checkpoint.remove();
+        }
         text += "\nfiles\n";
         for file in home.take_place()? {
             text += &format!("  {}\n", file.display());
@@ -63,38 +80,78 @@ pub(super) fn run(
     })
 }
 
-/// The map; `None` where it was interrupted before there was anything.
-fn made(
-    spec: &Sweep,
+/// Whether the folder holds this very map, complete.
+fn is_complete(spec: &Sweep, folder: &Path) -> Result<bool, CommandError> {
+    Ok(MapFolder::ending(folder, &spec.to_toml())?.is_some_and(|ending| ending == "complete"))
+}
+
+/// A map in the making.
+struct Job<'a> {
+    spec: &'a Sweep,
+    checkpoint: &'a MapCheckpoint,
     quiet: bool,
-    cancellation: &Cancellation,
-) -> Result<Option<RegimeMap>, CommandError> {
-    let rows = spec.settings.map.as_ref().map_or(1, |map| map.points);
-    let progress = Progress::new(spec.settings.points * rows, quiet);
-    let sides = spec.settings.map.as_ref();
-    let second = sides.map_or("", |map| map.parameter.as_str());
-    let first = spec.problem.family().parameter();
-    let at = |values: [f64; 2]| format!("{first} = {:.6}  {second} = {:.6}", values[0], values[1]);
-    let observer = |told: &MapProgress<'_>| match *told {
-        MapProgress::Solved { node, done, wanted } => {
-            let words: Vec<String> = node.signatures.iter().map(ToString::to_string).collect();
-            let text = format!("{}  {}", at(node.values), words.join(", "));
-            progress.count(&text, done, wanted);
+}
+
+impl Job<'_> {
+    /// The map, with the nodes that are known; `None` where it was interrupted before there was anything. What is solved is written now and then, so that a
+    /// map that is killed can be gone on with.
+    fn made(
+        &self,
+        known: Vec<MapNode>,
+        cancellation: &Cancellation,
+    ) -> Result<Option<RegimeMap>, CommandError> {
+        let sides = self.spec.settings.map.as_ref();
+        let rows = sides.map_or(1, |map| map.points);
+        let progress = Progress::new(self.spec.settings.points * rows, self.quiet);
+        if !known.is_empty() {
+            progress.say(&format!("going on after {} nodes", known.len()));
         }
-        MapProgress::Met { values, done } => {
-            progress.say(&format!("curves: {done} points, {}", at(values)));
+        let second = sides.map_or("", |map| map.parameter.as_str());
+        let first = self.spec.problem.family().parameter();
+        let at =
+            |values: [f64; 2]| format!("{first} = {:.6}  {second} = {:.6}", values[0], values[1]);
+        let solved = Mutex::new((known.clone(), Instant::now()));
+        let observer = |told: &MapProgress<'_>| match *told {
+            MapProgress::Solved { node, done, wanted } => {
+                let words: Vec<String> = node.signatures.iter().map(ToString::to_string).collect();
+                let text = format!("{}  {}", at(node.values), words.join(", "));
+                progress.count(&text, done, wanted);
+                // A poisoned lock holds nodes as whole as any other.
+                let mut solved = solved.lock().unwrap_or_else(PoisonError::into_inner);
+                solved.0.push(node.clone());
+                if solved.1.elapsed() >= EVERY {
+                    self.keep(&solved.0);
+                    solved.1 = Instant::now();
+                }
+            }
+            MapProgress::Met { values, done } => {
+                progress.say(&format!("curves: {done} points, {}", at(values)));
+            }
+        };
+        let found = self.spec.map_from(&known, cancellation, &observer);
+        progress.finish();
+        if cancellation.is_cancelled() {
+            let solved = solved.lock().unwrap_or_else(PoisonError::into_inner);
+            self.keep(&solved.0);
         }
-    };
-    let found = spec.map(cancellation, &observer);
-    progress.finish();
-    match found {
-        Ok(map) => Ok(map),
-        Err(SourceError::Interrupted) => Ok(None),
-        Err(SourceError::Method(error)) => {
-            let title = format!("the box of the map has a corner that is not allowed: {error}");
-            let report = Diagnostic::new(title)
-                .remedy("narrow it with `sweep.from`, `sweep.to`, `map.from` and `map.to`");
-            Err(CommandError::Input(report.into()))
+        match found {
+            Ok(map) => Ok(map),
+            Err(SourceError::Interrupted) => Ok(None),
+            Err(SourceError::Method(error)) => {
+                let title = format!("the box of the map has a corner that is not allowed: {error}");
+                let report = Diagnostic::new(title)
+                    .remedy("narrow it with `sweep.from`, `sweep.to`, `map.from` and `map.to`");
+                Err(CommandError::Input(report.into()))
+            }
+        }
+    }
+
+    /// Writes what is solved. Where that fails the map goes on: it can be made without.
+    fn keep(&self, nodes: &[MapNode]) {
+        if let Err(error) = self.checkpoint.write(nodes) {
+            let text = format!("what is solved cannot be kept: {error}\n");
+            // Without a reader of stderr there is nobody to tell.
+            let _ = std::io::stderr().lock().write_all(text.as_bytes());
         }
     }
 }
@@ -122,17 +179,7 @@ fn summary(map: &RegimeMap) -> String {
         text += &line(map, index, curve);
     }
     for point in map.codimension_two() {
-        let values = [first, second].into_iter().enumerate().map(|(k, side)| {
-            let (value, _) = format_with_error(point.values[k], point.error * side.length());
-            format!("{} = {value}", side.parameter)
-        });
-        let values = values.collect::<Vec<_>>().join("  ");
-        let curves = point.curves.iter().map(|index| format!("C{}", index + 1));
-        let curves = curves.collect::<Vec<_>>().join(" and ");
-        text += &format!(
-            "{}  {values}  cusp, where {curves} end; known to {:.1e} of the sides of the box\n",
-            point.label, point.error
-        );
+        text += &codimension_line(&point, &map.plane);
     }
     for one in &map.untraced {
         let observable = map.subject.observables.get(one.observable);
@@ -151,7 +198,7 @@ fn summary(map: &RegimeMap) -> String {
         );
     }
     if map.interrupted {
-        text += "interrupted: the tables and figures hold what was done\n";
+        text += "interrupted: the tables and figures hold what was done, and `--resume` goes on from there\n";
     }
     text
 }

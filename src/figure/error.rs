@@ -10,6 +10,9 @@ pub enum FigureError {
     /// It could not be drawn.
     #[error(transparent)]
     Draw(#[from] DrawError),
+    /// Nothing was given to draw.
+    #[error("there is nothing to draw")]
+    Nothing,
     /// There is no figure of that name.
     #[error("there is no figure `{name}`, only {}", known.join(", "))]
     Unknown {

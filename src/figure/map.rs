@@ -13,11 +13,13 @@ use super::canvas::render;
 use super::canvas::style::{BLANK, Colour, INK, MARGIN, PAPER, Stroke, TICK_TEXT};
 use super::canvas::symbols;
 use super::drawn::Figure;
+use super::inset;
 use super::names;
-use super::plane::{draw_line, remarks, symbol_of};
+use super::plane::{draw_line, remarks, stroke_of, symbol_of};
+use super::region_room::Room;
 use super::style::FigureStyle;
 use crate::continuation::curve::{Curve, EndReason};
-use crate::continuation::map::{RegimeMap, RegionPicture};
+use crate::continuation::map::{RegimeMap, RegionPicture, RegionSample};
 use crate::system::Family;
 use crate::topology::{IndicatorKind, Signature};
 
@@ -32,6 +34,8 @@ const FINE: f64 = 2.0;
 const TINT: f64 = 0.26;
 /// Colours of grounds, by their numbers among those of curves: what the first curves are drawn in comes last.
 const GROUNDS: [usize; 6] = [5, 6, 2, 3, 1, 0];
+/// Between the words of a region and its density, in pixels.
+const GAP: f64 = 3.0;
 /// Radius of the dots where curves end inside the box, in pixels.
 const DOT: f64 = 3.0;
 
@@ -137,10 +141,8 @@ impl Scene<'_> {
         frame::border(&page, rect)?;
         across.draw_below(&page, rect, true)?;
         up.draw_left(&page, rect, true)?;
-        for (at, text) in places.iter().flatten() {
-            let mut text = lettering(symbols::plain(text), HPos::Center);
-            text.size = TICK_TEXT;
-            page.text(*at, text)?;
+        for placed in places.iter().flatten() {
+            placed.draw(&page, look)?;
         }
         legend.draw(&page, left + 0.5 * wide, below)?;
         let kinds = ground.map(|ground| ground.kinds).unwrap_or_default();
@@ -192,44 +194,60 @@ impl Scene<'_> {
     }
 
     /// Where each region's words stand, on the page, with the words; `None` where they have no room.
-    fn word_places(&self, ground: &Ground, rect: Rectangle) -> Result<Vec<Placed>, DrawError> {
+    fn word_places(
+        &self,
+        ground: &Ground,
+        rect: Rectangle,
+    ) -> Result<Vec<Option<Placed<'_>>>, DrawError> {
         let room = Room::new(&ground.picture);
-        let mut places = Vec::new();
+        let mut places: Vec<Option<Placed<'_>>> = Vec::new();
         for (number, region) in ground.picture.regions.iter().enumerate() {
             let text = words(region.signature);
             let wide = render::text_width(self.look, &symbols::plain(&text), TICK_TEXT, false)?;
-            let half = [0.5 * wide + 6.0, 0.5 * TICK_TEXT + 5.0].map(|length| FINE * length);
-            let best = room.best(number, half);
-            places.push(best.map(|[column, row]| {
-                let at = (
+            let half = [0.5 * wide + 6.0, 0.5 * TICK_TEXT + 5.0];
+            let (across, high) = inset::SIZE;
+            let both = [
+                half[0].max(0.5 * across + 6.0),
+                half[1] + 0.5 * (high + GAP),
+            ];
+            let find = |half: [f64; 2]| room.best(number, half.map(|length| FINE * length));
+            let with = self
+                .sample(ground, number)
+                .and_then(|sample| Some((find(both)?, Some(sample))));
+            let best = with.or_else(|| Some((find(half)?, None)));
+            places.push(best.map(|([column, row], sample)| Placed {
+                at: (
                     rect.left + (column as f64 + 0.5) / FINE,
                     rect.bottom() - (row as f64 + 0.5) / FINE,
-                );
-                (at, text)
+                ),
+                words: text,
+                sample,
             }));
         }
         Ok(places)
     }
 
+    /// A density in a region of the picture.
+    fn sample(&self, ground: &Ground, region: usize) -> Option<&RegionSample> {
+        let [width, height] = ground.picture.size;
+        let mut samples = self.map.samples.iter();
+        samples.find(|sample| {
+            let place = self.map.plane.shares(sample.values);
+            let [column, row] = [(place[0], width), (place[1], height)]
+                .map(|(share, count)| ((share * count as f64) as usize).min(count - 1));
+            sample.observable == self.index && ground.picture.pixels[row * width + column] == region
+        })
+    }
+
     /// The line of an indicator: a colour each.
     fn stroke(&self, kind: IndicatorKind) -> Stroke {
-        let mut kinds: Vec<&str> = Vec::new();
-        for curve in &self.curves {
-            if !kinds.contains(&curve.kind.name()) {
-                kinds.push(curve.kind.name());
-            }
-        }
-        let number = kinds.iter().position(|name| *name == kind.name());
-        Stroke {
-            dash: &[],
-            ..Stroke::curve(number.unwrap_or(0))
-        }
+        stroke_of(self.curves.iter().copied(), kind)
     }
 
     fn legend(
         &self,
         ground: Option<&Ground>,
-        places: &[Placed],
+        places: &[Option<Placed<'_>>],
         rect: Rectangle,
     ) -> Result<Legend, DrawError> {
         let mut entries: Vec<(Sample, String)> = Vec::new();
@@ -251,7 +269,7 @@ impl Scene<'_> {
             .flat_map(|ground| ground.kinds.iter().enumerate())
         {
             let text = words(*signature);
-            let is_written = places.iter().flatten().any(|placed| placed.1 == text);
+            let is_written = places.iter().flatten().any(|placed| placed.words == text);
             if let (false, Some(ground)) = (is_written, ground) {
                 let colour = Colour::fixed(self.tint(ground, kind));
                 entries.push((Sample::Box(colour), symbols::plain(&text)));
@@ -274,7 +292,8 @@ impl Scene<'_> {
             }
         }
         let points = self.map.codimension_two().into_iter();
-        for point in points.filter(|point| point.observable == self.index) {
+        let watched = self.map.subject.observables[self.index];
+        for point in points.filter(|point| point.observables == [watched]) {
             let (x, y) = panel.place((point.values[0], point.values[1]));
             let mut text = lettering(symbols::plain(&point.label), HPos::Left);
             text.size = TICK_TEXT;
@@ -327,71 +346,32 @@ impl Scene<'_> {
     }
 }
 
-/// Place on the page and words.
-type Placed = Option<((f64, f64), String)>;
-
-/// How far each pixel is from the border of its region, to the left and right, and up and down.
-struct Room<'p> {
-    picture: &'p RegionPicture,
-    across: Vec<u32>,
-    upright: Vec<u32>,
+/// Words in a region, with the density of one of its states where there is room.
+struct Placed<'m> {
+    /// The middle of both, on the page.
+    at: (f64, f64),
+    words: String,
+    sample: Option<&'m RegionSample>,
 }
 
-impl<'p> Room<'p> {
-    fn new(picture: &'p RegionPicture) -> Self {
-        let [width, height] = picture.size;
-        let mut across = vec![0; picture.pixels.len()];
-        let mut upright = vec![0; picture.pixels.len()];
-        for row in 0..height {
-            let line = (0..width).map(|column| row * width + column);
-            run_lengths(&line.collect::<Vec<_>>(), &picture.pixels, &mut across);
-        }
-        for column in 0..width {
-            let line = (0..height).map(|row| row * width + column);
-            run_lengths(&line.collect::<Vec<_>>(), &picture.pixels, &mut upright);
-        }
-        Self {
-            picture,
-            across,
-            upright,
-        }
-    }
-
-    /// The column and row of a region at which words of this half width and half height have most room; `None` where they have too little.
-    fn best(&self, region: usize, [half_width, half_height]: [f64; 2]) -> Option<[usize; 2]> {
-        let [width, height] = self.picture.size;
-        let (reach, tall) = (half_width as usize, half_height as usize);
-        let mut best: Option<(f64, usize)> = None;
-        for (pixel, &owner) in self.picture.pixels.iter().enumerate() {
-            if owner != region {
-                continue;
-            }
-            let (column, row) = (pixel % width, pixel / width);
-            if column < reach || column + reach >= width || row < tall || row + tall >= height {
-                continue;
-            }
-            // The narrowest place up and down along the words, not only in their middle.
-            let along = [-1.0, -0.5, 0.0, 0.5, 1.0].map(|share| {
-                let column = (column as f64 + share * half_width) as usize;
-                self.upright[row * width + column.min(width - 1)]
-            });
-            let lowest = along.into_iter().min().unwrap_or(0);
-            let score =
-                (f64::from(self.across[pixel]) / half_width).min(f64::from(lowest) / half_height);
-            if best.is_none_or(|(known, _)| score > known) {
-                best = Some((score, pixel));
-            }
-        }
-        let (_, pixel) = best.filter(|(score, _)| *score >= 1.0)?;
-        Some([pixel % width, pixel / width])
-    }
-}
-
-/// For the pixels of a line, the distance to the nearer end of the run of one region that each is in.
-fn run_lengths(line: &[usize], owners: &[usize], lengths: &mut [u32]) {
-    for run in line.chunk_by(|&a, &b| owners[a] == owners[b]) {
-        for (index, &pixel) in run.iter().enumerate() {
-            lengths[pixel] = index.min(run.len() - 1 - index) as u32;
-        }
+impl Placed<'_> {
+    /// The words above, the density below, both together in the middle.
+    fn draw(&self, page: &Page, look: &Look) -> Result<(), DrawError> {
+        let (x, y) = self.at;
+        let mut text = lettering(symbols::plain(&self.words), HPos::Center);
+        text.size = TICK_TEXT;
+        let Some(sample) = self.sample else {
+            return page.text((x, y), text);
+        };
+        let (width, height) = inset::SIZE;
+        let top = y - 0.5 * (height + TICK_TEXT + GAP);
+        page.text((x, top + 0.5 * TICK_TEXT), text)?;
+        let rect = Rectangle {
+            left: x - 0.5 * width,
+            top: top + TICK_TEXT + GAP,
+            width,
+            height,
+        };
+        inset::draw(page, look, rect, &sample.density)
     }
 }

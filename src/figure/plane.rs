@@ -1,4 +1,5 @@
-//! A curve of P-bifurcations in its plane of two parameters: the line, its band of error, its ends, and the row that it was begun at.
+//! Curves of P-bifurcations in their plane of two parameters: the lines, their bands of error, their ends, points of codimension two, and the row that the
+//! first was begun at.
 
 use plotters_backend::text_anchor::HPos;
 
@@ -12,9 +13,10 @@ use super::canvas::symbols;
 use super::drawn::Figure;
 use super::names;
 use super::style::FigureStyle;
-use crate::continuation::curve::{Curve, CurvePoint};
+use crate::continuation::curve::{Curve, CurvePoint, EndReason, codimension_two};
 use crate::continuation::{BifurcationStatus, LabelledPoint};
 use crate::system::Family;
+use crate::topology::IndicatorKind;
 
 /// Size of the panel on a page of its own width, in pixels, and that width.
 const PANEL: (f64, f64) = (390.0, 300.0);
@@ -32,20 +34,24 @@ const DASHES: &[f64] = &[5.0, 4.0];
 /// Distance of letters from what they name, in pixels.
 const AWAY: f64 = 9.0;
 
-/// The figure `curve` of a curve that was begun at a row of a sweep over its first parameter. `family` gives names and symbols; `title`
-/// (plain text, may be empty) stands above it.
+/// The figure `curve` of curves in one plane, the first of which was begun at a row of a sweep over its first parameter; there must be one. `family` gives
+/// names and symbols; `title` (plain text, may be empty) stands above it.
 ///
 /// # Errors
 /// [`FigureError::Draw`].
 pub fn curve_figure(
-    curve: &Curve,
+    curves: &[Curve],
     row: &LabelledPoint,
     family: &Family,
     title: &str,
     style: &FigureStyle,
 ) -> Result<Figure, FigureError> {
+    let Some(curve) = curves.first() else {
+        return Err(FigureError::Nothing);
+    };
     let scene = Scene {
         curve,
+        curves,
         row,
         family,
         look: style.look(),
@@ -55,7 +61,10 @@ pub fn curve_figure(
 }
 
 struct Scene<'a> {
+    /// The first curve.
     curve: &'a Curve,
+    /// All of them.
+    curves: &'a [Curve],
     row: &'a LabelledPoint,
     family: &'a Family,
     look: super::canvas::look::Look,
@@ -90,7 +99,9 @@ impl Scene<'_> {
         let page = Page::new(look, width, below + legend.height() + MARGIN);
         heading.draw(&page)?;
         let panel = page.panel(rect, x, y);
-        draw_line(&panel, self.curve, Stroke::curve(0))?;
+        for curve in self.curves {
+            draw_line(&panel, curve, stroke_of(self.curves, curve.kind))?;
+        }
         frame::border(&page, rect)?;
         across.draw_below(&page, rect, true)?;
         up.draw_left(&page, rect, true)?;
@@ -100,25 +111,45 @@ impl Scene<'_> {
     }
 
     fn entries(&self, rect: Rectangle) -> Vec<(Sample, String)> {
-        let stroke = Stroke::curve(0);
-        let density = names::density(self.family, self.curve.observable);
-        let line = format!("{} of {density} is 0", self.curve.kind.name());
-        let mut entries = vec![(Sample::Curve(stroke), line)];
-        entries.extend(remarks(self.curve, stroke, rect));
+        let mut entries: Vec<(Sample, String)> = Vec::new();
+        for curve in self.curves {
+            let stroke = stroke_of(self.curves, curve.kind);
+            let density = names::density(self.family, curve.observable);
+            let line = format!("{} of {density} is 0", curve.kind.name());
+            let line = [(Sample::Curve(stroke), line)].into_iter();
+            for entry in line.chain(remarks(curve, stroke, rect)) {
+                if !entries.iter().any(|known| known.1 == entry.1) {
+                    entries.push(entry);
+                }
+            }
+        }
         entries
     }
 
     /// The start with its label and the signatures on both sides, and the ends with theirs.
     fn draw_marks(&self, page: &Page, panel: &Panel, rect: Rectangle) -> Result<(), DrawError> {
         let place = |point: &CurvePoint| kept(self.curve, point.values[0], point.values[1]);
-        for end in &self.curve.ends {
-            let Some(point) = self.curve.points.get(end.point) else {
-                continue;
-            };
-            let rim = Stroke::solid(INK, 1.2);
-            panel.draw(&[place(point)], Shape::Dot(DOT, PAPER, rim))?;
-            let at = panel.place(place(point));
-            write(page, rect, at, &symbols::plain(&end.label), GREY, false)?;
+        let rim = || Stroke::solid(INK, 1.2);
+        for (number, curve) in self.curves.iter().enumerate() {
+            let told =
+                |reason: &EndReason| matches!(reason, EndReason::Cusp | EndReason::DegenerateSplit);
+            for end in curve.ends.iter().filter(|end| !told(&end.reason)) {
+                let Some(point) = curve.points.get(end.point) else {
+                    continue;
+                };
+                panel.draw(&[place(point)], Shape::Dot(DOT, PAPER, rim()))?;
+                let at = panel.place(place(point));
+                if number == 0 {
+                    write(page, rect, at, &symbols::plain(&end.label), GREY, false)?;
+                }
+            }
+        }
+        for point in codimension_two(self.curves) {
+            let [x, y] = point.values;
+            let at = kept(self.curve, x, y);
+            panel.draw(&[at], Shape::Dot(DOT, PAPER, rim()))?;
+            let at = panel.place(at);
+            write(page, rect, at, &symbols::plain(&point.label), INK, true)?;
         }
         let Some(start) = self.curve.points.get(self.curve.start) else {
             return Ok(());
@@ -168,6 +199,16 @@ impl Scene<'_> {
         for end in &curve.ends {
             text += &format!(" {}: {}.", end.label, end.reason.words(&curve.plane));
         }
+        for point in codimension_two(self.curves) {
+            let [x, y] = point.values.map(symbols::rounded);
+            text += &format!(
+                " {}: {}, at {} = {x}, {} = {y}.",
+                point.label,
+                point.kind.name(),
+                first.parameter,
+                second.parameter
+            );
+        }
         text += &format!(
             " The error across the curve is at most {largest:.1e} of the sides of the box.\n"
         );
@@ -177,14 +218,35 @@ impl Scene<'_> {
     fn data(&self) -> String {
         let [first, second] = self.curve.plane.sides();
         let mut text = format!(
-            "{},{},edge_{},edge_{},status\n",
+            "curve,{},{},edge_{},edge_{},status\n",
             first.parameter, second.parameter, first.parameter, second.parameter
         );
-        for point in &self.curve.points {
-            let ([x, y], [dx, dy]) = (point.values, point.to_edge);
-            text += &format!("{x},{y},{dx},{dy},{}\n", point.status.word());
+        for (number, curve) in self.curves.iter().enumerate() {
+            for point in &curve.points {
+                let ([x, y], [dx, dy]) = (point.values, point.to_edge);
+                let status = point.status.word();
+                text += &format!("C{},{x},{y},{dx},{dy},{status}\n", number + 1);
+            }
         }
         text
+    }
+}
+
+/// The line of an indicator among those of several curves: a colour each.
+pub(super) fn stroke_of<'c>(
+    curves: impl IntoIterator<Item = &'c Curve>,
+    kind: IndicatorKind,
+) -> Stroke {
+    let mut kinds: Vec<&str> = Vec::new();
+    for curve in curves {
+        if !kinds.contains(&curve.kind.name()) {
+            kinds.push(curve.kind.name());
+        }
+    }
+    let number = kinds.iter().position(|name| *name == kind.name());
+    Stroke {
+        dash: &[],
+        ..Stroke::curve(number.unwrap_or(0))
     }
 }
 

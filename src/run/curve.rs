@@ -6,20 +6,32 @@ use serde_json::json;
 
 use super::RunError;
 use super::atomic::{sync_all, write_atomically};
-use super::columns::{Column, Columns, flag, number, word};
+use super::codimension::{codimension_two_csv, codimension_two_tex, curve_name, several_csv};
+use super::columns::{Column, flag, number, word};
 use super::staging::Staging;
-use crate::continuation::curve::{Curve, CurvePoint, CurveWork, Plane};
+use crate::continuation::curve::{Curve, CurvePoint, CurveTree, CurveWork, Plane};
 use crate::system::Family;
 
 /// Everything a curve leaves in its folder, the file that marks it as one first.
-const ENTRIES: [&str; 3] = ["curve.json", "curves.csv", "figures"];
+const ENTRIES: [&str; 5] = [
+    "curve.json",
+    "curves.csv",
+    "codimension_two.csv",
+    "codimension_two.tex",
+    "figures",
+];
 
-/// The table of a curve's points, from end to end, numbers in full; `start` is the label of the row that it was begun at.
+/// The table of the points of curves in one plane, each from end to end, numbers in full; `start` is the label of the row that the first was begun at.
 ///
 /// # Errors
 /// [`RunError::Table`].
-pub fn curves_csv(family: &Family, curve: &Curve, start: &str) -> Result<String, RunError> {
-    Columns(columns(family, &curve.plane)).csv(&rows(curve, start))
+pub fn curves_csv(
+    family: &Family,
+    plane: &Plane,
+    curves: &[Curve],
+    start: &str,
+) -> Result<String, RunError> {
+    several_csv(family, plane, curves, &[start])
 }
 
 /// A point of a curve as a row of a table.
@@ -36,7 +48,11 @@ pub(super) fn rows<'a>(curve: &'a Curve, start: &str) -> Vec<CurveRow<'a>> {
         match ends.find(|end| end.point == index) {
             _ if index == curve.start => start.to_owned(),
             Some(end) => end.label.clone(),
-            None => String::new(),
+            None => {
+                let mut splits = curve.degenerate.iter();
+                let split = splits.find(|split| split.point == index);
+                split.map_or_else(String::new, |split| split.label.clone())
+            }
         }
     };
     let points = curve.points.iter().enumerate();
@@ -87,13 +103,41 @@ pub(super) fn columns<'a>(family: &'a Family, plane: &Plane) -> Vec<Column<'a, C
     ]
 }
 
-/// What there is to know of a curve beside its points, as JSON.
+/// What there is to know of curves beside their points, as JSON.
 fn curve_json(
     family: &Family,
-    curve: &Curve,
+    plane: &Plane,
+    tree: &CurveTree,
     start: &str,
     sweep: &str,
 ) -> Result<String, RunError> {
+    let sides = plane.sides().iter();
+    let curves = tree.curves.iter().enumerate();
+    let missed = tree.missed.iter().map(|missed| {
+        json!({
+            "method": missed.start.kind.name(),
+            "near": missed.start.values,
+            "reason": missed.reason,
+        })
+    });
+    let text = json!({
+        "program": env!("CARGO_PKG_NAME"),
+        "version": env!("CARGO_PKG_VERSION"),
+        "row": start,
+        "box": sides
+            .map(|side| json!({ "parameter": side.parameter, "from": side.from, "to": side.to }))
+            .collect::<Vec<_>>(),
+        "curves": curves
+            .map(|(index, curve)| one_json(family, index, curve))
+            .collect::<Vec<_>>(),
+        "not_followed": missed.collect::<Vec<_>>(),
+        "sweep_file": sweep,
+    });
+    Ok(serde_json::to_string_pretty(&text)? + "\n")
+}
+
+/// A curve without its points.
+pub(super) fn one_json(family: &Family, index: usize, curve: &Curve) -> serde_json::Value {
     let work = |work: &CurveWork| {
         json!({
             "solves": work.solves,
@@ -101,28 +145,25 @@ fn curve_json(
             "factorisations": work.factorisations,
         })
     };
-    let sides = curve.plane.sides().iter();
-    let text = json!({
-        "program": env!("CARGO_PKG_NAME"),
-        "version": env!("CARGO_PKG_VERSION"),
-        "row": start,
+    json!({
+        "name": curve_name(index),
         "observable": curve.observable.name(family),
         "method": curve.kind.name(),
-        "box": sides
-            .map(|side| json!({ "parameter": side.parameter, "from": side.from, "to": side.to }))
-            .collect::<Vec<_>>(),
         "points": curve.points.len(),
         "start": curve.start,
         "ends": ends_json(curve),
+        "degenerate_splits": curve
+            .degenerate
+            .iter()
+            .map(|split| json!({ "label": split.label, "point": split.point }))
+            .collect::<Vec<_>>(),
         "work": work(&curve.work),
         "check_work": work(&curve.check_work),
-        "sweep_file": sweep,
-    });
-    Ok(serde_json::to_string_pretty(&text)? + "\n")
+    })
 }
 
 /// The ends of a curve with their reasons.
-pub(super) fn ends_json(curve: &Curve) -> Vec<serde_json::Value> {
+fn ends_json(curve: &Curve) -> Vec<serde_json::Value> {
     let ends = curve.ends.iter().map(|end| {
         json!({
             "label": end.label,
@@ -154,20 +195,29 @@ impl CurveFolder {
         self.staging.fresh().join("figures")
     }
 
-    /// Writes the tables; `start` is the label of the row that the curve was begun at, `sweep` the resolved sweep as TOML.
+    /// Writes the tables; `start` is the label of the row that the first curve was begun at, `sweep` the resolved sweep as TOML.
     ///
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.
     pub fn write(
         &self,
         family: &Family,
-        curve: &Curve,
-        start: &str,
-        sweep: &str,
+        plane: &Plane,
+        tree: &CurveTree,
+        (start, sweep): (&str, &str),
     ) -> Result<(), RunError> {
+        let curves = tree.curves.as_slice();
         for (name, text) in [
-            ("curves.csv", curves_csv(family, curve, start)?),
-            ("curve.json", curve_json(family, curve, start, sweep)?),
+            ("curves.csv", curves_csv(family, plane, curves, start)?),
+            (
+                "codimension_two.csv",
+                codimension_two_csv(family, plane, curves)?,
+            ),
+            (
+                "codimension_two.tex",
+                codimension_two_tex(family, plane, curves),
+            ),
+            ("curve.json", curve_json(family, plane, tree, start, sweep)?),
         ] {
             write_atomically(&self.staging.fresh().join(name), text.as_bytes())?;
         }

@@ -6,18 +6,23 @@ use serde_json::{Value, json};
 
 use super::RunError;
 use super::atomic::{sync_all, write_atomically};
+use super::codimension::{codimension_two_csv, codimension_two_tex, several_csv};
 use super::columns::{Columns, count, number, word};
-use super::curve::{columns, ends_json, rows};
+use super::curve::one_json;
+use super::map_checkpoint::differences;
 use super::number::format_number;
 use super::staging::Staging;
-use crate::continuation::map::{CodimensionTwo, MapNode, RegimeMap};
+use crate::continuation::map::{MapNode, RegimeMap};
+use crate::space::Axis;
 
 /// Everything a map leaves in its folder, the file that marks it as one first.
-const ENTRIES: [&str; 5] = [
+const ENTRIES: [&str; 7] = [
     "map.json",
     "map.csv",
     "curves.csv",
     "codimension_two.csv",
+    "codimension_two.tex",
+    "densities",
     "figures",
 ];
 /// Columns and rows of the picture that regions are measured in.
@@ -51,63 +56,33 @@ pub fn map_csv(map: &RegimeMap) -> Result<String, RunError> {
     Columns(columns).csv(&map.nodes)
 }
 
-/// The table of all curves of a map; the first column has the curve's name.
-fn curves_csv(map: &RegimeMap) -> Result<String, RunError> {
-    let family = &map.subject.family;
-    let mut text = String::new();
-    for (index, curve) in map.curves.iter().enumerate() {
-        let mut all = vec![word("curve", move |_| curve_name(index))];
-        all.extend(columns(family, &map.plane));
-        let columns = Columns(all);
-        if index == 0 {
-            text += &columns.header()?;
-        }
-        text += &columns.lines(&rows(curve, "start"))?;
-    }
-    if map.curves.is_empty() {
-        let mut all = vec![word("curve", |_| String::new())];
-        all.extend(columns(family, &map.plane));
-        text = Columns(all).header()?;
-    }
-    Ok(text)
-}
-
 /// Names of both parameters.
 fn parameters(map: &RegimeMap) -> [String; 2] {
     let sides = map.plane.sides();
     sides.each_ref().map(|side| side.parameter.clone())
 }
 
-/// The table of the points of codimension two.
-fn codimension_two_csv(map: &RegimeMap) -> Result<String, RunError> {
+/// The densities of an observable that were kept of its regions, a row a cell; `None` without any.
+fn densities_csv(map: &RegimeMap, index: usize) -> Option<String> {
     let family = &map.subject.family;
+    let samples = map.samples.iter().filter(|one| one.observable == index);
+    let axes = map.subject.observables.get(index)?.axes();
+    let axes: Vec<&str> = axes.into_iter().map(|axis| family.axis(axis)).collect();
     let [first, second] = parameters(map);
-    let columns = vec![
-        word("label", |one: &CodimensionTwo| one.label.clone()),
-        number(first, |one: &CodimensionTwo| one.values[0]),
-        number(second, |one: &CodimensionTwo| one.values[1]),
-        number("error", |one: &CodimensionTwo| one.error),
-        word("observable", |one: &CodimensionTwo| {
-            let observable = map.subject.observables.get(one.observable);
-            observable.map(|one| one.name(family)).unwrap_or_default()
-        }),
-        word("place", |one: &CodimensionTwo| {
-            joined(one.place.iter().map(|&x| format_number(x)))
-        }),
-        word("curves", |one: &CodimensionTwo| {
-            joined(one.curves.iter().map(|&index| curve_name(index)))
-        }),
-    ];
-    Columns(columns).csv(&map.codimension_two())
-}
-
-fn joined(words: impl Iterator<Item = String>) -> String {
-    words.collect::<Vec<_>>().join(" ")
-}
-
-/// What a curve of a map is called, by its place.
-fn curve_name(index: usize) -> String {
-    format!("C{}", index + 1)
+    let mut text = format!("{first},{second},{},density\n", axes.join(","));
+    let before = text.len();
+    for sample in samples {
+        let [a, b] = sample.values.map(format_number);
+        let density = &sample.density;
+        let columns = density.axes.get(1).map_or(1, Axis::count);
+        for (cell, &value) in density.values.iter().enumerate() {
+            let places = density.axes.iter().zip([cell / columns, cell % columns]);
+            let places = places.map(|(axis, cell)| format_number(axis.centre(cell)));
+            let places: Vec<String> = places.collect();
+            text += &format!("{a},{b},{},{}\n", places.join(","), format_number(value));
+        }
+    }
+    (text.len() > before).then_some(text)
 }
 
 /// What there is to know of a map beside its tables, as JSON.
@@ -118,15 +93,8 @@ fn map_json(map: &RegimeMap, sweep: &str, seconds: f64) -> Result<String, RunErr
         observable.map(|one| one.name(family)).unwrap_or_default()
     };
     let sides = map.plane.sides().iter();
-    let curves = map.curves.iter().enumerate().map(|(index, curve)| {
-        json!({
-            "name": curve_name(index),
-            "observable": curve.observable.name(family),
-            "method": curve.kind.name(),
-            "points": curve.points.len(),
-            "ends": ends_json(curve),
-        })
-    });
+    let curves = map.curves.iter().enumerate();
+    let curves = curves.map(|(index, curve)| one_json(family, index, curve));
     let untraced = map.untraced.iter().map(|one| {
         json!({
             "observable": name(one.observable),
@@ -184,6 +152,26 @@ impl MapFolder {
         Ok(Self { staging })
     }
 
+    /// How the map in a folder ended, by the word in its `map.json`; `None` where there is none.
+    ///
+    /// # Errors
+    /// [`RunError::OtherSweep`], with every difference, where it is of another sweep or version.
+    pub fn ending(home: &Path, sweep: &str) -> Result<Option<String>, RunError> {
+        let Ok(text) = std::fs::read_to_string(home.join(ENTRIES[0])) else {
+            return Ok(None);
+        };
+        let all: Value = serde_json::from_str(&text)?;
+        let word = |key: &str| all[key].as_str().unwrap_or("").to_owned();
+        let differences = differences(&word("version"), &word("sweep_file"), sweep);
+        match differences.is_empty() {
+            true => Ok(Some(word("ending"))),
+            false => Err(RunError::OtherSweep {
+                path: home.to_owned(),
+                differences,
+            }),
+        }
+    }
+
     /// Where figures are drawn to.
     pub fn figures(&self) -> PathBuf {
         self.staging.fresh().join("figures")
@@ -194,13 +182,29 @@ impl MapFolder {
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.
     pub fn write(&self, map: &RegimeMap, sweep: &str, seconds: f64) -> Result<(), RunError> {
+        let (family, plane) = (&map.subject.family, &map.plane);
+        let curves = map.curves.as_slice();
         for (name, text) in [
             ("map.csv", map_csv(map)?),
-            ("curves.csv", curves_csv(map)?),
-            ("codimension_two.csv", codimension_two_csv(map)?),
+            ("curves.csv", several_csv(family, plane, curves, &[])?),
+            (
+                "codimension_two.csv",
+                codimension_two_csv(family, plane, curves)?,
+            ),
+            (
+                "codimension_two.tex",
+                codimension_two_tex(family, plane, curves),
+            ),
             ("map.json", map_json(map, sweep, seconds)?),
         ] {
             write_atomically(&self.staging.fresh().join(name), text.as_bytes())?;
+        }
+        for (index, observable) in map.subject.observables.iter().enumerate() {
+            let name = format!("{}.csv", observable.name(family));
+            let place = self.staging.fresh().join("densities").join(name);
+            if let Some(text) = densities_csv(map, index) {
+                write_atomically(&place, text.as_bytes())?;
+            }
         }
         Ok(())
     }

@@ -9,6 +9,7 @@ mod cell;
 mod checks;
 mod checksums;
 mod clean;
+mod codimension;
 mod columns;
 mod compare;
 mod curve;
@@ -24,6 +25,7 @@ mod latex;
 mod lock;
 mod manifest;
 mod map;
+mod map_checkpoint;
 mod number;
 mod points_table;
 mod provenance;
@@ -59,6 +61,7 @@ pub use folder::RunFolder;
 pub use journal::{Journal, JournalledSource};
 pub use manifest::{Ending, Manifest, PhaseSeconds};
 pub use map::{MapFolder, map_csv};
+pub use map_checkpoint::MapCheckpoint;
 pub use number::{format_number, format_with_error};
 pub use points_table::points_csv;
 pub use provenance::Provenance;
@@ -246,6 +249,14 @@ pub enum RunError {
         path: PathBuf,
         /// What the system says.
         source: std::io::Error,
+    },
+    /// What an unfinished map has solved cannot be understood.
+    #[error("{} does not hold the nodes of a map: {message}", path.display())]
+    Checkpoint {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        message: String,
     },
     /// `run.json` is not what a run leaves.
     #[error("{} is not the manifest of a run: {message}", path.display())]

@@ -3,7 +3,7 @@
 use super::settings::Settings;
 use crate::cancellation::Cancellation;
 use crate::continuation::curve::{CurveOptions, Plane};
-use crate::continuation::map::{MapObserver, RegimeMap, regime_map};
+use crate::continuation::map::{MapNode, MapObserver, RegimeMap, regime_map_from};
 use crate::continuation::{DensitySource, Observer, SourceError, SweepError, SweepResult, sweep};
 use crate::method::{MethodError, MethodSource, Problem};
 use crate::system::Family;
@@ -116,6 +116,19 @@ impl Sweep {
         cancellation: &Cancellation,
         observer: &MapObserver<'_>,
     ) -> Result<Option<RegimeMap>, SourceError> {
+        self.map_from(&[], cancellation, observer)
+    }
+
+    /// Goes on with the map of which these nodes are known ([`regime_map_from`]); `None` without `[map]`.
+    ///
+    /// # Errors
+    /// [`SourceError`] where the box has a corner that is not allowed.
+    pub fn map_from(
+        &self,
+        known: &[MapNode],
+        cancellation: &Cancellation,
+        observer: &MapObserver<'_>,
+    ) -> Result<Option<RegimeMap>, SourceError> {
         let settings = &self.settings;
         let map = settings.map.as_ref();
         let Some((map, plane)) = map.and_then(|map| Some((map, map.plane(&settings.family)?)))
@@ -128,7 +141,16 @@ impl Sweep {
         );
         let source = |plane: &Plane| self.boxed_source_in(plane, cancellation);
         let detector = self.detector();
-        regime_map(&source, &plane, &detector, &options, cancellation, observer).map(Some)
+        let map = regime_map_from(
+            &source,
+            &plane,
+            &detector,
+            &options,
+            known,
+            cancellation,
+            observer,
+        );
+        map.map(Some)
     }
 
     /// How `[locate]` wants curves, in a box whose first side is so long.

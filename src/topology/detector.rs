@@ -3,7 +3,7 @@
 use super::critical::{Critical, height_above};
 use super::field::Field;
 use super::indicator::{
-    Found, at_centre, beside_kink, corrected, fold, put_right, ring_slope, shoulder,
+    Found, at_centre, beside_kink, corrected, fold, put_right, quartic, ring_slope, shoulder,
 };
 use super::persistence::{Component, Grid, components};
 use super::refine::refine;
@@ -343,6 +343,7 @@ impl Detector for PersistenceDetector {
             }
             IndicatorKind::Fold => fold(density, near),
             IndicatorKind::Ring => ring_slope(density, near),
+            IndicatorKind::Quartic => quartic(density),
             kind => at_centre(density).into_iter().find(|one| one.kind == kind),
         }
     }

@@ -51,6 +51,16 @@ impl<'a> Field<'a> {
         &self.estimated.density.axes
     }
 
+    /// Its averages over the cells.
+    pub(super) fn values(&self) -> &'a [f64] {
+        &self.estimated.density.values
+    }
+
+    /// The same by a second discretisation, where there is one.
+    pub(super) fn second_scheme(&self) -> Option<&'a [f64]> {
+        self.estimated.variants.second_scheme()
+    }
+
     /// Centre of a cell.
     pub(super) fn centre(&self, cell: usize) -> Vec<f64> {
         match self.axes() {

@@ -1,6 +1,6 @@
 //! What following a curve gives: its points with their errors, its ends with their reasons, and the work it took.
 
-use super::Plane;
+use super::{CurveStart, Plane};
 use crate::continuation::{BifurcationStatus, ErrorParts};
 use crate::density::Observable;
 use crate::topology::IndicatorKind;
@@ -46,6 +46,8 @@ pub enum EndReason {
     FeatureLost,
     /// Two folds meet in a cusp: the last point, found from how both parameters depend on the place of the fold.
     Cusp,
+    /// Two folds meet in a centre of symmetry, at which births away from it turn into births at it: the last point, found in the same way.
+    DegenerateSplit,
     /// The indicator changes in no direction: curves meet, or turn on the spot.
     Singular,
     /// However short the step, the curve was not met again.
@@ -58,13 +60,14 @@ pub enum EndReason {
 
 impl EndReason {
     /// The letters of its label, as AUTO has them: `EP` an end of the box, `CL` closed, `MX` no density or no
-    /// convergence; `CP` cusp, `FL` feature lost, `SP` singular point, `UN` unfinished.
+    /// convergence; `CP` cusp, `DS` degenerate split, `FL` feature lost, `SP` singular point, `UN` unfinished.
     pub fn prefix(&self) -> &'static str {
         match self {
             Self::Border(_) => "EP",
             Self::Closed => "CL",
             Self::NoDensity(_) | Self::NotConverged => "MX",
             Self::Cusp => "CP",
+            Self::DegenerateSplit => "DS",
             Self::FeatureLost => "FL",
             Self::Singular => "SP",
             Self::TooManyPoints | Self::Interrupted => "UN",
@@ -81,6 +84,7 @@ impl EndReason {
             Self::Closed => "closed curve".to_owned(),
             Self::NoDensity(reason) => format!("no density beyond: {reason}"),
             Self::Cusp => "cusp: two folds meet".to_owned(),
+            Self::DegenerateSplit => "degenerate split: two folds meet at the centre".to_owned(),
             Self::FeatureLost => "the feature is lost".to_owned(),
             Self::Singular => "the indicator changes in no direction".to_owned(),
             Self::NotConverged => "the curve was not met again".to_owned(),
@@ -98,6 +102,16 @@ pub struct CurveEnd {
     /// Why it ends there.
     pub reason: EndReason,
     /// The point, by its place in [`Curve::points`].
+    pub point: usize,
+}
+
+/// A degenerate split on the curve of a split at a centre: on one side of it two peaks leave the centre as one splits there, on the other side they are
+/// born away from it, on a fold that begins here.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct DegenerateSplit {
+    /// Letters and ordinal: `DS1`.
+    pub label: String,
+    /// The point, by its place in [`Curve::points`]. Its error holds in all directions.
     pub point: usize,
 }
 
@@ -135,6 +149,10 @@ pub struct Curve {
     pub start: usize,
     /// Its ends: that of the first point and that of the last. A closed curve has one.
     pub ends: Vec<CurveEnd>,
+    /// Its degenerate splits between the ends.
+    pub degenerate: Vec<DegenerateSplit>,
+    /// Where other curves start from its points of codimension two.
+    pub branches: Vec<CurveStart>,
     /// What following it took.
     pub work: CurveWork,
     /// What checking it took.

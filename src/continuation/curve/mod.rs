@@ -5,15 +5,25 @@
 //! Selected points are checked on finer cells and between closed ends of Ω, as the rows of a sweep are, and what the checks show is
 //! interpolated along the curve. This module knows an indicator and sessions, and nothing of cells.
 
+mod agree;
 mod check;
+mod codimension;
 mod cusp;
+mod degenerate;
+mod fold_end;
 mod found;
 mod plane;
+mod polynomial;
 mod reading;
+mod tree;
 mod walk;
 
-pub use found::{Curve, CurveEnd, CurvePoint, CurveWork, EndReason};
+pub(super) use agree::agree;
+pub use codimension::{CodimensionTwo, CodimensionTwoKind, codimension_two};
+pub use found::{Curve, CurveEnd, CurvePoint, CurveWork, DegenerateSplit, EndReason};
 pub use plane::{Plane, PlaneSide};
+pub use tree::{CurveTree, MissedBranch, follow_all};
+pub(super) use tree::{ON_IT, distance};
 
 use found::labelled;
 
@@ -164,15 +174,36 @@ pub fn follow(
         options,
         cancellation,
     };
-    let (mut points, check_work) = checks.judged(&walked);
+    let (mut points, mut check_work) = checks.judged(&walked);
     // A zero beside which there is no curve is not one of a smooth indicator.
     if let [alone] = points.as_mut_slice()
         && alone.status == BifurcationStatus::Located
     {
         alone.status = BifurcationStatus::Unconfirmed;
     }
-    let how = (start.kind, plane, options.tolerance);
-    cusp::add_cusps(&mut points, &mut walked.ends, &mut walked.start, how);
+    let seeker = degenerate::Seeker {
+        source,
+        plane,
+        detector,
+        start,
+        options,
+        cancellation,
+    };
+    let splits = seeker.found(&walked, &points, &mut check_work);
+    let (degenerate, mut branches) = degenerate::add_splits(&mut points, &mut walked.start, splits);
+    let folds = fold_end::Folds {
+        kind: start.kind,
+        observable: start.observable,
+        plane,
+        tolerance: options.tolerance,
+        centre: walked.centre(),
+    };
+    branches.extend(fold_end::add_ends(
+        &mut points,
+        &mut walked.ends,
+        &mut walked.start,
+        &folds,
+    ));
     Ok(Curve {
         plane: plane.clone(),
         observable,
@@ -180,6 +211,8 @@ pub fn follow(
         start: walked.start,
         ends: labelled(walked.ends, points.len()),
         points,
+        degenerate,
+        branches,
         work: walked.work,
         check_work,
     })

@@ -138,6 +138,11 @@ impl Plane {
         })
     }
 
+    /// Where two values lie in the box, as shares of its sides.
+    pub fn shares(&self, values: [f64; 2]) -> [f64; 2] {
+        self.place(values)
+    }
+
     /// The place of two values in the box with sides of length one.
     pub(in crate::continuation) fn place(&self, values: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|k| (values[k] - self.sides[k].from) / self.sides[k].length())

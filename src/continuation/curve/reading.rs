@@ -29,6 +29,10 @@ pub(super) struct Reading {
     /// Whether cells add diffusion of their own.
     pub(super) is_diffused: bool,
     pub(super) density: Density,
+    /// p''''/p at the centre, where the indicator is a curvature there.
+    pub(super) quartic: Option<f64>,
+    /// The centre of symmetry of the density, where it has one.
+    pub(super) centre: Option<Vec<f64>>,
     /// How far from the place the derivatives were read.
     pub(super) doubt: f64,
 }
@@ -166,6 +170,8 @@ impl Reader<'_> {
             edge_mass: report.edge_mass.iter().copied().fold(0.0, f64::max),
             status: report.status,
             is_diffused: !report.own.numerical_diffusion.is_empty(),
+            quartic: quartic(self.detector, density, self.kind),
+            centre: density.structure.centre.clone(),
             density: density.density.clone(),
             indicator,
             doubt: 0.0,
@@ -192,6 +198,18 @@ fn missing(error: SourceError) -> Missing {
         SourceError::Interrupted => Missing::Interrupted,
         SourceError::Method(error) => Missing::Density(error.to_string()),
     }
+}
+
+/// What tells whether a split at the centre is degenerate, where the indicator is that of one.
+fn quartic(
+    detector: &dyn Detector,
+    density: &EstimatedDensity,
+    kind: IndicatorKind,
+) -> Option<f64> {
+    use IndicatorKind::{Curvature, LowerCurvature, Quartic, UpperCurvature};
+    let splits = matches!(kind, Curvature | LowerCurvature | UpperCurvature);
+    let found = splits.then(|| detector.indicator(density, Quartic, &[]));
+    Some(found??.value)
 }
 
 /// Derivative of an indicator when its density changes at this rate.

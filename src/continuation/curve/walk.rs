@@ -9,6 +9,8 @@ use crate::topology::Detector;
 
 /// A place nearer to the curve than this is on it: its foot is the point.
 const CLOSE: f64 = 1e-4;
+/// Of a sampled density a place is on the curve when it is nearer than this share of the sampling error there.
+const WITHIN_NOISE: f64 = 0.5;
 /// Corrections of one point.
 const MOST_CORRECTIONS: usize = 6;
 /// A correction that leaves more than this share of the distance does not converge.
@@ -47,6 +49,24 @@ pub(super) struct Walked {
     pub(super) start: usize,
     pub(super) ends: Vec<EndReason>,
     pub(super) work: CurveWork,
+}
+
+impl Walked {
+    /// The centre of symmetry of the densities of one axis, where all have the same, and the width of the cells there.
+    pub(super) fn centre(&self) -> Option<(f64, f64)> {
+        let mut centres = self
+            .points
+            .iter()
+            .map(|node| node.reading.centre.as_deref());
+        let Some(&[centre]) = centres.next()? else {
+            return None;
+        };
+        let axis = self.points.first()?.reading.density.axes.first()?;
+        let cell = axis.width(axis.find(centre)?);
+        centres
+            .all(|one| one == Some(&[centre]))
+            .then_some((centre, cell))
+    }
 }
 
 /// What follows a curve.
@@ -259,7 +279,8 @@ fn correct(
             }
         };
         let size = apart(foot, at);
-        if size <= CLOSE {
+        let noise = reading.indicator.sampling_error / steepness;
+        if size <= CLOSE.max(WITHIN_NOISE * noise) {
             let remainder = remainder(&reading, size, sought.before);
             let node = Node {
                 foot,
@@ -297,14 +318,13 @@ fn predicted(here: &Node, bend: [f64; 2], step: f64) -> Option<([f64; 2], Option
     let at = |step: f64| {
         [0, 1].map(|k| here.foot[k] + step * here.tangent[k] + 0.5 * step * step * bend[k])
     };
-    let inside = |place: [f64; 2]| place.iter().all(|part| (0.0..=1.0).contains(part));
-    if inside(at(step)) {
+    if within(at(step)) {
         return Some((at(step), None));
     }
     let (mut low, mut high) = (0.0, step);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        if inside(at(middle)) {
+        if within(at(middle)) {
             low = middle;
         } else {
             high = middle;
@@ -318,6 +338,11 @@ fn predicted(here: &Node, bend: [f64; 2], step: f64) -> Option<([f64; 2], Option
     let side = (0..2).find(|&k| !(0.0..=1.0).contains(&beyond[k]))?;
     place[side] = if beyond[side] < 0.5 { 0.0 } else { 1.0 };
     Some((place, Some(side)))
+}
+
+/// Whether a place is in the box with sides of length one.
+pub(super) fn within(place: [f64; 2]) -> bool {
+    place.iter().all(|part| (0.0..=1.0).contains(part))
 }
 
 /// The side of the box to whose ends a place is nearest.

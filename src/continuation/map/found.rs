@@ -1,7 +1,8 @@
 //! What a map gives: nodes with their signatures, the curves between them, and what no curve explains.
 
-use crate::continuation::curve::{Curve, EndReason, Plane};
+use crate::continuation::curve::{CodimensionTwo, Curve, Plane, codimension_two};
 use crate::continuation::{PointStatus, Subject};
+use crate::density::Density;
 use crate::topology::Signature;
 
 /// A solved place of a map.
@@ -15,6 +16,8 @@ pub struct MapNode {
     pub status: PointStatus,
     /// The signature of every watched density, in the order of [`Subject::observables`]; empty without a density.
     pub signatures: Vec<Signature>,
+    /// Whether all that the signatures count was seen.
+    pub is_seen: bool,
     /// Why there is no density, where a sentence is known.
     pub reason: Option<String>,
 }
@@ -32,24 +35,15 @@ pub struct Untraced {
     pub reason: String,
 }
 
-/// Two cusps nearer than this, in sides of the box, are one point that two curves end in.
-const SAME: f64 = 0.01;
-
-/// A point of codimension two: a cusp, in which curves of folds meet.
+/// A density at a place well inside a region.
 #[derive(Debug, Clone, PartialEq)]
-pub struct CodimensionTwo {
-    /// Letters and ordinal: `CP1`.
-    pub label: String,
-    /// Values of both parameters.
-    pub values: [f64; 2],
-    /// Half-width of what it is believed to be off by, as a share of the sides of the box.
-    pub error: f64,
+pub struct RegionSample {
     /// The observable, by its place in [`Subject::observables`].
     pub observable: usize,
-    /// Where its density has the feature, one coordinate an axis.
-    pub place: Vec<f64>,
-    /// The curves that end there, by their places in [`RegimeMap::curves`].
-    pub curves: Vec<usize>,
+    /// Values of both parameters.
+    pub values: [f64; 2],
+    /// Its density there, ∫ = 1.
+    pub density: Density,
 }
 
 /// A map of regimes.
@@ -67,54 +61,16 @@ pub struct RegimeMap {
     pub curves: Vec<Curve>,
     /// Changes that no curve explains.
     pub untraced: Vec<Untraced>,
+    /// A density of each signature, in its largest region; none of a map that was interrupted.
+    pub samples: Vec<RegionSample>,
     /// Whether it was interrupted before it was complete.
     pub interrupted: bool,
 }
 
 impl RegimeMap {
-    /// The points of codimension two, one for all curves that end in it: of what these say, the one with the smallest error is taken.
+    /// The points of codimension two of its curves, by their places in [`RegimeMap::curves`].
     pub fn codimension_two(&self) -> Vec<CodimensionTwo> {
-        let mut found: Vec<CodimensionTwo> = Vec::new();
-        for (index, curve) in self.curves.iter().enumerate() {
-            let cusps = curve
-                .ends
-                .iter()
-                .filter(|end| end.reason == EndReason::Cusp);
-            for point in cusps.filter_map(|end| curve.points.get(end.point)) {
-                let Some(observable) = self.place_of(curve.observable) else {
-                    continue;
-                };
-                let at = self.plane.place(point.values);
-                let known = found.iter_mut().find(|one| {
-                    let other = self.plane.place(one.values);
-                    one.observable == observable
-                        && (at[0] - other[0]).hypot(at[1] - other[1]) <= SAME
-                });
-                let mut new = CodimensionTwo {
-                    label: String::new(),
-                    values: point.values,
-                    error: point.error,
-                    observable,
-                    place: point.place.clone(),
-                    curves: vec![index],
-                };
-                match known {
-                    Some(known) => {
-                        new.curves.splice(0..0, known.curves.clone());
-                        if new.error < known.error {
-                            *known = new;
-                        } else {
-                            known.curves = new.curves;
-                        }
-                    }
-                    None => found.push(new),
-                }
-            }
-        }
-        for (number, one) in found.iter_mut().enumerate() {
-            one.label = format!("CP{}", number + 1);
-        }
-        found
+        codimension_two(&self.curves)
     }
 
     /// The place of an observable among those that are watched; `None` for one that is not.

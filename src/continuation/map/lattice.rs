@@ -45,6 +45,14 @@ impl Lattice {
         [0, 1].map(|side| at[side] as f64 / self.last(side) as f64)
     }
 
+    /// The place of the lattice at a place of the box with sides of length one; `None` beside all of them.
+    pub(super) fn at(&self, place: [f64; 2]) -> Option<At> {
+        let at = [0, 1].map(|side| (place[side] * self.last(side) as f64).round());
+        let off = [0, 1].map(|side| (at[side] - place[side] * self.last(side) as f64).abs());
+        let inside = (0..2).all(|side| (0.0..=self.last(side) as f64).contains(&at[side]));
+        (inside && off.iter().all(|off| *off < 1e-6)).then(|| at.map(|part| part as usize))
+    }
+
     /// How often a coarse cell was halved where this place first is a corner.
     pub(super) fn level(&self, at: At) -> usize {
         let fineness = at.iter().map(|part| part.trailing_zeros() as usize);
@@ -137,6 +145,9 @@ mod tests {
         all.dedup();
         assert_eq!(all.len(), 20);
         assert_eq!(lattice.share([12, 16]), [1.0, 1.0]);
+        assert_eq!(lattice.at(lattice.share([3, 5])), Some([3, 5]));
+        assert_eq!(lattice.at([0.51, 0.5]), None);
+        assert_eq!(lattice.at([1.25, 0.5]), None);
         for strip in &strips {
             for pair in strip.windows(2) {
                 let apart = pair[0][0].abs_diff(pair[1][0]) + pair[0][1].abs_diff(pair[1][1]);

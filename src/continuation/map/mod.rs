@@ -9,13 +9,14 @@ mod found;
 mod lattice;
 mod node;
 mod regions;
+mod samples;
 mod solve;
 mod trace;
 
-pub use found::{CodimensionTwo, MapNode, RegimeMap, Untraced};
+pub use found::{MapNode, RegimeMap, RegionSample, Untraced};
 pub use regions::{Region, RegionPicture};
 
-use super::curve::{CurveOptions, Plane};
+use super::curve::{CurveOptions, Plane, agree};
 use super::{DensitySource, SourceError};
 use crate::cancellation::Cancellation;
 use crate::topology::Detector;
@@ -106,12 +107,38 @@ pub fn regime_map(
     cancellation: &Cancellation,
     observer: &MapObserver<'_>,
 ) -> Result<RegimeMap, SourceError> {
+    regime_map_from(
+        source,
+        plane,
+        detector,
+        options,
+        &[],
+        cancellation,
+        observer,
+    )
+}
+
+/// Goes on with a map of which some nodes are known already, from [`RegimeMap::nodes`] or as they were told, with the same options. Of those, the ones
+/// beside changes are solved again, since their densities are needed; all others are taken as they are, and curves are followed anew.
+///
+/// # Errors
+/// [`SourceError`] where no source can be made in this plane.
+pub fn regime_map_from(
+    source: &SourceInPlane<'_>,
+    plane: &Plane,
+    detector: &dyn Detector,
+    options: &MapOptions,
+    known: &[MapNode],
+    cancellation: &Cancellation,
+    observer: &MapObserver<'_>,
+) -> Result<RegimeMap, SourceError> {
     let subject = source(&plane.afresh())?.subject().clone();
     let lattice = Lattice::new(options.counts, options.depth);
     let solver = Solver::new(source, plane, &lattice, detector, cancellation, observer);
+    solver.recall(known);
     let leaves = solver.solve_all()?;
     let (crossings, blurred) = crossing::crossings(&solver.grid(), &lattice, detector);
-    let (curves, untraced) = match &options.curves {
+    let (mut curves, untraced) = match &options.curves {
         Some(curves) => {
             let tracer = trace::Tracer {
                 source,
@@ -125,10 +152,11 @@ pub fn regime_map(
         }
         None => (Vec::new(), Vec::new()),
     };
+    agree(&mut curves);
     let is_cut = curves
         .iter()
         .any(|curve: &super::curve::Curve| curve.is_interrupted());
-    Ok(RegimeMap {
+    let mut map = RegimeMap {
         interrupted: cancellation.is_cancelled() || is_cut,
         plane: plane.clone(),
         nodes: solver.into_nodes(),
@@ -138,6 +166,11 @@ pub fn regime_map(
             .collect(),
         curves,
         untraced,
+        samples: Vec::new(),
         subject,
-    })
+    };
+    if !map.interrupted {
+        map.samples = samples::samples(&map, source, cancellation)?;
+    }
+    Ok(map)
 }

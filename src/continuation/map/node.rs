@@ -17,8 +17,6 @@ const NEAR: usize = 2;
 pub(super) struct Solved {
     pub(super) node: MapNode,
     pub(super) point: Option<Point>,
-    /// Whether all that the signatures count was seen.
-    pub(super) is_seen: bool,
 }
 
 /// All solved nodes, row by row.
@@ -75,7 +73,7 @@ impl Grid {
     }
 
     /// Whether no coarse neighbour within reach has another signature.
-    fn is_quiet(&self, at: At, lattice: &Lattice, is_complete: bool) -> bool {
+    pub(super) fn is_quiet(&self, at: At, lattice: &Lattice, is_complete: bool) -> bool {
         let step = lattice.coarse();
         let mut neighbours = (0..2).flat_map(|side| {
             (1..=NEAR).flat_map(move |away| {
@@ -105,6 +103,6 @@ impl Solved {
         if both.iter().any(|signatures| signatures.is_empty()) {
             return both[0].len() != both[1].len();
         }
-        self.is_seen && other.is_seen && both[0] != both[1]
+        self.node.is_seen && other.node.is_seen && both[0] != both[1]
     }
 }

@@ -4,6 +4,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::found::{MapNode, RegimeMap};
+use crate::continuation::curve::distance;
 use crate::topology::Signature;
 
 /// Nodes nearer to a curve than this share of the distance between coarse nodes tell nothing of its sides: features are counted a little
@@ -133,22 +134,6 @@ impl RegimeMap {
             regions: order.into_iter().map(|old| regions[old].clone()).collect(),
         }
     }
-}
-
-/// Distance of a place from a line of straight pieces.
-fn distance(line: &[[f64; 2]], at: [f64; 2]) -> f64 {
-    let pieces = line.windows(2).map(|piece| {
-        let [a, b] = [piece[0], piece[1]];
-        let along = [b[0] - a[0], b[1] - a[1]];
-        let gap = [at[0] - a[0], at[1] - a[1]];
-        let length = along[0] * along[0] + along[1] * along[1];
-        let share = match length > 0.0 {
-            true => ((gap[0] * along[0] + gap[1] * along[1]) / length).clamp(0.0, 1.0),
-            false => 0.0,
-        };
-        (gap[0] - share * along[0]).hypot(gap[1] - share * along[1])
-    });
-    pieces.fold(f64::INFINITY, f64::min)
 }
 
 /// Pixels over the box with sides of length one.
@@ -335,13 +320,5 @@ mod tests {
         canvas.flood(&mut owners, Some(&walls), of);
         assert_eq!(owners[canvas.pixel([0.1, 0.9])], NONE);
         assert_eq!(owners[canvas.pixel([0.5, 0.2])], 0);
-    }
-
-    #[test]
-    fn distances_from_lines_of_pieces() {
-        let line = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]];
-        assert_eq!(distance(&line, [0.5, 0.25]), 0.25);
-        assert_eq!(distance(&line, [1.5, 0.5]), 0.5);
-        assert_eq!(distance(&line, [-3.0, 4.0]), 5.0);
     }
 }

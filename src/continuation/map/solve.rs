@@ -68,10 +68,50 @@ impl<'a> Solver<'a> {
         grid.unwrap_or_else(PoisonError::into_inner).into_nodes()
     }
 
+    /// Takes nodes that are known already, without their densities. Those that are not of this lattice are left out.
+    pub(super) fn recall(&self, known: &[MapNode]) {
+        let mut grid = self.grid();
+        for node in known {
+            let Some(at) = self.lattice.at(self.plane.place(node.values)) else {
+                continue;
+            };
+            let node = MapNode {
+                values: self.plane.values(self.lattice.share(at)),
+                level: self.lattice.level(at),
+                ..node.clone()
+            };
+            grid.insert(at, Solved { node, point: None });
+        }
+        let count = grid.all().count();
+        self.done.store(count, Ordering::Relaxed);
+        self.wanted.store(count, Ordering::Relaxed);
+    }
+
+    /// Solves again what was recalled and is near to a change: its densities tell which indicator's zero to follow.
+    fn complete(&self) -> Result<(), SourceError> {
+        let wanted: Vec<At> = {
+            let grid = self.grid();
+            let near = grid.all().filter(|(at, solved)| {
+                let is_refined = self.lattice.level(*at) > 0;
+                solved.point.is_none() && (is_refined || !grid.is_quiet(*at, self.lattice, true))
+            });
+            near.map(|(at, _)| at).collect()
+        };
+        let parts: Vec<Vec<At>> = wanted.chunks(PART).map(<[At]>::to_vec).collect();
+        self.solve_parts(&parts)
+    }
+
     /// Solves the coarse grid and refines it; gives the cells that are not halved further.
     pub(super) fn solve_all(&self) -> Result<Vec<Leaf>, SourceError> {
-        let strips = self.lattice.strips(ROWS);
+        let mut strips = self.lattice.strips(ROWS);
         let coarse: Vec<At> = strips.concat();
+        {
+            let grid = self.grid();
+            strips
+                .iter_mut()
+                .for_each(|strip| strip.retain(|&at| grid.get(at).is_none()));
+            strips.retain(|strip| !strip.is_empty());
+        }
         self.solve_parts(&strips)?;
         self.grid().let_go(&coarse, self.lattice, true);
         let mut leaves = self.lattice.cells();
@@ -93,6 +133,7 @@ impl<'a> Solver<'a> {
             }
         }
         leaves.sort_by_key(|leaf| (leaf.corner[1], leaf.corner[0]));
+        self.complete()?;
         Ok(leaves)
     }
 
@@ -197,10 +238,10 @@ impl<'a> Solver<'a> {
             level: self.lattice.level(at),
             status: solution.report.status,
             signatures: detections.iter().map(|one| one.signature).collect(),
+            is_seen: detections.iter().all(|one| one.is_seen),
             reason,
         };
         Some(Solved {
-            is_seen: detections.iter().all(|one| one.is_seen),
             point: Some(Point {
                 value: coordinate,
                 report: solution.report,

@@ -10,7 +10,7 @@ use super::{MapObserver, MapProgress, SourceInPlane};
 use crate::cancellation::Cancellation;
 use crate::continuation::SourceError;
 use crate::continuation::curve::{
-    Curve, CurveError, CurveOptions, CurveStart, EndReason, Plane, follow,
+    Curve, CurveError, CurveOptions, CurveStart, EndReason, ON_IT, Plane, distance, follow,
 };
 use crate::topology::{Detector, IndicatorKind};
 
@@ -18,6 +18,8 @@ use crate::topology::{Detector, IndicatorKind};
 const MOST_FAILURES: usize = 4;
 /// How far beyond its two nodes a crossing may be passed, as a share of their distance: errors of nodes and curve.
 const BEYOND: f64 = 0.25;
+/// Farthest from a curve that another one of its indicator may begin and be the same, in sides of the box.
+const IDENTICAL: f64 = 1e-3;
 /// How near a curve of another indicator must pass for a crossing to be the same change, in sides of the box.
 const SAME: f64 = 4e-3;
 
@@ -54,18 +56,36 @@ impl Tracer<'_> {
         let mut drawn: Vec<Drawn> = Vec::new();
         let mut failures: Vec<(Crossing, String)> = Vec::new();
         let mut vague: Vec<(Crossing, String)> = Vec::new();
+        let mut branches: Vec<CurveStart> = Vec::new();
+        let mut tried: Vec<CurveStart> = Vec::new();
         let met = AtomicUsize::new(0);
         while !self.cancellation.is_cancelled() {
             open.retain(|crossing| !drawn.iter().any(|curve| curve.explains(crossing)));
             let starts = starts(&mut open, &failures);
             if starts.is_empty() {
-                break;
+                let Some(start) = self.next_branch(&mut branches, &mut tried, &drawn) else {
+                    break;
+                };
+                if let Ok(curve) = self.follow_from(&start, &met)
+                    && curve.points.len() >= FEWEST
+                    && middle_error(&curve) <= VAGUE
+                {
+                    drawn.push(Drawn {
+                        observable: start.observable,
+                        kind: start.kind,
+                        line: self.line(&curve),
+                    });
+                    branches.extend(curve.branches.iter().cloned());
+                    curves.push(curve);
+                }
+                continue;
             }
             let found = starts.par_iter().map(|start| self.follow(start, &met));
             let found: Vec<Result<Curve, CurveError>> = found.collect();
             for (start, found) in starts.into_iter().zip(found) {
                 match found {
                     Ok(_) if drawn.iter().any(|curve| curve.explains(&start)) => {}
+                    Ok(curve) if self.is_drawn(&drawn, &start, &curve) => {}
                     Ok(curve) => {
                         let line = self.line(&curve);
                         drawn.push(Drawn {
@@ -80,6 +100,7 @@ impl Tracer<'_> {
                             );
                             vague.push((start, reason));
                         } else if curve.points.len() >= FEWEST {
+                            branches.extend(curve.branches.iter().cloned());
                             curves.push(curve);
                         } else if is_broken(&curve) {
                             let reason = "its curve was not met again beside the crossing";
@@ -106,15 +127,37 @@ impl Tracer<'_> {
         (curves, untraced)
     }
 
+    /// Where a curve starts from a point of codimension two that is not drawn and was not tried: it may be too narrow for the nodes to show.
+    fn next_branch(
+        &self,
+        branches: &mut Vec<CurveStart>,
+        tried: &mut Vec<CurveStart>,
+        drawn: &[Drawn],
+    ) -> Option<CurveStart> {
+        branches.retain(|start| {
+            let at = self.plane.place(start.values);
+            let is_drawn = drawn.iter().any(|curve| curve.has(start, at));
+            let is_tried = tried.iter().any(|one| one.is_near(start, self.plane));
+            !is_drawn && !is_tried
+        });
+        let start = branches.pop()?;
+        tried.push(start.clone());
+        Some(start)
+    }
+
     fn follow(&self, start: &Crossing, met: &AtomicUsize) -> Result<Curve, CurveError> {
-        let plane = self.plane.afresh();
-        let source = (self.source)(&plane)?;
         let begins = CurveStart {
-            values: plane.values(start.at),
+            values: self.plane.values(start.at),
             observable: start.observable,
             kind: start.kind,
             place: start.place.clone(),
         };
+        self.follow_from(&begins, met)
+    }
+
+    fn follow_from(&self, begins: &CurveStart, met: &AtomicUsize) -> Result<Curve, CurveError> {
+        let plane = self.plane.afresh();
+        let source = (self.source)(&plane)?;
         let mut observer = |values: [f64; 2]| {
             let done = met.fetch_add(1, Ordering::Relaxed) + 1;
             (self.observer)(&MapProgress::Met { values, done });
@@ -125,11 +168,24 @@ impl Tracer<'_> {
             source.as_ref(),
             &plane,
             detector,
-            &begins,
+            begins,
             options,
             cancellation,
             &mut observer,
         )
+    }
+
+    /// Whether a curve that was followed from a crossing is one that is drawn already: beyond the end of a curve its crossings are not explained by it.
+    fn is_drawn(&self, drawn: &[Drawn], start: &Crossing, curve: &Curve) -> bool {
+        let begins = curve.points.get(curve.start);
+        let at = begins.map(|point| self.plane.place(point.values));
+        let mut drawn = drawn.iter();
+        at.is_some_and(|at| {
+            drawn.any(|one| {
+                let same = (one.observable, one.kind) == (start.observable, start.kind);
+                same && distance(&one.line, at) <= IDENTICAL
+            })
+        })
     }
 
     fn line(&self, curve: &Curve) -> Vec<[f64; 2]> {
@@ -234,6 +290,12 @@ impl Drawn {
             let apart = (at[0] - crossing.at[0]).hypot(at[1] - crossing.at[1]);
             self.kind == crossing.kind || apart < SAME
         })
+    }
+
+    /// Whether a start lies on this curve; `at` is its place in the box.
+    fn has(&self, start: &CurveStart, at: [f64; 2]) -> bool {
+        (self.observable, self.kind) == (start.observable, start.kind)
+            && distance(&self.line, at) <= ON_IT
     }
 
     /// Where the curve passes between two nodes, or a little beyond them.

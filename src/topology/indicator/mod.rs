@@ -11,6 +11,7 @@
 //! | the same at a kink that is no centre | slope p'/p on one side of the kink |
 //! | joint density, smooth centre | the two curvatures of p/p along its principal directions |
 //! | joint density, centre on a kink | slope across the kink; curvature along it |
+//! | where one peak splits, and curvature is zero: at the centre or away from it | p''''/p at the centre |
 //!
 //! All are relative to the density at the place, so that its scale does not matter.
 
@@ -18,6 +19,7 @@ mod beside;
 mod centre;
 mod fold;
 mod pair;
+mod quartic;
 mod ring;
 mod shoulder;
 mod smooth;
@@ -30,6 +32,7 @@ pub(crate) use beside::born_at_kink;
 pub(super) use centre::{Found, at_centre, corrected};
 pub(super) use fold::fold;
 pub(super) use pair::put_right;
+pub(super) use quartic::quartic;
 pub(super) use ring::ring_slope;
 pub(super) use shoulder::shoulder;
 
@@ -65,6 +68,9 @@ pub enum IndicatorKind {
     /// Slope along a ridge or trench of a joint density where it is nearest to level, positive when a peak and a saddle (a
     /// saddle and a crater) are there.
     Fold,
+    /// p''''/p at the centre, along the flattest direction of a joint density: negative where peaks are born at the centre as it splits, positive where
+    /// they are born away from it. No bifurcation by itself, but a point of codimension two where a curvature is zero too.
+    Quartic,
     /// Outward slope of a joint density between a moat and the ring around it, positive when both are there.
     Ring,
 }
@@ -82,11 +88,12 @@ impl IndicatorKind {
             Self::BesideKink { .. } => "slope beside the kink",
             Self::Fold => "slope at the shoulder",
             Self::Ring => "slope to the ring",
+            Self::Quartic => "fourth derivative at the centre",
         }
     }
 
     /// All of them.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Curvature,
         Self::KinkSlope,
         Self::CurvatureAlongKink,
@@ -100,6 +107,7 @@ impl IndicatorKind {
         Self::beside_kink(true, true),
         Self::Fold,
         Self::Ring,
+        Self::Quartic,
     ];
 
     const fn beside_kink(above: bool, is_valley: bool) -> Self {

@@ -14,6 +14,8 @@ const RAYS: usize = 12;
 const POINTS: usize = 100;
 /// Density, as a share of the largest on the ray, below which a ray ends.
 const FAINT: f64 = 1e-6;
+/// Share of the density by which the second scheme may differ where a ray goes on: beyond, slopes are those of what the cells do not resolve.
+const UNSURE: f64 = 0.1;
 /// Most steps of Newton's method.
 const MOST_STEPS: usize = 8;
 
@@ -76,12 +78,21 @@ fn shoulder(field: &Field<'_>, inside: &[f64], ray: usize) -> Option<Shoulder> {
             .collect()
     };
     let length = length(field, inside, direction);
+    let is_sure = |place: &[f64]| {
+        let cell = field.cell_at(place);
+        let both = field.second_scheme().zip(cell);
+        both.is_none_or(|(second, cell)| {
+            let value = field.values()[cell];
+            (second[cell] - value).abs() <= UNSURE * value
+        })
+    };
     let slopes: Vec<(f64, f64, f64)> = (1..POINTS)
         .filter_map(|point| {
             let s = length * point as f64 / POINTS as f64;
             let jet = field.jet(&at(s))?;
             Some((s, jet.value, jet.slope(direction)))
         })
+        .take_while(|one| is_sure(&at(one.0)))
         .collect();
     let highest = slopes.iter().map(|one| one.1).fold(0.0, f64::max);
     let visible = slopes

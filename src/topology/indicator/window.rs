@@ -28,8 +28,18 @@ impl Lines {
 
 /// Lines for p, p', p'' along axis `k` at `at`, no kink near.
 pub(super) fn about(estimated: &EstimatedDensity, k: usize, at: f64) -> Option<Lines> {
+    derivatives(estimated, k, at, 3)
+}
+
+/// Lines for the value and derivatives, `orders` in all (five at most), along axis `k` at `at`, no kink near.
+pub(super) fn derivatives(
+    estimated: &EstimatedDensity,
+    k: usize,
+    at: f64,
+    orders: usize,
+) -> Option<Lines> {
     let axis = &estimated.density.axes[k];
-    let line = |reach: usize| interpolating(axis, around(axis, at, reach)?, at, 3);
+    let line = |reach: usize| interpolating(axis, around(axis, at, reach)?, at, orders);
     Some(Lines {
         fine: line(REACH[0])?,
         rough: line(REACH[1])?,

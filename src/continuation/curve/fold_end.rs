@@ -1,0 +1,260 @@
+//! Where the fold of a marginal ends inside the box: in a cusp, or at a degenerate split of the centre. Its last points tell, since both parameters are smooth
+//! functions of where the fold is in the density, through such a point and beyond.
+
+use super::CurveStart;
+use super::cusp::cusp;
+use super::found::{CurvePoint, EndReason};
+use super::plane::Plane;
+use super::polynomial::{evaluated, fitted};
+use super::walk::apart;
+use crate::continuation::{BifurcationStatus, ErrorParts};
+use crate::topology::IndicatorKind;
+
+/// Fewest points that polynomials are fitted to.
+const FEWEST: usize = 8;
+/// Length of the end of a curve that they are taken from, in sides of the box.
+const LONGEST: f64 = 0.2;
+/// Farthest that the end may be from where the curve was met last, in sides of the box.
+pub(super) const FAR: f64 = 0.05;
+/// Degree in the square of the distance from a centre.
+const DEGREE: usize = 3;
+/// Cells from a centre nearer than which a fold is not told from its mirror image: such points are left out where it ends there.
+const TOLD_APART: f64 = 6.0;
+/// How far points may be off, over the root of the mean square of what polynomials leave of them.
+const SCATTERS: f64 = 3.0;
+/// A fold that ends at a centre comes nearer to it than this share of where the points that tell begin, both squared.
+const NEAR_CENTRE: f64 = 0.25;
+
+/// What is followed, and what its ends may be.
+pub(super) struct Folds<'a> {
+    pub(super) kind: IndicatorKind,
+    /// Place of the observable in the subject.
+    pub(super) observable: usize,
+    pub(super) plane: &'a Plane,
+    pub(super) tolerance: f64,
+    /// Where the densities have their centre of symmetry, where all of them have it, and the width of the cells there.
+    pub(super) centre: Option<(f64, f64)>,
+}
+
+impl Folds<'_> {
+    /// Whether a point is so near to the centre that cells do not tell it from its mirror image.
+    fn is_unsure(&self, point: &CurvePoint) -> bool {
+        let place = point.place.first().zip(self.centre);
+        place.is_some_and(|(x, (centre, cell))| (x - centre).abs() < TOLD_APART * cell)
+    }
+}
+
+/// The end of a fold, beyond the last point that was met.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Beyond {
+    pub(super) reason: EndReason,
+    /// In the box with sides of length one.
+    pub(super) at: [f64; 2],
+    pub(super) place: f64,
+    pub(super) error: f64,
+    /// Direction in which the curve leaves it, of length one.
+    pub(super) leaves: [f64; 2],
+    /// What the polynomials leave of the points, and what these are therefore uncertain by at least: checks lie too far apart to show it.
+    pub(super) scatter: f64,
+    /// Where another curve that begins there passes: in the box, with its indicator and its place.
+    pub(super) branch: ([f64; 2], IndicatorKind, f64),
+}
+
+/// The points at the end of a fold.
+pub(super) struct Tail<'p> {
+    pub(super) points: Vec<&'p CurvePoint>,
+    /// Where in the density.
+    pub(super) places: Vec<f64>,
+    /// In the box with sides of length one.
+    pub(super) values: Vec<[f64; 2]>,
+}
+
+impl<'p> Tail<'p> {
+    /// The first of some points that follow each other inward; `None` where they are too few.
+    fn new(inward: &[&'p CurvePoint], plane: &Plane) -> Option<Self> {
+        let first = inward.first()?;
+        let near = inward
+            .iter()
+            .take_while(|point| (point.arclength - first.arclength).abs() <= LONGEST);
+        let points: Vec<&CurvePoint> = near.copied().collect();
+        let places = points
+            .iter()
+            .filter_map(|point| point.place.first().copied());
+        let tail = Self {
+            places: places.collect(),
+            values: points
+                .iter()
+                .map(|point| plane.place(point.values))
+                .collect(),
+            points,
+        };
+        (tail.points.len() >= FEWEST && tail.places.len() == tail.points.len()).then_some(tail)
+    }
+
+    /// The largest error of its points.
+    pub(super) fn known(&self) -> f64 {
+        self.points
+            .iter()
+            .map(|point| point.error)
+            .fold(0.0, f64::max)
+    }
+}
+
+/// Adds the points in which a fold ends, as points of their own: `reasons` are those of its ends, `start` the place of its start. Gives where other
+/// curves begin there.
+pub(super) fn add_ends(
+    points: &mut Vec<CurvePoint>,
+    reasons: &mut [EndReason],
+    start: &mut usize,
+    folds: &Folds<'_>,
+) -> Vec<CurveStart> {
+    let mut branches = Vec::new();
+    let IndicatorKind::Shoulder { rising } = folds.kind else {
+        return branches;
+    };
+    let count = reasons.len();
+    for (index, reason) in reasons.iter_mut().enumerate() {
+        let ends_here = matches!(
+            reason,
+            EndReason::NotConverged | EndReason::FeatureLost | EndReason::Singular
+        );
+        let is_first = index == 0 && count > 1;
+        let inward: Vec<&CurvePoint> = match is_first {
+            true => points.iter().collect(),
+            false => points.iter().rev().collect(),
+        };
+        let unsure = inward.iter().take_while(|point| folds.is_unsure(point));
+        let unsure = unsure.count();
+        let beyond = || {
+            let centre = folds.centre.and_then(|(centre, _)| {
+                let tail = Tail::new(inward.get(unsure..)?, folds.plane)?;
+                Some((at_centre(&tail, centre)?, unsure))
+            });
+            let cusp = || Some((cusp(&Tail::new(&inward, folds.plane)?, rising)?, 0));
+            let (found, left_out) = centre.or_else(cusp)?;
+            let last = inward.get(left_out)?;
+            Some((point(&found, last, is_first, folds), found, left_out))
+        };
+        let Some((point, beyond, left_out)) = ends_here.then(beyond).flatten() else {
+            continue;
+        };
+        let (at, kind, place) = beyond.branch;
+        branches.push(CurveStart {
+            values: folds.plane.values(at),
+            observable: folds.observable,
+            kind,
+            place: vec![place],
+        });
+        *reason = beyond.reason.clone();
+        let (from, scatter) = (point.arclength, beyond.scatter);
+        if is_first {
+            points.splice(..left_out, [point]);
+            *start = (*start + 1).saturating_sub(left_out);
+        } else {
+            points.truncate(points.len() - left_out);
+            *start = (*start).min(points.len());
+            points.push(point);
+        }
+        let place = if is_first { 0 } else { points.len() - 1 };
+        let near = points
+            .iter_mut()
+            .enumerate()
+            .filter(|(index, one)| *index != place && (one.arclength - from).abs() <= LONGEST);
+        near.for_each(|(_, one)| widen(one, scatter, folds.tolerance));
+    }
+    branches
+}
+
+/// A point with a part more of its error.
+fn widen(point: &mut CurvePoint, part: f64, tolerance: f64) {
+    let before = point.error;
+    point.parts.grid += part;
+    point.error = point.parts.total();
+    if before > 0.0 {
+        point.to_edge = point.to_edge.map(|edge| edge * point.error / before);
+    }
+    if point.error > tolerance && point.status == BifurcationStatus::Located {
+        point.status = BifurcationStatus::Unresolved;
+    }
+}
+
+fn point(beyond: &Beyond, last: &CurvePoint, is_first: bool, folds: &Folds<'_>) -> CurvePoint {
+    let sides = folds.plane.sides();
+    let gap = apart(beyond.at, folds.plane.place(last.values));
+    let (before, onward) = if is_first { (-gap, 1.0) } else { (gap, -1.0) };
+    let across = [-beyond.leaves[1], beyond.leaves[0]];
+    CurvePoint {
+        values: folds.plane.values(beyond.at),
+        error: beyond.error,
+        parts: ErrorParts {
+            solver: beyond.error,
+            ..ErrorParts::default()
+        },
+        to_edge: [0, 1].map(|k| beyond.error * across[k] * sides[k].length()),
+        indicator: 0.0,
+        gradient: last.gradient,
+        place: vec![beyond.place],
+        arclength: last.arclength + before,
+        tangent: [0, 1].map(|k| onward * beyond.leaves[k] * sides[k].length()),
+        checked: false,
+        status: match beyond.error <= folds.tolerance {
+            true => BifurcationStatus::Located,
+            false => BifurcationStatus::Unresolved,
+        },
+    }
+}
+
+/// Where a fold and its mirror image meet in the centre: both parameters are smooth functions of the square of the distance from it.
+fn at_centre(tail: &Tail<'_>, centre: f64) -> Option<Beyond> {
+    let squares: Vec<f64> = tail.places.iter().map(|x| (x - centre).powi(2)).collect();
+    let (nearest, scale) = (squares[0], squares[squares.len() - 1]);
+    let leaves = squares.windows(2).all(|pair| pair[1] > pair[0]);
+    if !leaves || nearest > NEAR_CENTRE * scale {
+        return None;
+    }
+    let scaled: Vec<f64> = squares.iter().map(|square| square / scale).collect();
+    let found = Meeting::new(&scaled, &tail.values, DEGREE);
+    let lower = Meeting::new(&scaled, &tail.values, DEGREE - 1);
+    let quarter = scaled.len() / 4;
+    let farther = Meeting::new(&scaled[quarter..], &tail.values[quarter..], DEGREE);
+    let doubt = apart(found.at, lower.at) + apart(found.at, farther.at);
+    let is_near = apart(found.at, tail.values[0]) <= FAR;
+    is_near.then(|| Beyond {
+        reason: EndReason::DegenerateSplit,
+        at: found.at,
+        place: centre,
+        error: tail.known() + 2.0 * doubt + SCATTERS * found.scatter,
+        scatter: SCATTERS * found.scatter,
+        leaves: found.leaves,
+        branch: (found.at, IndicatorKind::Curvature, centre),
+    })
+}
+
+/// Both parameters where the square of the distance is zero.
+struct Meeting {
+    at: [f64; 2],
+    leaves: [f64; 2],
+    /// Root of the mean square of what the polynomials leave of the points.
+    scatter: f64,
+}
+
+impl Meeting {
+    fn new(squares: &[f64], values: &[[f64; 2]], degree: usize) -> Self {
+        let fits = [0, 1].map(|k| {
+            let values: Vec<f64> = values.iter().map(|value| value[k]).collect();
+            fitted(squares, &values, degree)
+        });
+        let both = fits.each_ref().map(|fit| evaluated(fit, 0.0));
+        let slope = both.map(|one| one[1]);
+        let length = slope[0].hypot(slope[1]);
+        let left = squares.iter().zip(values).map(|(&square, value)| {
+            let off = [0, 1].map(|k| evaluated(&fits[k], square)[0] - value[k]);
+            off[0] * off[0] + off[1] * off[1]
+        });
+        Self {
+            at: both.map(|one| one[0]),
+            leaves: slope.map(|part| part / length),
+            scatter: (left.sum::<f64>() / squares.len() as f64).sqrt(),
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! The tables of the points of codimension two, as CSV and for LaTeX, and the table of several curves.
+
+use super::RunError;
+use super::columns::{Columns, number, word};
+use super::curve::{columns, rows};
+use super::latex;
+use super::number::{format_number, format_with_error};
+use crate::continuation::curve::{CodimensionTwo, Curve, Plane, codimension_two};
+use crate::system::Family;
+
+/// What a curve is called, by its place among several.
+pub(super) fn curve_name(index: usize) -> String {
+    format!("C{}", index + 1)
+}
+
+/// The table of several curves in a plane; the first column has the curve's name. `starts` are the labels of their starts; those without one are called
+/// `start`.
+pub(super) fn several_csv(
+    family: &Family,
+    plane: &Plane,
+    curves: &[Curve],
+    starts: &[&str],
+) -> Result<String, RunError> {
+    let table = |index: usize| {
+        let mut all = vec![word("curve", move |_| curve_name(index))];
+        all.extend(columns(family, plane));
+        Columns(all)
+    };
+    let mut text = table(0).header()?;
+    for (index, curve) in curves.iter().enumerate() {
+        let start = starts.get(index).copied().unwrap_or("start");
+        text += &table(index).lines(&rows(curve, start))?;
+    }
+    Ok(text)
+}
+
+/// The table of the points of codimension two of curves.
+pub(super) fn codimension_two_csv(
+    family: &Family,
+    plane: &Plane,
+    curves: &[Curve],
+) -> Result<String, RunError> {
+    let [first, second] = parameters(plane);
+    let columns = vec![
+        word("label", |one: &CodimensionTwo| one.label.clone()),
+        word("kind", |one: &CodimensionTwo| one.kind.name().to_owned()),
+        number(first, |one: &CodimensionTwo| one.values[0]),
+        number(second, |one: &CodimensionTwo| one.values[1]),
+        number("error", |one: &CodimensionTwo| one.error),
+        word("status", |one: &CodimensionTwo| {
+            one.status.word().to_owned()
+        }),
+        word("observable", |one: &CodimensionTwo| {
+            observables(family, one)
+        }),
+        word("place", |one: &CodimensionTwo| {
+            joined(one.place.iter().map(|&x| format_number(x)))
+        }),
+        word("curves", |one: &CodimensionTwo| {
+            joined(one.curves.iter().map(|&index| curve_name(index)))
+        }),
+    ];
+    Columns(columns).csv(&codimension_two(curves))
+}
+
+/// The same for LaTeX (with the package `booktabs`), values rounded to their errors.
+pub(super) fn codimension_two_tex(family: &Family, plane: &Plane, curves: &[Curve]) -> String {
+    let symbols = parameters(plane).map(|name| {
+        let mut parameters = family.model().parameters.iter();
+        let known = parameters.find(|parameter| parameter.name == name);
+        latex::mathematics(known.map_or(name.as_str(), |parameter| parameter.symbol.as_str()))
+    });
+    let [first, second] = symbols;
+    let mut text = format!(
+        "\\begin{{tabular}}{{llrrll}}\n\\toprule\n & & ${first}$ & ${second}$ & density & curves \\\\\n\\midrule\n"
+    );
+    for one in codimension_two(curves) {
+        let values = [0, 1].map(|k| {
+            let error = one.error * plane.sides()[k].length();
+            let (value, error) = format_with_error(one.values[k], error);
+            format!("${value} \\pm {error}$")
+        });
+        let curves = joined(one.curves.iter().map(|&index| curve_name(index)));
+        let observables = one.observables.iter();
+        let observables: Vec<String> = observables
+            .map(|&observable| latex::observable(family, observable))
+            .collect();
+        text += &format!(
+            "{} & {} & {} & {} & ${}$ & {curves} \\\\\n",
+            one.label,
+            one.kind.name(),
+            values[0],
+            values[1],
+            observables.join("$ and $"),
+        );
+    }
+    text + "\\bottomrule\n\\end{tabular}\n"
+}
+
+fn parameters(plane: &Plane) -> [String; 2] {
+    plane.sides().each_ref().map(|side| side.parameter.clone())
+}
+
+fn observables(family: &Family, one: &CodimensionTwo) -> String {
+    joined(
+        one.observables
+            .iter()
+            .map(|observable| observable.name(family)),
+    )
+}
+
+fn joined(words: impl Iterator<Item = String>) -> String {
+    words.collect::<Vec<_>>().join(" ")
+}
