@@ -12,7 +12,9 @@ use pbif::continuation::{
 use pbif::density::Observable;
 use pbif::method::{GeneratorMethodOptions, GeneratorSource, Problem};
 use pbif::space::{Axis, CellSpace};
-use pbif::system::{AxisDescription, Family, Lanes, Model, ParameterDescription, Path, System};
+use pbif::system::{
+    AxisDescription, Family, Lanes, Model, ParameterDescription, Path, System, TypedModel,
+};
 use pbif::topology::{DetectOptions, PersistenceDetector};
 
 /// Drift of a system with one parameter.
@@ -84,8 +86,26 @@ fn rows(
         1 => Observable::Marginal(0),
         _ => Observable::Joint(0, 1),
     };
+    rows_of(
+        Arc::new(model),
+        observable,
+        ends,
+        points,
+        axes,
+        &LocateOptions::default(),
+    )
+}
+
+fn rows_of(
+    model: Arc<Model>,
+    observable: Observable,
+    ends: (f64, f64),
+    points: usize,
+    axes: Vec<Axis>,
+    locate: &LocateOptions,
+) -> (SweepResult, Vec<LabelledPoint>) {
     let path = Path::parameter("theta", ends.0, ends.1);
-    let family = Family::new(Arc::new(model), &[], path).unwrap();
+    let family = Family::new(model, &[], path).unwrap();
     let problem = Problem::new(family, CellSpace::new(axes).unwrap(), vec![observable]).unwrap();
     let options = GeneratorMethodOptions::default();
     let source = GeneratorSource::new(&problem, &options).unwrap();
@@ -94,7 +114,7 @@ fn rows(
         &source,
         &detector,
         points,
-        &LocateOptions::default(),
+        locate,
         &Cancellation::new(),
         &mut (),
     )
@@ -228,4 +248,73 @@ fn a_fold_of_a_joint_density_is_located() {
     let (_, rows) = rows(model(2, 0.5, drift), (-0.5, 0.5), 16, axes);
     let truth = (4.0f64 / 27.0).sqrt();
     assert_located(&rows, &[-truth, truth], 1.0);
+}
+
+#[test]
+fn two_folds_within_one_step_that_undo_each_other_are_both_located() {
+    // Zeros of the slope at θ = x³ - k x, whose turns lie 4/3 (k/3)^(1/2) k apart: a ninth of a step.
+    fn drift(theta: f64, state: &[f64], slope: &mut [f64]) {
+        slope[0] = theta - 0.1 + 0.02 * state[0] - state[0].powi(3);
+    }
+    let axes = vec![Axis::uniform(-1.9, 1.9, 200).unwrap()];
+    let (result, rows) = rows(model(1, 0.3, drift), (-0.5, 0.513), 41, axes);
+    let fold = 2.0 * (0.02f64 / 3.0).powf(1.5);
+    assert_located(&rows, &[0.1 - fold, 0.1 + fold], 1.013);
+    assert!(result.points.len() < 65, "{}", result.points.len());
+}
+
+/// x and y independent of each other, each with a drift that is odd and whose curvature jumps at zero.
+fn with_quadratic_friction() -> Arc<Model> {
+    TypedModel::new("quadratic", "Quadratic friction", ["x", "y"])
+        .with_equation("x", "-x - 0.5 x abs(x)")
+        .with_equation("y", "theta y - 0.6 y abs(y) - 0.4 y^3")
+        .with_noise("x", ["0.6"])
+        .with_noise("y", ["0.7"])
+        .with_parameters(["theta"])
+        .build()
+        .unwrap()
+}
+
+#[test]
+fn a_split_at_a_place_where_the_curvature_of_the_drift_jumps_is_held_by_its_error() {
+    let axis = |cells| Axis::uniform(-2.7, 2.7, cells).unwrap();
+    for observable in [Observable::Marginal(1), Observable::Joint(0, 1)] {
+        let (_, rows) = rows_of(
+            with_quadratic_friction(),
+            observable,
+            (-0.713, 0.687),
+            8,
+            vec![axis(60), axis(60)],
+            &LocateOptions::default(),
+        );
+        assert_eq!(rows.len(), 1, "{}", words(&rows));
+        assert!(rows[0].value.abs() <= rows[0].error, "{}", words(&rows));
+        assert!(rows[0].value.abs() < 5e-3, "{}", words(&rows));
+    }
+}
+
+#[test]
+fn without_the_check_on_finer_cells_nothing_is_located() {
+    let unchecked = LocateOptions {
+        grid_check: false,
+        ..LocateOptions::default()
+    };
+    let axes = vec![Axis::uniform(-1.9, 1.9, 100).unwrap()];
+    let model = Arc::new(model(1, 0.3, tilted));
+    let (_, rows) = rows_of(
+        model,
+        Observable::Marginal(0),
+        (-0.5, 0.5),
+        21,
+        axes,
+        &unchecked,
+    );
+    assert_eq!(rows.len(), 2, "{}", words(&rows));
+    for row in &rows {
+        assert_eq!(row.status, Some(BifurcationStatus::Unchecked));
+        let reason = row.reason.as_deref().unwrap();
+        assert!(reason.contains("not checked on finer cells"), "{reason}");
+        assert!(unchecked.is_met_by(BifurcationStatus::Unchecked));
+        assert!(!LocateOptions::default().is_met_by(BifurcationStatus::Unchecked));
+    }
 }

@@ -14,7 +14,9 @@ use crate::continuation::curve::{
     CodimensionTwo, CodimensionTwoKind, Curve, CurveError, CurveOptions, CurveStart, CurveTree,
     Plane, codimension_two, follow, follow_all,
 };
-use crate::continuation::{BifurcationStatus, LabelledPoint, SourceError, SweepResult};
+use crate::continuation::{
+    BifurcationStatus, LabelledPoint, LocateOptions, SourceError, SweepResult,
+};
 use crate::figure::{curve_figure, write_figures};
 use crate::method::MethodError;
 use crate::run::{CurveFolder, format_number, format_with_error};
@@ -246,7 +248,7 @@ impl<'a> Job<'a> {
         for file in files {
             text += &format!("  {}\n", file.display());
         }
-        super::conclude(&text, outcome(tree), home)
+        super::conclude(&text, outcome(tree, &settings.locate), home)
     }
 
     fn summary(&self, tree: &CurveTree) -> String {
@@ -355,11 +357,11 @@ fn is_located(status: BifurcationStatus) -> bool {
 }
 
 /// How a command ends that gives these curves.
-fn outcome(tree: &CurveTree) -> Outcome {
+fn outcome(tree: &CurveTree, locate: &LocateOptions) -> Outcome {
     let mut points = tree.curves.iter().flat_map(|curve| &curve.points);
     if tree.curves.iter().any(Curve::is_interrupted) {
         Outcome::Interrupted
-    } else if tree.missed.is_empty() && points.all(|point| is_located(point.status)) {
+    } else if tree.missed.is_empty() && points.all(|point| locate.is_met_by(point.status)) {
         Outcome::Complete
     } else {
         Outcome::Partial

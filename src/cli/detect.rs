@@ -30,7 +30,7 @@ pub(super) fn run(arguments: &DetectArguments) -> Result<Outcome, CommandError> 
     let staged = StagedRun::new(output.path(), &arguments.run)?;
     write(&stored, seconds, staged.folder())?;
     staged.take_place()?;
-    let outcome = match outcome(&stored.result) {
+    let outcome = match outcome(&stored.result, &stored.spec.settings.locate) {
         // It was the run that was interrupted, not this command.
         Outcome::Interrupted => Outcome::Partial,
         outcome => outcome,

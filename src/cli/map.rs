@@ -11,10 +11,9 @@ use super::output::OutputFolder;
 use super::sweep::progress::Progress;
 use super::{CommandError, Outcome};
 use crate::cancellation::Cancellation;
-use crate::continuation::BifurcationStatus;
-use crate::continuation::SourceError;
 use crate::continuation::curve::Curve;
 use crate::continuation::map::{MapNode, MapProgress, RegimeMap};
+use crate::continuation::{BifurcationStatus, LocateOptions, SourceError};
 use crate::figure::{map_figures, write_figures};
 use crate::run::{MapCheckpoint, MapFolder, format_with_error};
 use crate::sweep_file::{Diagnostic, Sweep};
@@ -76,7 +75,7 @@ pub(super) fn run(
         for file in home.take_place()? {
             text += &format!("  {}\n", file.display());
         }
-        super::conclude(&text, outcome(&map), output.path())
+        super::conclude(&text, outcome(&map, &settings.locate), output.path())
     })
 }
 
@@ -263,10 +262,10 @@ fn line(map: &RegimeMap, index: usize, curve: &Curve) -> String {
 }
 
 /// How a command ends that gives this map.
-fn outcome(map: &RegimeMap) -> Outcome {
+fn outcome(map: &RegimeMap, locate: &LocateOptions) -> Outcome {
     let located = |curve: &Curve| {
         let mut points = curve.points.iter();
-        points.all(|point| point.status == BifurcationStatus::Located)
+        points.all(|point| locate.is_met_by(point.status))
     };
     if map.interrupted {
         Outcome::Interrupted

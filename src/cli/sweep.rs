@@ -15,7 +15,9 @@ use super::args::SweepArguments;
 use super::output::OutputFolder;
 use super::{CommandError, Outcome, warnings};
 use crate::cancellation::Cancellation;
-use crate::continuation::{BifurcationStatus, Shard, SweepError, SweepResult, sweep_shard};
+use crate::continuation::{
+    BifurcationStatus, LocateOptions, Shard, SweepError, SweepResult, sweep_shard,
+};
 use crate::figure::{Figures, write_figures};
 use crate::method::MethodError;
 use crate::run::{
@@ -216,7 +218,11 @@ impl<'a> Run<'a> {
             let (text, outcome) = shards::told(&result, (*shard, home), path);
             return super::conclude(&text, outcome, path);
         }
-        super::conclude(&summary::text(&result, path), outcome(&result), path)
+        super::conclude(
+            &summary::text(&result, path),
+            outcome(&result, &self.spec.settings.locate),
+            path,
+        )
     }
 
     /// `None` where an interrupt came before what is stored was read.
@@ -335,10 +341,9 @@ pub(super) fn draw(
 }
 
 /// How a command ends that gives this result.
-pub(super) fn outcome(result: &SweepResult) -> Outcome {
-    let unresolved = |status: Option<BifurcationStatus>| {
-        status.is_some_and(|status| status != BifurcationStatus::Located)
-    };
+pub(super) fn outcome(result: &SweepResult, locate: &LocateOptions) -> Outcome {
+    let unresolved =
+        |status: Option<BifurcationStatus>| status.is_some_and(|status| !locate.is_met_by(status));
     if result.interrupted {
         Outcome::Interrupted
     } else if result

@@ -29,14 +29,15 @@ impl PointType {
 /// How well a P-bifurcation is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum BifurcationStatus {
-    /// Its bracket and its error are within the tolerance.
+    /// Its bracket and its error are within the tolerance, and finer cells, where there are any, show it too.
     Located,
     /// The data cannot tell where in the bracket it lies.
     Unresolved,
     /// A finer grid does not show it there, or there is none to check a cell map that adds diffusion of its own, or, where
     /// only persistence tells, its feature is nowhere more than a few cells from another: it may be an effect of the cells.
     Unconfirmed,
-    /// A check failed: [`LabelledPoint::reason`] says why. The value may be right.
+    /// Finer cells were not asked ([`LocateOptions::grid_check`](super::LocateOptions::grid_check) is off), so that its error lacks what the cells do
+    /// to it; or a check failed: [`LabelledPoint::reason`] says which. The value may be right.
     Unchecked,
 }
 

@@ -4,8 +4,8 @@ use super::change::{Change, Found, changes};
 use super::grid::{Checked, Checks, GridCheck, Leak, share_of_distance};
 use super::label::{self, BifurcationStatus, LabelledPoint, PointType};
 use super::root::{Root, root};
-use super::{Goal, Point, PointStatus, Subject, persistence, words};
-use crate::density::{Density, Observable};
+use super::{CellCheck, Goal, Point, PointStatus, Subject, persistence, words};
+use crate::density::{Density, EstimatedDensity, Kink, Observable};
 use crate::topology::{Detector, IndicatorKind};
 
 /// So many rows in a row that are not located are one.
@@ -261,7 +261,9 @@ fn by_indicator(
         .flatten();
     match &on_finer {
         Some(GridCheck::Confirmed(value)) => {
-            found.error.grid = share_of_distance(subject.cell_check) * (value - found.value).abs();
+            let density = &a.densities[change.observable];
+            let share = share_of_distance(subject.cell_check) * by_chance(density, checked.place);
+            found.error.grid = share * (value - found.value).abs();
             found.value = *value;
         }
         Some(GridCheck::Failed(reason)) => failed = Some(format!("on finer cells: {reason}")),
@@ -293,6 +295,7 @@ fn by_indicator(
     let wiggles = [a, b].map(|one| negative_share(&one.densities[change.observable].density));
     let wiggles = wiggles[0].max(wiggles[1]);
     let is_torn = depends_on_cells && wiggles > MOST_NEGATIVE;
+    let lacks_check = on_finer.is_none() && depends_on_cells && is_checkable(subject);
     row.status = Some(match on_finer {
         Some(GridCheck::Unconfirmed) => BifurcationStatus::Unconfirmed,
         _ if failed.is_some() => BifurcationStatus::Unchecked,
@@ -300,14 +303,56 @@ fn by_indicator(
             BifurcationStatus::Unresolved
         }
         None if diffused && depends_on_cells => BifurcationStatus::Unconfirmed,
+        None if lacks_check => BifurcationStatus::Unchecked,
         _ => BifurcationStatus::Located,
     });
     row.reason = failed
         .or_else(|| unsound.map(|point| point.report.status.word().to_owned()))
         .or_else(|| is_torn.then(|| torn(wiggles)))
         .or_else(|| leaks(&found, error, options, subject, [a, b]))
-        .or_else(|| coarse(&found, error, options));
+        .or_else(|| coarse(&found, error, options))
+        .or_else(|| lacks_check.then(|| not_checked(options)));
     row
+}
+
+/// Cells on either side of a place that what is read there depends on.
+const REACH: usize = 4;
+/// By how much a distance to finer cells may be too small by chance there.
+const CHANCE: f64 = 10.0;
+
+/// One, or more beside a kink that lies inside a cell, as where in its cell differs from grid to grid, and with it the error; and beside a bend that a
+/// scheme has followed, whose order is not known there.
+fn by_chance(estimated: &EstimatedDensity, place: &[f64]) -> f64 {
+    let is_cut = |kink: &Kink| {
+        let Some((axis, place)) = estimated
+            .density
+            .axes
+            .get(kink.axis)
+            .zip(place.get(kink.axis))
+        else {
+            return false;
+        };
+        let cells = axis.find(kink.at).zip(axis.find(*place));
+        let is_blurred = kink.is_bend() && !estimated.is_by_quadrature();
+        let is_near = cells.is_some_and(|(a, b)| a.abs_diff(b) <= REACH);
+        is_near && (is_blurred || !axis.has_face_at(kink.at))
+    };
+    let mut kinks = estimated.structure.kinks.iter();
+    if kinks.any(is_cut) { CHANCE } else { 1.0 }
+}
+
+/// Whether finer cells could tell what the cells do to a value.
+fn is_checkable(subject: &Subject) -> bool {
+    matches!(subject.cell_check, CellCheck::OnFinerCells { .. })
+}
+
+/// The sentence for a value that finer cells could have checked, and have not.
+fn not_checked(options: &Goal) -> String {
+    let why = match options.grid_check {
+        false => "locate.grid_check is \"off\"",
+        true => "the sweep ended before, or holds no checks",
+    };
+    format!("not checked on finer cells ({why}): its error lacks what the cells do to it")
 }
 
 /// The sentence for a value that cells, solver or sampling make uncertain.

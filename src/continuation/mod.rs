@@ -7,6 +7,7 @@ mod again;
 mod bracket;
 mod change;
 pub mod curve;
+mod dips;
 mod events;
 mod finding;
 mod follow;
@@ -55,7 +56,8 @@ pub struct LocateOptions {
     pub relative_tolerance: f64,
     /// Hellinger distance between neighbouring densities above which a value between is solved too.
     pub largest_distance: f64,
-    /// Whether located values are checked on a finer grid, where the source has one.
+    /// Whether located values are checked on a finer grid, where the source has one; those that could be, and are not, are
+    /// [`BifurcationStatus::Unchecked`].
     pub grid_check: bool,
 }
 
@@ -71,6 +73,15 @@ impl Default for LocateOptions {
 }
 
 impl LocateOptions {
+    /// Whether a row or a point of this status is all that was asked for: located, or unchecked where no check was wanted.
+    pub fn is_met_by(&self, status: BifurcationStatus) -> bool {
+        match status {
+            BifurcationStatus::Located => true,
+            BifurcationStatus::Unchecked => !self.grid_check,
+            BifurcationStatus::Unresolved | BifurcationStatus::Unconfirmed => false,
+        }
+    }
+
     /// What is wanted on a range of this length, in units of the parameter.
     fn goal(&self, length: f64) -> Goal {
         Goal {

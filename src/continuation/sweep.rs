@@ -4,7 +4,8 @@
 use std::time::Instant;
 
 use super::bracket::is_settled;
-use super::change::{Change, Found, changes, crossings_at_centre, dip};
+use super::change::{Change, Found, changes, crossings_at_centre};
+use super::dips::{self, Flanks};
 use super::grid::CheckedIndicator;
 use super::live::Live;
 use super::locate::label_points;
@@ -110,6 +111,7 @@ pub fn sweep_shard(
         remaining: values.len(),
         may_fail: shard.number() > 1,
         points: Vec::new(),
+        flanks: Vec::new(),
         interrupted: false,
     };
     let mut previous: Option<f64> = None;
@@ -153,6 +155,8 @@ struct Run<'a> {
     may_fail: bool,
     /// Ascending in the parameter.
     points: Vec<Point>,
+    /// One a point, in the same order.
+    flanks: Vec<Flanks>,
     interrupted: bool,
 }
 
@@ -187,7 +191,9 @@ impl Run<'_> {
         };
         let densities = solution.densities;
         let detections = densities.iter().map(|d| self.detector.detect(d)).collect();
+        let flanks = densities.iter().map(|d| self.detector.flanks(d)).collect();
         let place = self.points.partition_point(|point| point.value < value);
+        self.flanks.insert(place, flanks);
         let point = Point {
             value,
             report: solution.report,
@@ -250,7 +256,8 @@ impl Run<'_> {
             .filter(|point| !point.detections.is_empty())
             .collect();
         let tolerance = self.options.tolerance;
-        let dip = dip(&solved, tolerance).filter(|value| self.is_new(value));
+        let dip = dips::at_centre(&solved, tolerance).or_else(|| self.dip_on_flanks());
+        let dip = dip.filter(|value| self.is_new(value));
         if let Some(value) = dip.or_else(|| self.next_at_centre(&solved)) {
             return Some(value);
         }
@@ -274,6 +281,16 @@ impl Run<'_> {
         };
         let mut changes = changes.iter();
         changes.find_map(|change| wanted(change).filter(|value| self.is_new(value)))
+    }
+
+    /// A value between, at which a pair of peak and valley may be there, or not be there, for a while.
+    fn dip_on_flanks(&self) -> Option<f64> {
+        let pairs = self.points.iter().zip(&self.flanks);
+        let solved: Vec<(&Point, &Flanks)> = pairs
+            .filter(|(point, _)| !point.detections.is_empty())
+            .collect();
+        let tolerance = self.options.tolerance;
+        dips::between_flanks(&solved, tolerance).or_else(|| dips::on_flanks(&solved, tolerance))
     }
 
     /// Narrows every change of sign at a centre of symmetry, and looks at the stage between two of them.

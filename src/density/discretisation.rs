@@ -62,6 +62,11 @@ fn of_both(
 }
 
 impl EstimatedDensity {
+    /// Whether the cells' masses are integrals of the density itself, free of any scheme.
+    pub fn is_by_quadrature(&self) -> bool {
+        self.negligible == 0.0
+    }
+
     /// Share of the maximum below which heights tell nothing: what the solver leaves, or more where the density is
     /// negative. A density is nowhere so: values below zero are wiggles of the scheme, and what is not clearly higher than they are
     /// deep is one of them. Noise has errors of its own.

@@ -5,11 +5,11 @@
 pub struct Structure {
     /// Point of symmetry, one coordinate an axis: p(c + u) = p(c - u). `None` where the system declares none.
     pub centre: Option<Vec<f64>>,
-    /// Planes on which the derivative of the density jumps.
+    /// Planes on which a derivative of the density jumps.
     pub kinks: Vec<Kink>,
 }
 
-/// A plane on which the derivative of the density jumps, because the drift across it does.
+/// A plane on which the derivative of the density jumps, because the drift across it does, or bends.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Kink {
     /// Axis of the density (0 or 1) on which the plane stands.
@@ -17,13 +17,18 @@ pub struct Kink {
     /// Its coordinate there.
     pub at: f64,
     /// Jump of ∂(log p)/∂(axis) from below to above the plane, (2/b²)(a(above) - a(below)) with drift a and noise
-    /// amplitude b across it: one value a cell of the other axis, a single one for a marginal.
+    /// amplitude b across it: one value a cell of the other axis, a single one for a marginal; none where only higher derivatives jump.
     pub jump: Vec<f64>,
 }
 
 impl Kink {
     /// Jump of the slope of log p, times the range of the axis across, that is rounding.
     pub const ROUNDING: f64 = 1e-7;
+
+    /// Whether the derivative bends there, and does not jump: no polynomial follows the density across, yet its slope is one.
+    pub fn is_bend(&self) -> bool {
+        self.jump.is_empty()
+    }
 
     /// The jump at a cell of the other axis (0 for a marginal).
     pub fn jump_at(&self, cell: usize) -> f64 {

@@ -9,7 +9,7 @@
 //! | `p_x_error` | as `p_x` | standard error |
 //! | `p_x_second` | as `p_x` | density by a second discretisation (generator) |
 //! | `p_x_replicate` | parameter, replicate, axes … | densities without one group of samples each (SGCM) |
-//! | `p_y_kink_0` | parameter; for a joint density also the other axis | jump of ∂(log p)/∂(axis) across a plane; attributes `axis`, `at` |
+//! | `p_y_kink_0` | parameter; for a joint density also the other axis | jump of ∂(log p)/∂(axis) across a plane; attributes `axis`, `at`; zero with the attribute `bends` where only higher derivatives jump |
 //!
 //! Kinks are numbered in the order in which they first occur. NaN stands for what is not there at a parameter value. A symmetry is that of the equations all along a sweep, hence an attribute.
 
@@ -48,6 +48,8 @@ pub(super) const NEGLIGIBLE: &str = "negligible";
 pub(super) const KINK_AXIS: &str = "axis";
 /// See [`KINK_AXIS`].
 pub(super) const KINK_AT: &str = "at";
+/// Whether the slope bends there and does not jump: see [`Kink::is_bend`].
+pub(super) const KINK_BENDS: &str = "bends";
 
 /// One array of the store.
 #[derive(Debug, Clone, PartialEq)]
@@ -191,9 +193,13 @@ impl Layout {
         // The plane leaves the other axis, if there is one.
         layout.dimensions.remove(1 + kink.axis);
         layout.chunk.remove(1 + kink.axis);
-        layout
+        let layout = layout
             .attribute(KINK_AXIS, axis.into())
-            .attribute(KINK_AT, json!(kink.at))
+            .attribute(KINK_AT, json!(kink.at));
+        match kink.is_bend() {
+            true => layout.attribute(KINK_BENDS, json!(true)),
+            false => layout,
+        }
     }
 
     /// An array with one value a cell and parameter value; the number of parameter values is set when it is stored.
@@ -223,6 +229,7 @@ impl Layout {
                 name,
                 layout.attributes.get(KINK_AXIS).cloned(),
                 layout.attributes.get(KINK_AT).cloned(),
+                layout.attributes.contains_key(KINK_BENDS),
             )
         };
         self.attributes.contains_key(KINK_AT) && of(self) == of(other)

@@ -44,6 +44,7 @@ struct Observed {
 struct StoredKink {
     axis: usize,
     at: f64,
+    bends: bool,
     jump: StoredArray,
 }
 
@@ -124,6 +125,7 @@ impl Observed {
             let jump = read(&kink.jump)?;
             if !is_missing(&jump) {
                 let (axis, at) = (kink.axis, kink.at);
+                let jump = if kink.bends { Vec::new() } else { jump };
                 kinks.push(Kink { axis, at, jump });
             }
         }
@@ -320,6 +322,7 @@ impl Opened {
                 let axes = observable.axes();
                 let axis = axes.iter().position(|&a| Some(family.axis(a)) == axis);
                 let at = attributes.get(arrays::KINK_AT).and_then(Value::as_f64);
+                let bends = attributes.contains_key(arrays::KINK_BENDS);
                 let (Some(axis), Some(at)) = (axis, at) else {
                     let words = format!("array `{name}` does not say on which plane it stands");
                     return Err(unreadable(&self.path, words));
@@ -327,7 +330,12 @@ impl Opened {
                 let mut rest = shape.to_vec();
                 rest.remove(axis);
                 let jump = self.shaped(name, &rest)?;
-                Ok(StoredKink { axis, at, jump })
+                Ok(StoredKink {
+                    axis,
+                    at,
+                    bends,
+                    jump,
+                })
             })
             .collect()
     }

@@ -4,6 +4,7 @@ use super::critical::{Critical, height_above};
 use super::field::Field;
 use super::indicator::{
     Found, at_centre, beside_kink, corrected, fold, put_right, quartic, ring_slope, shoulder,
+    shoulders,
 };
 use super::persistence::{Component, Grid, components};
 use super::refine::refine;
@@ -11,10 +12,10 @@ use super::ridge;
 use super::significance::{Judgement, Limits};
 use super::surroundings::{contents, rims};
 use super::{
-    DetectOptions, Detection, Detector, Feature, FeatureKind, Indicator, IndicatorKind, Signature,
-    Verdict,
+    DetectOptions, Detection, Detector, Feature, FeatureKind, Flank, Indicator, IndicatorKind,
+    Signature, Verdict,
 };
-use crate::density::EstimatedDensity;
+use crate::density::{EstimatedDensity, Kink};
 
 /// How many absent features of each kind are listed, so that a birth can be followed.
 const ABSENT_LISTED: usize = 4;
@@ -136,7 +137,7 @@ impl PersistenceDetector {
 /// plane a ridge has a sharp edge, which no polynomial follows.
 pub(super) fn is_smooth(estimated: &EstimatedDensity) -> bool {
     let is_marginal = estimated.density.axes.len() == 1;
-    !estimated.is_noisy() && (is_marginal || estimated.structure.kinks.is_empty())
+    !estimated.is_noisy() && (is_marginal || estimated.structure.kinks.iter().all(Kink::is_bend))
 }
 
 /// A component between the cells.
@@ -346,6 +347,10 @@ impl Detector for PersistenceDetector {
             IndicatorKind::Quartic => quartic(density),
             kind => at_centre(density).into_iter().find(|one| one.kind == kind),
         }
+    }
+
+    fn flanks(&self, density: &EstimatedDensity) -> Vec<Flank> {
+        shoulders(density)
     }
 
     fn confidence(&self) -> f64 {

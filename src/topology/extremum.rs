@@ -8,6 +8,7 @@
 use std::ops::Range;
 
 use super::FeatureKind;
+use super::field::sides;
 use super::reconstruction::{Line, interpolating};
 use crate::density::EstimatedDensity;
 use crate::space::Axis;
@@ -40,21 +41,39 @@ pub(super) fn extremum(
     kind: FeatureKind,
 ) -> Option<Place> {
     let axis = without_noise(estimated)?;
-    let faces = kinks(estimated, axis);
-    let smooth = between(&faces, axis.count(), cell);
+    let kinks = kinks(estimated, axis);
+    // Of a cell that a jump cuts, the side of the guess.
+    let is_cut = kinks
+        .iter()
+        .any(|kink| kink.below == cell && kink.above > cell);
+    let about = if is_cut { guess } else { axis.centre(cell) };
     let values = &estimated.density.values;
-    let local = Local::about(axis, values, &smooth, window(axis, cell, guess))?;
     let edges = axis.edges();
     let near = (
-        edges[cell.saturating_sub(1).max(smooth.start)],
-        edges[(cell + 2).min(smooth.end)],
+        edges[cell.saturating_sub(1)],
+        edges[(cell + 2).min(axis.count())],
     );
-    let place = local
-        .extrema(near, kind)
+    let found = |about: f64| -> Vec<(f64, f64)> {
+        let smooth = Smooth::about(axis, &kinks, about);
+        let near = (near.0.max(smooth.ends.0), near.1.min(smooth.ends.1));
+        let window = window(axis, cell, guess);
+        let Some(local) = Local::about(axis, values, &smooth.cells, window) else {
+            return Vec::new();
+        };
+        let places = local.extrema(near, kind).into_iter();
+        places.map(|at| (at, local.value(at))).collect()
+    };
+    // Beyond a bend the density goes on.
+    let bends = kinks
+        .iter()
+        .filter(|kink| kink.is_bend && near.0 < kink.at && kink.at < near.1);
+    let beyond = bends.flat_map(|kink| found(if about < kink.at { kink.at } else { near.0 }));
+    let mut places = found(about);
+    places.extend(beyond);
+    let place = places
         .into_iter()
-        .min_by(|a, b| (a - guess).abs().total_cmp(&(b - guess).abs()))
-        .map(|at| (at, local.value(at)))
-        .or_else(|| at_kink(axis, values, &faces, cell, kind))?;
+        .min_by(|a, b| (a.0 - guess).abs().total_cmp(&(b.0 - guess).abs()))
+        .or_else(|| at_kink(axis, values, &kinks, cell, kind))?;
     // A polynomial that misses the cell it is about does not describe the density.
     let above = sign(kind) * (place.1 - values[cell]);
     (above >= -1e-9 * values[cell].abs()).then(|| Place {
@@ -66,17 +85,16 @@ pub(super) fn extremum(
 /// A marginal without noise at a place; at a kink the mean of both sides. `None` for other densities.
 pub(super) fn density_at(estimated: &EstimatedDensity, at: f64) -> Option<f64> {
     let axis = without_noise(estimated)?;
-    let (values, faces) = (&estimated.density.values, kinks(estimated, axis));
+    let (values, kinks) = (&estimated.density.values, kinks(estimated, axis));
     let cell = axis.find(at)?;
-    let kink = axis.face_at(at).filter(|face| faces.contains(face));
-    match kink {
-        Some(face) => {
-            let (below, above) = beside(axis, values, &faces, face)?;
+    match kinks.iter().find(|kink| axis.is_same_place(at, kink.at)) {
+        Some(kink) => {
+            let (below, above) = beside(axis, values, &kinks, kink)?;
             Some(0.5 * (below.value(at) + above.value(at)))
         }
         None => {
-            let smooth = between(&faces, axis.count(), cell);
-            let local = Local::about(axis, values, &smooth, window(axis, cell, at))?;
+            let smooth = Smooth::about(axis, &kinks, at);
+            let local = Local::about(axis, values, &smooth.cells, window(axis, cell, at))?;
             Some(local.value(at))
         }
     }
@@ -90,17 +108,54 @@ fn without_noise(estimated: &EstimatedDensity) -> Option<&Axis> {
     }
 }
 
-/// Faces on which the density has a kink.
-fn kinks(estimated: &EstimatedDensity, axis: &Axis) -> Vec<usize> {
-    let kinks = estimated.structure.kinks.iter();
-    kinks.filter_map(|kink| axis.face_at(kink.at)).collect()
+/// A place where the derivative of a marginal jumps or bends.
+struct Break {
+    at: f64,
+    /// Where the cells wholly below it end, and where those wholly above it begin.
+    below: usize,
+    above: usize,
+    is_bend: bool,
 }
 
-/// The cells around one up to the next kinks.
-fn between(kinks: &[usize], count: usize, cell: usize) -> Range<usize> {
-    let below = kinks.iter().copied().filter(|&face| face <= cell);
-    let above = kinks.iter().copied().filter(|&face| face > cell);
-    below.max().unwrap_or(0)..above.min().unwrap_or(count)
+fn kinks(estimated: &EstimatedDensity, axis: &Axis) -> Vec<Break> {
+    let kinks = estimated.structure.kinks.iter();
+    let found = kinks.filter_map(|kink| {
+        let (below, above) = sides(axis, kink.at)?;
+        Some(Break {
+            at: kink.at,
+            below,
+            above,
+            is_bend: kink.is_bend(),
+        })
+    });
+    found.collect()
+}
+
+/// Where a marginal is smooth.
+struct Smooth {
+    /// The cells wholly in it.
+    cells: Range<usize>,
+    ends: (f64, f64),
+}
+
+impl Smooth {
+    /// From one kink to the next about a place; what is on a kink counts with the side above.
+    fn about(axis: &Axis, kinks: &[Break], at: f64) -> Self {
+        let mut smooth = Self {
+            cells: 0..axis.count(),
+            ends: (axis.from(), axis.to()),
+        };
+        for kink in kinks {
+            if at >= kink.at {
+                smooth.cells.start = smooth.cells.start.max(kink.above);
+                smooth.ends.0 = smooth.ends.0.max(kink.at);
+            } else {
+                smooth.cells.end = smooth.cells.end.min(kink.below);
+                smooth.ends.1 = smooth.ends.1.min(kink.at);
+            }
+        }
+        smooth
+    }
 }
 
 /// The cells about a place: first, and how many.
@@ -112,22 +167,23 @@ fn window(axis: &Axis, cell: usize, guess: f64) -> (usize, usize) {
     }
 }
 
-/// A kink beside the cell at which the density turns: it rises toward a peak on both sides, and falls toward a valley.
+/// A kink in or beside the cell at which the density turns: it rises toward a peak on both sides, and falls toward a valley.
 fn at_kink(
     axis: &Axis,
     values: &[f64],
-    kinks: &[usize],
+    kinks: &[Break],
     cell: usize,
     kind: FeatureKind,
 ) -> Option<(f64, f64)> {
-    let face = *kinks
-        .iter()
-        .find(|&&face| face == cell || face == cell + 1)?;
-    let at = axis.edges()[face];
-    let (below, above) = beside(axis, values, kinks, face)?;
+    let is_near = |kink: &&Break| kink.below <= cell + 1 && kink.above >= cell;
+    let kink = kinks.iter().find(is_near)?;
+    let (below, above) = beside(axis, values, kinks, kink)?;
     let sign = sign(kind);
-    let turns = sign * below.slope(at) >= 0.0 && sign * above.slope(at) <= 0.0;
-    turns.then(|| (at, 0.5 * (below.value(at) + above.value(at))))
+    let turns = sign * below.slope(kink.at) >= 0.0 && sign * above.slope(kink.at) <= 0.0;
+    turns.then(|| {
+        let height = 0.5 * (below.value(kink.at) + above.value(kink.at));
+        (kink.at, height)
+    })
 }
 
 /// 1 for what is highest, -1 for what is lowest.
@@ -139,14 +195,15 @@ fn sign(kind: FeatureKind) -> f64 {
 }
 
 /// The polynomials on both sides of a kink.
-fn beside(axis: &Axis, values: &[f64], kinks: &[usize], face: usize) -> Option<(Local, Local)> {
+fn beside(axis: &Axis, values: &[f64], kinks: &[Break], kink: &Break) -> Option<(Local, Local)> {
     let count = 2 * REACH - 1;
     let side = |cell: usize, first: usize| {
-        let smooth = between(kinks, axis.count(), cell);
-        (cell < axis.count()).then(|| Local::about(axis, values, &smooth, (first, count)))?
+        let smooth =
+            (cell < axis.count()).then(|| Smooth::about(axis, kinks, axis.centre(cell)))?;
+        Local::about(axis, values, &smooth.cells, (first, count))
     };
-    let below = side(face.checked_sub(1)?, face.saturating_sub(count))?;
-    Some((below, side(face, face)?))
+    let below = side(kink.below.checked_sub(1)?, kink.below.saturating_sub(count))?;
+    Some((below, side(kink.above, kink.above)?))
 }
 
 /// The polynomial through the averages over some cells.

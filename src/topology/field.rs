@@ -1,7 +1,7 @@
 //! The density between the cells: value and derivatives at any point, from the averages over the cells around it.
 //!
 //! A polynomial of high order along each axis, its window moved inward at the ends of the ranges and kept on one side of
-//! planes on which the derivative jumps. Two levels, of eight and of six cells; what they differ by is the error of the reconstruction.
+//! planes on which a derivative jumps. Two levels, of eight and of six cells; what they differ by is the error of the reconstruction.
 //! Derivatives are in units of the ranges of the axes, so that curvatures along different axes can be compared.
 
 use std::ops::Range;
@@ -124,7 +124,8 @@ impl<'a> Field<'a> {
     pub(super) fn plane_near(&self, k: usize, at: f64) -> Option<f64> {
         let width = self.cell_width(k, at) * self.unit(k);
         let kinks = self.estimated.structure.kinks.iter();
-        let mut near = kinks.filter(|kink| kink.axis == k && (kink.at - at).abs() <= 1.5 * width);
+        let jumps = kinks.filter(|kink| kink.axis == k && !kink.is_bend());
+        let mut near = jumps.filter(|kink| (kink.at - at).abs() <= 1.5 * width);
         near.next().map(|kink| kink.at)
     }
 
@@ -137,7 +138,7 @@ impl<'a> Field<'a> {
             .structure
             .kinks
             .iter()
-            .filter(|kink| kink.axis == k)
+            .filter(|kink| kink.axis == k && !kink.is_bend())
         {
             if kink.at <= at {
                 low = low.max(kink.at);
@@ -162,29 +163,31 @@ impl<'a> Field<'a> {
             .iter()
             .filter(|kink| kink.axis == k)
         {
-            let Some(face) = nearest_face(axis, kink.at) else {
+            let Some((below, above)) = sides(axis, kink.at) else {
                 continue;
             };
-            if at >= axis.edges()[face] {
-                low = low.max(face);
+            // Both ends of the sides of a face are that face.
+            if at >= kink.at.max(axis.edges()[below]) {
+                low = low.max(above);
             } else {
-                high = high.min(face);
+                high = high.min(below);
             }
         }
         let length = 2 * reach;
-        if high - low < length {
-            return (high - low >= 4).then_some(low..high);
+        if high < low + length {
+            return (high >= low + 4).then_some(low..high);
         }
         let first = middle.saturating_sub(reach).clamp(low, high - length);
         Some(first..first + length)
     }
 }
 
-/// Index of the edge nearest to a coordinate.
-fn nearest_face(axis: &Axis, at: f64) -> Option<usize> {
-    let cell = axis.find(at)?;
-    let below = at - axis.edges()[cell] < axis.edges()[cell + 1] - at;
-    Some(if below { cell } else { cell + 1 })
+/// Where the cells wholly below a plane end, and where those wholly above it begin: a cell that the plane cuts belongs to neither side.
+pub(super) fn sides(axis: &Axis, plane: f64) -> Option<(usize, usize)> {
+    match axis.face_at(plane) {
+        Some(face) => Some((face, face)),
+        None => axis.find(plane).map(|cell| (cell, cell + 1)),
+    }
 }
 
 impl Stencil {

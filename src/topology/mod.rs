@@ -24,7 +24,7 @@ mod calibration_tests;
 mod invariance_tests;
 
 pub use detector::PersistenceDetector;
-pub use indicator::{Indicator, IndicatorKind};
+pub use indicator::{Flank, Indicator, IndicatorKind};
 pub(crate) use indicator::{born_at_kink, two_sided_limit};
 pub use signature::Signature;
 
@@ -140,6 +140,12 @@ pub trait Detector: Send + Sync {
     ) -> Option<Indicator> {
         let _ = (density, kind, near);
         None
+    }
+
+    /// Places of a marginal where a pair of peak and valley may be about to come or go; none where the detector knows of none.
+    fn flanks(&self, density: &EstimatedDensity) -> Vec<Flank> {
+        let _ = density;
+        Vec::new()
     }
 
     /// Probability with which errors are stated and a sweep's findings hold.

@@ -7,19 +7,21 @@
 use super::*;
 
 /// A system of one axis by what its equation says and by what its density is.
-struct Formula {
-    family: &'static str,
-    drift: String,
-    noise: String,
+pub(super) struct Formula {
+    pub(super) family: &'static str,
+    pub(super) drift: String,
+    pub(super) noise: String,
     /// Drift less b b' at θ, and b².
-    slope: Box<dyn Fn(f64, f64) -> f64>,
-    intensity: Box<dyn Fn(f64) -> f64>,
+    pub(super) slope: Box<dyn Fn(f64, f64) -> f64>,
+    pub(super) intensity: Box<dyn Fn(f64) -> f64>,
     /// Parameter at which the slope is zero at a place, and how fast the place moves with it.
-    zero: Box<dyn Fn(f64) -> f64>,
-    speed: f64,
-    ends: (f64, f64),
+    pub(super) zero: Box<dyn Fn(f64) -> f64>,
+    pub(super) speed: f64,
+    pub(super) ends: (f64, f64),
+    /// Places where the slope jumps.
+    pub(super) breaks: Vec<f64>,
     /// Where to look for the density.
-    within: (f64, f64),
+    pub(super) within: (f64, f64),
 }
 
 impl Formula {
@@ -39,7 +41,8 @@ impl Formula {
             // A pole turns the sign too, but not there.
             let is_near = |x: f64| self.ends.0 < (self.zero)(x) && (self.zero)(x) < self.ends.1;
             let rises = rate(a) > 0.0;
-            if !is_near(a) || !is_near(b) || rises == (rate(b) > 0.0) {
+            let is_broken = self.breaks.iter().any(|at| (at - a).abs() < 1e-3);
+            if is_broken || !is_near(a) || !is_near(b) || rises == (rate(b) > 0.0) {
                 continue;
             }
             for _ in 0..50 {
@@ -49,13 +52,41 @@ impl Formula {
                     false => b = middle,
                 }
             }
+            // Where it bends, differences are off by their step.
+            let reach = 4e-5 * (1.0 + a.abs());
+            let (mut a, mut b) = (a - reach, b + reach);
+            for _ in 0..80 {
+                let (left, right) = (a + (b - a) / 3.0, b - (b - a) / 3.0);
+                match ((self.zero)(left) < (self.zero)(right)) == rises {
+                    true => a = left,
+                    false => b = right,
+                }
+            }
             let value = (self.zero)(0.5 * (a + b));
             let place = a + self.speed * value;
             if from < place && place < to {
                 values.push(value);
             }
         }
+        values.extend(self.jumps());
         values.sort_by(f64::total_cmp);
+        values
+    }
+
+    /// Values at which the slope is zero on one side of a place where it jumps, and the number of peaks changes.
+    fn jumps(&self) -> Vec<f64> {
+        let beside = self.breaks.iter().flat_map(|at| [at - 1e-11, at + 1e-11]);
+        let mut values: Vec<f64> = beside.map(|x| (self.zero)(x)).collect();
+        let peaks = |theta: f64| {
+            let n = 100_000;
+            let (low, high) = self.within;
+            let at = |i: usize| low + (high - low) * (i as f64 + 0.31) / f64::from(n);
+            let falls = |i: &usize| (self.zero)(at(i - 1)) < theta && (self.zero)(at(*i)) >= theta;
+            (1..n as usize).filter(falls).count()
+        };
+        let small = 5e-4 * (self.ends.1 - self.ends.0);
+        values.retain(|one| self.ends.0 < *one && *one < self.ends.1);
+        values.retain(|one| peaks(one - small) != peaks(one + small));
         values
     }
 
@@ -88,7 +119,7 @@ impl Formula {
         )
     }
 
-    fn case(self, cells: usize) -> Case {
+    pub(super) fn case(self, cells: usize) -> Case {
         let (from, to) = self.range();
         let model = TypedModel::new("random", "A random system", ["x"])
             .with_equation("x", &self.drift)
@@ -125,6 +156,7 @@ fn sines(dice: &mut Dice) -> Formula {
         intensity: Box::new(move |_| sigma * sigma),
         zero: Box::new(move |x| c * x - a * (k * x).sin()),
         speed: 0.0,
+        breaks: Vec::new(),
         ends: (-1.513, 1.487),
         within: (-12.0, 12.0),
     }
@@ -146,6 +178,7 @@ fn bumps(dice: &mut Dice) -> Formula {
         intensity: Box::new(move |_| sigma * sigma),
         zero: Box::new(move |x| x / bump(x)),
         speed: 0.0,
+        breaks: Vec::new(),
         ends: (0.2, 8.0),
         within: (-8.0, 8.0),
     }
@@ -167,6 +200,7 @@ fn steep_noise(dice: &mut Dice) -> Formula {
         intensity: Box::new(move |x| s * (q * x).exp()),
         zero: Box::new(move |x| bb(x) + x.powi(5) - k * x),
         speed: 0.0,
+        breaks: Vec::new(),
         ends: (-1.513, 1.487),
         within: (-4.0, 4.0),
     }
@@ -188,6 +222,7 @@ fn genes(dice: &mut Dice) -> Formula {
         intensity: Box::new(move |x| d * (0.2 + x)),
         zero: Box::new(move |x| 0.5 * d + x - made(x)),
         speed: 0.0,
+        breaks: Vec::new(),
         ends: (0.05, 2.0),
         within: (0.0, 12.0),
     }
@@ -212,6 +247,7 @@ fn moving(dice: &mut Dice) -> Formula {
         // By the moving coordinate.
         zero: Box::new(move |u| u.powi(3) - k * u),
         speed: v,
+        breaks: Vec::new(),
         ends: (-0.79, 0.81),
         within: (-12.0, 12.0),
     }

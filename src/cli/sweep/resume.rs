@@ -71,5 +71,9 @@ pub(super) fn show(stored: &Stored, path: &Path, kind: &Kind) -> Result<Outcome,
         return crate::cli::conclude(&(done + &text), outcome, path);
     }
     let text = done + &summary::text(&stored.result, path);
-    crate::cli::conclude(&text, outcome(&stored.result), path)
+    crate::cli::conclude(
+        &text,
+        outcome(&stored.result, &stored.spec.settings.locate),
+        path,
+    )
 }

@@ -9,7 +9,7 @@ use super::{CurveOptions, CurvePoint, CurveStart, CurveWork, Plane};
 use crate::cancellation::Cancellation;
 use crate::continuation::grid::share_of_distance;
 use crate::continuation::locate::{MOST_NEGATIVE, QUIET, negative_share};
-use crate::continuation::{BifurcationStatus, DensitySource, ErrorParts, PointStatus};
+use crate::continuation::{BifurcationStatus, CellCheck, DensitySource, ErrorParts, PointStatus};
 use crate::topology::{Detector, IndicatorKind, two_sided_limit};
 
 /// A finer curve farther than this from the coarser one is not the same, in sides of the box.
@@ -106,6 +106,12 @@ impl Checks<'_> {
         (0..=last).filter(is_chosen).collect()
     }
 
+    /// Whether finer cells could tell what the cells do to the curve.
+    fn is_checkable(&self) -> bool {
+        let check = self.source.subject().cell_check;
+        matches!(check, CellCheck::OnFinerCells { .. })
+    }
+
     /// What another source shows at the selected points, `None` where it was asked to stop.
     fn ask(
         &self,
@@ -182,6 +188,9 @@ impl Checks<'_> {
             Some(status) => status,
             None if is_unsound || error > self.options.tolerance => BifurcationStatus::Unresolved,
             None if unknown => BifurcationStatus::Unconfirmed,
+            None if check.grid.is_none() && depends_on_cells && self.is_checkable() => {
+                BifurcationStatus::Unchecked
+            }
             None => BifurcationStatus::Located,
         };
         CurvePoint {

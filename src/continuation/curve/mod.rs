@@ -43,7 +43,8 @@ pub struct CurveOptions {
     pub tolerance: f64,
     /// Hellinger distance between densities of neighbouring points above which a step is halved.
     pub largest_distance: f64,
-    /// Every which point is checked on finer cells, where the source has them; zero for none. The ends are checked at any rate.
+    /// Every which point is checked on finer cells, where the source has them, and the ends; zero for none: points are then
+    /// [`BifurcationStatus::Unchecked`].
     pub check_every: usize,
 }
 
@@ -177,7 +178,10 @@ pub fn follow(
     let (mut points, mut check_work) = checks.judged(&walked);
     // A zero beside which there is no curve is not one of a smooth indicator.
     if let [alone] = points.as_mut_slice()
-        && alone.status == BifurcationStatus::Located
+        && matches!(
+            alone.status,
+            BifurcationStatus::Located | BifurcationStatus::Unchecked
+        )
     {
         alone.status = BifurcationStatus::Unconfirmed;
     }

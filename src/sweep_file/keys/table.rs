@@ -165,7 +165,7 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
     key("locate.largest_distance", Kind::Number(SHARE), OfOptions, always!(locate.largest_distance),
         "Hellinger distance between neighbouring densities above which a value between them is solved too."),
     key("locate.grid_check", Kind::Choice(switch), OfOptions, always!(locate.grid_check),
-        "Whether located values are checked on a finer grid (by methods without sampling)."),
+        "Whether located values are checked on a finer grid (by methods without sampling). With `off` they are `unchecked`, and their errors lack what the cells do."),
     key("figures.at", Kind::List(&Kind::Number(ANY)), Rule("both ends of the sweep and two points between"), optional!(figures_at),
         "Parameter values at which joint densities and marginals are drawn, inside the sweep."),
     key("figures.formats", Kind::List(&Kind::Choice(Format::words)), OfOptions, always!(figure_formats),

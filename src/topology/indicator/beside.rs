@@ -12,20 +12,23 @@ use crate::topology::field::{Field, Jet};
 /// Distance from the kink at which its sides are told apart, as a share of the range.
 const ASIDE: f64 = 1e-9;
 
-/// The slope beside the kink nearest to a place; `None` for joint densities, sampled ones, and kinks on no face.
+/// The slope beside the kink nearest to a place; `None` for joint densities, sampled ones, and kinks that a scheme has blurred because they lie on no face.
 pub(crate) fn beside_kink(
     estimated: &EstimatedDensity,
     near: f64,
     above: bool,
     is_valley: bool,
 ) -> Option<Indicator> {
-    let [axis] = estimated.density.axes.as_slice() else {
+    if estimated.density.axes.len() != 1 {
         return None;
-    };
+    }
     let distance = |at: f64| (at - near).abs();
-    let kinks = estimated.structure.kinks.iter().map(|kink| kink.at);
+    let kinks = estimated.structure.kinks.iter();
+    let kinks = kinks.filter(|kink| !kink.is_bend()).map(|kink| kink.at);
     let at = kinks.min_by(|a, b| distance(*a).total_cmp(&distance(*b)))?;
-    axis.face_at(at)?;
+    if !is_seen(estimated, at) {
+        return None;
+    }
     let field = Field::new(estimated).filter(|_| !estimated.is_noisy())?;
     let side = if above { 1.0 } else { -1.0 };
     let place = [at + side * ASIDE * field.unit(0)];
@@ -39,6 +42,12 @@ pub(crate) fn beside_kink(
         |values| of(fine.jet(values)),
         |values| of(rough.jet(values)),
     )
+}
+
+/// Whether what is beside a kink can be read off the cells: it lies on a face, or no scheme has blurred it.
+fn is_seen(estimated: &EstimatedDensity, kink: f64) -> bool {
+    let axes = &estimated.density.axes;
+    estimated.is_by_quadrature() || axes.iter().all(|axis| axis.has_face_at(kink))
 }
 
 /// The indicator of a peak that was born, or vanishes, with its valley at a kink: one of the two lies on it.
@@ -55,7 +64,9 @@ pub(crate) fn born_at_kink(
     }
     let is_kink = |at: f64| {
         let mut kinks = estimated.structure.kinks.iter();
-        kinks.any(|kink| axis.is_same_place(kink.at, at) && axis.face_at(at).is_some())
+        kinks.any(|kink| {
+            !kink.is_bend() && axis.is_same_place(kink.at, at) && is_seen(estimated, kink.at)
+        })
     };
     let kind = |above: bool, is_valley: bool| IndicatorKind::BesideKink { above, is_valley };
     match (is_kink(valley), is_kink(peak)) {

@@ -38,7 +38,7 @@ pub(crate) fn at_centre(estimated: &EstimatedDensity) -> Vec<Indicator> {
 fn kink_at(estimated: &EstimatedDensity, k: usize, at: f64) -> Option<&Kink> {
     let axis = &estimated.density.axes[k];
     let mut kinks = estimated.structure.kinks.iter();
-    kinks.find(|kink| kink.axis == k && axis.is_same_place(at, kink.at))
+    kinks.find(|kink| kink.axis == k && !kink.is_bend() && axis.is_same_place(at, kink.at))
 }
 
 /// p''/p of a marginal.

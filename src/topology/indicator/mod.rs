@@ -34,7 +34,8 @@ pub(super) use fold::fold;
 pub(super) use pair::put_right;
 pub(super) use quartic::quartic;
 pub(super) use ring::ring_slope;
-pub(super) use shoulder::shoulder;
+pub use shoulder::Flank;
+pub(super) use shoulder::{shoulder, shoulders};
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 

@@ -17,6 +17,8 @@ const SAMPLED_SHARE: usize = 12;
 const LEAST: usize = 3;
 /// Most steps of Newton's method.
 const MOST_STEPS: usize = 12;
+/// Distance from a kink at which its sides are told apart, as a share of the range.
+const ASIDE: f64 = 1e-9;
 /// A step that is a smaller share of a cell ends the search.
 const SETTLED: f64 = 1e-6;
 
@@ -32,16 +34,17 @@ pub(crate) fn shoulder(estimated: &EstimatedDensity, near: f64, rising: bool) ->
         return sampled(estimated, axis, near, sign, kind);
     }
     let field = Field::new(estimated)?;
-    let kinked = |face: usize| {
-        let mut kinks = estimated.structure.kinks.iter();
-        kinks.any(|kink| axis.is_same_place(axis.edges()[face], kink.at))
-    };
+    let kinked = |face: usize| is_kinked(estimated, axis, face);
     let slope_at = |face: usize| -> Option<f64> {
         let is_inside = 0 < face && face < axis.count() && !kinked(face);
         let jet = is_inside.then(|| field.jet(&[axis.edges()[face]]))??;
         Some(sign * jet.first[0])
     };
-    let place = settle(&field, sign, &steepest(axis, near, slope_at)?)?;
+    let smooth = steepest(axis, near, slope_at).and_then(|found| settle(&field, sign, &found));
+    let bends = bends(estimated, &field).filter(|one| one.rising == rising);
+    let places = smooth.into_iter().chain(bends.map(|one| one.place));
+    let distance = |place: &f64| (place - near).abs();
+    let place = places.min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
     let (fine, rough) = (field.stencil(&[place], 0)?, field.stencil(&[place], 1)?);
     let of = |jet: Jet| sign * jet.first[0] / (field.unit(0) * jet.value);
     Indicator::derive(
@@ -51,6 +54,17 @@ pub(crate) fn shoulder(estimated: &EstimatedDensity, near: f64, rising: bool) ->
         |values| of(fine.jet(values)),
         |values| of(rough.jet(values)),
     )
+}
+
+/// An extremum of the slope of a marginal's logarithm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Flank {
+    /// Whether the density rises with the coordinate between valley and peak, when both are there.
+    pub rising: bool,
+    /// Where.
+    pub place: f64,
+    /// The slope, positive when both are there.
+    pub value: f64,
 }
 
 /// A place where a slope, given on the faces, is largest, and the interval about it.
@@ -83,6 +97,75 @@ fn steepest(axis: &Axis, near: f64, slope_at: impl Fn(usize) -> Option<f64>) -> 
     Some(Steepest {
         place: edges[face] + (-tilt / bend).clamp(-h, k),
         within: (edges[face - 1], edges[face + 1]),
+    })
+}
+
+/// All extrema of the slope of a marginal without noise, of both directions, where the density counts: each is where a pair of peak and valley is
+/// born or vanishes when its value passes zero. Values are read on the faces, to a parabola's accuracy.
+pub(crate) fn shoulders(estimated: &EstimatedDensity) -> Vec<Flank> {
+    let [axis] = estimated.density.axes.as_slice() else {
+        return Vec::new();
+    };
+    let Some(field) = Field::new(estimated).filter(|_| !estimated.is_noisy()) else {
+        return Vec::new();
+    };
+    let least = estimated.negligible_height() * estimated.density.maximum();
+    let faces = 0..=axis.count();
+    let relative = |face: usize| -> Option<f64> {
+        let at = axis.edges()[face];
+        let is_inside = 0 < face && face < axis.count();
+        let jet = (is_inside && !is_kinked(estimated, axis, face)).then(|| field.jet(&[at]))??;
+        (jet.value > least).then(|| jet.first[0] / (field.unit(0) * jet.value))
+    };
+    let slopes: Vec<Option<f64>> = faces.map(relative).collect();
+    let triples = slopes.windows(3).enumerate();
+    let found = triples.filter_map(|(below, triple)| {
+        let [Some(left), Some(here), Some(right)] = *triple else {
+            return None;
+        };
+        let is_highest = here >= left && here > right;
+        let is_lowest = here <= left && here < right;
+        (is_highest || is_lowest).then(|| Flank {
+            rising: is_highest,
+            place: axis.edges()[below + 1],
+            value: if is_highest { here } else { -here },
+        })
+    });
+    found.chain(bends(estimated, &field)).collect()
+}
+
+/// Whether a kink lies on a face, or in a cell beside it: slopes on both sides of it do not follow from each other.
+fn is_kinked(estimated: &EstimatedDensity, axis: &Axis, face: usize) -> bool {
+    let at = axis.edges()[face];
+    let mut kinks = estimated.structure.kinks.iter();
+    kinks.any(|kink| match axis.face_at(kink.at) {
+        Some(_) => axis.is_same_place(at, kink.at),
+        None => axis
+            .find(kink.at)
+            .is_some_and(|cell| cell == face || cell + 1 == face),
+    })
+}
+
+/// The places where the slope has an extremum because the drift bends: it rises to the place on one side, and falls from it on the other.
+fn bends<'a>(
+    estimated: &'a EstimatedDensity,
+    field: &'a Field<'_>,
+) -> impl Iterator<Item = Flank> + 'a {
+    let least = estimated.negligible_height() * estimated.density.maximum();
+    let kinks = estimated.structure.kinks.iter();
+    let bends = kinks.filter(|kink| kink.is_bend() && estimated.is_by_quadrature());
+    bends.filter_map(move |kink| {
+        let beside = |step: f64| field.jet(&[kink.at + step * ASIDE * field.unit(0)]);
+        let (below, above) = (beside(-1.0)?, beside(1.0)?);
+        let slope = above.first[0] / (field.unit(0) * above.value);
+        // Of the slope of the logarithm.
+        let rises = |jet: &Jet| jet.second[0] * jet.value > jet.first[0] * jet.first[0];
+        let is_turn = above.value > least && rises(&below) != rises(&above);
+        is_turn.then(|| Flank {
+            rising: rises(&below),
+            place: kink.at,
+            value: if rises(&below) { slope } else { -slope },
+        })
     })
 }
 
@@ -140,7 +223,12 @@ fn lines(estimated: &EstimatedDensity, at: f64, level: usize) -> Option<Vec<Line
         let face = axis.face_at(kink).or(axis.find(kink)).unwrap_or(0);
         cells.start < face && face < cells.end
     };
-    if estimated.structure.kinks.iter().any(|kink| inside(kink.at)) {
+    if estimated
+        .structure
+        .kinks
+        .iter()
+        .any(|kink| !kink.is_bend() && inside(kink.at))
+    {
         return None;
     }
     smoothing(axis, cells, at, 3 + level, 2)

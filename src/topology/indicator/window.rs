@@ -5,14 +5,17 @@
 
 use std::ops::Range;
 
-use crate::density::EstimatedDensity;
+use crate::density::{EstimatedDensity, Kink};
 use crate::space::Axis;
+use crate::topology::field::sides;
 use crate::topology::reconstruction::{Line, interpolating};
 
 /// Cells on either side of a point, in the finer and the rougher reconstruction.
 const REACH: [usize; 2] = [4, 3];
 /// The same on one side of a kink.
 const BESIDE: [usize; 2] = [4, 3];
+/// The same on one side of a bend, where curvatures are asked for.
+const BENT: [usize; 2] = [6, 5];
 /// Lines for the value and derivatives at a point, by the better and by a rougher reconstruction.
 pub(super) struct Lines {
     pub(super) fine: Vec<Line>,
@@ -26,7 +29,7 @@ impl Lines {
     }
 }
 
-/// Lines for p, p', p'' along axis `k` at `at`, no kink near.
+/// Lines for p, p', p'' along axis `k` at `at`, no jump of the slope near.
 pub(super) fn about(estimated: &EstimatedDensity, k: usize, at: f64) -> Option<Lines> {
     derivatives(estimated, k, at, 3)
 }
@@ -39,10 +42,30 @@ pub(super) fn derivatives(
     orders: usize,
 ) -> Option<Lines> {
     let axis = &estimated.density.axes[k];
+    let mut kinks = estimated.structure.kinks.iter();
+    let is_bent = |kink: &Kink| kink.axis == k && kink.is_bend() && axis.is_same_place(at, kink.at);
+    if kinks.any(is_bent) {
+        return beside(axis, at, orders);
+    }
     let line = |reach: usize| interpolating(axis, around(axis, at, reach)?, at, orders);
     Some(Lines {
         fine: line(REACH[0])?,
         rough: line(REACH[1])?,
+    })
+}
+
+/// The same at a place across which no polynomial follows the density, though its slope is one: the mean of both sides.
+fn beside(axis: &Axis, at: f64, orders: usize) -> Option<Lines> {
+    let (below, above) = sides(axis, at)?;
+    let line = |reach: usize| -> Option<Vec<Line>> {
+        let below = interpolating(axis, below.checked_sub(reach)?..below, at, orders)?;
+        let above = interpolating(axis, above..above + reach, at, orders)?;
+        let pairs = below.iter().zip(&above);
+        Some(pairs.map(|(below, above)| below.mean(above)).collect())
+    };
+    Some(Lines {
+        fine: line(BENT[0])?,
+        rough: line(BENT[1])?,
     })
 }
 

@@ -1,0 +1,123 @@
+//! Where two changes may lie between two values that were solved: an indicator of one sign on either side comes near zero, or passes it twice.
+//!
+//! At a centre of symmetry and on the flanks of a marginal. The parabola through three neighbouring values shows where to look.
+
+use super::Point;
+use crate::topology::Flank;
+
+/// Flanks at neighbouring points farther apart than this, in ranges, are not one that moved.
+const ONE_FLANK: f64 = 0.1;
+
+/// A value between is no nearer to its neighbours than this share of their distance.
+const NEAREST: f64 = 0.1;
+
+/// What the flanks of one point's densities show, by observable.
+pub(super) type Flanks = Vec<Vec<Flank>>;
+
+/// A parameter value between points where an indicator at a centre, of one sign at three neighbours, comes so near
+/// to zero that it may have changed sign twice.
+pub(super) fn at_centre(points: &[&Point], tolerance: f64) -> Option<f64> {
+    let observables = points.first().map_or(0, |point| point.detections.len());
+    let triples = points.windows(3);
+    triples.into_iter().find_map(|triple| {
+        (0..observables).find_map(|observable| {
+            let of = |index: usize| &triple[index].detections[observable].indicators;
+            (0..of(1).len()).find_map(|which| {
+                let at = |index: usize| of(index).get(which);
+                let (a, b, c) = (at(0)?, at(1)?, at(2)?);
+                // Noise makes such places everywhere.
+                let exact = b.sampling_error == 0.0;
+                let same = exact && a.kind == b.kind && b.kind == c.kind;
+                let x = [triple[0].value, triple[1].value, triple[2].value];
+                let y = [a.value, b.value, c.value];
+                let vertex = if same { lowest(x, y) } else { None }?;
+                let apart = x.iter().all(|x| (x - vertex).abs() > tolerance);
+                apart.then_some(vertex)
+            })
+        })
+    })
+}
+
+/// The same on the flanks of marginals, away from any centre: a pair of peak and valley may come and go between neighbours, or go and come.
+pub(super) fn on_flanks(points: &[(&Point, &Flanks)], tolerance: f64) -> Option<f64> {
+    let observables = points.first().map_or(0, |point| point.1.len());
+    let triples = points.windows(3);
+    triples.into_iter().find_map(|triple| {
+        let x = [0, 1, 2].map(|index| triple[index].0.value);
+        (0..observables).find_map(|observable| {
+            let axis = triple[1].0.densities[observable].density.axes.first()?;
+            let reach = ONE_FLANK * (axis.to() - axis.from());
+            let mut middle = triple[1].1[observable].iter();
+            middle.find_map(|flank| {
+                let near = |index: usize| nearest(&triple[index].1[observable], flank, reach);
+                let (before, after) = (near(0)?, near(2)?);
+                let vertex = lowest(x, [before.value, flank.value, after.value])?;
+                let apart = x.iter().all(|x| (x - vertex).abs() > tolerance);
+                apart.then_some(vertex)
+            })
+        })
+    })
+}
+
+/// A value between two neighbours whose signatures are the same although one pair of peak and valley was born on a flank between them and another
+/// has vanished: the shoulders of both have changed their signs.
+pub(super) fn between_flanks(points: &[(&Point, &Flanks)], tolerance: f64) -> Option<f64> {
+    let observables = points.first().map_or(0, |point| point.1.len());
+    let mut pairs = points.windows(2);
+    pairs.find_map(|pair| {
+        let (a, b) = (pair[0].0, pair[1].0);
+        let width = b.value - a.value;
+        if width <= tolerance {
+            return None;
+        }
+        (0..observables).find_map(|observable| {
+            let same = a.detections[observable].signature == b.detections[observable].signature;
+            let axis = a.densities[observable]
+                .density
+                .axes
+                .first()
+                .filter(|_| same)?;
+            let reach = ONE_FLANK * (axis.to() - axis.from());
+            let (below, above) = (&pair[0].1[observable], &pair[1].1[observable]);
+            let zero = |flank: &Flank, rises: bool| {
+                let other = nearest(above, flank, reach)?;
+                let is_mutual = nearest(below, other, reach) == Some(flank);
+                let is_turn = (flank.value <= 0.0) == rises && (other.value <= 0.0) != rises;
+                let share = flank.value / (flank.value - other.value);
+                (is_mutual && is_turn).then_some(share)
+            };
+            let born = below.iter().filter_map(|flank| zero(flank, true));
+            let first = born.min_by(f64::total_cmp)?;
+            let vanished = below.iter().filter_map(|flank| zero(flank, false));
+            let apart = |share: &f64| (share - first).abs();
+            let next = vanished.min_by(|x, y| apart(x).total_cmp(&apart(y)))?;
+            let share = (0.5 * (first + next)).clamp(NEAREST, 1.0 - NEAREST);
+            Some(a.value + share * width)
+        })
+    })
+}
+
+/// The flank of a neighbouring point that is the same, moved.
+fn nearest<'a>(flanks: &'a [Flank], sought: &Flank, reach: f64) -> Option<&'a Flank> {
+    let distance = |one: &&Flank| (one.place - sought.place).abs();
+    let alike = flanks.iter().filter(|one| one.rising == sought.rising);
+    let near = alike.filter(|one| distance(one) <= reach);
+    near.min_by(|a, b| distance(a).total_cmp(&distance(b)))
+}
+
+/// Vertex of the parabola through three points of one sign, if it lies between them and nearer to zero than a
+/// fourth of the middle one.
+fn lowest(x: [f64; 3], y: [f64; 3]) -> Option<f64> {
+    let sign = y[1].signum();
+    let y = y.map(|value| value * sign);
+    if y.iter().any(|&value| value <= 0.0) || y[1] >= y[0] || y[1] >= y[2] {
+        return None;
+    }
+    let (h, k) = (x[1] - x[0], x[2] - x[1]);
+    let (down, up) = ((y[1] - y[0]) / h, (y[2] - y[1]) / k);
+    let bend = (up - down) / (h + k);
+    let tilt = (down * k + up * h) / (h + k);
+    let step = -0.5 * tilt / bend;
+    let least = y[1] + 0.5 * tilt * step;
+    (least < 0.25 * y[1]).then_some(x[1] + step)
+}
