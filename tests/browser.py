@@ -4,7 +4,7 @@
     python3 tests/browser.py target/release/pbif
 
 Python 3 alone. Exit status 77 where chromium or chromedriver is not installed (apt-get install chromium chromium-driver)."""
-import json, os, pathlib, re, shutil, signal, socket, statistics, subprocess, sys, tempfile, time, urllib.error, urllib.request
+import atexit, json, os, pathlib, re, shutil, signal, socket, statistics, subprocess, sys, tempfile, time, urllib.error, urllib.request
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SMALL = ["--set", "cells.x.count=40", "--set", "cells.y.count=40", "--set", "locate.grid_check=off"]
@@ -145,6 +145,7 @@ class Server:
     def __init__(self, pbif, folder):
         command = [pbif, "explore", str(ROOT / "sweeps/coulomb_fc.toml"), *SMALL]
         self.process = subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        atexit.register(self.process.kill)
         for line in self.process.stdout:
             found = re.search(r"http://\S+", line)
             if found:
