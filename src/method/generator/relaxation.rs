@@ -27,6 +27,9 @@ const UNKNOWN_CHANGE: f64 = 3.0;
 /// The same on top of twice the change that was seen before.
 const LEAST_CHANGE: f64 = 1.05;
 
+/// The same for times that are known roughly, which fewer cells change as well.
+const LEAST_ROUGH_CHANGE: f64 = 1.5;
+
 /// How fast deviations from a steady state die out.
 #[derive(Debug, PartialEq)]
 pub(super) struct Relaxation {
@@ -38,6 +41,8 @@ pub(super) struct Relaxation {
     change: f64,
     /// Points of the sweep since it was computed.
     age: i32,
+    /// Whether it is that of fewer cells.
+    rough: bool,
 }
 
 impl Relaxation {
@@ -51,17 +56,33 @@ impl Relaxation {
             mode: neighbour.mode.clone(),
             change: neighbour.change,
             age,
+            rough: neighbour.rough,
         })
     }
 
-    /// A time that is known roughly, of a steady state with these masses.
-    pub(super) fn rough(time: f64, mass: &[f64]) -> Self {
+    /// A time that fewer cells gave, of a steady state with these masses.
+    pub(super) fn rough(time: f64, mass: &[f64], neighbour: Option<&Self>) -> Self {
+        let change = neighbour.map_or(UNKNOWN_CHANGE, |known| {
+            LEAST_ROUGH_CHANGE * known.change_to(time)
+        });
         Self {
             time,
             mode: Arc::new(uneven(mass)),
-            change: UNKNOWN_CHANGE,
+            change,
             age: 0,
+            rough: true,
         }
+    }
+
+    /// Whether it is that of fewer cells.
+    pub(super) fn is_rough(&self) -> bool {
+        self.rough
+    }
+
+    /// Twice the change a point, as a factor, that has led from here to a time.
+    fn change_to(&self, time: f64) -> f64 {
+        let seen = (time / self.time).ln().abs() / f64::from(self.age + 1);
+        (2.0 * seen).exp()
     }
 
     /// Number of cells that it is on.
@@ -73,7 +94,7 @@ impl Relaxation {
     pub(super) fn write(&self, writer: &mut Writer) {
         let age = usize::try_from(self.age).unwrap_or(0);
         writer.number(self.time).numbers(&self.mode);
-        writer.number(self.change).count(age);
+        writer.number(self.change).count(age).flag(self.rough);
     }
 
     /// What was written.
@@ -83,6 +104,7 @@ impl Relaxation {
             mode: Arc::new(reader.numbers()?),
             change: reader.number()?,
             age: i32::try_from(reader.count()?).map_err(|_| NotWhatWasWritten)?,
+            rough: reader.flag()?,
         })
     }
 
@@ -107,14 +129,14 @@ impl Relaxation {
         }
         let time = mean(growth.rchunks(AVERAGED).next()?).exp();
         let change = neighbour.map_or(UNKNOWN_CHANGE, |known| {
-            let seen = (time / known.time).ln().abs() / f64::from(known.age + 1);
-            LEAST_CHANGE * (2.0 * seen).exp()
+            LEAST_CHANGE * known.change_to(time)
         });
         (time > 0.0 && time.is_finite()).then(|| Self {
             time,
             mode: Arc::new(mode),
             change,
             age: 0,
+            rough: false,
         })
     }
 }

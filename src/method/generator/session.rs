@@ -224,11 +224,14 @@ impl GeneratorSession {
         }
         let neighbour = before.and_then(|trail| trail.relaxation.as_deref());
         let carried = |known: &Relaxation| Relaxation::carried(known, rate, QUIET_ESCAPE);
-        let near = match neighbour {
-            Some(known) => carried(known),
-            None => rough_relaxation(&self.source, solved.value, &self.cancellation)
-                .and_then(|time| carried(&Relaxation::rough(time, mass))),
+        let of_fewer_cells = || {
+            let time = rough_relaxation(&self.source, solved.value, &self.cancellation)?;
+            carried(&Relaxation::rough(time, mass, neighbour))
         };
+        let near = neighbour.and_then(carried).or_else(|| {
+            let rough = neighbour.is_none_or(Relaxation::is_rough);
+            rough.then(of_fewer_cells).flatten()
+        });
         near.or_else(|| Relaxation::compute(&mut self.solver, mass, neighbour))
     }
 

@@ -196,7 +196,7 @@ impl DirectSolver {
                 break;
             }
             let (best, largest) = largest(&mass);
-            if best != held && mass[held] < WEAK_HELD_SHARE * largest {
+            if best != held && mass[held].abs() < WEAK_HELD_SHARE * largest {
                 held = best;
             } else if fresh {
                 let Some(double) = self.in_double_precision(&plan) else {
@@ -380,7 +380,8 @@ impl DirectSolver {
         }
         let (best, largest) = largest(mass);
         let kept = self.preconditioner.as_ref().map(|kept| kept.held);
-        kept.filter(|&held| mass[held] >= LEAST_HELD_SHARE * largest)
+        // Between wiggles, and at the nodes of a series, a cell's mass may be below zero: its size is what holds.
+        kept.filter(|&held| mass[held].abs() >= LEAST_HELD_SHARE * largest)
             .unwrap_or(best)
     }
 
@@ -391,7 +392,7 @@ impl DirectSolver {
             return held;
         }
         let (best, largest) = largest(mass);
-        if mass[held] < WEAK_HELD_SHARE * largest {
+        if mass[held].abs() < WEAK_HELD_SHARE * largest {
             best
         } else {
             held
