@@ -7,19 +7,23 @@
 
 use std::sync::Arc;
 
+use nalgebra::{DMatrix, DVector};
 use pbif::cancellation::Cancellation;
+use pbif::continuation::{BifurcationStatus, Finding};
 use pbif::density::{Density, Observable, Projection, total_variation};
 use pbif::generator::{AdvectiveScheme, GeneratorOptions, assemble, cell_masses};
 use pbif::space::{Axis, CellSpace};
 use pbif::stationary::generator::{RateOptions, RateSolver};
 use pbif::sweep_file::SweepFile;
-use pbif::system::{LANES, Lanes, Model, System, TypedModel, registry};
+use pbif::system::{LANES, Lanes, Model, NoiseKind, System, TypedModel, registry};
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256Plus;
 use rand_xoshiro::rand_core::SeedableRng;
 
+const OU: NoiseKind = NoiseKind::OrnsteinUhlenbeck;
+
 fn coloured(name: &str, given: &[(&str, f64)]) -> Arc<dyn System> {
-    let model = Model::with_coloured_noise(&registry::find(name).unwrap()).unwrap();
+    let model = Model::with_coloured_noise(&registry::find(name).unwrap(), OU).unwrap();
     model.system_with(given).unwrap()
 }
 
@@ -220,7 +224,7 @@ fn a_short_memory_is_white_noise_to_first_order_read_as_stratonovich() {
             .with_noise("x", ["0.5 + 0.2 x"])
             .with_parameters(["tau"]);
         let model = match coloured {
-            true => model.with_coloured_noise(),
+            true => model.with_coloured_noise(OU),
             false => model.with_interpretation(pbif::system::Interpretation::Stratonovich),
         };
         model.build().unwrap()
@@ -339,7 +343,7 @@ fn a_nonlinear_oscillator_with_parametric_coloured_noise_agrees_with_trajectorie
         .with_equation("y", "-(x^2 - 0.1) y - x")
         .with_noise("y", ["0.4 + 0.3 x"])
         .with_parameters(["tau"])
-        .with_coloured_noise()
+        .with_coloured_noise(OU)
         .build()
         .unwrap();
     let system = model.system_with(&[("tau", 0.8)]).unwrap();
@@ -369,6 +373,95 @@ fn friction_that_remembers_agrees_with_trajectories_under_coloured_noise() {
         Axis::hermite(0.0, 1.0, 4).unwrap(),
     ];
     assert_agrees(&*system, axes);
+}
+
+/// x' = -α x + b ξ with b ξ harmonic noise, as linear equations of three states: the covariance Σ of A Σ + Σ Aᵀ + B = 0.
+fn harmonic_covariance(frequency: f64, damping: f64) -> DMatrix<f64> {
+    let gain = (SIGMA2 * frequency / (4.0 * damping)).sqrt();
+    let rates = [
+        [-ALPHA, gain, 0.0],
+        [0.0, 0.0, frequency],
+        [0.0, -frequency, -2.0 * damping * frequency],
+    ];
+    let rates = DMatrix::from_fn(3, 3, |row, column| rates[row][column]);
+    let one = DMatrix::identity(3, 3);
+    let operator = one.kronecker(&rates) + rates.kronecker(&one);
+    let mut noise = DVector::zeros(9);
+    noise[8] = -4.0 * damping * frequency;
+    let found = operator.lu().solve(&noise).unwrap();
+    DMatrix::from_column_slice(3, 3, found.as_slice())
+}
+
+#[test]
+fn second_moments_under_harmonic_noise_are_those_of_the_lyapunov_equation() {
+    let model = TypedModel::new("test", "test", ["x"])
+        .with_equation("x", format!("-{ALPHA} x"))
+        .with_noise("x", [format!("sqrt({SIGMA2})")])
+        .with_coloured_noise(NoiseKind::Harmonic)
+        .build()
+        .unwrap();
+    // What is left is wiggles that reach the ends, as with one state of the filter: 1.6e-2 at a frequency of 2.
+    for (frequency, damping) in [(8.0, 0.6), (12.0, 0.4), (10.0, 1.5)] {
+        let given = [("noise_frequency", frequency), ("noise_damping", damping)];
+        let system = model.system_with(&given).unwrap();
+        let exact = harmonic_covariance(frequency, damping);
+        let half = 8.0 * exact[(0, 0)].sqrt();
+        let cells = Axis::uniform(-half, half, 80).unwrap();
+        let modes = || Axis::hermite(0.0, 1.0, 8).unwrap();
+        let space = CellSpace::new(vec![cells, modes(), modes()]).unwrap();
+        let unknowns = solve(&*system, &space, AdvectiveScheme::Central6);
+        for row in 0..3 {
+            for column in 0..=row {
+                let found = mean(&space, &unknowns, |s| s[row] * s[column]);
+                let size = (exact[(row, row)] * exact[(column, column)]).sqrt();
+                let off = (found - exact[(row, column)]).abs() / size;
+                assert!(off < 1e-6, "{frequency} {damping} {row} {column}: {off:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_bistable_system_under_harmonic_noise_agrees_with_trajectories() {
+    let white = registry::find("bistable").unwrap();
+    let model = Model::with_coloured_noise(&white, NoiseKind::Harmonic).unwrap();
+    let given = [
+        ("a", 0.3),
+        ("sigma2", 0.4),
+        ("noise_frequency", 2.0),
+        ("noise_damping", 0.3),
+    ];
+    let system = model.system_with(&given).unwrap();
+    let axes = vec![
+        Axis::uniform(-2.6, 2.6, 100).unwrap(),
+        Axis::hermite(0.0, 1.0, 10).unwrap(),
+        Axis::hermite(0.0, 1.0, 10).unwrap(),
+    ];
+    assert_agrees(&*system, axes);
+}
+
+#[test]
+fn where_no_affordable_number_of_modes_is_enough_no_change_is_located() {
+    // The noise remembers longer than x does, so that x nearly follows it: each pair of nodes has a peak of its own.
+    let text = "[system]\nmodel = \"bistable\"\nnoise = { kind = \"harmonic\" }\n\
+         [system.parameters]\na = 0.3\nsigma2 = 0.3\nnoise_damping = 0.3\n\
+         [sweep]\nparameter = \"noise_frequency\"\nfrom = 2\nto = 4\npoints = 3\n\
+         [cells]\nx = { from = -2.4, to = 2.4, count = 48 }\n";
+    let file = SweepFile::parse("long_memory.toml", text);
+    let never = Cancellation::new();
+    let sweep = file.validate().unwrap().prepare(&never).unwrap();
+    let found = sweep.run(&never, &mut ()).unwrap();
+    for point in &found.points {
+        let mut findings = point.report.findings.iter();
+        let few = findings.find_map(|finding| match finding {
+            Finding::FewModes { change } => Some(*change),
+            _ => None,
+        });
+        assert!(few.unwrap() > 1e-2, "{}", point.value);
+    }
+    for row in &found.labels {
+        assert_ne!(row.status, Some(BifurcationStatus::Located), "{row:?}");
+    }
 }
 
 #[test]

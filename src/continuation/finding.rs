@@ -86,6 +86,11 @@ pub enum Finding {
         /// Total variation between the density by all modes and by all but the last two.
         change: f64,
     },
+    /// Too few modes carry axes: with more of them watched densities change.
+    FewModes {
+        /// Largest change of a watched density on coarse cells, relative to its largest value, when more modes were tried.
+        change: f64,
+    },
     /// The cells at a switching surface are wider than the layer that holds the kink of the density.
     SmearedKink {
         /// The axis across the surface.
@@ -190,6 +195,7 @@ impl Finding {
             Self::NegativeDensity { mass } => plain("negative-density", &[mass]),
             Self::NegativeCells { mass, watched } => plain("negative-cells", &[mass, watched]),
             Self::WideCells { axis, peclet } => along("wide-cells", axis, &[peclet]),
+            Self::FewModes { change } => plain("few-modes", &[change]),
             Self::UnresolvedSeries { axis, change } => along("unresolved-series", axis, &[change]),
             Self::SmearedKink { axis, widths } => along("smeared-kink", axis, &[widths]),
             Self::SurfaceOffFaces { axis, at } => along("surface-off-faces", axis, &[at]),
@@ -242,6 +248,7 @@ impl Finding {
             ("negative-density", None, &[mass]) => Self::NegativeDensity { mass },
             ("negative-cells", None, &[mass, watched]) => Self::NegativeCells { mass, watched },
             ("wide-cells", Some(axis), &[peclet]) => Self::WideCells { axis, peclet },
+            ("few-modes", None, &[change]) => Self::FewModes { change },
             ("unresolved-series", Some(axis), &[change]) => Self::UnresolvedSeries { axis, change },
             ("smeared-kink", Some(axis), &[widths]) => Self::SmearedKink { axis, widths },
             ("surface-off-faces", Some(axis), &[at]) => Self::SurfaceOffFaces { axis, at },
@@ -371,7 +378,8 @@ pub(crate) fn every_finding() -> Vec<Finding> {
             axis: 1,
             change: 0.03,
         }),
-        F::UnresolvedSeries { .. } => Some(F::SurfaceOffFaces { axis: 1, at: 0.1 }),
+        F::UnresolvedSeries { .. } => Some(F::FewModes { change: 0.16 }),
+        F::FewModes { .. } => Some(F::SurfaceOffFaces { axis: 1, at: 0.1 }),
         F::SurfaceOffFaces { .. } => Some(F::NumericalDiffusion { share: 0.2 }),
         F::NumericalDiffusion { .. } => Some(shifted(ShiftedQuantity::Variance(0))),
         F::StepBias { quantity, .. } => Some(match quantity {

@@ -4,7 +4,7 @@ use super::change::{Change, Found, changes};
 use super::grid::{Checked, Checks, GridCheck, Leak, share_of_distance};
 use super::label::{self, BifurcationStatus, LabelledPoint, PointType};
 use super::root::{Root, root};
-use super::{CellCheck, Goal, Point, PointStatus, Subject, persistence, words};
+use super::{CellCheck, Finding, Goal, Point, PointStatus, Subject, persistence, words};
 use crate::density::{Density, EstimatedDensity, Kink, Observable};
 use crate::topology::{Detector, IndicatorKind};
 
@@ -296,10 +296,16 @@ fn by_indicator(
     let wiggles = wiggles[0].max(wiggles[1]);
     let is_torn = depends_on_cells && wiggles > MOST_NEGATIVE;
     let lacks_check = on_finer.is_none() && depends_on_cells && is_checkable(subject);
+    let few_modes = [a, b].into_iter().find_map(change_by_modes);
     row.status = Some(match on_finer {
         Some(GridCheck::Unconfirmed) => BifurcationStatus::Unconfirmed,
         _ if failed.is_some() => BifurcationStatus::Unchecked,
-        _ if unsound.is_some() || is_torn || !narrow || error > options.tolerance => {
+        _ if unsound.is_some()
+            || is_torn
+            || few_modes.is_some()
+            || !narrow
+            || error > options.tolerance =>
+        {
             BifurcationStatus::Unresolved
         }
         None if diffused && depends_on_cells => BifurcationStatus::Unconfirmed,
@@ -309,6 +315,7 @@ fn by_indicator(
     row.reason = failed
         .or_else(|| unsound.map(|point| point.report.status.word().to_owned()))
         .or_else(|| is_torn.then(|| torn(wiggles)))
+        .or(few_modes)
         .or_else(|| leaks(&found, error, options, subject, [a, b]))
         .or_else(|| coarse(&found, error, options))
         .or_else(|| lacks_check.then(|| not_checked(options)));
@@ -412,6 +419,17 @@ fn torn(wiggles: f64) -> String {
         "{:.0} % of the density there is negative: wiggles that the cells do not resolve",
         100.0 * wiggles
     )
+}
+
+/// The sentence for a value read off densities that too few modes carry.
+fn change_by_modes(point: &Point) -> Option<String> {
+    let mut findings = point.report.findings.iter();
+    findings.find_map(|finding| match finding {
+        Finding::FewModes { change } => Some(format!(
+            "more modes change the densities by {change:.1e}: more of them are needed"
+        )),
+        _ => None,
+    })
 }
 
 /// Mass in the outermost cells below which what leaves Ω matters nowhere.

@@ -47,7 +47,16 @@ impl ModeAxis {
         let is_noisy = system.noise_axes().contains(&axis);
         match &self.filter {
             None if is_noisy || !is_walled => Err(GeneratorError::Modes { axis }),
-            Some(_) if !is_noisy => Err(GeneratorError::Filter { axis }),
+            Some((_, mean, deviation)) => {
+                let same = |(m, d): (f64, f64)| {
+                    (m - mean).abs() <= ROUNDING * deviation
+                        && (d / deviation - 1.0).abs() <= ROUNDING
+                };
+                let declared = system.filtered_noise(axis).is_some_and(same);
+                declared
+                    .then_some(())
+                    .ok_or(GeneratorError::Filter { axis })
+            }
             _ => Ok(()),
         }
     }
@@ -65,18 +74,22 @@ impl ModeAxis {
         let Some((second, mean, deviation)) = &self.filter else {
             return Ok(());
         };
-        let rate = diffusion[0] / deviation.powi(2);
-        let scale = rate * (nodes[nodes.len() - 1] - nodes[0]);
-        let fits = nodes.iter().zip(drift.iter().zip(diffusion));
-        let mut fits = fits.map(|(node, (drift, diffusion))| {
-            (drift + rate * (node - mean)).abs() <= ROUNDING * scale
-                && (diffusion / deviation.powi(2) - rate).abs() <= ROUNDING * rate
-        });
-        if rate <= 0.0 || !fits.all(|fits| fits) {
+        // An axis without noise has no diffusion.
+        let first = diffusion.first().copied().unwrap_or(0.0);
+        let rate = first / deviation.powi(2);
+        // The other states of a filter may add what is the same all along the line.
+        let added = drift[0] + rate * (nodes[0] - mean);
+        let scale = rate * (nodes[nodes.len() - 1] - nodes[0]) + added.abs();
+        let mut along = nodes.iter().zip(drift);
+        let linear = along
+            .all(|(node, drift)| (drift + rate * (node - mean) - added).abs() <= ROUNDING * scale);
+        let mut noises = diffusion.iter();
+        let constant = noises.all(|noise| (noise - first).abs() <= ROUNDING * first);
+        if rate < 0.0 || !linear || !constant {
             return Err(GeneratorError::Filter { axis });
         }
         for (rate, second) in rates.iter_mut().zip(second) {
-            *rate += diffusion[0] * second;
+            *rate += first * second;
         }
         Ok(())
     }

@@ -97,6 +97,13 @@ impl<'a> Reporter<'a> {
         }
     }
 
+    /// By how much more modes would change what is watched, where that is too much.
+    pub(super) fn few_modes(&mut self, change: Option<f64>) {
+        if let Some(change) = change {
+            self.tell(Finding::FewModes { change });
+        }
+    }
+
     /// Whether the cells along a noisy axis are fine enough.
     pub(super) fn resolution(&mut self, judged: &Resolution) {
         let (axis, peclet) = (judged.axis, judged.fitted_peclet);

@@ -116,7 +116,7 @@ fn spread(index: usize, ranges: &[(f64, f64)]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::system::{Model, Path, registry};
+    use crate::system::{Model, NoiseKind, Path, registry};
 
     const RANGES: [(f64, f64); 3] = [(-5.0, 5.0), (-5.0, 5.0), (-6.0, 6.0)];
 
@@ -125,7 +125,7 @@ mod tests {
         let mut given = given.to_vec();
         let model = if coloured {
             given.push(("tau", 0.5));
-            Model::with_coloured_noise(&white).unwrap()
+            Model::with_coloured_noise(&white, NoiseKind::OrnsteinUhlenbeck).unwrap()
         } else {
             white
         };

@@ -99,6 +99,10 @@ fn cells_in_words(family: &Family, finding: &Finding) -> Option<String> {
                  so that its details are not certain; give more `modes` along {axis}, or cells"
             )
         }
+        Finding::FewModes { change } => format!(
+            "too few modes: with more of them a watched density changes by {change:.1e} of its largest value on coarse cells, so that its \
+             peaks are not certain; give more `modes`, or `count` for cells"
+        ),
         Finding::SmearedKink { axis, widths } => {
             let axis = family.axis(axis);
             format!(

@@ -194,6 +194,7 @@ impl Settings {
         );
         if !found.is_enough {
             note += ", which is much: give `modes` for more, or `count` for cells";
+            self.method.generator.change_by_modes = Some(found.change);
         }
         self.chosen.push(note);
         for axis in open {

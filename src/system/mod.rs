@@ -26,7 +26,10 @@ mod symmetry;
 mod typed;
 
 pub use crate::formula::{LANES, Lanes};
-pub use coloured::{CORRELATION_TIME, ColouredNoiseError, NOISE_AXIS, NoiseKind};
+pub use coloured::{
+    CORRELATION_TIME, ColouredNoiseError, NOISE_AXIS, NOISE_DAMPING, NOISE_FREQUENCY,
+    NOISE_RATE_AXIS, NoiseKind,
+};
 pub(crate) use enclosed::Enclosed;
 pub use facts::{PeriodicDrift, SwitchingSurface, Symmetry};
 pub use family::Family;
@@ -114,8 +117,9 @@ pub trait System: Send + Sync {
         None
     }
 
-    /// Mean and standard deviation of a coordinate that is white noise behind a linear filter, η' = -(η - mean)/τ + b ξ with constant
-    /// b and τ, upon which no other coordinate acts; its density is normal.
+    /// Mean and standard deviation of a coordinate that is a state of a linear filter of white noise, such as η in
+    /// η' = -(η - mean)/τ + b ξ with constant b and τ, upon which nothing else acts. Such coordinates are independent of one another
+    /// and normal; those of one filter may turn into one another, as η' = ω ν, ν' = -ω η - γ ν + b ξ do.
     fn filtered_noise(&self, axis: usize) -> Option<(f64, f64)> {
         let _ = axis;
         None

@@ -299,14 +299,16 @@ impl Model {
         Self { noise_kind, ..self }
     }
 
-    /// The same model with coloured noise in place of white: each of its noises gets the correlation exp(-|s|/τ) at the same
-    /// intensity, an axis of its own (`noise`, of unit variance), and the model the parameter `tau`. As τ → 0 it becomes the white
-    /// noise, in Stratonovich's reading: of a model in Rust the drift is taken to be that of this reading.
+    /// The same model with coloured noise in place of white: each of its noises goes through a filter of this kind at the same
+    /// intensity. The states of the filter are axes (`noise`, of unit variance), and its parameters (`tau`) those of the model. As its
+    /// memory goes to 0 it becomes the white noise, in Stratonovich's reading: of a model in Rust the drift is taken to be that of
+    /// this reading.
     ///
     /// ```
-    /// use pbif::system::{Model, registry};
+    /// use pbif::system::{Model, NoiseKind, registry};
     ///
-    /// let model = Model::with_coloured_noise(&registry::find("bistable").unwrap()).unwrap();
+    /// let white = registry::find("bistable").unwrap();
+    /// let model = Model::with_coloured_noise(&white, NoiseKind::OrnsteinUhlenbeck).unwrap();
     /// let system = model.system_with(&[("a", -0.1), ("sigma2", 0.2), ("tau", 0.4)]).unwrap();
     /// // x' = a x - x³ + σ η/√(2τ), η' = -η/τ.
     /// let drift = system.drift_at(0.0, &[1.0, 2.0]);
@@ -316,9 +318,12 @@ impl Model {
     ///
     /// # Errors
     /// [`ColouredNoiseError`].
-    pub fn with_coloured_noise(model: &Arc<Self>) -> Result<Arc<Self>, ColouredNoiseError> {
+    pub fn with_coloured_noise(
+        model: &Arc<Self>,
+        kind: NoiseKind,
+    ) -> Result<Arc<Self>, ColouredNoiseError> {
         if let Some(typed) = model.typed() {
-            let coloured = typed.source().clone().with_coloured_noise().build();
+            let coloured = typed.source().clone().with_coloured_noise(kind).build();
             return coloured.map_err(|error| ColouredNoiseError::Equations(error.to_string()));
         }
         // Any values will do: how many noises there are does not depend on them.
@@ -327,7 +332,7 @@ impl Model {
             .iter()
             .map(|one| one.default.unwrap_or(1.0));
         let noises = model.bound(&values.collect::<Vec<_>>()).noise_axes().len();
-        coloured(model, noises).map(Arc::new)
+        coloured(model, kind, noises).map(Arc::new)
     }
 
     /// What its noise is.

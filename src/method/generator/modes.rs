@@ -15,6 +15,9 @@ use crate::space::{Axis, CellSpace};
 /// Numbers of modes that are tried, in this order.
 const TRIED: [usize; 10] = [3, 4, 5, 6, 8, 10, 12, 16, 20, 24];
 
+/// Nodes of all axes together up to which numbers are tried for more than one axis: a solve takes their cube.
+const MOST_NODES: usize = 150;
+
 /// Change of a watched density, relative to its largest value, that more modes may still make.
 const CHANGE: f64 = 1e-4;
 
@@ -55,7 +58,9 @@ pub fn automatic_modes(
         change: f64::INFINITY,
         is_enough: false,
     };
-    for count in TRIED {
+    let nodes = |count: usize| open.iter().map(|_| count).product::<usize>();
+    let affordable = |&count: &usize| open.len() < 2 || nodes(count) <= MOST_NODES;
+    for count in TRIED.into_iter().filter(affordable) {
         let source = GeneratorSource::new(&coarse(problem, open, count)?, options)?;
         let now: Result<Vec<_>, MethodError> = values
             .iter()

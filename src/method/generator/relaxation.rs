@@ -128,9 +128,7 @@ impl Relaxation {
             growth.push(mode.iter().map(|value| value.abs()).sum::<f64>().ln());
         }
         let time = mean(growth.rchunks(AVERAGED).next()?).exp();
-        let change = neighbour.map_or(UNKNOWN_CHANGE, |known| {
-            LEAST_CHANGE * known.change_to(time)
-        });
+        let change = neighbour.map_or(UNKNOWN_CHANGE, |known| LEAST_CHANGE * known.change_to(time));
         (time > 0.0 && time.is_finite()).then(|| Self {
             time,
             mode: Arc::new(mode),

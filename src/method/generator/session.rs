@@ -200,6 +200,7 @@ impl GeneratorSession {
         let watched = by_cells.map(|one| negative_mass(&one.density.masses()));
         let watched = watched.fold(0.0, f64::max);
         let maps = self.source.maps(solved.value)?;
+        reporter.few_modes(self.source.options.change_by_modes);
         reporter.series(&maps.changes_by_last_modes(&self.source.problem, &masses)?);
         reporter.negative_mass(negative_mass(&summed_over_modes(&space, &masses)), watched);
         let mut moments = moments_of(&space, unknowns);

@@ -49,7 +49,8 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
         "Right side of the equation of an axis, without noise; one an axis, 1 to 4 of them, which also gives their order. docs/formulas.md has the language."),
     key("system.noise.kind", Kind::Choice(NoiseKind::words), Rule("`white`"), optional!(noise_kind),
         "`ornstein-uhlenbeck`: coloured noise in place of white, for built-in models too. Each noise keeps its intensity and gets a correlation \
-         that falls exponentially over the time `tau`, which is then a parameter; `noise` is an axis (docs/coloured-noise.md)."),
+         that falls exponentially over the time `tau`, which is then a parameter; `noise` is an axis (docs/coloured-noise.md). `harmonic`: noise \
+         whose spectrum has a peak near the frequency `noise_frequency`, as narrow as `noise_damping` is small; `noise` and `noise_rate` are axes."),
     key("system.noise.interpretation", Kind::Choice(Interpretation::words), Rule("to be given where it makes a difference"), optional!(equations.interpretation),
         "How noise is read whose amplitude depends on the axis that it drives."),
     key("system.noise.<axis>", Kind::Formulas, Rule("no noise on the axis"), formulas!(noise),

@@ -12,8 +12,7 @@ use crate::sweep_file::names::{list, nearest_name, quotable};
 use crate::sweep_file::reader::Reader;
 use crate::sweep_file::value::{Entry, Value};
 use crate::system::{
-    CORRELATION_TIME, ColouredNoiseError, FormulaPlace, Model, NoiseKind, ParameterDescription,
-    TypedModel, TypedModelError,
+    ColouredNoiseError, FormulaPlace, Model, ParameterDescription, TypedModel, TypedModelError,
 };
 
 /// Name of a model made of a file's equations, in messages and in stored runs.
@@ -61,10 +60,11 @@ pub(super) fn model(reader: &mut Reader<'_>, draft: &Draft) -> Option<Arc<Model>
 /// The built-in model, with the noise that the file means.
 fn built_in(reader: &mut Reader<'_>, draft: &Draft) -> Option<Arc<Model>> {
     let model = draft.model.as_ref()?;
-    if draft.noise_kind != Some(NoiseKind::OrnsteinUhlenbeck) {
+    let kind = draft.noise_kind.unwrap_or_default();
+    if !kind.is_coloured() {
         return Some(Arc::clone(model));
     }
-    let coloured = Model::with_coloured_noise(model);
+    let coloured = Model::with_coloured_noise(model, kind);
     let refused = |error: ColouredNoiseError| {
         let diagnostic = Diagnostic::new(error.to_string());
         let place = reader.place(&["system", "noise", KIND]);
@@ -197,10 +197,7 @@ fn source(
         Some(interpretation) => model.with_interpretation(interpretation),
         None => model,
     };
-    match draft.noise_kind {
-        Some(NoiseKind::OrnsteinUhlenbeck) => model.with_coloured_noise(),
-        Some(NoiseKind::White) | None => model,
-    }
+    model.with_coloured_noise(draft.noise_kind.unwrap_or_default())
 }
 
 /// Where other names are unknown, a swept parameter that no formula has is perhaps one of them.
@@ -216,8 +213,8 @@ fn check_swept_name(reader: &mut Reader<'_>, draft: &Draft) {
         .flat_map(|(_, amplitudes)| amplitudes);
     let mut texts = drift.map(|(_, text)| text).chain(noise);
     let given = draft.parameters.iter().any(|(name, _)| name == swept);
-    let coloured = draft.noise_kind == Some(NoiseKind::OrnsteinUhlenbeck);
-    if given || coloured && swept == CORRELATION_TIME || texts.any(|text| text.contains(swept)) {
+    let of_noise = draft.noise_kind.unwrap_or_default().has_parameter(swept);
+    if given || of_noise || texts.any(|text| text.contains(swept)) {
         return;
     }
     let title = format!(

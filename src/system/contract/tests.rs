@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::*;
 use crate::system::{
-    AxisDescription, ParameterDescription, ParameterRange, SwitchingSurface, registry,
+    AxisDescription, LANES, Lanes, ParameterDescription, ParameterRange, SwitchingSurface, registry,
 };
 
 mod patient;
@@ -307,4 +307,51 @@ fn an_exact_density_must_solve_the_fokker_planck_equation() {
         matches!(stratonovich, Err(ContractViolation::NotStationary { .. })),
         "{stratonovich:?}"
     );
+}
+
+/// What is declared to be the two states of a filter with white noise on the second: drifts by both.
+struct Pair {
+    drift: fn(f64, f64) -> [f64; 2],
+}
+
+impl System for Pair {
+    fn dimension(&self) -> usize {
+        2
+    }
+
+    fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
+        for lane in 0..LANES {
+            let [first, second] = (self.drift)(states[0][lane], states[1][lane]);
+            (drift[0][lane], drift[1][lane]) = (first, second);
+        }
+    }
+
+    fn noise_axes(&self) -> &[usize] {
+        &[1]
+    }
+
+    fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
+        Some(1.0)
+    }
+
+    fn filtered_noise(&self, _axis: usize) -> Option<(f64, f64)> {
+        Some((0.0, 1.0))
+    }
+}
+
+#[test]
+fn states_of_a_filter_must_have_the_normal_density_that_is_declared() {
+    let verified =
+        |drift: fn(f64, f64) -> [f64; 2]| verify(&Pair { drift }, &[(-2.0, 2.0); 2]).is_ok();
+    // The noise of intensity 1 damps at the rate 1/2 of the unit variance; both turn into one another.
+    assert!(verified(|u, v| [3.0 * v, -3.0 * u - 0.5 * v]));
+    for wrong in [
+        |u: f64, v: f64| [3.0 * v, -2.0 * u - 0.5 * v],
+        |u: f64, v: f64| [3.0 * v, -3.0 * u - 0.6 * v],
+        |u: f64, v: f64| [3.0 * v - 0.1 * u, -3.0 * u - 0.5 * v],
+        |u: f64, v: f64| [3.0 * v.sin(), -3.0 * u - 0.5 * v],
+        |u: f64, v: f64| [3.0 * v + 0.2, -3.0 * u - 0.5 * v],
+    ] {
+        assert!(!verified(wrong));
+    }
 }

@@ -256,34 +256,67 @@ impl<'a> Trial<'a> {
         Ok(())
     }
 
-    /// The drift of filtered noise is -rate (x - mean), the rate from its noise and its deviation, and the same at all states.
+    /// The drift of filtered noise is -rate (x - mean), the rate from its noise and its deviation, and the same at all states. Beside
+    /// it is only what turns the states of filters into one another and keeps their joint normal density: Σ u c/deviation = 0, where
+    /// u = (x - mean)/deviation and c, which does not depend on x, is what the drift has beside.
     pub(super) fn check_filters(&self) -> Result<(), ContractViolation> {
-        for axis in 0..self.dimension() {
-            let Some((mean, deviation)) = self.system.filtered_noise(axis) else {
-                continue;
-            };
-            let mut rates = self.states.iter().map(|state| {
-                let rate = 0.5 * self.intensity(self.times[0], state, axis) / deviation.powi(2);
-                let drift = self.system.drift_at(self.times[0], state)[axis];
-                (state, rate, drift)
-            });
-            let first = rates.clone().next().map_or(f64::NAN, |(_, rate, _)| rate);
-            let fits = |(state, rate, drift): &(&Vec<f64>, f64, f64)| {
-                let wanted = -first * (state[axis] - mean);
-                let fitting = same(*rate, first, first)
-                    && same(*drift, wanted, self.drift_size[axis] + first * deviation);
-                fitting && first > 0.0
-            };
-            if let Some((state, ..)) = rates.find(|one| !fits(one)) {
-                return Err(ContractViolation::Filter {
-                    axis,
-                    mean,
-                    deviation,
-                    state: state.clone(),
-                });
+        let declared = (0..self.dimension()).filter_map(|axis| {
+            let (mean, deviation) = self.system.filtered_noise(axis)?;
+            Some((axis, mean, deviation))
+        });
+        let filters: Vec<(usize, f64, f64)> = declared.collect();
+        let Some(&(first, ..)) = filters.first() else {
+            return Ok(());
+        };
+        let violation = |axis: usize, state: &[f64]| {
+            let of_axis = filters.iter().find(|one| one.0 == axis);
+            let (mean, deviation) = of_axis.map_or((0.0, 1.0), |&(_, mean, size)| (mean, size));
+            let state = state.to_vec();
+            ContractViolation::Filter {
+                axis,
+                mean,
+                deviation,
+                state,
+            }
+        };
+        let is_noisy = |&(axis, ..): &(usize, f64, f64)| self.noise_size[axis] > 0.0;
+        if !filters.iter().any(is_noisy) {
+            return Err(violation(first, &self.states[0]));
+        }
+        for state in &self.states {
+            let mut turned = (0.0, 0.0);
+            for &(axis, mean, deviation) in &filters {
+                let u = (state[axis] - mean) / deviation;
+                let beside = self.beside_filter(state, (axis, mean, deviation));
+                // Elsewhere along the axis it is the same.
+                let mut moved = state.clone();
+                moved[axis] += deviation;
+                let there = self.beside_filter(&moved, (axis, mean, deviation));
+                let size = self.drift_size[axis];
+                if !same(beside, there, size) || !self.is_constant_noise(axis, &moved) {
+                    return Err(violation(axis, state));
+                }
+                turned.0 += u * beside / deviation;
+                turned.1 += (u * size / deviation).abs();
+            }
+            if !same(turned.0, 0.0, turned.1) {
+                return Err(violation(first, state));
             }
         }
         Ok(())
+    }
+
+    /// What the drift of filtered noise has beside its own relaxation.
+    fn beside_filter(&self, state: &[f64], (axis, mean, deviation): (usize, f64, f64)) -> f64 {
+        let rate = 0.5 * self.intensity(self.times[0], state, axis) / deviation.powi(2);
+        self.system.drift_at(self.times[0], state)[axis] + rate * (state[axis] - mean)
+    }
+
+    /// Whether the noise on an axis is at a state what it is at the first one.
+    fn is_constant_noise(&self, axis: usize, state: &[f64]) -> bool {
+        let at = |state: &[f64]| self.intensity(self.times[0], state, axis);
+        let first = at(&self.states[0]);
+        same(at(state), first, first.abs())
     }
 
     fn check_bound(&self, axis: usize, bound: f64, outward: f64) -> Result<(), ContractViolation> {

@@ -8,7 +8,6 @@ use super::{FormulaPlace, Interpretation, TypedModel};
 use crate::formula::analysis::{Domain, HazardKind, Interval};
 use crate::formula::graph::{Expression, Symbol};
 use crate::formula::language::typeset_name;
-use crate::system::{CORRELATION_TIME, NoiseKind};
 
 /// The typed equations of a model, as they were typed and as they were read.
 #[derive(Debug, Clone)]
@@ -106,7 +105,7 @@ impl TypedEquations {
         words
     }
 
-    /// Parameters that no equation, noise or bound contains, by name; coloured noise uses its correlation time.
+    /// Parameters that no equation, noise or bound contains, by name; coloured noise uses those of its filter.
     pub fn unused_parameters(&self) -> Vec<&str> {
         let reading = &self.reading;
         let mut all: Vec<Expression> = reading.typed_drift.clone();
@@ -115,9 +114,9 @@ impl TypedEquations {
         all.extend(bounds.flat_map(|&(lower, upper)| [lower, upper]));
         let graph = reading.scope.graph();
         let names = reading.scope.symbols().parameters().iter().enumerate();
-        let coloured = self.model.noise_kind == NoiseKind::OrnsteinUhlenbeck;
+        let noise = self.model.noise_kind;
         let unused = names.filter(|(number, name)| {
-            if coloured && *name == CORRELATION_TIME {
+            if noise.has_parameter(name) {
                 return false;
             }
             let symbol = Symbol::Parameter(*number);

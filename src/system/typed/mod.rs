@@ -168,11 +168,11 @@ impl TypedModel {
         self
     }
 
-    /// The noises coloured, as [`Model::with_coloured_noise`] has it: each gets an axis of its own, and the model the parameter `tau`.
+    /// The noises coloured, as [`Model::with_coloured_noise`] has it: each gets axes of its own, and the model the filter's parameters.
     /// Where an amplitude depends on the axis that it drives there is but one reading, Stratonovich's, which need not be said.
     #[must_use]
-    pub fn with_coloured_noise(mut self) -> Self {
-        self.noise_kind = NoiseKind::OrnsteinUhlenbeck;
+    pub fn with_coloured_noise(mut self, kind: NoiseKind) -> Self {
+        self.noise_kind = kind;
         self
     }
 
@@ -262,12 +262,11 @@ impl TypedModel {
             .with_definitions(self.definitions.clone());
         let (kind, noises) = (self.noise_kind, reading.noise_axes.len());
         let model = Arc::new(model.with_typed(TypedEquations::new(self, reading)));
-        match kind {
-            NoiseKind::White => Ok(model),
-            NoiseKind::OrnsteinUhlenbeck => coloured(&model, noises)
-                .map(Arc::new)
-                .map_err(|error| vec![error.into()]),
+        if !kind.is_coloured() {
+            return Ok(model);
         }
+        let coloured = coloured(&model, kind, noises);
+        coloured.map(Arc::new).map_err(|error| vec![error.into()])
     }
 
     /// The equations as they were typed, one a line.

@@ -6,7 +6,6 @@ use crate::formula::analysis::KinkPlace;
 use crate::formula::graph::{Expression, Symbol, TooLarge};
 use crate::formula::scope::{DefinitionError, DefinitionFault, Scope, SymbolError, Symbols};
 use crate::formula::tape::{BindError, Program};
-use crate::system::NoiseKind;
 
 /// Axes and the coordinates on them that are constant on planes.
 type Planes = Vec<(usize, Expression)>;
@@ -157,7 +156,7 @@ impl Reader<'_> {
         let period = self.period(&typed_drift, &noise)?;
         let drift_expressions = self.ito_drift(&typed_drift, &noise)?;
         let mut rough = drift_expressions.clone();
-        if self.model.noise_kind == NoiseKind::OrnsteinUhlenbeck {
+        if self.model.noise_kind.is_coloured() {
             // An amplitude is then a part of the drift.
             rough.extend(noise.iter().flatten());
         }
@@ -324,7 +323,7 @@ impl Reader<'_> {
         noise: &[Vec<Expression>],
     ) -> Result<Vec<Expression>, TypedModelError> {
         let read = self.model.interpretation;
-        let coloured = self.model.noise_kind == NoiseKind::OrnsteinUhlenbeck;
+        let coloured = self.model.noise_kind.is_coloured();
         // What comes through a filter is smooth: its drift is the one that was typed.
         if coloured && read != Some(Interpretation::Ito) {
             return Ok(typed.to_vec());

@@ -1,0 +1,158 @@
+//! What noise can be, and the linear filters behind which white noise becomes coloured.
+
+use super::{CORRELATION_TIME, NOISE_DAMPING, NOISE_FREQUENCY};
+use crate::system::{LANES, Lanes, ParameterDescription, ParameterRange};
+
+/// What noise is, by its name in files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum NoiseKind {
+    /// Without memory.
+    #[default]
+    White,
+    /// With the correlation exp(-|s|/τ): white noise behind a filter of first order.
+    OrnsteinUhlenbeck,
+    /// With a spectrum that has a peak near the frequency ω_n: white noise behind a filter of second order.
+    Harmonic,
+}
+
+impl NoiseKind {
+    /// All kinds.
+    pub const ALL: [Self; 3] = [Self::White, Self::OrnsteinUhlenbeck, Self::Harmonic];
+
+    /// Name used in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::White => "white",
+            Self::OrnsteinUhlenbeck => "ornstein-uhlenbeck",
+            Self::Harmonic => "harmonic",
+        }
+    }
+
+    /// Whether noises have a memory.
+    pub fn is_coloured(self) -> bool {
+        self != Self::White
+    }
+
+    /// States of the filter of each noise, which are axes.
+    pub fn filter_states(self) -> usize {
+        match self {
+            Self::White => 0,
+            Self::OrnsteinUhlenbeck => 1,
+            Self::Harmonic => 2,
+        }
+    }
+
+    /// Parameters of the filter, one set for all noises of a model.
+    pub fn parameters(self) -> Vec<ParameterDescription> {
+        let positive = |name: &str, symbol: &str, meaning: &str| {
+            ParameterDescription::new(name, symbol, meaning).within(ParameterRange::Positive)
+        };
+        match self {
+            Self::White => Vec::new(),
+            Self::OrnsteinUhlenbeck => {
+                vec![positive(
+                    CORRELATION_TIME,
+                    "τ",
+                    "correlation time of the noise",
+                )]
+            }
+            Self::Harmonic => vec![
+                positive(
+                    NOISE_FREQUENCY,
+                    "ω_n",
+                    "natural frequency of the noise's filter",
+                ),
+                positive(
+                    NOISE_DAMPING,
+                    "ζ_n",
+                    "damping of the noise's filter over the critical one",
+                ),
+            ],
+        }
+    }
+
+    /// Whether the filter has a parameter of this name.
+    pub fn has_parameter(self, name: &str) -> bool {
+        let of_filter: &[&str] = match self {
+            Self::White => &[],
+            Self::OrnsteinUhlenbeck => &[CORRELATION_TIME],
+            Self::Harmonic => &[NOISE_FREQUENCY, NOISE_DAMPING],
+        };
+        of_filter.contains(&name)
+    }
+
+    /// What the correlation of the noise has in place of δ(s).
+    pub(super) fn correlation(self) -> &'static str {
+        match self {
+            Self::White => "δ(s)",
+            Self::OrnsteinUhlenbeck => "exp(-|s|/τ)/(2 τ)",
+            Self::Harmonic => "ω_n C(s)/(4 ζ_n)",
+        }
+    }
+
+    /// The equations of the filter, as a person writes them.
+    pub(super) fn equations(self) -> &'static [&'static str] {
+        match self {
+            Self::White => &[],
+            Self::OrnsteinUhlenbeck => &[
+                "noise b ξ(t) = b η/√(2 τ),   η' = -η/τ + √(2/τ) w(t),   w white noise of unit intensity",
+            ],
+            Self::Harmonic => &[
+                "noise b ξ(t) = b √(ω_n/(4 ζ_n)) η,   η' = ω_n ν,   ν' = -ω_n η - 2 ζ_n ω_n ν + 2 √(ζ_n ω_n) w(t)",
+                "w white noise of unit intensity,   C'' + 2 ζ_n ω_n C' + ω_n² C = 0 for s > 0,   C(0) = 1,   C'(0) = 0",
+            ],
+        }
+    }
+
+    /// The filter with values of [`NoiseKind::parameters`]; `None` for white noise.
+    pub(super) fn filter(self, values: &[f64]) -> Option<Filter> {
+        match (self, values) {
+            (Self::OrnsteinUhlenbeck, &[tau]) => Some(Filter {
+                gain: (0.5 / tau).sqrt(),
+                amplitude: (2.0 / tau).sqrt(),
+                damping: 1.0 / tau,
+                frequency: None,
+            }),
+            (Self::Harmonic, &[frequency, damping]) => Some(Filter {
+                gain: (0.25 * frequency / damping).sqrt(),
+                amplitude: 2.0 * (damping * frequency).sqrt(),
+                damping: 2.0 * damping * frequency,
+                frequency: Some(frequency),
+            }),
+            _ => None,
+        }
+    }
+}
+
+/// A linear filter of one noise: its last state is driven by white noise, its first one drives the system.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Filter {
+    /// What its first state, of unit variance, is multiplied by.
+    pub(super) gain: f64,
+    /// Amplitude of the white noise on its last state.
+    pub(super) amplitude: f64,
+    /// Rate at which its last state is damped.
+    damping: f64,
+    /// Frequency at which the two states of a filter of second order turn into one another.
+    frequency: Option<f64>,
+}
+
+impl Filter {
+    /// Number of its states.
+    pub(super) fn states(&self) -> usize {
+        1 + usize::from(self.frequency.is_some())
+    }
+
+    /// Rates of its states, a batch at a time.
+    pub(super) fn rates(&self, states: &[Lanes], rates: &mut [Lanes]) {
+        let Some(frequency) = self.frequency else {
+            rates[0] = states[0].map(|state| -self.damping * state);
+            return;
+        };
+        for lane in 0..LANES {
+            let (noise, turned) = (states[0][lane], states[1][lane]);
+            rates[0][lane] = frequency * turned;
+            rates[1][lane] = -frequency * noise - self.damping * turned;
+        }
+    }
+}

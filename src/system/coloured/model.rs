@@ -1,0 +1,124 @@
+//! A model with coloured noise made of one with white noise: axes, parameters, equations, and the systems that it makes.
+
+use std::sync::Arc;
+
+use super::filtered::Filtered;
+use super::{ColouredNoiseError, NOISE_AXIS, NOISE_RATE_AXIS, NoiseKind};
+use crate::MAX_DIMENSION;
+use crate::system::{AxisDescription, Model, System};
+
+/// A model with coloured noise in place of each of `noises` white noises, with one set of parameters for all their filters.
+pub(in crate::system) fn coloured(
+    model: &Arc<Model>,
+    kind: NoiseKind,
+    noises: usize,
+) -> Result<Model, ColouredNoiseError> {
+    let (axes, each) = (model.axes.len(), kind.filter_states());
+    if axes + noises * each > MAX_DIMENSION {
+        return Err(ColouredNoiseError::Axes { axes, noises, each });
+    }
+    let filters = filter_axes(kind, noises);
+    check_names(model, kind, &filters)?;
+    let mut parameters = model.parameters.clone();
+    let own = parameters.len();
+    let places: Vec<usize> = (kind.parameters().into_iter())
+        .map(|wanted| {
+            let known = parameters.iter().position(|one| one.name == wanted.name);
+            match known {
+                Some(place) => parameters[place].range = wanted.range,
+                None => parameters.push(wanted),
+            }
+            known.unwrap_or(parameters.len() - 1)
+        })
+        .collect();
+    let white = Arc::clone(model);
+    let bind = move |values: &[f64]| -> Arc<dyn System> {
+        let system = white.bound(&values[..own]);
+        let of_filter: Vec<f64> = places.iter().map(|&place| values[place]).collect();
+        match kind.filter(&of_filter) {
+            Some(filter) => Arc::new(Filtered::new(system, filter)),
+            None => system,
+        }
+    };
+    let described = model.axes.iter().cloned();
+    let coloured = Model::new(&model.name, &model.title, bind)
+        .with_equations(lines(model, kind))
+        .with_axes(described.chain(filters).collect::<Vec<_>>())
+        .with_parameters(parameters)
+        .with_source(&model.source)
+        // What is said of built-in models beside their equations holds for white noise.
+        .with_notes(model.typed().map_or(Vec::new(), |_| model.notes.clone()))
+        .with_definitions(model.definitions().to_vec())
+        .with_noise_kind(kind);
+    Ok(match model.typed() {
+        Some(typed) => coloured.with_typed(typed.clone()),
+        None => coloured,
+    })
+}
+
+/// The axes of the filters, noise by noise.
+fn filter_axes(kind: NoiseKind, noises: usize) -> Vec<AxisDescription> {
+    const STATES: [(&str, &str, &str); 2] = [
+        (NOISE_AXIS, "η", "coloured noise, of unit variance"),
+        (
+            NOISE_RATE_AXIS,
+            "ν",
+            "rate of the noise over its frequency, of unit variance",
+        ),
+    ];
+    let states = &STATES[..kind.filter_states()];
+    let numbers = 1..=noises;
+    let axes = numbers.flat_map(|number| {
+        states.iter().map(move |(name, symbol, meaning)| {
+            let (name, symbol) = match noises {
+                1 => ((*name).to_owned(), (*symbol).to_owned()),
+                _ => (format!("{name}_{number}"), format!("{symbol}_{{{number}}}")),
+            };
+            AxisDescription::new(name, symbol, *meaning).carried_by_modes()
+        })
+    });
+    axes.collect()
+}
+
+/// Axes and definitions must have other names than the noise, and than the parameters of its filter.
+fn check_names(
+    model: &Model,
+    kind: NoiseKind,
+    filters: &[AxisDescription],
+) -> Result<(), ColouredNoiseError> {
+    let axes = model.axes.iter().map(|axis| axis.name.as_str());
+    let defined = model.definitions().iter().map(|(name, _)| name.as_str());
+    let taken: Vec<&str> = axes.chain(defined).collect();
+    let parameters = model.parameters.iter().map(|one| one.name.as_str());
+    let needed = filters.iter().map(|axis| axis.name.as_str());
+    let clash = needed
+        .filter(|name| taken.contains(name) || parameters.clone().any(|one| one == *name))
+        .map(str::to_owned)
+        .next();
+    let of_filter = kind.parameters().into_iter().map(|one| one.name);
+    let clash = clash.or_else(|| {
+        of_filter
+            .filter(|name| taken.contains(&name.as_str()))
+            .next()
+    });
+    match clash {
+        Some(name) => Err(ColouredNoiseError::Taken { name }),
+        None => Ok(()),
+    }
+}
+
+/// The model's equations, with the correlation that its noises have now, and where they come from.
+fn lines(model: &Model, kind: NoiseKind) -> Vec<String> {
+    let states_intensity = |line: &&String| line.starts_with("E[ξ");
+    let kept = model
+        .equations
+        .iter()
+        .filter(|line| !states_intensity(line));
+    let intensity = model.equations.iter().find(states_intensity);
+    let coloured = intensity.map(|line| {
+        line.replace("(t+τ)", "(t+s)")
+            .replace("δ(τ)", kind.correlation())
+    });
+    let filter = kind.equations().iter().map(|line| (*line).to_owned());
+    kept.cloned().chain(coloured).chain(filter).collect()
+}
