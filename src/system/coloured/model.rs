@@ -95,12 +95,8 @@ fn check_names(
         .filter(|name| taken.contains(name) || parameters.clone().any(|one| one == *name))
         .map(str::to_owned)
         .next();
-    let of_filter = kind.parameters().into_iter().map(|one| one.name);
-    let clash = clash.or_else(|| {
-        of_filter
-            .filter(|name| taken.contains(&name.as_str()))
-            .next()
-    });
+    let mut of_filter = kind.parameters().into_iter().map(|one| one.name);
+    let clash = clash.or_else(|| of_filter.find(|name| taken.contains(&name.as_str())));
     match clash {
         Some(name) => Err(ColouredNoiseError::Taken { name }),
         None => Ok(()),
