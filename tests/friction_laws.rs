@@ -187,6 +187,17 @@ fn the_cubic_law_agrees() {
 }
 
 #[test]
+fn elasto_plastic_agrees() {
+    let own = [
+        ("lambda", 0.8),
+        ("eta", 0.1),
+        ("f_b", 0.05),
+        ("f_t", 0.06),
+    ];
+    assert_agrees(&*system("elasto_plastic", &own), 40, 8, 5e-3);
+}
+
+#[test]
 fn bouc_wen_agrees_for_both_exponents() {
     for n in [1.0, 2.0] {
         let own = [("lambda", 0.2), ("beta", 0.8), ("gamma", 0.3), ("n", n)];

@@ -194,6 +194,42 @@ const TWINS: [Twins; 10] = [
         "#,
     },
     Twins {
+        name: "elasto_plastic",
+        typed: r#"
+            [system.equations]
+            x = "y"
+            y = "-kappa y - x (alpha + mu x^2) - lambda z - eta rate"
+            z = "rate"
+            [system.define]
+            w = "lambda z*sign(y)"
+            way = "min(max((w - f_b)/f_t, 0), 1)"
+            rate = "y (1 - (1 - cos(pi way))/2*w/(f_b + f_t))"
+            [system.noise]
+            y = "sqrt(sigma2)"
+            [system.bounds]
+            z = ["-(f_b + f_t)/lambda", "(f_b + f_t)/lambda"]
+        "#,
+        common: r#"
+            [system.parameters]
+            kappa = 0.2
+            mu = 1
+            sigma2 = 0.2
+            lambda = 0.5
+            eta = 0.1
+            f_b = 0.1
+            f_t = 0.15
+            [sweep]
+            parameter = "alpha"
+            from = -0.5
+            to = 0.5
+            points = 2
+            [cells]
+            x = { from = -2.5, to = 2.5, count = 10 }
+            y = { from = -2.5, to = 2.5, count = 10 }
+            z = { count = 6 }
+        "#,
+    },
+    Twins {
         name: "bouc_wen",
         typed: r#"
             [system.equations]

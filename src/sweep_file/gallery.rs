@@ -55,6 +55,7 @@ pub fn starting_files() -> &'static [StartingFile] {
         "fitzhugh_nagumo",
         "stick_slip",
         "lugre",
+        "elasto_plastic",
         "bouc_wen",
         "bliman_sorine",
         "coloured_bistable",

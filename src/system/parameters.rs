@@ -134,6 +134,18 @@ pub(super) const CONTACT_DAMPING: Parameter = Parameter {
     ..parameter("eta", "η", "damping of the friction contact")
 };
 
+/// f_b of the elasto-plastic law.
+pub(super) const ELASTIC_LEVEL: Parameter = Parameter {
+    range: ParameterRange::NonNegative,
+    ..parameter("f_b", "f_{b}", "friction force up to which the contact is elastic")
+};
+
+/// f_t > 0 of the elasto-plastic law.
+pub(super) const YIELDING_LEVEL: Parameter = Parameter {
+    range: ParameterRange::Positive,
+    ..parameter("f_t", "f_{t}", "rise of the force from there to sliding")
+};
+
 /// λ of the Bouc-Wen law, of either sign.
 pub(super) const HYSTERESIS_FORCE: Parameter =
     parameter("lambda", "λ", "force of the hysteretic state");

@@ -2,7 +2,9 @@
 
 use std::sync::{Arc, LazyLock};
 
-use super::friction::{bliman_sorine, bouc_wen, coulomb, dahl, lugre, stribeck};
+use super::friction::{
+    bliman_sorine, bouc_wen, coulomb, dahl, elasto_plastic, lugre, stribeck,
+};
 use super::{Model, SystemError, bistable, rayleigh};
 
 static MODELS: LazyLock<Vec<Arc<Model>>> = LazyLock::new(|| {
@@ -13,6 +15,7 @@ static MODELS: LazyLock<Vec<Arc<Model>>> = LazyLock::new(|| {
         stribeck::model(),
         stribeck::model_cubic(),
         lugre::model(),
+        elasto_plastic::model(),
         bouc_wen::model(),
         bliman_sorine::model(),
         rayleigh::model(),

@@ -4,6 +4,7 @@ pub(super) mod bliman_sorine;
 pub(super) mod bouc_wen;
 pub(super) mod coulomb;
 pub(super) mod dahl;
+pub(super) mod elasto_plastic;
 pub(super) mod lugre;
 mod sliding;
 pub(super) mod stribeck;
