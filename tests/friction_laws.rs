@@ -188,12 +188,7 @@ fn the_cubic_law_agrees() {
 
 #[test]
 fn elasto_plastic_agrees() {
-    let own = [
-        ("lambda", 0.8),
-        ("eta", 0.1),
-        ("f_b", 0.05),
-        ("f_t", 0.06),
-    ];
+    let own = [("lambda", 0.8), ("eta", 0.1), ("f_b", 0.05), ("f_t", 0.06)];
     assert_agrees(&*system("elasto_plastic", &own), 40, 8, 5e-3);
 }
 

@@ -20,7 +20,15 @@ fn the_list_names_every_model() {
     let (code, list, errors) = run(&["systems"]);
     assert_eq!((code, errors.as_str()), (0, ""));
     for name in [
-        "coulomb", "dahl", "dahl_eq8", "stribeck", "lugre", "elasto_plastic", "bouc_wen", "rayleigh", "bistable",
+        "coulomb",
+        "dahl",
+        "dahl_eq8",
+        "stribeck",
+        "lugre",
+        "elasto_plastic",
+        "bouc_wen",
+        "rayleigh",
+        "bistable",
     ] {
         assert!(list.contains(&format!("| {name} ")), "{list}");
     }

@@ -24,7 +24,7 @@ y = "-kappa y - x (alpha + mu x^2) - f_c sign(y)"
 y = "sqrt(sigma2)"
 "#;
 
-const TWINS: [Twins; 10] = [
+const TWINS: [Twins; 11] = [
     Twins {
         name: "coulomb",
         typed: OSCILLATOR,

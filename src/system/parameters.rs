@@ -137,7 +137,11 @@ pub(super) const CONTACT_DAMPING: Parameter = Parameter {
 /// f_b of the elasto-plastic law.
 pub(super) const ELASTIC_LEVEL: Parameter = Parameter {
     range: ParameterRange::NonNegative,
-    ..parameter("f_b", "f_{b}", "friction force up to which the contact is elastic")
+    ..parameter(
+        "f_b",
+        "f_{b}",
+        "friction force up to which the contact is elastic",
+    )
 };
 
 /// f_t > 0 of the elasto-plastic law.

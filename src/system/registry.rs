@@ -2,9 +2,7 @@
 
 use std::sync::{Arc, LazyLock};
 
-use super::friction::{
-    bliman_sorine, bouc_wen, coulomb, dahl, elasto_plastic, lugre, stribeck,
-};
+use super::friction::{bliman_sorine, bouc_wen, coulomb, dahl, elasto_plastic, lugre, stribeck};
 use super::{Model, SystemError, bistable, rayleigh};
 
 static MODELS: LazyLock<Vec<Arc<Model>>> = LazyLock::new(|| {
