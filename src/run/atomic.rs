@@ -7,6 +7,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use super::RunError;
+use crate::figure::UNFINISHED_FIGURE;
+
+/// Beginning of the names of files and folders that are in the making, or taken out of the way.
+pub(super) const UNFINISHED: &str = ".pbif-";
 
 /// Writes a file so that a killed program leaves either the old content or the new. Missing folders on the
 /// way are made.
@@ -30,6 +34,7 @@ fn write(path: &Path, bytes: &[u8], durably: bool) -> Result<(), RunError> {
     let folder = path.parent().unwrap_or(Path::new("."));
     std::fs::create_dir_all(folder).map_err(failed)?;
     let mut file = tempfile::Builder::new()
+        .prefix(UNFINISHED)
         .permissions_of_new_files()
         .tempfile_in(folder)
         .map_err(failed)?;
@@ -39,6 +44,33 @@ fn write(path: &Path, bytes: &[u8], durably: bool) -> Result<(), RunError> {
     }
     file.persist(path).map_err(|error| failed(error.error))?;
     Ok(())
+}
+
+/// Removes the files in the making that a killed process has left in a run, which nobody else writes to: in its folder, and below its
+/// folders `own`. Other folders are a user's.
+pub(super) fn clear_unfinished(run: &Path, own: &[&str]) {
+    let mut open = vec![run.to_owned()];
+    while let Some(folder) = open.pop() {
+        for entry in std::fs::read_dir(&folder).into_iter().flatten().flatten() {
+            let name = entry.file_name();
+            let name = name.to_string_lossy();
+            let is_unfinished = [UNFINISHED, UNFINISHED_FIGURE]
+                .iter()
+                .any(|beginning| name.starts_with(beginning));
+            match entry.file_type() {
+                Ok(kind) if kind.is_dir() => {
+                    if folder != run || own.contains(&&*name) {
+                        open.push(entry.path());
+                    }
+                }
+                Ok(kind) if kind.is_file() && is_unfinished => {
+                    // One that cannot be removed is in nobody's way.
+                    let _ = std::fs::remove_file(entry.path());
+                }
+                _ => {}
+            }
+        }
+    }
 }
 
 /// Makes the names in a folder durable, where the system lets folders be synchronised.
@@ -153,5 +185,26 @@ mod tests {
         sync_all(&[folder.path().join("a"), folder.path().join("missing")]).unwrap();
         assert!(sync_one(&deep.join("gone")).is_err());
         sync_all(&[]).unwrap();
+    }
+
+    #[test]
+    fn what_a_killed_process_left_is_cleared_and_nothing_else() {
+        let run = tempfile::tempdir().unwrap();
+        let put = |name: &str| {
+            let path = run.path().join(name);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(&path, "1").unwrap();
+            path
+        };
+        let left = [
+            ".pbif-a1",
+            "densities.zarr/p_x/c/.pbif-b2",
+            "figures/.figurec3",
+        ];
+        let left = left.map(put);
+        let kept = ["points.csv", ".hidden", "notes/.pbif-mine", "figures/x.svg"].map(put);
+        clear_unfinished(run.path(), &["densities.zarr", "figures"]);
+        assert!(left.iter().all(|path| !path.exists()));
+        assert!(kept.iter().all(|path| path.exists()));
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::atomic::{sync_all, write_atomically, write_durably};
+use super::atomic::{clear_unfinished, sync_all, write_atomically, write_durably};
 use super::growing::GrowingTable;
 use super::{
     DensityStore, Ending, Manifest, RunError, bifurcations, checks, checksums, features_table,
@@ -73,6 +73,7 @@ impl RunFolder {
     pub fn reopen(path: &Path) -> Result<Self, RunError> {
         let lock = FolderLock::take(path)?;
         checksums::reopen(path);
+        clear_unfinished(path, &["densities.zarr", "figures"]);
         Ok(Self {
             _lock: Some(lock),
             ..Self::fresh(path)

@@ -5,12 +5,9 @@ use std::path::{Path, PathBuf};
 
 use super::RunError;
 use super::archive;
-use super::atomic::sync_folder;
+use super::atomic::{UNFINISHED, sync_folder};
 use super::lock::FolderLock;
 use super::tree::{make, rename};
-
-/// Beginning of the names of folders in which files are made or taken out of the way.
-const ROOM: &str = ".pbif-";
 
 /// What a folder may hold by this program's doing: files and folders by name, the file that marks the folder first.
 pub(super) type Entries = &'static [&'static str];
@@ -36,7 +33,7 @@ impl Staging {
         let lock = FolderLock::take(home)?;
         clear_rooms(home);
         archive::check_ours(home, entries)?;
-        let room = tempfile::Builder::new().prefix(ROOM).tempdir_in(home);
+        let room = tempfile::Builder::new().prefix(UNFINISHED).tempdir_in(home);
         let room = room.map_err(|source| RunError::Write {
             path: home.to_owned(),
             source,
@@ -124,7 +121,7 @@ pub(super) struct Placed {
 /// Removes rooms that killed processes left. Nothing in them has its only place there, see [`Staging::take_place`].
 fn clear_rooms(home: &Path) {
     for entry in std::fs::read_dir(home).into_iter().flatten().flatten() {
-        let is_room = entry.file_name().to_string_lossy().starts_with(ROOM);
+        let is_room = entry.file_name().to_string_lossy().starts_with(UNFINISHED);
         if is_room && entry.path().is_dir() {
             // One that cannot be removed is in nobody's way.
             let _ = std::fs::remove_dir_all(entry.path());
