@@ -58,10 +58,8 @@ pub(super) fn clear_unfinished(run: &Path, own: &[&str]) {
                 .iter()
                 .any(|beginning| name.starts_with(beginning));
             match entry.file_type() {
-                Ok(kind) if kind.is_dir() => {
-                    if folder != run || own.contains(&&*name) {
-                        open.push(entry.path());
-                    }
+                Ok(kind) if kind.is_dir() && (folder != run || own.contains(&&*name)) => {
+                    open.push(entry.path());
                 }
                 Ok(kind) if kind.is_file() && is_unfinished => {
                     // One that cannot be removed is in nobody's way.
