@@ -52,3 +52,7 @@ pub mod topology;
 
 /// Largest dimension of a state and of a cell space.
 pub const MAX_DIMENSION: usize = 4;
+
+/// Beginning of the names of files and folders that are in the making, or taken out of the way.
+#[cfg(feature = "figures")]
+pub(crate) const UNFINISHED: &str = ".pbif-";

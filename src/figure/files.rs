@@ -5,9 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::drawn::Figure;
 use super::error::FigureError;
-
-/// Beginning of the names of figures in the making.
-pub(crate) const UNFINISHED_FIGURE: &str = ".figure";
+use crate::UNFINISHED;
 
 /// File formats of figures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -85,7 +83,7 @@ fn write(figure: &Figure, format: Format, folder: &Path) -> Result<Option<PathBu
         // Temporary files are private by default; figures are as readable as any other file.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let mut file = builder.prefix(UNFINISHED_FIGURE).tempfile_in(folder)?;
+        let mut file = builder.prefix(UNFINISHED).tempfile_in(folder)?;
         file.write_all(&bytes)?;
         file.persist(&path)?;
         Ok(())

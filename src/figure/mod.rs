@@ -56,8 +56,6 @@ mod told;
 pub use canvas::DrawError;
 pub use drawn::{Figure, Figures, KINDS, USUAL_KINDS, matches_figure, sweep_figures};
 pub use error::FigureError;
-#[cfg(feature = "store")]
-pub(crate) use files::UNFINISHED_FIGURE;
 pub use files::{Format, write_figures};
 pub use map::map_figures;
 pub use plane::curve_figure;

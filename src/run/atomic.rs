@@ -7,10 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use super::RunError;
-use crate::figure::UNFINISHED_FIGURE;
-
-/// Beginning of the names of files and folders that are in the making, or taken out of the way.
-pub(super) const UNFINISHED: &str = ".pbif-";
+use crate::UNFINISHED;
 
 /// Writes a file so that a killed program leaves either the old content or the new. Missing folders on the
 /// way are made.
@@ -54,9 +51,7 @@ pub(super) fn clear_unfinished(run: &Path, own: &[&str]) {
         for entry in std::fs::read_dir(&folder).into_iter().flatten().flatten() {
             let name = entry.file_name();
             let name = name.to_string_lossy();
-            let is_unfinished = [UNFINISHED, UNFINISHED_FIGURE]
-                .iter()
-                .any(|beginning| name.starts_with(beginning));
+            let is_unfinished = name.starts_with(UNFINISHED);
             match entry.file_type() {
                 Ok(kind) if kind.is_dir() && (folder != run || own.contains(&&*name)) => {
                     open.push(entry.path());
@@ -197,7 +192,7 @@ mod tests {
         let left = [
             ".pbif-a1",
             "densities.zarr/p_x/c/.pbif-b2",
-            "figures/.figurec3",
+            "figures/.pbif-c3",
         ];
         let left = left.map(put);
         let kept = ["points.csv", ".hidden", "notes/.pbif-mine", "figures/x.svg"].map(put);

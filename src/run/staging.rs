@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 
 use super::RunError;
 use super::archive;
-use super::atomic::{UNFINISHED, sync_folder};
+use super::atomic::sync_folder;
 use super::lock::FolderLock;
 use super::tree::{make, rename};
+use crate::UNFINISHED;
 
 /// What a folder may hold by this program's doing: files and folders by name, the file that marks the folder first.
 pub(super) type Entries = &'static [&'static str];

@@ -193,7 +193,12 @@ impl Settings {
             found.change
         );
         if !found.is_enough {
-            note += ", which is much: give `modes` for more, or `count` for cells";
+            note += match self.has_moving_bounds(&open) {
+                true => {
+                    ", which is much: bounds that move along the sweep suit no modes, give `count` for cells"
+                }
+                false => ", which is much: give `modes` for more, or `count` for cells",
+            };
             self.method.generator.change_by_modes = Some(found.change);
         }
         self.chosen.push(note);
@@ -201,6 +206,17 @@ impl Settings {
             self.axes[axis].modes = Some(Modes::Number(found.count));
         }
         Ok(())
+    }
+
+    /// Whether the model's bounds of one of the axes are not the same at both ends of the sweep: the range of its modes is then too wide
+    /// at one of them, where the density ends inside it.
+    fn has_moving_bounds(&self, axes: &[usize]) -> bool {
+        let (from, to) = self.family.ends();
+        let (Ok(first), Ok(last)) = (self.family.at(from), self.family.at(to)) else {
+            return false;
+        };
+        let mut axes = axes.iter();
+        axes.any(|&axis| first.bounds(axis) != last.bounds(axis))
     }
 
     /// Unknowns along each axis as the method has it; a few modes where their number is left to the program.
