@@ -73,12 +73,7 @@ impl NoiseKind {
 
     /// Whether the filter has a parameter of this name.
     pub fn has_parameter(self, name: &str) -> bool {
-        let of_filter: &[&str] = match self {
-            Self::White => &[],
-            Self::OrnsteinUhlenbeck => &[CORRELATION_TIME],
-            Self::Harmonic => &[NOISE_FREQUENCY, NOISE_DAMPING],
-        };
-        of_filter.contains(&name)
+        self.parameters().iter().any(|one| one.name == name)
     }
 
     /// What the correlation of the noise has in place of δ(s).

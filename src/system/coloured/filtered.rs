@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::filter::Filter;
 use crate::system::{LANES, Lanes, SwitchingSurface, Symmetry, System};
 
-/// A system whose white noises come through filters, one axis each after those of the system.
+/// A system whose white noises come through filters, the states of which are axes after those of the system, noise by noise.
 pub(super) struct Filtered {
     system: Arc<dyn System>,
     /// Axes of the system without its filters.
