@@ -212,6 +212,111 @@ fn a_browser_shows_the_page_from_disk() {
     assert!(odd.contains("data-ready=\"true\"") && odd.contains("aria-live=\"polite\">f_c = "));
 }
 
+/// The rows of a table of a run, by the names of their columns.
+fn table(file: &Path) -> Vec<std::collections::HashMap<String, String>> {
+    let mut reader = csv::Reader::from_path(file).unwrap();
+    reader.deserialize().map(Result::unwrap).collect()
+}
+
+#[test]
+fn the_page_of_a_map_holds_what_its_tables_hold() {
+    let folder = TempDir::new().unwrap();
+    let sweep = Path::new(env!("CARGO_MANIFEST_DIR")).join("sweeps/cusp.toml");
+    let settings = ["sweep.points=9", "map.points=8", "map.depth=1"];
+    let mut arguments = vec!["sweep", sweep.to_str().unwrap(), "--quiet", "--out", "map"];
+    arguments.extend(settings.iter().flat_map(|setting| ["--set", *setting]));
+    pbif(&arguments, folder.path());
+    let (_, stderr, code) = pbif(&["explore", "map", "--html", "map.html"], folder.path());
+    assert_eq!(code, Some(0), "{stderr}");
+    let html = std::fs::read_to_string(folder.path().join("map.html")).unwrap();
+    let packed = html.split("id=\"scene\">").nth(1).unwrap();
+    let packed = packed.split("</script>").next().unwrap();
+    let packed = base64::engine::general_purpose::STANDARD
+        .decode(packed)
+        .unwrap();
+    let mut told = Vec::new();
+    flate2::read::ZlibDecoder::new(packed.as_slice())
+        .read_to_end(&mut told)
+        .unwrap();
+    let told: serde_json::Value = serde_json::from_slice(&told).unwrap();
+    let found = &told["plane"]["found"];
+
+    // Curves and points are the numbers of the tables, to the last digit.
+    let number = |text: &String| text.parse::<f64>().unwrap();
+    let points: Vec<&serde_json::Value> = (found["curves"].as_array().unwrap().iter())
+        .flat_map(|curve| curve["points"].as_array().unwrap())
+        .collect();
+    let rows = table(&folder.path().join("map/curves.csv"));
+    assert!(rows.len() > 20 && rows.len() == points.len());
+    for (row, point) in rows.iter().zip(points) {
+        for (column, k) in [
+            ("h", 0),
+            ("a", 1),
+            ("error", 2),
+            ("edge_h", 3),
+            ("edge_a", 4),
+        ] {
+            assert_eq!(point[k].as_f64().unwrap(), number(&row[column]), "{column}");
+        }
+    }
+    let rows = table(&folder.path().join("map/codimension_two.csv"));
+    assert_eq!(rows.len(), found["points"].as_array().unwrap().len());
+    assert_eq!(
+        found["points"][0]["at"][1].as_f64().unwrap(),
+        number(&rows[0]["a"])
+    );
+
+    // Every state of the page is a node of the map, with its words; its density is the exact one of that place.
+    let nodes = table(&folder.path().join("map/map.csv"));
+    let frames = told["frames"].as_array().unwrap();
+    assert_eq!(frames.len(), 9 * 8);
+    for (frame, second) in frames.iter().zip(told["across"].as_array().unwrap()) {
+        let (h, a) = (frame["value"].as_f64().unwrap(), second.as_f64().unwrap());
+        let node = nodes
+            .iter()
+            .find(|row| number(&row["h"]) == h && number(&row["a"]) == a);
+        assert_eq!(
+            frame["found"][0]["words"],
+            node.unwrap()["signature_x"].as_str(),
+            "{h} {a}"
+        );
+        // p ∝ exp((2/σ²)(h x + a x²/2 - x⁴/4)), by the trapezoidal rule, which has all digits for a density that vanishes at both ends.
+        let weight = |x: f64| (20.0 * (h * x + a * x * x / 2.0 - x.powi(4) / 4.0)).exp();
+        let places = (0..=5000).map(|i| -2.5 + 1e-3 * f64::from(i));
+        let (sum, first) = places.fold((0.0, 0.0), |(sum, first), x| {
+            (sum + weight(x), first + x * weight(x))
+        });
+        let mean = frame["moments"][0][0].as_f64().unwrap();
+        assert!(
+            (mean - first / sum).abs() < 1e-5,
+            "{h} {a}: {mean} {}",
+            first / sum
+        );
+    }
+
+    let (_, stderr, code) = pbif(
+        &["explore", "map", "--set", "detect.noise=0.1"],
+        folder.path(),
+    );
+    assert!(
+        code == Some(2) && stderr.contains("stands in its tables"),
+        "{stderr}"
+    );
+    std::fs::write(
+        folder.path().join("map/curves.csv"),
+        "curve,h,a\nC1,0.1,much\n",
+    )
+    .unwrap();
+    let (_, stderr, code) = pbif(&["explore", "map"], folder.path());
+    assert!(
+        code == Some(2) && stderr.contains("`much` is no number"),
+        "{stderr}"
+    );
+    std::fs::write(folder.path().join("map/map.json"), "{}").unwrap();
+    let (_, stderr, code) = pbif(&["explore", "map"], folder.path());
+    assert!(code == Some(2) && stderr.contains("map.json"), "{stderr}");
+}
+
 #[test]
 fn what_cannot_be_explored_is_refused() {
     let folder = TempDir::new().unwrap();
@@ -466,7 +571,7 @@ fn the_server_refuses_whoever_is_not_its_page() {
 fn the_page_goes_on_when_many_connections_are_held() {
     let served = Served::new();
     // They ask for nothing and are let go after a while.
-    let held: Vec<_> = (0..300)
+    let held: Vec<_> = (0..1000)
         .map(|_| TcpStream::connect(("127.0.0.1", served.port)))
         .collect();
     assert!(held.iter().any(Result::is_ok));

@@ -416,7 +416,7 @@ pub(crate) struct PlotArguments {
 /// What is explored: a stored run or a sweep file.
 #[derive(Debug, Args)]
 pub(crate) struct ExploreArguments {
-    /// Folder of a run, as `pbif sweep` left it, or a sweep file (TOML)
+    /// Folder of a run or a map, as `pbif sweep` left it, or a sweep file (TOML)
     #[arg(value_name = "RUN|FILE")]
     pub(crate) target: PathBuf,
     /// Of a run: file of the page; one that is there is replaced [default: RUN/explorer.html]

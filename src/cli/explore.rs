@@ -5,11 +5,15 @@ use std::path::Path;
 
 use super::args::{ExploreArguments, SweepInput};
 use super::stored::Stored;
+use super::sweep::progress::Progress;
 use super::{CommandError, Outcome};
 use crate::cancellation::Cancellation;
 use crate::explore::{LiveServer, StoredPage};
-use crate::run::write_atomically;
-use crate::sweep_file::Diagnostic;
+use crate::run::{MapTables, write_atomically};
+use crate::sweep_file::{Diagnostic, SweepFile};
+
+/// Densities of a map between two words of how many are solved.
+const EVERY: usize = 20;
 
 /// Writes the page of a run and prints where it is; or serves that of a sweep file until it is interrupted.
 ///
@@ -24,13 +28,47 @@ pub(super) fn run(arguments: &ExploreArguments) -> Result<Outcome, CommandError>
             "`--port` is for a sweep file: the page of a run is a file",
         ));
     }
+    if MapTables::is_there(&arguments.target) {
+        return of_map(arguments);
+    }
     let stored = Stored::read(
         &arguments.target,
         &arguments.overrides,
         &["detect", "locate"],
         arguments.quiet,
     )?;
-    let page = StoredPage::new(&stored.spec, &stored.result)?;
+    written(&StoredPage::new(&stored.spec, &stored.result)?, arguments)
+}
+
+/// Writes the page of a map of regimes, whose densities are solved again.
+fn of_map(arguments: &ExploreArguments) -> Result<Outcome, CommandError> {
+    if !arguments.overrides.is_empty() {
+        return Err(refused(
+            "`--set` is for a sweep file or the run of a sweep: what the page of a map shows stands in its tables",
+        ));
+    }
+    let tables = MapTables::read(&arguments.target)?;
+    let file = SweepFile::parse("map.json", &tables.sweep_file);
+    let sweep = file.validate()?.fixed()?;
+    let (threads, cancellation) = super::interruptible(None)?;
+    let progress = Progress::new(0, arguments.quiet);
+    // Without a terminal every one would be a line.
+    let count = |solved: usize, all: usize| {
+        if solved.is_multiple_of(EVERY) || solved == all {
+            progress.count("densities", solved, all);
+        }
+    };
+    let page = threads.install(|| StoredPage::of_map(&sweep, &tables, &cancellation, &count));
+    progress.finish();
+    if cancellation.is_cancelled() {
+        super::print("interrupted: nothing was written\n")?;
+        return Ok(Outcome::Interrupted);
+    }
+    written(&page?, arguments)
+}
+
+/// Writes a page where it is wanted, and says where that is.
+fn written(page: &StoredPage, arguments: &ExploreArguments) -> Result<Outcome, CommandError> {
     let beside = arguments.target.join("explorer.html");
     let file = arguments.html.as_deref().unwrap_or(&beside);
     write_atomically(file, page.html().as_bytes())?;
@@ -38,7 +76,7 @@ pub(super) fn run(arguments: &ExploreArguments) -> Result<Outcome, CommandError>
         let file = file.canonicalize().unwrap_or_else(|_| file.to_owned());
         open(&file.to_string_lossy());
     }
-    super::print(&text(&page, file))
+    super::print(&text(page, file))
 }
 
 /// Where the page is, how large, and what packing did to the densities.

@@ -9,7 +9,7 @@ const FRAME: &str = include_str!("page/page.html");
 const STYLE: &str = include_str!("page/page.css");
 
 /// The parts of the script in the order in which they need each other.
-const SCRIPT: [&str; 14] = [
+const SCRIPT: [&str; 16] = [
     include_str!("page/inflate.js"),
     include_str!("page/unpack.js"),
     include_str!("page/numbers.js"),
@@ -20,8 +20,10 @@ const SCRIPT: [&str; 14] = [
     include_str!("page/data.js"),
     include_str!("page/panels.js"),
     include_str!("page/words.js"),
+    include_str!("page/plane.js"),
     include_str!("page/state.js"),
     include_str!("page/page.js"),
+    include_str!("page/mapped.js"),
     include_str!("page/live.js"),
     include_str!("page/start.js"),
 ];

@@ -1,14 +1,19 @@
 //! The page of a finished sweep: everything it shows stands in it.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use serde::Serialize;
 
 use super::ExploreError;
 use super::frame::{Frame, band};
 use super::html;
 use super::pack::{Packed, Scale, deflate};
+use super::plane::PlaneScene;
 use super::scene::Scene;
-use crate::continuation::{Point, SweepResult};
+use crate::cancellation::Cancellation;
+use crate::continuation::{LabelledPoint, Point, SourceError, Subject, SweepResult};
 use crate::density::Observable;
+use crate::run::MapTables;
 use crate::sweep_file::Sweep;
 
 /// Bits of a marginal: what is packed differs from what is stored by less than a line is wide on any screen.
@@ -19,6 +24,8 @@ const BAND_BITS: u32 = 12;
 const JOINT_BITS: [u32; 4] = [14, 12, 10, 8];
 /// Size of a page that is aimed at, in bytes.
 const AIM: usize = 3_000_000;
+/// Values a side of a plane at most whose densities stand in its page.
+const MOST_VALUES: usize = 21;
 
 /// A page that shows a finished sweep, in one file without any reference to another.
 #[derive(Debug, Clone)]
@@ -33,6 +40,10 @@ struct Told<'a> {
     live: bool,
     #[serde(flatten)]
     scene: &'a Scene,
+    /// The plane of a map.
+    plane: Option<&'a PlaneScene>,
+    /// Of a map, the value of its second parameter for every frame.
+    across: &'a [f64],
     frames: Vec<Frame>,
     /// Of every watched density, in their order.
     arrays: Vec<Arrays<'a>>,
@@ -70,29 +81,46 @@ impl StoredPage {
     /// # Errors
     /// [`ExploreError`].
     pub fn new(sweep: &Sweep, result: &SweepResult) -> Result<Self, ExploreError> {
-        let observables = &result.subject.observables;
-        let has_joint = observables
-            .iter()
-            .any(|observable| matches!(observable, Observable::Joint(..)));
-        let ladder = if has_joint {
-            &JOINT_BITS[..]
-        } else {
-            &JOINT_BITS[..1]
+        let shown = Shown {
+            sweep,
+            subject: &result.subject,
+            labels: &result.labels,
+            points: result.points.iter().collect(),
+            plane: None,
+            across: Vec::new(),
         };
-        let mut smallest = None;
-        for &bits in ladder {
-            let html = compose(sweep, result, bits)?;
-            let fits = html.len() <= AIM;
-            smallest = Some((html, bits));
-            if fits {
-                break;
-            }
+        shown.fitted()
+    }
+
+    /// The page of a map: its plane as the tables of the map say it, and densities at nodes of its coarse grid, 21 values a side at most, which are
+    /// solved again. `done` is told how many of how many are solved, from whatever thread.
+    ///
+    /// # Errors
+    /// [`ExploreError`]; [`ExploreError::Source`] with [`SourceError::Interrupted`] when it was cancelled.
+    pub fn of_map(
+        sweep: &Sweep,
+        tables: &MapTables,
+        cancellation: &Cancellation,
+        done: &(dyn Fn(usize, usize) + Sync),
+    ) -> Result<Self, ExploreError> {
+        let plane = PlaneScene::new(sweep, Some(tables))?.ok_or(ExploreError::NoPlane)?;
+        let [first, second] = plane.grid(&tables.nodes, MOST_VALUES)?;
+        let (solved, all) = (AtomicUsize::new(0), first.len() * second.len());
+        let count = || done(solved.fetch_add(1, Ordering::Relaxed) + 1, all);
+        let states = sweep.plane_states([&first, &second], cancellation, &count)?;
+        let states = states.ok_or(ExploreError::NoPlane)?;
+        if states.len() < all {
+            return Err(SourceError::Interrupted.into());
         }
-        let (html, bits) = smallest.unwrap_or_default();
-        Ok(Self {
-            html,
-            joint_bits: has_joint.then_some(bits),
-        })
+        let shown = Shown {
+            sweep,
+            subject: sweep.problem.subject(),
+            labels: &[],
+            points: states.iter().map(|state| &state.point).collect(),
+            plane: Some(&plane),
+            across: states.iter().map(|state| state.values[1]).collect(),
+        };
+        shown.fitted()
     }
 
     /// The page.
@@ -106,37 +134,78 @@ impl StoredPage {
     }
 }
 
-/// A page whose joint densities have so many bits.
-fn compose(sweep: &Sweep, result: &SweepResult, joint_bits: u32) -> Result<String, ExploreError> {
-    let scene = Scene::new(sweep, &result.labels);
-    let family = &result.subject.family;
-    let with_density = |(_, point): &(usize, &Point)| !point.densities.is_empty();
-    let points = result.points.iter().enumerate().filter(with_density);
-    let (numbers, points): (Vec<usize>, Vec<&Point>) = points.unzip();
-    let mut blocks = Vec::new();
-    let mut arrays = Vec::new();
-    for (number, observable) in result.subject.observables.iter().enumerate() {
-        let bits = match observable {
-            Observable::Marginal(_) => (Scale::Linear, MARGINAL_BITS),
-            Observable::Joint(..) => (Scale::Root, joint_bits),
+/// What a page shows.
+struct Shown<'a> {
+    sweep: &'a Sweep,
+    subject: &'a Subject,
+    labels: &'a [LabelledPoint],
+    points: Vec<&'a Point>,
+    plane: Option<&'a PlaneScene>,
+    /// Of a map, the second parameter of every point.
+    across: Vec<f64>,
+}
+
+impl Shown<'_> {
+    /// The page with as many bits for joint densities as fit.
+    fn fitted(&self) -> Result<StoredPage, ExploreError> {
+        let subject = self.subject;
+        let is_joint = |observable: &Observable| matches!(observable, Observable::Joint(..));
+        let has_joint = subject.observables.iter().any(is_joint);
+        let ladder = if has_joint {
+            &JOINT_BITS[..]
+        } else {
+            &JOINT_BITS[..1]
         };
-        arrays.push(pack(&points, number, bits, &mut blocks)?);
+        let mut smallest = None;
+        for &bits in ladder {
+            let html = self.compose(bits)?;
+            let fits = html.len() <= AIM;
+            smallest = Some((html, bits));
+            if fits {
+                break;
+            }
+        }
+        let (html, bits) = smallest.unwrap_or_default();
+        Ok(StoredPage {
+            html,
+            joint_bits: has_joint.then_some(bits),
+        })
     }
-    for one in &mut arrays {
-        one.frames = &numbers;
+
+    /// A page whose joint densities have so many bits.
+    fn compose(&self, joint_bits: u32) -> Result<String, ExploreError> {
+        let sweep = self.sweep;
+        let scene = Scene::new(sweep, self.labels);
+        let subject = self.subject;
+        let with_density = |(_, point): &(usize, &Point)| !point.densities.is_empty();
+        let points = self.points.iter().copied().enumerate().filter(with_density);
+        let (numbers, points): (Vec<usize>, Vec<&Point>) = points.unzip();
+        let mut blocks = Vec::new();
+        let mut arrays = Vec::new();
+        for (number, observable) in subject.observables.iter().enumerate() {
+            let bits = match observable {
+                Observable::Marginal(_) => (Scale::Linear, MARGINAL_BITS),
+                Observable::Joint(..) => (Scale::Root, joint_bits),
+            };
+            arrays.push(pack(&points, number, bits, &mut blocks)?);
+        }
+        for one in &mut arrays {
+            one.frames = &numbers;
+        }
+        let frames = self.points.iter();
+        let told = Told {
+            live: false,
+            scene: &scene,
+            plane: self.plane,
+            across: &self.across,
+            frames: frames
+                .map(|point| Frame::new(point, &subject.family))
+                .collect(),
+            arrays,
+        };
+        let told = deflate(&serde_json::to_vec(&told)?)?;
+        Ok(html::page(&sweep.settings.title, &told, &blocks, false))
     }
-    let told = Told {
-        live: false,
-        scene: &scene,
-        frames: result
-            .points
-            .iter()
-            .map(|point| Frame::new(point, family))
-            .collect(),
-        arrays,
-    };
-    let told = deflate(&serde_json::to_vec(&told)?)?;
-    Ok(html::page(&sweep.settings.title, &told, &blocks, false))
 }
 
 /// Packs the values of one watched density, and of a marginal its band.

@@ -3,7 +3,9 @@
 use super::settings::Settings;
 use crate::cancellation::Cancellation;
 use crate::continuation::curve::{CurveOptions, Plane};
-use crate::continuation::map::{MapNode, MapObserver, RegimeMap, regime_map_from};
+use crate::continuation::map::{
+    MapNode, MapObserver, PlaneState, RegimeMap, plane_states, regime_map_from,
+};
 use crate::continuation::{DensitySource, Observer, SourceError, SweepError, SweepResult, sweep};
 use crate::method::{MethodError, MethodSource, Problem};
 use crate::system::Family;
@@ -151,6 +153,26 @@ impl Sweep {
             observer,
         );
         map.map(Some)
+    }
+
+    /// The densities at all crossings of these values of both parameters of the map's box ([`plane_states`]), with what is found in them; `done` is told of
+    /// each. `None` without `[map]`.
+    ///
+    /// # Errors
+    /// [`SourceError`] where the box has a corner that is not allowed.
+    pub fn plane_states(
+        &self,
+        values: [&[f64]; 2],
+        cancellation: &Cancellation,
+        done: &(dyn Fn() + Sync),
+    ) -> Result<Option<Vec<PlaneState>>, SourceError> {
+        let map = self.settings.map.as_ref();
+        let Some(plane) = map.and_then(|map| map.plane(&self.settings.family)) else {
+            return Ok(None);
+        };
+        let source = |plane: &Plane| self.boxed_source_in(plane, cancellation);
+        let detector = self.detector();
+        plane_states(&source, &plane, values, &detector, cancellation, done).map(Some)
     }
 
     /// How `[locate]` wants curves, in a box whose first side is so long.

@@ -11,10 +11,13 @@ mod node;
 mod regions;
 mod samples;
 mod solve;
+mod states;
 mod trace;
 
 pub use found::{MapNode, RegimeMap, RegionSample, Untraced};
+pub(crate) use regions::{FloodedRegion, Seed, flooded};
 pub use regions::{Region, RegionPicture};
+pub use states::{PlaneState, plane_states};
 
 use super::curve::{CurveOptions, Plane, agree};
 use super::{DensitySource, SourceError};

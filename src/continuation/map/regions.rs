@@ -44,13 +44,9 @@ impl RegimeMap {
         if self.nodes.is_empty() || size.contains(&0) {
             return None;
         }
-        let canvas = Canvas { size };
-        let walls = canvas.walls(&self.lines(observable));
         let signature = |node: &MapNode| node.signatures.get(observable).copied();
         let mut kinds: Vec<Option<Signature>> = Vec::new();
-        let mut seeds: Vec<(usize, u32, bool)> = Vec::new();
-        let reach = self.reach();
-        for node in &self.nodes {
+        let seeds = self.nodes.iter().map(|node| {
             let signature = signature(node);
             let known = kinds.iter().position(|one| *one == signature);
             let kind = known.unwrap_or_else(|| {
@@ -58,14 +54,21 @@ impl RegimeMap {
                 kinds.len() - 1
             });
             let place = self.plane.place(node.values);
-            let is_beside = self
-                .lines(observable)
-                .iter()
-                .any(|line| distance(line, place) < reach);
-            seeds.push((canvas.pixel(place), kind as u32, is_beside));
-        }
-        let owners = canvas.flooded(&walls, &seeds);
-        Some(self.pictured(&canvas, &owners, &kinds))
+            Seed { place, kind }
+        });
+        let seeds: Vec<Seed> = seeds.collect();
+        let flooded = flooded(size, &self.lines(observable), &seeds, self.smallest_cell());
+        let region = |one: &FloodedRegion| Region {
+            signature: kinds.get(one.kind).copied().flatten(),
+            share: one.share,
+            inside: self.plane.values(one.inside),
+            room: one.room,
+        };
+        Some(RegionPicture {
+            size,
+            regions: flooded.regions.iter().map(region).collect(),
+            pixels: flooded.pixels,
+        })
     }
 
     /// The curves of an observable in the box with sides of length one.
@@ -82,57 +85,86 @@ impl RegimeMap {
             .collect()
     }
 
-    /// How far from a curve a node must be, in sides of the box.
-    fn reach(&self) -> f64 {
-        let smallest = self
-            .cells
-            .iter()
-            .map(|[low, high]| (high[0] - low[0]).max(high[1] - low[1]));
-        BESIDE * smallest.fold(f64::INFINITY, f64::min).min(1.0)
+    /// The longer side of the smallest cell, in sides of the box.
+    fn smallest_cell(&self) -> f64 {
+        let longer =
+            (self.cells.iter()).map(|[low, high]| (high[0] - low[0]).max(high[1] - low[1]));
+        longer.fold(f64::INFINITY, f64::min).min(1.0)
     }
+}
 
-    /// Pixels of one kind that hang together are a region.
-    fn pictured(
-        &self,
-        canvas: &Canvas,
-        owners: &[u32],
-        kinds: &[Option<Signature>],
-    ) -> RegionPicture {
-        let (mut pixels, count) = canvas.connected(owners);
-        let depth = canvas.depth(&pixels);
-        let total = pixels.len() as f64;
-        let shorter = canvas.size[0].min(canvas.size[1]) as f64;
-        let mut regions: Vec<Region> = (0..count)
-            .map(|_| Region {
-                signature: None,
-                share: 0.0,
-                inside: [0.0; 2],
-                room: -1.0,
-            })
-            .collect();
-        for (pixel, &region) in pixels.iter().enumerate() {
-            let room = f64::from(depth[pixel]) / shorter;
-            let region = &mut regions[region];
-            region.signature = kinds.get(owners[pixel] as usize).copied().flatten();
-            region.share += 1.0 / total;
-            if room > region.room {
-                region.room = room;
-                region.inside = self.plane.values(canvas.middle(pixel));
-            }
+/// A node of a known kind, in the box with sides of length one.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Seed {
+    pub(crate) place: [f64; 2],
+    pub(crate) kind: usize,
+}
+
+/// Regions of places in the box with sides of length one.
+#[derive(Debug)]
+pub(crate) struct Flooded {
+    /// The region of every pixel, rows from the lower end of the second parameter upward.
+    pub(crate) pixels: Vec<usize>,
+    /// The regions, the largest first.
+    pub(crate) regions: Vec<FloodedRegion>,
+}
+
+/// Places of one kind that hang together.
+#[derive(Debug, Clone)]
+pub(crate) struct FloodedRegion {
+    pub(crate) kind: usize,
+    /// Share of the box.
+    pub(crate) share: f64,
+    /// A place well inside.
+    pub(crate) inside: [f64; 2],
+    /// How far that is from the border.
+    pub(crate) room: f64,
+}
+
+/// Gives every pixel of a picture to the nearest seed that no line parts it from; `smallest` is the longer side of the smallest cell between the seeds.
+/// Pixels of one kind that hang together are a region.
+pub(crate) fn flooded(
+    size: [usize; 2],
+    lines: &[Vec<[f64; 2]>],
+    seeds: &[Seed],
+    smallest: f64,
+) -> Flooded {
+    let canvas = Canvas { size };
+    let walls = canvas.walls(lines);
+    let seeds = seeds.iter().map(|seed| {
+        let is_beside = (lines.iter()).any(|line| distance(line, seed.place) < BESIDE * smallest);
+        (canvas.pixel(seed.place), seed.kind as u32, is_beside)
+    });
+    let owners = canvas.flooded(&walls, &seeds.collect::<Vec<_>>());
+    let (mut pixels, count) = canvas.connected(&owners);
+    let depth = canvas.depth(&pixels);
+    let total = pixels.len() as f64;
+    let shorter = size[0].min(size[1]) as f64;
+    let none = FloodedRegion {
+        kind: NONE as usize,
+        share: 0.0,
+        inside: [0.0; 2],
+        room: -1.0,
+    };
+    let mut regions = vec![none; count];
+    for (pixel, &region) in pixels.iter().enumerate() {
+        let room = f64::from(depth[pixel]) / shorter;
+        let region = &mut regions[region];
+        region.kind = owners[pixel] as usize;
+        region.share += 1.0 / total;
+        if room > region.room {
+            region.room = room;
+            region.inside = canvas.middle(pixel);
         }
-        let mut order: Vec<usize> = (0..count).collect();
-        order.sort_by(|&a, &b| regions[b].share.total_cmp(&regions[a].share));
-        let mut place = vec![0; count];
-        order
-            .iter()
-            .enumerate()
-            .for_each(|(new, &old)| place[old] = new);
-        pixels.iter_mut().for_each(|pixel| *pixel = place[*pixel]);
-        RegionPicture {
-            size: canvas.size,
-            pixels,
-            regions: order.into_iter().map(|old| regions[old].clone()).collect(),
-        }
+    }
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by(|&a, &b| regions[b].share.total_cmp(&regions[a].share));
+    let mut place = vec![0; count];
+    (order.iter().enumerate()).for_each(|(new, &old)| place[old] = new);
+    pixels.iter_mut().for_each(|pixel| *pixel = place[*pixel]);
+    Flooded {
+        pixels,
+        regions: order.into_iter().map(|old| regions[old].clone()).collect(),
     }
 }
 

@@ -215,43 +215,52 @@ impl<'a> Solver<'a> {
         at: At,
         coordinate: f64,
     ) -> Option<Solved> {
-        let clock = Instant::now();
-        let mut reason = None;
-        let solution = match session.solve(coordinate) {
-            Ok(solution) => solution.detached(),
-            Err(SourceError::Interrupted) => return None,
-            Err(SourceError::Method(error)) => {
-                let mut report = SolveReport::solved(method);
-                report.status = PointStatus::Failed;
-                report.findings = vec![Finding::Told(error.to_string())];
-                reason = Some(error.to_string());
-                Solution::without_density(report)
-            }
-        };
-        let densities = solution.densities;
-        let detections: Vec<_> = densities
-            .iter()
-            .map(|one| self.detector.detect(one))
-            .collect();
+        let (point, reason) = solve_place(session, method, self.detector, coordinate)?;
+        let detections = &point.detections;
         let node = MapNode {
             values: self.plane.values(self.lattice.share(at)),
             level: self.lattice.level(at),
-            status: solution.report.status,
+            status: point.report.status,
             signatures: detections.iter().map(|one| one.signature).collect(),
             is_seen: detections.iter().all(|one| one.is_seen),
             reason,
         };
         Some(Solved {
-            point: Some(Point {
-                value: coordinate,
-                report: solution.report,
-                moments: solution.moments,
-                densities,
-                detections,
-                distance: None,
-                seconds: clock.elapsed().as_secs_f64(),
-            }),
+            point: Some(point),
             node,
         })
     }
+}
+
+/// Solves where a coordinate of the path leads, and detects; with the reason where that fails. `None` where the source was asked to stop.
+pub(super) fn solve_place(
+    session: &mut dyn Session,
+    method: &'static str,
+    detector: &dyn Detector,
+    coordinate: f64,
+) -> Option<(Point, Option<String>)> {
+    let clock = Instant::now();
+    let mut reason = None;
+    let solution = match session.solve(coordinate) {
+        Ok(solution) => solution.detached(),
+        Err(SourceError::Interrupted) => return None,
+        Err(SourceError::Method(error)) => {
+            let mut report = SolveReport::solved(method);
+            report.status = PointStatus::Failed;
+            report.findings = vec![Finding::Told(error.to_string())];
+            reason = Some(error.to_string());
+            Solution::without_density(report)
+        }
+    };
+    let densities = solution.densities;
+    let point = Point {
+        value: coordinate,
+        report: solution.report,
+        moments: solution.moments,
+        detections: densities.iter().map(|one| detector.detect(one)).collect(),
+        densities,
+        distance: None,
+        seconds: clock.elapsed().as_secs_f64(),
+    };
+    Some((point, reason))
 }

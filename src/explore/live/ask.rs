@@ -41,3 +41,21 @@ pub(super) struct AskLocate {
 pub(super) struct AskSweepFile {
     pub(super) values: BTreeMap<String, f64>,
 }
+
+/// Asks for the map of the plane at these values of the parameters that do not span it, or that the one in the making be given up.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct AskMap {
+    pub(super) lane: String,
+    pub(super) ticket: u64,
+    pub(super) values: BTreeMap<String, f64>,
+    #[serde(default)]
+    pub(super) stop: bool,
+}
+
+/// Asks how far the map of a lane is.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct AskMapProgress {
+    pub(super) lane: String,
+}

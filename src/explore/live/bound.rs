@@ -102,9 +102,17 @@ impl Base {
     /// # Errors
     /// Why a value is not allowed, for people.
     pub(super) fn sweep_file(&self, values: &BTreeMap<String, f64>) -> Result<String, String> {
+        Ok(self.at(values)?.to_toml())
+    }
+
+    /// The sweep with other values of the parameters that are not swept.
+    ///
+    /// # Errors
+    /// Why a value is not allowed, for people.
+    pub(super) fn at(&self, values: &BTreeMap<String, f64>) -> Result<Sweep, String> {
         let family = &self.sweep.settings.family;
         let moved = self.family(family.parameter(), family.ends(), values)?;
-        Ok(fixed(self.settings(moved))?.to_toml())
+        fixed(self.settings(moved))
     }
 
     /// The systems when one parameter moves between two ends and the others have these values.

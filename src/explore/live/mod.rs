@@ -6,6 +6,7 @@
 mod ask;
 mod bound;
 mod lanes;
+mod mapping;
 mod sessions;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -20,6 +21,7 @@ use super::ExploreError;
 use super::frame::{Frame, band};
 use super::html;
 use super::pack::deflate;
+use super::plane::PlaneScene;
 use super::scene::{Label, Scene};
 use crate::cancellation::Cancellation;
 use crate::continuation::{Point, PointType, SourceError};
@@ -29,6 +31,7 @@ use crate::topology::{Detector as _, PersistenceDetector};
 use ask::{AskLocate, AskSolve, AskSweepFile};
 use bound::Base;
 use lanes::Lanes;
+use mapping::Mapping;
 use sessions::{Sessions, Solving};
 
 /// The live side of a sweep.
@@ -37,6 +40,7 @@ pub(super) struct Live {
     detector: PersistenceDetector,
     sessions: Mutex<Sessions>,
     lanes: Lanes,
+    mapping: Mapping,
 }
 
 impl std::fmt::Debug for Live {
@@ -69,6 +73,7 @@ struct Told<'a> {
     live: bool,
     #[serde(flatten)]
     scene: &'a Scene,
+    plane: Option<PlaneScene>,
     frames: [(); 0],
     arrays: Vec<Grid>,
 }
@@ -103,6 +108,7 @@ impl Live {
             base: Base::new(sweep),
             sessions: Mutex::default(),
             lanes: Lanes::default(),
+            mapping: Mapping::default(),
         }
     }
 
@@ -117,6 +123,7 @@ impl Live {
         let told = Told {
             live: true,
             scene: &Scene::new(sweep, &[]),
+            plane: PlaneScene::new(sweep, None)?,
             frames: [],
             arrays: (sweep.problem.observables().iter())
                 .map(|observable| Grid {

@@ -38,7 +38,7 @@ const largest = (values) => {
 /** Frames of a finished sweep, all in the page. */
 class StoredSource {
   static async load(told) {
-    const source = new StoredSource();
+    const source = new this();
     source.frames = told.frames.map((frame, index) => ({ ...frame, index, densities: [] }));
     source.values = source.frames.map((frame) => frame.value);
     source.arrays = await Promise.all(told.arrays.map((arrays) => source.unpack(arrays)));
@@ -112,7 +112,8 @@ const windowOf = (source, k, axis) => {
   const inner = source.observables[k].joint && axis === 0 ? source.observables[k].edges[1].length - 1 : 1;
   const limit = 1e-3 * source.tops[k];
   let [first, last] = [count - 1, 0];
-  for (const frame of source.frames) {
+  // Of a map all rows count, so that rows can be compared by eye.
+  for (const frame of source.all ?? source.frames) {
     const values = frame.densities[k]?.values;
     if (!values) continue;
     for (let at = 0; at < values.length; at++) {

@@ -120,6 +120,17 @@ class LivePage extends Page {
     this.go(Number((from + ((to - from) * place) / 400).toPrecision(12)));
   }
 
+  /** To a place of the plane. */
+  goPlane([first, second]) {
+    this.values[this.scene.plane.sides[1].name] = second;
+    this.go(first);
+  }
+
+  climb(by) {
+    const { name, from, to } = this.scene.plane.sides[1];
+    this.move(name, Number(clamp(this.values[name] + (by * (to - from)) / 200, from, to).toPrecision(12)));
+  }
+
   jump(direction) {
     const here = this.values[this.swept];
     const beyond = this.scene.labels.map(({ value }) => value).filter((value) => (value - here) * direction > 1e-12 * (this.range[1] - this.range[0]));
@@ -163,8 +174,14 @@ class LivePage extends Page {
   arrive(answer, value, preview) {
     // Too few cells may hold no density where more do: that is not worth showing.
     if (preview && answer.frame.found.length === 0) return;
+    // A map belongs to the parameters that do not span its plane.
+    if (this.mapped && this.mapped !== this.beside()) {
+      this.mapped = this.scene.plane.found = null;
+      this.redrawPlane();
+    }
     this.frame = this.source.frame(answer, value);
     this.frame.preview = preview;
+    if (this.scene.plane) this.frame.second = this.good[this.scene.plane.sides[1].name];
     if (!preview) this.cost = answer.milliseconds;
     this.remember(this.frame);
     this.later();
@@ -267,6 +284,48 @@ class LivePage extends Page {
     button.textContent = "Locate here";
   }
 
+  /** Makes the map of the plane, or gives up the one in the making. */
+  async map() {
+    const { plane } = this.scene;
+    const lane = `${this.source.client}-map`;
+    const values = { ...this.values };
+    if (this.mapping) {
+      await this.source.ask("map", "map", { values, stop: true }).catch(() => {});
+      return;
+    }
+    this.mapping = true;
+    const watch = setInterval(async () => {
+      const told = await this.source.ask("map-progress", null, { lane }).catch(() => null);
+      if (told && this.mapping) $("map").textContent = `Stop: ${told.nodes} of ${told.wanted} nodes${told.points ? `, ${told.points} points of curves` : ""}`;
+    }, 500);
+    $("map").textContent = "Stop";
+    try {
+      const found = await this.source.ask("map", "map", { values });
+      if (found) {
+        plane.found = found;
+        this.mapped = this.beside();
+        this.redrawPlane();
+      }
+    } catch (error) {
+      this.refuse(error);
+    }
+    clearInterval(watch);
+    this.mapping = false;
+    $("map").textContent = "Map the plane";
+  }
+
+  /** The parameters that do not span the plane. */
+  beside() {
+    const spanning = this.scene.plane.sides.map(({ name }) => name);
+    return JSON.stringify(Object.entries(this.values).filter(([name]) => !spanning.includes(name)));
+  }
+
+  redrawPlane() {
+    delete this.drawn.plane;
+    this.tabulate();
+    this.later();
+  }
+
   /** Adds located changes and numbers all along the sweep; one that was there within its error is replaced. */
   add(labels) {
     const same = (a) => (b) => a.observable === b.observable && Math.abs(a.value - b.value) <= Math.max(a.upper - a.lower, b.upper - b.lower);
@@ -350,7 +409,9 @@ class LivePage extends Page {
       const values = { ...this.initial, ...Object.fromEntries(pairs.map(([name, value]) => [name, Number(value)])) };
       this.source.ask("solve", "pinned", { moving: this.swept, values }).then((answer) => {
         if (!answer) return;
-        Page.prototype.pin.call(this, this.source.frame(answer, values[this.swept]));
+        const frame = this.source.frame(answer, values[this.swept]);
+        if (this.scene.plane) frame.second = values[this.scene.plane.sides[1].name];
+        Page.prototype.pin.call(this, frame);
         this.pinnedValues = values;
       }).catch(() => {});
     }
@@ -373,7 +434,9 @@ const buildParameters = (page) => {
   const { scene } = page;
   const fields = scene.parameters.filter(({ name }) => name !== page.swept).map((parameter) => {
     const range = make("input", { type: "range", "aria-label": parameter.meaning });
-    setRange(range, parameter, parameter.value);
+    const side = scene.plane?.sides.find(({ name }) => name === parameter.name);
+    if (side) Object.assign(range, { min: String(side.from), max: String(side.to), step: String((side.to - side.from) / 400) });
+    else setRange(range, parameter, parameter.value);
     range.value = String(parameter.value);
     const text = make("input", { type: "text", inputmode: "decimal", autocomplete: "off", "aria-label": `${parameter.meaning}, value` });
     range.addEventListener("input", () => page.move(parameter.name, Number(Number(range.value).toPrecision(6))));
@@ -388,5 +451,7 @@ const buildParameters = (page) => {
   $("parameters").hidden = fields.length === 0;
   $("locate").hidden = false;
   $("locate").addEventListener("click", () => page.locate());
+  $("map").hidden = !scene.plane;
+  $("map").addEventListener("click", () => page.map());
 };
 

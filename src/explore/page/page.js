@@ -9,7 +9,7 @@ class Page {
     this.section = null;
     this.joints = source.observables.map((one, k) => (one.joint ? k : -1)).filter((k) => k >= 0);
     this.singles = source.observables.map((one, k) => (one.joint ? -1 : k)).filter((k) => k >= 0);
-    this.k = { joint: this.joints[0], diagram: this.singles[0] };
+    this.k = { joint: this.joints[0], diagram: this.singles[0], plane: 0 };
     const values = [scene.swept.from, scene.swept.to, ...source.frames.map((frame) => frame.value)];
     this.range = [Math.min(...values), Math.max(...values)];
     this.theme = themeColours();
@@ -129,6 +129,10 @@ class Page {
       if (!this.drawn.diagram) this.paint("diagram-canvas", drawDiagram, this.k.diagram);
       this.paintCursor();
     }
+    if (this.scene.plane) {
+      if (!this.drawn.plane) this.paint("plane-canvas", drawPlane, this.k.plane);
+      this.paintPlace();
+    }
     writeAddress(this.state());
     this.milliseconds = performance.now() - began;
   }
@@ -151,6 +155,10 @@ class Page {
   describe(id, k) {
     const one = this.source.observables[k];
     const at = `${plain(this.scene.swept.symbol)} = ${plainNumber(this.frame.value, 6)}`;
+    if (id === "plane-canvas") {
+      const [x, y] = this.scene.plane.sides.map(({ symbol }) => plain(symbol));
+      return `Plane of ${x} and ${y}, with the regions of ${plain(one.title)}`;
+    }
     if (id === "diagram-canvas") return `${plain(one.title)} over ${plain(this.scene.swept.symbol)}, with branches of peaks and valleys`;
     if (id === "section-canvas") return `Section of ${plain(one.title)} at ${at}`;
     return `${plain(one.title)} at ${at}: ${countWords(this.frame.found[k])}`;
@@ -169,6 +177,16 @@ class Page {
     canvas.setAttribute("aria-valuemax", this.range[1]);
     canvas.setAttribute("aria-valuenow", this.frame.value);
     canvas.setAttribute("aria-valuetext", sentence(this.scene, this.source, this.frame));
+  }
+
+  /** Where the shown state lies in the plane, over what does not change with it. */
+  paintPlace() {
+    const canvas = $("place-canvas");
+    const { width, height } = canvas.parentElement.getBoundingClientRect();
+    const plot = this.drawn.plane;
+    if (!plot || width < 20) return;
+    const pen = new CanvasPen(canvas, width, height, window.devicePixelRatio || 1);
+    drawPlaneCursor(new Plot(pen, plot.rect, plot.ranges.x, plot.ranges.y, this.theme, this.size), this.view(this.k.plane));
   }
 
   /** Everything that is said in words. */
@@ -197,12 +215,14 @@ class Page {
   writeControls() {
     $("slide").max = String(this.source.frames.length - 1);
     $("slide").value = String(this.frame.index);
-    if (document.activeElement !== $("typed")) $("typed").value = String(this.frame.value);
+    if (document.activeElement !== $("typed")) $("typed").value = String(Number(this.frame.value.toPrecision(9)));
   }
 
   /** The table of located changes. */
   tabulate() {
-    fill($("table"), changesTable(this.scene, this.source, (value) => this.go(value)));
+    const { scene, source } = this;
+    fill($("table"), source.all || (scene.plane && !scene.labels.length) ? [] : changesTable(scene, source, (value) => this.go(value)));
+    if (scene.plane) fill($("curves"), planeTable(scene, source, (at) => this.goPlane(at)));
   }
 
   async copySweepFile() {
@@ -216,6 +236,7 @@ class Page {
       [scene.swept.name]: frame.value,
       joint: this.joints.length > 1 ? source.observables[k.joint].name : null,
       diagram: this.singles.length > 1 ? source.observables[k.diagram].name : null,
+      plane: scene.plane && k.plane ? source.observables[k.plane].name : null,
       log: options.log ? 1 : null, lock: options.lock, contours: options.contours ? null : 0, marks: options.marks ? null : 0,
       pin: pinned?.value, difference: options.difference ? 1 : null, section,
       theme: document.documentElement.dataset.theme ?? null,
@@ -226,7 +247,7 @@ class Page {
   restore(state) {
     const { source } = this;
     const numeric = (text) => (text !== undefined && text.trim() !== "" && Number.isFinite(Number(text)) ? Number(text) : null);
-    for (const [panel, all] of [["joint", this.joints], ["diagram", this.singles]]) {
+    for (const [panel, all] of [["joint", this.joints], ["diagram", this.singles], ["plane", source.observables.map((_, k) => k)]]) {
       const found = all.find((k) => source.observables[k].name === state[panel]);
       if (found !== undefined) this.k[panel] = found;
     }
@@ -241,7 +262,7 @@ class Page {
     for (const name of ["log", "contours", "marks", "difference"]) $(name).checked = this.options[name];
     $("lock").checked = this.options.lock !== null;
     $("section").value = this.section ?? "";
-    for (const panel of ["joint", "diagram"]) $(`${panel}-choice`).value = this.k[panel] ?? "";
+    for (const panel of ["joint", "diagram", "plane"]) $(`${panel}-choice`).value = this.k[panel] ?? "";
     this.theme = themeColours();
     this.drawn = {};
     this.restorePlace(state, numeric);
@@ -269,16 +290,17 @@ class Page {
 
   /** One panel as SVG, PNG or CSV. */
   async export(panel, format) {
-    const k = panel === "diagram" ? this.k.diagram : panel === "joint" || panel === "section" ? this.k.joint : Number(panel.slice(9));
-    const drawing = { joint: drawJoint, diagram: drawDiagram, section: drawSection }[panel] ?? drawMarginal;
+    const k = panel === "diagram" || panel === "plane" ? this.k[panel] : panel === "joint" || panel === "section" ? this.k.joint : Number(panel.slice(9));
+    const drawing = { joint: drawJoint, diagram: drawDiagram, section: drawSection, plane: drawPlane }[panel] ?? drawMarginal;
     const canvas = $(panel.startsWith("marginal") ? panel : `${panel}-canvas`);
     const { width, height } = canvas.parentElement.getBoundingClientRect();
     const observable = this.source.observables[k];
-    const at = panel === "diagram" ? "" : `_${this.scene.swept.name}_${this.frame.value}`;
+    const at = panel === "diagram" || panel === "plane" ? "" : `_${this.scene.swept.name}_${this.frame.value}`;
     const name = `${panel.replace(/-\d+$/, "")}_${observable.name}${at}`;
     if (format === "csv") {
       const density = this.frame.densities[k];
-      if (panel === "diagram") save(`${name}.csv`, "text/csv", featuresCsv(this.scene, this.source, k));
+      if (panel === "plane") save(`${name}.csv`, "text/csv", planeCsv(this.scene));
+      else if (panel === "diagram") save(`${name}.csv`, "text/csv", featuresCsv(this.scene, this.source, k));
       else if (density) save(`${name}.csv`, "text/csv", densityCsv(this.scene, observable, density));
     } else if (format === "svg") {
       const pen = new SvgPen(width, height, this.theme.paper);
@@ -303,9 +325,12 @@ const exportButtons = (page, panel, name) => ["SVG", "PNG", "CSV"].map((format) 
 const subtitle = (scene) => {
   const { swept, parameters } = scene;
   // Of a live page the others have their sliders.
-  const held = parameters.filter(({ value }) => value !== null && !scene.live)
+  const second = scene.plane?.sides[1].name;
+  const held = parameters.filter(({ name, value }) => value !== null && name !== second && !scene.live)
     .flatMap(({ symbol, value }) => [", ", ...nodes(symbol), ` = ${plainNumber(value, 6)}`]).slice(1);
-  return [...nodes(swept.symbol), ` from ${plainNumber(swept.from, 6)} to ${plainNumber(swept.to, 6)}`, held.length ? "; " : "", ...held];
+  const ranges = (scene.plane?.sides ?? [swept]).flatMap(({ symbol, from, to }) =>
+    [", ", ...nodes(symbol), ` from ${plainNumber(from, 6)} to ${plainNumber(to, 6)}`]).slice(1);
+  return [...ranges, held.length ? "; " : "", ...held];
 };
 
 /** The parts of the page that depend on what is watched. */
@@ -315,11 +340,13 @@ const build = (page) => {
   fill($("model"), subtitle(scene));
   fill($("swept"), nodes(scene.swept.symbol));
   fill($("made"), `Made by ${scene.program}. ${source.note ?? ""}`);
-  for (const [panel, all] of [["joint", page.joints], ["diagram", page.singles]]) {
+  const every = source.observables.map((_, k) => k);
+  for (const [panel, all] of [["joint", page.joints], ["diagram", page.singles], ["plane", every]]) {
     fill($(`${panel}-choice`), all.map((k) => make("option", { value: k }, plain(source.observables[k].title))));
     $(`${panel}-choice`).hidden = all.length < 2;
-    $("panels").classList.toggle(panel === "joint" ? "no-joint" : "no-marginals", all.length === 0);
+    if (panel !== "plane") $("panels").classList.toggle(panel === "joint" ? "no-joint" : "no-marginals", all.length === 0);
   }
+  if (scene.plane) buildPlane(scene);
   const figures = page.singles.map((k) => {
     const title = source.observables[k].title;
     return make("figure", { "aria-label": `Marginal ${plain(title)}` },
@@ -335,6 +362,16 @@ const build = (page) => {
   if (page.k.joint !== undefined) fill($("section-axis"), nodes(source.observables[page.k.joint].symbols[1]));
   page.tabulate();
   fill($("facts"), facts(scene));
+};
+
+/** The panel of the plane, and what is called otherwise where there is one. */
+const buildPlane = (scene) => {
+  $("plane").hidden = false;
+  $("panels").classList.add("has-plane");
+  const [x, y] = scene.plane.sides.map(({ symbol }) => nodes(symbol));
+  fill($("plane-name"), "Plane of ", x, " and ", y);
+  $("changes-name").textContent = "Curves and points";
+  $("up-keys").hidden = $("up-keys").nextElementSibling.hidden = false;
 };
 
 /** What the controls do. */
@@ -354,12 +391,19 @@ const connect = (page) => {
   on("section", "change", () => setSection(page, $("section").value.trim() === "" ? null : Number($("section").value.replace("−", "-"))));
   on("joint-choice", "change", () => { page.k.joint = Number($("joint-choice").value); page.options.lock = null; page.later(); });
   on("diagram-choice", "change", () => { page.k.diagram = Number($("diagram-choice").value); delete page.drawn.diagram; page.later(); });
+  on("plane-choice", "change", () => { page.k.plane = Number($("plane-choice").value); delete page.drawn.plane; page.later(); });
   on("theme", "change", () => setTheme(page, $("theme").value));
   on("link", "click", () => copy(location.href).then(() => flash("link", "Copied")));
   on("toml", "click", () => page.copySweepFile());
   on("print", "click", () => window.print());
   on("help", "click", () => $("keys").showModal());
   drag($("cursor-canvas"), (x) => page.drawn.diagram && page.go(clamp(page.drawn.diagram.x.from(x), ...page.range)));
+  drag($("place-canvas"), (x, y) => {
+    const plot = page.drawn.plane;
+    if (!plot) return;
+    const place = [clamp(plot.x.from(x), ...plot.ranges.x), clamp(plot.y.from(y), ...plot.ranges.y)];
+    page.goPlane(place.map((value) => Number(value.toPrecision(5))));
+  });
   drag($("joint-canvas"), (_, y) => page.drawn.joint && setSection(page, Number(page.drawn.joint.y.from(y).toPrecision(4))));
   document.addEventListener("keydown", (event) => press(page, event));
   const redraw = () => { page.theme = themeColours(); page.drawn = {}; page.later(); };
@@ -422,6 +466,12 @@ const press = (page, event) => {
     actions.ArrowUp = actions.ArrowRight;
     actions.ArrowDown = actions.ArrowLeft;
   }
+  else if (page.scene.plane) {
+    actions.ArrowUp = () => page.climb(1);
+    actions.ArrowDown = () => page.climb(-1);
+  }
+  // The slider of another parameter does with arrows what sliders do.
+  if (target.closest("#parameters") && event.key.startsWith("Arrow")) return;
   const act = actions[event.key];
   if (!act) return;
   event.preventDefault();

@@ -2,9 +2,11 @@
 
 const start = async () => {
   const told = JSON.parse(new TextDecoder().decode(await readBlock("scene")));
-  const page = told.live ? new LivePage(told, new LiveSource(told)) : new Page(told, await StoredSource.load(told));
+  const page = told.live ? new LivePage(told, new LiveSource(told))
+    : told.plane ? new MapPage(told, await MapSource.load(told)) : new Page(told, await StoredSource.load(told));
   build(page);
   if (told.live) buildParameters(page);
+  else if (told.plane) buildSecond(page);
   connect(page);
   page.restore(readAddress());
   document.documentElement.dataset.ready = "true";

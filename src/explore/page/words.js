@@ -23,7 +23,8 @@ const isSound = (status) => status === "solved" || status === "escaping";
 
 /** One sentence of what is seen at a frame, for people who listen and for the line above the panels. */
 const sentence = (scene, source, frame) => {
-  const at = `${plain(scene.swept.symbol)} = ${plainNumber(frame.value, 6)}`;
+  const second = scene.plane?.sides[1].symbol;
+  const at = `${plain(scene.swept.symbol)} = ${plainNumber(frame.value, 6)}${second ? `, ${plain(second)} = ${plainNumber(frame.second, 6)}` : ""}`;
   if (!frame.densities.length) return `${at}: ${STATUS_WORDS[frame.status] ?? frame.status}`;
   const counts = source.observables.map((one, k) => `${plain(one.title)} ${countWords(frame.found[k])}`);
   return `${at}: ${counts.join("; ")}${isSound(frame.status) ? "" : `. ${STATUS_WORDS[frame.status]}`}`;
@@ -99,7 +100,7 @@ const facts = (scene) => [
   make("pre", {}, scene.model.equations.join("\n")),
   make("table", {}, make("tbody", {}, scene.parameters.map((parameter) => make("tr", {},
     make("th", { scope: "row" }, nodes(parameter.symbol)), make("td", {}, parameter.meaning),
-    make("td", {}, parameter.value === null ? "swept" : plainNumber(parameter.value, 6)))))),
+    make("td", {}, parameter.value === null ? "swept" : parameter.name === scene.plane?.sides[1].name ? "mapped" : plainNumber(parameter.value, 6)))))),
   make("p", { class: "hint" }, `Source: ${scene.model.source}`),
   make("pre", { tabindex: "0", "aria-label": "Sweep file" }, scene.sweep_file),
 ];

@@ -116,6 +116,8 @@ impl LiveServer {
             (_, "solve") => Live::solve,
             (_, "locate") => Live::locate,
             (_, "sweep-file") => Live::sweep_file,
+            (_, "map") => Live::map,
+            (_, "map-progress") => Live::map_progress,
             (_, "") => return Err(Response::refused(405, "this can only be read")),
             _ => return Err(Response::refused(404, "there is nothing of this name")),
         };
