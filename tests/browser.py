@@ -2,9 +2,12 @@
 """Uses the explorer as its users do, in a real Chromium through chromedriver: the page from disk without any network, and the live page.
 
     python3 tests/browser.py target/release/pbif
+    python3 tests/browser.py target/release/pbif --images docs/images      # the pictures of docs/explorer.md as well
+    python3 tests/browser.py target/release/pbif --measure                 # nothing but figures: 200 values at 100 x 100 cells, 10 000 requests
 
-Python 3 alone. Exit status 77 where chromium or chromedriver is not installed (apt-get install chromium chromium-driver)."""
-import atexit, json, os, pathlib, re, shutil, signal, socket, statistics, subprocess, sys, tempfile, time, urllib.error, urllib.request
+Python 3 alone. Exit status 77 where chromium or chromedriver is not installed (apt-get install chromium chromium-driver). What is hard to use without eyes or a mouse is looked for
+by axe-core, where npm can fetch it, and by checks of its own in any case."""
+import atexit, base64, json, os, pathlib, re, shutil, signal, socket, statistics, subprocess, sys, tempfile, time, urllib.error, urllib.request, xml.dom.minidom
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SMALL = ["--set", "cells.x.count=40", "--set", "cells.y.count=40", "--set", "locate.grid_check=off"]
@@ -39,6 +42,20 @@ class Browser:
         except urllib.error.HTTPError as error:
             raise AssertionError(f"{method} {path}: {error.read().decode()[:600]}") from error
 
+    def devtools(self, command, **parameters):
+        return self.call("POST", "/goog/cdp/execute", {"cmd": command, "params": parameters})
+
+    def size(self, width, height):
+        """The page in a window of any size: a window itself is never narrower than 500 pixels."""
+        self.devtools("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+
+    def picture(self, file):
+        found = self.devtools("Page.captureScreenshot", format="png")["data"]
+        pathlib.Path(file).write_bytes(base64.b64decode(found))
+
+    def waits(self, script, *arguments):
+        return self.call("POST", "/execute/async", {"script": script, "args": list(arguments)})
+
     def run(self, script, *arguments):
         return self.call("POST", "/execute/sync", {"script": script, "args": list(arguments)})
 
@@ -59,6 +76,8 @@ class Browser:
         return next(iter(found.values()))
 
     def click(self, selector):
+        # Away from the controls that stay at the top of the window.
+        self.run("document.querySelector(arguments[0]).scrollIntoView({ block: 'center' })", selector)
         self.call("POST", f"/element/{self.element(selector)}/click")
 
     def type(self, selector, text):
@@ -99,14 +118,90 @@ def is_named(browser):
     assert not twice, twice
 
 
-def from_disk(driver, page):
-    for size in ("500,800", "1280,900", "3840,2160"):
-        browser = Browser(driver, True, size)
-        browser.open(f"file://{page}")
-        wide = browser.run("return [document.documentElement.scrollWidth, innerWidth]")
-        assert wide[0] <= wide[1], f"{size}: the page is wider than its window, {wide}"
-        browser.close()
+def fetch_axe(folder):
+    """The source of axe-core, by npm; nothing where that is not to be had."""
+    if not shutil.which("npm"):
+        return None
+    command = ["npm", "install", "--prefix", folder, "--no-save", "--no-audit", "--no-fund", "--ignore-scripts", "axe-core@4"]
+    try:
+        done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=120).returncode == 0
+    except subprocess.TimeoutExpired:
+        return None
+    source = pathlib.Path(folder, "node_modules/axe-core/axe.min.js")
+    return source.read_text() if done and source.is_file() else None
+
+
+def is_usable(browser, axe, where):
+    """No serious finding of axe-core."""
+    if axe is None:
+        return
+    browser.run(f"{axe}; return null")
+    found = browser.waits("""
+        const done = arguments[arguments.length - 1];
+        axe.run(document).then((all) => done(all.violations.filter(({ impact }) => ['serious', 'critical'].includes(impact))
+          .map(({ id, help, nodes }) => `${id}: ${help}: ${nodes.map(({ html, failureSummary }) => html.slice(0, 160) + ' ' + (failureSummary ?? '').slice(0, 200)).join(' | ')}`)),
+          (error) => done([String(error)]));""")
+    assert not found, f"{where}: " + "\n".join(found)
+
+
+def fits(browser, where):
+    """At four widths nothing is wider than its window, and no text of a control is cut."""
+    for width, height in ((360, 740), (800, 1100), (1280, 900), (3840, 2160)):
+        browser.size(width, height)
+        browser.until("return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))", "no picture")
+        wide = browser.run("return [document.documentElement.scrollWidth, document.documentElement.clientWidth]")
+        assert wide[0] <= wide[1], f"{where}, {width} pixels: the page is wider than its window, {wide}"
+        cut = browser.run("""return [...document.querySelectorAll('button, label, h1, h2, figcaption, p')].filter((one) => one.checkVisibility()
+            && (one.scrollWidth > one.clientWidth + 1 && getComputedStyle(one).display !== 'inline')).map((one) => one.outerHTML.slice(0, 120))""")
+        assert not cut, f"{where}, {width} pixels: {cut}"
+    browser.size(1280, 900)
+
+
+def saves(browser, folder, panels):
+    """Every panel as SVG, PNG and CSV, as files that say what they are."""
+    browser.devtools("Browser.setDownloadBehavior", behavior="allow", downloadPath=folder)
+    for panel in panels:
+        for number, ending in enumerate(("svg", "png", "csv")):
+            before = set(os.listdir(folder))
+            # As a user does: a browser lets a page save many files only where it is asked for each.
+            browser.click(f"{panel} .exports button:nth-child({number + 1})")
+            end = time.time() + 20
+            while not (new := [name for name in set(os.listdir(folder)) - before if name.endswith(ending)]):
+                assert time.time() < end, f"{panel}: no {ending} was saved"
+                time.sleep(0.05)
+            content = pathlib.Path(folder, new[0]).read_bytes()
+            if ending == "svg":
+                assert xml.dom.minidom.parseString(content).documentElement.tagName == "svg"
+            elif ending == "png":
+                assert content.startswith(b"\x89PNG") and len(content) > 2000
+            else:
+                lines = content.decode().splitlines()
+                assert len(lines) > 2 and all(line.count(",") == lines[0].count(",") for line in lines), lines[:3]
+            os.remove(os.path.join(folder, new[0]))
+
+
+def point(browser, canvas, across, up):
+    """Presses the mouse at a place of a canvas, in shares of its sides."""
+    element = browser.element(canvas)
+    rect = browser.run("arguments[0].scrollIntoView({ block: 'center' }); const r = arguments[0].getBoundingClientRect(); return [r.left, r.top, r.width, r.height]",
+                       {"element-6066-11e4-a52e-4f735466cecf": element})
+    x, y = round(rect[0] + across * rect[2]), round(rect[1] + (1 - up) * rect[3])
+    actions = [{"type": "pointerMove", "x": x, "y": y}, {"type": "pointerDown", "button": 0}, {"type": "pointerMove", "x": x + 2, "y": y, "duration": 20},
+               {"type": "pointerUp", "button": 0}]
+    browser.call("POST", "/actions", {"actions": [{"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": actions}]})
+
+
+def choose(browser, selector, value):
+    browser.run("const one = document.querySelector(arguments[0]); one.value = arguments[1]; one.dispatchEvent(new Event('change'))", selector, value)
+
+
+def from_disk(driver, page, axe, folder, images):
     browser = Browser(driver, True)
+    browser.open(f"file://{page}")
+    fits(browser, "the page of a run")
+    if images:
+        browser.open(f"file://{page}#f_c=-0.005")
+        browser.picture(f"{images}/explorer.png")
     address = f"file://{page}"
     # What an address says wrongly changes nothing; what it says right is shown.
     browser.open(address + "#f_c=much&pin=NaN&joint=9&theme=loud")
@@ -134,16 +229,77 @@ def from_disk(driver, page):
     # Every control with the mouse; a typed value that is none is refused in words.
     for control in ("#previous", "#next", "#back", "#forth", "#play", "#play", "#pin", "#log", "#lock", "#contours", "#marks", "#about summary"):
         browser.click(control)
-    browser.run("const typed = document.getElementById('typed'); typed.value = 'much'; typed.dispatchEvent(new Event('change'))")
-    assert browser.run("return document.getElementById('refused').textContent"), "a value that is none is not refused"
+    for wrong in ("much", "17"):
+        browser.run("const typed = document.getElementById('typed'); typed.value = arguments[0]; typed.dispatchEvent(new Event('change'))", wrong)
+        assert browser.run("return document.getElementById('refused').textContent"), f"{wrong} is not refused"
+    choose(browser, "#typed", "-0.005")
+    browser.told("f_c = −0.005: ")
+    choose(browser, "#section", "0.5")
+    browser.until("return !document.getElementById('section-figure').hidden", "a typed section is not shown")
+    point(browser, "#joint-canvas", 0.4, 0.6)
+    browser.until("return document.getElementById('section').value !== '0.5'", "a section cannot be dragged")
+    point(browser, "#cursor-canvas", 0.3, 0.5)
+    browser.until("return !document.getElementById('says').textContent.startsWith('f_c = −0.005:')", "the diagram cannot be clicked")
+    before = browser.says()
+    browser.click("#table button")
+    browser.until(f"return document.getElementById('says').textContent !== {json.dumps(before)}", "the table leads nowhere")
+    choose(browser, "#diagram-choice", browser.run("return document.querySelector('#diagram-choice option:last-child').value"))
+    for theme in ("light", "dark"):
+        choose(browser, "#theme", theme)
+        is_usable(browser, axe, f"the page of a run, {theme}")
+    saves(browser, folder, ("#joint", "#section-figure", "#marginals", "#diagram"))
     assert not browser.console(), browser.console()
     browser.close()
-    print("from disk: every control, keyboard alone, three widths, dark, odd addresses, nothing in the console")
+    print("from disk: every control, keyboard alone, four widths, dark, odd addresses, saved files, nothing in the console")
+
+
+def from_disk_map(driver, page, axe, folder, images):
+    """The page of a map: its plane."""
+    browser = Browser(driver, True)
+    browser.open(f"file://{page}")
+    fits(browser, "the page of a map")
+    browser.open(f"file://{page}#h=0.05&a=0.5")
+    browser.told("h = 0.05, a = 0.")
+    if images:
+        browser.picture(f"{images}/explorer_map.png")
+    is_named(browser)
+    # A click in the plane, at h = -0.4 and a = -0.3, where there is one peak.
+    point(browser, "#place-canvas", 0.25, 0.35)
+    browser.until("return /1 peak/.test(document.getElementById('says').textContent)", "the plane cannot be clicked")
+    before = browser.says()
+    browser.run("document.body.focus()")
+    for key in ("\ue013", "\ue014"):  # up, right
+        browser.press(key)
+        browser.until(f"return document.getElementById('says').textContent !== {json.dumps(before)}", "the keyboard does not lead through the plane")
+        before = browser.says()
+    browser.press("p")
+    browser.click("#curves button")
+    browser.until("return /h = −?0, /.test(document.getElementById('says').textContent)", "the table of points leads nowhere")
+    second = "#parameters input[type=text]"
+    for wrong in ("much", "17"):
+        choose(browser, second, wrong)
+        assert browser.run("return document.getElementById('refused').textContent"), f"{wrong} is not refused"
+    choose(browser, second, "1")
+    browser.until("return document.getElementById('says').textContent.includes('a = 1:')", "a typed second value is not shown")
+    # An address leads back.
+    address, says = browser.run("return location.href"), browser.says()
+    browser.open(address)
+    assert browser.says() == says, (browser.says(), says)
+    assert browser.run("return document.getElementById('pin').getAttribute('aria-pressed')") == "true"
+    browser.open(f"file://{page}#h=much&a=&pin=1&plane=none")
+    browser.told("h = 0, a = ")
+    for theme in ("light", "dark"):
+        choose(browser, "#theme", theme)
+        is_usable(browser, axe, f"the page of a map, {theme}")
+    saves(browser, folder, ("#plane",))
+    assert not browser.console(), browser.console()
+    browser.close()
+    print("map from disk: clicks in the plane, keyboard alone, four widths, addresses, saved files, nothing in the console")
 
 
 class Server:
-    def __init__(self, pbif, folder):
-        command = [pbif, "explore", str(ROOT / "sweeps/coulomb_fc.toml"), *SMALL]
+    def __init__(self, pbif, folder, file="coulomb_fc", settings=SMALL):
+        command = [pbif, "explore", str(ROOT / f"sweeps/{file}.toml"), *settings]
         self.process = subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         atexit.register(self.process.kill)
         for line in self.process.stdout:
@@ -158,13 +314,100 @@ class Server:
         self.process.wait()
 
 
-def live(driver, pbif, folder):
+def dragged(browser, count):
+    """Milliseconds from each of so many moves of the slider to its picture, ascending, and from the last one to full resolution."""
+    times, rest = browser.waits("""
+        const [count, done] = arguments, slide = document.getElementById('slide'), root = document.documentElement, times = [];
+        const picture = () => new Promise(requestAnimationFrame);
+        (async () => {
+          for (let i = 1; i <= count; i++) {
+            const start = performance.now(), before = root.dataset.solved;
+            slide.value = Math.round(i * Number(slide.max) / count);
+            slide.dispatchEvent(new Event('input', { bubbles: true }));
+            while (root.dataset.solved === before && performance.now() - start < 5000) await picture();
+            times.push(performance.now() - start);
+          }
+          const start = performance.now();
+          while (!root.dataset.solved.endsWith('full') && performance.now() - start < 5000) await picture();
+          done([times, performance.now() - start]);
+        })();""", count)
+    return sorted(times), rest
+
+
+def locates(browser):
+    """A change is narrowed where the cursor stands, and its row leads there."""
+    browser.until("return window.performance.now() > 0 && document.getElementById('cursor-canvas').getAttribute('aria-valuetext')", "no diagram")
+    choose(browser, "#typed", "-0.003")
+    for _ in range(20):
+        browser.run("document.getElementById('refused').textContent = ''")
+        browser.click("#locate")
+        browser.until("return !document.getElementById('locate').disabled", "locating does not end")
+        if browser.run("return document.querySelectorAll('#table tbody tr').length"):
+            break
+        time.sleep(0.5)
+    label = browser.run("return document.querySelector('#table tbody tr').textContent")
+    assert label.startswith("PB1"), label
+
+
+def measure(driver, pbif, folder):
+    """Figures for docs/explorer.md: nothing is asserted of them, since machines differ."""
+    load = lambda: f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores"
+    server = Server(pbif, folder, settings=[])
+    browser = Browser(driver, False)
+    browser.open(server.address)
+    browser.until("return document.documentElement.dataset.solved?.endsWith('full')", "nothing is solved")
+    time.sleep(4)
+    for turn in range(3):
+        browser.run("const slide = document.getElementById('slide'); slide.value = 0; slide.dispatchEvent(new Event('input', { bubbles: true }))")
+        time.sleep(1)
+        times, rest = dragged(browser, 200)
+        print(f"drag {turn + 1}: {statistics.median(times):.0f} ms in the median, {times[190]:.0f} ms at 95 %, {times[-1]:.0f} ms at most, full resolution after {rest:.0f} ms; {load()}")
+    browser.close()
+    memory = lambda: int(re.search(r"VmRSS:\s+(\d+)", pathlib.Path(f"/proc/{server.process.pid}/status").read_text())[1]) // 1024
+    began, sizes = time.time(), [memory()]
+    for number in range(10000):
+        values = {"f_c": -0.02 + 3e-6 * (number * 7919 % 10000)}
+        body = json.dumps({"lane": "requests", "ticket": number + 1, "moving": "f_c", "values": values, "marginals_only": True}).encode()
+        urllib.request.urlopen(urllib.request.Request(server.address + "solve", body, {"content-type": "application/json"}), timeout=60).read()
+        if number % 1000 == 999:
+            sizes.append(memory())
+    print(f"10000 requests in {time.time() - began:.0f} s; MB after each thousand: {sizes}; {load()}")
+    server.stop()
+
+
+def live_map(driver, pbif, folder, axe):
+    """The plane of a live page: clicked, mapped, and forgotten when another parameter moves."""
+    server = Server(pbif, folder, "cusp", ["--set", "sweep.points=9", "--set", "map.points=9", "--set", "map.depth=1"])
+    browser = Browser(driver, False)
+    browser.open(server.address)
+    browser.until("return document.documentElement.dataset.solved?.endsWith('full')", "nothing is solved")
+    point(browser, "#place-canvas", 0.55, 0.85)
+    browser.until("return /2 peaks/.test(document.getElementById('says').textContent)", "the plane cannot be clicked")
+    browser.click("#map")
+    browser.until("return document.querySelectorAll('#curves tbody tr').length >= 3", "the plane is not mapped")
+    is_usable(browser, axe, "the live page of a map")
+    fits(browser, "the live page of a map")
+    choose(browser, "[data-name=sigma2] input[type=text]", "0.12")
+    browser.until("return document.getElementById('curves').textContent.startsWith('No map yet')", "the map stays when another parameter moves")
+    # Given up before it is made.
+    browser.click("#map")
+    browser.click("#map")
+    browser.until("return document.getElementById('map').textContent === 'Map the plane'", "a map cannot be given up")
+    assert not browser.console(), browser.console()
+    browser.close()
+    server.stop()
+    print("live map: clicked, mapped, given up, nothing in the console")
+
+
+def live(driver, pbif, folder, axe):
     server = Server(pbif, folder)
     browser = Browser(driver, False)
     browser.open(server.address)
     solved = "return document.documentElement.dataset.solved?.endsWith('full')"
     browser.until(solved, "nothing is solved")
     is_named(browser)
+    is_usable(browser, axe, "the live page")
+    fits(browser, "the live page")
     # Two tabs do not disturb each other.
     first = browser.call("GET", "/window")
     second = browser.call("POST", "/window/new", {"type": "tab"})["handle"]
@@ -173,22 +416,10 @@ def live(driver, pbif, folder):
     browser.until(solved, "nothing is solved in the second tab")
     browser.told("f_c = 0.005")
     browser.call("POST", "/window", {"handle": first})
-    # A drag of the slider: from each move to its picture.
-    times = browser.call("POST", "/execute/async", {"args": [], "script": """
-        const done = arguments[arguments.length - 1], slide = document.getElementById('slide'), root = document.documentElement, times = [];
-        (async () => {
-          for (let i = 1; i <= 60; i++) {
-            const start = performance.now(), before = root.dataset.solved;
-            slide.value = Math.round(i * Number(slide.max) / 60);
-            slide.dispatchEvent(new Event('input', { bubbles: true }));
-            while (root.dataset.solved === before && performance.now() - start < 5000) await new Promise(requestAnimationFrame);
-            times.push(performance.now() - start);
-          }
-          done(times);
-        })();"""})
-    times.sort()
+    times, _ = dragged(browser, 60)
     print(f"live: slider to picture {statistics.median(times):.0f} ms in the median, {times[int(0.95 * len(times))]:.0f} ms at 95 %, of {len(times)}")
     assert times[-1] < 5000, times
+    locates(browser)
     browser.run("const typed = document.getElementById('typed'); typed.value = '1e999'; typed.dispatchEvent(new Event('change'))")
     browser.until("return document.getElementById('refused').textContent !== ''", "a value that is none is not refused")
     assert not browser.console(), browser.console()
@@ -206,6 +437,7 @@ def live(driver, pbif, folder):
 
 
 def main():
+    images = sys.argv[sys.argv.index("--images") + 1] if "--images" in sys.argv else None
     pbif = str(pathlib.Path(sys.argv[1]).resolve())
     if not shutil.which("chromedriver") or not (shutil.which("chromium") or shutil.which("google-chrome")):
         print("skipped: chromium or chromedriver is not installed")
@@ -220,12 +452,24 @@ def main():
                     break
                 except OSError:
                     time.sleep(0.1)
-            sweep = [pbif, "sweep", str(ROOT / "sweeps/coulomb_fc.toml"), *SMALL, "--set", "sweep.points=21", "--set", "figures.draw=[]", "--quiet", "--out", "run"]
-            assert subprocess.run(sweep, cwd=folder, stdout=subprocess.DEVNULL).returncode in (0, 1)
-            subprocess.run([pbif, "explore", "run", "--html", "page.html"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
             at = f"http://127.0.0.1:{port}"
-            from_disk(at, os.path.join(folder, "page.html"))
-            live(at, pbif, folder)
+            if "--measure" in sys.argv:
+                measure(at, pbif, folder)
+                return 0
+            axe = fetch_axe(os.path.join(folder, "npm"))
+            print("axe-core looks for serious findings" if axe else "axe-core is not to be had: names, widths and the keyboard alone are checked")
+            kept = os.path.join(folder, "saved")
+            os.mkdir(kept)
+            cells = [] if images else [*SMALL, "--set", "sweep.points=21"]
+            pages = {"run": ["coulomb_fc", *cells, "--set", "figures.draw=[]"], "map": ["cusp", *([] if images else ["--set", "map.depth=1"])]}
+            for name, (sweep, *settings) in pages.items():
+                command = [pbif, "sweep", str(ROOT / f"sweeps/{sweep}.toml"), *settings, "--quiet", "--out", name]
+                assert subprocess.run(command, cwd=folder, stdout=subprocess.DEVNULL).returncode in (0, 1)
+                subprocess.run([pbif, "explore", name, "--html", f"{name}.html", "--quiet"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+            from_disk(at, os.path.join(folder, "run.html"), axe, kept, images)
+            from_disk_map(at, os.path.join(folder, "map.html"), axe, kept, images)
+            live(at, pbif, folder, axe)
+            live_map(at, pbif, folder, axe)
     finally:
         driver.send_signal(signal.SIGTERM)
         driver.wait()

@@ -114,7 +114,7 @@ impl PlaneScene {
         });
         let subject = sweep.problem.subject();
         let scene = Self { sides, found: None };
-        let found = tables.map(|tables| scene.found_in(tables, &subject));
+        let found = tables.map(|tables| scene.found_in(tables, subject));
         Ok(Some(Self {
             found: found.transpose()?,
             ..scene
@@ -283,7 +283,7 @@ fn thinned(values: &[f64], most: usize) -> Vec<f64> {
     let last = values.len().saturating_sub(1);
     let step = last.div_ceil(most.max(2) - 1).max(1);
     let mut kept: Vec<f64> = values.iter().copied().step_by(step).collect();
-    if last % step != 0 {
+    if !last.is_multiple_of(step) {
         kept.push(values[last]);
     }
     kept
