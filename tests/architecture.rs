@@ -12,7 +12,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("bytes", &[]),
     ("formula", &[]),
     ("system", &["formula"]),
-    ("space", &[]),
+    ("space", &["bytes"]),
     ("sampling", &["cancellation", "system", "space"]),
     (
         "monte_carlo",

@@ -6,7 +6,8 @@ use pbif::cancellation::Cancellation;
 use pbif::continuation::{DensitySource, Solution};
 use pbif::density::{EstimatedDensity, Observable, total_variation};
 use pbif::method::{
-    GeneratorMethodOptions, GeneratorSource, MonteCarloOptions, MonteCarloSource, Problem,
+    Correction, GeneratorMethodOptions, GeneratorSource, MonteCarloOptions, MonteCarloSource,
+    Problem, SgcmOptions, SgcmSource, StepChoice,
 };
 use pbif::space::{Axis, CellSpace};
 use pbif::sweep_file::SweepFile;
@@ -125,6 +126,81 @@ fn free_trajectories_find_the_same_densities() {
     }
     let (a, b) = (computed.moments[2], sampled.moments[2]);
     assert!((a.mean - b.mean).abs() < 0.1, "{} {}", a.mean, b.mean);
+}
+
+/// Under damping -a + bH the density of H is exp(-(2/σ²)(-aH + bH²/2)) on H > 0; a crater of rest, and a force that is not linear.
+#[test]
+fn every_method_has_the_exact_densities_of_quantities_where_damping_depends_on_energy() {
+    let model = registry::find("rayleigh").unwrap();
+    let (a, b, sigma2) = (0.2, 0.4, 0.1);
+    let formulas = [
+        ("H", Some("(x^2 + y^2)/2")),
+        ("amplitude", Some("sqrt(2 H)")),
+    ];
+    let read = quantities(&model, &formulas).unwrap();
+    let power = quantities(&model, &[("power", Some("y^2"))]).unwrap();
+    let fixed = [("b", b), ("sigma2", sigma2)];
+    let family = Family::new(model, &fixed, Path::parameter("a", a, a)).unwrap();
+    let family = family.with_quantities(read).with_averaged(power);
+    let axis = Axis::uniform(-3.0, 3.0, 50).unwrap();
+    let space = CellSpace::new(vec![axis.clone(), axis]).unwrap();
+    let bins = [(0.0, 4.0), (0.0, 2.8)].map(|(from, to)| Axis::uniform(from, to, 40).unwrap());
+    let watched = vec![Observable::Marginal(2), Observable::Marginal(3)];
+    let problem = Problem::watching(family, space, watched, bins.to_vec()).unwrap();
+    let weight = |h: f64| (-(2.0 / sigma2) * (-a * h + b * h * h / 2.0)).exp();
+    let all = integral(weight, 0.0, 6.0);
+    let mean_energy = integral(|h| h * weight(h), 0.0, 6.0) / all;
+    let below = |h: f64| integral(weight, 0.0, h) / all;
+    let distance = |found: &EstimatedDensity, energy: &dyn Fn(f64) -> f64| {
+        let edges = found.density.axes[0].edges();
+        let masses = found.density.masses();
+        let pairs = edges.windows(2).zip(&masses);
+        let apart = pairs.map(|(e, mass)| (below(energy(e[1])) - below(energy(e[0])) - mass).abs());
+        0.5 * apart.sum::<f64>()
+    };
+    let never = Cancellation::new();
+    let sgcm = |correction| {
+        let options = SgcmOptions {
+            samples: 400,
+            map_step: StepChoice::Fixed(1.5),
+            correction,
+            ..SgcmOptions::default()
+        };
+        SgcmSource::new(&problem, &options, &never).unwrap()
+    };
+    let monte_carlo = MonteCarloOptions {
+        error: 0.01,
+        ..MonteCarloOptions::default()
+    };
+    // The cells of a cell map add a diffusion of up to h²/(12 Δt) = 8e-4 to each axis beside σ²/4 = 0.025: 3 % of the noise, which moves masses by about
+    // as much; the slope correction takes most of it. Monte Carlo has its noise, and 1600 samples a cell have 1 %.
+    let methods: [(Box<dyn DensitySource>, f64); 4] = [
+        (
+            Box::new(GeneratorSource::new(&problem, &GeneratorMethodOptions::default()).unwrap()),
+            2e-3,
+        ),
+        (Box::new(sgcm(Correction::Slope)), 0.015),
+        (Box::new(sgcm(Correction::None)), 0.04),
+        (
+            Box::new(MonteCarloSource::new(&problem, &monte_carlo, &never).unwrap()),
+            0.03,
+        ),
+    ];
+    for (source, allowed) in methods {
+        let mut session = source.open(&never);
+        let found = session.solve(a).unwrap().detached();
+        let h = distance(&found.densities[0], &|h| h);
+        let amplitude = distance(&found.densities[1], &|r| 0.5 * r * r);
+        // Of y² the mean is that of H.
+        let power = found.moments[2].mean / mean_energy - 1.0;
+        let method = source.method();
+        println!("{method}: H {h:.1e}, amplitude {amplitude:.1e}, power {power:.1e}");
+        assert!(
+            h < allowed && amplitude < allowed,
+            "{method} {h} {amplitude}"
+        );
+        assert!(power.abs() < allowed, "{method} {power}");
+    }
 }
 
 const FILE: &str = r#"

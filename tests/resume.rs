@@ -11,8 +11,9 @@ use std::process::{Command, Output, Stdio};
 
 use tempfile::TempDir;
 
-/// Sweeps that differ in what a session remembers: factors and trails, with and without mass that leaves; masses; nothing.
-const SWEEPS: [(&str, &[&str]); 5] = [
+/// Sweeps that differ in what a session remembers (factors and trails, with and without mass that leaves; masses; nothing) and in what densities are on
+/// (cells, bins of quantities, a series).
+const SWEEPS: [(&str, &[&str]); 7] = [
     (
         "coulomb_fc",
         &[
@@ -52,6 +53,19 @@ const SWEEPS: [(&str, &[&str]); 5] = [
         ],
     ),
     ("bistable", &["sweep.points=9"]),
+    (
+        "rayleigh_energy",
+        &["cells.x.count=24", "cells.y.count=24", "sweep.points=7"],
+    ),
+    (
+        "gallery/coloured_bistable",
+        &[
+            "detect.marginals=[\"x\", \"noise\"]",
+            "cells.x.count=60",
+            "sweep.points=7",
+            "locate.tolerance=1e-3",
+        ],
+    ),
 ];
 
 fn command(sweep: (&str, &[&str]), out: &Path, options: &[&str]) -> Command {

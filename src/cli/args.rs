@@ -54,6 +54,7 @@ Examples:
   pbif curve output/coulomb_fc --row PB1 --second sigma2 --from 0.005 --to 0.02
   pbif curve output/coulomb_fc --row PB1 --second sigma2 --from 0.005 --to 0.02 --first-from -0.05 --first-to 0.05
   pbif curve sweeps/bistable.toml --second sigma2 --from 0.2 --to 1
+  pbif curve output/coulomb_fc --row PB1 --second sigma2 --from 0.005 --to 0.02 --resume   go on after an interrupt or a kill
 
 From the located row on, the zero of its indicator is followed in both directions until it leaves the box, closes, or its
 feature is lost; then the curves that start from its cusps and degenerate splits. curves.csv, codimension_two.csv, curve.json and a figure of the plane go to RUN/curves/ROW-SECOND/ (of a sweep file, which is swept
@@ -66,6 +67,7 @@ const COMPARE_EXAMPLES: &str = "\
 Examples:
   pbif compare sweeps/coulomb_fc.toml
   pbif compare sweeps/coulomb_fc.toml --set 'figures.at=[-0.02, 0.0]' --set method.error=0.004 --out trial
+  pbif compare sweeps/coulomb_fc.toml --resume   go on with it after an interrupt or a kill
 
 Methods are compared at the values of figures.at: the generator with the settings of the file; SGCM as the
 paper has it (50 x 50 cells of equal width, method.samples samples a cell, map step 1, densities flat in the
@@ -306,6 +308,9 @@ pub(crate) struct CompareArguments {
     /// Folder for the results [default: output/NAME-compare, after the sweep file]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Go on with the comparison in the folder that was interrupted or killed; a complete one is not made again
+    #[arg(long)]
+    pub(crate) resume: bool,
     /// How to work.
     #[command(flatten)]
     pub(crate) work: Work,
@@ -365,6 +370,9 @@ pub(crate) struct CurveArguments {
     /// Folder for the results [default: RUN/curves/ROW-SECOND]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Go on with the curves in the folder that were interrupted or killed; complete ones are not followed again
+    #[arg(long)]
+    pub(crate) resume: bool,
     /// How to work.
     #[command(flatten)]
     pub(crate) work: Work,

@@ -1,4 +1,5 @@
-//! `pbif compare`: solves by every method at the values of `figures.at`, and writes tables and figures of how they agree.
+//! `pbif compare`: solves by every method at the values of `figures.at`, and writes tables and figures of how they agree. What is solved is kept
+//! as it comes, so that a comparison that was stopped can be gone on with.
 
 use std::path::{Path, PathBuf};
 
@@ -9,10 +10,12 @@ use super::output::OutputFolder;
 use super::sweep::progress::Progress;
 use super::{CommandError, Outcome, warnings};
 use crate::cancellation::Cancellation;
-use crate::compare::{CompareError, Task, compare};
+use crate::compare::{self, CompareError, CompareObserver, Solved, Task};
 use crate::figure::{Figures, write_figures};
-use crate::run::{CompareFolder, ComparedRun, compare_tables, format_number};
-use crate::sweep_file::{Diagnostic, Sweep};
+use crate::run::{
+    CompareFolder, CompareJournal, ComparedRun, RunError, compare_tables, format_number,
+};
+use crate::sweep_file::{Diagnostic, MethodKind, Sweep};
 
 /// Compares, writes, draws and prints.
 ///
@@ -31,15 +34,95 @@ pub(super) fn run(
     let default = || Path::new("output").join(format!("{name}-compare"));
     let path = arguments.out.clone().unwrap_or_else(default);
     let output = OutputFolder::prepare(&path)?;
+    let of = described(spec)?;
+    let going_on = arguments.resume && CompareFolder::has_journal(output.path());
+    if arguments.resume && !going_on && CompareFolder::is_complete(output.path(), &of)? {
+        let text = format!(
+            "the comparison in {} is complete: nothing was solved\n",
+            output.path().display()
+        );
+        return super::print(&text);
+    }
+    // What would be refused is refused before hours of work, and another process is kept away.
+    let folder = CompareFolder::new(output.path())?;
+    let family = spec.problem.family();
+    let journal = match going_on {
+        true => folder.go_on(&of, family, &MethodKind::ALL.map(MethodKind::name))?,
+        false => folder.begin(&of, family)?,
+    };
     let (threads, cancellation) = super::interruptible(arguments.work.threads)?;
-    let quiet = arguments.work.quiet;
-    threads.install(|| carry_out(spec, output.path(), quiet, &cancellation))
+    let progress = Progress::new(2 + 3 * spec.settings.figures_at.len(), arguments.work.quiet);
+    let keeper = Keeper {
+        journal,
+        progress: &progress,
+        done: 0,
+    };
+    let home = output.path();
+    threads.install(|| carry_out((spec, &of), (home, folder), keeper, &cancellation))
+}
+
+/// What the comparison is made of beside the program, as TOML: the sweep, the values, and the settings of every method.
+fn described(spec: &Sweep) -> Result<String, RunError> {
+    let mut whole: toml::Table = spec.to_toml().parse()?;
+    let mut compared = toml::Table::new();
+    let figures = whole.get("figures").and_then(|figures| figures.get("at"));
+    compared.extend(figures.map(|at| ("at".to_owned(), at.clone())));
+    for kind in MethodKind::ALL {
+        let mut settings = spec.settings.clone();
+        settings.method.kind = kind;
+        let mut of: toml::Table = settings.to_toml().parse()?;
+        compared.extend(of.remove("method").map(|of| (kind.name().to_owned(), of)));
+    }
+    whole.insert("compare".to_owned(), compared.into());
+    Ok(whole.to_string())
+}
+
+/// Shows how far a comparison is, and keeps what is solved.
+struct Keeper<'a> {
+    journal: CompareJournal,
+    progress: &'a Progress,
+    /// Solves that are in the journal.
+    done: usize,
+}
+
+impl CompareObserver for Keeper<'_> {
+    fn step(&mut self, step: &compare::Progress) {
+        self.progress.step(&step.next, step.done, step.total);
+    }
+
+    fn known(&mut self) -> Option<Vec<Solved>> {
+        let known = self.journal.take();
+        self.done += usize::from(known.is_some());
+        known
+    }
+
+    fn keep(&mut self, solved: &[Solved]) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        self.journal.keep(solved)?;
+        self.done += 1;
+        Ok(())
+    }
+}
+
+impl Keeper<'_> {
+    /// What there is of a comparison that did not come to its end.
+    fn kept(&self, folder: &Path) -> String {
+        let folder = folder.display();
+        match self.done + self.journal.waiting() {
+            0 => format!("nothing was solved; {folder} holds no results of it"),
+            1 => format!(
+                "1 solve that was done is kept in {folder}, and `--resume` goes on from there"
+            ),
+            solves => format!(
+                "{solves} solves that were done are kept in {folder}, and `--resume` goes on from there"
+            ),
+        }
+    }
 }
 
 fn carry_out(
-    spec: &Sweep,
-    path: &Path,
-    quiet: bool,
+    (spec, of): (&Sweep, &str),
+    (home, folder): (&Path, CompareFolder),
+    mut keeper: Keeper<'_>,
     cancellation: &Cancellation,
 ) -> Result<Outcome, CommandError> {
     let mut at: Vec<f64> = Vec::new();
@@ -55,41 +138,54 @@ fn carry_out(
         sgcm: spec.settings.method.sgcm.clone(),
         monte_carlo: spec.settings.method.monte_carlo.clone(),
     };
-    // What would be refused is refused before hours of work, and another process is kept away.
-    let folder = CompareFolder::new(path)?;
-    let progress = Progress::new(2 + 3 * at.len(), quiet);
-    let compared = compare(&task, cancellation, &mut |step| {
-        progress.step(&step.next, step.done, step.total);
-    });
+    let progress = keeper.progress;
+    let compared = compare::compare(&task, cancellation, &mut keeper);
     let comparison = match compared {
         Ok(comparison) => comparison,
         Err(CompareError::Interrupted) => {
             progress.finish();
-            super::print("interrupted: nothing was written\n")?;
+            super::print(&format!("interrupted: {}\n", keeper.kept(home)))?;
             return Ok(Outcome::Interrupted);
         }
-        Err(error) => return Err(error.into()),
+        Err(error) => return Err(CommandError::from(error).after(keeper.kept(home))),
     };
     let resolved = spec.to_toml();
     let run = ComparedRun {
         comparison: &comparison,
         sweep: &resolved,
+        of,
         threads: rayon::current_num_threads(),
     };
-    folder.write(&run)?;
-    progress.say("drawing");
-    let figures = Figures::of_comparison(&comparison, &spec.settings.title)
-        .with_style(&spec.settings.figure_style)
-        .draw_all()?;
-    write_figures(&figures, &spec.settings.figure_formats, &folder.figures())?;
-    let files = folder.take_place()?;
+    let written = write(spec, &run, folder, progress);
+    let files = written.map_err(|error| error.after(keeper.kept(home)))?;
     progress.finish();
     progress.warn(&warnings::of_comparison(run.family(), &comparison));
+    let mut text = text(&run, &files);
     let outcome = match comparison.is_complete() && comparison.agrees() {
+        _ if comparison.interrupted => {
+            text += &format!("\ninterrupted: {}\n", keeper.kept(home));
+            Outcome::Interrupted
+        }
         true => Outcome::Complete,
         false => Outcome::Partial,
     };
-    super::conclude(&text(&run, &files), outcome, path)
+    super::conclude(&text, outcome, home)
+}
+
+/// Writes tables and figures, and returns the files.
+fn write(
+    spec: &Sweep,
+    run: &ComparedRun<'_>,
+    folder: CompareFolder,
+    progress: &Progress,
+) -> Result<Vec<PathBuf>, CommandError> {
+    folder.write(run)?;
+    progress.say("drawing");
+    let figures = Figures::of_comparison(run.comparison, &spec.settings.title)
+        .with_style(&spec.settings.figure_style)
+        .draw_all()?;
+    write_figures(&figures, &spec.settings.figure_formats, &folder.figures())?;
+    Ok(folder.take_place(run.comparison.interrupted)?)
 }
 
 /// The tables, the verdict and the files.

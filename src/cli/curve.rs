@@ -19,8 +19,8 @@ use crate::continuation::{
 };
 use crate::figure::{curve_figure, write_figures};
 use crate::method::MethodError;
-use crate::run::{CurveFolder, format_number, format_with_error};
-use crate::sweep_file::{Diagnostic, SolveError, Sweep};
+use crate::run::{CurveFolder, RecordedSource, SessionJournal, format_number, format_with_error};
+use crate::sweep_file::{Diagnostic, MethodKind, SolveError, Sweep};
 use refusals::{chosen_row, held_value, no_indicator, refused, refused_plane};
 
 /// Sections of a run's sweep that may be set anew.
@@ -39,15 +39,45 @@ pub(super) fn run(arguments: &CurveArguments) -> Result<Outcome, CommandError> {
         };
         let job = Job::new(arguments, &spec, &result)?;
         let output = OutputFolder::prepare(&job.home())?;
-        let folder = CurveFolder::new(output.path())?;
-        match job.follow(&cancellation)? {
-            Some(tree) => job.conclude(&tree, folder, output.path()),
+        let home = output.path();
+        let of = job.described();
+        let going_on = arguments.resume && CurveFolder::has_journal(home);
+        if arguments.resume && !going_on && CurveFolder::is_complete(home, &of)? {
+            let home = home.display();
+            let text = format!("the curves in {home} are complete: nothing was solved\n");
+            return super::print(&text);
+        }
+        let folder = CurveFolder::new(home)?;
+        let methods = MethodKind::ALL.map(MethodKind::name);
+        let journal = match going_on {
+            true => folder.go_on(&of, spec.problem.family(), &methods)?,
+            false => folder.begin(&of)?,
+        };
+        let kept = || kept(home);
+        let found = job.follow(&journal, &cancellation);
+        let found = match journal.failure() {
+            Some(error) => Err(error.into()),
+            None => found,
+        };
+        match found.map_err(|error| error.after(kept()))? {
+            Some(tree) => {
+                let concluded = job.conclude(&tree, (folder, &of), home);
+                concluded.map_err(|error| error.after(kept()))
+            }
             None => {
-                super::print("interrupted: nothing was written\n")?;
+                super::print(&format!("interrupted: {}\n", kept()))?;
                 Ok(Outcome::Interrupted)
             }
         }
     })
+}
+
+/// What there is of curves that did not come to their end.
+fn kept(home: &Path) -> String {
+    format!(
+        "what was solved is kept in {}, and `--resume` goes on from there",
+        home.display()
+    )
 }
 
 /// The sweep with its result: that of a run as it is stored, that of a sweep file solved now; `None` when interrupted.
@@ -170,14 +200,35 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Follows the curve, and those that start from it; `None` when interrupted before there was one.
-    fn follow(&self, cancellation: &Cancellation) -> Result<Option<CurveTree>, CommandError> {
+    /// What the curves are made of beside the program, as TOML: the sweep, and where they start and end.
+    fn described(&self) -> String {
+        let sides = self.plane.sides().iter();
+        let sides = sides.map(|side| format!("[{:?}, {:?}]", side.from, side.to));
+        let sides: Vec<String> = sides.collect();
+        format!(
+            "{}\n[curve]\nrow = \"{}\"\nstart = {:?}\nsecond = \"{}\"\nbox = [{}]\nstep = {:?}\nalone = {}\n",
+            self.spec.to_toml(),
+            self.row.label,
+            self.start.values,
+            self.arguments.second,
+            sides.join(", "),
+            self.arguments.step,
+            self.arguments.alone,
+        )
+    }
+
+    /// Follows the curve, and those that start from it; `None` when interrupted before there was one. What is in the journal is not solved again.
+    fn follow(
+        &self,
+        journal: &SessionJournal,
+        cancellation: &Cancellation,
+    ) -> Result<Option<CurveTree>, CommandError> {
         let options = CurveOptions {
             largest_step: self.arguments.step,
             ..self.spec.curve_options(self.plane.sides()[0].length())
         };
         let source = match self.spec.source_in(&self.plane, cancellation) {
-            Ok(source) => source,
+            Ok(source) => RecordedSource::new(Box::new(source), journal.clone()),
             Err(MethodError::Cancelled(_)) => return Ok(None),
             Err(error) => return Err(refused_plane(&error)),
         };
@@ -188,6 +239,12 @@ impl<'a> Job<'a> {
             .map(|side| side.parameter.as_str());
         let mut met = 0;
         let quiet = self.arguments.work.quiet;
+        if journal.waiting() > 0 {
+            tell(
+                quiet,
+                &format!("going on after {} solves\n", journal.waiting()),
+            );
+        }
         let mut observer = |values: [f64; 2]| {
             met += 1;
             tell(
@@ -233,22 +290,27 @@ impl<'a> Job<'a> {
     fn conclude(
         &self,
         tree: &CurveTree,
-        folder: CurveFolder,
+        (folder, of): (CurveFolder, &str),
         home: &Path,
     ) -> Result<Outcome, CommandError> {
         let (family, settings) = (self.spec.problem.family(), &self.spec.settings);
         let (label, sweep) = (&self.row.label, self.spec.to_toml());
-        folder.write(family, &self.plane, tree, (label, &sweep))?;
+        folder.write(family, &self.plane, tree, (label, &sweep, of))?;
         let style = &settings.figure_style;
         let figure = curve_figure(&tree.curves, self.row, family, &settings.title, style)?;
         write_figures(&[figure], &settings.figure_formats, &folder.figures())?;
-        let files = folder.take_place()?;
+        let outcome = outcome(tree, &settings.locate);
+        let interrupted = outcome == Outcome::Interrupted;
+        let files = folder.take_place(interrupted)?;
         let mut text = self.summary(tree);
+        if interrupted {
+            text += &format!("interrupted: {}\n", kept(home));
+        }
         text += "files\n";
         for file in files {
             text += &format!("  {}\n", file.display());
         }
-        super::conclude(&text, outcome(tree, &settings.locate), home)
+        super::conclude(&text, outcome, home)
     }
 
     fn summary(&self, tree: &CurveTree) -> String {

@@ -45,7 +45,12 @@ pub(super) fn run(arguments: &DetectArguments) -> Result<Outcome, CommandError> 
 /// Writes tables, figures, and last the manifest.
 fn write(stored: &Stored, detect_seconds: f64, folder: &RunFolder) -> Result<(), CommandError> {
     let Stored { run, spec, result } = stored;
-    let mut manifest = Manifest::start(&spec.to_toml(), run.seed(), run.threads())?;
+    let mut manifest = Manifest::start(
+        &spec.to_toml(),
+        spec.settings.typed(),
+        run.seed(),
+        run.threads(),
+    )?;
     manifest.seconds = run.seconds();
     manifest.seconds.detect = Some(detect_seconds);
     let clock = Instant::now();

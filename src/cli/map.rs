@@ -44,7 +44,10 @@ pub(super) fn run(
     let checkpoint = MapCheckpoint::new(output.path(), &spec.to_toml());
     let known = match arguments.resume {
         true => checkpoint.read()?,
-        false => Vec::new(),
+        false => {
+            home.keep_unfinished()?;
+            Vec::new()
+        }
     };
     if arguments.resume && known.is_empty() && is_complete(spec, output.path())? {
         super::print("the map is complete: there is nothing to go on with\n")?;

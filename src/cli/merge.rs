@@ -94,7 +94,12 @@ fn missing(shards: &Shards) -> String {
 fn write(spec: &Sweep, of: usize, result: &SweepResult, path: &Path) -> Result<(), CommandError> {
     let mut folder = RunFolder::create(path)?;
     let seed = spec.settings.method.chosen().seed();
-    let mut manifest = Manifest::start(&spec.to_toml(), seed, rayon::current_num_threads())?;
+    let mut manifest = Manifest::start(
+        &spec.to_toml(),
+        spec.settings.typed(),
+        seed,
+        rayon::current_num_threads(),
+    )?;
     manifest.merged = Some(of);
     folder.write_manifest(&manifest)?;
     folder.finish(result)?;

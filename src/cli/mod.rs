@@ -31,6 +31,8 @@ use std::process::ExitCode;
 use clap::Parser as _;
 
 use crate::cancellation::Cancellation;
+use crate::compare::CompareError;
+use crate::run::RunError;
 use crate::sweep_file::{Diagnostic, Report, Settings, Sweep, SweepFile};
 use args::{Arguments, Command};
 use output::OutputError;
@@ -71,7 +73,7 @@ pub(crate) enum CommandError {
     Method(#[from] crate::method::MethodError),
     /// The methods cannot be compared.
     #[error(transparent)]
-    Compare(#[from] crate::compare::CompareError),
+    Compare(crate::compare::CompareError),
     /// The sweep ended without a result.
     #[error(transparent)]
     Sweep(#[from] crate::continuation::SweepError),
@@ -112,6 +114,19 @@ impl CommandError {
                 error: Box::new(error),
                 written,
             },
+        }
+    }
+}
+
+impl From<CompareError> for CommandError {
+    fn from(error: CompareError) -> Self {
+        match error {
+            // What is solved could not be kept.
+            CompareError::Observer(error) => match error.downcast::<RunError>() {
+                Ok(error) => Self::Run(*error),
+                Err(error) => Self::Compare(CompareError::Observer(error)),
+            },
+            error => Self::Compare(error),
         }
     }
 }

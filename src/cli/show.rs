@@ -5,6 +5,7 @@ use comfy_table::{Table, presets};
 use super::args::ShowArguments;
 use super::{CommandError, Outcome, print};
 use crate::run::{FoundRow, RunSummary, find_runs, format_number, format_with_error};
+use crate::sweep_file::{Diagnostic, SweepText};
 
 /// Prints a run, or its sweep file alone.
 ///
@@ -15,7 +16,32 @@ pub(super) fn run(arguments: &ShowArguments) -> Result<Outcome, CommandError> {
     if arguments.sweep {
         return print(summary.run.resolved());
     }
+    if arguments.typed {
+        let typed = summary.run.typed();
+        return match typed {
+            Some(typed) => print(&as_typed(&typed)),
+            None => Err(super::CommandError::Input(
+                Diagnostic::new(
+                    "the run does not say how its sweep file was typed: it is of an early version",
+                )
+                .remedy("`--sweep` prints the complete sweep file")
+                .into(),
+            )),
+        };
+    }
     print(&text(&summary))
+}
+
+/// The text, and what was set on top of it as comments behind it.
+fn as_typed(typed: &SweepText) -> String {
+    let mut text = typed.text.clone();
+    if !text.ends_with('\n') && !typed.set.is_empty() {
+        text.push('\n');
+    }
+    for set in &typed.set {
+        text += &format!("# --set {set}\n");
+    }
+    text
 }
 
 fn text(summary: &RunSummary) -> String {

@@ -149,8 +149,12 @@ impl<'a> Run<'a> {
         progress.say(&format!("{}, {cells} cells", source.describe()));
         let resolved = spec.to_toml();
         let threads = rayon::current_num_threads();
-        let mut manifest =
-            Manifest::start(&resolved, spec.settings.method.chosen().seed(), threads)?;
+        let mut manifest = Manifest::start(
+            &resolved,
+            spec.settings.typed(),
+            spec.settings.method.chosen().seed(),
+            threads,
+        )?;
         if let Kind::Shard(shard, _) = &kind {
             manifest.shard = Some(shard.to_string());
         }

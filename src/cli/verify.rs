@@ -6,15 +6,21 @@ use super::args::VerifyArguments;
 use super::{CommandError, Outcome, conclude, interruptible};
 use crate::cancellation::Cancellation;
 use crate::continuation::Point;
-use crate::run::{Damage, StoredRun, format_number};
+use crate::run::{Checked, Damage, StoredRun, check_folder, format_number};
 
 /// Checks every file against its checksum and prints those that are not as they were; solves some points again where that is asked for.
 ///
 /// # Errors
 /// [`CommandError::Run`] when the run cannot be read, or a point not be solved.
 pub(super) fn run(arguments: &VerifyArguments) -> Result<Outcome, CommandError> {
-    let run = StoredRun::open(&arguments.run)?;
-    let (mut text, mut outcome) = files(&run)?;
+    let folder = &arguments.run;
+    // A comparison, curves and a map have no points of their own to solve again.
+    if arguments.recompute == 0 && !folder.join("run.json").is_file() {
+        let (text, outcome) = files(check_folder(folder)?);
+        return conclude(&text, outcome, folder);
+    }
+    let run = StoredRun::open(folder)?;
+    let (mut text, mut outcome) = files(run.damage()?);
     if arguments.recompute > 0 && outcome_allows(&run, outcome)? {
         let (threads, cancellation) = interruptible(None)?;
         let again = threads.install(|| recomputed(&run, arguments.recompute, &cancellation))?;
@@ -32,14 +38,15 @@ fn outcome_allows(run: &StoredRun, outcome: Outcome) -> Result<bool, CommandErro
     Ok(outcome == Outcome::Complete || run.damage()?.is_none())
 }
 
-fn files(run: &StoredRun) -> Result<(String, Outcome), CommandError> {
-    let Some((whole, damaged)) = run.damage()? else {
+/// What is said of the files of a folder.
+fn files(checked: Option<Checked>) -> (String, Outcome) {
+    let Some((whole, damaged)) = checked else {
         let text = "no checksums: the run is not finished, or of an early version\n";
-        return Ok((text.to_owned(), Outcome::Partial));
+        return (text.to_owned(), Outcome::Partial);
     };
     if damaged.is_empty() {
         let text = format!("{whole} files are as the run left them\n");
-        return Ok((text, Outcome::Complete));
+        return (text, Outcome::Complete);
     }
     let mut text = String::new();
     for (path, damage) in &damaged {
@@ -53,7 +60,7 @@ fn files(run: &StoredRun) -> Result<(String, Outcome), CommandError> {
         "{bad} of {} files are not as the run left them\n",
         whole + bad
     );
-    Ok((text, Outcome::Partial))
+    (text, Outcome::Partial)
 }
 
 /// Solves points again; those that are not what is stored are said.

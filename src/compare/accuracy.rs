@@ -1,11 +1,11 @@
 //! Error against time: every method at one parameter value over a few grids or numbers of samples.
 
+use super::observer::Steps;
 use super::solve::{Sources, generator_on};
 use super::{
     CompareError, ComparedValue, Distance, Method, PAPER_CELLS, Solved, Task, distances,
     exact_density, uniform_cells,
 };
-use crate::cancellation::Cancellation;
 use crate::density::{EstimatedDensity, Observable};
 use crate::space::CellSpace;
 
@@ -65,7 +65,7 @@ pub(super) fn measure(
     common: &CellSpace,
     sources: &Sources<'_>,
     values: &[ComparedValue],
-    cancellation: &Cancellation,
+    steps: &mut Steps<'_>,
 ) -> Result<Option<Accuracy>, CompareError> {
     let complete = |value: &&ComparedValue| {
         let mut all = value.solved.iter();
@@ -90,39 +90,41 @@ pub(super) fn measure(
     let gauge = Gauge {
         task,
         common,
-        cancellation,
         compared,
         observable,
     };
-    gauge.measure(sources).map(Some)
+    gauge.measure(sources, steps).map(Some)
 }
 
 /// The value, the density and the cells of a measurement.
 struct Gauge<'a> {
     task: &'a Task<'a>,
     common: &'a CellSpace,
-    cancellation: &'a Cancellation,
     compared: &'a ComparedValue,
     observable: Observable,
 }
 
 impl Gauge<'_> {
-    fn measure(&self, sources: &Sources<'_>) -> Result<Accuracy, CompareError> {
+    fn measure(
+        &self,
+        sources: &Sources<'_>,
+        steps: &mut Steps<'_>,
+    ) -> Result<Accuracy, CompareError> {
         let value = self.compared.value;
         let many = usize::from(self.common.dimension() > 2);
         let mut runs: Vec<(CellSpace, Solved)> = Vec::new();
         for factor in GENERATOR_GRIDS {
-            runs.push(self.generator(factor)?);
+            runs.extend(self.generator(factor, steps)?);
         }
         for &factor in SGCM_GRIDS[many] {
             let count = (PAPER_CELLS as f64 * factor).round() as usize;
             let space = uniform_cells(self.common, count)?;
-            let both = sources.sgcm_on(&space, value)?;
+            let both = steps.solved(&mut || sources.sgcm_on(&space, value))?;
             runs.extend(both.into_iter().map(|solved| (space.clone(), solved)));
         }
         for share in MONTE_CARLO_TIMES {
-            let solved = sources.monte_carlo_for(share, value)?;
-            runs.push((self.common.clone(), solved));
+            let solved = steps.solved(&mut || Ok(vec![sources.monte_carlo_for(share, value)?]))?;
+            runs.extend(solved.into_iter().map(|one| (self.common.clone(), one)));
         }
         for solved in &self.compared.solved {
             let space = match solved.method {
@@ -131,7 +133,7 @@ impl Gauge<'_> {
             };
             runs.push((space.clone(), solved.clone()));
         }
-        let (reference, finest) = self.reference(many)?;
+        let (reference, finest) = self.reference(many, steps)?;
         let mut points = Vec::new();
         for (space, solved) in &runs {
             let is_reference = matches!(reference, Reference::Generator(cells)
@@ -154,25 +156,41 @@ impl Gauge<'_> {
     }
 
     /// The generator on cells finer or coarser by a factor.
-    fn generator(&self, factor: f64) -> Result<(CellSpace, Solved), CompareError> {
+    fn generator(
+        &self,
+        factor: f64,
+        steps: &mut Steps<'_>,
+    ) -> Result<Option<(CellSpace, Solved)>, CompareError> {
         let axes = self.task.problem.space().axes().iter();
         let space = CellSpace::new(axes.map(|axis| axis.refined(factor)).collect())?;
-        let value = self.compared.value;
-        let solved = generator_on(self.task, &space, self.common, value, self.cancellation)?;
-        Ok((space, solved))
+        let (value, cancellation) = (self.compared.value, steps.cancellation);
+        let solved = steps.solved(&mut || {
+            let on = (&space, self.common);
+            Ok(vec![generator_on(
+                self.task,
+                on.0,
+                on.1,
+                value,
+                cancellation,
+            )?])
+        })?;
+        Ok(solved.into_iter().next().map(|solved| (space, solved)))
     }
 
     /// What errors are measured by, with the density where it is not the exact one.
     fn reference(
         &self,
         many: usize,
+        steps: &mut Steps<'_>,
     ) -> Result<(Reference, Option<EstimatedDensity>), CompareError> {
         if self.compared.pairs.iter().any(|pair| pair.second.is_none()) {
             return Ok((Reference::Exact, None));
         }
         if let Some(factor) = REFERENCE_GRIDS[many] {
-            let (space, solved) = self.generator(factor)?;
-            if let (true, Some(density)) = (solved.status.is_resolved(), self.density(&solved)) {
+            if let Some((space, solved)) = self.generator(factor, steps)?
+                && solved.status.is_resolved()
+                && let Some(density) = self.density(&solved)
+            {
                 return Ok((Reference::Generator(space.n_cells()), Some(density.clone())));
             }
         }

@@ -8,6 +8,7 @@ mod accuracy;
 mod agreement;
 mod distance;
 mod exact;
+mod observer;
 mod overlap;
 mod solve;
 
@@ -15,14 +16,16 @@ pub use accuracy::{Accuracy, AccuracyPoint, Reference};
 pub use agreement::{Agreement, agreement};
 pub use distance::{Distance, Distances, distances};
 pub use exact::{exact_density, exact_masses};
+pub use observer::CompareObserver;
 pub use overlap::{rebin, rebin_density};
 pub use solve::{Solved, Work};
 
-use crate::cancellation::{Cancellation, Cancelled};
+use crate::cancellation::Cancellation;
 use crate::continuation::Subject;
 use crate::density::{EstimatedDensity, Observable};
 use crate::method::{GeneratorMethodOptions, MethodError, MonteCarloOptions, Problem, SgcmOptions};
 use crate::space::{Axis, CellSpace};
+use observer::Steps;
 use solve::Sources;
 
 /// Cells of equal width along the first two axes of the paper's cell space.
@@ -181,6 +184,8 @@ pub struct Comparison {
     pub values: Vec<ComparedValue>,
     /// Error against time at one of the values; `None` where there was nothing to measure it by.
     pub accuracy: Option<Accuracy>,
+    /// Whether it was ended early: values, or the error against time, are missing.
+    pub interrupted: bool,
 }
 
 impl Comparison {
@@ -235,6 +240,9 @@ pub enum CompareError {
     /// A source of densities refuses.
     #[error(transparent)]
     Source(Box<dyn std::error::Error + Send + Sync>),
+    /// Whoever observes cannot go on.
+    #[error(transparent)]
+    Observer(Box<dyn std::error::Error + Send + Sync>),
 }
 
 impl From<MethodError> for CompareError {
@@ -271,56 +279,69 @@ fn uniform_cells(space: &CellSpace, count: usize) -> Result<CellSpace, crate::sp
     CellSpace::new(axes?)
 }
 
-/// Solves by every method at every value and compares. `observe` is told before every step. Cancelled, it ends in
-/// [`CompareError::Interrupted`]. Everything but the times is the same for any number of threads.
+/// Solves by every method at every value and compares. `observer` is told before every step, and may know what a step gives from a comparison
+/// that was ended early; a closure is only told. Cancelled, it ends early and says so, in [`CompareError::Interrupted`] before there is a value. Everything but the times is
+/// the same for any number of threads.
 ///
 /// # Errors
 /// [`CompareError`].
 pub fn compare(
     task: &Task<'_>,
     cancellation: &Cancellation,
-    observe: &mut dyn FnMut(&Progress),
+    observer: &mut dyn CompareObserver,
 ) -> Result<Comparison, CompareError> {
     let common = common_cells(task.problem.space())?;
     // Preparation, the generator, SGCM by both corrections, Monte Carlo; and the error against time.
     let total = 2 + 3 * task.at.len();
-    let mut done = 0;
-    let mut tell = |next: String| {
-        observe(&Progress { done, total, next });
-        done += 1;
-        cancellation
-            .check()
-            .map_err(|Cancelled| CompareError::Interrupted)
-    };
-    tell("choosing steps".to_owned())?;
+    let mut steps = Steps::new(observer, total, cancellation);
+    steps.next("choosing steps".to_owned())?;
     let sources = Sources::new(task, &common, cancellation)?;
-    let family = task.problem.family();
-    let mut values = Vec::new();
-    for &value in task.at {
-        let at = |method: &str| format!("{} = {value}: {method}", family.parameter());
-        tell(at("generator"))?;
-        let mut solved = vec![sources.generator(value)?];
-        tell(at("SGCM"))?;
-        solved.extend(sources.sgcm(value)?);
-        tell(at("Monte Carlo"))?;
-        solved.push(sources.monte_carlo(value)?);
-        let pairs = pairs(task, &common, value, &solved)?;
-        let agreement = agreement::of_marginals(&solved);
-        values.push(ComparedValue {
-            value,
-            solved,
-            pairs,
-            agreement,
-        });
-    }
-    tell("error against time".to_owned())?;
-    let accuracy = accuracy::measure(task, &common, &sources, &values, cancellation)?;
-    Ok(Comparison {
-        common,
+    let mut comparison = Comparison {
+        common: common.clone(),
         subject: task.problem.subject().clone(),
-        values,
-        accuracy,
-    })
+        values: Vec::new(),
+        accuracy: None,
+        interrupted: false,
+    };
+    match comparison.fill(task, &sources, &mut steps) {
+        Err(CompareError::Interrupted) if !comparison.values.is_empty() => {
+            comparison.interrupted = true;
+        }
+        filled => filled?,
+    }
+    Ok(comparison)
+}
+
+impl Comparison {
+    /// Solves at every value, and measures the error against time.
+    fn fill(
+        &mut self,
+        task: &Task<'_>,
+        sources: &Sources<'_>,
+        steps: &mut Steps<'_>,
+    ) -> Result<(), CompareError> {
+        let parameter = task.problem.family().parameter();
+        for &value in task.at {
+            let at = |method: &str| format!("{parameter} = {value}: {method}");
+            steps.next(at("generator"))?;
+            let mut solved = steps.solved(&mut || Ok(vec![sources.generator(value)?]))?;
+            steps.next(at("SGCM"))?;
+            solved.extend(steps.solved(&mut || sources.sgcm(value))?);
+            steps.next(at("Monte Carlo"))?;
+            solved.extend(steps.solved(&mut || Ok(vec![sources.monte_carlo(value)?]))?);
+            let pairs = pairs(task, &self.common, value, &solved)?;
+            let agreement = agreement::of_marginals(&solved);
+            self.values.push(ComparedValue {
+                value,
+                solved,
+                pairs,
+                agreement,
+            });
+        }
+        steps.next("error against time".to_owned())?;
+        self.accuracy = accuracy::measure(task, &self.common, sources, &self.values, steps)?;
+        Ok(())
+    }
 }
 
 /// All pairs of methods, and methods with the exact density.

@@ -8,7 +8,7 @@ use sha2::{Digest as _, Sha256};
 use super::RunError;
 use super::atomic::write_durably;
 use super::folder::ENTRIES;
-use super::{journal, research_object};
+use super::{compare, curve, journal, map, research_object};
 
 /// Name of the file.
 pub(super) const NAME: &str = "checksums.sha256";
@@ -46,12 +46,37 @@ type Sums = BTreeMap<String, String>;
 /// # Errors
 /// [`RunError::Read`] or [`RunError::Write`].
 pub(super) fn write(run: &Path) -> Result<(), RunError> {
-    let entries = ENTRIES.iter().filter(|entry| is_summed(entry));
+    write_listed(run, &ENTRIES)
+}
+
+/// The same of another folder, which holds these files and folders.
+///
+/// # Errors
+/// As [`write`].
+pub(super) fn write_listed(run: &Path, entries: &[&str]) -> Result<(), RunError> {
+    let entries = entries.iter().filter(|entry| is_summed(entry));
     let mut sums = Sums::new();
     for entry in entries {
         add(run, entry, &mut sums)?;
     }
     put(run, &sums)
+}
+
+/// The same of whatever the program left in a folder: a run, a comparison, curves or a map.
+///
+/// # Errors
+/// [`RunError::NotARun`] where it left nothing; as [`check`].
+pub fn check_folder(folder: &Path) -> Result<Option<Checked>, RunError> {
+    let kinds: [&[&str]; 4] = [&ENTRIES, &compare::ENTRIES, &curve::ENTRIES, &map::ENTRIES];
+    let kind = kinds
+        .into_iter()
+        .find(|entries| folder.join(entries[0]).is_file());
+    match kind {
+        Some(entries) => check_listed(folder, entries, &[]),
+        None => Err(RunError::NotARun {
+            path: folder.to_owned(),
+        }),
+    }
 }
 
 /// Writes those below one entry anew, which was made anew.
@@ -73,16 +98,26 @@ pub(super) fn renew(run: &Path, entry: &str) -> Result<(), RunError> {
 /// # Errors
 /// [`RunError::Read`]; [`RunError::Checksums`] when the checksums are not readable themselves.
 pub(super) fn check(run: &Path, entries: &[&str]) -> Result<Option<Checked>, RunError> {
+    check_listed(run, &ENTRIES, entries)
+}
+
+/// The same of another folder, which may hold the files and folders `all`.
+///
+/// # Errors
+/// As [`check`].
+pub(super) fn check_listed(
+    run: &Path,
+    all: &[&str],
+    entries: &[&str],
+) -> Result<Option<Checked>, RunError> {
     let Some(wanted) = read(run)? else {
         return Ok(None);
     };
     let is_asked =
         |name: &str| entries.is_empty() || entries.iter().any(|entry| is_below(name, entry));
     let mut found = Sums::new();
-    for entry in ENTRIES
-        .iter()
-        .filter(|entry| is_summed(entry) && is_asked(entry))
-    {
+    let there = all.iter();
+    for entry in there.filter(|entry| is_summed(entry) && is_asked(entry)) {
         add(run, entry, &mut found)?;
     }
     let asked = wanted.iter().filter(|(name, _)| is_asked(name));

@@ -6,20 +6,26 @@ use serde_json::json;
 
 use super::RunError;
 use super::atomic::{sync_all, write_atomically};
+use super::checksums;
 use super::codimension::{codimension_two_csv, codimension_two_tex, curve_name, several_csv};
 use super::columns::{Column, flag, number, word};
+use super::journal::{SessionJournal, different_keys};
 use super::staging::Staging;
 use crate::continuation::curve::{Curve, CurvePoint, CurveTree, CurveWork, Plane};
 use crate::system::Family;
 
 /// Everything a curve leaves in its folder, the file that marks it as one first.
-const ENTRIES: [&str; 5] = [
+pub(super) const ENTRIES: [&str; 6] = [
     "curve.json",
+    checksums::NAME,
     "curves.csv",
     "codimension_two.csv",
     "codimension_two.tex",
     "figures",
 ];
+
+/// What unfinished curves have solved.
+const PART: &str = "curve.part.bin";
 
 /// The table of the points of curves in one plane, each from end to end, numbers in full; `start` is the label of the row that the first was begun at.
 ///
@@ -109,8 +115,9 @@ fn curve_json(
     plane: &Plane,
     tree: &CurveTree,
     start: &str,
-    sweep: &str,
+    (sweep, of): (&str, &str),
 ) -> Result<String, RunError> {
+    let interrupted = tree.curves.iter().any(Curve::is_interrupted);
     let sides = plane.sides().iter();
     let curves = tree.curves.iter().enumerate();
     let missed = tree.missed.iter().map(|missed| {
@@ -123,6 +130,7 @@ fn curve_json(
     let text = json!({
         "program": env!("CARGO_PKG_NAME"),
         "version": env!("CARGO_PKG_VERSION"),
+        "ending": if interrupted { "interrupted" } else { "complete" },
         "row": start,
         "box": sides
             .map(|side| json!({ "parameter": side.parameter, "from": side.from, "to": side.to }))
@@ -132,6 +140,7 @@ fn curve_json(
             .collect::<Vec<_>>(),
         "not_followed": missed.collect::<Vec<_>>(),
         "sweep_file": sweep,
+        "made_of": of,
     });
     Ok(serde_json::to_string_pretty(&text)? + "\n")
 }
@@ -190,12 +199,59 @@ impl CurveFolder {
         Ok(Self { staging })
     }
 
+    /// Whether the folder holds curves that came to their end, and are of what `of` describes.
+    ///
+    /// # Errors
+    /// [`RunError::OtherSweep`], with every difference, where they are of something else; [`RunError::Json`].
+    pub fn is_complete(home: &Path, of: &str) -> Result<bool, RunError> {
+        let Ok(text) = std::fs::read_to_string(home.join(ENTRIES[0])) else {
+            return Ok(false);
+        };
+        let there: serde_json::Value = serde_json::from_str(&text)?;
+        let differences = different_keys(there["made_of"].as_str().unwrap_or_default(), of);
+        if !differences.is_empty() {
+            return Err(RunError::OtherSweep {
+                path: home.to_owned(),
+                differences,
+            });
+        }
+        Ok(there["ending"] == "complete")
+    }
+
+    /// Whether the folder holds solves of curves that did not come to their end.
+    pub fn has_journal(home: &Path) -> bool {
+        home.join(PART).is_file()
+    }
+
+    /// A new journal for what the curves ask to be solved, which `of` describes as TOML; that of unfinished ones is kept below `previous/`.
+    ///
+    /// # Errors
+    /// [`RunError::Read`] or [`RunError::Write`].
+    pub fn begin(&self, of: &str) -> Result<SessionJournal, RunError> {
+        self.staging.keep_aside(&[PART])?;
+        SessionJournal::create(self.staging.home().join(PART), of)
+    }
+
+    /// The journal of the unfinished curves in the folder.
+    ///
+    /// # Errors
+    /// [`RunError::NoJournal`], [`RunError::OtherSweep`], [`RunError::Journal`], [`RunError::Read`].
+    pub fn go_on(
+        &self,
+        of: &str,
+        family: &Family,
+        methods: &[&'static str],
+    ) -> Result<SessionJournal, RunError> {
+        SessionJournal::open(self.staging.home().join(PART), of, family, methods)
+    }
+
     /// Where figures are drawn to.
     pub fn figures(&self) -> PathBuf {
         self.staging.fresh().join("figures")
     }
 
-    /// Writes the tables; `start` is the label of the row that the first curve was begun at, `sweep` the resolved sweep as TOML.
+    /// Writes the tables; `start` is the label of the row that the first curve was begun at, `sweep` the resolved sweep as TOML, `of` what
+    /// describes the curves besides.
     ///
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.
@@ -204,7 +260,7 @@ impl CurveFolder {
         family: &Family,
         plane: &Plane,
         tree: &CurveTree,
-        (start, sweep): (&str, &str),
+        (start, sweep, of): (&str, &str, &str),
     ) -> Result<(), RunError> {
         let curves = tree.curves.as_slice();
         for (name, text) in [
@@ -217,19 +273,31 @@ impl CurveFolder {
                 "codimension_two.tex",
                 codimension_two_tex(family, plane, curves),
             ),
-            ("curve.json", curve_json(family, plane, tree, start, sweep)?),
+            (
+                "curve.json",
+                curve_json(family, plane, tree, start, (sweep, of))?,
+            ),
         ] {
             write_atomically(&self.staging.fresh().join(name), text.as_bytes())?;
         }
         Ok(())
     }
 
-    /// Puts the curve in its place and returns its files; what an earlier one left goes below `previous/`.
+    /// Puts the curve in its place and returns its files; what an earlier one left goes below `previous/`. The journal goes, unless the curves were
+    /// interrupted.
     ///
     /// # Errors
     /// [`RunError::Read`] or [`RunError::Write`].
-    pub fn take_place(self) -> Result<Vec<PathBuf>, RunError> {
-        sync_all(&[self.staging.fresh()])?;
-        Ok(self.staging.take_place(&[])?.files)
+    pub fn take_place(self, interrupted: bool) -> Result<Vec<PathBuf>, RunError> {
+        let fresh = self.staging.fresh();
+        checksums::write_listed(&fresh, &ENTRIES)?;
+        sync_all(&[fresh])?;
+        let part = self.staging.home().join(PART);
+        let placed = self.staging.take_place(&[])?;
+        if !interrupted {
+            // One that stays is of curves that are complete, which are looked at first.
+            let _ = std::fs::remove_file(part);
+        }
+        Ok(placed.files)
     }
 }

@@ -27,16 +27,20 @@ impl Fresh {
         Ok(Self { path })
     }
 
-    /// Puts it into its place and removes what was there.
+    /// Puts it into its place and gives what was there, which is removed when it is dropped.
     ///
     /// # Errors
     /// [`RunError::Write`].
-    pub(super) fn take_place(self, place: &Path) -> Result<(), RunError> {
+    pub(super) fn take_place(self, place: &Path) -> Result<Option<Leftover>, RunError> {
         if !place.exists() {
-            return rename(&self.path, place);
+            rename(&self.path, place)?;
+            return Ok(None);
         }
         if exchange(&self.path, place) {
-            return remove(&self.path);
+            let old = Leftover(self.path.clone());
+            // What stands there now is the old one.
+            std::mem::forget(self);
+            return Ok(Some(old));
         }
         let old = beside(place, "old");
         if old.exists() {
@@ -44,7 +48,18 @@ impl Fresh {
         }
         rename(place, &old)?;
         rename(&self.path, place)?;
-        remove(&old)
+        Ok(Some(Leftover(old)))
+    }
+}
+
+/// A folder whose place was taken; dropped, it is removed.
+#[derive(Debug)]
+pub(super) struct Leftover(PathBuf);
+
+impl Drop for Leftover {
+    fn drop(&mut self) {
+        // One that cannot be removed is in nobody's way.
+        let _ = std::fs::remove_dir_all(&self.0);
     }
 }
 

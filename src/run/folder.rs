@@ -1,15 +1,19 @@
 //! The folder of a run: which files it holds, and that an earlier run in the same place is kept.
 
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use super::atomic::{clear_unfinished, sync_all, write_atomically, write_durably};
 use super::growing::GrowingTable;
 use super::{
     DensityStore, Ending, Manifest, RunError, bifurcations, checks, checksums, features_table,
-    journal, lock::FolderLock, points_table, research_object, staging::Staging,
+    journal, lock::FolderLock, points_table, research_object, settling::Settling, staging::Staging,
 };
 use crate::continuation::{Point, Subject, SweepResult};
 use crate::density::EstimatedDensity;
+
+/// The stored densities.
+const STORE: &str = "densities.zarr";
 
 /// Everything a run may leave in its folder, the file that marks it as one first.
 pub(super) const ENTRIES: [&str; 16] = [
@@ -23,7 +27,7 @@ pub(super) const ENTRIES: [&str; 16] = [
     "bifurcations.md",
     "bifurcations.tex",
     "bifurcations.json",
-    "densities.zarr",
+    STORE,
     "densities.zarr.new",
     "densities.zarr.old",
     "checks.csv",
@@ -41,6 +45,8 @@ pub struct RunFolder {
     /// Points that were added.
     added: usize,
     kept: Option<PathBuf>,
+    /// The finished store on its way to the disk.
+    settling: Mutex<Option<Settling>>,
     /// Keeps other processes away while the run is written.
     _lock: Option<FolderLock>,
 }
@@ -73,7 +79,7 @@ impl RunFolder {
     pub fn reopen(path: &Path) -> Result<Self, RunError> {
         let lock = FolderLock::take(path)?;
         checksums::reopen(path);
-        clear_unfinished(path, &["densities.zarr", "figures"]);
+        clear_unfinished(path, &[STORE, "figures"]);
         Ok(Self {
             _lock: Some(lock),
             ..Self::fresh(path)
@@ -84,11 +90,12 @@ impl RunFolder {
     pub(super) fn fresh(path: &Path) -> Self {
         Self {
             path: path.to_owned(),
-            store: DensityStore::new(&path.join("densities.zarr")),
+            store: DensityStore::new(&path.join(STORE)),
             points: GrowingTable::new(&path.join("points.csv")),
             features: GrowingTable::new(&path.join("features.csv")),
             added: 0,
             kept: None,
+            settling: Mutex::default(),
             _lock: None,
         }
     }
@@ -115,10 +122,18 @@ impl RunFolder {
     pub fn write_manifest(&self, manifest: &Manifest) -> Result<(), RunError> {
         if manifest.ending != Ending::Running {
             // The journal of a complete run is about to be removed.
-            let complete = manifest.ending == Ending::Complete;
-            let kept = ENTRIES
-                .iter()
-                .filter(|entry| !(complete && **entry == journal::NAME));
+            let mut done = match manifest.ending {
+                Ending::Complete => vec![journal::NAME],
+                _ => Vec::new(),
+            };
+            // A poisoned lock holds work as whole as any other.
+            let settling = self.settling.lock();
+            let settling = settling.unwrap_or_else(PoisonError::into_inner).take();
+            if let Some(settling) = settling {
+                settling.end()?;
+                done.push(STORE);
+            }
+            let kept = ENTRIES.iter().filter(|entry| !done.contains(entry));
             let places: Vec<PathBuf> = kept.map(|entry| self.path.join(entry)).collect();
             sync_all(&places)?;
         }
@@ -209,7 +224,8 @@ impl RunFolder {
         self.added
     }
 
-    /// Writes all tables of a finished sweep and puts the stored densities in ascending order.
+    /// Writes all tables of a finished sweep and puts the stored densities in ascending order. They are brought to the disk while the caller goes on, to the
+    /// figures for example, until the manifest is written.
     ///
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.
@@ -222,7 +238,9 @@ impl RunFolder {
             self.write("checks.csv", &text)?;
         }
         let densities = with_densities(&result.points);
-        self.store.replace(&result.subject.family, &densities)
+        let before = self.store.replaced(&result.subject.family, &densities)?;
+        self.settling = Some(Settling::begin(self.store.path(), before)).into();
+        Ok(())
     }
 
     /// Writes all tables that detection and location make.

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Provenance, RunError, stored_run::hash};
+use crate::sweep_file::SweepText;
 
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -30,6 +31,45 @@ pub struct PhaseSeconds {
     pub detect: Option<f64>,
 }
 
+/// The sweep file as it was typed, with its hash.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Typed {
+    /// Path of the file as it was given.
+    file: String,
+    /// Its text, word for word.
+    text: String,
+    /// SHA-256 of the text, hexadecimal.
+    pub(super) hash: String,
+    /// What was set on top of it, each as `KEY=VALUE`.
+    set: Vec<String>,
+}
+
+impl From<SweepText> for Typed {
+    fn from(typed: SweepText) -> Self {
+        Self {
+            hash: hash(&typed.text),
+            file: typed.file,
+            text: typed.text,
+            set: typed.set,
+        }
+    }
+}
+
+impl Typed {
+    /// Whether the text is the one that was typed.
+    pub(super) fn is_whole(&self) -> bool {
+        hash(&self.text) == self.hash
+    }
+
+    pub(super) fn text(&self) -> SweepText {
+        SweepText {
+            file: self.file.clone(),
+            text: self.text.clone(),
+            set: self.set.clone(),
+        }
+    }
+}
+
 /// The manifest of a run.
 #[derive(Debug, Clone, Serialize)]
 pub struct Manifest {
@@ -43,6 +83,8 @@ pub struct Manifest {
     pub sweep_file: String,
     /// SHA-256 of `sweep_file`, hexadecimal.
     pub hash: String,
+    /// The sweep file as it was typed, with its hash and what was set on top of it.
+    typed: Typed,
     /// Seed of the random streams.
     pub seed: u64,
     /// Threads used; results do not depend on it.
@@ -68,11 +110,16 @@ pub struct Manifest {
 }
 
 impl Manifest {
-    /// The manifest of a run that starts now. `resolved` is the resolved sweep file as TOML.
+    /// The manifest of a run that starts now. `resolved` is the resolved sweep file as TOML, `typed` what it was made of.
     ///
     /// # Errors
     /// [`RunError::Resolved`] when `resolved` is not TOML.
-    pub fn start(resolved: &str, seed: u64, threads: usize) -> Result<Self, RunError> {
+    pub fn start(
+        resolved: &str,
+        typed: SweepText,
+        seed: u64,
+        threads: usize,
+    ) -> Result<Self, RunError> {
         let sweep: serde_json::Value = toml::from_str(resolved)?;
         Ok(Self {
             program: env!("CARGO_PKG_NAME"),
@@ -80,6 +127,7 @@ impl Manifest {
             sweep,
             sweep_file: resolved.to_owned(),
             hash: hash(resolved),
+            typed: typed.into(),
             seed,
             threads,
             shard: None,

@@ -6,18 +6,20 @@ use serde_json::{Value, json};
 
 use super::RunError;
 use super::atomic::{sync_all, write_atomically};
+use super::checksums;
 use super::codimension::{codimension_two_csv, codimension_two_tex, several_csv};
 use super::columns::{Columns, count, number, word};
 use super::curve::one_json;
-use super::map_checkpoint::differences;
+use super::map_checkpoint::{self, differences};
 use super::number::format_number;
 use super::staging::Staging;
 use crate::continuation::map::{MapNode, RegimeMap};
 use crate::space::Axis;
 
 /// Everything a map leaves in its folder, the file that marks it as one first.
-const ENTRIES: [&str; 7] = [
+pub(super) const ENTRIES: [&str; 8] = [
     "map.json",
+    checksums::NAME,
     "map.csv",
     "curves.csv",
     "codimension_two.csv",
@@ -172,6 +174,14 @@ impl MapFolder {
         }
     }
 
+    /// Keeps what an unfinished map had solved below `previous/`: another one begins.
+    ///
+    /// # Errors
+    /// [`RunError::Read`] or [`RunError::Write`].
+    pub fn keep_unfinished(&self) -> Result<(), RunError> {
+        self.staging.keep_aside(&[map_checkpoint::FILE])
+    }
+
     /// Where figures are drawn to.
     pub fn figures(&self) -> PathBuf {
         self.staging.fresh().join("figures")
@@ -214,7 +224,9 @@ impl MapFolder {
     /// # Errors
     /// [`RunError::Read`] or [`RunError::Write`].
     pub fn take_place(self) -> Result<Vec<PathBuf>, RunError> {
-        sync_all(&[self.staging.fresh()])?;
+        let fresh = self.staging.fresh();
+        checksums::write_listed(&fresh, &ENTRIES)?;
+        sync_all(&[fresh])?;
         Ok(self.staging.take_place(&[])?.files)
     }
 }

@@ -12,7 +12,7 @@ use crate::continuation::map::MapNode;
 use crate::topology::Signature;
 
 /// The file, in the folder of the map.
-const FILE: &str = "map.part.json";
+pub(super) const FILE: &str = "map.part.json";
 
 /// The nodes of a map that is not complete yet.
 #[derive(Debug, Clone)]

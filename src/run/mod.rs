@@ -34,6 +34,7 @@ mod recompute;
 mod reopen;
 mod research_object;
 mod sentences;
+mod settling;
 mod shards;
 mod staged;
 mod staging;
@@ -51,15 +52,15 @@ pub(crate) use atomic::write_atomically;
 pub use bifurcations::{
     bifurcations_csv, bifurcations_json, bifurcations_markdown, bifurcations_tex,
 };
-pub use checksums::{Checked, Damage};
+pub use checksums::{Checked, Damage, check_folder};
 pub use clean::{Removable, removable_runs, remove_run};
-pub use compare::{CompareFolder, CompareTable, ComparedRun, compare_tables};
+pub use compare::{CompareFolder, CompareJournal, CompareTable, ComparedRun, compare_tables};
 pub use curve::{CurveFolder, curves_csv};
 pub use date::date_in_utc;
 pub use export::{ExportFormat, export};
 pub use features_table::features_csv;
 pub use folder::RunFolder;
-pub use journal::{Journal, JournalledSource};
+pub use journal::{Journal, JournalledSource, RecordedSource, SessionJournal};
 pub use manifest::{Ending, Manifest, PhaseSeconds};
 pub use map::{MapFolder, map_csv};
 pub use map_checkpoint::MapCheckpoint;
@@ -162,10 +163,12 @@ pub enum RunError {
         value: f64,
     },
     /// An unfinished run without a journal.
-    #[error("the run in {} has no journal.bin to go on from", path.display())]
+    #[error("{} has no {} to go on from", path.display(), name.display())]
     NoJournal {
         /// The folder.
         path: PathBuf,
+        /// The journal.
+        name: std::ffi::OsString,
     },
     /// A journal that cannot be read.
     #[error("{} is not the journal of this run, or is damaged", path.display())]

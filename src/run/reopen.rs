@@ -9,7 +9,11 @@ impl StoredRun {
     /// [`fixed`](crate::sweep_file::Settings::fixed).
     pub fn sweep_file(&self) -> SweepFile {
         let manifest = self.path().join("run.json");
-        SweepFile::parse(&manifest.display().to_string(), self.resolved())
+        let file = SweepFile::parse(&manifest.display().to_string(), self.resolved());
+        match self.typed() {
+            Some(typed) => file.made_of(typed),
+            None => file,
+        }
     }
 
     /// Detects and locates in the stored densities, by the settings of a sweep that is this run's but for them. With unchanged settings

@@ -59,6 +59,22 @@ impl Staging {
         self.room.path().join("fresh")
     }
 
+    /// Gives files of unfinished work, if there are any, a place of their own below `previous/`.
+    ///
+    /// # Errors
+    /// [`RunError::Read`] or [`RunError::Write`].
+    pub(super) fn keep_aside(&self, names: Entries) -> Result<(), RunError> {
+        let there = |name: &&&str| self.home.join(name).exists();
+        if names.iter().any(|name| there(&name)) {
+            archive::keep(&self.home, names, self.room.path())?;
+        }
+        for name in names.iter().filter(there) {
+            let path = self.home.join(name);
+            std::fs::remove_file(&path).map_err(|source| RunError::Write { path, source })?;
+        }
+        Ok(())
+    }
+
     /// Puts the new files in place. Those that were there before become a complete version of their own below `previous/`; the
     /// entries that are `staying` have their second place there.
     ///

@@ -14,7 +14,7 @@ use zarrs::storage::store::MemoryStore;
 use zarrs::storage::{ListableStorageTraits, ReadableStorageTraits};
 
 use super::arrays::{KINK_AT, Layout, PARAMETER_CHUNK, REPLICATE_CHUNK};
-use super::exchange::Fresh;
+use super::exchange::{Fresh, Leftover};
 use super::{RunError, atomic::write_atomically};
 use crate::density::{EstimatedDensity, Variants};
 use crate::space::Axis;
@@ -52,7 +52,12 @@ impl DensityStore {
         }
     }
 
-    /// Adds the densities of one parameter value at the end. Until it is [replaced](DensityStore::replace), the store has room for more: places without a density
+    /// The folder of the store.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Adds the densities of one parameter value at the end. Until it is replaced as a whole, the store has room for more: places without a density
     /// are NaN, in the parameter too.
     ///
     /// # Errors
@@ -79,8 +84,17 @@ impl DensityStore {
         family: &Family,
         densities: &[(f64, &[EstimatedDensity])],
     ) -> Result<(), RunError> {
+        self.replaced(family, densities).map(drop)
+    }
+
+    /// The same; gives the old one, which is removed when it is dropped.
+    pub(super) fn replaced(
+        &mut self,
+        family: &Family,
+        densities: &[(f64, &[EstimatedDensity])],
+    ) -> Result<Option<Leftover>, RunError> {
         if densities.is_empty() {
-            return Ok(());
+            return Ok(None);
         }
         let fresh = Fresh::beside(&self.path)?;
         let mut store = Self::new(&fresh.path);
@@ -96,10 +110,10 @@ impl DensityStore {
         store.written = None;
         store.write_parameter(family)?;
         store.write_all_metadata(family, store.values.len() as u64)?;
-        fresh.take_place(&self.path)?;
+        let before = fresh.take_place(&self.path)?;
         store.path.clone_from(&self.path);
         *self = store;
-        Ok(())
+        Ok(before)
     }
 
     /// Writes the chunks of one parameter value, and with the first those of the axes.

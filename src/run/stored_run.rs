@@ -6,11 +6,13 @@ use serde::Deserialize;
 use sha2::{Digest, Sha256};
 
 use super::checks::read_checks;
+use super::manifest::Typed;
 use super::points_table::read_points;
 use super::stored_densities::StoredDensities;
 use super::{Checked, Ending, PhaseSeconds, RunError, checksums, exchange, journal};
 use crate::continuation::{CheckedIndicator, Point, Shard, Subject};
 use crate::space::{Axis, CellSpace};
+use crate::sweep_file::SweepText;
 use crate::system::Family;
 
 /// The folder of a run that is read.
@@ -30,6 +32,9 @@ struct StoredManifest {
     /// The resolved sweep file as text; runs of early versions have `sweep` alone.
     sweep_file: Option<String>,
     hash: String,
+    /// Runs of early versions have only the resolved sweep.
+    #[serde(default)]
+    typed: Option<Typed>,
     seed: u64,
     threads: usize,
     /// A shard alone, such as `2/4`.
@@ -72,6 +77,13 @@ impl StoredRun {
         let manifest: StoredManifest =
             serde_json::from_slice(&bytes).map_err(|error| broken(error.to_string()))?;
         check_version(&file, &manifest)?;
+        if manifest
+            .typed
+            .as_ref()
+            .is_some_and(|typed| !typed.is_whole())
+        {
+            return Err(RunError::Hash { path: file });
+        }
         let resolved = match &manifest.sweep_file {
             Some(text) => {
                 check_hash(&file, text, &manifest.hash)?;
@@ -109,6 +121,11 @@ impl StoredRun {
     /// When the run was begun, in UTC (ISO 8601); `None` where it does not say.
     pub fn started(&self) -> Option<&str> {
         self.manifest.made["started"].as_str()
+    }
+
+    /// The sweep file as it was typed, word for word, with what was set on top of it; `None` for runs of early versions.
+    pub fn typed(&self) -> Option<SweepText> {
+        self.manifest.typed.as_ref().map(Typed::text)
     }
 
     /// The resolved sweep file as TOML.

@@ -134,7 +134,8 @@ fn write(folder: &std::path::Path, points: &[Point]) {
     for point in points {
         run.add_point(&subject(&OBSERVABLES), point).unwrap();
     }
-    let manifest = Manifest::start(RESOLVED, 1, 2).unwrap();
+    let manifest =
+        Manifest::start(RESOLVED, crate::sweep_file::SweepText::default(), 1, 2).unwrap();
     run.write_manifest(&manifest).unwrap();
 }
 

@@ -8,6 +8,8 @@
 //! An *axis of modes* carries a series in place of cells (`series.rs`, `hermite.rs`): its nodes are those of a Gauss rule, and its
 //! "cells" hold the weights, so that sums over cells are the rule.
 
+mod bytes;
+
 use super::SpaceError;
 use super::grading::{BULK_SHARE, Grading, Piece, grading_terms};
 use super::hermite::{

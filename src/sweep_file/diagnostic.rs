@@ -51,6 +51,12 @@ impl Sources {
         self.names.len() - 1
     }
 
+    /// Names and texts in the order of their numbers.
+    pub(super) fn all(&self) -> impl Iterator<Item = (&str, &str)> {
+        let names = self.names.iter().map(String::as_str);
+        names.zip(self.texts.iter().map(String::as_str))
+    }
+
     fn get(&self, source: usize) -> Option<(&str, &str)> {
         Some((self.names.get(source)?, self.texts.get(source)?))
     }

@@ -8,7 +8,7 @@ use super::diagnostic::{Diagnostic, Place, Sources};
 use super::names::quotable;
 use super::report::Report;
 use super::syntax;
-use super::text::{Text, too_large};
+use super::text::{SweepText, Text, too_large};
 use super::value::{Entry, Node, Value};
 use crate::formula::language::canonical_name;
 
@@ -24,6 +24,8 @@ pub(super) struct Document {
     pub(super) root: Node,
     /// That the text is too long and was cut; its beginning can still be examined.
     pub(super) cut: Option<Diagnostic>,
+    /// What a person typed, where the text is not that.
+    pub(super) typed: Option<SweepText>,
     /// What cannot be read at all.
     broken: Vec<Diagnostic>,
     /// What cannot be read beyond that.
@@ -45,6 +47,7 @@ impl Document {
             sources,
             root,
             cut: text.is_cut.then(|| too_large(name)),
+            typed: None,
             broken,
             further,
         }
@@ -57,6 +60,19 @@ impl Document {
             Ok((path, node)) => put(&mut self.root, &path, node),
             Err(mut diagnostics) => self.broken.append(&mut diagnostics),
         }
+    }
+
+    /// The file as it was typed, with what was set on top of it.
+    pub(super) fn typed(&self) -> SweepText {
+        let mut texts = self.sources.all();
+        let (file, text) = texts.next().unwrap_or_default();
+        let mut typed = self.typed.clone().unwrap_or_else(|| SweepText {
+            file: file.to_owned(),
+            text: text.to_owned(),
+            set: Vec::new(),
+        });
+        typed.set.extend(texts.map(|(_, set)| set.to_owned()));
+        typed
     }
 
     /// Everything that cannot be read; `None` where all can.

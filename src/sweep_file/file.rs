@@ -5,7 +5,7 @@ use std::path::Path;
 use super::document::Document;
 use super::report::Report;
 use super::settings::Settings;
-use super::text::{self, Text};
+use super::text::{self, SweepText, Text};
 
 /// A sweep file, and what was set on top of it. What is wrong with either is told by [`SweepFile::validate`], all at once.
 #[derive(Debug, Clone)]
@@ -30,6 +30,13 @@ impl SweepFile {
         Self {
             document: Document::parse(name, &Text::beginning(text)),
         }
+    }
+
+    /// The same of a complete sweep file that was made of what somebody typed.
+    #[must_use]
+    pub fn made_of(mut self, typed: SweepText) -> Self {
+        self.document.typed = Some(typed);
+        self
     }
 
     /// Sets a key, such as `sweep.points`, on top of the file. The value is TOML, or a bare word.

@@ -62,3 +62,4 @@ pub use names::list;
 pub use report::Report;
 pub use settings::{AxisSettings, BinSettings, Grade, MapSettings, Modes, Settings};
 pub use sweep::{SolveError, Sweep};
+pub use text::SweepText;

@@ -9,6 +9,17 @@ use super::report::Report;
 /// Largest sweep file, in bytes. The shipped ones have about a thousand.
 pub(super) const MOST_BYTES: usize = 1_000_000;
 
+/// A sweep file word for word, as a person typed it.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct SweepText {
+    /// Path of the file as it was given.
+    pub file: String,
+    /// Its text.
+    pub text: String,
+    /// What was set on top of it, each as `KEY=VALUE`, in their order.
+    pub set: Vec<String>,
+}
+
 /// A text, or the beginning of one that is too long.
 #[derive(Debug, PartialEq)]
 pub(super) struct Text {

@@ -83,6 +83,9 @@ pub(crate) struct ShowArguments {
     /// Print the complete sweep file of the run alone
     #[arg(long)]
     pub(crate) sweep: bool,
+    /// Print the sweep file as it was typed alone, word for word, with what was set as comments behind it
+    #[arg(long, conflicts_with = "sweep")]
+    pub(crate) typed: bool,
 }
 
 /// Runs that are removed.

@@ -52,9 +52,13 @@ pub(super) fn begin(
 /// # Errors
 /// [`CommandError::Run`].
 pub(super) fn journal(spec: &Sweep, path: &Path) -> Result<Journal, CommandError> {
-    let of = (spec.problem.subject(), spec.problem.space());
     let methods = MethodKind::ALL.map(MethodKind::name);
-    Ok(Journal::open(path, &spec.to_toml(), of, &methods)?)
+    Ok(Journal::open(
+        path,
+        &spec.to_toml(),
+        spec.problem.family(),
+        &methods,
+    )?)
 }
 
 /// Prints what a complete run has found.

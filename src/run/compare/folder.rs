@@ -1,18 +1,23 @@
-//! The folder of a comparison: written beside its place, and put there when it is whole; what was there before is kept.
+//! The folder of a comparison: written beside its place, and put there when it is whole; what was there before is kept. What is solved stands in
+//! its journal meanwhile.
 
 use std::path::{Path, PathBuf};
 
 use super::{
-    ComparedRun, accuracy_csv, agreement_csv, compare_csv, compare_json, compare_markdown,
-    compare_tex, densities_csv, distances_csv,
+    CompareJournal, ComparedRun, PART, accuracy_csv, agreement_csv, compare_csv, compare_json,
+    compare_markdown, compare_tex, densities_csv, distances_csv,
 };
 use crate::run::RunError;
 use crate::run::atomic::{sync_all, write_atomically};
+use crate::run::checksums;
+use crate::run::journal::different_keys;
 use crate::run::staging::Staging;
+use crate::system::Family;
 
 /// Everything a comparison leaves in its folder, the file that marks it as one first.
-const ENTRIES: [&str; 9] = [
+pub(in crate::run) const ENTRIES: [&str; 10] = [
     "compare.json",
+    checksums::NAME,
     "compare.csv",
     "compare.md",
     "compare.tex",
@@ -37,6 +42,52 @@ impl CompareFolder {
     pub fn new(home: &Path) -> Result<Self, RunError> {
         let staging = Staging::new(home, &ENTRIES)?;
         Ok(Self { staging })
+    }
+
+    /// Whether the folder holds a comparison that came to its end, and is of what `of` describes.
+    ///
+    /// # Errors
+    /// [`RunError::OtherSweep`], with every difference, where it is of another one; [`RunError::Json`].
+    pub fn is_complete(home: &Path, of: &str) -> Result<bool, RunError> {
+        let Ok(text) = std::fs::read_to_string(home.join(ENTRIES[0])) else {
+            return Ok(false);
+        };
+        let there: serde_json::Value = serde_json::from_str(&text)?;
+        let differences = different_keys(there["made_of"].as_str().unwrap_or_default(), of);
+        if !differences.is_empty() {
+            return Err(RunError::OtherSweep {
+                path: home.to_owned(),
+                differences,
+            });
+        }
+        Ok(there["ending"] == "complete")
+    }
+
+    /// Whether the folder holds solves of a comparison that did not come to its end.
+    pub fn has_journal(home: &Path) -> bool {
+        home.join(PART).is_file()
+    }
+
+    /// A new journal for what a comparison solves, which `of` describes as TOML; that of an unfinished one is kept below `previous/`.
+    ///
+    /// # Errors
+    /// [`RunError::Read`] or [`RunError::Write`].
+    pub fn begin(&self, of: &str, family: &Family) -> Result<CompareJournal, RunError> {
+        self.staging.keep_aside(&[PART])?;
+        CompareJournal::create(self.staging.home(), of, family)
+    }
+
+    /// The journal of the unfinished comparison in the folder.
+    ///
+    /// # Errors
+    /// [`RunError::NoJournal`], [`RunError::OtherSweep`], [`RunError::Journal`], [`RunError::Read`].
+    pub fn go_on(
+        &self,
+        of: &str,
+        family: &Family,
+        methods: &[&'static str],
+    ) -> Result<CompareJournal, RunError> {
+        CompareJournal::open(self.staging.home(), of, family, methods)
     }
 
     /// Where figures are drawn to.
@@ -64,12 +115,21 @@ impl CompareFolder {
         Ok(())
     }
 
-    /// Puts the comparison in its place and returns its files; what an earlier one left goes below `previous/`.
+    /// Puts the comparison in its place and returns its files; what an earlier one left goes below `previous/`. The journal goes, unless the
+    /// comparison was interrupted.
     ///
     /// # Errors
     /// [`RunError::Read`] or [`RunError::Write`].
-    pub fn take_place(self) -> Result<Vec<PathBuf>, RunError> {
-        sync_all(&[self.staging.fresh()])?;
-        Ok(self.staging.take_place(&[])?.files)
+    pub fn take_place(self, interrupted: bool) -> Result<Vec<PathBuf>, RunError> {
+        let fresh = self.staging.fresh();
+        checksums::write_listed(&fresh, &ENTRIES)?;
+        sync_all(&[fresh])?;
+        let part = self.staging.home().join(PART);
+        let placed = self.staging.take_place(&[])?;
+        if !interrupted {
+            // One that stays is of a comparison that is complete, which is looked at first.
+            let _ = std::fs::remove_file(part);
+        }
+        Ok(placed.files)
     }
 }

@@ -1,10 +1,13 @@
 //! The tables of a comparison of methods, for programs in full and for people rounded, and the folder they go to.
 
 mod folder;
+mod journal;
 mod people;
 mod rows;
 
 pub use folder::CompareFolder;
+pub(super) use folder::ENTRIES;
+pub use journal::CompareJournal;
 pub use people::{CompareTable, compare_tables};
 
 use people::{compare_markdown, compare_tex};
@@ -13,6 +16,9 @@ use rows::{accuracy_csv, agreement_csv, compare_csv, compare_json, densities_csv
 use crate::compare::{Comparison, Method};
 use crate::system::Family;
 
+/// What an unfinished comparison has solved.
+const PART: &str = "compare.part.bin";
+
 /// A comparison with what the tables need beside it.
 #[derive(Clone, Copy)]
 pub struct ComparedRun<'a> {
@@ -20,6 +26,8 @@ pub struct ComparedRun<'a> {
     pub comparison: &'a Comparison,
     /// The resolved sweep, as TOML.
     pub sweep: &'a str,
+    /// What describes the comparison in full, as TOML: the sweep with the settings of every method.
+    pub of: &'a str,
     /// Threads that were used: times depend on them.
     pub threads: usize,
 }

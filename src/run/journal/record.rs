@@ -1,10 +1,10 @@
 //! A solve in full, as bytes and back.
 
 use crate::bytes::{NotWhatWasWritten, Reader, Writer};
-use crate::continuation::{Finding, MethodPart, PointStatus, Solution, SolveReport, Subject};
+use crate::continuation::{Finding, MethodPart, PointStatus, Solution, SolveReport};
 use crate::density::{Density, EstimatedDensity, Kink, Moments, Observable, Structure, Variants};
 use crate::run::findings::{findings_cell, parse_findings};
-use crate::space::{Axis, CellSpace};
+use crate::space::Axis;
 use crate::system::Family;
 
 /// What a session gave at a value, and what it remembers of it.
@@ -18,11 +18,22 @@ pub(super) struct Record {
 }
 
 /// A solution that can be kept: it answers no questions.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Found {
     pub(super) report: SolveReport,
     pub(super) moments: Vec<Moments>,
     pub(super) densities: Vec<EstimatedDensity>,
+}
+
+impl Found {
+    /// What a solution holds, which is still to be handed on.
+    pub(super) fn copied(solution: &Solution<'_>) -> Self {
+        Self {
+            report: solution.report.clone(),
+            moments: solution.moments.clone(),
+            densities: solution.densities.clone(),
+        }
+    }
 }
 
 impl From<Solution<'_>> for Found {
@@ -60,15 +71,15 @@ impl Record {
         writer.bytes(&self.memory);
     }
 
-    /// What was written of the densities of a subject on a space.
+    /// What was written of a family's density.
     pub(super) fn read(
         reader: &mut Reader<'_>,
-        of: (&Subject, &CellSpace),
+        family: &Family,
         methods: &[&'static str],
     ) -> Result<Self, NotWhatWasWritten> {
         let (value, seconds) = (reader.number()?, reader.number()?);
         let solved = match reader.flag()? {
-            true => Ok(read_solution(reader, of, methods)?),
+            true => Ok(read_solution(reader, family, methods)?),
             false => Err(reader.text()?.to_owned()),
         };
         Ok(Self {
@@ -94,10 +105,10 @@ fn write_solution(writer: &mut Writer, family: &Family, solution: &Found) {
 
 fn read_solution(
     reader: &mut Reader<'_>,
-    (subject, space): (&Subject, &CellSpace),
+    family: &Family,
     methods: &[&'static str],
 ) -> Result<Found, NotWhatWasWritten> {
-    let report = read_report(reader, &subject.family, methods)?;
+    let report = read_report(reader, family, methods)?;
     let mut solution = Found::from(Solution::without_density(report));
     for _ in 0..reader.count()? {
         solution.moments.push(Moments {
@@ -105,18 +116,13 @@ fn read_solution(
             standard_deviation: reader.number()?,
         });
     }
-    let count = reader.count()?;
-    if count > subject.observables.len() {
-        return Err(NotWhatWasWritten);
-    }
-    for &observable in &subject.observables[..count] {
-        let density = read_density(reader, observable, space)?;
-        solution.densities.push(density);
+    for _ in 0..reader.count()? {
+        solution.densities.push(read_density(reader)?);
     }
     Ok(solution)
 }
 
-fn write_report(writer: &mut Writer, family: &Family, report: &SolveReport) {
+pub(in crate::run) fn write_report(writer: &mut Writer, family: &Family, report: &SolveReport) {
     writer.text(report.status.word()).text(report.method);
     writer.count(report.iterations).number(report.residual);
     writer
@@ -141,7 +147,7 @@ fn write_report(writer: &mut Writer, family: &Family, report: &SolveReport) {
     }
 }
 
-fn read_report(
+pub(in crate::run) fn read_report(
     reader: &mut Reader<'_>,
     family: &Family,
     methods: &[&'static str],
@@ -179,7 +185,14 @@ fn read_report(
     Ok(report)
 }
 
-fn write_density(writer: &mut Writer, estimate: &EstimatedDensity) {
+/// With the cells that it is on: those of a quantity, of a series or of a finer source are not the run's.
+pub(in crate::run) fn write_density(writer: &mut Writer, estimate: &EstimatedDensity) {
+    let numbers = estimate.observable.axes();
+    writer.count(numbers.len());
+    for (number, axis) in numbers.into_iter().zip(&estimate.density.axes) {
+        writer.count(number);
+        axis.write(writer);
+    }
     writer.numbers(&estimate.density.values);
     writer.numbers(&estimate.standard_error);
     match &estimate.variants {
@@ -206,15 +219,19 @@ fn write_density(writer: &mut Writer, estimate: &EstimatedDensity) {
     writer.number(estimate.negligible);
 }
 
-fn read_density(
+pub(in crate::run) fn read_density(
     reader: &mut Reader<'_>,
-    observable: Observable,
-    space: &CellSpace,
 ) -> Result<EstimatedDensity, NotWhatWasWritten> {
-    let numbers = observable.axes();
-    let axes: Vec<Axis> = (numbers.iter())
-        .filter_map(|&number| space.axes().get(number).cloned())
-        .collect();
+    let (mut numbers, mut axes) = (Vec::new(), Vec::new());
+    for _ in 0..reader.count()? {
+        numbers.push(reader.count()?);
+        axes.push(Axis::read(reader)?);
+    }
+    let observable = match numbers[..] {
+        [axis] => Observable::Marginal(axis),
+        [first, second] => Observable::Joint(first, second),
+        _ => return Err(NotWhatWasWritten),
+    };
     let cells: usize = axes.iter().map(Axis::count).product();
     let values = of_length(reader.numbers()?, cells)?;
     let standard_error = of_length(reader.numbers()?, cells)?;

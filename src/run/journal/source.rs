@@ -188,7 +188,7 @@ impl JournalledSession {
     }
 
     fn path(&self) -> PathBuf {
-        lock(&self.shared).journal.path.clone()
+        lock(&self.shared).journal.log.path().to_owned()
     }
 
     fn recall_all(&mut self) -> Result<(), SourceError> {

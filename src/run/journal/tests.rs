@@ -2,23 +2,16 @@
 
 use super::record::Found;
 use super::*;
+use crate::bytes::{Reader, Writer};
 use crate::continuation::{
-    CellCheck, CheckedBy, CheckedIndicator, Finding, Solution, SolveReport, every_finding,
+    CheckedBy, CheckedIndicator, Finding, Solution, SolveReport, every_finding,
 };
 use crate::density::{Density, EstimatedDensity, Kink, Moments, Observable, Structure, Variants};
-use crate::space::Axis;
+use crate::space::{Axis, CellSpace};
 use crate::system::examples::coulomb;
 use crate::topology::IndicatorKind;
 
 const SWEEP: &str = "title = \"t\"\n[sweep]\npoints = 3\n[figures]\nat = [0.0]\n";
-
-fn subject() -> Subject {
-    Subject {
-        family: coulomb(),
-        observables: vec![Observable::Marginal(0), Observable::Joint(0, 1)],
-        cell_check: CellCheck::Needless,
-    }
-}
 
 fn space() -> CellSpace {
     let x = Axis::uniform(-1.0, 1.0, 2).unwrap();
@@ -95,7 +88,7 @@ fn words(record: &Record) -> String {
 }
 
 fn open(folder: &Path, sweep: &str) -> Result<Journal, RunError> {
-    Journal::open(folder, sweep, (&subject(), &space()), &["sgcm"])
+    Journal::open(folder, sweep, &coulomb(), &["sgcm"])
 }
 
 /// A journal of so many solves.
@@ -225,11 +218,6 @@ fn a_finding_without_numbers_is_kept_in_words() {
     let mut writer = Writer::new();
     one.write(&mut writer, &coulomb());
     let content = writer.finish();
-    let back = Record::read(
-        &mut Reader::new(&content),
-        (&subject(), &space()),
-        &["sgcm"],
-    )
-    .unwrap();
+    let back = Record::read(&mut Reader::new(&content), &coulomb(), &["sgcm"]).unwrap();
     assert_eq!(back.solved.unwrap().report.findings, told);
 }

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use crate::MAX_DIMENSION;
 use crate::formula::scope::SymbolError;
 use crate::sweep_file::diagnostic::{Diagnostic, Place};
 use crate::sweep_file::document::Document;
@@ -68,16 +69,30 @@ fn built_in(reader: &mut Reader<'_>, draft: &Draft) -> Option<Arc<Model>> {
     let refused = |error: ColouredNoiseError| {
         let diagnostic = Diagnostic::new(error.to_string());
         let place = reader.place(&["system", "noise", KIND]);
-        reader.report(coloured_remedy(match place {
+        let diagnostic = match place {
             Some(place) => diagnostic.at(place, "coloured noise"),
             None => diagnostic,
-        }));
+        };
+        reader.report(coloured_remedy(diagnostic, &error));
     };
     coloured.map_err(refused).ok()
 }
 
-fn coloured_remedy(diagnostic: Diagnostic) -> Diagnostic {
-    diagnostic.remedy("use white noise (leave `kind` out), another model, or other names")
+fn coloured_remedy(diagnostic: Diagnostic, error: &ColouredNoiseError) -> Diagnostic {
+    match error {
+        // A filter of first order needs half of the axes.
+        ColouredNoiseError::Axes {
+            axes,
+            noises,
+            each: 2,
+        } if axes + noises <= MAX_DIMENSION => diagnostic.remedy(
+            "use `kind = \"ornstein-uhlenbeck\"`, which adds one axis a noise, or white noise (leave `kind` out)",
+        ),
+        ColouredNoiseError::Axes { .. } => {
+            diagnostic.remedy("use white noise (leave `kind` out), or a model with fewer axes or noises")
+        }
+        _ => diagnostic.remedy("use white noise (leave `kind` out), another model, or other names"),
+    }
 }
 
 /// What messages call a model: one of a file's own equations has no name.
@@ -365,9 +380,9 @@ fn diagnostic(
             plain("not of coloured noise", place.cloned())
                 .remedy("leave `interpretation` out, or use white noise (leave `kind` out)")
         }
-        TypedModelError::Coloured(_) => {
+        TypedModelError::Coloured(error) => {
             let place = reader.place(&["system", "noise", KIND]);
-            coloured_remedy(plain("coloured noise", place.cloned()))
+            coloured_remedy(plain("coloured noise", place.cloned()), error)
         }
         TypedModelError::JumpingNoise { .. } => plain("these noises", table_place(reader, "noise")),
         TypedModelError::TimeWithoutPeriod { place } => {

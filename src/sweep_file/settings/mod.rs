@@ -31,6 +31,7 @@ use super::draft::MethodSettings;
 use super::reader::Reader;
 use super::report::Report;
 use super::respell;
+use super::text::SweepText;
 use super::write;
 
 /// What is swept and how: every number is checked, every default filled in. What takes work is still open: ranges and gradings that
@@ -140,6 +141,11 @@ impl Settings {
             warnings: reader.into_warnings(),
             document: document.clone(),
         })
+    }
+
+    /// The sweep file as it was typed, word for word, with what was set on top of it.
+    pub fn typed(&self) -> SweepText {
+        self.document.typed()
     }
 
     /// The settings as a complete sweep file: every key that concerns the chosen method. Read again it gives the same settings.

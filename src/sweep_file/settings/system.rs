@@ -32,7 +32,8 @@ pub(super) fn read(reader: &mut Reader<'_>, draft: &Draft, model: &Arc<Model>) -
         let names = model.parameters.iter();
         nearest_name(name?, names.map(|parameter| parameter.name.as_str()))
     });
-    let fixed = read_parameters(reader, draft, model, meant, map::held(draft));
+    let moved = (meant, swept.is_some());
+    let fixed = read_parameters(reader, draft, model, moved, map::held(draft));
     let (from, to) = (
         read_end(reader, model, swept, "from", draft.from),
         read_end(reader, model, swept, "to", draft.to),
@@ -76,12 +77,13 @@ pub(super) fn known_parameter<'m>(
     known
 }
 
-/// The values that are given, the swept one left out; `None` if anything is wrong with them.
+/// The values that are given, the swept one left out; `None` if anything is wrong with them. Of the swept one is known whether its name is right, or
+/// only the nearest to what is written.
 fn read_parameters<'m>(
     reader: &mut Reader<'_>,
     draft: &Draft,
     model: &'m Model,
-    swept: Option<&str>,
+    (swept, is_named): (Option<&str>, bool),
     mapped: Option<(&str, f64)>,
 ) -> Option<Vec<(&'m str, f64)>> {
     let mut values = Vec::new();
@@ -93,8 +95,9 @@ fn read_parameters<'m>(
             continue;
         };
         let mut given = draft.parameters.iter();
-        if Some(parameter.name.as_str()) == swept && model.typed().is_some() {
-            // Which of the parameters of a file's own equations is swept is changed more easily where all have values.
+        if Some(parameter.name.as_str()) == swept && (model.typed().is_some() || !is_named) {
+            // Which of the parameters of a file's own equations is swept is changed more easily where all have values; of a name that is
+            // misspelt nothing more is to be said.
             continue;
         }
         if Some(parameter.name.as_str()) == swept {

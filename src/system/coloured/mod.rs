@@ -41,8 +41,9 @@ pub enum ColouredNoiseError {
     Equations(String),
     /// The model's noises are so many, or its state so large, that there is no room.
     #[error(
-        "coloured noise adds {} for each of {noises} noises to the {axes} of the state; at most {MAX_DIMENSION} axes are possible",
-        if *each == 1 { "an axis" } else { "two axes" }
+        "coloured noise adds {}{} to the {axes} of the state; at most {MAX_DIMENSION} axes are possible",
+        if *each == 1 { "an axis" } else { "two axes" },
+        if *noises == 1 { String::new() } else { format!(" for each of {noises} noises") }
     )]
     Axes {
         /// Axes of the model.

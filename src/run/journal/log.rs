@@ -1,0 +1,240 @@
+//! A file of records, to which records are added at its end: length, checksum, content. The first record says of what the others are.
+
+use std::fs::File;
+use std::io::{BufReader, Read as _, Seek as _, SeekFrom, Write as _};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use sha2::{Digest as _, Sha256};
+
+use super::different_keys;
+use crate::bytes::{NotWhatWasWritten, Reader, Writer};
+use crate::run::RunError;
+use crate::run::atomic::sync_folder;
+
+/// First bytes of the file: program and format.
+const MAGIC: &[u8; 8] = b"pbif-j3\n";
+
+/// Bytes of a length and of a checksum.
+const WORD: usize = 8;
+
+/// Time between two waits for the disk: many fast solves share one.
+const BETWEEN_WAITS: Duration = Duration::from_secs(1);
+
+/// The file, open for more.
+#[derive(Debug)]
+pub(in crate::run) struct Log {
+    path: PathBuf,
+    file: File,
+    /// Where records are put together.
+    room: Vec<u8>,
+    /// When the disk was last waited for.
+    waited: Instant,
+}
+
+impl Log {
+    /// A new file, of work that `of` describes as TOML.
+    ///
+    /// # Errors
+    /// [`RunError::Write`].
+    pub(in crate::run) fn create(path: PathBuf, of: &str) -> Result<Self, RunError> {
+        let file = File::create_new(&path).map_err(|source| RunError::Write {
+            path: path.clone(),
+            source,
+        })?;
+        let mut log = Self::at(path, file);
+        log.write(MAGIC)?;
+        log.append(|first| {
+            first.text(env!("CARGO_PKG_VERSION")).text(of);
+        })?;
+        sync_folder(log.path.parent().unwrap_or(Path::new(".")));
+        Ok(log)
+    }
+
+    /// Opens a file to go on with it; `each` is given all whole records but the first.
+    ///
+    /// # Errors
+    /// [`RunError::NoJournal`]; [`RunError::OtherSweep`], with every difference, when it is of other work or of another version;
+    /// [`RunError::Journal`], also where `each` does not understand a record; [`RunError::Read`].
+    pub(in crate::run) fn open(
+        path: PathBuf,
+        of: &str,
+        each: &mut dyn FnMut(&mut Reader<'_>) -> Result<(), NotWhatWasWritten>,
+    ) -> Result<Self, RunError> {
+        let unreadable = |source| RunError::Read {
+            path: path.clone(),
+            source,
+        };
+        let broken = || RunError::Journal { path: path.clone() };
+        own(&path).map_err(unreadable)?;
+        let mut file = match File::options().read(true).write(true).open(&path) {
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+                return Err(RunError::NoJournal {
+                    path: path.parent().unwrap_or(&path).to_owned(),
+                    name: path.file_name().unwrap_or_default().to_owned(),
+                });
+            }
+            file => file.map_err(unreadable)?,
+        };
+        let mut frames = Frames::new(&file).map_err(unreadable)?;
+        let first = frames.next().map_err(unreadable)?.ok_or_else(broken)?;
+        check_sweep(&path, &first, of)?;
+        while let Some(frame) = frames.next().map_err(unreadable)? {
+            each(&mut Reader::new(&frame)).map_err(|NotWhatWasWritten| broken())?;
+        }
+        let whole = frames.whole;
+        file.set_len(whole).map_err(unreadable)?;
+        file.seek(SeekFrom::Start(whole)).map_err(unreadable)?;
+        Ok(Self::at(path, file))
+    }
+
+    fn at(path: PathBuf, file: File) -> Self {
+        Self {
+            path,
+            file,
+            room: Vec::new(),
+            waited: Instant::now(),
+        }
+    }
+
+    pub(in crate::run) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Adds a record; once a second it waits until all are on the disk.
+    ///
+    /// # Errors
+    /// [`RunError::Write`].
+    pub(in crate::run) fn append(
+        &mut self,
+        compose: impl FnOnce(&mut Writer),
+    ) -> Result<(), RunError> {
+        // The room is used again and again: a new one would cost as much as the writing.
+        let mut writer = Writer::after(std::mem::take(&mut self.room));
+        writer.count(0).count(0);
+        compose(&mut writer);
+        let mut frame = writer.finish();
+        let (head, content) = frame.split_at_mut(2 * WORD);
+        head[..WORD].copy_from_slice(&(content.len() as u64).to_le_bytes());
+        head[WORD..].copy_from_slice(&checksum(content));
+        let written = self.write(&frame);
+        self.room = frame;
+        written?;
+        if self.waited.elapsed() >= BETWEEN_WAITS {
+            self.file
+                .sync_data()
+                .map_err(|source| self.failed(source))?;
+            self.waited = Instant::now();
+        }
+        Ok(())
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> Result<(), RunError> {
+        let written = self.file.write_all(bytes);
+        written.map_err(|source| self.failed(source))
+    }
+
+    fn failed(&self, source: std::io::Error) -> RunError {
+        RunError::Write {
+            path: self.path.clone(),
+            source,
+        }
+    }
+}
+
+/// Gives a file that is linked elsewhere, in an earlier version of the run, a copy of its own, to which records can be added.
+#[cfg(unix)]
+fn own(path: &Path) -> std::io::Result<()> {
+    use std::os::unix::fs::MetadataExt as _;
+    match path.metadata() {
+        Ok(data) if data.nlink() > 1 => {
+            let copy = path.with_extension("copy");
+            std::fs::copy(path, &copy)?;
+            std::fs::rename(&copy, path)
+        }
+        _ => Ok(()),
+    }
+}
+
+#[cfg(not(unix))]
+fn own(_: &Path) -> std::io::Result<()> {
+    Ok(())
+}
+
+/// The records of a file, as far as they are whole.
+struct Frames<'f> {
+    file: BufReader<&'f File>,
+    length: u64,
+    /// Bytes up to the end of the last whole record.
+    whole: u64,
+}
+
+impl<'f> Frames<'f> {
+    fn new(file: &'f File) -> std::io::Result<Self> {
+        let length = file.metadata()?.len();
+        let mut file = BufReader::new(file);
+        let mut magic = [0; MAGIC.len()];
+        let is_ours = length >= MAGIC.len() as u64 && {
+            file.read_exact(&mut magic)?;
+            magic == *MAGIC
+        };
+        Ok(Self {
+            file,
+            length: if is_ours { length } else { 0 },
+            whole: MAGIC.len() as u64,
+        })
+    }
+
+    /// The next whole record.
+    fn next(&mut self) -> std::io::Result<Option<Vec<u8>>> {
+        let start = self.whole + 2 * WORD as u64;
+        if start > self.length {
+            return Ok(None);
+        }
+        let mut words = [[0; WORD]; 2];
+        for word in &mut words {
+            self.file.read_exact(word)?;
+        }
+        let length = u64::from_le_bytes(words[0]);
+        if length > self.length - start {
+            return Ok(None);
+        }
+        let mut content = vec![0; length as usize];
+        self.file.read_exact(&mut content)?;
+        if checksum(&content) != words[1] {
+            return Ok(None);
+        }
+        self.whole = start + length;
+        Ok(Some(content))
+    }
+}
+
+/// First bytes of the SHA-256.
+fn checksum(content: &[u8]) -> [u8; WORD] {
+    let mut short = [0; WORD];
+    short.copy_from_slice(&Sha256::digest(content)[..WORD]);
+    short
+}
+
+/// Refuses the journal of another version or sweep.
+fn check_sweep(path: &Path, first: &[u8], resolved: &str) -> Result<(), RunError> {
+    let mut reader = Reader::new(first);
+    let (Ok(version), Ok(sweep)) = (reader.text(), reader.text()) else {
+        return Err(RunError::Journal {
+            path: path.to_owned(),
+        });
+    };
+    let mut differences = Vec::new();
+    if version != env!("CARGO_PKG_VERSION") {
+        let this = env!("CARGO_PKG_VERSION");
+        differences.push(format!("pbif {version} there, {this} here"));
+    }
+    differences.extend(different_keys(sweep, resolved));
+    if differences.is_empty() {
+        return Ok(());
+    }
+    Err(RunError::OtherSweep {
+        path: path.parent().unwrap_or(path).to_owned(),
+        differences,
+    })
+}
