@@ -194,7 +194,6 @@ fn every_method_has_the_exact_densities_of_quantities_where_damping_depends_on_e
         // Of y² the mean is that of H.
         let power = found.moments[2].mean / mean_energy - 1.0;
         let method = source.method();
-        println!("{method}: H {h:.1e}, amplitude {amplitude:.1e}, power {power:.1e}");
         assert!(
             h < allowed && amplitude < allowed,
             "{method} {h} {amplitude}"

@@ -186,13 +186,12 @@ impl Gauge<'_> {
         if self.compared.pairs.iter().any(|pair| pair.second.is_none()) {
             return Ok((Reference::Exact, None));
         }
-        if let Some(factor) = REFERENCE_GRIDS[many] {
-            if let Some((space, solved)) = self.generator(factor, steps)?
-                && solved.status.is_resolved()
-                && let Some(density) = self.density(&solved)
-            {
-                return Ok((Reference::Generator(space.n_cells()), Some(density.clone())));
-            }
+        if let Some(factor) = REFERENCE_GRIDS[many]
+            && let Some((space, solved)) = self.generator(factor, steps)?
+            && solved.status.is_resolved()
+            && let Some(density) = self.density(&solved)
+        {
+            return Ok((Reference::Generator(space.n_cells()), Some(density.clone())));
         }
         let own = self
             .compared
