@@ -23,6 +23,8 @@ def free_port():
 class Browser:
     """A session of chromedriver."""
 
+    opened = []
+
     def __init__(self, driver, offline, size="1280,900"):
         arguments = ["--headless=new", "--no-sandbox", "--disable-gpu", f"--window-size={size}", "--disable-background-networking"]
         if offline:
@@ -32,6 +34,7 @@ class Browser:
         self.base = driver
         found = self.call("POST", "/session", {"capabilities": {"alwaysMatch": wanted}})
         self.base = f"{driver}/session/{found['sessionId']}"
+        Browser.opened.append(self)
 
     def call(self, method, path, body=None):
         data = None if method == "GET" else json.dumps(body or {}).encode()
@@ -97,6 +100,7 @@ class Browser:
         return [entry["message"] for entry in self.call("POST", "/se/log", {"type": "browser"})]
 
     def close(self):
+        Browser.opened.remove(self)
         self.call("DELETE", "")
 
 
@@ -248,6 +252,16 @@ def from_disk(driver, page, axe, folder, images):
         choose(browser, "#theme", theme)
         is_usable(browser, axe, f"the page of a run, {theme}")
     saves(browser, folder, ("#joint", "#section-figure", "#marginals", "#diagram"))
+    # Paper is white and holds every panel and label, though the screen is dark; the screen stays as it was.
+    browser.devtools("Emulation.setEmulatedMedia", media="print")
+    browser.run("window.dispatchEvent(new Event('beforeprint'))")
+    white = browser.run("return getComputedStyle(document.body).backgroundColor")
+    assert white == "rgb(255, 255, 255)", white
+    assert browser.run("return ['joint', 'diagram'].every((id) => document.getElementById(id).getBoundingClientRect().height > 100)")
+    assert browser.run("return document.querySelector('#table td button').checkVisibility()"), "labels are not printed"
+    browser.run("window.dispatchEvent(new Event('afterprint'))")
+    browser.devtools("Emulation.setEmulatedMedia", media="")
+    assert browser.run("return document.documentElement.dataset.theme") == "dark"
     assert not browser.console(), browser.console()
     browser.close()
     print("from disk: every control, keyboard alone, four widths, dark, odd addresses, saved files, nothing in the console")
@@ -437,6 +451,7 @@ def live(driver, pbif, folder, axe):
 
 
 def main():
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     images = sys.argv[sys.argv.index("--images") + 1] if "--images" in sys.argv else None
     pbif = str(pathlib.Path(sys.argv[1]).resolve())
     if not shutil.which("chromedriver") or not (shutil.which("chromium") or shutil.which("google-chrome")):
@@ -471,6 +486,9 @@ def main():
             live(at, pbif, folder, axe)
             live_map(at, pbif, folder, axe)
     finally:
+        # A browser that a failed test left open would go on without its driver.
+        for browser in list(Browser.opened):
+            browser.close()
         driver.send_signal(signal.SIGTERM)
         driver.wait()
     return 0

@@ -20,6 +20,7 @@
 //! # }
 //! ```
 
+mod compose;
 mod frame;
 mod html;
 mod live;

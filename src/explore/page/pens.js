@@ -22,11 +22,13 @@ const anchorShift = (align, width) => (align === "right" ? -width : align === "l
 const MOST_PIXELS = 600000;
 
 class CanvasPen {
-  constructor(canvas, width, height, scale) {
-    canvas.width = Math.max(1, Math.round(width * scale));
-    canvas.height = Math.max(1, Math.round(height * scale));
+  /** A pen on a canvas that it clears, unless it is to draw `over` what is there. */
+  constructor(canvas, width, height, scale, over = false) {
     this.scale = scale;
     this.context = canvas.getContext("2d");
+    if (over) return;
+    canvas.width = Math.max(1, Math.round(width * scale));
+    canvas.height = Math.max(1, Math.round(height * scale));
     this.context.setTransform(scale, 0, 0, scale, 0, 0);
     this.context.clearRect(0, 0, width, height);
   }
