@@ -1,7 +1,7 @@
 //! Figures in every style: as wide as asked for, nothing cut off, no two texts on each other; PDF with its text and its fonts.
 
 // A test fails by panicking; clippy knows only functions marked `#[test]` for tests.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stderr)]
 
 #[allow(dead_code)]
 mod closed_forms;
@@ -206,6 +206,54 @@ fn a_pdf_has_the_size_its_fonts_and_is_the_same_each_time() {
             (numbers[2] / 72.0 * 25.4 - 84.0).abs() < 0.05,
             "{numbers:?}"
         );
+    }
+}
+
+#[test]
+fn the_text_of_a_pdf_is_found() {
+    if std::process::Command::new("pdftotext")
+        .arg("-v")
+        .output()
+        .is_err()
+    {
+        eprintln!("skipped: pdftotext (of poppler-utils) is not installed");
+        return;
+    }
+    let style = FigureStyle {
+        width: FigureWidth::Double,
+        ..FigureStyle::default()
+    };
+    let result = rayleigh(("rayleigh", "a"), 1.0, &uniform());
+    let folder = tempfile::tempdir().unwrap();
+    for (figure, words) in [
+        ("diagram_x", ["peak", "valley"]),
+        ("marginals", ["p(x)", "p(ẋ)"]),
+        ("surface_xy", ["p(x, ẋ)", "x"]),
+    ] {
+        let drawn = drawn(&result, &style);
+        let one = drawn
+            .iter()
+            .find(|one| matches_figure(figure, &one.name))
+            .unwrap();
+        let file = folder.path().join("figure.pdf");
+        std::fs::write(&file, one.pdf().unwrap()).unwrap();
+        let output = std::process::Command::new("pdftotext")
+            .arg(&file)
+            .arg("-")
+            .output();
+        let text = String::from_utf8(output.unwrap().stdout).unwrap();
+        // Letters come composed or not, and lines where the reader puts them.
+        let plain = |text: &str| {
+            text.replace("x\u{307}", "ẋ")
+                .split_whitespace()
+                .collect::<String>()
+        };
+        for word in words {
+            assert!(
+                plain(&text).contains(&plain(word)),
+                "{figure}: no `{word}` in {text:?}"
+            );
+        }
     }
 }
 

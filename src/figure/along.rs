@@ -49,6 +49,8 @@ pub(super) struct Track {
     pub(super) is_logarithmic: bool,
     /// Whether the line of zero belongs to it.
     pub(super) has_zero: bool,
+    /// A linear range is no shorter: what differs by less is the same.
+    pub(super) least: f64,
     /// Height, as a share of the usual one.
     pub(super) share: f64,
     pub(super) curves: Vec<Curve>,
@@ -78,7 +80,9 @@ impl Track {
         // Two decades hold two labels; a constant is drawn in the middle.
         let least = match self.is_logarithmic {
             true => 2.0,
-            false => (1e-9 * low.abs().max(high.abs())).max(1e-12),
+            false => (1e-9 * low.abs().max(high.abs()))
+                .max(1e-12)
+                .max(self.least),
         };
         let missing = (0.5 * (least - (high - low))).max(0.0);
         let border = BORDER * (high - low + 2.0 * missing);

@@ -59,6 +59,7 @@ fn draw(scene: &SweepScene<'_>) -> Result<Option<Page>, DrawError> {
             title: (*title).to_owned(),
             is_logarithmic: *is_logarithmic,
             has_zero: !is_logarithmic,
+            least: 0.0,
             share: 1.0,
             curves: vec![Curve {
                 name: String::new(),

@@ -71,6 +71,7 @@ fn draw(scene: &SweepScene<'_>, number: usize) -> Result<Option<Page>, DrawError
                 title: title(kind).to_owned(),
                 is_logarithmic: false,
                 has_zero: true,
+                least: 0.0,
                 share: 1.0,
                 curves: vec![Curve {
                     name: kind.name().to_owned(),

@@ -10,6 +10,7 @@ use super::canvas::look::Look;
 use super::canvas::page::{Page, Rectangle};
 use super::canvas::render;
 use super::canvas::style::{MARGIN, TEXT};
+use super::canvas::symbols;
 use super::joint::{Found, LEVELS, draw_map, lettered, open_page, windows, write_above};
 use super::sketch::SweepScene;
 use super::{names, select};
@@ -24,6 +25,10 @@ const BETWEEN_LABELS: f64 = 8.0;
 /// The densities of a sheet share their scale unless the largest values differ by more than this factor.
 const COMPARABLE: f64 = 3.0;
 const TALLEST_SMALL: f64 = 230.0;
+/// Maps of a sheet of one column at most, where letters cost the second one.
+const MOST_IN_A_TOWER: usize = 3;
+/// Digits of values where there is little room.
+const FEW: usize = 2;
 
 /// How the maps of a sheet are arranged and coloured.
 struct Sheet {
@@ -111,6 +116,15 @@ impl Sheet {
     }
 }
 
+/// Narrowest map whose line does not touch that of its neighbour.
+fn widest(look: &Look, lines: &[String]) -> Result<f64, DrawError> {
+    let mut least: f64 = 0.0;
+    for line in lines {
+        least = least.max(render::text_width(look, line, TEXT, false)? + 4.0 - BETWEEN / 2.0);
+    }
+    Ok(least)
+}
+
 /// All maps of a pair on one sheet, with the same windows; `None` for fewer than two densities.
 pub(super) fn draw(
     scene: &SweepScene<'_>,
@@ -130,14 +144,26 @@ pub(super) fn draw(
         return Ok(None);
     }
     let density = names::density(family, watched);
-    let line = |(number, found): (usize, &Found<'_>)| {
-        lettered(look, number, names::at(family, found.value))
+    let at = |found: &Found<'_>| names::at(family, found.value);
+    let with_letters = found.iter().enumerate();
+    let with_letters = with_letters.map(|(number, found)| lettered(look, number, at(found)));
+    let mut lines: Vec<String> = with_letters.collect();
+    let mut least = widest(look, &lines)?;
+    let is_tower = |least: f64| {
+        let sheet = Sheet::new(look, &found, (140.0, BETWEEN), least);
+        sheet.columns == 1 && found.len() > MOST_IN_A_TOWER
     };
-    let lines: Vec<String> = found.iter().enumerate().map(line).collect();
-    // Lines above neighbouring maps must not touch.
-    let mut least: f64 = 0.0;
-    for line in &lines {
-        least = least.max(render::text_width(look, line, TEXT, false)? + 4.0 - BETWEEN / 2.0);
+    if is_tower(least) {
+        // Many maps below each other fill no page of a journal: without letters, and with values in fewer digits, there is room for a second column.
+        lines = found.iter().map(at).collect();
+        least = widest(look, &lines)?;
+        let short = |found: &Found<'_>| names::at(family, symbols::rounded_to(found.value, FEW));
+        let mut rounded: Vec<String> = found.iter().map(short).collect();
+        let is_told_apart = rounded.windows(2).all(|pair| pair[0] != pair[1]);
+        if is_tower(least) && is_told_apart {
+            least = widest(look, &rounded)?;
+            std::mem::swap(&mut lines, &mut rounded);
+        }
     }
     let vertical = |high: f64| Scale::vertical(look, y, high, &names::axis(family, second));
     // The bar and the labels of the ordinate hardly depend on how high the maps are: a first sheet measures them.

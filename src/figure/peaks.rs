@@ -17,6 +17,9 @@ const HEIGHT: f64 = 170.0;
 /// Heights that differ by more than this factor are drawn on a logarithmic axis.
 const LOGARITHMIC: f64 = 30.0;
 
+/// The range of places as a share of where the density is, at least: a peak that stays where it is moves by rounding alone.
+const LEAST: f64 = 0.02;
+
 /// A peak diagram an observed marginal.
 pub(super) fn sketches<'a>(scene: &'a SweepScene<'a>) -> Vec<Sketch<'a>> {
     let observables = scene.result.subject.observables.iter().enumerate();
@@ -68,17 +71,28 @@ fn draw(scene: &SweepScene<'_>, number: usize) -> Result<Option<Page>, DrawError
         (f64::min(low, value), f64::max(high, value))
     });
     let family = scene.family();
-    let track = |title: String, curves: Vec<Curve>, is_logarithmic: bool| Track {
+    let track = |title: String, curves: Vec<Curve>, is_logarithmic: bool, least: f64| Track {
         title,
         is_logarithmic,
         has_zero: false,
+        least,
         share: 1.0,
         curves,
     };
     let is_logarithmic = low > 0.0 && high > LOGARITHMIC * low;
     let tracks = [
-        track(names::axis(family, axis), places, false),
-        track(names::density(family, watched), heights, is_logarithmic),
+        track(
+            names::axis(family, axis),
+            places,
+            false,
+            LEAST * (window.1 - window.0),
+        ),
+        track(
+            names::density(family, watched),
+            heights,
+            is_logarithmic,
+            0.0,
+        ),
     ];
     along::draw(scene, Some(watched), &tracks, HEIGHT)
 }

@@ -148,10 +148,13 @@ impl Canvas {
         self.push(&format!("<polygon{points}{}/>", self.paint("fill", fill)));
     }
 
-    /// Filled quadrilaterals of one colour, each with a thin rim of the same colour.
-    pub(super) fn facets(&self, facets: &[[BackendCoord; 4]], fill: Colour) {
+    /// Filled polygons of one colour.
+    pub(super) fn facets(&self, facets: &[Vec<BackendCoord>], fill: Colour) {
         let mut path = String::new();
-        for [first, rest @ ..] in facets {
+        for facet in facets {
+            let [first, rest @ ..] = facet.as_slice() else {
+                continue;
+            };
             path.push_str(&format!("M{} {}", first.0, first.1));
             let mut last = *first;
             for (number, &corner) in rest.iter().enumerate() {
@@ -170,12 +173,7 @@ impl Canvas {
             }
             path.push('z');
         }
-        self.push(&format!(
-            "<path d=\"{path}\"{}{} stroke-width=\"{}\" stroke-linejoin=\"round\"/>",
-            self.paint("fill", fill),
-            self.paint("stroke", fill),
-            units(0.8)
-        ));
+        self.push(&format!("<path d=\"{path}\"{}/>", self.paint("fill", fill)));
     }
 
     /// A disc with a rim; radius and rim in pixels.

@@ -10,6 +10,7 @@ use plotters_backend::text_anchor::HPos;
 
 use super::DrawError;
 use super::backend::{Canvas, Drawn, Lettering};
+use super::facets::grown;
 use super::look::Look;
 use super::render;
 use super::style::{Colour, GREY, INK, MARGIN, Stroke, TEXT, TITLE_TEXT, UNITS};
@@ -141,14 +142,14 @@ impl Page {
         Ok(self.area.draw(&Mark { points, shape })?)
     }
 
-    /// Fills neighbouring facets, in this order; corners in pixels. Rims in their own colours leave no seams between them.
+    /// Fills neighbouring facets, in this order; corners in pixels. They overlap a little, so that no seams are between them.
     pub(in crate::figure) fn facets(&self, facets: &[([(f64, f64); 4], Colour)]) {
         let on_canvas =
             |(x, y): (f64, f64)| ((x * UNITS).round() as i32, (y * UNITS).round() as i32);
         for run in facets.chunk_by(|a, b| a.1 == b.1) {
-            let corners: Vec<[BackendCoord; 4]> = run
+            let corners: Vec<Vec<BackendCoord>> = run
                 .iter()
-                .map(|(corners, _)| corners.map(on_canvas))
+                .map(|(corners, _)| grown(corners).into_iter().map(on_canvas).collect())
                 .collect();
             if let Some((_, colour)) = run.first() {
                 self.canvas.facets(&corners, *colour);

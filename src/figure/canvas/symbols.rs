@@ -101,7 +101,13 @@ pub(in crate::figure) fn fixed(value: f64, decimals: usize) -> String {
 
 /// A value rounded to six significant digits, which drops what binary fractions add to `0.1 + 0.2`.
 pub(in crate::figure) fn rounded(value: f64) -> f64 {
-    let value = format!("{value:.5e}").parse().unwrap_or(value);
+    rounded_to(value, 6)
+}
+
+/// The value with so many significant digits, without a negative zero.
+pub(in crate::figure) fn rounded_to(value: f64, digits: usize) -> f64 {
+    let decimals = digits.saturating_sub(1);
+    let value = format!("{value:.decimals$e}").parse().unwrap_or(value);
     if value == 0.0 { 0.0 } else { value }
 }
 
