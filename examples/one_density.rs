@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let pilot = pilot(system.as_ref(), &space, 1, &Cancellation::new())?;
     let time_step = pilot.automatic_time_step(Integrator::StochasticHeun);
     let options = SamplingOptions {
-        map_step: pilot.automatic_map_step(time_step),
+        map_step: pilot.automatic_map_step(time_step, 500),
         time_step,
         samples: 500,
         groups: 8,

@@ -224,7 +224,7 @@ fn map_steps(system: &dyn System, grids: usize) -> Result<(), AnyError> {
         let trial = Trial::new(system, count)?;
         let integrator = Integrator::StochasticHeun;
         let time_step = trial.pilot.automatic_time_step(integrator);
-        let automatic = trial.pilot.automatic_map_step(time_step);
+        let automatic = trial.pilot.automatic_map_step(time_step, samples);
         for map_step in [0.2, 1.0, 3.0, 6.2, automatic] {
             let run = trial.run(&SamplingOptions {
                 map_step,

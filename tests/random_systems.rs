@@ -13,6 +13,8 @@
 
 #[path = "random_systems/formulas.rs"]
 mod formulas;
+#[path = "random_systems/sampled.rs"]
+mod sampled;
 #[path = "random_systems/wells.rs"]
 mod wells;
 

@@ -13,7 +13,8 @@ use pbif::density::Observable;
 use pbif::method::{GeneratorMethodOptions, GeneratorSource, Problem};
 use pbif::space::{Axis, CellSpace};
 use pbif::system::{
-    AxisDescription, Family, Lanes, Model, ParameterDescription, Path, System, TypedModel,
+    AxisDescription, Family, Interpretation, Lanes, Model, ParameterDescription, Path, System,
+    TypedModel,
 };
 use pbif::topology::{DetectOptions, PersistenceDetector};
 
@@ -291,6 +292,67 @@ fn a_split_at_a_place_where_the_curvature_of_the_drift_jumps_is_held_by_its_erro
         assert!(rows[0].value.abs() <= rows[0].error, "{}", words(&rows));
         assert!(rows[0].value.abs() < 5e-3, "{}", words(&rows));
     }
+}
+
+#[test]
+fn a_peak_that_opens_to_a_ring_away_from_a_centre_is_located() {
+    // p depends on the energy alone, and falls with it for θ < -1/4 b: the wells at x = ± 1 are peaks, and bottoms of rings after that.
+    fn drift(a: f64, state: &[f64], slope: &mut [f64]) {
+        let (x, y) = (state[0], state[1]);
+        let energy = 0.5 * y * y - 0.5 * x * x + 0.25 * x.powi(4);
+        slope[0] = y;
+        slope[1] = (a - 0.1 * energy) * y + x - x.powi(3);
+    }
+    let axis = || Axis::uniform(-2.5, 2.5, 80).unwrap();
+    let (_, rows) = rows(
+        model(2, 0.02, drift),
+        (-0.06, -0.01),
+        6,
+        vec![axis(), axis()],
+    );
+    assert_eq!(rows.len(), 1, "{}", words(&rows));
+    assert_eq!(rows[0].before.unwrap().to_string(), "2 peaks");
+    assert_eq!(rows[0].after.unwrap().to_string(), "2 rings");
+    let found = &rows[0];
+    assert!(
+        (found.value + 0.025).abs() <= found.error,
+        "{}",
+        words(&rows)
+    );
+    assert!(found.error < 1e-4, "{}", words(&rows));
+}
+
+#[test]
+fn births_at_a_bend_of_the_noise_are_located_beside_it() {
+    let model = TypedModel::new("bent", "Noise that bends", ["x"])
+        .with_equation("x", "theta + 0.36 x - x^3")
+        .with_noise("x", ["sqrt(0.198 (1 + 0.973 abs(x + 0.135)))"])
+        .with_interpretation(Interpretation::Ito)
+        .with_parameters(["theta"])
+        .build()
+        .unwrap();
+    let axes = vec![Axis::uniform(-2.81, 2.86, 200).unwrap()];
+    let (_, rows) = rows_of(
+        model,
+        Observable::Marginal(0),
+        (-1.013, 0.987),
+        41,
+        axes,
+        &LocateOptions::default(),
+    );
+    // Two pairs of changes, each within one step: zeros of θ + 0.36 x - x³ ∓ 0.198 · 0.973/2 that turn, or lie at the bend.
+    let jump = 0.5 * 0.198 * 0.973;
+    let turn = 2.0 * 0.12f64.powf(1.5);
+    let at_bend = 0.36 * 0.135 - 0.135f64.powi(3);
+    let mut truths = [turn - jump, jump - turn, at_bend - jump, at_bend + jump];
+    truths.sort_by(f64::total_cmp);
+    for row in &rows {
+        let held = truths
+            .iter()
+            .any(|truth| (row.value - truth).abs() <= row.error);
+        assert!(held, "{truths:?}\n{}", words(&rows));
+    }
+    assert_eq!(rows.len(), 4, "{truths:?}\n{}", words(&rows));
 }
 
 #[test]

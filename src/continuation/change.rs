@@ -56,6 +56,12 @@ impl Change {
             FeatureKind::Ring => {
                 after.rings = moved(before.rings);
                 after.craters = moved(before.craters);
+                if event.was_peak {
+                    after.peaks = match event.above {
+                        true => before.peaks.saturating_sub(1),
+                        false => before.peaks + 1,
+                    };
+                }
             }
             FeatureKind::Valley => {}
         }
@@ -133,7 +139,11 @@ fn between(
     let mut centre: Vec<Crossing> = (left..right)
         .filter_map(|index| at_centre(points, observable, index))
         .collect();
-    if centre.is_empty() {
+    // Where rings open or merge at a state of rest, curvatures at the centre touch zero, and errors may turn their signs for a moment.
+    let at_rest = |event: &Event| matches!(event.indicator, Some((IndicatorKind::Level { .. }, _)));
+    if events.iter().any(at_rest) {
+        centre.clear();
+    } else if centre.is_empty() {
         centre.extend(doubtful_centre(points, detector, observable, (left, right)));
     }
     if !centre.is_empty() {

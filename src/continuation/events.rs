@@ -11,6 +11,9 @@ use crate::topology::{Feature, FeatureKind, IndicatorKind, Verdict, born_at_kink
 pub(super) const COUNTED: [FeatureKind; 3] =
     [FeatureKind::Peak, FeatureKind::Crater, FeatureKind::Ring];
 
+/// Distance, in ranges, up to which a peak and the middle of a ring are one place: what a ring that has just opened lies beside its middle.
+const AT_REST: f64 = 0.03;
+
 /// A feature that one of two neighbouring points has and the other has not.
 #[derive(Debug, Clone)]
 pub(super) struct Event {
@@ -22,6 +25,10 @@ pub(super) struct Event {
     pub(super) indicator: Option<(IndicatorKind, Vec<f64>)>,
     /// Distance of the feature from the centre of symmetry, in ranges; infinite without one.
     pub(super) from_centre: f64,
+    /// Where the feature is, at the point that has it.
+    pub(super) place: Vec<f64>,
+    /// Of a ring: whether a peak stands inside it at the point that has it not.
+    pub(super) was_peak: bool,
 }
 
 /// All of them for one observable.
@@ -51,11 +58,91 @@ pub(super) fn events(a: &Point, b: &Point, observable: usize) -> Vec<Event> {
             from_centre: centre.map_or(f64::INFINITY, |centre| {
                 distance(&feature.position, centre, &lengths)
             }),
+            place: feature.position.clone(),
+            was_peak: false,
         };
         found.extend(below.into_iter().map(|feature| event(feature, false)));
         found.extend(above.into_iter().map(|feature| event(feature, true)));
     }
-    without_moats(found)
+    let mut found = without_moats(found);
+    rings_at_rest(&mut found, (a, b), observable, &lengths);
+    found
+}
+
+/// Rings that open where a peak was, and rings that merge at the saddle between them, in either direction: both curvatures vanish there together. The peak
+/// that becomes the bottom within a ring is a part of the ring's event.
+fn rings_at_rest(
+    events: &mut Vec<Event>,
+    (a, b): (&Point, &Point),
+    observable: usize,
+    lengths: &[f64],
+) {
+    let is_ring = |one: &Event| one.feature == FeatureKind::Ring;
+    for index in 0..events.len() {
+        let above = events[index].above;
+        let Some(inside) = inside(&events[index]).filter(|_| is_ring(&events[index])) else {
+            continue;
+        };
+        let own = present(if above { b } else { a }, observable, FeatureKind::Ring);
+        let others = present(if above { a } else { b }, observable, FeatureKind::Ring);
+        let was_peak = events.iter().position(|one| {
+            // At a centre of symmetry the curvatures there tell.
+            one.feature == FeatureKind::Peak
+                && one.above != above
+                && one.from_centre > AT_REST
+                && distance(&one.place, &inside, lengths) < AT_REST
+        });
+        let at = match was_peak {
+            Some(peak) => Some((events[peak].place.clone(), inside.clone())),
+            None if others.len() + 1 == own.len() => {
+                between_rings(if above { b } else { a }, observable, &own, lengths)
+            }
+            None => None,
+        };
+        if let Some((place, middle)) = at {
+            let along_second = match was_peak {
+                Some(_) => false,
+                None => {
+                    let apart = |k: usize| ((place[k] - middle[k]) / lengths[k]).abs();
+                    apart(1) > apart(0)
+                }
+            };
+            events[index].indicator = Some((IndicatorKind::Level { along_second }, place));
+            events[index].was_peak = was_peak.is_some();
+        }
+        if let Some(peak) = was_peak {
+            // Kept in its place, so that indices hold; taken away below.
+            events[peak].feature = FeatureKind::Valley;
+        }
+    }
+    events.retain(|one| one.feature != FeatureKind::Valley);
+}
+
+/// The point inside the ring of an event.
+fn inside(event: &Event) -> Option<Vec<f64>> {
+    event.indicator.as_ref().map(|(_, inside)| inside.clone())
+}
+
+/// The saddle at which two rings that lie beside each other merge, and the middle of one of them.
+fn between_rings(
+    point: &Point,
+    observable: usize,
+    rings: &[&Feature],
+    lengths: &[f64],
+) -> Option<(Vec<f64>, Vec<f64>)> {
+    let saddles = present(point, observable, FeatureKind::Valley);
+    let found = rings.iter().find_map(|ring| {
+        let saddle = saddles
+            .iter()
+            .find(|one| one.persistence == ring.persistence)?;
+        Some((saddle.position.clone(), ring.partner.clone()?))
+    })?;
+    // Of rings one within the other the middles are one.
+    let is_beside = rings.iter().any(|ring| {
+        let other = ring.partner.as_ref();
+        other.is_some_and(|other| distance(other, &found.1, lengths) > AT_REST)
+    });
+    is_beside.then_some(found)
 }
 
 /// A ring comes and goes with the moat inside it: one event.

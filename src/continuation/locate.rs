@@ -3,9 +3,12 @@
 use super::change::{Change, Found, changes};
 use super::grid::{Checked, Checks, GridCheck, Leak, share_of_distance};
 use super::label::{self, BifurcationStatus, LabelledPoint, PointType};
+use super::reason::{
+    MOST_NEGATIVE, change_by_modes, coarse, leaks, negative_share, not_checked, said_of, torn,
+};
 use super::root::{Root, root};
-use super::{CellCheck, Finding, Goal, Point, PointStatus, Subject, persistence, words};
-use crate::density::{Density, EstimatedDensity, Kink, Observable};
+use super::{CellCheck, Goal, Point, PointStatus, Subject, persistence, words};
+use crate::density::{EstimatedDensity, Kink, Observable};
 use crate::topology::{Detector, IndicatorKind};
 
 /// So many rows in a row that are not located are one.
@@ -199,8 +202,8 @@ fn by_bracket(
 }
 
 /// The reason of a band that persistence gives.
-const NO_INDICATOR: &str =
-    "no slope or curvature tells of it: the band is from where it is seen to where it is not";
+const NO_INDICATOR: &str = "no slope or curvature tells of it: the band is from where it is seen to where it is not, and more cells \
+     or samples narrow it";
 
 fn by_persistence(
     points: &[&Point],
@@ -262,8 +265,14 @@ fn by_indicator(
     match &on_finer {
         Some(GridCheck::Confirmed(value)) => {
             let density = &a.densities[change.observable];
-            let share = share_of_distance(subject.cell_check) * by_chance(density, checked.place);
-            found.error.grid = share * (value - found.value).abs();
+            let chance = by_chance(density, checked.place);
+            let share = share_of_distance(subject.cell_check) * chance;
+            let grid = share * (value - found.value).abs();
+            // Where a bend lies in its cell is chance: two grids may agree, and both be off by what a scheme makes of it.
+            found.error.grid = match chance > 1.0 && density.density.axes.len() > 1 {
+                true => grid.max(found.error.grid),
+                false => grid,
+            };
             found.value = *value;
         }
         Some(GridCheck::Failed(reason)) => failed = Some(format!("on finer cells: {reason}")),
@@ -313,11 +322,11 @@ fn by_indicator(
         _ => BifurcationStatus::Located,
     });
     row.reason = failed
-        .or_else(|| unsound.map(|point| point.report.status.word().to_owned()))
+        .or_else(|| unsound.map(|point| said_of(point, subject)))
         .or_else(|| is_torn.then(|| torn(wiggles)))
         .or(few_modes)
         .or_else(|| leaks(&found, error, options, subject, [a, b]))
-        .or_else(|| coarse(&found, error, options))
+        .or_else(|| coarse(&found, error, options, &a.densities[change.observable]))
         .or_else(|| lacks_check.then(|| not_checked(options)));
     row
 }
@@ -351,85 +360,6 @@ fn by_chance(estimated: &EstimatedDensity, place: &[f64]) -> f64 {
 /// Whether finer cells could tell what the cells do to a value.
 fn is_checkable(subject: &Subject) -> bool {
     matches!(subject.cell_check, CellCheck::OnFinerCells { .. })
-}
-
-/// The sentence for a value that finer cells could have checked, and have not.
-fn not_checked(options: &Goal) -> String {
-    let why = match options.grid_check {
-        false => "locate.grid_check is \"off\"",
-        true => "the sweep ended before, or holds no checks",
-    };
-    format!("not checked on finer cells ({why}): its error lacks what the cells do to it")
-}
-
-/// The sentence for a value that cells, solver or sampling make uncertain.
-fn coarse(found: &Root, error: f64, options: &Goal) -> Option<String> {
-    let parts = found.error;
-    let (part, remedy) = match parts.sampling >= parts.grid.max(parts.solver) {
-        true => (
-            parts.sampling,
-            "samples move it by {}: more of them are needed",
-        ),
-        false if parts.grid >= parts.solver => (
-            parts.grid,
-            "finer cells move it by {}: more cells are needed",
-        ),
-        false => (
-            parts.solver,
-            "errors of the solver and its bracket come to {}",
-        ),
-    };
-    (error > options.tolerance).then(|| remedy.replace("{}", &format!("{part:.1e}")))
-}
-
-/// The sentence for a value that what leaves Ω makes uncertain, with the axis along which most of it leaves.
-fn leaks(
-    found: &Root,
-    error: f64,
-    options: &Goal,
-    subject: &Subject,
-    points: [&Point; 2],
-) -> Option<String> {
-    if error <= options.tolerance || found.error.leak < 0.5 * error {
-        return None;
-    }
-    let masses = points.map(|point| &point.report.edge_mass);
-    let axes = (0..masses[0].len()).max_by(|&a, &b| masses[0][a].total_cmp(&masses[0][b]));
-    let axis = axes.and_then(|axis| subject.family.model().axes.get(axis))?;
-    Some(format!(
-        "what leaves Ω moves it by {:.1e}: a wider range of {} is needed",
-        found.error.leak, axis.name
-    ))
-}
-
-/// Share of a density's mass that may be negative where its shape is to be believed. What is negative must be positive elsewhere, so
-/// that wiggles of this size hold as much mass as a small peak does.
-pub(super) const MOST_NEGATIVE: f64 = 0.02;
-
-/// Negative mass of a density, as a share of the whole.
-pub(super) fn negative_share(density: &Density) -> f64 {
-    let masses = density.masses();
-    let negative: f64 = masses.iter().map(|mass| (-mass).max(0.0)).sum();
-    negative / masses.iter().sum::<f64>().abs().max(f64::MIN_POSITIVE)
-}
-
-/// The sentence for a value read off a density that is not resolved.
-fn torn(wiggles: f64) -> String {
-    format!(
-        "{:.0} % of the density there is negative: wiggles that the cells do not resolve",
-        100.0 * wiggles
-    )
-}
-
-/// The sentence for a value read off densities that too few modes carry.
-fn change_by_modes(point: &Point) -> Option<String> {
-    let mut findings = point.report.findings.iter();
-    findings.find_map(|finding| match finding {
-        Finding::FewModes { change } => Some(format!(
-            "more modes change the densities by {change:.1e}: more of them are needed"
-        )),
-        _ => None,
-    })
 }
 
 /// Mass in the outermost cells below which what leaves Ω matters nowhere.

@@ -18,6 +18,7 @@ mod locate;
 pub mod map;
 mod observer;
 mod persistence;
+mod reason;
 mod report;
 mod root;
 mod shard;

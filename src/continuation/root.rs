@@ -42,7 +42,7 @@ pub(super) fn root(points: &[&Point], crossing: &Crossing, confidence: f64) -> R
     let (a, b) = (points[crossing.left], points[crossing.left + 1]);
     let [low, high] = &crossing.ends;
     let value = between((a.value, low.value), (b.value, high.value));
-    let slope = (high.value - low.value) / (b.value - a.value);
+    let slope = slope(points, crossing);
     let share = (value - a.value) / (b.value - a.value);
     let mix = |of: fn(&Indicator) -> f64| (1.0 - share) * of(low) + share * of(high);
     let solver = a.report.solver_error.max(b.report.solver_error)
@@ -59,6 +59,52 @@ pub(super) fn root(points: &[&Point], crossing: &Crossing, confidence: f64) -> R
         slope,
         error,
     }
+}
+
+/// Steps of the sweep on either side of a crossing over which the slope of a sampled indicator is looked at.
+const STEPS_BESIDE: usize = 3;
+
+/// Change of the indicator per unit of the parameter. A sampled one is read by a fit whose window and weights change with the parameter: where they do,
+/// the indicator jumps, and across a jump it is as steep as the bracket is narrow. There the gentlest slope in the neighbourhood is what an error
+/// of the indicator moves its zero by.
+fn slope(points: &[&Point], crossing: &Crossing) -> f64 {
+    let [low, high] = &crossing.ends;
+    let at = |index: usize| points[index].value;
+    let local = (high.value - low.value) / (at(crossing.left + 1) - at(crossing.left));
+    if low.sampling_error == 0.0 && high.sampling_error == 0.0 {
+        return local;
+    }
+    let value = |index: usize| {
+        let indicators = &points[index]
+            .detections
+            .get(crossing.observable)?
+            .indicators;
+        indicators
+            .iter()
+            .find(|one| one.kind == low.kind)
+            .map(|one| one.value)
+    };
+    // Values of one bracket lie close to each other: places are counted in steps of the sweep.
+    let reach = STEPS_BESIDE as f64 * typical_step(points);
+    let (from, to) = (at(crossing.left) - reach, at(crossing.left + 1) + reach);
+    let below = (0..=crossing.left).rev().filter(|&index| at(index) >= from);
+    let slopes = below.flat_map(|left| {
+        let above = (crossing.left + 1..points.len()).filter(|&index| at(index) <= to);
+        above.filter_map(move |right| Some((value(right)? - value(left)?) / (at(right) - at(left))))
+    });
+    // One of the other sign belongs to another zero.
+    slopes
+        .filter(|one| one.signum() == local.signum() && *one != 0.0)
+        .fold(
+            local,
+            |least, one| if one.abs() < least.abs() { one } else { least },
+        )
+}
+
+/// The median distance of neighbouring points would be that of brackets; the mean is that of the sweep.
+fn typical_step(points: &[&Point]) -> f64 {
+    let (first, last) = (points[0].value, points[points.len() - 1].value);
+    (last - first) / (points.len() - 1).max(1) as f64
 }
 
 /// Share of a bracket that stands for the error of the straight line where no third point shows its curvature.

@@ -109,6 +109,7 @@ pub fn sweep_shard(
         cancellation,
         observer,
         remaining: values.len(),
+        most_extra: MOST_EXTRA.max(MOST_EXTRA_A_VALUE * values.len()),
         may_fail: shard.number() > 1,
         points: Vec::new(),
         flanks: Vec::new(),
@@ -139,8 +140,9 @@ pub fn sweep_shard(
 
 /// How often a step between given values is halved at most, where densities change fast.
 const HALVINGS: usize = 4;
-/// Solves beyond the given values at most.
+/// Solves beyond the given values at most, for any sweep, and for each of its values.
 const MOST_EXTRA: usize = 400;
+const MOST_EXTRA_A_VALUE: usize = 10;
 
 struct Run<'a> {
     source: &'a dyn DensitySource,
@@ -151,6 +153,7 @@ struct Run<'a> {
     cancellation: &'a Cancellation,
     observer: &'a mut dyn Observer,
     remaining: usize,
+    most_extra: usize,
     /// Whether the first value may fail: where it is not the first of the sweep.
     may_fail: bool,
     /// Ascending in the parameter.
@@ -238,7 +241,7 @@ impl Run<'_> {
 
     /// Solves further values until every change is as narrow as wanted, or as the data allow.
     fn narrow(&mut self) -> Result<(), SweepError> {
-        for _ in 0..MOST_EXTRA {
+        for _ in 0..self.most_extra {
             let Some(value) = self.next() else {
                 break;
             };

@@ -1,4 +1,4 @@
-//! Local time scales of the drift from its Jacobian.
+//! Local time scales of the drift from its Jacobian, and of a noise whose amplitude depends on what it drives.
 
 use nalgebra::{DMatrix, Schur};
 
@@ -8,10 +8,14 @@ use crate::system::System;
 /// Share of a cell's width that a coordinate is moved by for a difference quotient.
 const SHARE: f64 = 1e-3;
 
+/// A kick of a noise with amplitude b changes b itself by b'√dt of its size. Counted as a rate so many times b'², it stays below a sixth at a tenth of
+/// the time scale: walls at which the noise vanishes are then not jumped over.
+const KICKS: f64 = 4.0;
+
 /// What the eigenvalues λ of the drift's Jacobian at a state say.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct LocalRates {
-    /// Largest |λ|.
+    /// Largest |λ|, or four times the square of a noise amplitude's derivative along the axis that it drives, where that is larger.
     pub(super) fastest: f64,
     /// Damping -2 Re λ of the energy of the fastest oscillating pair; `None` where nothing oscillates.
     pub(super) damping: Option<f64>,
@@ -51,7 +55,7 @@ pub(super) fn local_rates(
     let fastest = eigenvalues
         .iter()
         .map(|value| value.norm())
-        .fold(0.0, f64::max);
+        .fold(noise_rate(system, state, &width), f64::max);
     let oscillating = eigenvalues.iter().filter(|value| value.im > 0.0);
     let pair = oscillating.max_by(|a, b| a.im.total_cmp(&b.im));
     Some(LocalRates {
@@ -60,11 +64,30 @@ pub(super) fn local_rates(
     })
 }
 
+/// Largest 4 b'² over the noises.
+fn noise_rate(system: &dyn System, state: &[f64], width: &dyn Fn(usize) -> f64) -> f64 {
+    let axes = system.noise_axes().iter().enumerate();
+    let rates = axes.map(|(channel, &axis)| {
+        if system.additive_amplitude(channel).is_some() {
+            return 0.0;
+        }
+        let step = SHARE * width(axis);
+        let at = |by: f64| {
+            let mut state = state.to_vec();
+            state[axis] += by;
+            system.amplitude_at(channel, 0.0, &state)
+        };
+        let slope = (at(step) - at(-step)) / (2.0 * step);
+        KICKS * slope * slope
+    });
+    rates.filter(|rate| rate.is_finite()).fold(0.0, f64::max)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::space::Axis;
-    use crate::system::registry;
+    use crate::system::{Interpretation, TypedModel, registry};
 
     #[test]
     fn rates_of_a_duffing_oscillator_are_those_of_its_linearisation() {
@@ -87,6 +110,23 @@ mod tests {
         assert!((rates.damping.unwrap() - 0.1).abs() < 1e-8, "{rates:?}");
         assert_eq!(local_rates(&*system, &space, &[1.0, 1e-5]), None);
         assert_eq!(local_rates(&*system, &space, &[3.0, 1.0]), None);
+    }
+
+    #[test]
+    fn a_noise_that_depends_on_what_it_drives_has_a_rate() {
+        let model = TypedModel::new("genetic", "Two alleles", ["x"])
+            .with_equation("x", "0.5 - x")
+            .with_noise("x", ["2 x (1 - x)"])
+            .with_interpretation(Interpretation::Ito)
+            .build()
+            .unwrap();
+        let system = model.system_with(&[]).unwrap();
+        let space = CellSpace::new(vec![Axis::uniform(0.0, 1.0, 50).unwrap()]).unwrap();
+        // b' = 2 (1 - 2x): 1.6 at 0.1, and nothing in the middle, where only the drift is left.
+        for (x, fastest) in [(0.1, 4.0 * 1.6 * 1.6), (0.5, 1.0)] {
+            let rates = local_rates(&*system, &space, &[x]).unwrap();
+            assert!((rates.fastest - fastest).abs() < 1e-6, "{rates:?}");
+        }
     }
 
     #[test]

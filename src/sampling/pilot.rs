@@ -31,6 +31,10 @@ const DAMPING_SHARE: f64 = 0.01;
 const ANGLE: f64 = 0.1;
 /// Largest increase of the noise power by the cells, relative and in units of the spread of each axis.
 const NOISE_SHARE: f64 = 0.05;
+/// Largest relative error of the density, from one end of its spread to the other, that sampled drifts may make along one axis.
+const DRIFT_NOISE: f64 = 0.03;
+/// Longest map step for that, as a share of the time that the noise takes to cross the spread.
+const CROSSING_SHARE: f64 = 0.25;
 /// Most steps in one automatic map step.
 const MOST_MAP_STEPS: f64 = 1e5;
 
@@ -76,7 +80,12 @@ impl Pilot {
     /// In these units it is the relative increase of the noise power. For a damped oscillator a relative increase
     /// ε of the variance of both axes moves the density by a total variation of 0.37 ε. At least one time step, at
     /// most 1e5.
-    pub fn automatic_map_step(&self, time_step: f64) -> f64 {
+    ///
+    /// And not so short that samples cannot tell the drift: over a map step n samples a cell give it to √(2D/(n Δt)), and what that
+    /// makes of log p adds up along an axis to √(2 h s/(D m Δt)), s the standard deviation and m the samples of
+    /// all cells across, on four standard deviations of the other axes. That is
+    /// kept below 3 %, unless it takes longer than a quarter of s²/D.
+    pub fn automatic_map_step(&self, time_step: f64, samples: usize) -> f64 {
         let (mut cells, mut noise) = (0.0, 0.0);
         for (axis, &deviation) in self.standard_deviation.iter().enumerate() {
             let square = self.mean_square_width[axis];
@@ -86,12 +95,32 @@ impl Pilot {
             noise += self.noise_intensity[axis] / variance;
         }
         let longest = MOST_MAP_STEPS * time_step;
-        let wanted = cells / (NOISE_SHARE * noise);
+        let wanted = (cells / (NOISE_SHARE * noise)).max(self.map_step_for_samples(samples));
         if wanted.is_finite() {
             wanted.clamp(time_step, longest)
         } else {
             longest
         }
+    }
+}
+
+impl Pilot {
+    /// The shortest map step in which the samples tell the drift along every noisy axis.
+    fn map_step_for_samples(&self, samples: usize) -> f64 {
+        let cells_of = |axis: usize| {
+            let width = self.mean_square_width[axis].sqrt();
+            (4.0 * self.standard_deviation[axis] / width).max(1.0)
+        };
+        let all: f64 = (0..self.noise_intensity.len()).map(cells_of).product();
+        let step = |axis: usize| {
+            let (spread, noise) = (self.standard_deviation[axis], self.noise_intensity[axis]);
+            let width = self.mean_square_width[axis].sqrt();
+            let across = samples as f64 * all / cells_of(axis);
+            let wanted = 2.0 * width * spread / (noise * across * DRIFT_NOISE * DRIFT_NOISE);
+            wanted.min(CROSSING_SHARE * spread * spread / noise)
+        };
+        let axes = (0..self.noise_intensity.len()).filter(|&axis| self.noise_intensity[axis] > 0.0);
+        axes.map(step).fold(0.0, f64::max)
     }
 }
 

@@ -3,8 +3,8 @@
 use super::critical::{Critical, height_above};
 use super::field::Field;
 use super::indicator::{
-    Found, at_centre, beside_kink, corrected, fold, put_right, quartic, ring_slope, shoulder,
-    shoulders,
+    Found, at_centre, beside_kink, corrected, fold, level, put_right, quartic, ring_slope,
+    shoulder, shoulders,
 };
 use super::persistence::{Component, Grid, components};
 use super::refine::refine;
@@ -344,6 +344,7 @@ impl Detector for PersistenceDetector {
             }
             IndicatorKind::Fold => fold(density, near),
             IndicatorKind::Ring => ring_slope(density, near),
+            IndicatorKind::Level { along_second } => level(density, near, along_second),
             IndicatorKind::Quartic => quartic(density),
             kind => at_centre(density).into_iter().find(|one| one.kind == kind),
         }

@@ -8,7 +8,8 @@ use super::walk::{Node, Walked};
 use super::{CurveOptions, CurvePoint, CurveStart, CurveWork, Plane};
 use crate::cancellation::Cancellation;
 use crate::continuation::grid::share_of_distance;
-use crate::continuation::locate::{MOST_NEGATIVE, QUIET, negative_share};
+use crate::continuation::locate::QUIET;
+use crate::continuation::reason::{MOST_NEGATIVE, negative_share};
 use crate::continuation::{BifurcationStatus, CellCheck, DensitySource, ErrorParts, PointStatus};
 use crate::topology::{Detector, IndicatorKind, two_sided_limit};
 

@@ -50,7 +50,11 @@ pub(super) fn choose_steps(
         (options.integrator, options.seed),
         cancellation,
     )?;
-    let longest = || largest(&pilots, |pilot| pilot.automatic_map_step(time_step));
+    let longest = || {
+        largest(&pilots, |pilot| {
+            pilot.automatic_map_step(time_step, options.samples)
+        })
+    };
     let map_step = options.map_step.or(longest);
     let mut cells: Vec<usize> = pilots
         .iter()

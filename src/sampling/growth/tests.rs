@@ -99,7 +99,7 @@ fn the_exact_density_of_the_oscillator_comes_out_within_three_per_cent() {
     let (system, space) = (coulomb(0.0), square(3.0, 50));
     let pilot = pilot(&*system, &space, 1, &Cancellation::new()).unwrap();
     let time_step = pilot.automatic_time_step(Integrator::StochasticHeun);
-    let map_step = pilot.automatic_map_step(time_step);
+    let map_step = pilot.automatic_map_step(time_step, 2000);
     let options = SamplingOptions {
         map_step,
         time_step,

@@ -41,10 +41,10 @@ fn a_linear_oscillator_is_measured_and_gets_its_steps() {
     let euler = pilot.automatic_time_step(Integrator::EulerMaruyama);
     assert!((euler - 2e-4).abs() < 1e-8, "{euler}");
     // 2 · (0.0144/12)/0.25 = 0.05 Δt · 0.005/0.25 gives 9.6 where both variances are equal.
-    let map_step = pilot.automatic_map_step(time_step);
+    let map_step = pilot.automatic_map_step(time_step, 2000);
     assert!((map_step / 9.6 - 1.0).abs() < 0.1, "{map_step}");
-    assert!((pilot.automatic_map_step(1e-5) - 1.0).abs() < 1e-12);
-    assert_eq!(pilot.automatic_map_step(50.0), 50.0);
+    assert!((pilot.automatic_map_step(1e-5, 2000) - 1.0).abs() < 1e-12);
+    assert_eq!(pilot.automatic_map_step(50.0, 2000), 50.0);
 }
 
 #[test]
@@ -92,6 +92,6 @@ fn a_system_that_runs_away_leaves_the_centre() {
     assert!(pilot.share_inside < 0.05, "{}", pilot.share_inside);
     assert!(!pilot.cells.is_empty());
     let time_step = pilot.automatic_time_step(Integrator::StochasticHeun);
-    let map_step = pilot.automatic_map_step(time_step);
+    let map_step = pilot.automatic_map_step(time_step, 2000);
     assert!(time_step > 0.0 && map_step >= time_step && map_step.is_finite());
 }

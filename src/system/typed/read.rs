@@ -155,11 +155,9 @@ impl Reader<'_> {
     ) -> Result<(Reading, Vec<String>), TypedModelError> {
         let period = self.period(&typed_drift, &noise)?;
         let drift_expressions = self.ito_drift(&typed_drift, &noise)?;
+        // Where an amplitude bends, so does the density; and an amplitude of coloured noise is a part of the drift.
         let mut rough = drift_expressions.clone();
-        if self.model.noise_kind.is_coloured() {
-            // An amplitude is then a part of the drift.
-            rough.extend(noise.iter().flatten());
-        }
+        rough.extend(noise.iter().flatten());
         let (surfaces, notes) = self.surfaces(&rough)?;
         let scope = self.scope;
         let own = noise.iter().zip(&noise_axes);
@@ -363,10 +361,10 @@ impl Reader<'_> {
         Ok(drift)
     }
 
-    /// Planes where the drift may not be smooth, and sentences on places that are no planes of one coordinate.
-    fn surfaces(&mut self, drift: &[Expression]) -> Result<(Planes, Vec<String>), TypedModelError> {
+    /// Planes where drift or noise may not be smooth, and sentences on places that are no planes of one coordinate.
+    fn surfaces(&mut self, rough: &[Expression]) -> Result<(Planes, Vec<String>), TypedModelError> {
         let (mut surfaces, mut notes) = (Vec::new(), Vec::new());
-        for &expression in drift {
+        for &expression in rough {
             for kink in self.scope.graph_mut().kinks(expression)? {
                 let why = match kink.place {
                     KinkPlace::Surfaces(planes) => {
@@ -385,7 +383,7 @@ impl Reader<'_> {
                 };
                 let argument = self.scope.typeset(kink.argument);
                 let note = format!(
-                    "The drift is not smooth where {argument} = 0, {why}: no face of the grid lies there."
+                    "Drift or noise is not smooth where {argument} = 0, {why}: no face of the grid lies there."
                 );
                 if !notes.contains(&note) {
                     notes.push(note);

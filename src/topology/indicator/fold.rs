@@ -4,10 +4,12 @@
 //! Between the two a curve leads along which the density is level across: the crest of a ridge, or the floor of a trench. Along it the
 //! slope has an extremum, where the curvature along the curve is zero. That point is there before the birth too, as a shoulder; the slope there,
 //! signed so that it is positive when both critical points exist, passes zero linearly.
+//!
+//! Where a force bends, at a plane, the curvature along the curve jumps there instead of passing zero, and the slope has its extremum on the plane.
 
 use super::{Indicator, IndicatorKind};
 use crate::density::EstimatedDensity;
-use crate::topology::field::{Curvature, Field, Jet};
+use crate::topology::field::{Curvature, Field, Jet, Stencil};
 
 /// Most steps of Newton's method.
 const MOST_STEPS: usize = 20;
@@ -21,19 +23,143 @@ const SETTLED: f64 = 1e-7;
 /// The shoulder nearest to a place; `None` for marginals, for sampled densities, and where there is none.
 pub(crate) fn fold(estimated: &EstimatedDensity, near: &[f64]) -> Option<Indicator> {
     let field = Field::new(estimated).filter(|_| near.len() == 2 && !estimated.is_noisy())?;
-    let place = settle(&field, near)?;
+    let smooth = settle(&field, near);
+    let away = |place: &[f64]| {
+        let cells = (0..2)
+            .map(|k| (place[k] - near[k]).abs() / (field.cell_width(k, near[k]) * field.unit(k)));
+        cells.fold(0.0, f64::max)
+    };
+    let farthest = smooth.as_ref().map_or(FARTHEST, |place| away(place));
+    if let Some(found) = at_bend(estimated, &field, near).filter(|one| away(&one.place) < farthest)
+    {
+        return found.indicator(estimated, &field);
+    }
+    let place = smooth?;
     let fine = field.stencil(&place, 0)?;
     let rough = field.stencil(&place, 1)?;
     let (along, _) = directions(&fine.jet(&estimated.density.values));
     let direction = oriented(&fine.jet(&estimated.density.values), along);
     let slope = |jet: Jet| jet.slope(direction) / jet.value;
-    Indicator::derive(
+    let blur = blur(estimated, &field, &place);
+    let mut found = Indicator::derive(
         estimated,
         IndicatorKind::Fold,
         place,
         |values| slope(fine.jet(values)),
         |values| slope(rough.jet(values)),
-    )
+    )?;
+    found.systematic_error += blur;
+    Some(found)
+}
+
+/// Cells on either side of a bend in which the density is blurred, see [`blur`].
+const BLURRED: f64 = 4.0;
+
+/// What is not known of a slope near a place where a force bends inside a cell: the scheme sees the bend blurred over the cell, and the slope of log p at it may be
+/// off by a quarter of the cell's width times the jump of its curvature.
+fn blur(estimated: &EstimatedDensity, field: &Field<'_>, place: &[f64]) -> f64 {
+    let of = |k: usize, at: f64| -> Option<f64> {
+        let width = field.cell_width(k, at);
+        let is_near = (place[k] - at).abs() <= BLURRED * width * field.unit(k);
+        if !is_near || field.axes()[k].has_face_at(at) {
+            return None;
+        }
+        let mut on = place.to_vec();
+        on[k] = at;
+        let curvature = |at: &Vec<f64>| {
+            let jet = field.jet(at)?;
+            Some(jet.second[2 * k] / jet.value - (jet.first[k] / jet.value).powi(2))
+        };
+        let [below, above] = AtBend::beside(&on, k, field.unit(k));
+        Some(0.25 * width * (curvature(&above)? - curvature(&below)?).abs())
+    };
+    let kinks = estimated.structure.kinks.iter();
+    let bends = kinks.filter(|kink| kink.is_bend() && kink.axis < 2);
+    bends.filter_map(|kink| of(kink.axis, kink.at)).sum()
+}
+
+/// A place on a plane where a force bends, at which the slope across the plane has an extremum: the density is level along the plane there, and curved to
+/// different sides below and above it.
+struct AtBend {
+    place: Vec<f64>,
+    /// The axis that the plane stands on.
+    across: usize,
+    /// Whether the slope rises to the plane and falls from it.
+    rises: bool,
+}
+
+/// Distance from a plane at which its sides are told apart, as a share of the range.
+const ASIDE: f64 = 1e-9;
+
+impl AtBend {
+    /// Places just below and just above the plane.
+    fn beside(place: &[f64], across: usize, unit: f64) -> [Vec<f64>; 2] {
+        [-1.0, 1.0].map(|side| {
+            let mut at = place.to_vec();
+            at[across] += side * ASIDE * unit;
+            at
+        })
+    }
+
+    /// The slope in the direction in which the curvature falls; both sides say the same but for their errors.
+    fn indicator(self, estimated: &EstimatedDensity, field: &Field<'_>) -> Option<Indicator> {
+        let sign = if self.rises { 1.0 } else { -1.0 };
+        let beside = Self::beside(&self.place, self.across, field.unit(self.across));
+        let stencils = |level: usize| -> Option<Vec<Stencil>> {
+            beside.iter().map(|at| field.stencil(at, level)).collect()
+        };
+        let (fine, rough) = (stencils(0)?, stencils(1)?);
+        let across = self.across;
+        let slope = |stencils: &[Stencil], values: &[f64]| {
+            let jets = stencils.iter().map(|one| one.jet(values));
+            0.5 * sign * jets.map(|jet| jet.first[across] / jet.value).sum::<f64>()
+        };
+        let apart = |values: &[f64]| {
+            let [below, above] = [&fine[0], &fine[1]].map(|one| one.jet(values));
+            (above.first[across] / above.value - below.first[across] / below.value).abs()
+        };
+        let blur = blur(estimated, field, &self.place);
+        let mut found = Indicator::derive(
+            estimated,
+            IndicatorKind::Fold,
+            self.place,
+            |values| slope(&fine, values),
+            |values| slope(&rough, values),
+        )?;
+        found.systematic_error += apart(&estimated.density.values) + blur;
+        Some(found)
+    }
+}
+
+/// The nearest of them.
+fn at_bend(estimated: &EstimatedDensity, field: &Field<'_>, near: &[f64]) -> Option<AtBend> {
+    let kinks = estimated.structure.kinks.iter();
+    let bends = kinks.filter(|kink| kink.is_bend() && kink.axis < 2);
+    let found = bends.filter_map(|kink| {
+        let (across, along) = (kink.axis, 1 - kink.axis);
+        let mut place = near.to_vec();
+        place[across] = kink.at;
+        for _ in 0..MOST_STEPS {
+            let jet = field.jet(&place)?;
+            let step = -jet.first[along] / jet.second[2 * along];
+            let cell = LONGEST * field.cell_width(along, near[along]);
+            place[along] += step.clamp(-cell, cell) * field.unit(along);
+            field.cell_at(&place)?;
+            if step.abs() < SETTLED * cell {
+                break;
+            }
+        }
+        let [below, above] = AtBend::beside(&place, across, field.unit(across))
+            .map(|at| field.jet(&at).map(|jet| jet.second[2 * across] > 0.0));
+        let rises = below?;
+        (above? != rises).then_some(AtBend {
+            place,
+            across,
+            rises,
+        })
+    });
+    let distance = |one: &AtBend| (one.place[one.across] - near[one.across]).abs();
+    found.min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }
 
 /// The direction along the curve and the one across: of the smaller and of the larger curvature.

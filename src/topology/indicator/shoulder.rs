@@ -131,7 +131,51 @@ pub(crate) fn shoulders(estimated: &EstimatedDensity) -> Vec<Flank> {
             value: if is_highest { here } else { -here },
         })
     });
-    found.chain(bends(estimated, &field)).collect()
+    let others = bends(estimated, &field).chain(kinks(estimated, &field));
+    found.chain(others).collect()
+}
+
+/// The extrema that the slope has beside its jumps: a pair is born there when one side turns its sign.
+fn kinks<'a>(
+    estimated: &'a EstimatedDensity,
+    field: &'a Field<'_>,
+) -> impl Iterator<Item = Flank> + 'a {
+    let least = estimated.negligible_height() * estimated.density.maximum();
+    let kinks = estimated.structure.kinks.iter();
+    let kinks = kinks.filter(|kink| !kink.is_bend() && estimated.is_by_quadrature());
+    kinks.flat_map(move |kink| {
+        let beside = |step: f64| field.jet(&[kink.at + step * ASIDE * field.unit(0)]);
+        let (Some(below), Some(above)) = (beside(-1.0), beside(1.0)) else {
+            return Vec::new();
+        };
+        let slope = |jet: &Jet| jet.first[0] / (field.unit(0) * jet.value);
+        let falls = |jet: &Jet| jet.second[0] * jet.value < jet.first[0] * jet.first[0];
+        let jumps_up = slope(&above) > slope(&below);
+        // The higher side is a maximum where the slope falls away from the jump, the lower one a minimum where it rises.
+        let (highest, lowest) = match jumps_up {
+            true => (
+                falls(&above).then_some(&above),
+                falls(&below).then_some(&below),
+            ),
+            false => (
+                (!falls(&below)).then_some(&below),
+                (!falls(&above)).then_some(&above),
+            ),
+        };
+        let flank = |jet: &Jet, rising: bool| Flank {
+            rising,
+            place: kink.at,
+            value: if rising { slope(jet) } else { -slope(jet) },
+        };
+        let flanks = [(highest, true), (lowest, false)];
+        let flanks = flanks
+            .into_iter()
+            .filter_map(|(jet, rising)| Some((jet?, rising)));
+        flanks
+            .filter(|(jet, _)| jet.value > least)
+            .map(|(jet, rising)| flank(jet, rising))
+            .collect()
+    })
 }
 
 /// Whether a kink lies on a face, or in a cell beside it: slopes on both sides of it do not follow from each other.
