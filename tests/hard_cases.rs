@@ -179,7 +179,7 @@ const CASES: &[Case] = &[
         set: &[],
         words: "SGCM, noise between two walls",
         truths: &[("x", 2.0)],
-        expected: Partly(0, "more samples"),
+        expected: Partly(0, "needed"),
     },
 ];
 

@@ -64,6 +64,9 @@ pub(super) fn root(points: &[&Point], crossing: &Crossing, confidence: f64) -> R
 /// Steps of the sweep on either side of a crossing over which the slope of a sampled indicator is looked at.
 const STEPS_BESIDE: usize = 3;
 
+/// Times as steep as the gentlest slope nearby from which on it is a jump.
+const JUMP: f64 = 10.0;
+
 /// Change of the indicator per unit of the parameter. A sampled one is read by a fit whose window and weights change with the parameter: where they do,
 /// the indicator jumps, and across a jump it is as steep as the bracket is narrow. There the gentlest slope in the neighbourhood is what an error
 /// of the indicator moves its zero by.
@@ -93,12 +96,18 @@ fn slope(points: &[&Point], crossing: &Crossing) -> f64 {
         above.filter_map(move |right| Some((value(right)? - value(left)?) / (at(right) - at(left))))
     });
     // One of the other sign belongs to another zero.
-    slopes
+    let gentlest = slopes
         .filter(|one| one.signum() == local.signum() && *one != 0.0)
         .fold(
             local,
-            |least, one| if one.abs() < least.abs() { one } else { least },
-        )
+            |least, one| {
+                if one.abs() < least.abs() { one } else { least }
+            },
+        );
+    match local.abs() > JUMP * gentlest.abs() {
+        true => gentlest,
+        false => local,
+    }
 }
 
 /// The median distance of neighbouring points would be that of brackets; the mean is that of the sweep.

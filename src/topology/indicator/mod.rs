@@ -200,13 +200,9 @@ impl Indicator {
             Variants::Jackknife(all) => all.iter().map(|one| function(one)).collect(),
             _ => Vec::new(),
         };
-        // What noise makes of this gap is not taken off: a fit of higher degree is noisier, and what it misses less hides in that. Over the wide
-        // windows of sampled densities terms of higher degree fall by about half each.
-        let missed = match variants {
-            Variants::Jackknife(_) => MISSED_BY_FITS,
-            _ => 1.0,
-        };
-        let rough = missed * (value - rougher(values)).abs();
+        let gap = |values: &[f64]| function(values) - rougher(values);
+        let noise = variants.sampling_error(gap);
+        let rough = (gap(values).abs() - noise).max(0.0);
         let scheme = variants.second_scheme();
         let scheme = scheme.map_or(0.0, |values| (function(values) - value).abs());
         let sampling_error = variants.sampling_error(&function);
@@ -226,9 +222,6 @@ impl Indicator {
             })
     }
 }
-
-/// What a fit misses, over what the next higher degree changes: the sum of 1, 1/2, 1/4, …
-const MISSED_BY_FITS: f64 = 2.0;
 
 /// Cells on either side of a place that its derivatives may depend on.
 const NEIGHBOURHOOD: usize = 4;
