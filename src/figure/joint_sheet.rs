@@ -125,6 +125,37 @@ fn widest(look: &Look, lines: &[String]) -> Result<f64, DrawError> {
     Ok(least)
 }
 
+/// The sheet with the lines above its maps; `arranged` gives the sheet whose maps are so wide at least. Many maps below each other fill no page of a journal:
+/// without letters, or with values in fewer digits, there may be room for a second column.
+fn with_lines(
+    scene: &SweepScene<'_>,
+    found: &[Found<'_>],
+    arranged: &dyn Fn(f64) -> Result<Sheet, DrawError>,
+) -> Result<(Sheet, Vec<String>), DrawError> {
+    let (family, look) = (scene.family(), &scene.look);
+    let at = |found: &Found<'_>| names::at(family, found.value);
+    let short = |found: &Found<'_>| names::at(family, symbols::rounded_to(found.value, FEW));
+    let numbered = found.iter().enumerate();
+    let lettered = numbered.map(|(number, found)| lettered(look, number, at(found)));
+    let lines: Vec<String> = lettered.collect();
+    let sheet = arranged(widest(look, &lines)?)?;
+    if sheet.columns > 1 || found.len() <= MOST_IN_A_TOWER {
+        return Ok((sheet, lines));
+    }
+    let barer: [Vec<String>; 2] = [
+        found.iter().map(at).collect(),
+        found.iter().map(short).collect(),
+    ];
+    for words in barer {
+        let is_told_apart = words.windows(2).all(|pair| pair[0] != pair[1]);
+        let wider = arranged(widest(look, &words)?)?;
+        if wider.columns > 1 && is_told_apart {
+            return Ok((wider, words));
+        }
+    }
+    Ok((sheet, lines))
+}
+
 /// All maps of a pair on one sheet, with the same windows; `None` for fewer than two densities.
 pub(super) fn draw(
     scene: &SweepScene<'_>,
@@ -144,36 +175,19 @@ pub(super) fn draw(
         return Ok(None);
     }
     let density = names::density(family, watched);
-    let at = |found: &Found<'_>| names::at(family, found.value);
-    let with_letters = found.iter().enumerate();
-    let with_letters = with_letters.map(|(number, found)| lettered(look, number, at(found)));
-    let mut lines: Vec<String> = with_letters.collect();
-    let mut least = widest(look, &lines)?;
-    let is_tower = |least: f64| {
-        let sheet = Sheet::new(look, &found, (140.0, BETWEEN), least);
-        sheet.columns == 1 && found.len() > MOST_IN_A_TOWER
-    };
-    if is_tower(least) {
-        // Many maps below each other fill no page of a journal: without letters, and with values in fewer digits, there is room for a second column.
-        lines = found.iter().map(at).collect();
-        least = widest(look, &lines)?;
-        let short = |found: &Found<'_>| names::at(family, symbols::rounded_to(found.value, FEW));
-        let mut rounded: Vec<String> = found.iter().map(short).collect();
-        let is_told_apart = rounded.windows(2).all(|pair| pair[0] != pair[1]);
-        if is_tower(least) && is_told_apart {
-            least = widest(look, &rounded)?;
-            std::mem::swap(&mut lines, &mut rounded);
-        }
-    }
     let vertical = |high: f64| Scale::vertical(look, y, high, &names::axis(family, second));
-    // The bar and the labels of the ordinate hardly depend on how high the maps are: a first sheet measures them.
-    let first_sheet = Sheet::new(look, &found, (140.0, BETWEEN), least);
-    let bar_width = first_sheet.bar(look, &density)?.width();
-    let left = MARGIN + vertical(first_sheet.side.1)?.left();
     let horizontal = |long: f64| Scale::horizontal(look, x, long, &names::axis(family, first));
-    let beyond = horizontal(first_sheet.side.0)?.beyond(first_sheet.side.0);
-    let between = BETWEEN.max(beyond + BETWEEN_LABELS);
-    let sheet = Sheet::new(look, &found, (left + bar_width + MARGIN, between), least);
+    let arranged = |least: f64| -> Result<Sheet, DrawError> {
+        // The bar and the labels of the ordinate hardly depend on how high the maps are: a first sheet measures them.
+        let first_sheet = Sheet::new(look, &found, (140.0, BETWEEN), least);
+        let bar_width = first_sheet.bar(look, &density)?.width();
+        let left = MARGIN + vertical(first_sheet.side.1)?.left();
+        let beyond = horizontal(first_sheet.side.0)?.beyond(first_sheet.side.0);
+        let between = BETWEEN.max(beyond + BETWEEN_LABELS);
+        let beside = left + bar_width + MARGIN;
+        Ok(Sheet::new(look, &found, (beside, between), least))
+    };
+    let (sheet, lines) = with_lines(scene, &found, &arranged)?;
     let bar = sheet.bar(look, &density)?;
     let across = horizontal(sheet.side.0)?;
     let up = vertical(sheet.side.1)?;
