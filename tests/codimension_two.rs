@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod common;
+#[path = "common/sweeps.rs"]
+mod sweeps;
 
 use common::pbif;
 use pbif::cancellation::Cancellation;
@@ -11,7 +13,7 @@ use pbif::continuation::curve::{
     CodimensionTwoKind, CurveOptions, CurveStart, CurveTree, EndReason, Plane, codimension_two,
     follow_all,
 };
-use pbif::sweep_file::SweepFile;
+use sweeps::prepared;
 
 /// Peaks of the density are zeros of the drift: the centre splits at a = 0, and for b > 0 two peaks are born away from it at a = -b²/4.
 const TRICRITICAL: &str = r#"
@@ -78,9 +80,18 @@ fn tree(
     second: (&str, f64, f64),
     (held, largest_step): (f64, f64),
 ) -> CurveTree {
+    checked_tree(text, first, second, (held, largest_step, 8))
+}
+
+/// The same with so many points from one check on finer cells to the next.
+fn checked_tree(
+    text: &str,
+    first: (&str, f64, f64),
+    second: (&str, f64, f64),
+    (held, largest_step, check_every): (f64, f64, usize),
+) -> CurveTree {
     let never = Cancellation::new();
-    let sweep = SweepFile::parse("curve.toml", text).validate().unwrap();
-    let sweep = sweep.prepare(&never).unwrap();
+    let sweep = prepared(text, &[]);
     let result = sweep.run(&never, &mut ()).unwrap();
     let subject = sweep.problem.subject();
     let mut rows = result.labels.iter();
@@ -90,6 +101,7 @@ fn tree(
     let options = CurveOptions {
         tolerance: 1e-3,
         largest_step,
+        check_every,
         ..CurveOptions::default()
     };
     follow_all(
@@ -212,6 +224,20 @@ fn the_curve_goes_on_beyond_a_cusp_onto_the_other_fold() {
     assert!(off <= points[0].error, "{:?}", points[0]);
 }
 
+#[test]
+fn a_cusp_of_a_fold_that_no_finer_cells_have_checked_is_unchecked() {
+    let (h, a) = (("h", -0.4, 0.4), ("a", -0.3, 1.0));
+    for (every, status) in [
+        (0, BifurcationStatus::Unchecked),
+        (8, BifurcationStatus::Located),
+    ] {
+        let tree = checked_tree(CUSP, h, a, (0.8, 0.025, every));
+        let points = codimension_two(&tree.curves);
+        assert_eq!(points.len(), 1);
+        assert_eq!(points[0].status, status);
+    }
+}
+
 /// The centre splits at a = 0, and two pairs of a peak and a valley are born at x = ±1 where c = 0: both lines are exact, and cross.
 const CROSSING: &str = r#"
 [system.equations]
@@ -238,8 +264,7 @@ x = { from = -1.6, to = 1.6, count = 160 }
 #[test]
 fn curves_that_cross_are_told_with_where_they_do() {
     let never = Cancellation::new();
-    let sweep = SweepFile::parse("map.toml", CROSSING).validate().unwrap();
-    let sweep = sweep.prepare(&never).unwrap();
+    let sweep = prepared(CROSSING, &[]);
     let map = sweep.map(&never, &|_| ()).unwrap().unwrap();
     let points = map.codimension_two();
     let crossings = points.iter();

@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod common;
+#[path = "common/sweeps.rs"]
+mod sweeps;
 
 use common::pbif;
 use pbif::cancellation::Cancellation;
@@ -10,7 +12,8 @@ use pbif::continuation::curve::{
     Curve, CurveError, CurveOptions, CurvePoint, CurveStart, EndReason, Plane, follow,
 };
 use pbif::continuation::{BifurcationStatus, LabelledPoint, SweepResult};
-use pbif::sweep_file::{Sweep, SweepFile};
+use pbif::sweep_file::Sweep;
+use sweeps::prepared;
 
 /// Additive noise: peaks of the density are zeros of the drift, and two of them fold where 27 h² = 4 a³.
 const CUSP: &str = r#"
@@ -92,9 +95,7 @@ relative_tolerance = 1e-3
 
 fn swept(text: &str, settings: &[&str]) -> (Sweep, SweepResult) {
     let never = Cancellation::new();
-    let mut file = SweepFile::parse("curve.toml", text);
-    let settings = file.set_all("--set", settings).validate().unwrap();
-    let sweep = settings.prepare(&never).unwrap();
+    let sweep = prepared(text, settings);
     let result = sweep.run(&never, &mut ()).unwrap();
     (sweep, result)
 }
@@ -308,6 +309,18 @@ fn sweeps_over_one_parameter_lie_in_the_band_of_coulomb_friction() {
         work.solves <= points + 8 && 2 * work.factorisations <= points,
         "{points}: {work:?}"
     );
+    let told = [("followed", work), ("checked", merger.check_work)].map(|(how, work)| {
+        let (solves, factorisations) = (work.solves, work.factorisations);
+        format!(
+            "{how} by {solves} solves, {factorisations} + {}",
+            work.iterations
+        )
+    });
+    insta::assert_snapshot!(format!("{points} points\n{}", told.join("\n")), @r"
+    45 points
+    followed by 46 solves, 18 + 165
+    checked by 14 solves, 6 + 159
+    ");
 
     // The kink of y is none where nothing jumps, at any noise; its slope follows from the equations.
     let kink = curve(&sweep, row(&result, "y", "slope at the kink"), &plane, 0.05);

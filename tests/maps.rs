@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod common;
+#[path = "common/sweeps.rs"]
+mod sweeps;
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -15,6 +17,7 @@ use pbif::continuation::map::{MapNode, MapProgress, RegimeMap};
 use pbif::run::MapCheckpoint;
 use pbif::sweep_file::SweepFile;
 use pbif::topology::Signature;
+use sweeps::prepared;
 
 /// Additive noise: peaks of the density are zeros of the drift, and there are two where 27 h² < 4 a³.
 const CUSP: &str = r#"
@@ -69,9 +72,7 @@ relative_tolerance = 1e-3
 
 fn mapped(text: &str, settings: &[&str]) -> RegimeMap {
     let never = Cancellation::new();
-    let mut file = SweepFile::parse("map.toml", text);
-    let settings = file.set_all("--set", settings).validate().unwrap();
-    let sweep = settings.prepare(&never).unwrap();
+    let sweep = prepared(text, settings);
     sweep.map(&never, &|_| ()).unwrap().unwrap()
 }
 
@@ -216,11 +217,68 @@ fn the_map_of_energy_dependent_damping_has_its_two_curves() {
     );
 }
 
+/// With nodes on f_c = 0, where y changes.
+const COULOMB: &str = r#"
+[system]
+model = "coulomb"
+[system.parameters]
+kappa = 0.05
+mu = 0.05
+[sweep]
+parameter = "f_c"
+from = -0.03
+to = 0.03
+points = 7
+[map]
+parameter = "sigma2"
+from = 0.03
+to = 0.07
+points = 5
+depth = 0
+[cells]
+x = { from = -4.0, to = 4.0, count = 40, grade = { at = [0.0], smallest = 0.08 } }
+y = { from = -4.0, to = 4.0, count = 40, grade = "auto" }
+[detect]
+marginals = ["x", "y"]
+joint = []
+[locate]
+relative_tolerance = 2e-3
+"#;
+
+#[test]
+fn every_curve_is_followed_once_and_its_work_is_as_it_was() {
+    let map = mapped(COULOMB, &[]);
+    let family = &map.subject.family;
+    let told = map.curves.iter().map(|curve| {
+        let observable = curve.observable.name(family);
+        format!("{} of {observable}", curve.kind.name())
+    });
+    assert_eq!(
+        told.collect::<Vec<_>>(),
+        ["slope at the kink of y", "curvature at the centre of x"],
+        "{:?}",
+        map.untraced
+    );
+    // Whatever was followed is there: nothing twice.
+    let solves = map
+        .curves
+        .iter()
+        .map(|curve| curve.work.solves + curve.check_work.solves);
+    assert_eq!(solves.sum::<usize>(), map.work.curves.solves);
+    let told = [map.work.nodes, map.work.curves].map(|work| {
+        let (solves, factorisations) = (work.solves, work.factorisations);
+        format!("{solves} solves, {factorisations} + {}", work.iterations)
+    });
+    insta::assert_snapshot!(told.join("\n"), @r"
+    35 solves, 14 + 346
+    188 solves, 54 + 1149
+    ");
+}
+
 #[test]
 fn a_cancelled_map_keeps_what_was_done_and_says_so() {
     let cancellation = Cancellation::new();
-    let sweep = SweepFile::parse("map.toml", CUSP).validate().unwrap();
-    let sweep = sweep.prepare(&cancellation).unwrap();
+    let sweep = prepared(CUSP, &[]);
     let seen = AtomicUsize::new(0);
     let observer = |told: &MapProgress<'_>| {
         if let MapProgress::Solved { .. } = told
@@ -239,8 +297,7 @@ fn a_cancelled_map_keeps_what_was_done_and_says_so() {
 #[test]
 fn a_map_goes_on_from_what_was_solved_and_solves_only_what_it_must() {
     let cancellation = Cancellation::new();
-    let sweep = SweepFile::parse("map.toml", CUSP).validate().unwrap();
-    let sweep = sweep.prepare(&cancellation).unwrap();
+    let sweep = prepared(CUSP, &[]);
     let solved = AtomicUsize::new(0);
     let count = |told: &MapProgress<'_>| {
         if let MapProgress::Solved { .. } = told {
@@ -281,8 +338,7 @@ fn the_program_goes_on_with_a_map_that_was_killed() {
     let (file, out) = (at("cusp.toml"), at("out"));
     std::fs::write(&file, CUSP).unwrap();
     let never = Cancellation::new();
-    let sweep = SweepFile::parse("cusp.toml", CUSP).validate().unwrap();
-    let sweep = sweep.prepare(&never).unwrap();
+    let sweep = prepared(CUSP, &[]);
     let nodes = Mutex::new(Vec::new());
     let observer = |told: &MapProgress<'_>| {
         if let MapProgress::Solved { node, .. } = told {

@@ -147,13 +147,6 @@ fn curve_json(
 
 /// A curve without its points.
 pub(super) fn one_json(family: &Family, index: usize, curve: &Curve) -> serde_json::Value {
-    let work = |work: &CurveWork| {
-        json!({
-            "solves": work.solves,
-            "iterations": work.iterations,
-            "factorisations": work.factorisations,
-        })
-    };
     json!({
         "name": curve_name(index),
         "observable": curve.observable.name(family),
@@ -166,8 +159,17 @@ pub(super) fn one_json(family: &Family, index: usize, curve: &Curve) -> serde_js
             .iter()
             .map(|split| json!({ "label": split.label, "point": split.point }))
             .collect::<Vec<_>>(),
-        "work": work(&curve.work),
-        "check_work": work(&curve.check_work),
+        "work": work_json(&curve.work),
+        "check_work": work_json(&curve.check_work),
+    })
+}
+
+/// What solves took.
+pub(super) fn work_json(work: &CurveWork) -> serde_json::Value {
+    json!({
+        "solves": work.solves,
+        "iterations": work.iterations,
+        "factorisations": work.factorisations,
     })
 }
 

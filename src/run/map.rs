@@ -9,7 +9,7 @@ use super::atomic::{sync_all, write_atomically};
 use super::checksums;
 use super::codimension::{codimension_two_csv, codimension_two_tex, several_csv};
 use super::columns::{Columns, count, number, word};
-use super::curve::one_json;
+use super::curve::{one_json, work_json};
 use super::map_checkpoint::{self, differences};
 use super::number::format_number;
 use super::staging::Staging;
@@ -119,6 +119,10 @@ fn map_json(map: &RegimeMap, sweep: &str, seconds: f64) -> Result<String, RunErr
         "regions": regions.collect::<Vec<_>>(),
         "curves": curves.collect::<Vec<_>>(),
         "not_followed": untraced.collect::<Vec<_>>(),
+        "work": {
+            "nodes": work_json(&map.work.nodes),
+            "curves": work_json(&map.work.curves),
+        },
         "seconds": seconds,
         "sweep_file": sweep,
     });

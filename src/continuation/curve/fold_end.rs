@@ -197,9 +197,11 @@ fn point(beyond: &Beyond, last: &CurvePoint, is_first: bool, folds: &Folds<'_>) 
         arclength: last.arclength + before,
         tangent: [0, 1].map(|k| onward * beyond.leaves[k] * sides[k].length()),
         checked: false,
-        status: match beyond.error <= folds.tolerance {
-            true => BifurcationStatus::Located,
-            false => BifurcationStatus::Unresolved,
+        status: match last.status {
+            // What the points do not say of the cells, an end that follows from them does not say either.
+            BifurcationStatus::Unchecked | BifurcationStatus::Unconfirmed => last.status,
+            _ if beyond.error <= folds.tolerance => BifurcationStatus::Located,
+            _ => BifurcationStatus::Unresolved,
         },
     }
 }

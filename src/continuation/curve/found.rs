@@ -1,7 +1,7 @@
 //! What following a curve gives: its points with their errors, its ends with their reasons, and the work it took.
 
 use super::{CurveStart, Plane};
-use crate::continuation::{BifurcationStatus, ErrorParts};
+use crate::continuation::{BifurcationStatus, ErrorParts, SolveReport};
 use crate::density::Observable;
 use crate::topology::IndicatorKind;
 
@@ -115,7 +115,7 @@ pub struct DegenerateSplit {
     pub point: usize,
 }
 
-/// What a curve took.
+/// What solves took.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct CurveWork {
     /// Solves.
@@ -127,7 +127,14 @@ pub struct CurveWork {
 }
 
 impl CurveWork {
-    pub(super) fn add(&mut self, other: &Self) {
+    /// One more solve.
+    pub(in crate::continuation) fn count(&mut self, report: &SolveReport) {
+        self.solves += 1;
+        self.iterations += report.iterations;
+        self.factorisations += report.own.factorisations;
+    }
+
+    pub(in crate::continuation) fn add(&mut self, other: &Self) {
         self.solves += other.solves;
         self.iterations += other.iterations;
         self.factorisations += other.factorisations;

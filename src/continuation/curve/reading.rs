@@ -135,9 +135,7 @@ impl Reader<'_> {
     ) -> Result<Reading, Missing> {
         let mut solution = self.session.solve(coordinate).map_err(missing)?;
         let report = &solution.report;
-        self.work.solves += 1;
-        self.work.iterations += report.iterations;
-        self.work.factorisations += report.own.factorisations;
+        self.work.count(report);
         if !report.status.is_resolved() {
             return Err(Missing::Density(report.status.word().to_owned()));
         }

@@ -1,6 +1,6 @@
 //! What a map gives: nodes with their signatures, the curves between them, and what no curve explains.
 
-use crate::continuation::curve::{CodimensionTwo, Curve, Plane, codimension_two};
+use crate::continuation::curve::{CodimensionTwo, Curve, CurveWork, Plane, codimension_two};
 use crate::continuation::{PointStatus, Subject};
 use crate::density::Density;
 use crate::topology::Signature;
@@ -46,6 +46,15 @@ pub struct RegionSample {
     pub density: Density,
 }
 
+/// What a map took.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct MapWork {
+    /// For its nodes, without those that were known.
+    pub nodes: CurveWork,
+    /// For curves and their checks, with those that turned out to be one that was there.
+    pub curves: CurveWork,
+}
+
 /// A map of regimes.
 #[derive(Debug, Clone)]
 pub struct RegimeMap {
@@ -63,6 +72,8 @@ pub struct RegimeMap {
     pub untraced: Vec<Untraced>,
     /// A density of each signature, in its largest region; none of a map that was interrupted.
     pub samples: Vec<RegionSample>,
+    /// What it took.
+    pub work: MapWork,
     /// Whether it was interrupted before it was complete.
     pub interrupted: bool,
 }

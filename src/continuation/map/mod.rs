@@ -14,7 +14,7 @@ mod solve;
 mod states;
 mod trace;
 
-pub use found::{MapNode, RegimeMap, RegionSample, Untraced};
+pub use found::{MapNode, MapWork, RegimeMap, RegionSample, Untraced};
 pub(crate) use regions::{FloodedRegion, Seed, flooded};
 pub use regions::{Region, RegionPicture};
 pub use states::{PlaneState, plane_states};
@@ -141,6 +141,10 @@ pub fn regime_map_from(
     solver.recall(known);
     let leaves = solver.solve_all()?;
     let (crossings, blurred) = crossing::crossings(&solver.grid(), &lattice, detector);
+    let mut work = MapWork {
+        nodes: solver.work(),
+        ..MapWork::default()
+    };
     let (mut curves, untraced) = match &options.curves {
         Some(curves) => {
             let tracer = trace::Tracer {
@@ -151,7 +155,7 @@ pub fn regime_map_from(
                 cancellation,
                 observer,
             };
-            tracer.trace(crossings, blurred)
+            tracer.trace(crossings, blurred, &mut work.curves)
         }
         None => (Vec::new(), Vec::new()),
     };
@@ -170,6 +174,7 @@ pub fn regime_map_from(
         curves,
         untraced,
         samples: Vec::new(),
+        work,
         subject,
     };
     if !map.interrupted {

@@ -12,7 +12,7 @@ use super::lattice::{At, Lattice, Leaf};
 use super::node::{Grid, Solved};
 use super::{MapObserver, MapProgress, SourceInPlane};
 use crate::cancellation::Cancellation;
-use crate::continuation::curve::Plane;
+use crate::continuation::curve::{CurveWork, Plane};
 use crate::continuation::{
     Finding, Point, PointStatus, Session, Solution, SolveReport, SourceError,
 };
@@ -32,6 +32,7 @@ pub(super) struct Solver<'a> {
     cancellation: &'a Cancellation,
     observer: &'a MapObserver<'a>,
     grid: Mutex<Grid>,
+    work: Mutex<CurveWork>,
     done: AtomicUsize,
     wanted: AtomicUsize,
 }
@@ -53,6 +54,7 @@ impl<'a> Solver<'a> {
             cancellation,
             observer,
             grid: Mutex::default(),
+            work: Mutex::default(),
             done: AtomicUsize::new(0),
             wanted: AtomicUsize::new(0),
         }
@@ -61,6 +63,11 @@ impl<'a> Solver<'a> {
     /// What is solved. A poisoned lock holds nodes as whole as any other.
     pub(super) fn grid(&self) -> MutexGuard<'_, Grid> {
         self.grid.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// What the solves took so far.
+    pub(super) fn work(&self) -> CurveWork {
+        *self.work.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     pub(super) fn into_nodes(self) -> Vec<MapNode> {
@@ -217,6 +224,9 @@ impl<'a> Solver<'a> {
     ) -> Option<Solved> {
         let (point, reason) = solve_place(session, method, self.detector, coordinate)?;
         let detections = &point.detections;
+        let mut work = self.work.lock().unwrap_or_else(PoisonError::into_inner);
+        work.count(&point.report);
+        drop(work);
         let node = MapNode {
             values: self.plane.values(self.lattice.share(at)),
             level: self.lattice.level(at),

@@ -10,7 +10,8 @@ use super::{MapObserver, MapProgress, SourceInPlane};
 use crate::cancellation::Cancellation;
 use crate::continuation::SourceError;
 use crate::continuation::curve::{
-    Curve, CurveError, CurveOptions, CurveStart, EndReason, ON_IT, Plane, distance, follow,
+    Curve, CurveError, CurveOptions, CurveStart, CurveWork, EndReason, ON_IT, Plane, distance,
+    follow,
 };
 use crate::topology::{Detector, IndicatorKind};
 
@@ -46,11 +47,12 @@ struct Drawn {
 }
 
 impl Tracer<'_> {
-    /// The curves, and what none explains.
+    /// The curves, and what none explains; `work` grows by what they took.
     pub(super) fn trace(
         &self,
         mut open: Vec<Crossing>,
         blurred: Vec<Blurred>,
+        work: &mut CurveWork,
     ) -> (Vec<Curve>, Vec<Untraced>) {
         let mut curves = Vec::new();
         let mut drawn: Vec<Drawn> = Vec::new();
@@ -66,7 +68,9 @@ impl Tracer<'_> {
                 let Some(start) = self.next_branch(&mut branches, &mut tried, &drawn) else {
                     break;
                 };
-                if let Ok(curve) = self.follow_from(&start, &met)
+                let found = self.follow_from(&start, &met);
+                add_work(work, &found);
+                if let Ok(curve) = found
                     && curve.points.len() >= FEWEST
                     && middle_error(&curve) <= VAGUE
                 {
@@ -83,6 +87,7 @@ impl Tracer<'_> {
             let found = starts.par_iter().map(|start| self.follow(start, &met));
             let found: Vec<Result<Curve, CurveError>> = found.collect();
             for (start, found) in starts.into_iter().zip(found) {
+                add_work(work, &found);
                 match found {
                     Ok(_) if drawn.iter().any(|curve| curve.explains(&start)) => {}
                     Ok(curve) if self.is_drawn(&drawn, &start, &curve) => {}
@@ -251,29 +256,69 @@ impl Tracer<'_> {
     }
 }
 
-/// Takes one crossing of every indicator from those that are open: the middle one, away from ends of curves where they turn and meet.
+/// Adds what following and checking a curve took.
+fn add_work(work: &mut CurveWork, found: &Result<Curve, CurveError>) {
+    if let Ok(curve) = found {
+        work.add(&curve.work);
+        work.add(&curve.check_work);
+    }
+}
+
+/// Takes one crossing of every indicator from those that are open: the middle one, away from ends of curves where they turn and meet. An indicator
+/// that crosses only where another one of the same density does waits for that one's curve, which is its own then.
 fn starts(open: &mut Vec<Crossing>, failures: &[(Crossing, String)]) -> Vec<Crossing> {
-    let mut starts: Vec<Crossing> = Vec::new();
-    let mut seen: Vec<(usize, IndicatorKind)> = Vec::new();
+    let mut kinds: Vec<(usize, IndicatorKind)> = Vec::new();
     for crossing in open.iter() {
         let key = (crossing.observable, crossing.kind);
         let failed = failures
             .iter()
             .filter(|failed| is_alike(&failed.0, crossing));
-        if !seen.contains(&key) && failed.count() < MOST_FAILURES {
-            seen.push(key);
+        if !kinds.contains(&key) && failed.count() < MOST_FAILURES {
+            kinds.push(key);
         }
     }
-    for key in seen {
-        let of_key = |one: &Crossing| (one.observable, one.kind) == key;
-        let places: Vec<usize> = (0..open.len())
-            .filter(|&index| of_key(&open[index]))
-            .collect();
-        if let Some(&middle) = places.get(places.len() / 2) {
-            starts.push(open.remove(middle));
+    // What follows from the equations is known best, and asks for no checks.
+    kinds.sort_by_key(|key| key.1 != IndicatorKind::KinkSlope);
+    let all: Vec<Vec<Crossing>> = kinds.iter().map(|&key| of_kind(open, key)).collect();
+    let mut taken: Vec<usize> = Vec::new();
+    for number in 0..kinds.len() {
+        let is_told = |one: &Crossing| {
+            let others = taken.iter().flat_map(|&other| &all[other]);
+            others.into_iter().any(|other| coincide(one, other))
+        };
+        if !all[number].iter().all(is_told) {
+            taken.push(number);
         }
     }
+    let middle = |&number: &usize| {
+        let places = (0..open.len()).filter(|&index| key_of(&open[index]) == kinds[number]);
+        places
+            .collect::<Vec<_>>()
+            .get(all[number].len() / 2)
+            .copied()
+    };
+    let mut places: Vec<usize> = taken.iter().filter_map(middle).collect();
+    let starts = places.iter().map(|&place| open[place].clone()).collect();
+    places.sort_unstable();
+    places.into_iter().rev().for_each(|place| {
+        open.remove(place);
+    });
     starts
+}
+
+fn key_of(crossing: &Crossing) -> (usize, IndicatorKind) {
+    (crossing.observable, crossing.kind)
+}
+
+fn of_kind(open: &[Crossing], key: (usize, IndicatorKind)) -> Vec<Crossing> {
+    let of_it = open.iter().filter(|one| key_of(one) == key);
+    of_it.cloned().collect()
+}
+
+/// Whether crossings of two indicators of one density are in one place.
+fn coincide(one: &Crossing, other: &Crossing) -> bool {
+    let apart = (one.at[0] - other.at[0]).hypot(one.at[1] - other.at[1]);
+    one.observable == other.observable && apart < SAME
 }
 
 fn is_alike(a: &Crossing, b: &Crossing) -> bool {
@@ -283,13 +328,16 @@ fn is_alike(a: &Crossing, b: &Crossing) -> bool {
 impl Drawn {
     /// Whether a crossing is one with this curve.
     fn explains(&self, crossing: &Crossing) -> bool {
-        let passed = self
-            .passes(&crossing.ends)
-            .filter(|_| self.observable == crossing.observable);
-        passed.is_some_and(|at| {
+        if self.observable != crossing.observable {
+            return false;
+        }
+        let passed = self.passes(&crossing.ends);
+        let is_passed = passed.is_some_and(|at| {
             let apart = (at[0] - crossing.at[0]).hypot(at[1] - crossing.at[1]);
             self.kind == crossing.kind || apart < SAME
-        })
+        });
+        // Neighbours along a curve that runs through nodes have indicators of rounding's size, and of either sign.
+        is_passed || distance(&self.line, crossing.at) <= IDENTICAL
     }
 
     /// Whether a start lies on this curve; `at` is its place in the box.
@@ -342,6 +390,45 @@ fn meeting([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn crossing(kind: IndicatorKind, x: f64, y: f64) -> Crossing {
+        Crossing {
+            observable: 0,
+            kind,
+            place: vec![0.0],
+            at: [x, y],
+            ends: [[x, y], [x, y + 0.1]],
+        }
+    }
+
+    #[test]
+    fn an_indicator_that_crosses_where_another_does_waits_for_it() {
+        use IndicatorKind::{Curvature, KinkSlope, Quartic};
+        let mut open: Vec<Crossing> = (0..5)
+            .flat_map(|k| {
+                let y = 0.2 * f64::from(k);
+                [
+                    crossing(Quartic, 0.3 + 1e-4, y),
+                    crossing(KinkSlope, 0.3, y),
+                    crossing(Curvature, 0.6, y),
+                ]
+            })
+            .collect();
+        let found = starts(&mut open, &[]);
+        let kinds: Vec<IndicatorKind> = found.iter().map(|one| one.kind).collect();
+        assert_eq!(kinds, [KinkSlope, Curvature]);
+        assert!(found.iter().all(|one| one.at[1] == 0.4));
+        assert_eq!(open.len(), 13);
+        // Both neighbours lie on the curve itself: the line between them meets it nowhere, or everywhere.
+        let curve = Drawn {
+            observable: 0,
+            kind: KinkSlope,
+            line: vec![[0.3, 0.0], [0.3, 1.0]],
+        };
+        open.retain(|one| !curve.explains(one));
+        assert_eq!(open.len(), 4);
+        assert!(open.iter().all(|one| one.kind == Curvature));
+    }
 
     #[test]
     fn lines_meet_where_they_cross() {
