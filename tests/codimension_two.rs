@@ -317,7 +317,33 @@ fn the_program_tells_and_draws_what_starts_from_a_degenerate_split() {
     for line in ["C1,PB1,", "C1,DS1,", "C2,DS1,", "C2,start,"] {
         assert!(curves.lines().any(|one| one.starts_with(line)), "{line}");
     }
-    assert!(read("out/figures/curve.svg").contains("DS1"));
+    let drawn = read("out/figures/curve.svg");
+    assert!(drawn.contains("DS1"));
+    // Drawn again from what is stored, to the same picture.
+    let again = at("again");
+    let output = pbif(&["plot", &out, "--quiet", "--out", &again, "--format", "svg"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    assert_eq!(read("again/curve.svg"), drawn);
+    // Of another version, and cut off, it is refused.
+    let plane = at("out/plane.json");
+    let whole = std::fs::read_to_string(&plane).unwrap();
+    for (text, says) in [
+        (whole.replace("\"pbif\"", "\"other\""), "is of other"),
+        (
+            whole[..whole.len() / 2].to_owned(),
+            "does not hold the curves of a plane",
+        ),
+        (
+            whole.replace("\"C", "\"X").replace("\"kind\"", "\"sort\""),
+            "a curve cannot be understood",
+        ),
+    ] {
+        std::fs::write(&plane, text).unwrap();
+        let output = pbif(&["plot", &out, "--quiet", "--out", &again]);
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        let text = String::from_utf8(output.stderr).unwrap();
+        assert!(text.contains(says), "{says}:\n{text}");
+    }
     let said = follow(&["--alone"]);
     assert!(said.contains("DS1") && !said.contains("C2"), "{said}");
 }

@@ -399,6 +399,35 @@ fn the_program_makes_maps_and_says_what_is_wrong_with_them() {
     assert!(curves.starts_with("curve,label,h,a,error,"));
     assert!(curves.lines().any(|line| line.starts_with("C2,start,")));
 
+    // Drawn again from what is stored, to the same picture.
+    let draw = |more: &[&str]| {
+        let mut arguments = vec!["plot", out.as_str(), "--quiet"];
+        arguments.extend(more);
+        pbif(&arguments)
+    };
+    let (again, folder_of) = (at("again"), |name: &str| at(&format!("{name}/map_x.svg")));
+    let output = draw(&["--out", &again, "--format", "svg,csv", "--only", "map_x"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let read = |path: String| std::fs::read_to_string(path).unwrap();
+    assert_eq!(read(folder_of("again")), read(folder_of("out/figures")));
+    assert!(read(at("again/map_x.csv")).contains("curve 2,"));
+    let output = draw(&["--style", "single,dark"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    assert_ne!(read(folder_of("again")), read(folder_of("out/figures")));
+    for (more, says) in [
+        (&["--at", "0.1"][..], "`--at` is for the run of a sweep"),
+        (&["--only", "map_y"][..], "no figure `map_y`, only map_x"),
+        (
+            &["--set", "cells.x.count=9"][..],
+            "cannot be set for a stored run",
+        ),
+    ] {
+        let output = draw(more);
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        let text = String::from_utf8(output.stderr).unwrap();
+        assert!(text.contains(says), "{says}:\n{text}");
+    }
+
     let refused = |more: &[&str], says: &[&str]| {
         let output = sweep(more);
         assert_eq!(output.status.code(), Some(2), "{output:?}");

@@ -391,7 +391,7 @@ pub(crate) struct VerifyArguments {
 /// A stored run that is drawn again.
 #[derive(Debug, Args)]
 pub(crate) struct PlotArguments {
-    /// Folder of a run, as `pbif sweep` left it
+    /// Folder of a run or a map, as `pbif sweep` left it, or of curves, as `pbif curve` did
     pub(crate) run: PathBuf,
     /// Figures to draw, by name or kind, such as diagram_x,joint; all for every one
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]

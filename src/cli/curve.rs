@@ -11,8 +11,8 @@ use super::stored::Stored;
 use super::{CommandError, Outcome};
 use crate::cancellation::Cancellation;
 use crate::continuation::curve::{
-    CodimensionTwo, CodimensionTwoKind, Curve, CurveError, CurveOptions, CurveStart, CurveTree,
-    Plane, codimension_two, follow, follow_all,
+    CodimensionTwo, CodimensionTwoKind, Curve, CurveError, CurveOptions, CurveOrigin, CurveStart,
+    CurveTree, Plane, codimension_two, follow, follow_all,
 };
 use crate::continuation::{
     BifurcationStatus, LabelledPoint, LocateOptions, SourceError, SweepResult,
@@ -294,10 +294,10 @@ impl<'a> Job<'a> {
         home: &Path,
     ) -> Result<Outcome, CommandError> {
         let (family, settings) = (self.spec.problem.family(), &self.spec.settings);
-        let (label, sweep) = (&self.row.label, self.spec.to_toml());
-        folder.write(family, &self.plane, tree, (label, &sweep, of))?;
+        let (origin, sweep) = (CurveOrigin::from(self.row), self.spec.to_toml());
+        folder.write(family, &self.plane, tree, (&origin, &sweep, of))?;
         let style = &settings.figure_style;
-        let figure = curve_figure(&tree.curves, self.row, family, &settings.title, style)?;
+        let figure = curve_figure(&tree.curves, &origin, family, &settings.title, style)?;
         write_figures(&[figure], &settings.figure_formats, &folder.figures())?;
         let outcome = outcome(tree, &settings.locate);
         let interrupted = outcome == Outcome::Interrupted;

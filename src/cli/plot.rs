@@ -1,5 +1,7 @@
 //! `pbif plot`: the figures of a stored run, drawn again: which, where, how.
 
+mod plane;
+
 use super::args::PlotArguments;
 use super::output::OutputFolder;
 use super::stored::Stored;
@@ -7,7 +9,7 @@ use super::sweep::draw;
 use super::{CommandError, Outcome};
 use crate::continuation::{Point, SweepResult};
 use crate::figure::{ColourMap, FigureError, FigureWidth, Figures, Ground, Typeface};
-use crate::run::format_number;
+use crate::run::{StoredPlane, format_number};
 use crate::sweep_file::{Diagnostic, list};
 
 /// Share of the swept range within which a value is one of the run's.
@@ -22,6 +24,11 @@ const OFFERED: usize = 3;
 pub(super) fn run(arguments: &PlotArguments) -> Result<Outcome, CommandError> {
     let mut overrides = overrides(arguments)?;
     overrides.extend(arguments.overrides.iter().cloned());
+    if let Some(stored) = StoredPlane::open(&arguments.run)? {
+        // Names of its figures are not those of a sweep.
+        overrides.retain(|one| !one.starts_with("figures.draw="));
+        return plane::run(&stored, arguments, &overrides);
+    }
     let stored = Stored::read(&arguments.run, &overrides, &["figures"], arguments.quiet)?;
     if !arguments.at.is_empty() {
         check_values(&stored.result, &stored.spec.settings.figures_at)?;

@@ -56,7 +56,7 @@ impl Stored {
 }
 
 /// Refuses overrides of keys that a finished run has used up.
-fn check_overrides(overrides: &[String], sections: &[&str]) -> Result<(), Report> {
+pub(super) fn check_overrides(overrides: &[String], sections: &[&str]) -> Result<(), Report> {
     for argument in overrides {
         let key = argument.split('=').next().unwrap_or_default().trim();
         let section = key.split('.').next().unwrap_or_default().trim();
@@ -127,6 +127,7 @@ pub(super) fn diagnostic(error: &RunError) -> Diagnostic {
         | RunError::ReadStore { .. }
         | RunError::Cells { .. }
         | RunError::NoDensity { .. }
+        | RunError::Plane { .. }
         | RunError::Checksums { .. }
         | RunError::Damaged { .. }
         | RunError::Rows { .. }

@@ -42,6 +42,14 @@ pub enum BifurcationStatus {
 }
 
 impl BifurcationStatus {
+    /// All of them.
+    pub const ALL: [Self; 4] = [
+        Self::Located,
+        Self::Unresolved,
+        Self::Unconfirmed,
+        Self::Unchecked,
+    ];
+
     /// The word used in tables.
     pub fn word(self) -> &'static str {
         match self {

@@ -13,8 +13,8 @@ use super::canvas::symbols;
 use super::drawn::Figure;
 use super::names;
 use super::style::FigureStyle;
-use crate::continuation::curve::{Curve, CurvePoint, EndReason, codimension_two};
-use crate::continuation::{BifurcationStatus, LabelledPoint};
+use crate::continuation::BifurcationStatus;
+use crate::continuation::curve::{Curve, CurveOrigin, CurvePoint, EndReason, codimension_two};
 use crate::system::Family;
 use crate::topology::IndicatorKind;
 
@@ -41,7 +41,7 @@ const AWAY: f64 = 9.0;
 /// [`FigureError::Draw`].
 pub fn curve_figure(
     curves: &[Curve],
-    row: &LabelledPoint,
+    row: &CurveOrigin,
     family: &Family,
     title: &str,
     style: &FigureStyle,
@@ -65,7 +65,7 @@ struct Scene<'a> {
     curve: &'a Curve,
     /// All of them.
     curves: &'a [Curve],
-    row: &'a LabelledPoint,
+    row: &'a CurveOrigin,
     family: &'a Family,
     look: super::canvas::look::Look,
 }

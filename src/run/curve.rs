@@ -10,14 +10,16 @@ use super::checksums;
 use super::codimension::{codimension_two_csv, codimension_two_tex, curve_name, several_csv};
 use super::columns::{Column, flag, number, word};
 use super::journal::{SessionJournal, different_keys};
+use super::plane_file;
 use super::staging::Staging;
-use crate::continuation::curve::{Curve, CurvePoint, CurveTree, CurveWork, Plane};
+use crate::continuation::curve::{Curve, CurveOrigin, CurvePoint, CurveTree, CurveWork, Plane};
 use crate::system::Family;
 
 /// Everything a curve leaves in its folder, the file that marks it as one first.
-pub(super) const ENTRIES: [&str; 6] = [
+pub(super) const ENTRIES: [&str; 7] = [
     "curve.json",
     checksums::NAME,
+    plane_file::NAME,
     "curves.csv",
     "codimension_two.csv",
     "codimension_two.tex",
@@ -252,8 +254,8 @@ impl CurveFolder {
         self.staging.fresh().join("figures")
     }
 
-    /// Writes the tables; `start` is the label of the row that the first curve was begun at, `sweep` the resolved sweep as TOML, `of` what
-    /// describes the curves besides.
+    /// Writes the tables; `origin` is the row that the first curve was begun at, `sweep` the resolved sweep as TOML, `of` what describes the curves
+    /// besides.
     ///
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.
@@ -262,8 +264,9 @@ impl CurveFolder {
         family: &Family,
         plane: &Plane,
         tree: &CurveTree,
-        (start, sweep, of): (&str, &str, &str),
+        (origin, sweep, of): (&CurveOrigin, &str, &str),
     ) -> Result<(), RunError> {
+        let start = origin.label.as_str();
         let curves = tree.curves.as_slice();
         for (name, text) in [
             ("curves.csv", curves_csv(family, plane, curves, start)?),
@@ -278,6 +281,10 @@ impl CurveFolder {
             (
                 "curve.json",
                 curve_json(family, plane, tree, start, (sweep, of))?,
+            ),
+            (
+                plane_file::NAME,
+                plane_file::of_curves(plane, curves, origin, sweep),
             ),
         ] {
             write_atomically(&self.staging.fresh().join(name), text.as_bytes())?;

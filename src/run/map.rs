@@ -12,14 +12,16 @@ use super::columns::{Columns, count, number, word};
 use super::curve::{one_json, work_json};
 use super::map_checkpoint::{self, differences};
 use super::number::format_number;
+use super::plane_file;
 use super::staging::Staging;
 use crate::continuation::map::{MapNode, RegimeMap};
 use crate::space::Axis;
 
 /// Everything a map leaves in its folder, the file that marks it as one first.
-pub(super) const ENTRIES: [&str; 8] = [
+pub(super) const ENTRIES: [&str; 9] = [
     "map.json",
     checksums::NAME,
+    plane_file::NAME,
     "map.csv",
     "curves.csv",
     "codimension_two.csv",
@@ -210,6 +212,7 @@ impl MapFolder {
                 codimension_two_tex(family, plane, curves),
             ),
             ("map.json", map_json(map, sweep, seconds)?),
+            (plane_file::NAME, plane_file::of_map(map, sweep)),
         ] {
             write_atomically(&self.staging.fresh().join(name), text.as_bytes())?;
         }

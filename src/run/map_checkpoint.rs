@@ -87,16 +87,8 @@ pub(super) fn differences(version: &str, there: &str, here: &str) -> Vec<String>
     differences
 }
 
-fn node_json(node: &MapNode) -> Value {
-    let signatures = node.signatures.iter().map(|one| {
-        json!([
-            one.peaks,
-            one.craters,
-            one.rings,
-            one.enclosed_peaks,
-            one.enclosed_rings
-        ])
-    });
+pub(super) fn node_json(node: &MapNode) -> Value {
+    let signatures = node.signatures.iter().map(signature_json);
     json!({
         "values": node.values,
         "level": node.level,
@@ -107,18 +99,32 @@ fn node_json(node: &MapNode) -> Value {
     })
 }
 
-fn node(value: &Value) -> Option<MapNode> {
+/// The counts of a signature.
+pub(super) fn signature_json(one: &Signature) -> Value {
+    json!([
+        one.peaks,
+        one.craters,
+        one.rings,
+        one.enclosed_peaks,
+        one.enclosed_rings
+    ])
+}
+
+/// What [`signature_json`] wrote.
+pub(super) fn signature(value: &Value) -> Option<Signature> {
+    let count = |index: usize| Some(value[index].as_u64()? as usize);
+    Some(Signature {
+        peaks: count(0)?,
+        craters: count(1)?,
+        rings: count(2)?,
+        enclosed_peaks: count(3)?,
+        enclosed_rings: count(4)?,
+    })
+}
+
+/// What [`node_json`] wrote.
+pub(super) fn node(value: &Value) -> Option<MapNode> {
     let status = value["status"].as_str()?;
-    let signature = |value: &Value| {
-        let count = |index: usize| Some(value[index].as_u64()? as usize);
-        Some(Signature {
-            peaks: count(0)?,
-            craters: count(1)?,
-            rings: count(2)?,
-            enclosed_peaks: count(3)?,
-            enclosed_rings: count(4)?,
-        })
-    };
     let signatures = value["signatures"].as_array()?.iter().map(signature);
     Some(MapNode {
         values: [value["values"][0].as_f64()?, value["values"][1].as_f64()?],

@@ -28,6 +28,7 @@ mod map;
 mod map_checkpoint;
 mod map_tables;
 mod number;
+mod plane_file;
 mod points_table;
 mod provenance;
 mod recompute;
@@ -66,6 +67,7 @@ pub use map::{MapFolder, map_csv};
 pub use map_checkpoint::MapCheckpoint;
 pub use map_tables::{MapTables, Rows};
 pub use number::{format_number, format_with_error};
+pub use plane_file::{StoredPlane, StoredPlaneContent};
 pub use points_table::points_csv;
 pub use provenance::Provenance;
 pub use recompute::Recomputed;
@@ -254,6 +256,14 @@ pub enum RunError {
         path: PathBuf,
         /// What the system says.
         source: std::io::Error,
+    },
+    /// What figures of curves and maps are drawn from again cannot be understood.
+    #[error("{} does not hold the curves of a plane: {message}", path.display())]
+    Plane {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        message: String,
     },
     /// What an unfinished map has solved cannot be understood.
     #[error("{} does not hold the nodes of a map: {message}", path.display())]

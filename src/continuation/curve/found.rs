@@ -1,9 +1,9 @@
 //! What following a curve gives: its points with their errors, its ends with their reasons, and the work it took.
 
 use super::{CurveStart, Plane};
-use crate::continuation::{BifurcationStatus, ErrorParts, SolveReport};
+use crate::continuation::{BifurcationStatus, ErrorParts, LabelledPoint, SolveReport};
 use crate::density::Observable;
-use crate::topology::IndicatorKind;
+use crate::topology::{IndicatorKind, Signature};
 
 /// A point of a curve.
 #[derive(Debug, Clone, PartialEq)]
@@ -138,6 +138,30 @@ impl CurveWork {
         self.solves += other.solves;
         self.iterations += other.iterations;
         self.factorisations += other.factorisations;
+    }
+}
+
+/// The row of a sweep that a curve was begun at, as far as it is shown beside the curve.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CurveOrigin {
+    /// The row's label, for example `PB1`.
+    pub label: String,
+    /// Value of the swept parameter.
+    pub value: f64,
+    /// Signature below it.
+    pub before: Option<Signature>,
+    /// Signature above it.
+    pub after: Option<Signature>,
+}
+
+impl From<&LabelledPoint> for CurveOrigin {
+    fn from(row: &LabelledPoint) -> Self {
+        Self {
+            label: row.label.clone(),
+            value: row.value,
+            before: row.before,
+            after: row.after,
+        }
     }
 }
 

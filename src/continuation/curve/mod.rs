@@ -20,7 +20,7 @@ mod walk;
 
 pub(super) use agree::agree;
 pub use codimension::{CodimensionTwo, CodimensionTwoKind, codimension_two};
-pub use found::{Curve, CurveEnd, CurvePoint, CurveWork, DegenerateSplit, EndReason};
+pub use found::{Curve, CurveEnd, CurveOrigin, CurvePoint, CurveWork, DegenerateSplit, EndReason};
 pub use plane::{Plane, PlaneSide};
 pub use tree::{CurveTree, MissedBranch, follow_all};
 pub(super) use tree::{ON_IT, distance};

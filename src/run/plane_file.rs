@@ -1,0 +1,350 @@
+//! `plane.json`: all that figures of a map, or of curves, are drawn from, so that they can be drawn again without solving.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+
+use super::RunError;
+use super::map_checkpoint::{node, node_json, signature, signature_json};
+use crate::continuation::curve::{
+    Curve, CurveEnd, CurveOrigin, CurvePoint, CurveWork, DegenerateSplit, EndReason, Plane,
+};
+use crate::continuation::map::{MapWork, RegimeMap, RegionSample, Untraced};
+use crate::continuation::{BifurcationStatus, ErrorParts, Subject};
+use crate::density::{Density, Observable};
+use crate::method::Problem;
+use crate::topology::IndicatorKind;
+
+/// The file, in the folder of a map or of curves.
+pub(super) const NAME: &str = "plane.json";
+
+/// The file of a map.
+pub(super) fn of_map(map: &RegimeMap, sweep: &str) -> String {
+    let samples = map.samples.iter().map(|one| {
+        json!({ "observable": one.observable, "values": one.values, "density": one.density.values })
+    });
+    let untraced = map.untraced.iter().map(|one| {
+        json!({
+            "observable": one.observable,
+            "pairs": one.pairs,
+            "near": one.near,
+            "reason": one.reason,
+        })
+    });
+    let map_json = json!({
+        "nodes": map.nodes.iter().map(node_json).collect::<Vec<_>>(),
+        "cells": map.cells,
+        "samples": samples.collect::<Vec<_>>(),
+        "not_followed": untraced.collect::<Vec<_>>(),
+        "interrupted": map.interrupted,
+    });
+    written(&map.plane, &map.curves, sweep, ("map", map_json))
+}
+
+/// The file of curves that were begun at a row.
+pub(super) fn of_curves(
+    plane: &Plane,
+    curves: &[Curve],
+    origin: &CurveOrigin,
+    sweep: &str,
+) -> String {
+    let row = json!({
+        "label": origin.label,
+        "value": origin.value,
+        "before": origin.before.as_ref().map(signature_json),
+        "after": origin.after.as_ref().map(signature_json),
+    });
+    written(plane, curves, sweep, ("row", row))
+}
+
+fn written(plane: &Plane, curves: &[Curve], sweep: &str, (key, value): (&str, Value)) -> String {
+    let sides = plane.sides().iter();
+    let sides = sides.map(|side| json!([side.parameter, side.from, side.to]));
+    let mut all = json!({
+        "program": env!("CARGO_PKG_NAME"),
+        "version": env!("CARGO_PKG_VERSION"),
+        "box": sides.collect::<Vec<_>>(),
+        "curves": curves.iter().map(curve_json).collect::<Vec<_>>(),
+        "sweep_file": sweep,
+    });
+    all[key] = value;
+    all.to_string() + "\n"
+}
+
+fn curve_json(curve: &Curve) -> Value {
+    let ends = curve.ends.iter().map(|end| {
+        let (word, detail) = reason_words(&end.reason);
+        json!([end.label, end.point, word, detail])
+    });
+    let splits = curve.degenerate.iter();
+    let splits = splits.map(|one| json!([one.label, one.point]));
+    json!({
+        "observable": curve.observable.axes(),
+        "kind": curve.kind.code(),
+        "start": curve.start,
+        "ends": ends.collect::<Vec<_>>(),
+        "degenerate": splits.collect::<Vec<_>>(),
+        "points": curve.points.iter().map(point_json).collect::<Vec<_>>(),
+    })
+}
+
+fn point_json(point: &CurvePoint) -> Value {
+    let parts = &point.parts;
+    json!({
+        "values": point.values,
+        "error": point.error,
+        "parts": [parts.solver, parts.grid, parts.sampling, parts.leak],
+        "to_edge": point.to_edge,
+        "indicator": point.indicator,
+        "gradient": point.gradient,
+        "place": point.place,
+        "arclength": point.arclength,
+        "tangent": point.tangent,
+        "checked": point.checked,
+        "status": point.status.word(),
+    })
+}
+
+/// A word for why a curve ends, and what else there is to know of it.
+fn reason_words(reason: &EndReason) -> (&'static str, Value) {
+    match reason {
+        EndReason::Border(side) => ("border", json!(side)),
+        EndReason::NoDensity(why) => ("no density", json!(why)),
+        EndReason::Closed => ("closed", Value::Null),
+        EndReason::Cusp => ("cusp", Value::Null),
+        EndReason::DegenerateSplit => ("degenerate split", Value::Null),
+        EndReason::FeatureLost => ("feature lost", Value::Null),
+        EndReason::Singular => ("singular", Value::Null),
+        EndReason::NotConverged => ("not converged", Value::Null),
+        EndReason::TooManyPoints => ("too many points", Value::Null),
+        EndReason::Interrupted => ("interrupted", Value::Null),
+    }
+}
+
+fn reason(word: &str, detail: &Value) -> Option<EndReason> {
+    Some(match word {
+        "border" => EndReason::Border(count(detail)?),
+        "no density" => EndReason::NoDensity(detail.as_str()?.to_owned()),
+        "closed" => EndReason::Closed,
+        "cusp" => EndReason::Cusp,
+        "degenerate split" => EndReason::DegenerateSplit,
+        "feature lost" => EndReason::FeatureLost,
+        "singular" => EndReason::Singular,
+        "not converged" => EndReason::NotConverged,
+        "too many points" => EndReason::TooManyPoints,
+        "interrupted" => EndReason::Interrupted,
+        _ => return None,
+    })
+}
+
+/// What a folder holds that figures of a plane are drawn from.
+#[derive(Debug, Clone)]
+pub enum StoredPlaneContent {
+    /// A map of regimes.
+    Map(Box<RegimeMap>),
+    /// Curves that were begun at a row of a sweep.
+    Curves(Vec<Curve>, CurveOrigin),
+}
+
+/// The file of a map's folder, or of that of curves.
+#[derive(Debug, Clone)]
+pub struct StoredPlane {
+    path: PathBuf,
+    all: Value,
+}
+
+impl StoredPlane {
+    /// Opens the file of a folder; `None` where the folder is of no map and of no curves.
+    ///
+    /// # Errors
+    /// [`RunError::Read`], [`RunError::Plane`], and [`RunError::Version`] where it is of another version.
+    pub fn open(folder: &Path) -> Result<Option<Self>, RunError> {
+        let is_of = |mark: &str| folder.join(mark).is_file();
+        if !is_of("map.json") && !is_of("curve.json") {
+            return Ok(None);
+        }
+        let path = folder.join(NAME);
+        let text = std::fs::read_to_string(&path);
+        let text = text.map_err(|source| RunError::Read {
+            path: path.clone(),
+            source,
+        })?;
+        let broken = |message: String| RunError::Plane {
+            path: path.clone(),
+            message,
+        };
+        let all: Value = serde_json::from_str(&text).map_err(|error| broken(error.to_string()))?;
+        let word = |key: &str| all[key].as_str().unwrap_or("nothing").to_owned();
+        let found = format!("{} {}", word("program"), word("version"));
+        let wanted = concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION")).to_owned();
+        if found != wanted {
+            return Err(RunError::Version {
+                path,
+                found,
+                wanted,
+            });
+        }
+        Ok(Some(Self { path, all }))
+    }
+
+    /// The resolved sweep file as TOML.
+    pub fn resolved(&self) -> &str {
+        self.all["sweep_file"].as_str().unwrap_or_default()
+    }
+
+    /// The map, or the curves; `problem` is that of the sweep file.
+    ///
+    /// # Errors
+    /// [`RunError::Plane`].
+    pub fn content(&self, problem: &Problem) -> Result<StoredPlaneContent, RunError> {
+        let broken = |message: &str| RunError::Plane {
+            path: self.path.clone(),
+            message: message.to_owned(),
+        };
+        let plane = self.plane().ok_or_else(|| broken("it has no box"))?;
+        let curves = list(&self.all["curves"], |one| curve(one, &plane));
+        let curves = curves.ok_or_else(|| broken("a curve cannot be understood"))?;
+        if self.all["map"].is_null() {
+            let origin = origin(&self.all["row"]);
+            let origin = origin.ok_or_else(|| broken("its row cannot be understood"))?;
+            return Ok(StoredPlaneContent::Curves(curves, origin));
+        }
+        let map = map(&self.all["map"], problem, plane, curves);
+        let map = map.ok_or_else(|| broken("its map cannot be understood"))?;
+        Ok(StoredPlaneContent::Map(Box::new(map)))
+    }
+
+    fn plane(&self) -> Option<Plane> {
+        let side = |index: usize| {
+            let side = &self.all["box"][index];
+            Some((side[0].as_str()?, side[1].as_f64()?, side[2].as_f64()?))
+        };
+        Plane::new(side(0)?, side(1)?).ok()
+    }
+}
+
+fn map(value: &Value, problem: &Problem, plane: Plane, curves: Vec<Curve>) -> Option<RegimeMap> {
+    let subject: Subject = problem.subject().clone();
+    let sample = |value: &Value| {
+        let observable = count(&value["observable"])?;
+        let axes = problem.axes_of(*subject.observables.get(observable)?);
+        let values = list(&value["density"], |one| Some(number(one)))?;
+        let cells: usize = axes.iter().map(crate::space::Axis::count).product();
+        (values.len() == cells).then_some(RegionSample {
+            observable,
+            values: pair(&value["values"])?,
+            density: Density { axes, values },
+        })
+    };
+    let samples = list(&value["samples"], sample)?;
+    let untraced = |value: &Value| {
+        Some(Untraced {
+            observable: count(&value["observable"])?,
+            pairs: count(&value["pairs"])?,
+            near: pair(&value["near"])?,
+            reason: value["reason"].as_str()?.to_owned(),
+        })
+    };
+    Some(RegimeMap {
+        nodes: list(&value["nodes"], node)?,
+        cells: list(&value["cells"], |cell| {
+            Some([pair(&cell[0])?, pair(&cell[1])?])
+        })?,
+        untraced: list(&value["not_followed"], untraced)?,
+        interrupted: value["interrupted"].as_bool()?,
+        work: MapWork::default(),
+        samples,
+        subject,
+        plane,
+        curves,
+    })
+}
+
+fn origin(value: &Value) -> Option<CurveOrigin> {
+    Some(CurveOrigin {
+        label: value["label"].as_str()?.to_owned(),
+        value: number(&value["value"]),
+        before: signature(&value["before"]),
+        after: signature(&value["after"]),
+    })
+}
+
+fn curve(value: &Value, plane: &Plane) -> Option<Curve> {
+    let kind = value["kind"].as_str()?;
+    let points = list(&value["points"], point)?;
+    let within = |value: &Value| count(value).filter(|&place| place < points.len());
+    let end = |value: &Value| {
+        Some(CurveEnd {
+            label: value[0].as_str()?.to_owned(),
+            point: within(&value[1])?,
+            reason: reason(value[2].as_str()?, &value[3])?,
+        })
+    };
+    let split = |value: &Value| {
+        Some(DegenerateSplit {
+            label: value[0].as_str()?.to_owned(),
+            point: within(&value[1])?,
+        })
+    };
+    Some(Curve {
+        plane: plane.clone(),
+        observable: match list(&value["observable"], count)?.as_slice() {
+            [axis] => Observable::Marginal(*axis),
+            [first, second] => Observable::Joint(*first, *second),
+            _ => return None,
+        },
+        kind: IndicatorKind::ALL
+            .into_iter()
+            .find(|one| one.code() == kind)?,
+        start: within(&value["start"])?,
+        ends: list(&value["ends"], end)?,
+        degenerate: list(&value["degenerate"], split)?,
+        branches: Vec::new(),
+        work: CurveWork::default(),
+        check_work: CurveWork::default(),
+        points,
+    })
+}
+
+fn point(value: &Value) -> Option<CurvePoint> {
+    let status = value["status"].as_str()?;
+    let parts = &value["parts"];
+    Some(CurvePoint {
+        values: pair(&value["values"])?,
+        error: number(&value["error"]),
+        parts: ErrorParts {
+            solver: number(&parts[0]),
+            grid: number(&parts[1]),
+            sampling: number(&parts[2]),
+            leak: number(&parts[3]),
+        },
+        to_edge: pair(&value["to_edge"])?,
+        indicator: number(&value["indicator"]),
+        gradient: pair(&value["gradient"])?,
+        place: list(&value["place"], |one| Some(number(one)))?,
+        arclength: number(&value["arclength"]),
+        tangent: pair(&value["tangent"])?,
+        checked: value["checked"].as_bool()?,
+        status: BifurcationStatus::ALL
+            .into_iter()
+            .find(|one| one.word() == status)?,
+    })
+}
+
+fn list<T>(value: &Value, of: impl Fn(&Value) -> Option<T>) -> Option<Vec<T>> {
+    value.as_array()?.iter().map(of).collect()
+}
+
+fn count(value: &Value) -> Option<usize> {
+    usize::try_from(value.as_u64()?).ok()
+}
+
+/// A number; what is none was written as null.
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or(f64::NAN)
+}
+
+fn pair(value: &Value) -> Option<[f64; 2]> {
+    let both = value.as_array()?;
+    (both.len() == 2).then(|| [number(&both[0]), number(&both[1])])
+}
