@@ -361,6 +361,71 @@ fn the_program_goes_on_with_a_map_that_was_killed() {
 }
 
 #[test]
+fn a_map_in_shards_is_the_map_in_one_piece() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (file, one, out) = (at("plane.toml"), at("one"), at("out"));
+    std::fs::write(&file, RAYLEIGH).unwrap();
+    let run = |arguments: &[&str]| {
+        let output = pbif(arguments);
+        let said = [output.stdout, output.stderr].map(|part| String::from_utf8(part).unwrap());
+        (output.status.code(), said.concat())
+    };
+    let read = |name: &str| std::fs::read_to_string(at(name)).unwrap();
+    let (code, said) = run(&["sweep", &file, "--quiet", "--out", &one]);
+    assert!(code <= Some(1), "{said}");
+    let shard = |number: &str| {
+        let words = [
+            "sweep", &file, "--quiet", "--out", &out, "--shard", number, "--resume",
+        ];
+        let (code, said) = run(&words);
+        assert_eq!(code, Some(0), "{said}");
+        said
+    };
+    assert!(shard("3/3").contains("shard 3 of 3 of a map"));
+    // What is missing is named.
+    let (code, said) = run(&["merge", &out]);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(
+        said.contains("1/3 (not begun)") && said.contains("--shard 1/3"),
+        "{said}"
+    );
+    let (code, said) = run(&["merge", &out, "--partial"]);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(said.contains("for the shards of a sweep"), "{said}");
+    shard("1/3");
+    shard("2/3");
+    assert!(shard("2/3").contains("the shard is complete"));
+    let (code, merged) = run(&["merge", &out, "--quiet"]);
+    assert!(code <= Some(1), "{merged}");
+
+    // The nodes are the same, and so are the curves, to the tolerance of the solver.
+    assert_eq!(read("out/map.csv"), read("one/map.csv"));
+    let curves = |name: &str| -> Vec<(String, [f64; 2])> {
+        let table = read(name);
+        let rows = table.lines().skip(1).map(|line| {
+            let cells: Vec<&str> = line.split(',').collect();
+            let values = [2, 3].map(|place| cells[place].parse::<f64>().unwrap());
+            (cells[..2].join(" "), values)
+        });
+        rows.collect()
+    };
+    let (whole, merged) = (curves("one/curves.csv"), curves("out/curves.csv"));
+    assert_eq!(whole.len(), merged.len());
+    for (a, b) in whole.iter().zip(&merged) {
+        let off = ((a.1[0] - b.1[0]) / 0.08).hypot((a.1[1] - b.1[1]) / 0.02);
+        assert!(a.0 == b.0 && off < 1e-7, "{a:?} {b:?}: {off:.1e}");
+    }
+    // Shards of another sweep do not fit.
+    let other = ["sweep", &file, "--quiet", "--out", &out, "--shard", "2/3"];
+    let (code, said) = run(&[&other[..], &["--set", "sweep.points=6"]].concat());
+    assert_eq!(code, Some(0), "{said}");
+    let (code, said) = run(&["merge", &out, "--quiet"]);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(said.contains("sweep.points"), "{said}");
+}
+
+#[test]
 fn the_program_makes_maps_and_says_what_is_wrong_with_them() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
@@ -448,7 +513,10 @@ fn the_program_makes_maps_and_says_what_is_wrong_with_them() {
         &["--resume", "--set", "map.points=6"],
         &["is of another sweep", "map.points"],
     );
-    refused(&["--shard", "1/2"], &["cannot be made in shards"]);
+    refused(
+        &["--shard", "1/20"],
+        &["from 1 to 10", "along its second parameter"],
+    );
     refused(
         &["--set", "map.parameter=h"],
         &["is the swept one, `h`", "`sigma2`"],

@@ -1,5 +1,7 @@
 //! `pbif sweep` on a file with `[map]`: the signatures over a box of two parameters, and the curves between them.
 
+pub(super) mod shards;
+
 use std::io::Write as _;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -12,7 +14,7 @@ use super::sweep::progress::Progress;
 use super::{CommandError, Outcome};
 use crate::cancellation::Cancellation;
 use crate::continuation::curve::Curve;
-use crate::continuation::map::{MapNode, MapProgress, RegimeMap};
+use crate::continuation::map::{MapNode, MapObserver, MapProgress, RegimeMap};
 use crate::continuation::{BifurcationStatus, LocateOptions, SourceError};
 use crate::figure::{map_figures, write_figures};
 use crate::run::{MapCheckpoint, MapFolder, format_with_error};
@@ -34,10 +36,8 @@ pub(super) fn run(
     folder: &Path,
     arguments: &SweepArguments,
 ) -> Result<Outcome, CommandError> {
-    if arguments.shard.is_some() {
-        let report = Diagnostic::new("a map of regimes cannot be made in shards")
-            .remedy("leave `--shard` out: its strips run side by side on the cores of one machine");
-        return Err(CommandError::Input(report.into()));
+    if let Some(shard) = arguments.shard {
+        return shards::run(spec, (folder, shard), arguments);
     }
     let output = OutputFolder::prepare(folder)?;
     let home = MapFolder::new(output.path())?;
@@ -58,28 +58,45 @@ pub(super) fn run(
         let clock = Instant::now();
         let job = Job {
             spec,
-            checkpoint: &checkpoint,
+            checkpoint: Some(&checkpoint),
             quiet: arguments.work.quiet,
         };
-        let map = job.made(known, &cancellation)?;
+        let solve = |observer: &MapObserver<'_>| spec.map_from(&known, &cancellation, observer);
+        let map = job.made(&known, &cancellation, &solve)?;
         let Some(map) = map.filter(|map| !map.nodes.is_empty()) else {
-            super::print("interrupted: nothing was written\n")?;
-            return Ok(Outcome::Interrupted);
+            return interrupted();
         };
-        home.write(&map, &spec.to_toml(), clock.elapsed().as_secs_f64())?;
-        let settings = &spec.settings;
-        let figures = map_figures(&map, &settings.title, &settings.figure_style)?;
-        write_figures(&figures, &settings.figure_formats, &home.figures())?;
-        let mut text = summary(&map);
+        let outcome = conclude(spec, &map, home, (output.path(), clock))?;
         if !map.interrupted {
             checkpoint.remove();
         }
-        text += "\nfiles\n";
-        for file in home.take_place()? {
-            text += &format!("  {}\n", file.display());
-        }
-        super::conclude(&text, outcome(&map, &settings.locate), output.path())
+        Ok(outcome)
     })
+}
+
+/// What is said where there is nothing to write.
+fn interrupted() -> Result<Outcome, CommandError> {
+    super::print("interrupted: nothing was written\n")?;
+    Ok(Outcome::Interrupted)
+}
+
+/// Writes a map with its figures and prints what it found.
+fn conclude(
+    spec: &Sweep,
+    map: &RegimeMap,
+    home: MapFolder,
+    (path, clock): (&Path, Instant),
+) -> Result<Outcome, CommandError> {
+    home.write(map, &spec.to_toml(), clock.elapsed().as_secs_f64())?;
+    let settings = &spec.settings;
+    let figures = map_figures(map, &settings.title, &settings.figure_style)?;
+    write_figures(&figures, &settings.figure_formats, &home.figures())?;
+    let mut text = summary(map);
+    text += "\nfiles\n";
+    for file in home.take_place()? {
+        text += &format!("  {}\n", file.display());
+    }
+    super::conclude(&text, outcome(map, &settings.locate), path)
 }
 
 /// Whether the folder holds this very map, complete.
@@ -90,18 +107,20 @@ fn is_complete(spec: &Sweep, folder: &Path) -> Result<bool, CommandError> {
 /// A map in the making.
 struct Job<'a> {
     spec: &'a Sweep,
-    checkpoint: &'a MapCheckpoint,
+    /// Where what is solved is kept while the map is made.
+    checkpoint: Option<&'a MapCheckpoint>,
     quiet: bool,
 }
 
 impl Job<'_> {
-    /// The map, with the nodes that are known; `None` where it was interrupted before there was anything. What is solved is written now and then, so that a
-    /// map that is killed can be gone on with.
-    fn made(
+    /// The map, or what is wanted of it, that is solved with the nodes that are known; `None` where it was interrupted before there was anything. What is
+    /// solved is written now and then, so that a map that is killed can be gone on with.
+    fn made<T>(
         &self,
-        known: Vec<MapNode>,
+        known: &[MapNode],
         cancellation: &Cancellation,
-    ) -> Result<Option<RegimeMap>, CommandError> {
+        solve: &dyn Fn(&MapObserver<'_>) -> Result<Option<T>, SourceError>,
+    ) -> Result<Option<T>, CommandError> {
         let sides = self.spec.settings.map.as_ref();
         let rows = sides.map_or(1, |map| map.points);
         let progress = Progress::new(self.spec.settings.points * rows, self.quiet);
@@ -112,7 +131,7 @@ impl Job<'_> {
         let first = self.spec.problem.family().parameter();
         let at =
             |values: [f64; 2]| format!("{first} = {:.6}  {second} = {:.6}", values[0], values[1]);
-        let solved = Mutex::new((known.clone(), Instant::now()));
+        let solved = Mutex::new((known.to_vec(), Instant::now()));
         let observer = |told: &MapProgress<'_>| match *told {
             MapProgress::Solved { node, done, wanted } => {
                 let words: Vec<String> = node.signatures.iter().map(ToString::to_string).collect();
@@ -130,14 +149,14 @@ impl Job<'_> {
                 progress.say(&format!("curves: {done} points, {}", at(values)));
             }
         };
-        let found = self.spec.map_from(&known, cancellation, &observer);
+        let found = solve(&observer);
         progress.finish();
         if cancellation.is_cancelled() {
             let solved = solved.lock().unwrap_or_else(PoisonError::into_inner);
             self.keep(&solved.0);
         }
         match found {
-            Ok(map) => Ok(map),
+            Ok(found) => Ok(found),
             Err(SourceError::Interrupted) => Ok(None),
             Err(SourceError::Method(error)) => {
                 let title = format!("the box of the map has a corner that is not allowed: {error}");
@@ -150,7 +169,8 @@ impl Job<'_> {
 
     /// Writes what is solved. Where that fails the map goes on: it can be made without.
     fn keep(&self, nodes: &[MapNode]) {
-        if let Err(error) = self.checkpoint.write(nodes) {
+        let kept = self.checkpoint.map(|checkpoint| checkpoint.write(nodes));
+        if let Some(Err(error)) = kept {
             let text = format!("what is solved cannot be kept: {error}\n");
             // Without a reader of stderr there is nobody to tell.
             let _ = std::io::stderr().lock().write_all(text.as_bytes());

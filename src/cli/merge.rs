@@ -8,7 +8,7 @@ use super::sweep::resume::Begin;
 use super::sweep::{Kind, Task, draw, summary};
 use super::{CommandError, Outcome, warnings};
 use crate::continuation::{SweepResult, detect_again};
-use crate::run::{Ending, Gathered, Manifest, RunError, RunFolder, Shards, StoredRun};
+use crate::run::{Ending, Gathered, Manifest, MapShards, RunError, RunFolder, Shards, StoredRun};
 use crate::sweep_file::{MethodKind, Sweep};
 
 /// Puts shards together and prints what is found in all of them.
@@ -16,6 +16,9 @@ use crate::sweep_file::{MethodKind, Sweep};
 /// # Errors
 /// [`CommandError`] when shards are missing or cannot be read, or the results not be written.
 pub(super) fn run(arguments: &MergeArguments) -> Result<Outcome, CommandError> {
+    if MapShards::are_there(&arguments.run) {
+        return super::map::shards::merge(arguments);
+    }
     let shards = Shards::open(&arguments.run)?;
     if !arguments.partial {
         shards.check_complete()?;

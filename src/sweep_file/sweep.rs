@@ -4,9 +4,11 @@ use super::settings::Settings;
 use crate::cancellation::Cancellation;
 use crate::continuation::curve::{CurveOptions, Plane};
 use crate::continuation::map::{
-    MapNode, MapObserver, PlaneState, RegimeMap, plane_states, regime_map_from,
+    MapMaker, MapNode, MapObserver, MapShard, PlaneState, RegimeMap, plane_states,
 };
-use crate::continuation::{DensitySource, Observer, SourceError, SweepError, SweepResult, sweep};
+use crate::continuation::{
+    DensitySource, Observer, Shard, SourceError, SweepError, SweepResult, sweep,
+};
 use crate::method::{MethodError, MethodSource, Problem};
 use crate::system::Family;
 use crate::topology::PersistenceDetector;
@@ -121,7 +123,7 @@ impl Sweep {
         self.map_from(&[], cancellation, observer)
     }
 
-    /// Goes on with the map of which these nodes are known ([`regime_map_from`]); `None` without `[map]`.
+    /// Goes on with the map of which these nodes are known ([`regime_map_from`](crate::continuation::map::regime_map_from)); `None` without `[map]`.
     ///
     /// # Errors
     /// [`SourceError`] where the box has a corner that is not allowed.
@@ -131,6 +133,45 @@ impl Sweep {
         cancellation: &Cancellation,
         observer: &MapObserver<'_>,
     ) -> Result<Option<RegimeMap>, SourceError> {
+        self.with_maker(cancellation, observer, |maker| maker.whole(known).map(Some))
+    }
+
+    /// A shard of the map, of which these nodes are known ([`MapMaker::shard`]); `None` without `[map]`, and where there are more shards than steps between
+    /// values of the second parameter.
+    ///
+    /// # Errors
+    /// [`SourceError`] where the box has a corner that is not allowed.
+    pub fn map_shard(
+        &self,
+        shard: Shard,
+        known: &[MapNode],
+        cancellation: &Cancellation,
+        observer: &MapObserver<'_>,
+    ) -> Result<Option<MapShard>, SourceError> {
+        self.with_maker(cancellation, observer, |maker| maker.shard(shard, known))
+    }
+
+    /// The map that its shards make ([`MapMaker::merged`]); `None` without `[map]`.
+    ///
+    /// # Errors
+    /// [`SourceError`] where the box has a corner that is not allowed.
+    pub fn map_of_shards(
+        &self,
+        shards: &[MapShard],
+        cancellation: &Cancellation,
+        observer: &MapObserver<'_>,
+    ) -> Result<Option<RegimeMap>, SourceError> {
+        self.with_maker(cancellation, observer, |maker| {
+            maker.merged(shards).map(Some)
+        })
+    }
+
+    fn with_maker<T>(
+        &self,
+        cancellation: &Cancellation,
+        observer: &MapObserver<'_>,
+        task: impl FnOnce(&MapMaker<'_>) -> Result<Option<T>, SourceError>,
+    ) -> Result<Option<T>, SourceError> {
         let settings = &self.settings;
         let map = settings.map.as_ref();
         let Some((map, plane)) = map.and_then(|map| Some((map, map.plane(&settings.family)?)))
@@ -141,18 +182,14 @@ impl Sweep {
             settings.points,
             self.curve_options(plane.sides()[0].length()),
         );
-        let source = |plane: &Plane| self.boxed_source_in(plane, cancellation);
-        let detector = self.detector();
-        let map = regime_map_from(
-            &source,
-            &plane,
-            &detector,
-            &options,
-            known,
+        task(&MapMaker {
+            source: &|plane: &Plane| self.boxed_source_in(plane, cancellation),
+            plane: &plane,
+            detector: &self.detector(),
+            options: &options,
             cancellation,
             observer,
-        );
-        map.map(Some)
+        })
     }
 
     /// The densities at all crossings of these values of both parameters of the map's box ([`plane_states`]), with what is found in them; `done` is told of

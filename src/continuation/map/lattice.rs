@@ -1,5 +1,7 @@
 //! The places of a map: a coarse grid whose cells may be halved, all on one lattice of whole numbers.
 
+use std::ops::RangeInclusive;
+
 /// A place: whole numbers along the first and the second parameter.
 pub(super) type At = [usize; 2];
 
@@ -59,10 +61,15 @@ impl Lattice {
         self.depth - fineness.min().unwrap_or(0).min(self.depth)
     }
 
-    /// Strips of coarse rows, each in the order in which it is walked: to and fro.
-    pub(super) fn strips(&self, rows: usize) -> Vec<Vec<At>> {
+    /// All coarse rows.
+    pub(super) fn rows(&self) -> RangeInclusive<usize> {
+        0..=self.counts[1] - 1
+    }
+
+    /// Strips of some coarse rows, each in the order in which it is walked: to and fro.
+    pub(super) fn strips(&self, of: RangeInclusive<usize>, rows: usize) -> Vec<Vec<At>> {
         let step = self.coarse();
-        let all: Vec<usize> = (0..self.counts[1]).collect();
+        let all: Vec<usize> = of.collect();
         let strip = |rows: &[usize]| {
             let walked = rows.iter().enumerate().flat_map(|(turn, &row)| {
                 (0..self.counts[0]).map(move |column| {
@@ -78,12 +85,12 @@ impl Lattice {
         all.chunks(rows).map(strip).collect()
     }
 
-    /// The coarse cells.
-    pub(super) fn cells(&self) -> Vec<Leaf> {
+    /// The coarse cells between some rows.
+    pub(super) fn cells(&self, rows: &RangeInclusive<usize>) -> Vec<Leaf> {
         let size = self.coarse();
         let columns = 0..self.counts[0] - 1;
         let cells =
-            columns.flat_map(|i| (0..self.counts[1] - 1).map(move |j| [i * size, j * size]));
+            columns.flat_map(|i| (*rows.start()..*rows.end()).map(move |j| [i * size, j * size]));
         cells.map(|corner| Leaf { corner, size }).collect()
     }
 
@@ -136,7 +143,7 @@ mod tests {
     #[test]
     fn strips_are_walked_to_and_fro_and_hold_every_coarse_place_once() {
         let lattice = Lattice::new([4, 5], 2);
-        let strips = lattice.strips(2);
+        let strips = lattice.strips(lattice.rows(), 2);
         assert_eq!(strips.len(), 3);
         assert_eq!(strips[0][3..5], [[12, 0], [12, 4]]);
         assert_eq!(strips[2].len(), 4);
@@ -159,7 +166,7 @@ mod tests {
     #[test]
     fn halves_fill_a_cell_and_middles_are_their_corners() {
         let lattice = Lattice::new([3, 3], 2);
-        let cell = lattice.cells()[1];
+        let cell = lattice.cells(&lattice.rows())[1];
         assert_eq!((cell.corner, cell.size), ([0, 4], 4));
         let corner = |at: &At| {
             cell.halves()

@@ -10,6 +10,7 @@ mod lattice;
 mod node;
 mod regions;
 mod samples;
+mod shards;
 mod solve;
 mod states;
 mod trace;
@@ -17,10 +18,11 @@ mod trace;
 pub use found::{MapNode, MapWork, RegimeMap, RegionSample, Untraced};
 pub(crate) use regions::{FloodedRegion, Seed, flooded};
 pub use regions::{Region, RegionPicture};
+pub use shards::{MapChange, MapShard};
 pub use states::{PlaneState, plane_states};
 
-use super::curve::{CurveOptions, Plane, agree};
-use super::{DensitySource, SourceError};
+use super::curve::{Curve, CurveOptions, Plane, agree};
+use super::{DensitySource, Shard, SourceError};
 use crate::cancellation::Cancellation;
 use crate::topology::Detector;
 use lattice::Lattice;
@@ -135,50 +137,136 @@ pub fn regime_map_from(
     cancellation: &Cancellation,
     observer: &MapObserver<'_>,
 ) -> Result<RegimeMap, SourceError> {
-    let subject = source(&plane.afresh())?.subject().clone();
-    let lattice = Lattice::new(options.counts, options.depth);
-    let solver = Solver::new(source, plane, &lattice, detector, cancellation, observer);
-    solver.recall(known);
-    let leaves = solver.solve_all()?;
-    let (crossings, blurred) = crossing::crossings(&solver.grid(), &lattice, detector);
-    let mut work = MapWork {
-        nodes: solver.work(),
-        ..MapWork::default()
+    let maker = MapMaker {
+        source,
+        plane,
+        detector,
+        options,
+        cancellation,
+        observer,
     };
-    let (mut curves, untraced) = match &options.curves {
-        Some(curves) => {
-            let tracer = trace::Tracer {
-                source,
-                plane,
-                detector,
-                options: curves,
-                cancellation,
-                observer,
-            };
-            tracer.trace(crossings, blurred, &mut work.curves)
-        }
-        None => (Vec::new(), Vec::new()),
-    };
-    agree(&mut curves);
-    let is_cut = curves
-        .iter()
-        .any(|curve: &super::curve::Curve| curve.is_interrupted());
-    let mut map = RegimeMap {
-        interrupted: cancellation.is_cancelled() || is_cut,
-        plane: plane.clone(),
-        nodes: solver.into_nodes(),
-        cells: leaves
-            .into_iter()
-            .map(|leaf| lattice.corners(leaf))
-            .collect(),
-        curves,
-        untraced,
-        samples: Vec::new(),
-        work,
-        subject,
-    };
-    if !map.interrupted {
-        map.samples = samples::samples(&map, source, cancellation)?;
+    maker.whole(known)
+}
+
+/// What makes a map, whole or in shards.
+#[derive(Clone, Copy)]
+pub struct MapMaker<'a> {
+    /// Makes sources of densities in the plane.
+    pub source: &'a SourceInPlane<'a>,
+    /// The box.
+    pub plane: &'a Plane,
+    /// Finds features and indicators.
+    pub detector: &'a dyn Detector,
+    /// How the map is made.
+    pub options: &'a MapOptions,
+    /// Ends it early.
+    pub cancellation: &'a Cancellation,
+    /// Is told how it goes.
+    pub observer: &'a MapObserver<'a>,
+}
+
+impl MapMaker<'_> {
+    /// The map in one piece; see [`regime_map_from`].
+    ///
+    /// # Errors
+    /// [`SourceError`] where no source can be made in this plane.
+    pub fn whole(&self, known: &[MapNode]) -> Result<RegimeMap, SourceError> {
+        let lattice = Lattice::new(self.options.counts, self.options.depth);
+        let solver = Solver::new(self, &lattice);
+        solver.recall(known);
+        let leaves = solver.solve_all(&lattice.rows(), &|_| true)?;
+        let found = crossing::crossings(&solver.grid(), &lattice, self.detector);
+        self.finished(&lattice, solver, leaves, found)
     }
-    Ok(map)
+
+    /// A shard of the map: its share of the coarse rows with what refinement asks for between them, and the changes that are found there. Of `known` nodes,
+    /// those beside changes are solved again. `None` where there are more shards than steps between rows.
+    ///
+    /// # Errors
+    /// [`SourceError`] where no source can be made in this plane.
+    pub fn shard(&self, shard: Shard, known: &[MapNode]) -> Result<Option<MapShard>, SourceError> {
+        let lattice = Lattice::new(self.options.counts, self.options.depth);
+        let Some(rows) = shard.places(self.options.counts[1]) else {
+            return Ok(None);
+        };
+        let solver = Solver::new(self, &lattice);
+        solver.recall(known);
+        solver.solve_all(&rows, &|_| true)?;
+        let found = crossing::crossings(&solver.grid(), &lattice, self.detector);
+        Ok(Some(MapShard {
+            shard,
+            nodes: solver.into_nodes(),
+            changes: shards::changes(found),
+            interrupted: self.cancellation.is_cancelled(),
+        }))
+    }
+
+    /// The map of all its shards: solves again what stands beside changes at their borders, and follows the curves.
+    ///
+    /// # Errors
+    /// [`SourceError`] where no source can be made in this plane.
+    pub fn merged(&self, shards: &[MapShard]) -> Result<RegimeMap, SourceError> {
+        let lattice = Lattice::new(self.options.counts, self.options.depth);
+        let solver = Solver::new(self, &lattice);
+        shards.iter().for_each(|shard| solver.recall(&shard.nodes));
+        let borders: Vec<usize> = shards
+            .iter()
+            .filter_map(|shard| Some(*shard.shard.places(self.options.counts[1])?.start()))
+            .filter(|&row| row > 0)
+            .collect();
+        let is_at_border = |at: lattice::At| {
+            let step = lattice.coarse();
+            let mut rows = borders.iter();
+            rows.any(|row| at[1].abs_diff(row * step) <= node::NEAR * step)
+        };
+        let leaves = solver.solve_all(&lattice.rows(), &is_at_border)?;
+        let (mut crossings, mut blurred) =
+            crossing::crossings(&solver.grid(), &lattice, self.detector);
+        let changes = shards.iter().flat_map(|shard| &shard.changes);
+        shards::gather(changes, &mut crossings, &mut blurred);
+        self.finished(&lattice, solver, leaves, (crossings, blurred))
+    }
+
+    /// The map with its curves and a density of each regime.
+    fn finished(
+        &self,
+        lattice: &Lattice,
+        solver: Solver<'_>,
+        leaves: Vec<lattice::Leaf>,
+        (crossings, blurred): (Vec<crossing::Crossing>, Vec<crossing::Blurred>),
+    ) -> Result<RegimeMap, SourceError> {
+        let subject = (self.source)(&self.plane.afresh())?.subject().clone();
+        let mut work = MapWork {
+            nodes: solver.work(),
+            ..MapWork::default()
+        };
+        let (mut curves, untraced) = match &self.options.curves {
+            Some(options) => {
+                let tracer = trace::Tracer {
+                    maker: self,
+                    options,
+                };
+                tracer.trace(crossings, blurred, &mut work.curves)
+            }
+            None => (Vec::new(), Vec::new()),
+        };
+        agree(&mut curves);
+        let is_cut = curves.iter().any(Curve::is_interrupted);
+        let corners = leaves.into_iter().map(|leaf| lattice.corners(leaf));
+        let mut map = RegimeMap {
+            interrupted: self.cancellation.is_cancelled() || is_cut,
+            plane: self.plane.clone(),
+            nodes: solver.into_nodes(),
+            cells: corners.collect(),
+            curves,
+            untraced,
+            samples: Vec::new(),
+            work,
+            subject,
+        };
+        if !map.interrupted {
+            map.samples = samples::samples(&map, self.source, self.cancellation)?;
+        }
+        Ok(map)
+    }
 }

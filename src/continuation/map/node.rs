@@ -10,7 +10,7 @@ use crate::topology::Signature;
 
 /// Neighbours on either side whose signatures decide whether densities are kept: an indicator may pass zero a step or two before what it tells is
 /// counted.
-const NEAR: usize = 2;
+pub(super) const NEAR: usize = 2;
 
 /// A node, and the solved point while it is kept.
 #[derive(Debug, Clone)]

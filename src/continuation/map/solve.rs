@@ -1,6 +1,7 @@
 //! Solving the nodes of a map: the coarse grid in strips, then what neighbours that differ ask for, in parts of fixed length. Every strip
 //! and part is a session of its own along a path of its own.
 
+use std::ops::RangeInclusive;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
@@ -10,9 +11,8 @@ use rayon::prelude::*;
 use super::found::MapNode;
 use super::lattice::{At, Lattice, Leaf};
 use super::node::{Grid, Solved};
-use super::{MapObserver, MapProgress, SourceInPlane};
-use crate::cancellation::Cancellation;
-use crate::continuation::curve::{CurveWork, Plane};
+use super::{MapMaker, MapProgress};
+use crate::continuation::curve::CurveWork;
 use crate::continuation::{
     Finding, Point, PointStatus, Session, Solution, SolveReport, SourceError,
 };
@@ -25,12 +25,8 @@ const PART: usize = 16;
 
 /// What solves a map, and what is solved.
 pub(super) struct Solver<'a> {
-    source: &'a SourceInPlane<'a>,
-    plane: &'a Plane,
+    maker: &'a MapMaker<'a>,
     lattice: &'a Lattice,
-    detector: &'a dyn Detector,
-    cancellation: &'a Cancellation,
-    observer: &'a MapObserver<'a>,
     grid: Mutex<Grid>,
     work: Mutex<CurveWork>,
     done: AtomicUsize,
@@ -38,21 +34,10 @@ pub(super) struct Solver<'a> {
 }
 
 impl<'a> Solver<'a> {
-    pub(super) fn new(
-        source: &'a SourceInPlane<'a>,
-        plane: &'a Plane,
-        lattice: &'a Lattice,
-        detector: &'a dyn Detector,
-        cancellation: &'a Cancellation,
-        observer: &'a MapObserver<'a>,
-    ) -> Self {
+    pub(super) fn new(maker: &'a MapMaker<'a>, lattice: &'a Lattice) -> Self {
         Self {
-            source,
-            plane,
+            maker,
             lattice,
-            detector,
-            cancellation,
-            observer,
             grid: Mutex::default(),
             work: Mutex::default(),
             done: AtomicUsize::new(0),
@@ -79,11 +64,11 @@ impl<'a> Solver<'a> {
     pub(super) fn recall(&self, known: &[MapNode]) {
         let mut grid = self.grid();
         for node in known {
-            let Some(at) = self.lattice.at(self.plane.place(node.values)) else {
+            let Some(at) = self.lattice.at(self.maker.plane.place(node.values)) else {
                 continue;
             };
             let node = MapNode {
-                values: self.plane.values(self.lattice.share(at)),
+                values: self.maker.plane.values(self.lattice.share(at)),
                 level: self.lattice.level(at),
                 ..node.clone()
             };
@@ -94,13 +79,14 @@ impl<'a> Solver<'a> {
         self.wanted.store(count, Ordering::Relaxed);
     }
 
-    /// Solves again what was recalled and is near to a change: its densities tell which indicator's zero to follow.
-    fn complete(&self) -> Result<(), SourceError> {
+    /// Solves again what was recalled and is near to a change, of places that are `asked`: its densities tell which indicator's zero to follow.
+    fn complete(&self, asked: &dyn Fn(At) -> bool) -> Result<(), SourceError> {
         let wanted: Vec<At> = {
             let grid = self.grid();
             let near = grid.all().filter(|(at, solved)| {
                 let is_refined = self.lattice.level(*at) > 0;
-                solved.point.is_none() && (is_refined || !grid.is_quiet(*at, self.lattice, true))
+                let is_bare = solved.point.is_none() && asked(*at);
+                is_bare && (is_refined || !grid.is_quiet(*at, self.lattice, true))
             });
             near.map(|(at, _)| at).collect()
         };
@@ -108,9 +94,14 @@ impl<'a> Solver<'a> {
         self.solve_parts(&parts)
     }
 
-    /// Solves the coarse grid and refines it; gives the cells that are not halved further.
-    pub(super) fn solve_all(&self) -> Result<Vec<Leaf>, SourceError> {
-        let mut strips = self.lattice.strips(ROWS);
+    /// Solves some rows of the coarse grid and refines between them; gives the cells that are not halved further. Of what was recalled, places near
+    /// changes that are `asked` for are solved again.
+    pub(super) fn solve_all(
+        &self,
+        rows: &RangeInclusive<usize>,
+        asked: &dyn Fn(At) -> bool,
+    ) -> Result<Vec<Leaf>, SourceError> {
+        let mut strips = self.lattice.strips(rows.clone(), ROWS);
         let coarse: Vec<At> = strips.concat();
         {
             let grid = self.grid();
@@ -121,7 +112,7 @@ impl<'a> Solver<'a> {
         }
         self.solve_parts(&strips)?;
         self.grid().let_go(&coarse, self.lattice, true);
-        let mut leaves = self.lattice.cells();
+        let mut leaves = self.lattice.cells(rows);
         for level in 1..=self.lattice.depth() {
             let least = self.lattice.coarse() >> level;
             loop {
@@ -129,7 +120,7 @@ impl<'a> Solver<'a> {
                     .into_iter()
                     .partition(|&leaf| leaf.size > least && self.is_mixed(leaf));
                 leaves = rest;
-                if mixed.is_empty() || self.cancellation.is_cancelled() {
+                if mixed.is_empty() || self.maker.cancellation.is_cancelled() {
                     leaves.extend(mixed);
                     break;
                 }
@@ -140,7 +131,7 @@ impl<'a> Solver<'a> {
             }
         }
         leaves.sort_by_key(|leaf| (leaf.corner[1], leaf.corner[0]));
-        self.complete()?;
+        self.complete(asked)?;
         Ok(leaves)
     }
 
@@ -180,12 +171,12 @@ impl<'a> Solver<'a> {
     }
 
     fn solve_part(&self, part: &[At]) -> Result<(), SourceError> {
-        let plane = self.plane.afresh();
-        let source = (self.source)(&plane)?;
-        let mut session = source.open(self.cancellation);
+        let plane = self.maker.plane.afresh();
+        let source = (self.maker.source)(&plane)?;
+        let mut session = source.open(self.maker.cancellation);
         let mut behind = Vec::new();
         for (index, &at) in part.iter().enumerate() {
-            if self.cancellation.is_cancelled() {
+            if self.maker.cancellation.is_cancelled() {
                 break;
             }
             let place = self.lattice.share(at);
@@ -198,7 +189,7 @@ impl<'a> Solver<'a> {
                 break;
             };
             let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
-            (self.observer)(&MapProgress::Solved {
+            (self.maker.observer)(&MapProgress::Solved {
                 node: &solved.node,
                 done,
                 wanted: self.wanted.load(Ordering::Relaxed),
@@ -222,13 +213,13 @@ impl<'a> Solver<'a> {
         at: At,
         coordinate: f64,
     ) -> Option<Solved> {
-        let (point, reason) = solve_place(session, method, self.detector, coordinate)?;
+        let (point, reason) = solve_place(session, method, self.maker.detector, coordinate)?;
         let detections = &point.detections;
         let mut work = self.work.lock().unwrap_or_else(PoisonError::into_inner);
         work.count(&point.report);
         drop(work);
         let node = MapNode {
-            values: self.plane.values(self.lattice.share(at)),
+            values: self.maker.plane.values(self.lattice.share(at)),
             level: self.lattice.level(at),
             status: point.report.status,
             signatures: detections.iter().map(|one| one.signature).collect(),

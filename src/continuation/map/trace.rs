@@ -6,14 +6,12 @@ use rayon::prelude::*;
 
 use super::crossing::{Blurred, Crossing};
 use super::found::Untraced;
-use super::{MapObserver, MapProgress, SourceInPlane};
-use crate::cancellation::Cancellation;
+use super::{MapMaker, MapProgress};
 use crate::continuation::SourceError;
 use crate::continuation::curve::{
-    Curve, CurveError, CurveOptions, CurveStart, CurveWork, EndReason, ON_IT, Plane, distance,
-    follow,
+    Curve, CurveError, CurveOptions, CurveStart, CurveWork, EndReason, ON_IT, distance, follow,
 };
-use crate::topology::{Detector, IndicatorKind};
+use crate::topology::IndicatorKind;
 
 /// Starts of one indicator that may fail before its other crossings are not tried.
 const MOST_FAILURES: usize = 4;
@@ -26,12 +24,8 @@ const SAME: f64 = 4e-3;
 
 /// What follows the curves of a map.
 pub(super) struct Tracer<'a> {
-    pub(super) source: &'a SourceInPlane<'a>,
-    pub(super) plane: &'a Plane,
-    pub(super) detector: &'a dyn Detector,
+    pub(super) maker: &'a MapMaker<'a>,
     pub(super) options: &'a CurveOptions,
-    pub(super) cancellation: &'a Cancellation,
-    pub(super) observer: &'a MapObserver<'a>,
 }
 
 /// Fewest points of a curve: with fewer its indicator exists on a single line of the plane, such as the one on which a system is symmetric.
@@ -61,7 +55,7 @@ impl Tracer<'_> {
         let mut branches: Vec<CurveStart> = Vec::new();
         let mut tried: Vec<CurveStart> = Vec::new();
         let met = AtomicUsize::new(0);
-        while !self.cancellation.is_cancelled() {
+        while !self.maker.cancellation.is_cancelled() {
             open.retain(|crossing| !drawn.iter().any(|curve| curve.explains(crossing)));
             let starts = starts(&mut open, &failures);
             if starts.is_empty() {
@@ -117,7 +111,7 @@ impl Tracer<'_> {
                 }
             }
         }
-        let untraced = match self.cancellation.is_cancelled() {
+        let untraced = match self.maker.cancellation.is_cancelled() {
             true => Vec::new(),
             false => {
                 let mut untraced = self.untraced(&drawn, &open, &failures, &blurred);
@@ -140,9 +134,9 @@ impl Tracer<'_> {
         drawn: &[Drawn],
     ) -> Option<CurveStart> {
         branches.retain(|start| {
-            let at = self.plane.place(start.values);
+            let at = self.maker.plane.place(start.values);
             let is_drawn = drawn.iter().any(|curve| curve.has(start, at));
-            let is_tried = tried.iter().any(|one| one.is_near(start, self.plane));
+            let is_tried = tried.iter().any(|one| one.is_near(start, self.maker.plane));
             !is_drawn && !is_tried
         });
         let start = branches.pop()?;
@@ -152,7 +146,7 @@ impl Tracer<'_> {
 
     fn follow(&self, start: &Crossing, met: &AtomicUsize) -> Result<Curve, CurveError> {
         let begins = CurveStart {
-            values: self.plane.values(start.at),
+            values: self.maker.plane.values(start.at),
             observable: start.observable,
             kind: start.kind,
             place: start.place.clone(),
@@ -161,14 +155,14 @@ impl Tracer<'_> {
     }
 
     fn follow_from(&self, begins: &CurveStart, met: &AtomicUsize) -> Result<Curve, CurveError> {
-        let plane = self.plane.afresh();
-        let source = (self.source)(&plane)?;
+        let plane = self.maker.plane.afresh();
+        let source = (self.maker.source)(&plane)?;
         let mut observer = |values: [f64; 2]| {
             let done = met.fetch_add(1, Ordering::Relaxed) + 1;
-            (self.observer)(&MapProgress::Met { values, done });
+            (self.maker.observer)(&MapProgress::Met { values, done });
         };
-        let (options, cancellation) = (self.options, self.cancellation);
-        let detector = self.detector;
+        let (options, cancellation) = (self.options, self.maker.cancellation);
+        let detector = self.maker.detector;
         follow(
             source.as_ref(),
             &plane,
@@ -183,7 +177,7 @@ impl Tracer<'_> {
     /// Whether a curve that was followed from a crossing is one that is drawn already: beyond the end of a curve its crossings are not explained by it.
     fn is_drawn(&self, drawn: &[Drawn], start: &Crossing, curve: &Curve) -> bool {
         let begins = curve.points.get(curve.start);
-        let at = begins.map(|point| self.plane.place(point.values));
+        let at = begins.map(|point| self.maker.plane.place(point.values));
         let mut drawn = drawn.iter();
         at.is_some_and(|at| {
             drawn.any(|one| {
@@ -195,7 +189,9 @@ impl Tracer<'_> {
 
     fn line(&self, curve: &Curve) -> Vec<[f64; 2]> {
         let points = curve.points.iter();
-        points.map(|point| self.plane.place(point.values)).collect()
+        points
+            .map(|point| self.maker.plane.place(point.values))
+            .collect()
     }
 
     /// A change whose curve says too little.
@@ -203,7 +199,7 @@ impl Tracer<'_> {
         Untraced {
             observable: start.observable,
             pairs: 1,
-            near: self.plane.values(start.at),
+            near: self.maker.plane.values(start.at),
             reason: reason.to_owned(),
         }
     }
@@ -248,7 +244,7 @@ impl Tracer<'_> {
             found.push(Untraced {
                 observable,
                 pairs: 1,
-                near: self.plane.values([0, 1].map(|k| 0.5 * (a[k] + b[k]))),
+                near: self.maker.plane.values([0, 1].map(|k| 0.5 * (a[k] + b[k]))),
                 reason: reason.to_owned(),
             });
         }

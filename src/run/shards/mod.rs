@@ -159,7 +159,7 @@ impl Shards {
 }
 
 /// Into how many shards the sweep was cut whose shards are there.
-fn count(path: &Path) -> Result<usize, RunError> {
+pub(super) fn count(path: &Path) -> Result<usize, RunError> {
     let entries = std::fs::read_dir(path.join(SHARDS));
     let names = entries.into_iter().flatten().flatten();
     let mut counts: Vec<usize> = names

@@ -1,0 +1,125 @@
+//! Shards of a map: contiguous parts of its rows that are solved by processes that know nothing of each other, and what they found.
+
+use super::crossing::{Blurred, Crossing};
+use super::found::MapNode;
+use crate::continuation::Shard;
+use crate::topology::IndicatorKind;
+
+/// A change of signature between two neighbouring nodes. Places are shares of the sides of the box.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapChange {
+    /// The observable, by its place in [`Subject::observables`](crate::continuation::Subject::observables).
+    pub observable: usize,
+    /// The two nodes.
+    pub ends: [[f64; 2]; 2],
+    /// The indicator that is zero between them, where it is in the density, and about where the zero is; `None` where no indicator tells.
+    pub zero: Option<(IndicatorKind, Vec<f64>, [f64; 2])>,
+}
+
+/// What a shard of a map has found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapShard {
+    /// Which one.
+    pub shard: Shard,
+    /// Its nodes, those of the rows at its borders included.
+    pub nodes: Vec<MapNode>,
+    /// The changes between them.
+    pub changes: Vec<MapChange>,
+    /// Whether it was interrupted before it was complete.
+    pub interrupted: bool,
+}
+
+/// What was found as changes.
+pub(super) fn changes((crossings, blurred): (Vec<Crossing>, Vec<Blurred>)) -> Vec<MapChange> {
+    let told = crossings.into_iter().map(|one| MapChange {
+        observable: one.observable,
+        ends: one.ends,
+        zero: Some((one.kind, one.place, one.at)),
+    });
+    let others = blurred.into_iter().map(|one| MapChange {
+        observable: one.observable,
+        ends: one.ends,
+        zero: None,
+    });
+    told.chain(others).collect()
+}
+
+/// Adds changes to those that are there, each once, in the order in which a map in one piece finds them.
+pub(super) fn gather<'s>(
+    changes: impl Iterator<Item = &'s MapChange>,
+    crossings: &mut Vec<Crossing>,
+    blurred: &mut Vec<Blurred>,
+) {
+    for MapChange {
+        observable,
+        ends,
+        zero,
+    } in changes
+    {
+        let (observable, ends) = (*observable, *ends);
+        match zero {
+            Some((kind, place, at)) => crossings.push(Crossing {
+                observable,
+                kind: *kind,
+                place: place.clone(),
+                at: *at,
+                ends,
+            }),
+            None => blurred.push(Blurred { observable, ends }),
+        }
+    }
+    let order = |a: &[[f64; 2]; 2], b: &[[f64; 2]; 2]| {
+        let [a, b] = [a, b].map(place);
+        a.iter()
+            .zip(&b)
+            .map(|(a, b)| a.total_cmp(b))
+            .fold(std::cmp::Ordering::Equal, std::cmp::Ordering::then)
+    };
+    crossings.sort_by(|a, b| order(&a.ends, &b.ends));
+    crossings.dedup_by(|a, b| {
+        (a.observable, a.kind, a.ends) == (b.observable, b.kind, b.ends)
+            && nearly(&a.place, &b.place)
+    });
+    blurred.sort_by(|a, b| order(&a.ends, &b.ends));
+    blurred.dedup_by(|a, b| (a.observable, a.ends) == (b.observable, b.ends));
+}
+
+/// Where two neighbouring nodes stand: along rows or along columns, in which one, and where in it.
+fn place(ends: &[[f64; 2]; 2]) -> [f64; 3] {
+    let side = usize::from(ends[0][0] == ends[1][0]);
+    [side as f64, ends[0][1 - side], ends[0][side]]
+}
+
+/// Whether two solves of one density have an indicator in one place.
+fn nearly(a: &[f64], b: &[f64]) -> bool {
+    let mut pairs = a.iter().zip(b);
+    pairs.all(|(a, b)| (a - b).abs() <= 1e-4 * (1.0 + a.abs()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn changes_of_shards_are_gathered_once_along_rows_and_then_along_columns() {
+        let change = |ends, at: f64| MapChange {
+            observable: 0,
+            ends,
+            zero: Some((IndicatorKind::Curvature, vec![0.0], [at, 0.5])),
+        };
+        let row = |y: f64| [[0.2, y], [0.4, y]];
+        let column = [[0.2, 0.5], [0.2, 0.75]];
+        // The row at 0.5 is in both.
+        let shards = [
+            change(row(0.5), 0.3),
+            change(column, 0.2),
+            change(row(0.25), 0.3),
+            change(row(0.5), 0.300_001),
+        ];
+        let (mut crossings, mut blurred) = (Vec::new(), Vec::new());
+        gather(shards.iter(), &mut crossings, &mut blurred);
+        let ends: Vec<_> = crossings.iter().map(|one| one.ends).collect();
+        assert_eq!(ends, [row(0.25), row(0.5), column]);
+        assert_eq!(changes((crossings, blurred)).len(), 3);
+    }
+}
