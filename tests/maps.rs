@@ -275,6 +275,50 @@ fn every_curve_is_followed_once_and_its_work_is_as_it_was() {
     ");
 }
 
+/// Dahl's z lies within f_c/λ, which the second parameter moves.
+const DAHL: &str = r#"
+[system]
+model = "dahl"
+[system.parameters]
+kappa = 0.1
+mu = 1.0
+lambda = 0.1
+sigma2 = 0.05
+[sweep]
+parameter = "alpha"
+from = -0.2
+to = 0.1
+points = 2
+[map]
+parameter = "f_c"
+from = 0.03
+to = 0.08
+points = 2
+depth = 0
+curves = "off"
+[cells]
+x = { from = -2.0, to = 2.0, count = 24 }
+y = { from = -2.0, to = 2.0, count = 20 }
+z = { modes = 4 }
+[detect]
+marginals = ["x"]
+joint = []
+"#;
+
+#[test]
+fn an_axis_of_modes_holds_its_state_at_every_corner_of_a_map() {
+    let map = mapped(DAHL, &[]);
+    assert_eq!(map.nodes.len(), 4);
+    assert!(
+        map.nodes.iter().all(|node| node.status.is_resolved()),
+        "{:?}",
+        map.nodes
+    );
+    let sweep = prepared(DAHL, &[]);
+    let z = &sweep.problem.space().axes()[2];
+    assert!((z.from() + 0.8).abs() < 1e-12 && (z.to() - 0.8).abs() < 1e-12);
+}
+
 #[test]
 fn a_cancelled_map_keeps_what_was_done_and_says_so() {
     let cancellation = Cancellation::new();

@@ -21,7 +21,7 @@ use crate::figure::{curve_figure, write_figures};
 use crate::method::MethodError;
 use crate::run::{CurveFolder, RecordedSource, SessionJournal, format_number, format_with_error};
 use crate::sweep_file::{Diagnostic, MethodKind, SolveError, Sweep};
-use refusals::{chosen_row, held_value, no_indicator, refused, refused_plane};
+use refusals::{check_bounds, chosen_row, held_value, no_indicator, refused, refused_plane};
 
 /// Sections of a run's sweep that may be set anew.
 const SECTIONS: [&str; 3] = ["detect", "locate", "figures"];
@@ -152,6 +152,7 @@ impl<'a> Job<'a> {
             start,
         };
         job.check_box()?;
+        check_bounds(spec, &job.plane)?;
         Ok(job)
     }
 
@@ -381,8 +382,22 @@ impl<'a> Job<'a> {
             "  {} points, {located} of them located, {checked} checked; largest error {largest:.1e} of the sides of the box\n",
             curve.points.len()
         );
-        text
+        let tolerance = self.spec.curve_options(first.length()).tolerance;
+        text + &sampling_in_words(curve, tolerance)
     }
+}
+
+/// What sampling leaves open, where it is more than the tolerance; nothing for densities that are not sampled.
+fn sampling_in_words(curve: &Curve, tolerance: f64) -> String {
+    let sampling = curve.points.iter().map(|point| point.parts.sampling);
+    let largest = sampling.fold(0.0, f64::max);
+    if largest <= tolerance {
+        return String::new();
+    }
+    let times = (largest / tolerance).powi(2).ceil();
+    format!(
+        "  sampling alone is up to {largest:.1e} of the sides of the box, and the tolerance is {tolerance:.1e}: {times:.0} times the samples would meet it, or a larger `locate.relative_tolerance`\n"
+    )
 }
 
 /// Values of both parameters to the digits that an error, a share of the sides of the box, leaves.

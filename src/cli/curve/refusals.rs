@@ -1,7 +1,7 @@
 //! Which row a curve starts from and which parameter is the second, and what is said where that does not go.
 
 use crate::cli::CommandError;
-use crate::continuation::curve::CurveError;
+use crate::continuation::curve::{CurveError, Plane};
 use crate::continuation::{LabelledPoint, PointType, SweepResult};
 use crate::method::MethodError;
 use crate::sweep_file::{Diagnostic, Sweep, list};
@@ -105,3 +105,50 @@ pub(super) fn refused_plane(error: &MethodError) -> CommandError {
         .remedy("narrow the box with `--from`, `--to`, `--first-from` and `--first-to`");
     CommandError::Input(report.into())
 }
+
+/// Refuses a plane at whose corners a state that modes carry goes beyond its axis, which the sweep has chosen for the values that it holds.
+pub(super) fn check_bounds(spec: &Sweep, plane: &Plane) -> Result<(), CommandError> {
+    let (family, space) = (spec.problem.family(), spec.problem.space());
+    let (model, [first, second]) = (family.model(), plane.sides());
+    let Ok(held) = family.values_at(family.ends().0) else {
+        return Ok(());
+    };
+    let pairs = [first.from, first.to]
+        .into_iter()
+        .flat_map(|one| [second.from, second.to].map(|other| [one, other]));
+    for [one, other] in pairs {
+        // A corner that is not allowed is refused with its reason elsewhere.
+        let values = model.with(&held, &first.parameter, one);
+        let values = values.and_then(|values| model.with(&values, &second.parameter, other));
+        let Ok(system) = values.map(|values| model.system(&values)) else {
+            continue;
+        };
+        for (index, axis) in space.axes().iter().enumerate() {
+            let Some((low, high)) = system.bounds(index).filter(|_| axis.is_modes()) else {
+                continue;
+            };
+            let slack = BEYOND * (axis.to() - axis.from());
+            if low >= axis.from() - slack && high <= axis.to() + slack {
+                continue;
+            }
+            let name = family.axis(index);
+            let title = format!(
+                "at {} = {one}, {} = {other} the state `{name}` goes from {low} to {high}, and its modes only from {} to {}",
+                first.parameter,
+                second.parameter,
+                axis.from(),
+                axis.to()
+            );
+            let report = Diagnostic::new(title)
+                .allowed("a box in which the axis holds the state everywhere")
+                .remedy(format!(
+                    "narrow the box, or sweep with a wider axis: `--set cells.{name}.from={low} --set cells.{name}.to={high}`"
+                ));
+            return Err(CommandError::Input(report.into()));
+        }
+    }
+    Ok(())
+}
+
+/// Share of an axis by which a bound may be beyond it: rounding.
+const BEYOND: f64 = 1e-9;

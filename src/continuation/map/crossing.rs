@@ -1,5 +1,7 @@
 //! Where the signatures of a map change along its rows and columns, and which indicator tells where between two nodes.
 
+use std::cmp::Ordering;
+
 use super::lattice::{At, Lattice};
 use super::node::{Grid, Solved};
 use crate::continuation::Point;
@@ -48,7 +50,33 @@ pub(super) fn crossings(
             }
         }
     }
+    sort(&mut found);
     (found, blurred)
+}
+
+/// Brings crossings into an order that does not depend on how they were found: along rows, then along columns.
+pub(super) fn sort(crossings: &mut [Crossing]) {
+    crossings.sort_by(|a, b| {
+        let places = in_order((&a.ends, a.observable), (&b.ends, b.observable));
+        places.then_with(|| a.kind.code().cmp(b.kind.code()))
+    });
+}
+
+/// The order of two pairs of neighbours.
+pub(super) fn in_order(
+    (a, of_a): (&[[f64; 2]; 2], usize),
+    (b, of_b): (&[[f64; 2]; 2], usize),
+) -> Ordering {
+    let [places_of_a, places_of_b] = [a, b].map(|ends| {
+        // Along a row or a column, in which one, and where in it.
+        let side = usize::from(ends[0][0] == ends[1][0]);
+        [side as f64, ends[0][1 - side], ends[0][side]]
+    });
+    let pairs = places_of_a.iter().zip(&places_of_b);
+    let order = pairs.map(|(a, b)| a.total_cmp(b));
+    order
+        .fold(Ordering::Equal, Ordering::then)
+        .then(of_a.cmp(&of_b))
 }
 
 fn lines<'g>(grid: &'g Grid, lattice: &Lattice, side: usize) -> Vec<Line<'g>> {

@@ -1,6 +1,6 @@
 //! Shards of a map: contiguous parts of its rows that are solved by processes that know nothing of each other, and what they found.
 
-use super::crossing::{Blurred, Crossing};
+use super::crossing::{Blurred, Crossing, in_order, sort};
 use super::found::MapNode;
 use crate::continuation::Shard;
 use crate::topology::IndicatorKind;
@@ -68,26 +68,13 @@ pub(super) fn gather<'s>(
             None => blurred.push(Blurred { observable, ends }),
         }
     }
-    let order = |a: &[[f64; 2]; 2], b: &[[f64; 2]; 2]| {
-        let [a, b] = [a, b].map(place);
-        a.iter()
-            .zip(&b)
-            .map(|(a, b)| a.total_cmp(b))
-            .fold(std::cmp::Ordering::Equal, std::cmp::Ordering::then)
-    };
-    crossings.sort_by(|a, b| order(&a.ends, &b.ends));
+    sort(crossings);
     crossings.dedup_by(|a, b| {
         (a.observable, a.kind, a.ends) == (b.observable, b.kind, b.ends)
             && nearly(&a.place, &b.place)
     });
-    blurred.sort_by(|a, b| order(&a.ends, &b.ends));
+    blurred.sort_by(|a, b| in_order((&a.ends, a.observable), (&b.ends, b.observable)));
     blurred.dedup_by(|a, b| (a.observable, a.ends) == (b.observable, b.ends));
-}
-
-/// Where two neighbouring nodes stand: along rows or along columns, in which one, and where in it.
-fn place(ends: &[[f64; 2]; 2]) -> [f64; 3] {
-    let side = usize::from(ends[0][0] == ends[1][0]);
-    [side as f64, ends[0][1 - side], ends[0][side]]
 }
 
 /// Whether two solves of one density have an indicator in one place.

@@ -1,5 +1,7 @@
 //! The cells of each axis: range, count, grading. What is given is checked here; what is left to the program is found later.
 
+use std::sync::Arc;
+
 use super::equations::model_in_words;
 use crate::space::{Axis, CellSpace, Grading, NORMAL_RANGE, SpaceError};
 use crate::sweep_file::diagnostic::Diagnostic;
@@ -8,7 +10,7 @@ use crate::sweep_file::draft::{AxisDraft, Draft, MethodKind, Modes};
 use crate::sweep_file::names::quotable;
 use crate::sweep_file::reader::Reader;
 use crate::sweep_file::value::Value;
-use crate::system::{AxisDescription, Family, Model};
+use crate::system::{AxisDescription, Family, Model, ParameterValues, System};
 
 /// How one axis is cut into cells, or carried by modes.
 #[derive(Debug, Clone, PartialEq)]
@@ -86,11 +88,18 @@ pub(super) fn read(
             reader.report(diagnostic);
         }
     }
+    let along = family.map(|family| Along {
+        family,
+        corners: corners(family, draft),
+    });
     // Every axis is read, so that all that is wrong is reported at once.
     let read: Vec<Option<AxisSettings>> = names
         .iter()
         .enumerate()
-        .map(|(index, name)| read_axis(reader, draft, (name, &model.axes[index]), family, index))
+        .map(|(index, name)| {
+            let described = (*name, &model.axes[index]);
+            read_axis(reader, draft, described, along.as_ref(), index)
+        })
         .collect();
     read.into_iter().collect()
 }
@@ -107,15 +116,15 @@ fn read_axis(
     reader: &mut Reader<'_>,
     draft: &Draft,
     (name, described): (&str, &AxisDescription),
-    family: Option<&Family>,
+    along: Option<&Along<'_>>,
     index: usize,
 ) -> Option<AxisSettings> {
     let method = draft.method.kind;
     let by_modes = described.by_modes && method.takes_modes();
-    let filter = family.and_then(|family| filter(family, index));
+    let filter = along.and_then(|along| filter(along.family, index));
     if by_modes && reader.entry(&["cells", name]).is_none() {
         return Some(AxisSettings {
-            range: Some(bounds(family?, index)?),
+            range: Some(along?.bounds(index)?),
             count: None,
             grade: Grade::Even,
             filter,
@@ -125,7 +134,7 @@ fn read_axis(
     let Some(entry) = reader.entry(&["cells", name]) else {
         // Everything is left to the program.
         return Some(AxisSettings {
-            range: family.and_then(|family| bounds(family, index)),
+            range: along.and_then(|along| along.bounds(index)),
             count: None,
             grade: Grade::Auto,
             filter,
@@ -140,7 +149,7 @@ fn read_axis(
     let unsaid = axis.count.is_none() && reader.entry(&["cells", name, "count"]).is_none();
     let modes = axis.modes.or((by_modes && unsaid).then_some(Modes::Auto));
     let grade = read_grade(reader, axis, name);
-    let bounds = family.map(|family| bounds(family, index));
+    let bounds = along.map(|along| along.bounds(index));
     let range = match axis.range {
         Some(_) => Some(bounds.flatten()),
         // What is wrong with it is reported already.
@@ -155,7 +164,7 @@ fn read_axis(
         modes,
     };
     if modes.is_some() && method.takes_modes() {
-        check_modes(reader, name, family?, index, settings.range)?;
+        check_modes(reader, name, along?, index, settings.range)?;
     }
     match build_axis(reader.document(), name, &settings, method) {
         Ok(_) => {
@@ -218,19 +227,21 @@ fn warn_of_idle_grade(
 fn check_modes(
     reader: &mut Reader<'_>,
     name: &str,
-    family: &Family,
+    along: &Along<'_>,
     index: usize,
     range: Option<(f64, f64)>,
 ) -> Option<()> {
-    let (from, to) = family.ends();
-    let systems = [family.at(from).ok()?, family.at(to).ok()?];
+    let Along {
+        family,
+        corners: systems,
+    } = along;
     let walled = |range| {
         systems
             .iter()
             .all(|system| system.walls(index, range) == [true; 2])
     };
     let (why, remedy) = if filter(family, index).is_some() {
-        if range == bounds(family, index) {
+        if range == along.bounds(index) {
             return Some(());
         }
         (
@@ -278,16 +289,45 @@ fn filter(family: &Family, axis: usize) -> Option<(f64, f64)> {
     at(from).filter(|one| at(to).as_ref() == Some(one))
 }
 
-/// The widest range that the model's bounds of an axis take at the ends of the sweep; of coloured noise, what holds nearly all of it.
-fn bounds(family: &Family, axis: usize) -> Option<(f64, f64)> {
-    if let Some((mean, deviation)) = filter(family, axis) {
-        let half = NORMAL_RANGE * deviation;
-        return Some((mean - half, mean + half));
+/// What is swept, with the systems at both ends of the sweep, or at the corners of the map's box.
+struct Along<'a> {
+    family: &'a Family,
+    corners: Vec<Arc<dyn System>>,
+}
+
+impl Along<'_> {
+    /// The widest range that the model's bounds of an axis take at the corners; of coloured noise, what holds nearly all of it.
+    fn bounds(&self, axis: usize) -> Option<(f64, f64)> {
+        if let Some((mean, deviation)) = filter(self.family, axis) {
+            let half = NORMAL_RANGE * deviation;
+            return Some((mean - half, mean + half));
+        }
+        let bounds: Option<Vec<(f64, f64)>> =
+            self.corners.iter().map(|one| one.bounds(axis)).collect();
+        let bounds = bounds?.into_iter();
+        bounds.reduce(|one, other| (one.0.min(other.0), one.1.max(other.1)))
     }
-    let (from, to) = family.ends();
-    let at = |value: f64| family.at(value).ok()?.bounds(axis);
-    let (one, other) = (at(from)?, at(to)?);
-    Some((one.0.min(other.0), one.1.max(other.1)))
+}
+
+/// The systems at both ends of a sweep, or at the corners of the map's box; those that are not allowed are refused elsewhere.
+fn corners(family: &Family, draft: &Draft) -> Vec<Arc<dyn System>> {
+    let (model, (from, to)) = (family.model(), family.ends());
+    let ends: Vec<ParameterValues> = [from, to]
+        .into_iter()
+        .filter_map(|end| family.values_at(end).ok())
+        .collect();
+    let map = &draft.map;
+    let values = match (&map.parameter, map.from, map.to) {
+        (Some(name), Some(low), Some(high)) => {
+            let pairs = ends
+                .iter()
+                .flat_map(|end| [low, high].map(|value| (end, value)));
+            let corners = pairs.filter_map(|(end, value)| model.with(end, name, value).ok());
+            corners.collect()
+        }
+        _ => ends,
+    };
+    values.iter().map(|values| model.system(values)).collect()
 }
 
 /// The range that is given; what is left out is the model's bound, where it knows one (`None`: there is no telling).
