@@ -66,11 +66,7 @@ pub(super) fn run(
         let Some(map) = map.filter(|map| !map.nodes.is_empty()) else {
             return interrupted();
         };
-        let outcome = conclude(spec, &map, home, (output.path(), clock))?;
-        if !map.interrupted {
-            checkpoint.remove();
-        }
-        Ok(outcome)
+        conclude(spec, &map, home, (output.path(), clock))
     })
 }
 
@@ -92,6 +88,9 @@ fn conclude(
     let figures = map_figures(map, &settings.title, &settings.figure_style)?;
     write_figures(&figures, &settings.figure_formats, &home.figures())?;
     let mut text = summary(map);
+    if !map.interrupted {
+        MapCheckpoint::new(path, &spec.to_toml()).remove();
+    }
     text += "\nfiles\n";
     for file in home.take_place()? {
         text += &format!("  {}\n", file.display());

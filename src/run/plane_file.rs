@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use super::RunError;
+use super::checksums;
 use super::map_checkpoint::{node, node_json, signature, signature_json};
 use crate::continuation::curve::{
     Curve, CurveEnd, CurveOrigin, CurvePoint, CurveWork, DegenerateSplit, EndReason, Plane,
@@ -185,6 +186,15 @@ impl StoredPlane {
             });
         }
         Ok(Some(Self { path, all }))
+    }
+
+    /// Notes in the checksums of the folder that its figures were drawn again.
+    ///
+    /// # Errors
+    /// [`RunError::Read`], [`RunError::Write`], [`RunError::Checksums`].
+    pub fn renew_figures(&self) -> Result<(), RunError> {
+        let folder = self.path.parent().unwrap_or(&self.path);
+        checksums::renew(folder, "figures")
     }
 
     /// The resolved sweep file as TOML.

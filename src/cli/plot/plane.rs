@@ -43,6 +43,9 @@ pub(super) fn run(
     if files.is_empty() {
         return super::super::print("`figures.formats` is an empty list: nothing to draw\n");
     }
+    if arguments.out.is_none() {
+        stored.renew_figures()?;
+    }
     let lines = files.iter().map(|file| format!("  {}\n", file.display()));
     let text = format!("files\n{}", lines.collect::<String>());
     super::super::conclude(&text, Outcome::Complete, output.path())
