@@ -2,6 +2,7 @@
 //! as it comes, so that a comparison that was stopped can be gone on with.
 
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use comfy_table::{Table, presets};
 
@@ -56,6 +57,8 @@ pub(super) fn run(
         journal,
         progress: &progress,
         done: 0,
+        goes_on: going_on,
+        began: Instant::now(),
     };
     let home = output.path();
     threads.install(|| carry_out((spec, &of), (home, folder), keeper, &cancellation))
@@ -83,7 +86,13 @@ struct Keeper<'a> {
     progress: &'a Progress,
     /// Solves that are in the journal.
     done: usize,
+    /// Whether there was a journal before.
+    goes_on: bool,
+    began: Instant,
 }
+
+/// What took less, and has no value by all methods yet, is not worth a file that somebody has to remove.
+const WORTH_KEEPING: Duration = Duration::from_secs(10);
 
 impl CompareObserver for Keeper<'_> {
     fn step(&mut self, step: &compare::Progress) {
@@ -104,6 +113,12 @@ impl CompareObserver for Keeper<'_> {
 }
 
 impl Keeper<'_> {
+    /// Whether nothing is lost that somebody would miss.
+    fn has_hardly_begun(&self) -> bool {
+        let solves = self.done + self.journal.waiting();
+        !self.goes_on && (solves == 0 || self.began.elapsed() < WORTH_KEEPING)
+    }
+
     /// What there is of a comparison that did not come to its end.
     fn kept(&self, folder: &Path) -> String {
         let folder = folder.display();
@@ -144,7 +159,14 @@ fn carry_out(
         Ok(comparison) => comparison,
         Err(CompareError::Interrupted) => {
             progress.finish();
-            super::print(&format!("interrupted: {}\n", keeper.kept(home)))?;
+            let kept = match keeper.has_hardly_begun() {
+                true => {
+                    folder.give_up();
+                    "nothing was written".to_owned()
+                }
+                false => keeper.kept(home),
+            };
+            super::print(&format!("interrupted: {kept}\n"))?;
             return Ok(Outcome::Interrupted);
         }
         Err(error) => return Err(CommandError::from(error).after(keeper.kept(home))),

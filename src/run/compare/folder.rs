@@ -90,6 +90,12 @@ impl CompareFolder {
         CompareJournal::open(self.staging.home(), of, family, methods)
     }
 
+    /// Removes the journal of a comparison that has hardly begun: nothing is left of it.
+    pub fn give_up(&self) {
+        // One that cannot be removed can be gone on with.
+        let _ = std::fs::remove_file(self.staging.home().join(PART));
+    }
+
     /// Where figures are drawn to.
     pub fn figures(&self) -> PathBuf {
         self.staging.fresh().join("figures")

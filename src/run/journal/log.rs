@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::{BufReader, Read as _, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use sha2::{Digest as _, Sha256};
@@ -18,7 +19,7 @@ const MAGIC: &[u8; 8] = b"pbif-j3\n";
 /// Bytes of a length and of a checksum.
 const WORD: usize = 8;
 
-/// Time between two waits for the disk: many fast solves share one.
+/// Time between two times that the disk is waited for: many fast solves share one.
 const BETWEEN_WAITS: Duration = Duration::from_secs(1);
 
 /// The file, open for more.
@@ -28,8 +29,10 @@ pub(in crate::run) struct Log {
     file: File,
     /// Where records are put together.
     room: Vec<u8>,
-    /// When the disk was last waited for.
-    waited: Instant,
+    /// When the disk was last asked to take all.
+    asked: Instant,
+    /// The thread that waits for the disk meanwhile.
+    waiting: Option<JoinHandle<std::io::Result<()>>>,
 }
 
 impl Log {
@@ -93,7 +96,8 @@ impl Log {
             path,
             file,
             room: Vec::new(),
-            waited: Instant::now(),
+            asked: Instant::now(),
+            waiting: None,
         }
     }
 
@@ -101,10 +105,10 @@ impl Log {
         &self.path
     }
 
-    /// Adds a record; once a second it waits until all are on the disk.
+    /// Adds a record; once a second the disk is asked to take all there are, and waited for beside.
     ///
     /// # Errors
-    /// [`RunError::Write`].
+    /// [`RunError::Write`], also where the disk did not take those before.
     pub(in crate::run) fn append(
         &mut self,
         compose: impl FnOnce(&mut Writer),
@@ -120,11 +124,27 @@ impl Log {
         let written = self.write(&frame);
         self.room = frame;
         written?;
-        if self.waited.elapsed() >= BETWEEN_WAITS {
-            self.file
-                .sync_data()
-                .map_err(|source| self.failed(source))?;
-            self.waited = Instant::now();
+        let is_free = self.waiting.as_ref().is_none_or(JoinHandle::is_finished);
+        if is_free && self.asked.elapsed() >= BETWEEN_WAITS {
+            self.ask().map_err(|source| self.failed(source))?;
+            self.asked = Instant::now();
+        }
+        Ok(())
+    }
+
+    /// Lets a thread wait until everything is on the disk, after what the last one found.
+    fn ask(&mut self) -> std::io::Result<()> {
+        match self.waiting.take().map(JoinHandle::join) {
+            Some(Ok(found)) => found?,
+            // It ended early.
+            Some(Err(_)) => return self.file.sync_data(),
+            None => {}
+        }
+        let file = self.file.try_clone()?;
+        let thread = std::thread::Builder::new().spawn(move || file.sync_data());
+        match thread {
+            Ok(thread) => self.waiting = Some(thread),
+            Err(_) => self.file.sync_data()?,
         }
         Ok(())
     }
