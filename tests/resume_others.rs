@@ -174,8 +174,10 @@ fn an_interrupted_comparison_leaves_what_is_done() {
     let sent = Command::new("kill").args(["-INT", &pid]).status().unwrap();
     let code = child.wait().unwrap().code();
     assert!(sent.success() && code == Some(130), "{code:?}");
-    assert!(journal.is_file());
-    if out.join("compare.json").is_file() {
+    // With a value by all methods there are tables, and a journal to go on from; what was interrupted at once before leaves nothing.
+    let has_tables = out.join("compare.json").is_file();
+    assert!(journal.is_file() || !has_tables);
+    if has_tables {
         assert_eq!(json(&out.join("compare.json"))["ending"], "interrupted");
         assert!(!tables(&out)["compare.csv"].is_empty());
     }
