@@ -113,6 +113,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "cancellation",
             "system",
             "space",
+            "monte_carlo",
             "density",
             "topology",
             "continuation",

@@ -184,13 +184,13 @@ def saves(browser, folder, panels):
             os.remove(os.path.join(folder, new[0]))
 
 
-def point(browser, canvas, across, up):
-    """Presses the mouse at a place of a canvas, in shares of its sides."""
+def point(browser, canvas, across, up, by=(2, 0)):
+    """Presses the mouse at a place of a canvas, in shares of its sides, and moves it by so many pixels before it is let go."""
     element = browser.element(canvas)
     rect = browser.run("arguments[0].scrollIntoView({ block: 'center' }); const r = arguments[0].getBoundingClientRect(); return [r.left, r.top, r.width, r.height]",
                        {"element-6066-11e4-a52e-4f735466cecf": element})
     x, y = round(rect[0] + across * rect[2]), round(rect[1] + (1 - up) * rect[3])
-    actions = [{"type": "pointerMove", "x": x, "y": y}, {"type": "pointerDown", "button": 0}, {"type": "pointerMove", "x": x + 2, "y": y, "duration": 20},
+    actions = [{"type": "pointerMove", "x": x, "y": y}, {"type": "pointerDown", "button": 0}, {"type": "pointerMove", "x": x + by[0], "y": y + by[1], "duration": 20},
                {"type": "pointerUp", "button": 0}]
     browser.call("POST", "/actions", {"actions": [{"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": actions}]})
 
@@ -215,6 +215,7 @@ def from_disk(driver, page, axe, folder, images):
     dark = browser.run("return getComputedStyle(document.body).backgroundColor")
     assert max(map(int, re.findall(r"\d+", dark)[:3])) < 60, dark
     is_named(browser)
+    assert not browser.run("return document.getElementById('paths').checkVisibility()"), "a saved page holds no equations that a path could follow"
     # The keyboard alone.
     browser.run("document.body.focus()")
     for key, wanted in ((HOME, "f_c = −0.02: "), (END, "f_c = 0.01: "), (HOME, "f_c = −0.02: ")):
@@ -363,6 +364,56 @@ def locates(browser):
     assert label.startswith("PB1"), label
 
 
+def follows_paths(browser, folder, axe):
+    """Sample paths by mouse and by keyboard, followed anew at another value, kept in the address, saved and cleared."""
+    drawn = lambda count: f"return (document.getElementById('joint-canvas').getAttribute('aria-label')?.match(/over it: (\\d+)/)?.[1] ?? '0') === '{count}'"
+    section = lambda: browser.run("return document.getElementById('section').value")
+    before = section()
+    browser.click("#paths")
+    browser.until("return document.getElementById('paths').getAttribute('aria-pressed') === 'true'", "the mode is not told")
+    for number, place in enumerate(((0.4, 0.6), (0.55, 0.45)), 1):
+        point(browser, "#joint-canvas", *place)
+        browser.until(drawn(number), f"path {number} is not drawn")
+    assert section() == before, "a click that starts a path lays a section"
+    point(browser, "#joint-canvas", 0.4, 0.6, by=(0, 40))
+    browser.until(f"return document.getElementById('section').value !== {json.dumps(before)}", "a section cannot be dragged while paths are started")
+    assert browser.run(drawn(2)), "a drag starts a path"
+    # Without a mouse, by its button and by its key.
+    browser.run("document.getElementById('path-start').focus()")
+    browser.press(ENTER)
+    browser.until(drawn(3), "no path is started by the button")
+    browser.run("document.activeElement.blur()")
+    browser.press("s")
+    browser.until(drawn(4), "no path is started by the key")
+    browser.until("return /^4 paths of [\\d.]+ units of time, in \\d+ steps/.test(document.getElementById('path-says').textContent)", "nothing is said of the paths")
+    for theme in ("light", "dark"):
+        choose(browser, "#theme", theme)
+        is_usable(browser, axe, f"the live page with paths, {theme}")
+    fits(browser, "the live page with paths")
+    # Other values, other paths: never those of the values before.
+    says = browser.run("return document.getElementById('path-says').textContent")
+    choose(browser, "#typed", "0.008")
+    browser.told("f_c = 0.008")
+    browser.until(drawn(4), "paths are not followed anew")
+    assert browser.run("return document.getElementById('path-says').textContent") != says
+    address = browser.run("return location.href")
+    browser.open(address)
+    browser.until(drawn(4), "an address does not lead back to its paths")
+    browser.devtools("Browser.setDownloadBehavior", behavior="allow", downloadPath=folder)
+    browser.click("#joint .row .exports button:nth-child(1)")
+    end = time.time() + 20
+    while not (saved := [name for name in os.listdir(folder) if name.endswith(".svg")]):
+        assert time.time() < end, "no picture was saved"
+        time.sleep(0.05)
+    colours = {line.getAttribute("stroke") for line in xml.dom.minidom.parse(os.path.join(folder, saved[0])).getElementsByTagName("polyline")
+               if line.getAttribute("points").count(",") > 100}
+    assert len(colours) == 5, f"four paths and the line beneath them should have five colours: {colours}"
+    os.remove(os.path.join(folder, saved[0]))
+    browser.click("#path-clear")
+    browser.until(drawn(0), "paths cannot be cleared")
+    assert "paths=" not in browser.run("return location.href")
+
+
 def measure(driver, pbif, folder):
     """Figures for docs/explorer.md: nothing is asserted of them, since machines differ."""
     load = lambda: f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores"
@@ -413,7 +464,7 @@ def live_map(driver, pbif, folder, axe):
     print("live map: clicked, mapped, given up, nothing in the console")
 
 
-def live(driver, pbif, folder, axe):
+def live(driver, pbif, folder, axe, kept, images):
     server = Server(pbif, folder)
     browser = Browser(driver, False)
     browser.open(server.address)
@@ -434,6 +485,7 @@ def live(driver, pbif, folder, axe):
     print(f"live: slider to picture {statistics.median(times):.0f} ms in the median, {times[int(0.95 * len(times))]:.0f} ms at 95 %, of {len(times)}")
     assert times[-1] < 5000, times
     locates(browser)
+    follows_paths(browser, kept, axe)
     browser.run("const typed = document.getElementById('typed'); typed.value = '1e999'; typed.dispatchEvent(new Event('change'))")
     browser.until("return document.getElementById('refused').textContent !== ''", "a value that is none is not refused")
     assert not browser.console(), browser.console()
@@ -446,8 +498,14 @@ def live(driver, pbif, folder, axe):
     browser.open(again.address)
     browser.until(solved, "nothing is solved by the server that was started again")
     again.stop()
+    if images:
+        again = Server(pbif, folder, settings=[])
+        browser.open(again.address + "#f_c=-0.005&paths=0+1+0+0,0+1+0.9+0.3")
+        browser.until("return /^2 paths/.test(document.getElementById('path-says').textContent)", "no paths for the picture")
+        browser.picture(f"{images}/explorer_paths.png")
+        again.stop()
     browser.close()
-    print("live: two tabs, refused values, a server that is killed and started again")
+    print("live: two tabs, sample paths, refused values, a server that is killed and started again")
 
 
 def main():
@@ -483,7 +541,7 @@ def main():
                 subprocess.run([pbif, "explore", name, "--html", f"{name}.html", "--quiet"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
             from_disk(at, os.path.join(folder, "run.html"), axe, kept, images)
             from_disk_map(at, os.path.join(folder, "map.html"), axe, kept, images)
-            live(at, pbif, folder, axe)
+            live(at, pbif, folder, axe, kept, images)
             live_map(at, pbif, folder, axe)
     finally:
         # A browser that a failed test left open would go on without its driver.

@@ -23,6 +23,7 @@ pub(super) enum Purpose {
     Ergodic = 3,
     Ensemble = 4,
     Starts = 5,
+    Path = 6,
 }
 
 /// Key of one batch's stream.
@@ -58,6 +59,12 @@ impl Limits {
         let axes = space.axes().iter();
         let limit = |from: f64, to: f64| (0.5 * (from + to), FAR * 0.5 * (to - from));
         Self(axes.map(|axis| limit(axis.from(), axis.to())).collect())
+    }
+
+    /// Whether a state has not run away.
+    pub(super) fn hold(&self, state: &[f64]) -> bool {
+        let near = |(&value, &(middle, far)): (&f64, &(f64, f64))| (value - middle).abs() <= far;
+        state.iter().zip(&self.0).all(near)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Free trajectories as a reference: densities by counting visits, without a cell map and without a generator.
 //!
 //! [`relaxation()`] measures how long a system remembers; [`ergodic()`] averages a fixed number of long trajectories over time,
-//! [`ensemble()`] counts many at one time; [`step_bias`] finds what a time step does to the density.
+//! [`ensemble()`] counts many at one time; [`sample_path`] follows a single one, to be looked at; [`step_bias`] finds what a time step does to the density.
 
 mod autocorrelation;
 mod batch;
@@ -10,6 +10,7 @@ mod ergodic;
 mod estimate;
 mod halving;
 mod lookup;
+mod path;
 mod relaxation;
 #[cfg(test)]
 mod tests;
@@ -18,6 +19,7 @@ pub use ensemble::{EnsembleRun, ensemble};
 pub use ergodic::{ErgodicRun, ergodic};
 pub use estimate::{BLOCKS, Estimate};
 pub use halving::{BiasedQuantity, StepBias, TOLERATED_BIAS, automatic_step, step_bias};
+pub use path::{PathRun, SamplePath, sample_path};
 pub use relaxation::{Relaxation, relaxation};
 
 use crate::space::CellSpace;
@@ -37,8 +39,8 @@ pub enum MonteCarloError {
     /// No step between looks.
     #[error("looks at a trajectory must be at least one step apart")]
     Stride,
-    /// A start that does not have a value for each axis.
-    #[error("a state to start from does not have one value an axis")]
+    /// A start that does not have a finite value for each axis.
+    #[error("a state to start from does not have one finite value an axis")]
     Start,
     /// The system and the cell space differ in dimension.
     #[error("the system has {system} axes, the cell space {space}")]

@@ -24,6 +24,28 @@ pub(super) struct AskSolve {
     pub(super) marginals_only: bool,
 }
 
+/// Asks for sample paths.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct AskPaths {
+    pub(super) lane: String,
+    pub(super) ticket: u64,
+    /// Values of the parameters, that of the swept one among them.
+    pub(super) values: BTreeMap<String, f64>,
+    pub(super) starts: Vec<Start>,
+    /// How long a path is, at most: see [`crate::monte_carlo::PathRun::over_turns`].
+    pub(super) turns: f64,
+}
+
+/// Where a path starts, and what its noise is keyed by.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Start {
+    /// One coordinate an axis.
+    pub(super) state: Vec<f64>,
+    pub(super) seed: u64,
+}
+
 /// Asks for the changes between two values of the swept parameter.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]

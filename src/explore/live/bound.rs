@@ -52,22 +52,36 @@ impl Base {
     /// # Errors
     /// Why a value is not allowed, for people.
     pub(super) fn bind(&self, ask: &AskSolve) -> Result<Bound, String> {
+        self.moved(&ask.moving, &ask.values, ask.preview)
+    }
+
+    /// Binds values among which that of the swept parameter is.
+    ///
+    /// # Errors
+    /// Why a value is not allowed, for people.
+    pub(super) fn bind_swept(&self, values: &BTreeMap<String, f64>) -> Result<Bound, String> {
+        self.moved(self.sweep.settings.family.parameter(), values, false)
+    }
+
+    fn moved(
+        &self,
+        moving: &str,
+        values: &BTreeMap<String, f64>,
+        preview: bool,
+    ) -> Result<Bound, String> {
         let family = &self.sweep.settings.family;
-        let Some(&value) = ask.values.get(&ask.moving) else {
-            return Err(format!(
-                "no value is given for `{}`, which moves",
-                ask.moving
-            ));
+        let Some(&value) = values.get(moving) else {
+            return Err(format!("no value is given for `{moving}`, which moves"));
         };
-        let ends = if ask.moving == family.parameter() {
+        let ends = if moving == family.parameter() {
             family.ends()
         } else {
             (value, value)
         };
-        let moved = self.family(&ask.moving, ends, &ask.values)?;
+        let moved = self.family(moving, ends, values)?;
         moved.values_at(value).map_err(|error| error.to_string())?;
         let mut settings = self.settings(moved);
-        if ask.preview {
+        if preview {
             for axis in &mut settings.axes {
                 axis.count = axis.count.map(|count| {
                     let half = count.div_ceil(4) * 2;

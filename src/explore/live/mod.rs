@@ -1,4 +1,4 @@
-//! What the live page asks for: densities at any values of the parameters, changes between two values, a sweep file.
+//! What the live page asks for: densities at any values of the parameters, changes between two values, sample paths, a sweep file.
 //!
 //! Requests come in lanes with rising tickets: a newer one of a lane makes the older ones stale. What waits is dropped, what is being
 //! solved is cancelled. Solves are warm: sessions are kept for the parameters that do not move.
@@ -7,6 +7,7 @@ mod ask;
 mod bound;
 mod lanes;
 mod mapping;
+mod paths;
 mod sessions;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -32,6 +33,7 @@ use ask::{AskLocate, AskSolve, AskSweepFile};
 use bound::Base;
 use lanes::Lanes;
 use mapping::Mapping;
+use paths::Runs;
 use sessions::{Sessions, Solving};
 
 /// The live side of a sweep.
@@ -41,6 +43,7 @@ pub(super) struct Live {
     sessions: Mutex<Sessions>,
     lanes: Lanes,
     mapping: Mapping,
+    runs: Runs,
 }
 
 impl std::fmt::Debug for Live {
@@ -71,6 +74,8 @@ enum Stop {
 #[derive(Debug, Serialize)]
 struct Told<'a> {
     live: bool,
+    /// Axes of a state.
+    dimension: usize,
     #[serde(flatten)]
     scene: &'a Scene,
     plane: Option<PlaneScene>,
@@ -109,6 +114,7 @@ impl Live {
             sessions: Mutex::default(),
             lanes: Lanes::default(),
             mapping: Mapping::default(),
+            runs: Runs::default(),
         }
     }
 
@@ -122,6 +128,7 @@ impl Live {
         };
         let told = Told {
             live: true,
+            dimension: axes.len(),
             scene: &Scene::new(sweep, &[]),
             plane: PlaneScene::new(sweep, None)?,
             frames: [],

@@ -88,7 +88,10 @@ const connect = (page) => {
     const place = [clamp(plot.x.from(x), ...plot.ranges.x), clamp(plot.y.from(y), ...plot.ranges.y)];
     page.goPlane(place.map((value) => Number(value.toPrecision(5))));
   });
-  drag($("joint-canvas"), (_, y) => page.drawn.joint && setSection(page, Number(page.drawn.joint.y.from(y).toPrecision(4))));
+  drag($("joint-canvas"), (_, y) => page.drawn.joint && setSection(page, Number(page.drawn.joint.y.from(y).toPrecision(4))), {
+    wanted: () => page.paths?.on && page.drawn.joint,
+    act: (x, y) => page.paths.startAt(page.drawn.joint.x.from(x), page.drawn.joint.y.from(y)),
+  });
   document.addEventListener("keydown", (event) => press(page, event));
   const redraw = () => { page.theme = themeColours(); page.drawn = {}; page.later(); };
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
@@ -137,18 +140,33 @@ const flash = (id, word) => {
   setTimeout(() => { $(id).textContent = before; }, 1200);
 };
 
-/** Calls `act` with the place of the pointer in the canvas while it is pressed. */
-const drag = (canvas, act) => {
-  const place = (event) => {
+/** Pixels by which a pointer may move between press and release of a click: fingers are not still. */
+const STILL = 6;
+
+/** Calls `act` with the place of the pointer in the canvas while it is pressed; where a `tap` is wanted, a press without a move is one, and only a move is a drag. */
+const drag = (canvas, act, tap = null) => {
+  let pressed = null;
+  const place = (event, act) => {
     const { left, top } = canvas.getBoundingClientRect();
     act(event.clientX - left, event.clientY - top);
   };
   canvas.addEventListener("pointerdown", (event) => {
     if (event.button !== 0) return;
     canvas.setPointerCapture(event.pointerId);
-    place(event);
+    pressed = tap?.wanted() ? event : null;
+    if (!pressed) place(event, act);
   });
-  canvas.addEventListener("pointermove", (event) => { if (canvas.hasPointerCapture(event.pointerId)) place(event); });
+  canvas.addEventListener("pointermove", (event) => {
+    if (!canvas.hasPointerCapture(event.pointerId)) return;
+    if (pressed && Math.hypot(event.clientX - pressed.clientX, event.clientY - pressed.clientY) < STILL) return;
+    pressed = null;
+    place(event, act);
+  });
+  canvas.addEventListener("pointerup", () => {
+    if (pressed) place(pressed, tap.act);
+    pressed = null;
+  });
+  canvas.addEventListener("pointercancel", () => { pressed = null; });
 };
 
 /** Keys; what is typed into a field, and what a control does with a key itself, is left alone. */
@@ -162,7 +180,7 @@ const press = (page, event) => {
     ArrowLeft: () => page.step(-1), ArrowRight: () => page.step(1), PageDown: () => page.step(-10), PageUp: () => page.step(10),
     Home: () => page.home(), End: () => page.end(), b: () => page.jump(-1), n: () => page.jump(1), " ": () => page.play(),
     p: () => page.pin(), d: () => page.pinned && page.set("difference"), l: () => page.set("log"), k: () => page.lock(),
-    c: () => page.set("contours"), m: () => page.set("marks"), "?": () => $("keys").showModal(),
+    s: () => page.paths?.startHere(), c: () => page.set("contours"), m: () => page.set("marks"), "?": () => $("keys").showModal(),
   };
   // Up and down belong to the page's scrolling, except on the two sliders.
   if (target === $("cursor-canvas") || target === $("slide")) {

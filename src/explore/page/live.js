@@ -16,6 +16,7 @@ class LivePage extends Page {
     this.initial[this.swept] = 0.5 * (scene.swept.from + scene.swept.to);
     Object.assign(this, { values: { ...this.initial }, moving: this.swept, flying: null, wanted: 0, resting: null, filled: null });
     this.cost = 0;
+    this.paths = new SamplePaths(this);
   }
 
   /** The part of an axis where what is shown, pinned or along the sweep is worth looking at. */
@@ -113,6 +114,7 @@ class LivePage extends Page {
     if (this.scene.plane) this.frame.second = this.good[this.scene.plane.sides[1].name];
     if (!preview) this.cost = answer.milliseconds;
     this.remember(this.frame);
+    this.paths.rest();
     this.later();
   }
 
@@ -322,17 +324,19 @@ class LivePage extends Page {
 
   write() {
     super.write();
+    this.paths.write();
     document.documentElement.dataset.solved = `${this.frame.value} ${this.frame.preview ? "preview" : "full"}`;
   }
 
   state() {
     const changed = Object.entries(this.values).filter(([name, value]) => name === this.swept || value !== this.initial[name]);
     const pinned = this.pinnedValues && Object.entries(this.pinnedValues).map(([name, value]) => `${name}:${value}`).join(" ");
-    return { ...super.state(), pin: pinned, ...Object.fromEntries(changed) };
+    return { ...super.state(), pin: pinned, paths: this.paths.address, ...Object.fromEntries(changed) };
   }
 
   restorePlace(state, numeric) {
     for (const name of Object.keys(this.values)) this.values[name] = numeric(state[name]) ?? this.initial[name];
+    this.paths.restore(state.paths);
     const pairs = (state.pin ?? "").split(" ").map((pair) => pair.split(":")).filter(([name, value]) => name in this.values && numeric(value) !== null);
     if (pairs.length) {
       const values = { ...this.initial, ...Object.fromEntries(pairs.map(([name, value]) => [name, Number(value)])) };

@@ -4,7 +4,7 @@ const $ = (id) => document.getElementById(id);
 
 class Page {
   constructor(scene, source) {
-    Object.assign(this, { scene, source, frame: null, pinned: null, timer: null, drawn: {}, windows: {}, waiting: false, printing: false });
+    Object.assign(this, { scene, source, frame: null, pinned: null, paths: null, timer: null, drawn: {}, windows: {}, waiting: false, printing: false });
     this.options = { log: false, lock: null, contours: true, marks: true, difference: false };
     this.section = null;
     this.joints = source.observables.map((one, k) => (one.joint ? k : -1)).filter((k) => k >= 0);
@@ -20,6 +20,7 @@ class Page {
     return {
       scene: this.scene, source: this.source, frame: this.frame, pinned: this.pinned, theme: this.theme, range: this.range,
       options: { ...this.options, difference: this.options.difference && this.pinned !== null }, section: this.section, k,
+      paths: (k === this.k.joint && this.paths?.over(k)) || [],
       window: (observable, axis) => this.windowOf(observable, axis),
     };
   }
@@ -161,7 +162,8 @@ class Page {
     }
     if (id === "diagram-canvas") return `${plain(one.title)} over ${plain(this.scene.swept.symbol)}, with branches of peaks and valleys`;
     if (id === "section-canvas") return `Section of ${plain(one.title)} at ${at}`;
-    return `${plain(one.title)} at ${at}: ${countWords(this.frame.found[k])}`;
+    const paths = id === "joint-canvas" ? this.paths?.over(k).length : 0;
+    return `${plain(one.title)} at ${at}: ${countWords(this.frame.found[k])}${paths ? `; sample paths drawn over it: ${paths}` : ""}`;
   }
 
   paintCursor() {

@@ -64,6 +64,7 @@ const drawJoint = (pen, width, height, view, size) => {
   else {
     drawHeat(plot, observable, shown, colours);
     if (options.contours) drawContours(plot, observable, shown, colours, largest(values));
+    if (view.paths.length) drawPaths(plot, view.paths, size);
     if (options.marks) plot.clipped(() => drawMarks(plot, frame.found[k], size));
     colourBar(pen, rect, colours, theme, size, against ? `Δ${observable.title}` : observable.title);
   }

@@ -5,7 +5,10 @@ const start = async () => {
   const page = told.live ? new LivePage(told, new LiveSource(told))
     : told.plane ? new MapPage(told, await MapSource.load(told)) : new Page(told, await StoredSource.load(told));
   build(page);
-  if (told.live) buildParameters(page);
+  if (told.live) {
+    buildParameters(page);
+    connectPaths(page);
+  }
   else if (told.plane) buildSecond(page);
   connect(page);
   page.restore(readAddress());

@@ -116,6 +116,7 @@ impl LiveServer {
             (_, "solve") => Live::solve,
             (_, "locate") => Live::locate,
             (_, "sweep-file") => Live::sweep_file,
+            (_, "paths") => Live::paths,
             (_, "map") => Live::map,
             (_, "map-progress") => Live::map_progress,
             (_, "") => return Err(Response::refused(405, "this can only be read")),
