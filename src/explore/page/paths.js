@@ -1,7 +1,7 @@
 // Sample paths over the joint density of a live page: where they start, what the server makes of them, and how they are drawn.
 
 /** Colours of paths, all of them light: a dark line beneath sets them off from densities of any colour. */
-const PATH_COLOURS = ["#ffffff", "#ff8a65", "#7fe3ff", "#ffb3f1", "#ffe066", "#a5ff8f", "#cdbbff", "#ffb04d"];
+const PATH_COLOURS = ["#ff8a65", "#7fe3ff", "#ffb3f1", "#ffffff", "#cdbbff", "#ffb04d", "#a5ff8f", "#ffe066"];
 /** Length of a path, in turns: what an eye can follow. */
 const TURNS = 6;
 /** Paths that are drawn at most, and that are asked for at once. */
