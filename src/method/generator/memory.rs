@@ -4,7 +4,8 @@
 
 use std::sync::Arc;
 
-use super::session::{GeneratorSession, Stand};
+use super::session::GeneratorSession;
+use super::stand::Stand;
 use super::trail::{Solved, Trail};
 use crate::bytes::{NotWhatWasWritten, Reader, Writer};
 use crate::continuation::SourceError;

@@ -11,6 +11,7 @@ mod relaxation;
 mod sensitivity;
 mod session;
 mod source;
+mod stand;
 mod trail;
 
 pub(super) use coarse::rough_masses;

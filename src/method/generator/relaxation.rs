@@ -27,8 +27,8 @@ const UNKNOWN_CHANGE: f64 = 3.0;
 /// The same on top of twice the change that was seen before.
 const LEAST_CHANGE: f64 = 1.05;
 
-/// The same for times that are known roughly, which fewer cells change as well.
-const LEAST_ROUGH_CHANGE: f64 = 1.5;
+/// Factor by which a time that is known roughly may be off: fewer cells change it.
+const ROUGHNESS: f64 = 1.5;
 
 /// How fast deviations from a steady state die out.
 #[derive(Debug, PartialEq)]
@@ -50,7 +50,8 @@ impl Relaxation {
     /// within it. (A share that is reported must be that of the point itself.)
     pub(super) fn carried(neighbour: &Self, escape_rate: f64, limit: f64) -> Option<Self> {
         let age = neighbour.age + 1;
-        let largest_time = neighbour.time * neighbour.change.powi(age);
+        let off = if neighbour.rough { ROUGHNESS } else { 1.0 };
+        let largest_time = neighbour.time * off * neighbour.change.powi(age);
         (escape_rate * largest_time < limit).then(|| Self {
             time: neighbour.time,
             mode: neighbour.mode.clone(),
@@ -62,9 +63,7 @@ impl Relaxation {
 
     /// A time that fewer cells gave, of a steady state with these masses.
     pub(super) fn rough(time: f64, mass: &[f64], neighbour: Option<&Self>) -> Self {
-        let change = neighbour.map_or(UNKNOWN_CHANGE, |known| {
-            LEAST_ROUGH_CHANGE * known.change_to(time)
-        });
+        let change = neighbour.map_or(UNKNOWN_CHANGE, |known| LEAST_CHANGE * known.change_to(time));
         Self {
             time,
             mode: Arc::new(uneven(mass)),

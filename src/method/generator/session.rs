@@ -15,6 +15,7 @@ use super::one_axis;
 use super::relaxation::Relaxation;
 use super::sensitivity::GeneratorSensitivity;
 use super::source::METHOD;
+use super::stand::Stand;
 use super::trail::{self, Trail};
 use crate::cancellation::Cancellation;
 use crate::continuation::{Session, Solution, SourceError};
@@ -27,7 +28,7 @@ use crate::method::MethodError;
 use crate::method::neighbours::Neighbours;
 use crate::method::report::{QUIET_ESCAPE, Reporter};
 use crate::space::CellSpace;
-use crate::stationary::generator::{RateError, RateInfo, RateSolver, RateSteadyState};
+use crate::stationary::generator::{Along, RateError, RateInfo, RateSolver, RateSteadyState};
 use crate::system::System;
 
 /// Escape per unit time below which mass is said to stay in Ω, and relaxation is not looked at.
@@ -35,6 +36,10 @@ const NO_ESCAPE: f64 = 1e-12;
 
 /// Relative error of slopes, which predict, and of differences between schemes, which estimate errors.
 const ROUGH: f64 = 1e-2;
+
+/// Distance in L1 of the unknowns that were expected to those that were found up to which a difference between schemes that was
+/// worked out for the first is that of the second, to [`ROUGH`].
+const NEAR: f64 = 1e-3;
 
 /// Owns the factorisation and what the solved points say of the next one.
 pub(super) struct GeneratorSession {
@@ -49,15 +54,6 @@ pub(super) struct GeneratorSession {
     cancellation: Cancellation,
 }
 
-/// Values whose generators the solver holds on to.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Stand {
-    /// The factorised one.
-    pub(super) factorised: Option<f64>,
-    /// The one solved last.
-    pub(super) solved: Option<f64>,
-}
-
 /// What was solved at one point.
 struct Solved {
     value: f64,
@@ -65,6 +61,9 @@ struct Solved {
     steady: RateSteadyState,
     /// The generator by the second scheme; `None` in a check, which states no error of its own.
     second: Option<Generator>,
+    /// By how much the second scheme's unknowns differ, where that came along with the solve, and whether the unknowns were
+    /// expected well enough for that to be it.
+    along: Option<(Vec<f64>, bool)>,
 }
 
 /// A solution, and the trail that leads on from it where there is one.
@@ -106,7 +105,13 @@ impl GeneratorSession {
         }
         let before = self.trails.nearest(value).cloned();
         let guess = before.as_ref().and_then(|trail| trail.mass_at(value));
-        let solved = self.solved(value, system, guess.as_deref())?;
+        let expected = before.as_ref().and_then(|trail| trail.difference_at(value));
+        let factorisations = self.solver.factorisations();
+        if let Some(guess) = guess.as_deref().filter(|_| self.solver.is_worn()) {
+            self.renew_ahead(value, guess)?;
+        }
+        let mut solved = self.solved(value, system, guess.as_deref(), expected.as_deref())?;
+        solved.steady.info.factorisations = self.solver.factorisations() - factorisations;
         let (mut solution, trail) = self.judge(&solved, before.as_ref())?;
         let Some(mut trail) = trail else {
             return Ok(solution);
@@ -126,6 +131,29 @@ impl GeneratorSession {
         Ok(solution)
     }
 
+    /// Factorises ahead of a value in place of at it, where the sweep goes on: values on either side of the factorised one are as
+    /// near to it. Where that cannot be, the solve factorises at the value itself.
+    fn renew_ahead(&mut self, value: f64, guess: &[f64]) -> Result<(), MethodError> {
+        let Some(ahead) = self
+            .stand
+            .ahead_of(value, self.source.problem.family().ends())
+        else {
+            return Ok(());
+        };
+        let Ok(system) = self.source.system_at(ahead) else {
+            return Ok(());
+        };
+        let assembled = self
+            .source
+            .assemble(system.as_ref(), self.source.options.scheme);
+        if let Ok(generator) = assembled {
+            self.solver
+                .renew(&generator.matrix, &generator.escape, guess)?;
+            self.stand.factorised = Some(ahead);
+        }
+        Ok(())
+    }
+
     /// Keeps what a point leaves: the masses, and as many differences between schemes.
     pub(super) fn keep(&mut self, value: f64, trail: Trail) {
         let cells = self.source.problem.space().n_cells();
@@ -139,30 +167,38 @@ impl GeneratorSession {
         value: f64,
         system: Arc<dyn System>,
         guess: Option<&[f64]>,
+        expected: Option<&[f64]>,
     ) -> Result<Solved, MethodError> {
         let (source, solver) = (&self.source, &mut self.solver);
-        let generator = source.assemble(system.as_ref(), source.options.scheme)?;
-        let factorisations = solver.factorisations();
-        // The solve leaves a core idle most of the time.
-        let (steady, second) = rayon::join(
-            || solver.solve(&generator.matrix, &generator.escape, guess),
+        let (generator, second) = rayon::join(
+            || source.assemble(system.as_ref(), source.options.scheme),
             || {
                 let wanted = (!source.checks).then(|| companion(source.options.scheme));
                 let second = wanted.map(|scheme| source.assemble(system.as_ref(), scheme));
                 second.transpose()
             },
         );
+        let (generator, second) = (generator?, second?);
+        let along = second.as_ref().map(|second| Along {
+            derivative: &second.matrix,
+            expected,
+            tolerance: ROUGH,
+        });
+        let factorisations = solver.factorisations();
+        let (matrix, escape) = (&generator.matrix, &generator.escape);
+        let steady = solver.solve_along(matrix, escape, guess, along.as_ref());
         if solver.factorisations() > factorisations {
             self.stand.factorised = Some(value);
         }
-        if steady.is_ok() {
-            self.stand.solved = Some(value);
-        }
+        let (steady, answer) = steady?;
+        self.stand.solved = Some(value);
+        let near = guess.is_some_and(|guess| distance(guess, &steady.mass) <= NEAR);
         Ok(Solved {
             value,
             system,
-            steady: steady?,
-            second: second?,
+            steady,
+            second,
+            along: answer.map(|answer| (answer, near)),
         })
     }
 
@@ -190,8 +226,7 @@ impl GeneratorSession {
         for judged in resolution(solved.system.as_ref(), &space, &masses) {
             reporter.resolution(&judged);
         }
-        let expected = before.and_then(|trail| trail.difference_at(solved.value));
-        let (densities, difference) = self.densities(solved, &masses, expected.as_deref())?;
+        let (densities, difference) = self.densities(solved, &masses)?;
         // What is negative along a series is told of its modes.
         let carried = |axis: &usize| space.axes().get(*axis).is_some_and(|axis| axis.is_modes());
         let by_cells = densities
@@ -241,17 +276,18 @@ impl GeneratorSession {
         &mut self,
         solved: &Solved,
         masses: &[f64],
-        expected: Option<&[f64]>,
     ) -> Result<(Vec<EstimatedDensity>, Vec<f64>), MethodError> {
         let problem = &self.source.problem;
         let (system, space) = (solved.system.as_ref(), problem.space());
         let unknowns = &solved.steady.mass;
-        let change = match &solved.second {
-            Some(second) => {
+        let change = match (&solved.second, &solved.along) {
+            (Some(_), Some((change, true))) => change.clone(),
+            (Some(second), along) => {
+                let expected = along.as_ref().map(|(change, _)| change.as_slice());
                 let solver = &mut self.solver;
                 solver.sensitivity_within(&second.matrix, unknowns, expected, ROUGH)?
             }
-            None => vec![0.0; unknowns.len()],
+            (None, _) => vec![0.0; unknowns.len()],
         };
         let changed: Vec<f64> = unknowns.iter().zip(&change).map(|(u, du)| u + du).collect();
         let changed = cell_masses(system, space, &changed);
@@ -335,6 +371,11 @@ fn summed_over_modes(space: &CellSpace, masses: &[f64]) -> Vec<f64> {
         }
     }
     summed
+}
+
+/// Σ |a - b|.
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum()
 }
 
 /// Σ |min(mass, 0)|.

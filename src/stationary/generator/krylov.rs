@@ -5,6 +5,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::balance::Jacobian;
+use super::passes::Seat;
 use crate::cancellation::{Cancellation, Cancelled};
 
 /// What a run of GMRES gave.
@@ -54,12 +56,13 @@ fn add_scaled(y: &mut [f64], factor: f64, x: &[f64]) {
     }
 }
 
-/// Solves `operator`(x) = start.
-pub(super) fn gmres(
+/// Solves M⁻¹ F' x = start, M⁻¹ by the passes at `seat`.
+pub(super) async fn gmres(
+    seat: &Seat,
+    jacobian: &Jacobian<'_>,
     start: Vec<f64>,
     limits: Limits,
     cancellation: &Cancellation,
-    mut operator: impl FnMut(&[f64]) -> Vec<f64>,
 ) -> Result<Outcome, Cancelled> {
     let size = dot(&start, &start).sqrt();
     let mut outcome = Outcome {
@@ -76,7 +79,7 @@ pub(super) fn gmres(
     let mut triangle = Triangle::new(size);
     while !outcome.reached && outcome.iterations < limits.iterations {
         cancellation.check()?;
-        let mut next = operator(&basis[outcome.iterations]);
+        let mut next = seat.pass(jacobian.apply(&basis[outcome.iterations])).await;
         outcome.iterations += 1;
         let mut column = vec![0.0; basis.len()];
         // Twice is enough (Kahan): classical trouble with nearly dependent vectors.

@@ -13,7 +13,9 @@
 //! | `narrowing` | a matrix of reach one that stands in where the factors would not fit |
 //! | `preconditioner` | one of these factorisations, with one cell held |
 //! | `balance` | residual and Jacobian of the (quasi-)steady state |
+//! | `passes` | passes through the factors, which two iterations may share |
 //! | `krylov`, `newton` | GMRES, and Newton's method by it |
+//! | `response` | how a steady state answers to a change |
 //! | `solver` | when to iterate, when to factorise |
 //! | `memory` | where the solver stands, to go on from there later |
 //! | `symmetric` | symmetric generators on half of the cells |
@@ -25,8 +27,10 @@ mod krylov;
 mod memory;
 mod narrowing;
 mod newton;
+mod passes;
 mod preconditioner;
 mod prediction;
+mod response;
 mod solver;
 mod symbolic;
 mod symmetric;
@@ -36,7 +40,7 @@ mod triangular;
 
 pub use memory::SolverMemory;
 pub use preconditioner::{Estimate, RateMethod, estimate};
-pub use symmetric::RateSolver;
+pub use symmetric::{Along, RateSolver};
 
 /// Settings of [`RateSolver`].
 #[derive(Debug, Clone, Copy, PartialEq)]

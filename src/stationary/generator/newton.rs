@@ -5,7 +5,7 @@
 
 use super::balance::Balance;
 use super::krylov::{Limits, gmres};
-use super::preconditioner::Preconditioner;
+use super::passes::Seat;
 use crate::cancellation::{Cancellation, Cancelled};
 
 /// Contraction per iteration below which plain refinement needs no GMRES.
@@ -32,7 +32,8 @@ pub(super) struct Progress {
 /// One attempt with one factorisation.
 pub(super) struct Newton<'a> {
     pub(super) balance: &'a Balance<'a>,
-    pub(super) kept: &'a Preconditioner,
+    /// Where M⁻¹ is applied.
+    pub(super) seat: &'a Seat,
     pub(super) tolerance: f64,
     /// Largest number of iterations.
     pub(super) limit: usize,
@@ -48,7 +49,7 @@ impl Newton<'_> {
     ///
     /// # Errors
     /// [`Cancelled`].
-    pub(super) fn run(
+    pub(super) async fn run(
         &self,
         mass: &mut [f64],
         progress: &mut Progress,
@@ -58,7 +59,7 @@ impl Newton<'_> {
         progress.converged = false;
         while used < self.limit {
             self.cancellation.check()?;
-            let mut step = self.kept.apply(&self.balance.residual(mass));
+            let mut step = self.seat.pass(self.balance.residual(mass)).await;
             used += 1;
             step.iter_mut().for_each(|value| *value = -*value);
             let size = norm(&step) / norm(mass);
@@ -83,9 +84,7 @@ impl Newton<'_> {
             }
             let limits = self.limits(progress.error, rounds, self.limit - used);
             let jacobian = self.balance.jacobian(mass);
-            let outcome = gmres(step, limits, self.cancellation, |vector| {
-                self.kept.apply(&jacobian.apply(vector))
-            })?;
+            let outcome = gmres(self.seat, &jacobian, step, limits, self.cancellation).await?;
             used += outcome.iterations;
             // Newton's first steps may pass by a singular matrix that says nothing of the solution.
             let early = self.balance.leaks() && rounds <= 2;
@@ -116,9 +115,9 @@ impl Newton<'_> {
 ///
 /// # Errors
 /// [`Cancelled`].
-pub(super) fn linear(
+pub(super) async fn linear(
+    seat: &Seat,
     balance: &Balance<'_>,
-    kept: &Preconditioner,
     mass: &[f64],
     (source, start): (&[f64], Option<Vec<f64>>),
     (tolerance, limit): (f64, usize),
@@ -134,7 +133,7 @@ pub(super) fn linear(
             let product = jacobian.apply(&solution);
             rest.iter_mut().zip(product).for_each(|(a, b)| *a -= b);
         }
-        let correction = kept.apply(&rest);
+        let correction = seat.pass(rest).await;
         used += 1;
         let (size, total) = (norm(&correction), norm(&solution));
         if size <= tolerance * total || size == 0.0 {
@@ -148,9 +147,7 @@ pub(super) fn linear(
             iterations: (limit - used).min(BASIS),
             give_up_early: false,
         };
-        let outcome = gmres(correction, limits, cancellation, |vector| {
-            kept.apply(&jacobian.apply(vector))
-        })?;
+        let outcome = gmres(seat, &jacobian, correction, limits, cancellation).await?;
         used += outcome.iterations;
         add(&mut solution, &outcome.solution);
         // GMRES knows its residual, which a look at it confirms; two digits need no look.

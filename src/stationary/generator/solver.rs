@@ -2,11 +2,13 @@
 
 use sprs::CsMat;
 
-use super::balance::{Balance, add_product};
+use super::balance::Balance;
 use super::memory::SolverMemory;
 use super::narrowing;
-use super::newton::{Newton, Progress, linear};
+use super::newton::{Newton, Progress};
+use super::passes::{Seat, alone, together};
 use super::preconditioner::{Estimate, Preconditioner, Structure, estimate_of};
+use super::response::{Question, answer};
 use super::{RateError, RateInfo, RateMethod, RateOptions, RateSteadyState};
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::space::CellSpace;
@@ -15,8 +17,6 @@ use crate::space::CellSpace;
 /// for each arithmetic operation a number. Measured (`benches/rates.rs`) from 50² to 30³ cells, in both precisions, within
 /// a third: iterations are bound by memory, factorisations by arithmetic the larger they are.
 const RENEWAL: (f64, f64) = (12.0, 0.027);
-/// Iterations of a [`DirectSolver::response`] to two digits with the factors of its own matrix.
-const FRESH_RESPONSE: usize = 2;
 /// If the held cell carries less than this share of the largest mass, another one is held in new factors, and new ones are
 /// made if a solve fails.
 const WEAK_HELD_SHARE: f64 = 1e-2;
@@ -25,21 +25,21 @@ const LEAST_HELD_SHARE: f64 = 1e-8;
 
 /// Solves generators on one cell space, keeping the factorisation from one to the next.
 pub(super) struct DirectSolver {
-    space: CellSpace,
-    options: RateOptions,
+    pub(super) space: CellSpace,
+    pub(super) options: RateOptions,
     /// Of a folded matrix, whose entries do not show it.
     given: Option<Structure>,
     plan: Option<(Structure, Estimate)>,
-    preconditioner: Option<Preconditioner>,
+    pub(super) preconditioner: Option<Preconditioner>,
     /// Iterations that a new factorisation would have saved since this one was made.
-    excess: usize,
+    pub(super) excess: usize,
     /// Iterations that the solve took for which the factorisation was made.
     baseline: usize,
-    last: Option<(CsMat<f64>, Vec<f64>)>,
+    pub(super) last: Option<(CsMat<f64>, Vec<f64>)>,
     /// Factorisations that were made, and the reach and method of the last.
     factorisations: usize,
     factorised: Option<(Vec<usize>, RateMethod)>,
-    cancellation: Cancellation,
+    pub(super) cancellation: Cancellation,
 }
 
 impl DirectSolver {
@@ -157,7 +157,24 @@ impl DirectSolver {
         escape: &[f64],
         guess: Option<&[f64]>,
     ) -> Result<RateSteadyState, RateError> {
+        Ok(self.solve_along(matrix, escape, guess, None)?.0)
+    }
+
+    /// [`DirectSolver::solve`] with a question that is answered by the same passes for the masses of the guess; there is no answer
+    /// without a guess, or when it took too long.
+    ///
+    /// # Errors
+    /// As [`DirectSolver::solve`].
+    pub(super) fn solve_along(
+        &mut self,
+        matrix: &CsMat<f64>,
+        escape: &[f64],
+        guess: Option<&[f64]>,
+        question: Option<Question<'_>>,
+    ) -> Result<(RateSteadyState, Option<Vec<f64>>), RateError> {
         self.check(matrix, escape)?;
+        let mut question = question.filter(|_| guess.is_some());
+        let mut answer = None;
         let mut mass = match guess {
             Some(guess) => self.normalised(guess)?,
             None => Vec::new(),
@@ -165,8 +182,7 @@ impl DirectSolver {
         let mut plan = self.plan(matrix)?;
         let mut progress = Progress::default();
         let mut held = self.choose_held(matrix, &mass);
-        let worn = self.excess >= renewal(&plan);
-        let mut fresh = worn
+        let mut fresh = self.is_worn()
             || self
                 .preconditioner
                 .as_ref()
@@ -187,7 +203,14 @@ impl DirectSolver {
                 escape,
                 held,
             };
-            self.iterate(&balance, &mut mass, &mut progress, fresh, &plan)?;
+            let given = self.iterate(
+                &balance,
+                &mut mass,
+                &mut progress,
+                (fresh, &plan),
+                question.take(),
+            )?;
+            answer = answer.or(given);
             // The sign is arbitrary: on a grid too coarse, wiggles may make the held cell's mass negative.
             if mass.iter().sum::<f64>() < 0.0 {
                 mass.iter_mut().for_each(|value| *value = -*value);
@@ -206,7 +229,31 @@ impl DirectSolver {
             }
             fresh = true;
         }
-        Ok(self.finish(matrix, escape, mass, &progress, plan.method))
+        let steady = self.finish(matrix, escape, mass, &progress, plan.method);
+        Ok((steady, answer))
+    }
+
+    /// Whether iterating with the factorisation at hand has come to cost more than a new one would.
+    pub(super) fn is_worn(&self) -> bool {
+        let plan = self.plan.as_ref();
+        plan.is_some_and(|(_, plan)| self.excess >= renewal(plan))
+    }
+
+    /// Factorises a matrix near those that are solved next, in place of the first of them; `mass` is about its steady state.
+    ///
+    /// # Errors
+    /// As [`DirectSolver::solve`].
+    pub(super) fn renew(
+        &mut self,
+        matrix: &CsMat<f64>,
+        escape: &[f64],
+        mass: &[f64],
+    ) -> Result<(), RateError> {
+        self.check(matrix, escape)?;
+        shape(self.space.n_cells(), "mass", mass.len())?;
+        let plan = self.plan(matrix)?;
+        let held = self.better_held(self.choose_held(matrix, mass), mass);
+        Ok(self.factorise(matrix, held, &plan)?)
     }
 
     /// The plan to fall back to when single precision did not converge; kept for later solves.
@@ -219,94 +266,6 @@ impl DirectSolver {
         let double = estimate_of(&self.space, structure, limit, Some(RateMethod::Lu)).ok()?;
         self.plan = Some((structure.clone(), double));
         Some(double)
-    }
-
-    /// By how much more mass enters each cell when Q changes by `derivative` (CSC).
-    ///
-    /// # Errors
-    /// [`RateError::Shape`] for wrong sizes, [`RateError::Storage`].
-    pub(super) fn change(
-        &self,
-        derivative: &CsMat<f64>,
-        mass: &[f64],
-    ) -> Result<Vec<f64>, RateError> {
-        let cells = self.space.n_cells();
-        shape(cells, "derivative's rows", derivative.rows())?;
-        shape(cells, "derivative's columns", derivative.cols())?;
-        shape(cells, "mass", mass.len())?;
-        if !derivative.is_csc() {
-            return Err(RateError::Storage);
-        }
-        let mut change = vec![0.0; cells];
-        add_product(derivative, mass, &mut change);
-        Ok(change)
-    }
-
-    /// Nothing, if the vectors of a response have one entry a cell.
-    ///
-    /// # Errors
-    /// [`RateError::Shape`].
-    pub(super) fn shapes(
-        &self,
-        change: &[f64],
-        mass: &[f64],
-        guess: Option<&[f64]>,
-    ) -> Result<(), RateError> {
-        let cells = self.space.n_cells();
-        shape(cells, "change", change.len())?;
-        shape(cells, "mass", mass.len())?;
-        shape(cells, "guess", guess.map_or(cells, <[f64]>::len))
-    }
-
-    /// Whether the last matrix that was solved is this one.
-    pub(super) fn has_solved(&self, matrix: &CsMat<f64>) -> bool {
-        self.last.as_ref().is_some_and(|(last, _)| last == matrix)
-    }
-
-    /// How the last steady state `mass` answers to a change of its balance: p' (Σ = 0) from Q p' = -`change`, where `change`
-    /// is by how much more mass enters each cell than before, per unit time; what its sum lacks escapes.
-    ///
-    /// # Errors
-    /// As [`super::RateSolver::sensitivity`].
-    pub(super) fn response(
-        &mut self,
-        change: &[f64],
-        mass: &[f64],
-        guess: Option<&[f64]>,
-        tolerance: f64,
-    ) -> Result<Vec<f64>, RateError> {
-        let (Some((matrix, escape)), Some(kept)) = (&self.last, &self.preconditioner) else {
-            return Err(RateError::NoSteadyState);
-        };
-        self.shapes(change, mass, guess)?;
-        let balance = Balance {
-            matrix,
-            escape,
-            held: kept.held,
-        };
-        let total: f64 = mass.iter().sum();
-        // dF/dθ: rates change, and with them the escape, by minus the column sums.
-        let lost: f64 = -change.iter().sum::<f64>() / total;
-        let pairs = change.iter().zip(mass);
-        let mut source: Vec<f64> = pairs.map(|(c, p)| -(c + lost * p)).collect();
-        source[kept.held] = 0.0;
-        // The cell that is held does not answer; p may be added freely.
-        let start = guess.map(|guess| {
-            let share = guess[kept.held] / mass[kept.held];
-            let pairs = guess.iter().zip(mass);
-            pairs.map(|(x, p)| x - share * p).collect::<Vec<f64>>()
-        });
-        let start = start.filter(|start| start.iter().all(|value| value.is_finite()));
-        let effort = (tolerance, self.options.max_iterations);
-        let cancellation = &self.cancellation;
-        let response = linear(&balance, kept, mass, (&source, start), effort, cancellation)?;
-        let (mut response, used) = response.ok_or(RateError::Sensitivity)?;
-        self.excess += used.saturating_sub(FRESH_RESPONSE);
-        let excess: f64 = response.iter().sum::<f64>() / total;
-        for (slot, value) in response.iter_mut().zip(mass) {
-            *slot -= excess * value;
-        }
-        Ok(response)
     }
 
     pub(super) fn check(&self, matrix: &CsMat<f64>, escape: &[f64]) -> Result<(), RateError> {
@@ -420,37 +379,59 @@ impl DirectSolver {
         Ok(())
     }
 
+    /// Improves `mass` with the factorisation at hand; gives the answer to the question, if there is one.
     fn iterate(
         &mut self,
         balance: &Balance<'_>,
         mass: &mut [f64],
         progress: &mut Progress,
-        fresh: bool,
-        plan: &Estimate,
-    ) -> Result<(), Cancelled> {
+        (fresh, plan): (bool, &Estimate),
+        question: Option<Question<'_>>,
+    ) -> Result<Option<Vec<f64>>, Cancelled> {
         let Some(kept) = &self.preconditioner else {
-            return Ok(());
+            return Ok(None);
         };
         let worth = if fresh {
             usize::MAX
         } else {
             self.baseline + renewal(plan)
         };
+        let (seat, other) = (Seat::default(), Seat::default());
+        let limit = worth.min(self.options.max_iterations);
         let newton = Newton {
             balance,
-            kept,
+            seat: &seat,
             tolerance: self.options.tolerance,
-            limit: worth.min(self.options.max_iterations),
+            limit,
             fresh,
             narrow: plan.method.is_narrow(),
             cancellation: &self.cancellation,
         };
-        let used = newton.run(mass, progress)?;
+        let (used, passes, given) = match question {
+            None => {
+                let used = alone(kept, &seat, newton.run(mass, progress))?;
+                (used, used, None)
+            }
+            Some(question) => {
+                let guess = mass.to_vec();
+                let asked = answer(
+                    &other,
+                    balance,
+                    &guess,
+                    &question,
+                    limit,
+                    &self.cancellation,
+                );
+                let run = newton.run(mass, progress);
+                let (used, given, passes) = together(kept, [&seat, &other], run, asked);
+                (used?, passes, given?.map(|(given, _)| given))
+            }
+        };
         if fresh {
             self.baseline = used;
         }
-        self.excess += used.saturating_sub(self.baseline);
-        Ok(())
+        self.excess += passes.saturating_sub(self.baseline);
+        Ok(given)
     }
 
     fn finish(
@@ -488,7 +469,7 @@ impl DirectSolver {
     }
 }
 
-fn shape(cells: usize, part: &'static str, found: usize) -> Result<(), RateError> {
+pub(super) fn shape(cells: usize, part: &'static str, found: usize) -> Result<(), RateError> {
     if found == cells {
         Ok(())
     } else {

@@ -13,6 +13,7 @@ use sprs::CsMat;
 use super::memory::SolverMemory;
 use super::narrowing;
 use super::preconditioner::{Estimate, Structure, estimate_of};
+use super::response::Question;
 use super::solver::DirectSolver;
 use super::{RateError, RateOptions, RateSteadyState};
 use crate::cancellation::Cancellation;
@@ -33,6 +34,44 @@ pub struct RateSolver {
     half: Option<Half>,
     /// The last matrix, with its escape, that was solved on half of the cells; `None` after one that was not.
     folded: Option<(CsMat<f64>, Vec<f64>)>,
+}
+
+/// A change of the generator whose effect on the steady state is wanted along with a solve.
+#[derive(Debug, Clone, Copy)]
+pub struct Along<'a> {
+    /// dQ, of the generator's size (CSC, any pattern).
+    pub derivative: &'a CsMat<f64>,
+    /// The answer that is expected, Σ = 0.
+    pub expected: Option<&'a [f64]>,
+    /// Relative error of the answer in L1.
+    pub tolerance: f64,
+}
+
+impl<'a> Along<'a> {
+    fn question(&self, change: &'a [f64]) -> Question<'a> {
+        Question {
+            change,
+            guess: self.expected,
+            tolerance: self.tolerance,
+        }
+    }
+}
+
+/// A question on half of the cells.
+struct FoldedQuestion {
+    change: Vec<f64>,
+    guess: Option<Vec<f64>>,
+    tolerance: f64,
+}
+
+impl FoldedQuestion {
+    fn question(&self) -> Question<'_> {
+        Question {
+            change: &self.change,
+            guess: self.guess.as_deref(),
+            tolerance: self.tolerance,
+        }
+    }
 }
 
 /// The solver on half of the cells.
@@ -77,22 +116,80 @@ impl RateSolver {
         escape: &[f64],
         guess: Option<&[f64]>,
     ) -> Result<RateSteadyState, RateError> {
+        Ok(self.solve_along(matrix, escape, guess, None)?.0)
+    }
+
+    /// [`RateSolver::solve`], and along with it how the masses of the guess answer to a change of the generator, by the same passes
+    /// through the factors: nearly for nothing. There is no answer without a guess, to a change that breaks a symmetry that is
+    /// made use of, or when it took too long.
+    ///
+    /// # Errors
+    /// As [`RateSolver::solve`]; [`RateError::Shape`] for a change of the wrong size.
+    pub fn solve_along(
+        &mut self,
+        matrix: &CsMat<f64>,
+        escape: &[f64],
+        guess: Option<&[f64]>,
+        along: Option<&Along<'_>>,
+    ) -> Result<(RateSteadyState, Option<Vec<f64>>), RateError> {
         self.folded = None;
+        let change = match (along, guess) {
+            (Some(along), Some(guess)) => Some(self.plain.change(along.derivative, guess)?),
+            _ => None,
+        };
+        let question = along.zip(change.as_deref());
+        let question = question.map(|(along, change)| along.question(change));
         if self.space.n_cells() < WORTH_FOLDING || !is_centrosymmetric(matrix, escape) {
-            return self.plain.solve(matrix, escape, guess);
+            return self.plain.solve_along(matrix, escape, guess, question);
         }
         self.plain.check(matrix, escape)?;
         let Some(half) = self.half(matrix)? else {
-            return self.plain.solve(matrix, escape, guess);
+            return self.plain.solve_along(matrix, escape, guess, question);
         };
-        let guess = guess.map(|guess| half.folding.fold(guess));
-        let (folded, escaping) = half.folding.generator(matrix, escape);
-        let steady = half.solver.solve(&folded, &escaping, guess.as_deref())?;
-        let mass = half.folding.unfold(&steady.mass);
+        let folding = &half.folding;
+        let guess = guess.map(|guess| folding.fold(guess));
+        let (folded, escaping) = folding.generator(matrix, escape);
+        let question = question.filter(|question| is_symmetric(question.change));
+        let question = question.map(|question| folding.fold_question(&question));
+        let question = question.as_ref().map(FoldedQuestion::question);
+        let solver = &mut half.solver;
+        let (steady, answer) =
+            solver.solve_along(&folded, &escaping, guess.as_deref(), question)?;
+        let mass = folding.unfold(&steady.mass);
+        let answer = answer.map(|answer| folding.unfold(&answer));
         let mut info = steady.info;
         info.unknowns = mass.len();
         self.folded = Some((matrix.clone(), escape.to_vec()));
-        Ok(RateSteadyState { mass, info })
+        Ok((RateSteadyState { mass, info }, answer))
+    }
+
+    /// Whether iterating with the factorisation at hand has come to cost more than a new one would: the next solve factorises,
+    /// unless [`RateSolver::renew`] does before.
+    pub fn is_worn(&self) -> bool {
+        match (&self.folded, &self.half) {
+            (Some(_), Some(half)) => half.solver.is_worn(),
+            _ => self.plain.is_worn(),
+        }
+    }
+
+    /// Factorises a generator in the middle of those that are solved next, which reaches about twice as many of them as the
+    /// factorisation of the first would. `mass` is about its steady state.
+    ///
+    /// # Errors
+    /// As [`RateSolver::solve`].
+    pub fn renew(
+        &mut self,
+        matrix: &CsMat<f64>,
+        escape: &[f64],
+        mass: &[f64],
+    ) -> Result<(), RateError> {
+        let half = self.half.as_mut().filter(|_| self.folded.is_some());
+        let Some(half) = half.filter(|_| is_centrosymmetric(matrix, escape)) else {
+            return self.plain.renew(matrix, escape, mass);
+        };
+        let (matrix, escape) = half.folding.generator(matrix, escape);
+        let mass = half.folding.fold(mass);
+        half.solver.renew(&matrix, &escape, &mass)
     }
 
     /// Factorisations that were made since the solver was.
@@ -213,23 +310,26 @@ impl RateSolver {
         guess: Option<&[f64]>,
         tolerance: f64,
     ) -> Result<Vec<f64>, RateError> {
-        let Some((matrix, escape)) = &self.folded else {
-            return self.plain.response(change, mass, guess, tolerance);
+        let question = Question {
+            change,
+            guess,
+            tolerance,
         };
-        self.plain.shapes(change, mass, guess)?;
+        let Some((matrix, escape)) = &self.folded else {
+            return self.plain.response(&question, mass);
+        };
+        self.plain.shapes(&question, mass)?;
         if let Some(half) = self.half.as_mut().filter(|_| is_symmetric(change)) {
-            let guess = guess.map(|guess| half.folding.fold(guess));
-            let (change, mass) = (half.folding.fold(change), half.folding.fold(mass));
-            let response = half
-                .solver
-                .response(&change, &mass, guess.as_deref(), tolerance)?;
+            let folded = half.folding.fold_question(&question);
+            let mass = half.folding.fold(mass);
+            let response = half.solver.response(&folded.question(), &mass)?;
             return Ok(half.folding.unfold(&response));
         }
         // Only now are factors of the whole matrix needed. It stays solved on half of the cells.
         if !self.plain.has_solved(matrix) {
             self.plain.solve(matrix, escape, Some(mass))?;
         }
-        self.plain.response(change, mass, guess, tolerance)
+        self.plain.response(&question, mass)
     }
 }
 
@@ -309,6 +409,14 @@ impl Folding {
         let last = values.len() - 1;
         let sum = |&cell: &u32| values[cell as usize] + values[last - cell as usize];
         self.upper.iter().map(sum).collect()
+    }
+
+    fn fold_question(&self, question: &Question<'_>) -> FoldedQuestion {
+        FoldedQuestion {
+            change: self.fold(question.change),
+            guess: question.guess.map(|guess| self.fold(guess)),
+            tolerance: question.tolerance,
+        }
     }
 
     /// Shares a cell's value with its image.

@@ -1,6 +1,9 @@
-//! Forward and backward substitution along the tree of fronts.
+//! Forward and backward substitution along the tree of fronts, for one vector or several in one pass.
 //!
-//! A subtree's unknowns are contiguous, so halves are solved in parallel. Sums always run in the same order.
+//! A subtree's unknowns are contiguous, so halves are solved in parallel. Sums always run in the same order, whether a vector is
+//! solved alone or with others: a pass is bound by reading the factors, which several vectors then share.
+
+use std::array::from_fn;
 
 use multiversion::multiversion;
 
@@ -11,12 +14,18 @@ use super::symbolic::Symbolic;
 const GRAIN: usize = 2000;
 /// Columns of a triangle that are solved before the rest is updated.
 const BLOCK: usize = 32;
+/// Products with more entries are cut into two tasks.
+const LARGE_PRODUCT: usize = 1 << 17;
 
-/// Solves M x = b in place; `x` is in the elimination order.
-pub(super) fn solve<T: Number>(symbolic: &Symbolic, factors: &[Factor<T>], x: &mut [f64]) {
+/// Solves M x = b in place for each `x`, which is in the elimination order.
+pub(super) fn solve<T: Number, const R: usize>(
+    symbolic: &Symbolic,
+    factors: &[Factor<T>],
+    mut x: [&mut [f64]; R],
+) {
     if let Some(root) = symbolic.fronts.len().checked_sub(1) {
-        forward(symbolic, factors, root, x);
-        backward(symbolic, factors, root, x, &[]);
+        forward(symbolic, factors, root, x.each_mut().map(|x| &mut **x));
+        backward(symbolic, factors, root, x, [&[]; R]);
     }
 }
 
@@ -29,88 +38,124 @@ fn both<A: Send, B: Send>(
     if large { rayon::join(a, b) } else { (a(), b()) }
 }
 
+/// Cuts each vector at the same place.
+fn cut_each<const R: usize>(x: [&mut [f64]; R], at: usize) -> ([&mut [f64]; R], [&mut [f64]; R]) {
+    let mut after: [&mut [f64]; R] = from_fn(|_| Default::default());
+    let mut places = after.iter_mut();
+    let before = x.map(|x| {
+        let (head, tail) = x.split_at_mut(at);
+        if let Some(place) = places.next() {
+            *place = tail;
+        }
+        head
+    });
+    (before, after)
+}
+
 /// L y = b over a subtree; gives what it adds to its boundary.
-fn forward<T: Number>(
+fn forward<T: Number, const R: usize>(
     symbolic: &Symbolic,
     factors: &[Factor<T>],
     top: usize,
-    x: &mut [f64],
-) -> Vec<f64> {
+    x: [&mut [f64]; R],
+) -> [Vec<f64>; R] {
     let front = &symbolic.fronts[top];
     let (k, m) = (front.node.own.len(), front.boundary);
-    let below = x.len() - k;
-    let mut local = vec![0.0; k + m];
-    let (unknowns, own) = x.split_at_mut(below);
+    let below = x.first().map_or(0, |x| x.len() - k);
+    let mut local: [Vec<f64>; R] = from_fn(|_| vec![0.0; k + m]);
+    let (unknowns, mut own) = cut_each(x, below);
     if let Some([left, right]) = front.node.children {
         let cut = symbolic.first_unknown(right) - symbolic.first_unknown(top);
-        let (a, b) = unknowns.split_at_mut(cut);
+        let (a, b) = cut_each(unknowns, cut);
         let updates = both(
             below > GRAIN,
             || forward(symbolic, factors, left, a),
             || forward(symbolic, factors, right, b),
         );
-        for (child, update) in [(left, updates.0), (right, updates.1)] {
-            for (&place, value) in symbolic.fronts[child].in_parent.iter().zip(update) {
-                local[place as usize] += value;
+        for (child, updates) in [(left, updates.0), (right, updates.1)] {
+            for (local, update) in local.iter_mut().zip(updates) {
+                for (&place, value) in symbolic.fronts[child].in_parent.iter().zip(update) {
+                    local[place as usize] += value;
+                }
             }
         }
     }
     let factor = &factors[top];
-    let summed: Vec<f64> = own.iter().zip(&local).map(|(a, b)| a + b).collect();
-    for (slot, &row) in own.iter_mut().zip(&factor.rows) {
-        *slot = summed[row as usize];
+    for (own, local) in own.iter_mut().zip(&local) {
+        let summed: Vec<f64> = own.iter().zip(local).map(|(a, b)| a + b).collect();
+        for (slot, &row) in own.iter_mut().zip(&factor.rows) {
+            *slot = summed[row as usize];
+        }
     }
     for from in (0..k).step_by(BLOCK) {
         let to = (from + BLOCK).min(k);
-        let (block, rest) = own[from..].split_at_mut(to - from);
-        for column in from..to {
-            let (done, after) = block.split_at_mut(column - from + 1);
-            let lower = &factor.upper[column * k + column + 1..column * k + to];
-            subtract_one(lower, done[column - from], after);
+        let left = own.each_mut().map(|own| &mut own[from..]);
+        let (mut block, rest) = cut_each(left, to - from);
+        for block in &mut block {
+            for column in from..to {
+                let (done, after) = block.split_at_mut(column - from + 1);
+                let lower = &factor.upper[column * k + column + 1..column * k + to];
+                subtract_one(lower, done[column - from], after);
+            }
         }
+        let block = block.map(|block| &*block);
         subtract_product(&factor.upper[from * k + to..], k, block, rest);
     }
-    let mut update = local.split_off(k);
-    subtract_product(&factor.lower, m, own, &mut update);
+    let mut update = local.map(|mut local| local.split_off(k));
+    let solved = own.map(|own| &*own);
+    let outward = update.each_mut().map(Vec::as_mut_slice);
+    subtract_product(&factor.lower, m, solved, outward);
     update
 }
 
 /// U x = y over a subtree; `around` are the unknowns of the parent's front, own cells first.
-fn backward<T: Number>(
+fn backward<T: Number, const R: usize>(
     symbolic: &Symbolic,
     factors: &[Factor<T>],
     top: usize,
-    x: &mut [f64],
-    around: &[f64],
+    x: [&mut [f64]; R],
+    around: [&[f64]; R],
 ) {
     let front = &symbolic.fronts[top];
     let factor = &factors[top];
     let k = front.node.own.len();
-    let (unknowns, own) = x.split_at_mut(x.len() - k);
-    let mut local = Vec::with_capacity(k + front.boundary);
-    local.resize(k, 0.0);
-    local.extend(front.in_parent.iter().map(|&place| around[place as usize]));
-    subtract_product(&factor.upper[k * k..], k, &local[k..], own);
+    let below = x.first().map_or(0, |x| x.len() - k);
+    let (unknowns, mut own) = cut_each(x, below);
+    let mut local: [Vec<f64>; R] = around.map(|around| {
+        let mut local = Vec::with_capacity(k + front.boundary);
+        local.resize(k, 0.0);
+        local.extend(front.in_parent.iter().map(|&place| around[place as usize]));
+        local
+    });
+    let outward = local.each_ref().map(|local| &local[k..]);
+    let inward = own.each_mut().map(|own| &mut **own);
+    subtract_product(&factor.upper[k * k..], k, outward, inward);
     for from in (0..k).step_by(BLOCK).rev() {
         let to = (from + BLOCK).min(k);
-        let (rest, block) = own[..to].split_at_mut(from);
-        for column in (from..to).rev() {
-            let above = &factor.upper[column * k + from..=column * k + column];
-            let (before, done) = block.split_at_mut(column - from);
-            done[0] /= above[column - from].wide();
-            subtract_one(&above[..column - from], done[0], before);
+        let left = own.each_mut().map(|own| &mut own[..to]);
+        let (rest, mut block) = cut_each(left, from);
+        for block in &mut block {
+            for column in (from..to).rev() {
+                let above = &factor.upper[column * k + from..=column * k + column];
+                let (before, done) = block.split_at_mut(column - from);
+                done[0] /= above[column - from].wide();
+                subtract_one(&above[..column - from], done[0], before);
+            }
         }
+        let block = block.map(|block| &*block);
         subtract_product(&factor.upper[from * k..], k, block, rest);
     }
     if let Some([left, right]) = front.node.children {
-        local[..k].copy_from_slice(own);
+        for (local, own) in local.iter_mut().zip(&own) {
+            local[..k].copy_from_slice(own);
+        }
+        let local = local.each_ref().map(Vec::as_slice);
         let cut = symbolic.first_unknown(right) - symbolic.first_unknown(top);
-        let large = unknowns.len() > GRAIN;
-        let (a, b) = unknowns.split_at_mut(cut);
+        let (a, b) = cut_each(unknowns, cut);
         both(
-            large,
-            || backward(symbolic, factors, left, a, &local),
-            || backward(symbolic, factors, right, b, &local),
+            below > GRAIN,
+            || backward(symbolic, factors, left, a, local),
+            || backward(symbolic, factors, right, b, local),
         );
     }
 }
@@ -122,31 +167,65 @@ fn subtract_one<T: Number>(column: &[T], x: f64, y: &mut [f64]) {
     }
 }
 
-/// y ← y - A x; columns of A start `stride` apart and are used as far as y is long. Four columns at a time, so
-/// that y is read and written less often.
+/// y ← y - A x for each pair; columns of A start `stride` apart and are used as far as y is long. Large products are cut in two
+/// by rows.
+fn subtract_product<T: Number, const R: usize>(
+    matrix: &[T],
+    stride: usize,
+    x: [&[f64]; R],
+    y: [&mut [f64]; R],
+) {
+    let (Some(rows), Some(columns)) = (y.first().map(|y| y.len()), x.first().map(|x| x.len()))
+    else {
+        return;
+    };
+    if rows * columns <= LARGE_PRODUCT || rows < 2 * BLOCK {
+        columns_in_turn(matrix, stride, x, y);
+        return;
+    }
+    let half = (rows / 2).next_multiple_of(BLOCK);
+    let (above, below) = cut_each(y, half);
+    rayon::join(
+        || subtract_product(matrix, stride, x, above),
+        || subtract_product(&matrix[half..], stride, x, below),
+    );
+}
+
+/// [`subtract_product`] in one task. Four columns at a time, so that y is read and written less often, and each four for all
+/// pairs, so that they are fetched once.
 #[multiversion(targets = "simd")]
-fn subtract_product<T: Number>(matrix: &[T], stride: usize, x: &[f64], y: &mut [f64]) {
-    let rows = y.len();
+fn columns_in_turn<T: Number, const R: usize>(
+    matrix: &[T],
+    stride: usize,
+    x: [&[f64]; R],
+    mut y: [&mut [f64]; R],
+) {
+    let (Some(rows), Some(columns)) = (y.first().map(|y| y.len()), x.first().map(|x| x.len()))
+    else {
+        return;
+    };
     if rows == 0 {
         return;
     }
     let column = |index: usize| &matrix[index * stride..index * stride + rows];
-    let mut inputs = x.chunks_exact(4);
-    let mut index = 0;
-    for input in inputs.by_ref() {
+    let fours = columns / 4 * 4;
+    for index in (0..fours).step_by(4) {
         let (a, b) = (column(index), column(index + 1));
         let (c, d) = (column(index + 2), column(index + 3));
-        index += 4;
-        for ((((slot, a), b), c), d) in y.iter_mut().zip(a).zip(b).zip(c).zip(d) {
-            let first = a.wide() * input[0] + b.wide() * input[1];
-            let second = c.wide() * input[2] + d.wide() * input[3];
-            *slot -= first + second;
+        for (y, x) in y.iter_mut().zip(x) {
+            let input = [x[index], x[index + 1], x[index + 2], x[index + 3]];
+            for ((((slot, a), b), c), d) in y.iter_mut().zip(a).zip(b).zip(c).zip(d) {
+                let first = a.wide() * input[0] + b.wide() * input[1];
+                let second = c.wide() * input[2] + d.wide() * input[3];
+                *slot -= first + second;
+            }
         }
     }
-    for &input in inputs.remainder() {
-        for (slot, &entry) in y.iter_mut().zip(column(index)) {
-            *slot -= entry.wide() * input;
+    for index in fours..columns {
+        for (y, x) in y.iter_mut().zip(x) {
+            for (slot, &entry) in y.iter_mut().zip(column(index)) {
+                *slot -= entry.wide() * x[index];
+            }
         }
-        index += 1;
     }
 }

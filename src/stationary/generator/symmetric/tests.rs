@@ -2,6 +2,7 @@
 
 use crate::generator::{GeneratorOptions, assemble};
 use crate::space::{Axis, CellSpace};
+use crate::stationary::generator::response::Question;
 use crate::stationary::generator::solver::DirectSolver;
 use crate::stationary::generator::symmetric::is_centrosymmetric;
 use crate::stationary::generator::{RateMethod, RateOptions, RateSolver};
@@ -42,7 +43,12 @@ fn half_of_the_cells_give_the_whole_answer() {
     one_sided[..space.n_cells() / 3].fill(0.0);
     for change in [change, one_sided] {
         let a = folded.response(&change, &a.mass, None, 1e-8).unwrap();
-        let b = whole.response(&change, &b.mass, None, 1e-8).unwrap();
+        let question = Question {
+            change: &change,
+            guess: None,
+            tolerance: 1e-8,
+        };
+        let b = whole.response(&question, &b.mass).unwrap();
         let size: f64 = b.iter().map(|value| value.abs()).sum();
         let apart = distance(&a, &b) / size;
         assert!(apart < 1e-6, "{apart:e}");
