@@ -33,7 +33,7 @@ pub(super) struct DirectSolver {
     pub(super) preconditioner: Option<Preconditioner>,
     /// Iterations that a new factorisation would have saved since this one was made.
     pub(super) excess: usize,
-    /// Iterations that the solve took for which the factorisation was made.
+    /// Least iterations that a solve has taken since the last one for which a factorisation was made.
     baseline: usize,
     pub(super) last: Option<(CsMat<f64>, Vec<f64>)>,
     /// Factorisations that were made, and the reach and method of the last.
@@ -427,9 +427,8 @@ impl DirectSolver {
                 (used?, passes, given?.map(|(given, _)| given))
             }
         };
-        if fresh {
-            self.baseline = used;
-        }
+        // A cold solve takes more than a warm one would have, and factors made ahead are not tried on their own matrix.
+        self.baseline = if fresh { used } else { self.baseline.min(used) };
         self.excess += passes.saturating_sub(self.baseline);
         Ok(given)
     }
