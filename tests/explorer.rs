@@ -205,7 +205,7 @@ fn a_browser_shows_the_page_from_disk() {
     let mut odd = String::new();
     for _ in 0..5 {
         odd = shown("f_c=much&pin=NaN&joint=7&theme=loud");
-        if odd.contains("data-ready") {
+        if odd.contains("data-ready=\"true\"") {
             break;
         }
     }

@@ -131,3 +131,53 @@ pub(super) fn change_by_modes(point: &Point) -> Option<String> {
         _ => None,
     })
 }
+
+/// Cells from an end of Ω up to which the end takes part in what is read there.
+const NEAR_AN_END: usize = 8;
+/// Share of the largest density below which there is next to none.
+const NEXT_TO_NONE: f64 = 1e-12;
+
+/// The sentence for a value that is read beside an end of Ω where there is next to no density: what comes and goes there the end may have made.
+pub(super) fn beside_an_end(density: &Density, place: &[f64]) -> Option<String> {
+    let mut index = 0;
+    let mut cells = usize::MAX;
+    for (axis, &at) in density.axes.iter().zip(place) {
+        let cell = axis.find(at)?;
+        index = index * axis.count() + cell;
+        cells = cells.min(cell).min(axis.count() - 1 - cell);
+    }
+    let value = density.values.get(index)?.abs();
+    (cells < NEAR_AN_END && value < NEXT_TO_NONE * density.maximum()).then(|| {
+        format!(
+            "{cells} cells from an end of Ω, where there is next to no density: a wider range is needed"
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{NEAR_AN_END, beside_an_end};
+    use crate::density::Density;
+    use crate::space::Axis;
+
+    #[test]
+    fn only_what_is_low_and_beside_an_end_is_doubted() {
+        let axis = Axis::uniform(-8.0, 8.0, 80).unwrap();
+        let values = axis.centres().iter().map(|x| (-x * x).exp()).collect();
+        let density = Density {
+            axes: vec![axis],
+            values,
+        };
+        assert!(beside_an_end(&density, &[7.5]).is_some());
+        assert!(beside_an_end(&density, &[-7.9]).is_some());
+        // Low, but far from the ends; and near an end, but not low.
+        assert_eq!(beside_an_end(&density, &[5.9]), None);
+        let axis = Axis::uniform(0.0, 1.0, 4 * NEAR_AN_END).unwrap();
+        let values = vec![1.0; axis.count()];
+        let even = Density {
+            axes: vec![axis],
+            values,
+        };
+        assert_eq!(beside_an_end(&even, &[0.01]), None);
+    }
+}
