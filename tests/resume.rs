@@ -188,6 +188,8 @@ fn killed_runs_end_with_the_bytes_of_one_that_was_not() {
         run(sweep, &out, &["--resume", "--quiet"]);
         assert_same(&out, &whole, &format!("{sweep:?}"));
         assert_eq!(manifest(&out)["ending"], "complete");
+        // What is stored is read again, also along axes of modes.
+        run(sweep, &out, &["--resume", "--quiet"]);
         assert_eq!(manifest(&out)["points"], manifest(&whole)["points"]);
     }
 }

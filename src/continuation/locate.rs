@@ -4,7 +4,8 @@ use super::change::{Change, Found, changes};
 use super::grid::{Checked, Checks, GridCheck, Leak, share_of_distance};
 use super::label::{self, BifurcationStatus, LabelledPoint, PointType};
 use super::reason::{
-    MOST_NEGATIVE, beside_an_end, change_by_modes, coarse, leaks, negative_share, not_checked, said_of, torn,
+    MOST_NEGATIVE, beside_an_end, change_by_modes, coarse, leaks, negative_share, not_checked,
+    said_of, torn,
 };
 use super::root::{Root, root};
 use super::{CellCheck, Goal, Point, PointStatus, Subject, persistence, words};

@@ -10,7 +10,7 @@ use zarrs::filesystem::FilesystemStore;
 use super::{RunError, arrays};
 use crate::continuation::Subject;
 use crate::density::{
-    Density, EstimatedDensity, Kink, NEGLIGIBLE, Observable, Structure, Variants,
+    Density, EstimatedDensity, Kink, NEGLIGIBLE, Observable, Structure, Variants, laid_out,
 };
 use crate::space::{Axis, CellSpace};
 use crate::system::{Family, Symmetry, proved_symmetry};
@@ -266,7 +266,7 @@ impl Opened {
         }
         let numbers = observable.axes();
         let known = || space.axes().iter().chain(bins);
-        let of = |&axis: &usize| known().nth(axis).cloned();
+        let of = |&axis: &usize| known().nth(axis).map(laid_out);
         let axes: Vec<Axis> = numbers.iter().filter_map(of).collect();
         for (&number, axis) in numbers.iter().zip(&axes) {
             if self.whole(&arrays::edges(family.axis(number)))? != axis.edges() {
