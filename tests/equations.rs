@@ -71,7 +71,8 @@ fn assert_refused(old: &str, new: &str, count: &str, words: &[&str]) {
 #[rustfmt::skip]
 fn what_is_wrong_with_a_formula_is_shown_in_it() {
     assert_refused("c1 x^2", "c_1 x^2 + kapa", "1 error",
-        &["the equation of `y`: unknown symbol `kapa`", "a.toml:4:23", "^^^^", "parameters c1, D, f_c, c0"]);
+        &["the equation of `y`: unknown symbol `kapa`", "a.toml:4:23", "^^^^", "parameters c1, D, f_c, c0",
+            "give `kapa` a value in [system.parameters]"]);
     assert_refused("- friction", "- fricton", "1 error", &["did you mean `friction`?", "a.toml:4:29"]);
     assert_refused("y - x", "y - sin(x, 1)", "1 error", &["`sin` is given 2 arguments", "allowed: sin(x)"]);
     assert_refused("x = \"y\"", "x = \" \"", "1 error", &["the formula is empty", "a.toml:3:"]);

@@ -1,9 +1,11 @@
 //! Why a value is not located, in sentences that say what helps.
 
+use super::change::Crossing;
 use super::root::Root;
 use super::{Finding, Goal, Point, PointStatus, Subject};
 use crate::density::{Density, EstimatedDensity};
 use crate::space::Axis;
+use crate::topology::Indicator;
 
 /// The sentence for a value that finer cells could have checked, and have not.
 pub(super) fn not_checked(options: &Goal) -> String {
@@ -130,6 +132,44 @@ pub(super) fn change_by_modes(point: &Point) -> Option<String> {
         )),
         _ => None,
     })
+}
+
+/// Times as steep as beside a bracket that an indicator must be inside it to have jumped. A smooth one is as steep, within a few times.
+const JUMP: f64 = 30.0;
+
+/// The sentence for an indicator that jumps to the other side of zero in place of passing it, because what it is read from changes there.
+pub(super) fn jump(points: &[&Point], crossing: &Crossing) -> Option<String> {
+    let (left, right) = (crossing.left, crossing.left + 1);
+    let slope = |a: (usize, &Indicator), b: (usize, &Indicator)| {
+        ((b.1.value - a.1.value) / (points[b.0].value - points[a.0].value)).abs()
+    };
+    let [below, above] = [(left, &crossing.ends[0]), (right, &crossing.ends[1])];
+    let inside = slope(below, above);
+    let beyond = |end: (usize, &Indicator), index: Option<usize>| {
+        let index = index.filter(|&index| index < points.len())?;
+        let same = |one: &&Indicator| one.kind == end.1.kind && one.value * end.1.value > 0.0;
+        let others = &points[index]
+            .detections
+            .get(crossing.observable)?
+            .indicators;
+        let apart = |one: &Indicator| distance(&one.place, &end.1.place);
+        let mut others: Vec<&Indicator> = others.iter().filter(same).collect();
+        others.sort_by(|a, b| apart(a).total_cmp(&apart(b)));
+        Some(slope((index, others.first()?), end))
+    };
+    let outside = [
+        beyond(below, left.checked_sub(1)),
+        beyond(above, Some(right + 1)),
+    ];
+    let mut outside = outside.into_iter().flatten().peekable();
+    let jumps = outside.peek().is_some() && outside.all(|slope| inside > JUMP * slope);
+    jumps.then(|| {
+        "the slope or curvature that tells of it jumps there in place of passing zero: a wider range or more cells may show why".to_owned()
+    })
+}
+
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum()
 }
 
 /// Cells from an end of Ω up to which the end takes part in what is read there.

@@ -179,6 +179,14 @@ impl FormulaError {
         }
     }
 
+    /// The name that nothing defines, if that is the fault.
+    pub fn unknown_symbol(&self) -> Option<&str> {
+        match &self.fault {
+            Fault::Symbol { name, .. } if !is_no_number(name) => Some(name),
+            _ => None,
+        }
+    }
+
     /// What to write instead.
     pub fn remedy(&self) -> Option<String> {
         let words = match &self.fault {

@@ -305,6 +305,15 @@ fn check_noise(reader: &mut Reader<'_>, model: &Model) {
     });
 }
 
+/// Where a name that nothing defines can be given a meaning.
+fn defined(name: &str) -> Option<String> {
+    let name = quotable(name);
+    Some(format!(
+        "give `{name}` a value in [system.parameters] or a formula in [system.define]; if it is a state, a line `{name} = …` in \
+         [system.equations]"
+    ))
+}
+
 /// What the model says, at its place in the file.
 fn diagnostic(
     reader: &Reader<'_>,
@@ -334,7 +343,7 @@ fn diagnostic(
             if let Some(allowed) = fault.allowed() {
                 diagnostic = diagnostic.allowed(allowed);
             }
-            match fault.remedy() {
+            match fault.remedy().or_else(|| defined(fault.unknown_symbol()?)) {
                 Some(remedy) => diagnostic.remedy(remedy),
                 None => diagnostic,
             }
