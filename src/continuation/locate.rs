@@ -4,8 +4,7 @@ use super::change::{Change, Found, changes};
 use super::grid::{Checked, Checks, GridCheck, Leak, share_of_distance};
 use super::label::{self, BifurcationStatus, LabelledPoint, PointType};
 use super::reason::{
-    MOST_NEGATIVE, beside_an_end, change_by_modes, coarse, jump, leaks, negative_share,
-    not_checked, said_of, torn,
+    MOST_NEGATIVE, change_by_modes, coarse, leaks, negative_share, not_checked, said_of, torn,
 };
 use super::root::{Root, root};
 use super::{CellCheck, Goal, Point, PointStatus, Subject, persistence, words};
@@ -307,18 +306,12 @@ fn by_indicator(
     let is_torn = depends_on_cells && wiggles > MOST_NEGATIVE;
     let lacks_check = on_finer.is_none() && depends_on_cells && is_checkable(subject);
     let few_modes = [a, b].into_iter().find_map(change_by_modes);
-    let doubt = [a, b].into_iter().find_map(|one| {
-        let density = &one.densities[change.observable].density;
-        beside_an_end(density, checked.place).filter(|_| depends_on_cells)
-    });
-    let doubt = doubt.or_else(|| jump(points, crossing));
     row.status = Some(match on_finer {
         Some(GridCheck::Unconfirmed) => BifurcationStatus::Unconfirmed,
         _ if failed.is_some() => BifurcationStatus::Unchecked,
         _ if unsound.is_some()
             || is_torn
             || few_modes.is_some()
-            || doubt.is_some()
             || !narrow
             || error > options.tolerance =>
         {
@@ -332,7 +325,6 @@ fn by_indicator(
         .or_else(|| unsound.map(|point| said_of(point, subject)))
         .or_else(|| is_torn.then(|| torn(wiggles)))
         .or(few_modes)
-        .or(doubt)
         .or_else(|| leaks(&found, error, options, subject, [a, b]))
         .or_else(|| coarse(&found, error, options, &a.densities[change.observable]))
         .or_else(|| lacks_check.then(|| not_checked(options)));

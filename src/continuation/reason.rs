@@ -1,11 +1,9 @@
 //! Why a value is not located, in sentences that say what helps.
 
-use super::change::Crossing;
 use super::root::Root;
 use super::{Finding, Goal, Point, PointStatus, Subject};
 use crate::density::{Density, EstimatedDensity};
 use crate::space::Axis;
-use crate::topology::Indicator;
 
 /// The sentence for a value that finer cells could have checked, and have not.
 pub(super) fn not_checked(options: &Goal) -> String {
@@ -132,92 +130,4 @@ pub(super) fn change_by_modes(point: &Point) -> Option<String> {
         )),
         _ => None,
     })
-}
-
-/// Times as steep as beside a bracket that an indicator must be inside it to have jumped. A smooth one is as steep, within a few times.
-const JUMP: f64 = 30.0;
-
-/// The sentence for an indicator that jumps to the other side of zero in place of passing it, because what it is read from changes there.
-pub(super) fn jump(points: &[&Point], crossing: &Crossing) -> Option<String> {
-    let (left, right) = (crossing.left, crossing.left + 1);
-    let slope = |a: (usize, &Indicator), b: (usize, &Indicator)| {
-        ((b.1.value - a.1.value) / (points[b.0].value - points[a.0].value)).abs()
-    };
-    let [below, above] = [(left, &crossing.ends[0]), (right, &crossing.ends[1])];
-    let inside = slope(below, above);
-    let beyond = |end: (usize, &Indicator), index: Option<usize>| {
-        let index = index.filter(|&index| index < points.len())?;
-        let same = |one: &&Indicator| one.kind == end.1.kind && one.value * end.1.value > 0.0;
-        let others = &points[index]
-            .detections
-            .get(crossing.observable)?
-            .indicators;
-        let apart = |one: &Indicator| distance(&one.place, &end.1.place);
-        let mut others: Vec<&Indicator> = others.iter().filter(same).collect();
-        others.sort_by(|a, b| apart(a).total_cmp(&apart(b)));
-        Some(slope((index, others.first()?), end))
-    };
-    let outside = [
-        beyond(below, left.checked_sub(1)),
-        beyond(above, Some(right + 1)),
-    ];
-    let mut outside = outside.into_iter().flatten().peekable();
-    let jumps = outside.peek().is_some() && outside.all(|slope| inside > JUMP * slope);
-    jumps.then(|| {
-        "the slope or curvature that tells of it jumps there in place of passing zero: a wider range or more cells may show why".to_owned()
-    })
-}
-
-fn distance(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum()
-}
-
-/// Cells from an end of Ω up to which the end takes part in what is read there.
-const NEAR_AN_END: usize = 8;
-/// Share of the largest density below which there is next to none.
-const NEXT_TO_NONE: f64 = 1e-12;
-
-/// The sentence for a value that is read beside an end of Ω where there is next to no density: what comes and goes there the end may have made.
-pub(super) fn beside_an_end(density: &Density, place: &[f64]) -> Option<String> {
-    let mut index = 0;
-    let mut cells = usize::MAX;
-    for (axis, &at) in density.axes.iter().zip(place) {
-        let cell = axis.find(at)?;
-        index = index * axis.count() + cell;
-        cells = cells.min(cell).min(axis.count() - 1 - cell);
-    }
-    let value = density.values.get(index)?.abs();
-    (cells < NEAR_AN_END && value < NEXT_TO_NONE * density.maximum()).then(|| {
-        format!(
-            "{cells} cells from an end of Ω, where there is next to no density: a wider range is needed"
-        )
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{NEAR_AN_END, beside_an_end};
-    use crate::density::Density;
-    use crate::space::Axis;
-
-    #[test]
-    fn only_what_is_low_and_beside_an_end_is_doubted() {
-        let axis = Axis::uniform(-8.0, 8.0, 80).unwrap();
-        let values = axis.centres().iter().map(|x| (-x * x).exp()).collect();
-        let density = Density {
-            axes: vec![axis],
-            values,
-        };
-        assert!(beside_an_end(&density, &[7.5]).is_some());
-        assert!(beside_an_end(&density, &[-7.9]).is_some());
-        // Low, but far from the ends; and near an end, but not low.
-        assert_eq!(beside_an_end(&density, &[5.9]), None);
-        let axis = Axis::uniform(0.0, 1.0, 4 * NEAR_AN_END).unwrap();
-        let values = vec![1.0; axis.count()];
-        let even = Density {
-            axes: vec![axis],
-            values,
-        };
-        assert_eq!(beside_an_end(&even, &[0.01]), None);
-    }
 }
