@@ -24,7 +24,7 @@ impl StoredPage {
     /// The page of a sweep and what it found.
     ///
     /// Marginals are kept to 2⁻²⁴ of their largest value. Joint densities are kept as square roots with 14 bits, or as few as
-    /// 8 where the page would exceed 3 MB otherwise: [`Packed::error_at`] says what that does to a value.
+    /// 8 where the page would exceed 3 MB otherwise: its packed numbers say what that does to a value.
     ///
     /// # Errors
     /// [`ExploreError`].

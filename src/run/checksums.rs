@@ -65,7 +65,7 @@ pub(super) fn write_listed(run: &Path, entries: &[&str]) -> Result<(), RunError>
 /// The same of whatever the program left in a folder: a run, a comparison, curves or a map.
 ///
 /// # Errors
-/// [`RunError::NotARun`] where it left nothing; as [`check`].
+/// [`RunError::NotARun`] where it left nothing; as for a single file.
 pub fn check_folder(folder: &Path) -> Result<Option<Checked>, RunError> {
     let kinds: [&[&str]; 4] = [&ENTRIES, &compare::ENTRIES, &curve::ENTRIES, &map::ENTRIES];
     let kind = kinds
