@@ -9,7 +9,7 @@ use super::atomic::{sync_all, write_atomically};
 use super::checksums;
 use super::codimension::{codimension_two_csv, codimension_two_tex, curve_name, several_csv};
 use super::columns::{Column, flag, number, word};
-use super::journal::{SessionJournal, different_keys};
+use super::journal::{SessionJournal, came_to_its_end};
 use super::plane_file;
 use super::staging::Staging;
 use crate::continuation::curve::{Curve, CurveOrigin, CurvePoint, CurveTree, CurveWork, Plane};
@@ -208,18 +208,7 @@ impl CurveFolder {
     /// # Errors
     /// [`RunError::OtherSweep`], with every difference, where they are of something else; [`RunError::Json`].
     pub fn is_complete(home: &Path, of: &str) -> Result<bool, RunError> {
-        let Ok(text) = std::fs::read_to_string(home.join(ENTRIES[0])) else {
-            return Ok(false);
-        };
-        let there: serde_json::Value = serde_json::from_str(&text)?;
-        let differences = different_keys(there["made_of"].as_str().unwrap_or_default(), of);
-        if !differences.is_empty() {
-            return Err(RunError::OtherSweep {
-                path: home.to_owned(),
-                differences,
-            });
-        }
-        Ok(there["ending"] == "complete")
+        came_to_its_end(home, ENTRIES[0], of)
     }
 
     /// Whether the folder holds solves of curves that did not come to their end.

@@ -10,7 +10,7 @@ use super::{
 use crate::run::RunError;
 use crate::run::atomic::{sync_all, write_atomically};
 use crate::run::checksums;
-use crate::run::journal::different_keys;
+use crate::run::journal::came_to_its_end;
 use crate::run::staging::Staging;
 use crate::system::Family;
 
@@ -49,18 +49,7 @@ impl CompareFolder {
     /// # Errors
     /// [`RunError::OtherSweep`], with every difference, where it is of another one; [`RunError::Json`].
     pub fn is_complete(home: &Path, of: &str) -> Result<bool, RunError> {
-        let Ok(text) = std::fs::read_to_string(home.join(ENTRIES[0])) else {
-            return Ok(false);
-        };
-        let there: serde_json::Value = serde_json::from_str(&text)?;
-        let differences = different_keys(there["made_of"].as_str().unwrap_or_default(), of);
-        if !differences.is_empty() {
-            return Err(RunError::OtherSweep {
-                path: home.to_owned(),
-                differences,
-            });
-        }
-        Ok(there["ending"] == "complete")
+        came_to_its_end(home, ENTRIES[0], of)
     }
 
     /// Whether the folder holds solves of a comparison that did not come to its end.
