@@ -448,6 +448,9 @@ pub(crate) struct ExploreArguments {
 fn finite(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(value) if f64::is_finite(value) => Ok(value),
+        _ if text.starts_with("PB") => Err(format!(
+            "allowed: a number; the P-bifurcation to start from is named by `--row {text}`"
+        )),
         _ => Err("allowed: a number".to_owned()),
     }
 }
