@@ -8,6 +8,7 @@
 //! An *axis of modes* carries a series in place of cells (`series.rs`, `hermite.rs`): its nodes are those of a Gauss rule, and its
 //! "cells" hold the weights, so that sums over cells are the rule.
 
+#[cfg(feature = "store")] // a run's journal keeps axes
 mod bytes;
 
 use super::SpaceError;

@@ -16,6 +16,7 @@ mod states;
 mod trace;
 
 pub use found::{MapNode, MapWork, RegimeMap, RegionSample, Untraced};
+#[cfg(feature = "cli")] // the explorer colours planes likewise
 pub(crate) use regions::{FloodedRegion, Seed, flooded};
 pub use regions::{Region, RegionPicture};
 pub use shards::{MapChange, MapShard};
