@@ -576,6 +576,126 @@ fn the_program_makes_maps_and_says_what_is_wrong_with_them() {
 }
 
 #[test]
+fn what_sweeps_locate_is_marked_in_the_plane_that_they_lie_in() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let text = |output: &std::process::Output| {
+        let both = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes));
+        both.concat()
+    };
+    let (map, line) = (at("map.toml"), at("line.toml"));
+    std::fs::write(&map, CUSP).unwrap();
+    let (before, after) = CUSP.split_once("[map]").unwrap();
+    let rest = &after[after.find("[cells]").unwrap()..];
+    std::fs::write(&line, format!("{before}{rest}")).unwrap();
+    let sweep = |file: &str, out: &str, settings: &[&str]| {
+        let mut arguments = vec!["sweep", file, "--quiet", "--out", out];
+        arguments.extend(settings.iter().flat_map(|one| ["--set", one]));
+        pbif(&arguments)
+    };
+    let plane = at("plane");
+    sweep(&map, &plane, &[]);
+    let runs = [
+        ("over_h", &["system.parameters.a=0.6"][..]),
+        (
+            "over_a",
+            &[
+                "sweep.parameter=a",
+                "sweep.from=0.3",
+                "sweep.to=0.9",
+                "system.parameters.h=0.2",
+            ][..],
+        ),
+    ];
+    let with = runs.map(|(name, settings)| {
+        let output = sweep(&line, &at(name), settings);
+        assert!(output.status.code() < Some(2), "{}", text(&output));
+        at(name)
+    });
+    let pictures = at("pictures");
+    let draw = |more: &[&str]| {
+        let mut arguments = vec![
+            "plot",
+            plane.as_str(),
+            "--quiet",
+            "--out",
+            pictures.as_str(),
+        ];
+        arguments.extend(["--format", "svg,csv,txt"].iter().chain(more));
+        pbif(&arguments)
+    };
+    let output = draw(&["--with", &with[0], "--with", &with[1]]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    let said = text(&output);
+    // Both branches are crossed at a = 0.6, one at h = 0.2; the sweeps end where the curves pass.
+    assert_eq!(
+        said.matches("within the errors of both").count(),
+        3,
+        "{said}"
+    );
+    let read =
+        |name: &str| std::fs::read_to_string(folder.path().join("pictures").join(name)).unwrap();
+    let table = read("map_x.csv");
+    let rows: Vec<[f64; 2]> = table
+        .lines()
+        .filter_map(|line| line.strip_prefix("row PB"))
+        .map(|line| {
+            let cells: Vec<&str> = line.split(',').collect();
+            [1, 2].map(|k| cells[k].parse().unwrap())
+        })
+        .collect();
+    assert_eq!(rows.len(), 3, "{table}");
+    for row in rows {
+        assert!(off_the_fold(row, [1.0, 1.4]).abs() < 1e-4, "{row:?}");
+    }
+    let caption = read("map_x.txt");
+    assert!(
+        caption.contains("sweeps over h at a = 0.6, over a at h = 0.2"),
+        "{caption}"
+    );
+    let marked = read("map_x.svg");
+    assert_eq!(draw(&[]).status.code(), Some(0));
+    assert_ne!(read("map_x.svg"), marked);
+
+    // What does not lie in the plane is refused.
+    let others = [
+        (
+            &["system.parameters.sigma2=0.2"][..],
+            "it has sigma2 = 0.2, and the plane has sigma2 = 0.1",
+        ),
+        (
+            &["system.parameters.a=1.5"][..],
+            "it holds a = 1.5, and the box goes from -0.4 to 1",
+        ),
+        (
+            &["sweep.from=0.6", "sweep.to=0.7"][..],
+            "its h goes from 0.6 to 0.7",
+        ),
+        (
+            &["sweep.parameter=sigma2", "sweep.from=0.1", "sweep.to=0.2"][..],
+            "it sweeps sigma2",
+        ),
+        (
+            &["system.equations.x='h + a x - x^5'"][..],
+            "its equations are not those of the plane",
+        ),
+    ];
+    for (settings, says) in others {
+        let other = at("other");
+        let settings: Vec<&str> = [settings, &["sweep.points=3"]].concat();
+        assert!(
+            sweep(&line, &other, &settings).status.code() < Some(2),
+            "{settings:?}"
+        );
+        let output = draw(&["--with", &other]);
+        assert_eq!(output.status.code(), Some(2), "{}", text(&output));
+        assert!(text(&output).contains(says), "{says}:\n{}", text(&output));
+    }
+    let of_a_run = pbif(&["plot", &with[0], "--with", &with[1]]);
+    assert!(text(&of_a_run).contains("`--with` marks sweeps in the figure of a plane"));
+}
+
+#[test]
 fn a_noise_that_one_corner_does_not_allow_is_refused_or_told() {
     // Noise of negative intensity at the lower end of the second parameter.
     let text = CUSP.replace(

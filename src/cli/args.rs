@@ -84,6 +84,7 @@ Examples:
   pbif plot output/coulomb_fc --only diagram_x,joint --at -0.01,0 --style single --format pdf --out paper
   pbif plot output/coulomb_fc --style slide,dark,cividis --out talk
   pbif plot output/coulomb_fc --set 'figures.at=[0.0, 0.005]' --out more_figures
+  pbif plot output/coulomb_plane --with output/coulomb_fc   mark what a sweep located in the plane of a map or of curves
 
 --style takes, in any order, a width (single, one-and-a-half, double, slide, own, or a number of millimetres),
 a typeface (sans, serif), colours (viridis, cividis, magma, grey), a ground (light, dark), and no-title, no-letters.
@@ -404,6 +405,9 @@ pub(crate) struct PlotArguments {
         allow_hyphen_values = true
     )]
     pub(crate) at: Vec<String>,
+    /// Of a map or of curves: mark what this run of a sweep over one of both parameters located (repeatable)
+    #[arg(long = "with", value_name = "RUN")]
+    pub(crate) with: Vec<PathBuf>,
     /// Style: a width, and words such as serif, grey, dark, no-title
     #[arg(long, value_name = "WORDS", value_delimiter = ',')]
     pub(crate) style: Vec<String>,

@@ -298,7 +298,7 @@ impl<'a> Job<'a> {
         let (origin, sweep) = (CurveOrigin::from(self.row), self.spec.to_toml());
         folder.write(family, &self.plane, tree, (&origin, &sweep, of))?;
         let style = &settings.figure_style;
-        let figure = curve_figure(&tree.curves, &origin, family, &settings.title, style)?;
+        let figure = curve_figure(&tree.curves, (&origin, &[]), family, &settings.title, style)?;
         write_figures(&[figure], &settings.figure_formats, &folder.figures())?;
         let outcome = outcome(tree, &settings.locate);
         let interrupted = outcome == Outcome::Interrupted;

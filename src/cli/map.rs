@@ -85,7 +85,7 @@ fn conclude(
 ) -> Result<Outcome, CommandError> {
     home.write(map, &spec.to_toml(), clock.elapsed().as_secs_f64())?;
     let settings = &spec.settings;
-    let figures = map_figures(map, &settings.title, &settings.figure_style)?;
+    let figures = map_figures(map, &[], &settings.title, &settings.figure_style)?;
     write_figures(&figures, &settings.figure_formats, &home.figures())?;
     let mut text = summary(map);
     if !map.interrupted {

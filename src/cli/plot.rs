@@ -29,6 +29,11 @@ pub(super) fn run(arguments: &PlotArguments) -> Result<Outcome, CommandError> {
         overrides.retain(|one| !one.starts_with("figures.draw="));
         return plane::run(&stored, arguments, &overrides);
     }
+    if !arguments.with.is_empty() {
+        let report = Diagnostic::new("`--with` marks sweeps in the figure of a plane, and this is the run of a sweep")
+            .remedy("give the folder of a map or of curves first: `pbif plot output/coulomb_plane --with output/coulomb_fc`");
+        return Err(CommandError::Input(report.into()));
+    }
     let stored = Stored::read(&arguments.run, &overrides, &["figures"], arguments.quiet)?;
     if !arguments.at.is_empty() {
         check_values(&stored.result, &stored.spec.settings.figures_at)?;

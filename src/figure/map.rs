@@ -12,13 +12,14 @@ use super::canvas::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
 use super::canvas::render;
 use super::canvas::style::{BLANK, Colour, INK, MARGIN, PAPER, Stroke, TICK_TEXT};
 use super::canvas::symbols;
+use super::crossed::Crossed;
 use super::drawn::Figure;
 use super::inset;
 use super::names;
 use super::plane::{draw_line, remarks, stroke_of, symbol_of};
 use super::region_room::Room;
 use super::style::FigureStyle;
-use crate::continuation::curve::{Curve, EndReason};
+use crate::continuation::curve::{Curve, EndReason, SweepInPlane};
 use crate::continuation::map::{RegimeMap, RegionPicture, RegionSample};
 use crate::system::Family;
 use crate::topology::{IndicatorKind, Signature};
@@ -39,12 +40,14 @@ const GAP: f64 = 3.0;
 /// Radius of the dots where curves end inside the box, in pixels.
 const DOT: f64 = 3.0;
 
-/// One figure an observable of a map, `map_x` or `map_xy`. `title` (plain text, may be empty) stands above it.
+/// One figure an observable of a map, `map_x` or `map_xy`. `title` (plain text, may be empty) stands above it. What `sweeps` over one of the
+/// parameters located is marked.
 ///
 /// # Errors
 /// [`FigureError::Draw`].
 pub fn map_figures(
     map: &RegimeMap,
+    sweeps: &[SweepInPlane],
     title: &str,
     style: &FigureStyle,
 ) -> Result<Vec<Figure>, FigureError> {
@@ -60,6 +63,12 @@ pub fn map_figures(
             map,
             index,
             curves: curves.collect(),
+            crossed: Crossed {
+                plane: &map.plane,
+                family,
+                sweeps,
+                observables: std::slice::from_ref(&map.subject.observables[index]),
+            },
             family,
             look: &look,
         };
@@ -79,6 +88,7 @@ struct Scene<'a> {
     /// The observable among those that are watched.
     index: usize,
     curves: Vec<&'a Curve>,
+    crossed: Crossed<'a>,
     family: &'a Family,
     look: &'a Look,
 }
@@ -137,6 +147,7 @@ impl Scene<'_> {
         for curve in &self.curves {
             draw_line(&panel, curve, self.stroke(curve.kind))?;
         }
+        self.crossed.draw(&panel)?;
         self.draw_ends(&page, &panel)?;
         frame::border(&page, rect)?;
         across.draw_below(&page, rect, true)?;
@@ -264,6 +275,7 @@ impl Scene<'_> {
                 }
             }
         }
+        entries.extend(self.crossed.entries());
         for (kind, signature) in ground
             .iter()
             .flat_map(|ground| ground.kinds.iter().enumerate())
@@ -321,6 +333,7 @@ impl Scene<'_> {
                 ends.join("; "),
             );
         }
+        text += &self.crossed.caption();
         if self.map.interrupted {
             text += " The map was interrupted before it was complete.";
         }
@@ -341,6 +354,10 @@ impl Scene<'_> {
             let [x, y] = node.values;
             let signature = node.signatures.get(self.index).copied();
             text += &format!("node,{x},{y},{}\n", words(signature));
+        }
+        for row in self.crossed.data() {
+            let ([x, y], error) = (row.values, row.to_edge[0] + row.to_edge[1]);
+            text += &format!("row {},{x},{y},{} to {error:e}\n", row.label, row.status);
         }
         text
     }

@@ -27,6 +27,7 @@ mod caption;
 mod compared_joint;
 mod compared_marginals;
 mod compared_told;
+mod crossed;
 mod data;
 mod diagram;
 mod drawn;

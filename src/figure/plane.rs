@@ -10,11 +10,15 @@ use super::canvas::legend::{Legend, Sample};
 use super::canvas::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
 use super::canvas::style::{BIFURCATION, GREY, INK, MARGIN, PAPER, Stroke, TICK_TEXT};
 use super::canvas::symbols;
+use super::crossed::Crossed;
 use super::drawn::Figure;
 use super::names;
 use super::style::FigureStyle;
 use crate::continuation::BifurcationStatus;
-use crate::continuation::curve::{Curve, CurveOrigin, CurvePoint, EndReason, codimension_two};
+use crate::continuation::curve::{
+    Curve, CurveOrigin, CurvePoint, EndReason, SweepInPlane, codimension_two,
+};
+use crate::density::Observable;
 use crate::system::Family;
 use crate::topology::IndicatorKind;
 
@@ -35,13 +39,13 @@ const DASHES: &[f64] = &[5.0, 4.0];
 const AWAY: f64 = 9.0;
 
 /// The figure `curve` of curves in one plane, the first of which was begun at a row of a sweep over its first parameter; there must be one. `family` gives
-/// names and symbols; `title` (plain text, may be empty) stands above it.
+/// names and symbols; `title` (plain text, may be empty) stands above it. What `sweeps` over one of the parameters located is marked.
 ///
 /// # Errors
 /// [`FigureError::Draw`].
 pub fn curve_figure(
     curves: &[Curve],
-    row: &CurveOrigin,
+    (row, sweeps): (&CurveOrigin, &[SweepInPlane]),
     family: &Family,
     title: &str,
     style: &FigureStyle,
@@ -49,10 +53,18 @@ pub fn curve_figure(
     let Some(curve) = curves.first() else {
         return Err(FigureError::Nothing);
     };
+    let watched: Vec<Observable> = curves.iter().map(|curve| curve.observable).collect();
+    let crossed = Crossed {
+        plane: &curve.plane,
+        family,
+        sweeps,
+        observables: &watched,
+    };
     let scene = Scene {
         curve,
         curves,
         row,
+        crossed,
         family,
         look: style.look(),
     };
@@ -66,6 +78,7 @@ struct Scene<'a> {
     /// All of them.
     curves: &'a [Curve],
     row: &'a CurveOrigin,
+    crossed: Crossed<'a>,
     family: &'a Family,
     look: super::canvas::look::Look,
 }
@@ -102,6 +115,7 @@ impl Scene<'_> {
         for curve in self.curves {
             draw_line(&panel, curve, stroke_of(self.curves, curve.kind))?;
         }
+        self.crossed.draw(&panel)?;
         frame::border(&page, rect)?;
         across.draw_below(&page, rect, true)?;
         up.draw_left(&page, rect, true)?;
@@ -123,6 +137,7 @@ impl Scene<'_> {
                 }
             }
         }
+        entries.extend(self.crossed.entries());
         entries
     }
 
@@ -209,6 +224,7 @@ impl Scene<'_> {
                 second.parameter
             );
         }
+        text += &self.crossed.caption();
         text += &format!(
             " The error across the curve is at most {largest:.1e} of the sides of the box.\n"
         );
@@ -227,6 +243,10 @@ impl Scene<'_> {
                 let status = point.status.word();
                 text += &format!("C{},{x},{y},{dx},{dy},{status}\n", number + 1);
             }
+        }
+        for row in self.crossed.data() {
+            let ([x, y], [dx, dy]) = (row.values, row.to_edge);
+            text += &format!("{},{x},{y},{dx},{dy},{}\n", row.label, row.status);
         }
         text
     }

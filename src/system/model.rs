@@ -335,6 +335,20 @@ impl Model {
         coloured(model, kind, noises).map(Arc::new)
     }
 
+    /// Whether both are stated by the same equations, noises and names of states.
+    pub fn is_stated_like(&self, other: &Self) -> bool {
+        let states = |model: &Self| {
+            let axes = model.axes.iter();
+            axes.map(|axis| axis.name.clone()).collect::<Vec<_>>()
+        };
+        // A model of typed equations is named by whoever types them.
+        let same_name = self.name == other.name || (self.typed.is_some() && other.typed.is_some());
+        same_name
+            && self.equations == other.equations
+            && self.noise_kind == other.noise_kind
+            && states(self) == states(other)
+    }
+
     /// What its noise is.
     pub fn noise_kind(&self) -> NoiseKind {
         self.noise_kind

@@ -1,14 +1,18 @@
 //! `pbif plot` of a map of regimes, and of curves: their figures from what is stored, nothing is solved.
 
+use std::path::PathBuf;
+
 use super::super::args::PlotArguments;
 use super::super::output::OutputFolder;
-use super::super::stored::check_overrides;
+use super::super::stored::{Stored, check_overrides};
 use super::super::{CommandError, Outcome};
+use crate::continuation::curve::{Curve, Plane, RowInPlane, SweepInPlane};
 use crate::figure::{
     Figure, FigureError, curve_figure, map_figures, matches_figure, write_figures,
 };
-use crate::run::{StoredPlane, StoredPlaneContent};
-use crate::sweep_file::{Diagnostic, SweepFile};
+use crate::run::{StoredPlane, StoredPlaneContent, format_with_error};
+use crate::sweep_file::{Diagnostic, Report, SweepFile};
+use crate::system::Family;
 
 /// Draws into the folder's `figures/` or another folder and prints the files; `overrides` are those of keys under `figures`.
 ///
@@ -30,10 +34,28 @@ pub(super) fn run(
     let spec = file.set_all("--set", overrides).validate()?.fixed()?;
     let (settings, family) = (&spec.settings, spec.problem.family());
     let (title, style) = (&settings.title, &settings.figure_style);
-    let figures = match stored.content(&spec.problem)? {
-        StoredPlaneContent::Map(map) => map_figures(&map, title, style)?,
+    let content = stored.content(&spec.problem)?;
+    let (plane, curves) = match &content {
+        StoredPlaneContent::Map(map) => (Some(&map.plane), map.curves.as_slice()),
+        StoredPlaneContent::Curves(curves, _) => {
+            (curves.first().map(|curve| &curve.plane), curves.as_slice())
+        }
+    };
+    let crossed = match plane {
+        Some(plane) => crossed(&arguments.with, plane, family)?,
+        None => Vec::new(),
+    };
+    let sweeps: Vec<SweepInPlane> = crossed.iter().map(|one| one.sweep.clone()).collect();
+    let figures = match &content {
+        StoredPlaneContent::Map(map) => map_figures(map, &sweeps, title, style)?,
         StoredPlaneContent::Curves(curves, origin) => {
-            vec![curve_figure(&curves, &origin, family, title, style)?]
+            vec![curve_figure(
+                curves,
+                (origin, &sweeps),
+                family,
+                title,
+                style,
+            )?]
         }
     };
     let figures = chosen(figures, &arguments.only)?;
@@ -47,8 +69,102 @@ pub(super) fn run(
         stored.renew_figures()?;
     }
     let lines = files.iter().map(|file| format!("  {}\n", file.display()));
-    let text = format!("files\n{}", lines.collect::<String>());
+    let told = crossed.iter().map(|one| one.told(plane, curves));
+    let text = format!(
+        "{}files\n{}",
+        told.collect::<String>(),
+        lines.collect::<String>()
+    );
     super::super::conclude(&text, Outcome::Complete, output.path())
+}
+
+/// A sweep that is marked, with the folder that it is from.
+struct Crossed {
+    folder: PathBuf,
+    sweep: SweepInPlane,
+}
+
+/// The sweeps of some runs as lines of a plane; `family` is the plane's.
+fn crossed(
+    folders: &[PathBuf],
+    plane: &Plane,
+    family: &Family,
+) -> Result<Vec<Crossed>, CommandError> {
+    let read = |folder: &PathBuf| {
+        let stored = Stored::read(folder, &[], &[], true)?;
+        let sweep = SweepInPlane::new(plane, family, &stored.result).map_err(|error| {
+            let [first, second] = plane.sides();
+            let title = format!(
+                "the sweep in {} does not lie in this plane: {error}",
+                folder.display()
+            );
+            let remedy = format!(
+                "`--with` takes a run of `pbif sweep` over {} or {} with the equations and all other parameters of the plane",
+                first.parameter, second.parameter
+            );
+            Report::from(Diagnostic::new(title).remedy(remedy))
+        })?;
+        let folder = folder.clone();
+        Ok(Crossed { folder, sweep })
+    };
+    folders.iter().map(read).collect()
+}
+
+impl Crossed {
+    /// What it located, and how far that is from the curves.
+    fn told(&self, plane: Option<&Plane>, curves: &[Curve]) -> String {
+        let Some(plane) = plane else {
+            return String::new();
+        };
+        let mut text = format!("{}\n", self.folder.display());
+        if self.sweep.rows.is_empty() {
+            text += "  no P-bifurcation in the box\n";
+        }
+        for row in &self.sweep.rows {
+            text += &format!(
+                "  {:<4} {}  {}\n",
+                row.label,
+                self.place(plane, row),
+                self.beside(row, curves)
+            );
+        }
+        text
+    }
+
+    /// Both values of a row, to its error.
+    fn place(&self, plane: &Plane, row: &RowInPlane) -> String {
+        let sides = plane.sides().iter().enumerate();
+        let values = sides.map(|(number, side)| {
+            let error = if number == self.sweep.side {
+                row.error
+            } else {
+                0.0
+            };
+            let (value, _) = format_with_error(row.values[number], error);
+            format!("{} = {value}", side.parameter)
+        });
+        values.collect::<Vec<_>>().join("  ")
+    }
+
+    /// How far a row is from the curve of its indicator.
+    fn beside(&self, row: &RowInPlane, curves: &[Curve]) -> String {
+        if row.observable.is_none() {
+            return "not marked: the plane does not watch its density".to_owned();
+        }
+        let Some(gap) = self.sweep.gap(row, curves) else {
+            return "no curve of its indicator crosses the sweep".to_owned();
+        };
+        let words = match gap.gap <= gap.error {
+            true => "within the errors of both",
+            false => "beyond the errors of both",
+        };
+        format!(
+            "{:.1e} of the sides of the box from C{}, {words}, {:.1e}",
+            gap.gap,
+            gap.curve + 1,
+            gap.error
+        )
+    }
 }
 
 /// The figures that some words name; all without any.

@@ -8,10 +8,12 @@
 mod agree;
 mod check;
 mod codimension;
+mod crossed;
 mod cusp;
 mod degenerate;
 mod fold_end;
 mod found;
+mod piece;
 mod plane;
 mod polynomial;
 mod reading;
@@ -20,6 +22,7 @@ mod walk;
 
 pub(super) use agree::agree;
 pub use codimension::{CodimensionTwo, CodimensionTwoKind, codimension_two};
+pub use crossed::{GapToCurve, NotInPlane, RowInPlane, SweepInPlane};
 pub use found::{Curve, CurveEnd, CurveOrigin, CurvePoint, CurveWork, DegenerateSplit, EndReason};
 pub use plane::{Plane, PlaneSide};
 pub use tree::{CurveTree, MissedBranch, follow_all};
