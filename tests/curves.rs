@@ -613,6 +613,117 @@ fn the_program_follows_a_row_of_a_run_and_says_what_is_wrong() {
     );
 }
 
+#[test]
+fn a_sweep_file_names_the_curves_that_its_sweep_is_followed_by() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (file, run) = (at("cusp.toml"), at("run"));
+    let section =
+        "[curve]\nparameter = \"a\"\nfrom = 1.6\nto = 0.2\nfirst_from = -0.7\nfirst_to = 0.7\n";
+    std::fs::write(&file, format!("{CUSP}{section}")).unwrap();
+    let sweep = |more: &[&str]| {
+        let mut arguments = vec!["sweep", file.as_str(), "--quiet", "--out", run.as_str()];
+        arguments.extend(more);
+        pbif(&arguments)
+    };
+    let words = |output: &std::process::Output| {
+        let both = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes));
+        both.concat()
+    };
+    let output = sweep(&[]);
+    assert_eq!(output.status.code(), Some(0), "{}", words(&output));
+    assert!(
+        words(&output).contains("border of the box in a"),
+        "{}",
+        words(&output)
+    );
+    let table = |name: &str| std::fs::read_to_string(folder.path().join(name).join("curves.csv"));
+    let followed = table("run/curves/PB1-a").unwrap();
+    assert!(pbif(&["verify", &run]).status.success());
+    // The same by the command that says it, and by the one that leaves it to the file.
+    for (name, more) in [
+        (
+            "said",
+            &[
+                "--row", "PB1", "--second", "a", "--from", "0.2", "--to", "1.6",
+            ][..],
+        ),
+        ("left", &[][..]),
+    ] {
+        let out = at(name);
+        let arguments = ["curve", &run, "--quiet", "--out", &out];
+        let output = pbif(&[&arguments, more].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", words(&output));
+        assert!(table(name).unwrap() == followed, "{name}");
+    }
+    // Complete, nothing is solved; of other settings they are refused.
+    let output = sweep(&["--resume"]);
+    assert_eq!(
+        words(&output).matches("nothing was solved").count(),
+        2,
+        "{}",
+        words(&output)
+    );
+    let output = sweep(&["--resume", "--set", "curve.step=0.1"]);
+    assert_eq!(output.status.code(), Some(2), "{}", words(&output));
+    assert!(
+        words(&output).contains("followed.step"),
+        "{}",
+        words(&output)
+    );
+
+    let refusals = [
+        ("curve.parameter=b", "no parameter `b`"),
+        (
+            "curve.parameter=h",
+            "the second parameter of the curve is the swept one",
+        ),
+        (
+            "curve.from=1.1",
+            "the sweep holds `a` at 1, and the box of the curves goes from 0.2 to 1.1",
+        ),
+        ("curve.first_to=-0.7", "goes from -0.7 to -0.7 along `h`"),
+        ("curve.step=0.5", "from 0.0001 to 0.25"),
+        (
+            "curve.rows=[\"PB7\"]",
+            "the sweep has no P-bifurcation `PB7`",
+        ),
+        ("curve.second=a", "unknown key `curve.second`"),
+        (
+            "map.parameter=a",
+            "a file has `[map]` or `[curve]`, not both",
+        ),
+    ];
+    for (setting, says) in refusals {
+        let output = sweep(&["--set", setting]);
+        assert_eq!(
+            output.status.code(),
+            Some(2),
+            "{setting}: {}",
+            words(&output)
+        );
+        assert!(words(&output).contains(says), "{says}:\n{}", words(&output));
+    }
+    std::fs::write(
+        &file,
+        format!("{CUSP}[curve]\nparameter = \"a\"\nfrom = 0.2\n"),
+    )
+    .unwrap();
+    assert!(words(&sweep(&[])).contains("missing key `curve.to`"));
+    std::fs::write(&file, CUSP).unwrap();
+    for (more, says) in [
+        (&[][..], "which is the second parameter of the plane?"),
+        (
+            &["--second", "a", "--from", "0.2"][..],
+            "from where to where does the box go in `a`?",
+        ),
+    ] {
+        let output = pbif(&[&["curve", &file, "--quiet"], more].concat());
+        assert_eq!(output.status.code(), Some(2));
+        assert!(words(&output).contains(says), "{}", words(&output));
+    }
+}
+
 /// With linear damping the density is exp(-(2κ/σ²)(y²/2 + V)): peaks of the joint density are zeros of the spring's force.
 const TILTED: &str = r#"
 [system.equations]

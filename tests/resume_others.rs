@@ -329,7 +329,7 @@ fn a_killed_curve_ends_with_the_bytes_of_one_that_was_not() {
     let refused = curve(&run, &out, &["--resume", "--step", "0.05"]).output();
     let words = String::from_utf8(refused.unwrap().stderr).unwrap();
     assert!(
-        words.contains("curve.step = 0.025 there, 0.05 here"),
+        words.contains("followed.step = 0.025 there, 0.05 here"),
         "{words}"
     );
     done(curve(
@@ -356,27 +356,65 @@ fn a_killed_curve_ends_with_the_bytes_of_one_that_was_not() {
 }
 
 #[test]
-fn a_flipped_byte_of_any_file_is_found_in_comparisons_and_curves() {
+fn a_flipped_byte_of_any_file_is_found_in_comparisons_curves_and_maps() {
     let folder = TempDir::new().unwrap();
-    let out = folder.path().join("compared");
-    done(comparison(&out, &["--quiet"]));
+    let at = |name: &str| folder.path().join(name);
+    let compared = at("compared");
+    done(comparison(&compared, &["--quiet"]));
+    assert_flips_are_found(&compared);
+    std::fs::write(at("cusp.toml"), CUSP).unwrap();
+    let sweep = |out: &str, settings: &[&str]| {
+        let mut sweep = pbif();
+        sweep.arg("sweep").arg(at("cusp.toml")).arg("--quiet");
+        sweep.arg("--out").arg(at(out));
+        for setting in settings {
+            sweep.args(["--set", setting]);
+        }
+        sweep.output().unwrap()
+    };
+    sweep("run", &[]);
+    let (run, curves) = (at("run"), at("curves"));
+    done(curve(&run, &curves, &["--quiet", "--step", "0.1"]));
+    assert_flips_are_found(&curves);
+    let map = [
+        "map.parameter=a",
+        "map.from=0.7",
+        "map.to=1.3",
+        "map.points=4",
+    ];
+    let output = sweep(
+        "map",
+        &[&map[..], &["sweep.points=5", "map.depth=0"]].concat(),
+    );
+    assert!(output.status.code() < Some(2), "{output:?}");
+    assert_flips_are_found(&at("map"));
+}
+
+/// A complete folder is found whole, and not with one byte of any of its files flipped.
+fn assert_flips_are_found(out: &Path) {
     let verify = |folder: &Path| {
         let mut command = pbif();
         command.arg("verify").arg(folder).output().unwrap()
     };
-    assert_eq!(verify(&out).status.code(), Some(0), "{:?}", verify(&out));
-    let mut files: Vec<_> = std::fs::read_dir(&out).unwrap().collect();
+    assert_eq!(verify(out).status.code(), Some(0), "{:?}", verify(out));
+    let mut files: Vec<_> = std::fs::read_dir(out).unwrap().collect();
     files.extend(std::fs::read_dir(out.join("figures")).unwrap());
+    files.extend(
+        std::fs::read_dir(out.join("densities"))
+            .into_iter()
+            .flatten(),
+    );
     for file in files {
         let path = file.unwrap().path();
-        if !path.is_file() {
+        // The lock of the folder is empty and none of its files.
+        if !path.is_file() || std::fs::metadata(&path).unwrap().len() == 0 {
             continue;
         }
         let whole = std::fs::read(&path).unwrap();
         let mut bytes = whole.clone();
         bytes[whole.len() / 2] ^= 1;
         std::fs::write(&path, bytes).unwrap();
-        let found = verify(&out);
+        let found = verify(out);
         assert!(
             matches!(found.status.code(), Some(1 | 2)),
             "{path:?}: {found:?}"

@@ -7,7 +7,6 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 
 use crate::continuation::Shard;
-use crate::continuation::curve::CurveOptions;
 use crate::sweep_file;
 pub(crate) use runs::{
     CleanArguments, ExportArguments, ListArguments, MergeArguments, ShowArguments,
@@ -54,6 +53,7 @@ Examples:
   pbif curve output/coulomb_fc --row PB1 --second sigma2 --from 0.005 --to 0.02
   pbif curve output/coulomb_fc --row PB1 --second sigma2 --from 0.005 --to 0.02 --first-from -0.05 --first-to 0.05
   pbif curve sweeps/bistable.toml --second sigma2 --from 0.2 --to 1
+  pbif curve output/mine                        the curves of the section [curve] of its sweep file
   pbif curve output/coulomb_fc --row PB1 --second sigma2 --from 0.005 --to 0.02 --resume   go on after an interrupt or a kill
 
 From the located row on, the zero of its indicator is followed in both directions until it leaves the box, closes, or its
@@ -340,18 +340,19 @@ pub(crate) struct CurveArguments {
     /// Folder of a run, as `pbif sweep` left it, or a sweep file (TOML), which is swept first
     #[arg(value_name = "RUN|FILE")]
     pub(crate) target: PathBuf,
-    /// Label of the P-bifurcation to start from, such as PB1; may be left out where only one can be followed
+    /// Label of the P-bifurcation to start from, such as PB1; may be left out where only one can be followed [default: the rows of
+    /// `[curve]` in the sweep file]
     #[arg(long, value_name = "LABEL")]
     pub(crate) row: Option<String>,
-    /// The second parameter, which the sweep holds
+    /// The second parameter, which the sweep holds [default: that of `[curve]` in the sweep file, and so the box]
     #[arg(long, value_name = "PARAMETER")]
-    pub(crate) second: String,
+    pub(crate) second: Option<String>,
     /// One end of the box in the second parameter
     #[arg(long, value_name = "VALUE", allow_negative_numbers = true, value_parser = finite)]
-    pub(crate) from: f64,
+    pub(crate) from: Option<f64>,
     /// The other end
     #[arg(long, value_name = "VALUE", allow_negative_numbers = true, value_parser = finite)]
-    pub(crate) to: f64,
+    pub(crate) to: Option<f64>,
     /// Lower end of the box in the swept parameter [default: that of the sweep]
     #[arg(long, value_name = "VALUE", allow_negative_numbers = true, value_parser = finite)]
     pub(crate) first_from: Option<f64>,
@@ -361,11 +362,11 @@ pub(crate) struct CurveArguments {
     /// Follow this curve alone, not those that start from its points of codimension two
     #[arg(long)]
     pub(crate) alone: bool,
-    /// Longest step between points, as a share of the sides of the box
-    #[arg(long, value_name = "SHARE", default_value_t = CurveOptions::default().largest_step, value_parser = share)]
-    pub(crate) step: f64,
-    /// Override a key of a sweep file, such as cells.x.count=60; of a run those under detect, locate and figures (repeatable; the
-    /// last one counts)
+    /// Longest step between points, as a share of the sides of the box [default: 0.025]
+    #[arg(long, value_name = "SHARE", value_parser = share)]
+    pub(crate) step: Option<f64>,
+    /// Override a key of a sweep file, such as cells.x.count=60; of a run those under detect, locate, figures and curve (repeatable;
+    /// the last one counts)
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,
     /// Folder for the results [default: RUN/curves/ROW-SECOND]

@@ -137,9 +137,17 @@ fn points(spec: &Sweep) -> String {
         );
     }
     let values = evenly_spaced(spec.problem.family().ends(), spec.settings.points);
+    let curves = match &spec.settings.curve {
+        Some(curve) => format!(
+            "; then the curves of rows in the plane of {} and {}",
+            spec.problem.family().parameter(),
+            curve.parameter
+        ),
+        None => String::new(),
+    };
     let first: Vec<String> = values.iter().take(3).map(f64::to_string).collect();
     format!(
-        "points: {} ({} = {}, ...), and a few more for each change that is located",
+        "points: {} ({} = {}, ...), and a few more for each change that is located{curves}",
         spec.settings.points,
         spec.problem.family().parameter(),
         first.join(", ")

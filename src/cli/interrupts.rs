@@ -30,8 +30,15 @@ pub(super) fn cancel(cancellation: &Cancellation) -> std::io::Result<()> {
 /// See above.
 #[cfg(not(unix))]
 pub(super) fn cancel(cancellation: &Cancellation) -> std::io::Result<()> {
-    let asked = cancellation.clone();
-    ctrlc::set_handler(move || ask(&asked)).map_err(std::io::Error::other)
+    use std::sync::{Mutex, PoisonError};
+    // The system takes one handler alone: what is computed last is what is cancelled.
+    static ASKED: Mutex<Option<Cancellation>> = Mutex::new(None);
+    let asked = || ASKED.lock().unwrap_or_else(PoisonError::into_inner);
+    if asked().replace(cancellation.clone()).is_some() {
+        return Ok(());
+    }
+    let heard = move || asked().iter().for_each(ask);
+    ctrlc::set_handler(heard).map_err(std::io::Error::other)
 }
 
 fn ask(asked: &Cancellation) {

@@ -6,7 +6,7 @@ use super::args::MergeArguments;
 use super::output::OutputFolder;
 use super::sweep::resume::Begin;
 use super::sweep::{Kind, Task, draw, summary};
-use super::{CommandError, Outcome, warnings};
+use super::{CommandError, Outcome, curve, warnings};
 use crate::continuation::{SweepResult, detect_again};
 use crate::run::{Ending, Gathered, Manifest, MapShards, RunError, RunFolder, Shards, StoredRun};
 use crate::sweep_file::{MethodKind, Sweep};
@@ -40,7 +40,8 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<Outcome, CommandError> {
         kind,
         quiet,
     };
-    task.carry_out(begin, arguments.work.threads)
+    let outcome = task.carry_out(begin, arguments.work.threads)?;
+    curve::after_sweep(&spec, path, (&arguments.work, true), outcome)
 }
 
 /// Goes on where an earlier merge of the same sweep was stopped.

@@ -106,6 +106,15 @@ pub(crate) enum CommandError {
 }
 
 impl CommandError {
+    /// Whether what was given is at fault, and nothing else.
+    fn is_input(&self) -> bool {
+        match self {
+            Self::Input(_) => true,
+            Self::Stopped { error, .. } => error.is_input(),
+            _ => false,
+        }
+    }
+
     /// The same after something was written: `written` says what there is.
     fn after(self, written: String) -> Self {
         match self {

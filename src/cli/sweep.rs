@@ -13,7 +13,7 @@ use std::time::Instant;
 
 use super::args::SweepArguments;
 use super::output::OutputFolder;
-use super::{CommandError, Outcome, warnings};
+use super::{CommandError, Outcome, curve, warnings};
 use crate::cancellation::Cancellation;
 use crate::continuation::{
     BifurcationStatus, LocateOptions, Shard, SweepError, SweepResult, sweep_shard,
@@ -50,6 +50,7 @@ pub(super) fn run(
         None => home.clone(),
     };
     let output = OutputFolder::prepare(&path)?;
+    curve::check(spec)?;
     let begin = match arguments.resume {
         true => resume::begin(spec, output.path(), shard)?,
         false => Begin::Anew,
@@ -58,18 +59,23 @@ pub(super) fn run(
         Some(shard) => Kind::Shard(shard, home),
         None => Kind::Whole,
     };
+    let (path, quiet) = (output.path(), arguments.work.quiet);
+    let (is_whole, how) = (shard.is_none(), (&arguments.work, arguments.resume));
+    let follow = |outcome| match is_whole {
+        true => curve::after_sweep(spec, path, how, outcome),
+        // Curves are those of the whole sweep.
+        false => Ok(outcome),
+    };
     if let Begin::Done(stored) = begin {
-        return resume::show(&stored, output.path(), &kind);
+        return follow(resume::show(&stored, path, &kind)?);
     }
-    let quiet = arguments.work.quiet;
-    let path = output.path();
     let task = Task {
         spec,
         path,
         kind,
         quiet,
     };
-    task.carry_out(begin, arguments.work.threads)
+    follow(task.carry_out(begin, arguments.work.threads)?)
 }
 
 /// The folder the results go to: as asked for, or `output/` and the name of the sweep file.

@@ -140,6 +140,19 @@ pub(super) struct MapDraft {
     pub(super) curves: Option<bool>,
 }
 
+/// What the file says of curves.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct CurveDraft {
+    pub(super) parameter: Option<String>,
+    pub(super) from: Option<f64>,
+    pub(super) to: Option<f64>,
+    pub(super) first_from: Option<f64>,
+    pub(super) first_to: Option<f64>,
+    pub(super) rows: Option<Vec<String>>,
+    pub(super) step: Option<f64>,
+    pub(super) branches: Option<bool>,
+}
+
 /// What the file says.
 #[derive(Debug, Clone)]
 pub(super) struct Draft {
@@ -157,6 +170,8 @@ pub(super) struct Draft {
     pub(super) points: Option<usize>,
     /// The second parameter of a map.
     pub(super) map: MapDraft,
+    /// The curves that are followed from what is located.
+    pub(super) curve: CurveDraft,
     /// Wanted error of the watched densities where counts are left to the program.
     pub(super) accuracy: f64,
     /// The axes in the order given.
@@ -189,6 +204,7 @@ impl Default for Draft {
             to: None,
             points: None,
             map: MapDraft::default(),
+            curve: CurveDraft::default(),
             accuracy: ACCURACY,
             axes: Vec::new(),
             method: MethodSettings::default(),

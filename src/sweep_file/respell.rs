@@ -28,7 +28,7 @@ pub(super) fn respelled(document: &Document) -> Document {
             respell_texts(node, &axes);
         });
     }
-    for table in ["sweep", "map"] {
+    for table in ["sweep", "map", "curve"] {
         for_node(root, &[table, "parameter"], &mut |node| {
             respell_texts(node, &parameters);
         });

@@ -106,8 +106,32 @@ pub(super) fn refused_plane(error: &MethodError) -> CommandError {
     CommandError::Input(report.into())
 }
 
-/// Refuses a plane at whose corners a state that modes carry goes beyond its axis, which the sweep has chosen for the values that it holds.
-pub(super) fn check_bounds(spec: &Sweep, plane: &Plane) -> Result<(), CommandError> {
+pub(super) fn which_parameter(spec: &Sweep) -> CommandError {
+    let names: Vec<&str> = spec
+        .problem
+        .family()
+        .fixed()
+        .map(|(name, _)| name)
+        .collect();
+    let report = Diagnostic::new("which is the second parameter of the plane?")
+        .allowed(format!(
+            "the parameters that the sweep holds: {}",
+            list(&names)
+        ))
+        .remedy("give `--second PARAMETER --from VALUE --to VALUE`, or a section `[curve]` in the sweep file");
+    CommandError::Input(report.into())
+}
+
+pub(super) fn which_box(second: &str) -> CommandError {
+    let report = Diagnostic::new(format!("from where to where does the box go in `{second}`?"))
+        .allowed("two numbers, on either side of the value that the sweep holds")
+        .remedy("give `--from VALUE --to VALUE`, or `from` and `to` in a section `[curve]` of the sweep file");
+    CommandError::Input(report.into())
+}
+
+/// Refuses a plane with a corner that is not allowed, or at whose corners a state that modes carry goes beyond its axis, which the sweep has chosen for the
+/// values that it holds.
+pub(super) fn check_corners(spec: &Sweep, plane: &Plane) -> Result<(), CommandError> {
     let (family, space) = (spec.problem.family(), spec.problem.space());
     let (model, [first, second]) = (family.model(), plane.sides());
     let Ok(held) = family.values_at(family.ends().0) else {
@@ -117,12 +141,10 @@ pub(super) fn check_bounds(spec: &Sweep, plane: &Plane) -> Result<(), CommandErr
         .into_iter()
         .flat_map(|one| [second.from, second.to].map(|other| [one, other]));
     for [one, other] in pairs {
-        // A corner that is not allowed is refused with its reason elsewhere.
         let values = model.with(&held, &first.parameter, one);
         let values = values.and_then(|values| model.with(&values, &second.parameter, other));
-        let Ok(system) = values.map(|values| model.system(&values)) else {
-            continue;
-        };
+        let values = values.map_err(|error| refused_plane(&MethodError::from(error)))?;
+        let system = model.system(&values);
         for (index, axis) in space.axes().iter().enumerate() {
             let Some((low, high)) = system.bounds(index).filter(|_| axis.is_modes()) else {
                 continue;

@@ -5,13 +5,12 @@
 
 use super::reading::{Missing, Reader};
 use super::walk::{Node, Walked};
-use super::{CurveOptions, CurvePoint, CurveStart, CurveWork, Plane};
-use crate::cancellation::Cancellation;
+use super::{CurvePoint, CurveWork, Task};
 use crate::continuation::grid::share_of_distance;
 use crate::continuation::locate::QUIET;
 use crate::continuation::reason::{MOST_NEGATIVE, negative_share};
 use crate::continuation::{BifurcationStatus, CellCheck, DensitySource, ErrorParts, PointStatus};
-use crate::topology::{Detector, IndicatorKind, two_sided_limit};
+use crate::topology::{IndicatorKind, two_sided_limit};
 
 /// A finer curve farther than this from the coarser one is not the same, in sides of the box.
 const SAME: f64 = 0.05;
@@ -38,14 +37,7 @@ struct Check {
 }
 
 /// How curves are checked.
-pub(super) struct Checks<'a> {
-    pub(super) source: &'a dyn DensitySource,
-    pub(super) plane: &'a Plane,
-    pub(super) detector: &'a dyn Detector,
-    pub(super) start: &'a CurveStart,
-    pub(super) options: &'a CurveOptions,
-    pub(super) cancellation: &'a Cancellation,
-}
+pub(super) struct Checks<'a>(pub(super) Task<'a>);
 
 impl Checks<'_> {
     /// The points with their errors, and what checking them took.
@@ -61,7 +53,7 @@ impl Checks<'_> {
             .collect();
         let mut work = CurveWork::default();
         if !checks.is_empty() {
-            let finer = self.source.finer();
+            let finer = self.0.source.finer();
             match finer {
                 Ok(Some(source)) => {
                     let shown = self.ask(source.as_ref(), walked, &selected, &mut work);
@@ -77,14 +69,14 @@ impl Checks<'_> {
                 .points
                 .iter()
                 .any(|node| node.reading.edge_mass > QUIET);
-            if let Some(source) = self.source.enclosed().filter(|_| leaks) {
+            if let Some(source) = self.0.source.enclosed().filter(|_| leaks) {
                 let shown = self.ask(source.as_ref(), walked, &selected, &mut work);
                 let pairs = checks.iter_mut().zip(shown);
                 pairs.for_each(|(check, shown)| check.enclosed = shown);
             }
         }
         checks.retain(|check| check.finer.is_some() || check.enclosed.is_some());
-        let of_distance = share_of_distance(self.source.subject().cell_check);
+        let of_distance = share_of_distance(self.0.source.subject().cell_check);
         let nodes = walked.points.iter().enumerate();
         let points = nodes.map(|(index, node)| {
             let check = between(&checks, &walked.points, index, of_distance);
@@ -95,8 +87,8 @@ impl Checks<'_> {
 
     /// The points that are checked. The slope at a kink follows from the equations: no grid takes part.
     fn selected(&self, walked: &Walked) -> Vec<usize> {
-        let every = self.options.check_every;
-        if every == 0 || self.start.kind == IndicatorKind::KinkSlope {
+        let every = self.0.options.check_every;
+        if every == 0 || self.0.start.kind == IndicatorKind::KinkSlope {
             return Vec::new();
         }
         let last = walked.points.len() - 1;
@@ -109,7 +101,7 @@ impl Checks<'_> {
 
     /// Whether finer cells could tell what the cells do to the curve.
     fn is_checkable(&self) -> bool {
-        let check = self.source.subject().cell_check;
+        let check = self.0.source.subject().cell_check;
         matches!(check, CellCheck::OnFinerCells { .. })
     }
 
@@ -123,10 +115,10 @@ impl Checks<'_> {
     ) -> Vec<Option<Shown>> {
         let mut reader = Reader::new(
             source,
-            self.plane,
-            self.detector,
-            self.start,
-            self.cancellation,
+            self.0.plane,
+            self.0.detector,
+            self.0.start,
+            self.0.cancellation,
         );
         let mut shown = vec![None; selected.len()];
         // In the order in which the path was walked, neighbours follow each other.
@@ -160,7 +152,7 @@ impl Checks<'_> {
         let (indicator, steepness) = (&reading.indicator, reading.steepness());
         let sampling = match indicator.sampling_error > 0.0 {
             true => {
-                let doubt = 1.0 - self.detector.confidence();
+                let doubt = 1.0 - self.0.detector.confidence();
                 indicator.sampling_error * two_sided_limit(doubt, indicator.degrees_of_freedom)
             }
             false => 0.0,
@@ -180,14 +172,14 @@ impl Checks<'_> {
             Some(side) => foot[1 - side] += check.shift / uphill[1 - side],
             None => (0..2).for_each(|k| foot[k] += check.shift * uphill[k]),
         }
-        let sides = self.plane.sides();
-        let depends_on_cells = self.start.kind != IndicatorKind::KinkSlope;
+        let sides = self.0.plane.sides();
+        let depends_on_cells = self.0.start.kind != IndicatorKind::KinkSlope;
         let unknown = check.grid.is_none() && depends_on_cells && reading.is_diffused;
         let is_torn = depends_on_cells && negative_share(&reading.density) > MOST_NEGATIVE;
         let is_unsound = reading.status != PointStatus::Solved || is_torn;
         let status = match check.status {
             Some(status) => status,
-            None if is_unsound || error > self.options.tolerance => BifurcationStatus::Unresolved,
+            None if is_unsound || error > self.0.options.tolerance => BifurcationStatus::Unresolved,
             None if unknown => BifurcationStatus::Unconfirmed,
             None if check.grid.is_none() && depends_on_cells && self.is_checkable() => {
                 BifurcationStatus::Unchecked
@@ -195,7 +187,7 @@ impl Checks<'_> {
             None => BifurcationStatus::Located,
         };
         CurvePoint {
-            values: self.plane.values(foot),
+            values: self.0.plane.values(foot),
             error,
             parts,
             to_edge: [0, 1].map(|k| error * uphill[k] * sides[k].length()),

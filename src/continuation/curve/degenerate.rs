@@ -6,12 +6,11 @@
 
 use super::reading::{Reader, Reading};
 use super::walk::{Node, Walked, apart, within};
-use super::{CurveOptions, CurvePoint, CurveStart, CurveWork, DegenerateSplit, Plane};
-use crate::cancellation::Cancellation;
+use super::{CurvePoint, CurveStart, CurveWork, DegenerateSplit, Task};
 use crate::continuation::grid::share_of_distance;
 use crate::continuation::{BifurcationStatus, DensitySource, ErrorParts};
 use crate::density::Density;
-use crate::topology::{Detector, IndicatorKind};
+use crate::topology::IndicatorKind;
 
 /// Most steps of Newton's method.
 const MOST_STEPS: usize = 8;
@@ -27,14 +26,7 @@ const STEEPEST: f64 = 0.77;
 const AT_CENTRE: f64 = 2.0;
 
 /// What finds degenerate splits.
-pub(super) struct Seeker<'a> {
-    pub(super) source: &'a dyn DensitySource,
-    pub(super) plane: &'a Plane,
-    pub(super) detector: &'a dyn Detector,
-    pub(super) start: &'a CurveStart,
-    pub(super) options: &'a CurveOptions,
-    pub(super) cancellation: &'a Cancellation,
-}
+pub(super) struct Seeker<'a>(pub(super) Task<'a>);
 
 /// A degenerate split.
 pub(super) struct Found {
@@ -94,7 +86,7 @@ impl Seeker<'_> {
             let [Some(a), Some(b)] = *pair else {
                 continue;
             };
-            if (a > 0.0) == (b > 0.0) || self.cancellation.is_cancelled() {
+            if (a > 0.0) == (b > 0.0) || self.0.cancellation.is_cancelled() {
                 continue;
             }
             let (from, to) = (&walked.points[after], &walked.points[after + 1]);
@@ -125,15 +117,15 @@ impl Seeker<'_> {
         judged: &CurvePoint,
         work: &mut CurveWork,
     ) -> Option<CurvePoint> {
-        let coarse = self.newton(self.source, near, work)?;
-        let finer = match self.options.check_every {
+        let coarse = self.newton(self.0.source, near, work)?;
+        let finer = match self.0.options.check_every {
             0 => None,
-            _ => self.source.finer().ok().flatten(),
+            _ => self.0.source.finer().ok().flatten(),
         };
         let fine = finer
             .as_ref()
             .map(|source| self.newton(source.as_ref(), coarse.at, work));
-        let of_distance = share_of_distance(self.source.subject().cell_check);
+        let of_distance = share_of_distance(self.0.source.subject().cell_check);
         let (at, grid) = match &fine {
             Some(Some(fine)) => (fine.at, of_distance * apart(fine.at, coarse.at)),
             _ => (coarse.at, coarse.own),
@@ -146,19 +138,19 @@ impl Seeker<'_> {
         };
         let error = parts.total();
         let reading = &coarse.curvature;
-        let (sides, uphill) = (self.plane.sides(), reading.uphill());
+        let (sides, uphill) = (self.0.plane.sides(), reading.uphill());
         let mut tangent = reading.tangent();
         if tangent[0] * from.tangent[0] + tangent[1] * from.tangent[1] < 0.0 {
             tangent = tangent.map(|part| -part);
         }
         let status = match fine {
-            _ if error > self.options.tolerance => BifurcationStatus::Unresolved,
+            _ if error > self.0.options.tolerance => BifurcationStatus::Unresolved,
             Some(None) => BifurcationStatus::Unconfirmed,
             None if reading.is_diffused => BifurcationStatus::Unconfirmed,
             _ => BifurcationStatus::Located,
         };
         Some(CurvePoint {
-            values: self.plane.values(at),
+            values: self.0.plane.values(at),
             error,
             parts,
             to_edge: [0, 1].map(|k| error * uphill[k] * sides[k].length()),
@@ -179,8 +171,8 @@ impl Seeker<'_> {
         near: [f64; 2],
         work: &mut CurveWork,
     ) -> Option<Both> {
-        let mut reader = self.reader(source, self.start.kind);
-        self.plane.begin(near);
+        let mut reader = self.reader(source, self.0.start.kind);
+        self.0.plane.begin(near);
         let found = self.steps(&mut reader, near);
         work.add(&reader.work);
         found
@@ -189,10 +181,10 @@ impl Seeker<'_> {
     fn steps(&self, reader: &mut Reader<'_>, near: [f64; 2]) -> Option<Both> {
         let mut at = near;
         for _ in 0..MOST_STEPS {
-            reader.kind = self.start.kind;
-            let curvature = reader.read(at, &self.start.place).ok()?;
+            reader.kind = self.0.start.kind;
+            let curvature = reader.read(at, &self.0.start.place).ok()?;
             reader.kind = IndicatorKind::Quartic;
-            let quartic = reader.read(at, &self.start.place).ok()?;
+            let quartic = reader.read(at, &self.0.start.place).ok()?;
             let step =
                 solved([&curvature, &quartic].map(|one| (one.gradient, -one.indicator.value)))?;
             at = [0, 1].map(|k| at[k] + step[k]);
@@ -227,10 +219,10 @@ impl Seeker<'_> {
     fn reader(&self, source: &dyn DensitySource, kind: IndicatorKind) -> Reader<'_> {
         let mut reader = Reader::new(
             source,
-            self.plane,
-            self.detector,
-            self.start,
-            self.cancellation,
+            self.0.plane,
+            self.0.detector,
+            self.0.start,
+            self.0.cancellation,
         );
         reader.kind = kind;
         reader
@@ -255,7 +247,7 @@ impl Seeker<'_> {
             }
         }
         let node = node?;
-        let centre = &self.start.place;
+        let centre = &self.0.start.place;
         let peak = peak_away(&node.reading.density, centre)?;
         let steepest = centre
             .iter()
@@ -269,14 +261,14 @@ impl Seeker<'_> {
                 (IndicatorKind::Fold, steepest),
             ],
         };
-        let mut reader = self.reader(self.source, self.start.kind);
-        self.plane.begin(node.foot);
+        let mut reader = self.reader(self.0.source, self.0.start.kind);
+        self.0.plane.begin(node.foot);
         let found = tried.into_iter().find_map(|(kind, near)| {
             reader.kind = kind;
             let reading = reader.read(node.foot, &near).ok()?;
             Some(CurveStart {
-                values: self.plane.values(node.foot),
-                observable: self.start.observable,
+                values: self.0.plane.values(node.foot),
+                observable: self.0.start.observable,
                 kind,
                 place: reading.indicator.place,
             })

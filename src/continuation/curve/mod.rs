@@ -143,6 +143,17 @@ pub enum CurveError {
     Source(#[from] SourceError),
 }
 
+/// A curve that is to be followed: of what, in which plane, from where, and how.
+#[derive(Clone, Copy)]
+struct Task<'a> {
+    source: &'a dyn DensitySource,
+    plane: &'a Plane,
+    detector: &'a dyn Detector,
+    start: &'a CurveStart,
+    options: &'a CurveOptions,
+    cancellation: &'a Cancellation,
+}
+
 /// Follows the curve through a start in both directions, in the box of a plane along whose path `source` solves. `observer` is told the
 /// values of every point as it is met.
 ///
@@ -161,7 +172,7 @@ pub fn follow(
 ) -> Result<Curve, CurveError> {
     let subject = source.subject();
     let observable = checked(subject, plane, start)?;
-    let follower = walk::Follower {
+    let task = Task {
         source,
         plane,
         detector,
@@ -169,16 +180,8 @@ pub fn follow(
         options,
         cancellation,
     };
-    let mut walked = follower.both_ways(observer)?;
-    let checks = check::Checks {
-        source,
-        plane,
-        detector,
-        start,
-        options,
-        cancellation,
-    };
-    let (mut points, mut check_work) = checks.judged(&walked);
+    let mut walked = walk::Follower(task).both_ways(observer)?;
+    let (mut points, mut check_work) = check::Checks(task).judged(&walked);
     // A zero beside which there is no curve is not one of a smooth indicator.
     if let [alone] = points.as_mut_slice()
         && matches!(
@@ -188,15 +191,7 @@ pub fn follow(
     {
         alone.status = BifurcationStatus::Unconfirmed;
     }
-    let seeker = degenerate::Seeker {
-        source,
-        plane,
-        detector,
-        start,
-        options,
-        cancellation,
-    };
-    let splits = seeker.found(&walked, &points, &mut check_work);
+    let splits = degenerate::Seeker(task).found(&walked, &points, &mut check_work);
     let (degenerate, mut branches) = degenerate::add_splits(&mut points, &mut walked.start, splits);
     let folds = fold_end::Folds {
         kind: start.kind,

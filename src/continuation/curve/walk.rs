@@ -1,11 +1,9 @@
 //! Following a curve: predicted along tangent and curvature, corrected along the gradient, in steps as long as the curve allows.
 
 use super::reading::{Missing, Reader, Reading};
-use super::{CurveError, CurveOptions, CurveStart, CurveWork, EndReason, Plane};
-use crate::cancellation::Cancellation;
-use crate::continuation::{DensitySource, SourceError};
+use super::{CurveError, CurveWork, EndReason, Task};
+use crate::continuation::SourceError;
 use crate::density::hellinger;
-use crate::topology::Detector;
 
 /// A place nearer to the curve than this is on it: its foot is the point.
 const CLOSE: f64 = 1e-4;
@@ -70,23 +68,16 @@ impl Walked {
 }
 
 /// What follows a curve.
-pub(super) struct Follower<'a> {
-    pub(super) source: &'a dyn DensitySource,
-    pub(super) plane: &'a Plane,
-    pub(super) detector: &'a dyn Detector,
-    pub(super) start: &'a CurveStart,
-    pub(super) options: &'a CurveOptions,
-    pub(super) cancellation: &'a Cancellation,
-}
+pub(super) struct Follower<'a>(pub(super) Task<'a>);
 
 impl<'a> Follower<'a> {
     fn reader(&self) -> Reader<'a> {
         Reader::new(
-            self.source,
-            self.plane,
-            self.detector,
-            self.start,
-            self.cancellation,
+            self.0.source,
+            self.0.plane,
+            self.0.detector,
+            self.0.start,
+            self.0.cancellation,
         )
     }
 
@@ -97,7 +88,7 @@ impl<'a> Follower<'a> {
     ) -> Result<Walked, CurveError> {
         let mut reader = self.reader();
         let start = self.begin(&mut reader)?;
-        observer(self.plane.values(start.foot));
+        observer(self.0.plane.values(start.foot));
         let (mut onward, last) = self.one_way(&mut reader, &start, observer);
         let mut work = reader.work;
         let mut ends = vec![last];
@@ -105,7 +96,7 @@ impl<'a> Follower<'a> {
         if !matches!(ends[0], EndReason::Closed | EndReason::Interrupted) {
             // Afresh: what was solved last is at the other end.
             let mut reader = self.reader();
-            self.plane.begin(start.reading.at);
+            self.0.plane.begin(start.reading.at);
             let mut turned = start.clone();
             turned.tangent = turned.tangent.map(|part| -part);
             let first;
@@ -131,11 +122,11 @@ impl<'a> Follower<'a> {
 
     /// The point of the curve at its start, the tangent toward larger values of the second parameter.
     fn begin(&self, reader: &mut Reader<'_>) -> Result<Node, CurveError> {
-        let at = self.plane.place(self.start.values);
-        self.plane.begin(at);
+        let at = self.0.plane.place(self.0.start.values);
+        self.0.plane.begin(at);
         let border = (0..2).find(|&k| at[k] <= 0.0 || at[k] >= 1.0);
         let sought = Sought {
-            near: &self.start.place,
+            near: &self.0.start.place,
             border,
             farthest: FAR,
             before: None,
@@ -143,7 +134,7 @@ impl<'a> Follower<'a> {
         let (mut node, _) = correct(reader, at, &sought).map_err(|reason| match reason {
             EndReason::Interrupted => CurveError::Source(SourceError::Interrupted),
             reason => CurveError::NoStart {
-                reason: reason.words(self.plane),
+                reason: reason.words(self.0.plane),
             },
         })?;
         let [x, y] = node.tangent;
@@ -162,11 +153,11 @@ impl<'a> Follower<'a> {
     ) -> (Vec<Node>, EndReason) {
         let mut nodes: Vec<Node> = Vec::new();
         let mut bend = [0.0; 2];
-        let longest = self.options.largest_step;
+        let longest = self.0.options.largest_step;
         let mut step = 0.5 * longest;
         loop {
             let here = nodes.last().unwrap_or(start);
-            if nodes.len() >= self.options.most_points {
+            if nodes.len() >= self.0.options.most_points {
                 return (nodes, EndReason::TooManyPoints);
             }
             let Some((at, border)) = predicted(here, bend, step) else {
@@ -191,7 +182,7 @@ impl<'a> Follower<'a> {
                     } else {
                         step
                     };
-                    observer(self.plane.values(node.foot));
+                    observer(self.0.plane.values(node.foot));
                     if nodes.len() >= FEWEST_CLOSED && passes(here.foot, node.foot, start.foot) {
                         let arclength = here.arclength + apart(here.foot, start.foot);
                         nodes.push(Node {
@@ -231,7 +222,7 @@ impl<'a> Follower<'a> {
         let onward = [0, 1].map(|k| node.foot[k] - here.foot[k]);
         let turns = dot(node.tangent, here.tangent) < SHARP || dot(onward, here.tangent) <= 0.0;
         let distance = hellinger(&here.reading.density, &node.reading.density).unwrap_or(0.0);
-        if turns || distance > self.options.largest_distance {
+        if turns || distance > self.0.options.largest_distance {
             return Err(EndReason::NotConverged);
         }
         node.arclength = here.arclength + apart(node.foot, here.foot);

@@ -115,7 +115,7 @@ pub(super) fn came_to_its_end(home: &Path, manifest: &str, of: &str) -> Result<b
     Ok(there["ending"] == "complete")
 }
 
-/// Keys with other values, but for those that only name and draw.
+/// Keys with other values, but for those that only name and draw, or say what is done with a run once it is there.
 pub(super) fn different_keys(there: &str, here: &str) -> Vec<String> {
     let [there, here] = [there, here].map(|text| {
         let mut keys = std::collections::BTreeMap::new();
@@ -129,7 +129,7 @@ pub(super) fn different_keys(there: &str, here: &str) -> Vec<String> {
     let word = |value: Option<&String>| value.map_or("not given", String::as_str).to_owned();
     names
         .into_iter()
-        .filter(|name| *name != "title" && !name.starts_with("figures."))
+        .filter(|name| *name != "title" && !AFTERWARDS.iter().any(|one| name.starts_with(one)))
         .filter(|name| there.get(*name) != here.get(*name))
         .map(|name| {
             let (there, here) = (word(there.get(name)), word(here.get(name)));
@@ -137,6 +137,9 @@ pub(super) fn different_keys(there: &str, here: &str) -> Vec<String> {
         })
         .collect()
 }
+
+/// Beginnings of keys on which no solve depends.
+const AFTERWARDS: [&str; 2] = ["figures.", "curve."];
 
 /// Values by their whole keys.
 fn flatten(

@@ -42,6 +42,10 @@ pub(super) const DPI: Condition = Condition {
     words: " from 36 to 1200",
     holds: |value| (36.0..=1200.0).contains(&value),
 };
+pub(super) const STEP: Condition = Condition {
+    words: " from 0.0001 to 0.25",
+    holds: |value| (1e-4..=0.25).contains(&value),
+};
 pub(super) const UP_TO_ONE: Condition = Condition {
     words: " above 0, at most 1",
     holds: |value| value > 0.0 && value <= 1.0,

@@ -3,7 +3,7 @@
 use super::field::{
     Field, InFile, Named, SWITCH, always, formulas, of_axis, of_bins, of_methods, optional,
 };
-use super::kind::{ANY, DPI, Kind, LINE, OPEN_UNIT, POSITIVE, SHARE, TEXT, UP_TO_ONE};
+use super::kind::{ANY, DPI, Kind, LINE, OPEN_UNIT, POSITIVE, SHARE, STEP, TEXT, UP_TO_ONE};
 use super::{Key, KeyDefault};
 use crate::figure::{ColourMap, Format, Ground, Typeface};
 use crate::generator::AdvectiveScheme;
@@ -85,6 +85,22 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
         "How often a cell of the coarse grid is halved at most, where signatures of neighbours differ."),
     key("map.curves", Kind::Choice(switch), Rule("`on`"), optional!(map.curves),
         "Whether the curves between regimes are followed."),
+    key("curve.parameter", Kind::Text, Rule("no curves: rows alone"), optional!(curve.parameter),
+        "Name of a second parameter: `pbif sweep` then follows located rows in the plane of both, as `pbif curve` does. docs/curves.md says how."),
+    key("curve.from", Kind::Number(ANY), Rule("required in a curve"), optional!(curve.from),
+        "One end of the box in the second parameter; what the sweep holds it at must be in the box."),
+    key("curve.to", Kind::Number(ANY), Rule("required in a curve"), optional!(curve.to),
+        "The other end."),
+    key("curve.first_from", Kind::Number(ANY), Rule("the lower end of the sweep"), optional!(curve.first_from),
+        "Lower end of the box in the swept parameter."),
+    key("curve.first_to", Kind::Number(ANY), Rule("the upper end of the sweep"), optional!(curve.first_to),
+        "Upper end of the box in the swept parameter."),
+    key("curve.rows", Kind::List(&Kind::Text), Rule("every row that an indicator located"), optional!(curve.rows),
+        "Labels of the rows that are followed, such as `PB1`."),
+    key("curve.step", Kind::Number(STEP), Rule("`0.025`"), optional!(curve.step),
+        "Longest step between points of a curve, as a share of the sides of the box."),
+    key("curve.branches", Kind::Choice(switch), Rule("`on`"), optional!(curve.branches),
+        "Whether the curves that start from points of codimension two are followed too."),
     key("cells.accuracy", Kind::Number(OPEN_UNIT), OfOptions, always!(accuracy),
         "Wanted error of the watched densities, in total variation, where counts are left to the program."),
     key("cells.<axis>.range", Kind::Choice(automatic), Rule("`from` and `to`"), of_axis!(range),

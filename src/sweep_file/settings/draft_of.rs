@@ -2,7 +2,9 @@
 
 use super::{AxisSettings, Grade, Settings};
 use crate::density::Observable;
-use crate::sweep_file::draft::{Auto, AxisDraft, BinsDraft, Draft, EquationsDraft, MapDraft};
+use crate::sweep_file::draft::{
+    Auto, AxisDraft, BinsDraft, CurveDraft, Draft, EquationsDraft, MapDraft,
+};
 use crate::system::{Model, NoiseKind};
 
 impl Settings {
@@ -33,6 +35,7 @@ impl Settings {
             to: Some(to),
             points: Some(self.points),
             map: self.map_draft(),
+            curve: self.curve_draft(),
             axes: axes
                 .map(|(known, axis)| axis_draft(&known.name, axis))
                 .collect(),
@@ -62,6 +65,22 @@ impl Settings {
             points: Some(map.points),
             depth: Some(map.depth),
             curves: Some(map.curves),
+        }
+    }
+
+    fn curve_draft(&self) -> CurveDraft {
+        let Some(curve) = &self.curve else {
+            return CurveDraft::default();
+        };
+        CurveDraft {
+            parameter: Some(curve.parameter.clone()),
+            from: Some(curve.from),
+            to: Some(curve.to),
+            first_from: Some(curve.first.0),
+            first_to: Some(curve.first.1),
+            rows: curve.rows.clone(),
+            step: Some(curve.step),
+            branches: Some(curve.branches),
         }
     }
 

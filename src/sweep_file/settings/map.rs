@@ -6,7 +6,7 @@ use crate::continuation::map::MapOptions;
 use crate::sweep_file::diagnostic::Diagnostic;
 use crate::sweep_file::draft::Draft;
 use crate::sweep_file::reader::Reader;
-use crate::system::{Family, Model};
+use crate::system::{Family, Model, ParameterDescription};
 
 /// A map of regimes over the swept and a second parameter.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,19 +63,8 @@ pub(super) fn read(
         reader.require(&["map", key]);
     }
     let name = draft.map.parameter.as_deref()?;
-    let place = reader.place(&["map", "parameter"]);
-    let parameter = known_parameter(reader, model, name, place)?;
-    if draft.parameter.as_deref() == Some(name) {
-        let title = format!("the second parameter of the map is the swept one, `{name}`");
-        let others = model.parameters.iter().map(|one| one.name.clone());
-        let others: Vec<String> = others.filter(|one| one != name).collect();
-        let diagnostic = Diagnostic::new(title).allowed(crate::sweep_file::names::list(&others));
-        reader.report(match place {
-            Some(place) => diagnostic.at(place, "the same as `sweep.parameter`"),
-            None => diagnostic,
-        });
-        return None;
-    }
+    let swept = draft.parameter.as_deref().unwrap_or_default();
+    let parameter = is_second(reader, (model, swept), name, "map")?;
     let (from, to) = (draft.map.from?, draft.map.to?);
     for (key, value) in [("from", from), ("to", to)] {
         if let Some(place) = reader.place(&["map", key]) {
@@ -104,4 +93,27 @@ pub(super) fn read(
         depth: draft.map.depth.unwrap_or(MapOptions::default().depth),
         curves: draft.map.curves.unwrap_or(true),
     })
+}
+
+/// The second parameter of a plane by its name under `section`; refuses one that the model does not have, and the swept one.
+pub(super) fn is_second<'m>(
+    reader: &mut Reader<'_>,
+    (model, swept): (&'m Model, &str),
+    name: &str,
+    section: &str,
+) -> Option<&'m ParameterDescription> {
+    let place = reader.place(&[section, "parameter"]);
+    let parameter = known_parameter(reader, model, name, place)?;
+    if swept != name {
+        return Some(parameter);
+    }
+    let title = format!("the second parameter of the {section} is the swept one, `{name}`");
+    let others = model.parameters.iter().map(|one| one.name.clone());
+    let others: Vec<String> = others.filter(|one| one != name).collect();
+    let diagnostic = Diagnostic::new(title).allowed(crate::sweep_file::names::list(&others));
+    reader.report(match place {
+        Some(place) => diagnostic.at(place, "the same as `sweep.parameter`"),
+        None => diagnostic,
+    });
+    None
 }

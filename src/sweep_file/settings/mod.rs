@@ -1,6 +1,7 @@
 //! Everything a sweep file says, checked, with every default filled in.
 
 mod axes;
+mod curve;
 mod draft_of;
 mod equations;
 mod figures;
@@ -21,6 +22,7 @@ use crate::topology::DetectOptions;
 pub use super::draft::Modes;
 pub use axes::{AxisSettings, Grade};
 pub(super) use axes::{at_cells, cell_space};
+pub use curve::CurveSettings;
 pub(super) use equations::value_place as formula_place;
 pub use map::MapSettings;
 pub use quantities::BinSettings;
@@ -46,6 +48,8 @@ pub struct Settings {
     pub points: usize,
     /// The second parameter of a map of regimes; `None` for a sweep.
     pub map: Option<MapSettings>,
+    /// The curves that are followed from what a sweep has located; `None` for none.
+    pub curve: Option<CurveSettings>,
     /// Wanted error of the watched densities, in total variation, where counts are left to the program.
     pub accuracy: f64,
     /// What was chosen for the program's part, in words.
@@ -95,6 +99,7 @@ impl Settings {
             .and_then(|model| system::read(&mut reader, &draft, model));
         let mapped = model.and_then(|model| map::read(&mut reader, &draft, model, draft.points));
         let family = swept.as_ref().map(|swept| &swept.family);
+        let followed = family.and_then(|family| curve::read(&mut reader, &draft, family));
         let axes = model.and_then(|model| axes::read(&mut reader, &draft, model, family));
         let watched = model.map(|model| watched::read(&mut reader, &draft, model, axes.as_deref()));
         let figures_at = swept
@@ -125,6 +130,7 @@ impl Settings {
             title: draft.title.clone().unwrap_or_else(title),
             points: swept.points,
             map: mapped,
+            curve: followed,
             family: swept.family,
             accuracy: draft.accuracy,
             chosen: Vec::new(),

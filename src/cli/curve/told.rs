@@ -1,0 +1,129 @@
+//! What is said of curves that were followed.
+
+use super::job::Job;
+use crate::continuation::BifurcationStatus;
+use crate::continuation::curve::{
+    CodimensionTwo, CodimensionTwoKind, Curve, CurveTree, Plane, codimension_two,
+};
+use crate::run::format_with_error;
+
+impl Job<'_> {
+    /// Everything that was found, in lines.
+    pub(super) fn summary(&self, tree: &CurveTree) -> String {
+        let mut text = String::new();
+        for (index, curve) in tree.curves.iter().enumerate() {
+            text += &self.told(tree, index, curve);
+        }
+        for point in codimension_two(&tree.curves) {
+            text += &codimension_line(&point, &self.plane);
+        }
+        for missed in &tree.missed {
+            text += &format!(
+                "not followed: {} is zero near {}: {}\n",
+                missed.start.kind.name(),
+                place(&self.plane, missed.start.values, 1e-3),
+                missed.reason
+            );
+        }
+        text
+    }
+
+    /// A curve with its ends.
+    fn told(&self, tree: &CurveTree, index: usize, curve: &Curve) -> String {
+        let family = self.spec.problem.family();
+        let [first, second] = curve.plane.sides();
+        let what = format!(
+            "{} of {} is zero",
+            curve.kind.name(),
+            curve.observable.name(family)
+        );
+        let number = match tree.curves.len() {
+            1 => String::new(),
+            _ => format!("C{}  ", index + 1),
+        };
+        let mut text = match index {
+            0 => format!(
+                "{number}{what}, followed from {} in the plane of {} and {}\n",
+                self.row.label, first.parameter, second.parameter
+            ),
+            _ => format!("{number}{what}\n"),
+        };
+        let mut line = |label: &str, index: usize, words: &str| {
+            if let Some(point) = curve.points.get(index) {
+                let values = place(&curve.plane, point.values, point.error);
+                text += &format!("  {label:<4} {values}  {words}\n");
+            }
+        };
+        let first_end = curve.ends.first().filter(|_| curve.ends.len() > 1);
+        if let Some(end) = first_end {
+            line(&end.label, end.point, &end.reason.words(&curve.plane));
+        }
+        if index == 0 {
+            line(&self.row.label, curve.start, "start");
+        }
+        for split in &curve.degenerate {
+            let words = "degenerate split: from here on peaks are born away from the centre";
+            line(&split.label, split.point, words);
+        }
+        if let Some(end) = curve.ends.last() {
+            line(&end.label, end.point, &end.reason.words(&curve.plane));
+        }
+        let errors = curve.points.iter().map(|point| point.error);
+        let largest = errors.fold(0.0, f64::max);
+        let checked = curve.points.iter().filter(|point| point.checked).count();
+        let located = curve.points.iter();
+        let located = located.filter(|point| is_located(point.status)).count();
+        text += &format!(
+            "  {} points, {located} of them located, {checked} checked; largest error {largest:.1e} of the sides of the box\n",
+            curve.points.len()
+        );
+        let tolerance = self.spec.curve_options(first.length()).tolerance;
+        text + &sampling_in_words(curve, tolerance)
+    }
+}
+
+/// What sampling leaves open, where it is more than the tolerance; nothing for densities that are not sampled.
+fn sampling_in_words(curve: &Curve, tolerance: f64) -> String {
+    let sampling = curve.points.iter().map(|point| point.parts.sampling);
+    let largest = sampling.fold(0.0, f64::max);
+    if largest <= tolerance {
+        return String::new();
+    }
+    let times = (largest / tolerance).powi(2).ceil();
+    format!(
+        "  sampling alone is up to {largest:.1e} of the sides of the box, and the tolerance is {tolerance:.1e}: {times:.0} times the samples would meet it, or a larger `locate.relative_tolerance`\n"
+    )
+}
+
+/// Values of both parameters to the digits that an error, a share of the sides of the box, leaves.
+fn place(plane: &Plane, values: [f64; 2], error: f64) -> String {
+    let sides = plane.sides().iter().zip(values);
+    let values = sides.map(|(side, value)| {
+        let (value, _) = format_with_error(value, error * side.length());
+        format!("{} = {value}", side.parameter)
+    });
+    values.collect::<Vec<_>>().join("  ")
+}
+
+/// A point of codimension two in a line.
+pub(in crate::cli) fn codimension_line(point: &CodimensionTwo, plane: &Plane) -> String {
+    let curves = point.curves.iter().map(|index| format!("C{}", index + 1));
+    let curves = curves.collect::<Vec<_>>().join(" and ");
+    let words = match point.kind {
+        CodimensionTwoKind::Cusp => format!("cusp of {curves}"),
+        CodimensionTwoKind::DegenerateSplit => format!(
+            "degenerate split of {curves}: births at the centre turn into births away from it"
+        ),
+        CodimensionTwoKind::Crossing => format!("crossing of {curves}"),
+    };
+    format!(
+        "{}  {}  {words}; known to {:.1e} of the sides of the box\n",
+        point.label,
+        place(plane, point.values, point.error),
+        point.error
+    )
+}
+
+fn is_located(status: BifurcationStatus) -> bool {
+    status == BifurcationStatus::Located
+}

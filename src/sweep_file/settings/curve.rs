@@ -1,0 +1,145 @@
+//! The curves that are followed from what a sweep has located.
+
+use super::map::is_second;
+use super::system::check_range;
+use crate::continuation::curve::CurveOptions;
+use crate::sweep_file::diagnostic::Diagnostic;
+use crate::sweep_file::draft::Draft;
+use crate::sweep_file::reader::Reader;
+use crate::system::Family;
+
+/// Curves in the plane of the swept and a second parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CurveSettings {
+    /// The second parameter; the sweep holds it at a value in the box.
+    pub parameter: String,
+    /// Its lowest value.
+    pub from: f64,
+    /// Its highest value.
+    pub to: f64,
+    /// Lowest and highest value of the swept parameter.
+    pub first: (f64, f64),
+    /// Labels of the rows that are followed; `None` for every row that an indicator has located.
+    pub rows: Option<Vec<String>>,
+    /// Longest step between points, as a share of the sides of the box.
+    pub step: f64,
+    /// Whether the curves that start from points of codimension two are followed too.
+    pub branches: bool,
+}
+
+/// Checks `[curve]`; `None` where there is none, or something is wrong with it.
+pub(super) fn read(
+    reader: &mut Reader<'_>,
+    draft: &Draft,
+    family: &Family,
+) -> Option<CurveSettings> {
+    let section = reader.entry(&["curve"])?;
+    if let Some(map) = reader.entry(&["map"]) {
+        let diagnostic = Diagnostic::new("a file has `[map]` or `[curve]`, not both")
+            .at(&section.key_place, "the curves of a row")
+            .at(
+                &map.key_place,
+                "a map, which follows every curve of its box",
+            )
+            .remedy("remove one of both; `pbif curve FILE` follows a row of a file with `[map]`");
+        reader.report(diagnostic);
+        return None;
+    }
+    for key in ["parameter", "from", "to"] {
+        reader.require(&["curve", key]);
+    }
+    let curve = &draft.curve;
+    let name = curve.parameter.as_deref()?;
+    is_second(reader, (family.model(), family.parameter()), name, "curve")?;
+    let (from, to) = (curve.from?, curve.to?);
+    let (low, high) = family.range();
+    let first = (
+        curve.first_from.unwrap_or(low),
+        curve.first_to.unwrap_or(high),
+    );
+    let ends = [
+        (name, "from", from),
+        (name, "to", to),
+        (family.parameter(), "first_from", first.0),
+        (family.parameter(), "first_to", first.1),
+    ];
+    for (parameter, key, value) in ends {
+        let mut known = family.model().parameters.iter();
+        let known = known.find(|one| one.name == parameter);
+        if let (Some(known), Some(place)) = (known, reader.place(&["curve", key])) {
+            check_range(
+                reader,
+                family.model(),
+                known,
+                value,
+                place,
+                "the box goes here",
+            )
+            .then_some(())?;
+        }
+    }
+    let (from, to) = (from.min(to), from.max(to));
+    check_side(reader, name, (from, to), "to")?;
+    check_side(reader, family.parameter(), first, "first_to")?;
+    check_held(reader, family, name, (from, to))?;
+    Some(CurveSettings {
+        parameter: name.to_owned(),
+        from,
+        to,
+        first,
+        rows: curve.rows.clone().filter(|rows| !rows.is_empty()),
+        step: curve.step.unwrap_or(CurveOptions::default().largest_step),
+        branches: curve.branches.unwrap_or(true),
+    })
+}
+
+/// Refuses a side of the box without length; the key is that of its upper end.
+fn check_side(
+    reader: &mut Reader<'_>,
+    parameter: &str,
+    (from, to): (f64, f64),
+    key: &str,
+) -> Option<()> {
+    let length = to - from;
+    if length > 0.0 && length.is_finite() {
+        return Some(());
+    }
+    let diagnostic = Diagnostic::new(format!(
+        "the box of the curves goes from {from} to {to} along `{parameter}`"
+    ))
+    .allowed("a lower and a higher value");
+    reader.report(match reader.place(&["curve", key]) {
+        Some(place) => diagnostic.at(place, "no range"),
+        None => diagnostic,
+    });
+    None
+}
+
+/// Refuses a box that the sweep does not run through.
+fn check_held(
+    reader: &mut Reader<'_>,
+    family: &Family,
+    name: &str,
+    (from, to): (f64, f64),
+) -> Option<()> {
+    let (_, held) = family.fixed().find(|(known, _)| *known == name)?;
+    if (from..=to).contains(&held) {
+        return Some(());
+    }
+    let title = format!(
+        "the sweep holds `{name}` at {held}, and the box of the curves goes from {from} to {to}"
+    );
+    let mut diagnostic = Diagnostic::new(title)
+        .allowed(format!("ends on either side of {held}"))
+        .remedy(
+            "the curves start from the rows of the sweep: widen the box, or sweep at a value in it",
+        );
+    if let Some(place) = reader.place(&["curve", "from"]) {
+        diagnostic = diagnostic.at(place, "the box begins or ends here");
+    }
+    if let Some(place) = reader.place(&["system", "parameters", name]) {
+        diagnostic = diagnostic.at(place, "the sweep is here");
+    }
+    reader.report(diagnostic);
+    None
+}
