@@ -679,8 +679,8 @@ fn a_sweep_file_names_the_curves_that_its_sweep_is_followed_by() {
             "the second parameter of the curve is the swept one",
         ),
         (
-            "curve.from=1.1",
-            "the sweep holds `a` at 1, and the box of the curves goes from 0.2 to 1.1",
+            "curve.from=0.9",
+            "the sweep holds `a` at 1, and the box of the curves goes from 0.2 to 0.9",
         ),
         ("curve.first_to=-0.7", "goes from -0.7 to -0.7 along `h`"),
         ("curve.step=0.5", "from 0.0001 to 0.25"),
