@@ -124,6 +124,7 @@ fn example(key: &Key) -> crate::sweep_file::value::Plain {
         // Points and dots of print have a least number.
         Kind::Number(_) if key.path == "figures.style.text" => Plain::Number(9.5),
         Kind::Number(_) if key.path == "figures.style.dpi" => Plain::Number(95.0),
+        Kind::Number(_) if key.path == "curve.step" => Plain::Number(0.125),
         Kind::List(kind) => Plain::List(vec![of(*kind)]),
         kind => of(kind),
     }
