@@ -613,6 +613,77 @@ fn the_program_follows_a_row_of_a_run_and_says_what_is_wrong() {
     );
 }
 
+/// The density of dx = (a x - x³) dt + σ dW splits at a = 0, whatever σ is.
+#[test]
+fn sampled_curves_hold_the_exact_one_in_their_bands_or_say_that_samples_are_few() {
+    let text = |method: &str, cells: usize| {
+        format!(
+            r#"
+[system]
+model = "bistable"
+[system.parameters]
+sigma2 = 0.5
+[sweep]
+parameter = "a"
+from = -1.0
+to = 1.0
+points = 5
+[cells]
+x = {{ from = -3, to = 3, count = {cells} }}
+[method]
+{method}
+"#
+        )
+    };
+    let plane = Plane::new(("a", -1.0, 1.0), ("sigma2", 0.3, 0.9)).unwrap();
+    let options = CurveOptions {
+        largest_step: 0.05,
+        ..CurveOptions::default()
+    };
+    let followed = |method: &str, cells: usize| {
+        let never = Cancellation::new();
+        let (sweep, _) = swept(&text(method, cells), &[]);
+        let start = CurveStart {
+            values: [0.0, 0.5],
+            observable: 0,
+            kind: pbif::topology::IndicatorKind::Curvature,
+            place: vec![0.0],
+        };
+        let source = sweep.source_in(&plane, &never).unwrap();
+        let (detector, observer) = (sweep.detector(), &mut |_: [f64; 2]| ());
+        follow(
+            &source, &plane, &detector, &start, &options, &never, observer,
+        )
+    };
+    for (method, cells) in [
+        ("kind = \"sgcm\"\nsamples = 4000", 60),
+        ("kind = \"monte-carlo\"\nerror = 0.01", 24),
+    ] {
+        let curve = followed(method, cells).unwrap();
+        let borders = [&EndReason::Border(1), &EndReason::Border(1)];
+        assert_eq!(ends(&curve), borders, "{method}");
+        for point in &curve.points {
+            let off = 0.5 * point.values[0].abs();
+            assert!(
+                off <= point.error && point.error < 0.1,
+                "{method}: {point:?}"
+            );
+            // What is known to a tenth of the box is not located.
+            assert_eq!(point.status, BifurcationStatus::Unresolved, "{method}");
+            assert!(
+                point.parts.sampling > 0.5 * point.error,
+                "{method}: {point:?}"
+            );
+        }
+    }
+    let few = followed("kind = \"sgcm\"\nsamples = 32", 60);
+    let says = |curve: &Curve| ends(curve) == [&EndReason::Sampling, &EndReason::Sampling];
+    match few {
+        Ok(curve) => assert!(says(&curve), "{:?}", ends(&curve)),
+        Err(error) => assert!(matches!(error, CurveError::TooFewSamples), "{error}"),
+    }
+}
+
 #[test]
 fn a_sweep_file_names_the_curves_that_its_sweep_is_followed_by() {
     let folder = tempfile::tempdir().unwrap();

@@ -117,6 +117,7 @@ fn reason_words(reason: &EndReason) -> (&'static str, Value) {
         EndReason::FeatureLost => ("feature lost", Value::Null),
         EndReason::Singular => ("singular", Value::Null),
         EndReason::NotConverged => ("not converged", Value::Null),
+        EndReason::Sampling => ("sampling", Value::Null),
         EndReason::TooManyPoints => ("too many points", Value::Null),
         EndReason::Interrupted => ("interrupted", Value::Null),
     }
@@ -132,6 +133,7 @@ fn reason(word: &str, detail: &Value) -> Option<EndReason> {
         "feature lost" => EndReason::FeatureLost,
         "singular" => EndReason::Singular,
         "not converged" => EndReason::NotConverged,
+        "sampling" => EndReason::Sampling,
         "too many points" => EndReason::TooManyPoints,
         "interrupted" => EndReason::Interrupted,
         _ => return None,

@@ -92,6 +92,9 @@ pub(super) fn refused(error: CurveError) -> CommandError {
     let report = Diagnostic::new(error.to_string());
     let report = match error {
         CurveError::EmptySide { .. } => report.remedy("the box needs a lower and a higher value of each parameter"),
+        CurveError::TooFewSamples => report.remedy(
+            "sweep with more of them (errors fall with the root of their number), or with `method.kind = \"generator\"`, whose densities have no sampling error",
+        ),
         CurveError::NoStart { .. } => {
             report.remedy("another row, or cells that resolve this one (`pbif sweep` says which do not), may have a curve")
         }

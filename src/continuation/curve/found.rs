@@ -52,6 +52,8 @@ pub enum EndReason {
     Singular,
     /// However short the step, the curve was not met again.
     NotConverged,
+    /// The curve was not met again, and samples leave more open than that takes: with more of them it would go on.
+    Sampling,
     /// It has as many points as were wanted at most.
     TooManyPoints,
     /// It was asked to stop.
@@ -65,7 +67,7 @@ impl EndReason {
         match self {
             Self::Border(_) => "EP",
             Self::Closed => "CL",
-            Self::NoDensity(_) | Self::NotConverged => "MX",
+            Self::NoDensity(_) | Self::NotConverged | Self::Sampling => "MX",
             Self::Cusp => "CP",
             Self::DegenerateSplit => "DS",
             Self::FeatureLost => "FL",
@@ -88,6 +90,7 @@ impl EndReason {
             Self::FeatureLost => "the feature is lost".to_owned(),
             Self::Singular => "the indicator changes in no direction".to_owned(),
             Self::NotConverged => "the curve was not met again".to_owned(),
+            Self::Sampling => "too few samples to tell where the curve goes on".to_owned(),
             Self::TooManyPoints => "as many points as wanted at most".to_owned(),
             Self::Interrupted => "interrupted".to_owned(),
         }

@@ -138,6 +138,9 @@ pub enum CurveError {
         /// Why.
         reason: String,
     },
+    /// The density is sampled, and its samples leave the indicator at the start too uncertain to be followed.
+    #[error("there are too few samples to tell where the curve passes the start")]
+    TooFewSamples,
     /// The source refuses to work.
     #[error(transparent)]
     Source(#[from] SourceError),

@@ -13,6 +13,8 @@ use crate::topology::{Detector, Indicator, IndicatorKind};
 const SHARE: f64 = 1e-5;
 /// Distance of the places beside, where derivatives come from differences; sides of the box have length one.
 const BESIDE: f64 = 5e-3;
+/// The same for sampled densities, whose differences are uncertain by the sampling error over this distance.
+const BESIDE_SAMPLED: f64 = 0.05;
 
 /// What is read at a place. Places and derivatives are those of the box with sides of length one.
 #[derive(Debug, Clone)]
@@ -113,8 +115,9 @@ impl Reader<'_> {
         let coordinate = self.plane.lay(at);
         let mut reading = self.solve(coordinate, at, near, true)?;
         if reading.gradient.iter().any(|part| part.is_nan()) {
+            let is_sampled = reading.indicator.sampling_error > 0.0;
+            reading.doubt = if is_sampled { BESIDE_SAMPLED } else { BESIDE };
             reading.gradient = self.differences(&reading)?;
-            reading.doubt = BESIDE;
         }
         Ok(reading)
     }
@@ -180,7 +183,8 @@ impl Reader<'_> {
     fn differences(&mut self, reading: &Reading) -> Result<[f64; 2], Missing> {
         let mut gradient = [0.0; 2];
         for (k, part) in gradient.iter_mut().enumerate() {
-            let step = if reading.at[k] < 0.5 { BESIDE } else { -BESIDE };
+            let toward_the_middle = if reading.at[k] < 0.5 { 1.0 } else { -1.0 };
+            let step = toward_the_middle * reading.doubt;
             let mut at = reading.at;
             at[k] += step;
             let coordinate = self.plane.lay(at);

@@ -133,6 +133,7 @@ impl<'a> Follower<'a> {
         };
         let (mut node, _) = correct(reader, at, &sought).map_err(|reason| match reason {
             EndReason::Interrupted => CurveError::Source(SourceError::Interrupted),
+            EndReason::Sampling => CurveError::TooFewSamples,
             reason => CurveError::NoStart {
                 reason: reason.words(self.0.plane),
             },
@@ -223,7 +224,7 @@ impl<'a> Follower<'a> {
         let turns = dot(node.tangent, here.tangent) < SHARP || dot(onward, here.tangent) <= 0.0;
         let distance = hellinger(&here.reading.density, &node.reading.density).unwrap_or(0.0);
         if turns || distance > self.0.options.largest_distance {
-            return Err(EndReason::NotConverged);
+            return Err(not_met(&node.reading));
         }
         node.arclength = here.arclength + apart(node.foot, here.foot);
         Ok(node)
@@ -284,13 +285,22 @@ fn correct(
             return Ok((node, corrections));
         }
         // A place that is not a number is not near.
-        if !(size <= sought.farthest && size <= CONVERGING * last) {
-            return Err(EndReason::NotConverged);
+        let converges = size <= sought.farthest && size <= CONVERGING * last;
+        if !converges || corrections + 1 == MOST_CORRECTIONS {
+            return Err(not_met(&reading));
         }
         last = size;
         at = foot;
     }
     Err(EndReason::NotConverged)
+}
+
+/// Why a curve was not met where this was read: where samples leave more open than a place on the curve may be off, they are to blame.
+fn not_met(reading: &Reading) -> EndReason {
+    match reading.indicator.sampling_error > CLOSE * reading.steepness() {
+        true => EndReason::Sampling,
+        false => EndReason::NotConverged,
+    }
 }
 
 /// What the straight line to the foot may leave: half the curvature of the indicator, by how much its gradient changed since the point
