@@ -34,12 +34,11 @@ pub(super) fn read(
     family: &Family,
 ) -> Option<CurveSettings> {
     let section = reader.entry(&["curve"])?;
-    if let Some(map) = reader.entry(&["map"]) {
+    if reader.entry(&["map"]).is_some() {
         let diagnostic = Diagnostic::new("a file has `[map]` or `[curve]`, not both")
-            .at(&section.key_place, "the curves of a row")
             .at(
-                &map.key_place,
-                "a map, which follows every curve of its box",
+                &section.key_place,
+                "curves of rows; `[map]` follows every curve of its box",
             )
             .remedy("remove one of both; `pbif curve FILE` follows a row of a file with `[map]`");
         reader.report(diagnostic);
@@ -81,7 +80,7 @@ pub(super) fn read(
     let (from, to) = (from.min(to), from.max(to));
     check_side(reader, name, (from, to), "to")?;
     check_side(reader, family.parameter(), first, "first_to")?;
-    check_held(reader, family, name, (from, to))?;
+    check_held(reader, (draft, family), name, (from, to))?;
     Some(CurveSettings {
         parameter: name.to_owned(),
         from,
@@ -118,7 +117,7 @@ fn check_side(
 /// Refuses a box that the sweep does not run through.
 fn check_held(
     reader: &mut Reader<'_>,
-    family: &Family,
+    (draft, family): (&Draft, &Family),
     name: &str,
     (from, to): (f64, f64),
 ) -> Option<()> {
@@ -129,17 +128,19 @@ fn check_held(
     let title = format!(
         "the sweep holds `{name}` at {held}, and the box of the curves goes from {from} to {to}"
     );
-    let mut diagnostic = Diagnostic::new(title)
+    let diagnostic = Diagnostic::new(title)
         .allowed(format!("ends on either side of {held}"))
         .remedy(
             "the curves start from the rows of the sweep: widen the box, or sweep at a value in it",
         );
-    if let Some(place) = reader.place(&["curve", "from"]) {
-        diagnostic = diagnostic.at(place, "the box begins or ends here");
-    }
-    if let Some(place) = reader.place(&["system", "parameters", name]) {
-        diagnostic = diagnostic.at(place, "the sweep is here");
-    }
-    reader.report(diagnostic);
+    // Of both ends the one that would have to be moved.
+    let ends = [("from", draft.curve.from), ("to", draft.curve.to)];
+    let short = if held < from { from } else { to };
+    let key = ends.iter().find(|(_, end)| *end == Some(short));
+    let place = key.and_then(|(key, _)| reader.place(&["curve", key]));
+    reader.report(match place {
+        Some(place) => diagnostic.at(place, "the box ends here"),
+        None => diagnostic,
+    });
     None
 }
