@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::continuation::{LabelledPoint, PointType, Subject};
 use crate::density::Observable;
+use crate::formula::mathml::{Content, Element};
 use crate::sweep_file::Sweep;
 use crate::system::{Family, ParameterRange};
 
@@ -28,8 +29,15 @@ pub(super) struct Scene {
 struct Model {
     name: String,
     title: String,
-    equations: Vec<String>,
+    equations: Vec<Equation>,
     source: String,
+}
+
+/// A line of the model's equations: as text, and typeset.
+#[derive(Debug, Serialize)]
+struct Equation {
+    text: String,
+    layout: serde_json::Value,
 }
 
 /// The path's coordinate.
@@ -117,12 +125,31 @@ impl Scene {
 
 fn model(family: &Family) -> Model {
     let model = family.model();
+    let equations = model.equations.iter().zip(model.typeset());
+    let equations = equations.map(|(text, element)| Equation {
+        text: text.clone(),
+        layout: layout(&element),
+    });
     Model {
         name: model.name.clone(),
         title: model.title.clone(),
-        equations: model.equations.clone(),
+        equations: equations.collect(),
         source: model.source.clone(),
     }
+}
+
+/// An element of MathML as a list: its name, its attributes, and its text or its elements. The page makes elements of it, so that no
+/// text of a model is ever read as markup.
+fn layout(element: &Element) -> serde_json::Value {
+    let attributes = element.attributes.iter();
+    let attributes = attributes.map(|&(name, value)| (name.to_owned(), value.into()));
+    let attributes: serde_json::Map<String, serde_json::Value> = attributes.collect();
+    let mut list = vec![element.tag.into(), attributes.into()];
+    match &element.content {
+        Content::Text(text) => list.push(text.as_str().into()),
+        Content::Elements(inner) => list.extend(inner.iter().map(layout)),
+    }
+    list.into()
 }
 
 fn parameters(family: &Family) -> Vec<Parameter> {

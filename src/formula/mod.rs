@@ -49,6 +49,7 @@ pub mod graph;
 mod lanes;
 pub mod language;
 pub mod limits;
+pub mod mathml;
 mod print;
 pub mod scope;
 pub mod tape;

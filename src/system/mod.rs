@@ -24,6 +24,7 @@ mod rayleigh;
 pub mod registry;
 mod symmetry;
 mod typed;
+mod typeset;
 
 pub use crate::formula::{LANES, Lanes};
 pub use coloured::{

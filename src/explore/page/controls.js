@@ -22,6 +22,12 @@ const build = (page) => {
   const { scene, source } = page;
   $("title").textContent = scene.title;
   fill($("model"), subtitle(scene));
+  fill($("equations"), equations(scene));
+  // What is wider than the window is moved by keys, too.
+  new ResizeObserver(([{ target }]) => {
+    if (target.scrollWidth > target.clientWidth) target.tabIndex = 0;
+    else target.removeAttribute("tabindex");
+  }).observe($("equations"));
   fill($("swept"), nodes(scene.swept.symbol));
   fill($("made"), `Made by ${scene.program}. ${source.note ?? ""}`);
   const every = source.observables.map((_, k) => k);

@@ -94,10 +94,29 @@ const changesTable = (scene, source, go) => {
   return [make("table", {}, make("thead", {}, make("tr", {}, head)), make("tbody", {}, rows))];
 };
 
-/** Equations, parameters and the sweep file. */
+const MATHML = "http://www.w3.org/1998/Math/MathML";
+/** What a layout may be made of. */
+const LAYOUT = new Set(["mrow", "mi", "mn", "mo", "mtext", "mfrac", "msup", "msub", "msqrt", "mroot", "mover", "mtable", "mtr", "mtd"]);
+const mathematics = ([tag, attributes, ...inner]) => {
+  const node = document.createElementNS(MATHML, LAYOUT.has(tag) ? tag : "mrow");
+  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
+  node.append(...inner.map((one) => (typeof one === "string" ? one : mathematics(one))));
+  return node;
+};
+
+/** The equations typeset; as text for those who listen, and for browsers that know no MathML. */
+const equations = (scene) => scene.model.equations.map(({ text, layout }) => {
+  if (typeof MathMLElement === "undefined") return make("code", {}, text);
+  const math = document.createElementNS(MATHML, "math");
+  math.setAttribute("aria-label", text);
+  math.setAttribute("displaystyle", "true");
+  math.append(mathematics(layout));
+  return math;
+});
+
+/** Parameters and the sweep file. */
 const facts = (scene) => [
   make("h3", {}, scene.model.title),
-  make("pre", {}, scene.model.equations.join("\n")),
   make("table", {}, make("tbody", {}, scene.parameters.map((parameter) => make("tr", {},
     make("th", { scope: "row" }, nodes(parameter.symbol)), make("td", {}, parameter.meaning),
     make("td", {}, parameter.value === null ? "swept" : parameter.name === scene.plane?.sides[1].name ? "mapped" : plainNumber(parameter.value, 6)))))),

@@ -17,6 +17,7 @@ use std::sync::Arc;
 use super::coloured::coloured;
 use super::{AxisDescription, Model, NoiseKind, ParameterDescription};
 use crate::formula::language::typeset_name;
+use crate::formula::mathml::{self, Element};
 
 pub use equations::{FormulaHazard, TypedEquations};
 pub use error::{FormulaPlace, TypedModelError};
@@ -271,22 +272,8 @@ impl TypedModel {
 
     /// The equations as they were typed, one a line.
     fn lines(&self) -> Vec<String> {
-        let mut lines = Vec::new();
-        for axis in &self.axes {
-            let own = self.equations.iter().filter(|(name, _)| *name == axis.name);
-            for (name, drift) in own {
-                let mut line = format!("{name}' = {drift}");
-                for (number, process) in self.processes.iter().enumerate() {
-                    for (_, amplitude) in process.iter().filter(|(driven, _)| driven == name) {
-                        line.push_str(&format!(" + ({amplitude}) ξ_{}(t)", number + 1));
-                    }
-                }
-                lines.push(line);
-            }
-        }
-        for (name, formula) in &self.definitions {
-            lines.push(format!("{name} = {formula}"));
-        }
+        let statements = self.statements().into_iter();
+        let mut lines: Vec<String> = statements.map(|one| one.line()).collect();
         if !self.processes.is_empty() {
             let read = match self.interpretation {
                 Some(Interpretation::Ito) => ", read as Itô",
@@ -296,6 +283,64 @@ impl TypedModel {
             lines.push(format!("E[ξ_i(t) ξ_j(t+τ)] = δ_ij δ(τ){read}"));
         }
         lines
+    }
+
+    /// The equations, axis by axis, then the definitions.
+    fn statements(&self) -> Vec<Statement<'_>> {
+        let mut statements = Vec::new();
+        for axis in &self.axes {
+            let own = self.equations.iter().filter(|(name, _)| *name == axis.name);
+            for (name, drift) in own {
+                let processes = self.processes.iter().enumerate();
+                let noises = processes.flat_map(|(number, process)| {
+                    let driven = process.iter().filter(|(driven, _)| driven == name);
+                    driven.map(move |(_, amplitude)| {
+                        (amplitude.as_str(), format!("ξ_{}", number + 1))
+                    })
+                });
+                statements.push(Statement {
+                    left: format!("{name}'"),
+                    right: drift,
+                    noises: noises.collect(),
+                });
+            }
+        }
+        let definitions = self.definitions.iter().map(|(name, formula)| Statement {
+            left: name.clone(),
+            right: formula,
+            noises: Vec::new(),
+        });
+        statements.extend(definitions);
+        statements
+    }
+
+    /// Each statement as its line of [`Model::equations`], and typeset.
+    pub(in crate::system) fn typeset(&self) -> Vec<(String, Element)> {
+        let statements = self.statements().into_iter();
+        let laid = statements.map(|one| {
+            let line = one.line();
+            let element = mathml::equation(&one.left, one.right, &one.noises);
+            let element = element.unwrap_or_else(|_| mathml::stated(&line));
+            (line, element)
+        });
+        laid.collect()
+    }
+}
+
+/// An equation or a definition: its left side, its formula, and amplitudes with the names of their noises.
+struct Statement<'a> {
+    left: String,
+    right: &'a str,
+    noises: Vec<(&'a str, String)>,
+}
+
+impl Statement<'_> {
+    fn line(&self) -> String {
+        let mut line = format!("{} = {}", self.left, self.right);
+        for (amplitude, noise) in &self.noises {
+            line.push_str(&format!(" + ({amplitude}) {noise}(t)"));
+        }
+        line
     }
 }
 

@@ -1,0 +1,90 @@
+//! The layout of a formula from its syntax tree.
+
+use super::LONGEST;
+use super::laid::{Fence, Laid};
+use crate::formula::language::{FormulaError, Function, Operator, Syntax, SyntaxKind};
+
+/// Lays a parsed formula out; one that is very long or deep stays the text that it is.
+pub(super) fn laid(text: &str, syntax: &Syntax) -> Result<Laid, FormulaError> {
+    let as_it_is = || Laid::words(text.trim());
+    if text.len() > LONGEST {
+        return Ok(as_it_is());
+    }
+    // Children stand before their parents, and each has one parent that takes it.
+    let mut made: Vec<Option<Laid>> = Vec::with_capacity(syntax.nodes.len());
+    for node in &syntax.nodes {
+        let part = one(text, syntax, node.kind, &mut made);
+        let Some(part) = part.filter(|part| !part.is_too_deep()) else {
+            return Ok(as_it_is());
+        };
+        made.push(Some(part));
+    }
+    Ok(made.pop().flatten().unwrap_or_else(as_it_is))
+}
+
+fn one(text: &str, syntax: &Syntax, kind: SyntaxKind, made: &mut [Option<Laid>]) -> Option<Laid> {
+    let mut of = |node: u32| made.get_mut(node as usize).and_then(Option::take);
+    Some(match kind {
+        SyntaxKind::Number(value) => Laid::number(value),
+        SyntaxKind::Name(start, end) => Laid::name(text.get(start as usize..end as usize)?),
+        SyntaxKind::Negate(inner) => of(inner)?.negated(),
+        SyntaxKind::Binary(operator, left, right) => {
+            let (left, right) = (of(left)?, of(right)?);
+            binary(operator, left, right)
+        }
+        SyntaxKind::Call(function, first, count) => {
+            let arguments = syntax.arguments_of(first, count).iter();
+            let arguments: Option<Vec<Laid>> = arguments.map(|&node| of(node)).collect();
+            call(function, arguments?)?
+        }
+    })
+}
+
+fn binary(operator: Operator, left: Laid, right: Laid) -> Laid {
+    match operator {
+        Operator::Add => left.plus(right),
+        Operator::Subtract => left.minus(right),
+        Operator::Multiply => left.times(right),
+        Operator::Divide => left.over(right),
+        Operator::Power => left.raised(right),
+        Operator::Less => left.related("<", right),
+        Operator::LessOrEqual => left.related("≤", right),
+        Operator::Greater => left.related(">", right),
+        Operator::GreaterOrEqual => left.related("≥", right),
+        Operator::Equal => left.related("=", right),
+        Operator::NotEqual => left.related("≠", right),
+    }
+}
+
+fn call(function: Function, arguments: Vec<Laid>) -> Option<Laid> {
+    let name = match function {
+        Function::If => {
+            let [condition, yes, no] = <[Laid; 3]>::try_from(arguments).ok()?;
+            return Some(Laid::cases(condition, yes, no));
+        }
+        Function::Pow | Function::Hypot => {
+            let [a, b] = <[Laid; 2]>::try_from(arguments).ok()?;
+            let squared = |one: Laid| one.raised(Laid::number(2.0));
+            return Some(match function {
+                Function::Pow => a.raised(b),
+                _ => squared(a).plus(squared(b)).root(None),
+            });
+        }
+        Function::Sqrt => return Some(sole(arguments)?.root(None)),
+        Function::Cbrt => return Some(sole(arguments)?.root(Some("3"))),
+        Function::Abs => return Some(sole(arguments)?.between(Fence::Bars)),
+        Function::Floor => return Some(sole(arguments)?.between(Fence::Floor)),
+        Function::Sign => "sgn",
+        Function::Log => "ln",
+        Function::Log10 => "log_10",
+        Function::Asin => "arcsin",
+        Function::Acos => "arccos",
+        Function::Atan => "arctan",
+        other => other.name(),
+    };
+    Some(Laid::name(name).called(arguments))
+}
+
+fn sole(arguments: Vec<Laid>) -> Option<Laid> {
+    arguments.into_iter().next()
+}
