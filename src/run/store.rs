@@ -8,14 +8,15 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 use zarrs::array::{Array, ArrayBuilder, data_type};
 use zarrs::storage::store::MemoryStore;
 use zarrs::storage::{ListableStorageTraits, ReadableStorageTraits};
 
-use super::arrays::{KINK_AT, Layout, PARAMETER_CHUNK, REPLICATE_CHUNK};
+use super::arrays::{Layout, PARAMETER_CHUNK, REPLICATE_CHUNK};
 use super::exchange::{Fresh, Leftover};
-use super::{RunError, atomic::write_atomically};
+use super::{RunError, atomic::write_atomically, tree::link_tree};
 use crate::density::{EstimatedDensity, Variants};
 use crate::space::Axis;
 use crate::system::Family;
@@ -29,8 +30,6 @@ pub struct DensityStore {
     axes: Vec<Layout>,
     /// Every array so far with a dimension along the parameter.
     arrays: Vec<Layout>,
-    /// Where the chunks of the last parameter value stand already: a store, and the place in it.
-    written: Option<(PathBuf, u64)>,
     /// Arrays with the lengths that their metadata say.
     described: Vec<Layout>,
 }
@@ -47,7 +46,6 @@ impl DensityStore {
             values: Vec::new(),
             axes: Vec::new(),
             arrays: Vec::new(),
-            written: None,
             described: Vec::new(),
         }
     }
@@ -97,23 +95,63 @@ impl DensityStore {
             return Ok(None);
         }
         let fresh = Fresh::beside(&self.path)?;
-        let mut store = Self::new(&fresh.path);
-        for (value, densities) in densities {
+        let place = |(value, _): &(f64, &[EstimatedDensity])| {
             let mut known = self.values.iter();
-            let place = known.position(|one| one.to_bits() == value.to_bits());
-            store.written = place.map(|place| (self.path.clone(), place as u64));
-            store.add(family, *value, densities)?;
-            if (store.values.len() as u64).is_multiple_of(PARAMETER_CHUNK) {
-                store.write_parameter(family)?;
+            known.position(|one| one.to_bits() == value.to_bits())
+        };
+        let places: Option<Vec<usize>> = densities.iter().map(place).collect();
+        let mut store = match places {
+            Some(places) => self.reordered(&fresh.path, &places)?,
+            None => {
+                let mut store = Self::new(&fresh.path);
+                for (value, densities) in densities {
+                    store.add(family, *value, densities)?;
+                }
+                store
             }
-        }
-        store.written = None;
-        store.write_parameter(family)?;
+        };
+        store.write_parameters(family)?;
         store.write_all_metadata(family, store.values.len() as u64)?;
         let before = fresh.take_place(&self.path)?;
         store.path.clone_from(&self.path);
         *self = store;
         Ok(before)
+    }
+
+    /// The same store at `path` with the parameter values that stand at these places, in this order: its chunks are linked. Parameter and metadata are not
+    /// written yet.
+    fn reordered(&self, path: &Path, places: &[usize]) -> Result<Self, RunError> {
+        let chunks = |store: &Path, layout: &Layout| store.join(&layout.name).join("c");
+        let folder = |layout: &Layout| -> Result<(PathBuf, PathBuf), RunError> {
+            let folder = chunks(path, layout);
+            let made = std::fs::create_dir_all(&folder);
+            made.map_err(|source| RunError::Write {
+                path: folder.clone(),
+                source,
+            })?;
+            Ok((chunks(&self.path, layout), folder))
+        };
+        for layout in &self.axes {
+            let (from, to) = folder(layout)?;
+            link_tree(&from.join("0"), &to.join("0"))?;
+        }
+        // Arrays stand in folders of their own: nobody waits for another.
+        let linked = self.arrays.par_iter().map(|layout| {
+            let (from, to) = folder(layout)?;
+            let mut places = places.iter().enumerate();
+            places.try_for_each(|(new, old)| {
+                link_tree(&from.join(old.to_string()), &to.join(new.to_string()))
+            })
+        });
+        let linked: Vec<Result<(), RunError>> = linked.collect();
+        linked.into_iter().collect::<Result<(), RunError>>()?;
+        let values = places.iter().filter_map(|&place| self.values.get(place));
+        Ok(Self {
+            values: values.copied().collect(),
+            axes: self.axes.clone(),
+            arrays: self.arrays.clone(),
+            ..Self::new(path)
+        })
     }
 
     /// Writes the chunks of one parameter value, and with the first those of the axes.
@@ -202,32 +240,7 @@ impl DensityStore {
         let layout = self.register(layout);
         let mut place = vec![0; layout.dimensions.len()];
         place[0] = self.values.len() as u64 - 1;
-        match self.link_chunk(&layout, &place) {
-            true => Ok(()),
-            false => self.write_chunk(&layout, &place, values),
-        }
-    }
-
-    /// Gives the chunk of the last parameter value that is written already a second place; `false` where it is not, or the file system cannot.
-    fn link_chunk(&self, layout: &Layout, place: &[u64]) -> bool {
-        let Some((store, index)) = &self.written else {
-            return false;
-        };
-        // The numbers of kinks depend on the order of the values.
-        if layout.attributes.contains_key(KINK_AT) {
-            return false;
-        }
-        let file = |store: &Path, first: u64| {
-            let numbers = [&[first], &place[1..]].concat();
-            let names = numbers.iter().map(u64::to_string);
-            let folder = store.join(&layout.name).join("c");
-            names.fold(folder, |path, name| path.join(name))
-        };
-        let (from, to) = (file(store, *index), file(&self.path, place[0]));
-        let folder = to
-            .parent()
-            .is_some_and(|folder| std::fs::create_dir_all(folder).is_ok());
-        folder && std::fs::hard_link(from, to).is_ok()
+        self.write_chunk(&layout, &place, values)
     }
 
     /// Writes replicates at the last parameter value, chunk by chunk; what a chunk does not fill is NaN.
@@ -243,9 +256,6 @@ impl DensityStore {
             values.resize(length, f64::NAN);
             let mut place = vec![0; layout.dimensions.len()];
             (place[0], place[1]) = (self.values.len() as u64 - 1, number as u64);
-            if self.link_chunk(&layout, &place) {
-                continue;
-            }
             self.write_chunk(&layout, &place, &values)?;
         }
         Ok(())
@@ -270,12 +280,28 @@ impl DensityStore {
 
     /// Writes the chunk of parameter values that holds the last one.
     fn write_parameter(&self, family: &Family) -> Result<(), RunError> {
-        let count = self.values.len() as u64;
-        let layout = Layout::parameter(family, count);
-        let index = (count - 1) / PARAMETER_CHUNK;
-        let mut chunk = self.values[(index * PARAMETER_CHUNK) as usize..].to_vec();
+        let chunks = self.values.chunks(PARAMETER_CHUNK as usize);
+        let last = chunks.len().saturating_sub(1);
+        let values = chunks.last().unwrap_or(&[]);
+        self.write_parameter_chunk(family, last, values)
+    }
+
+    /// Writes all parameter values.
+    fn write_parameters(&self, family: &Family) -> Result<(), RunError> {
+        let mut chunks = self.values.chunks(PARAMETER_CHUNK as usize).enumerate();
+        chunks.try_for_each(|(index, values)| self.write_parameter_chunk(family, index, values))
+    }
+
+    fn write_parameter_chunk(
+        &self,
+        family: &Family,
+        index: usize,
+        values: &[f64],
+    ) -> Result<(), RunError> {
+        let layout = Layout::parameter(family, self.values.len() as u64);
+        let mut chunk = values.to_vec();
         chunk.resize(PARAMETER_CHUNK as usize, f64::NAN);
-        self.write_chunk(&layout, &[index], &chunk)
+        self.write_chunk(&layout, &[index as u64], &chunk)
     }
 
     /// Writes an array's metadata, which is also added to `metadata`.
