@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use super::args::{CurveArguments, SweepInput, Work};
 use super::output::OutputFolder;
-use super::stored::Stored;
+use super::stored::{Stored, set};
 use super::{CommandError, Outcome};
 use crate::cancellation::Cancellation;
 use crate::continuation::{LabelledPoint, SweepResult};
@@ -211,7 +211,7 @@ fn swept(
     cancellation: &Cancellation,
 ) -> Result<Option<(Sweep, SweepResult)>, CommandError> {
     if !super::is_sweep_file(&arguments.target) {
-        let overrides = &arguments.overrides;
+        let overrides = &set(&arguments.overrides);
         let stored = Stored::read(
             &arguments.target,
             overrides,

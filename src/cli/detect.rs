@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::args::DetectArguments;
 use super::output::OutputFolder;
-use super::stored::Stored;
+use super::stored::{Stored, set};
 use super::sweep::{draw, outcome, summary};
 use super::{CommandError, Outcome, warnings};
 use crate::run::{Ending, Manifest, RunFolder, StagedRun};
@@ -20,7 +20,7 @@ pub(super) fn run(arguments: &DetectArguments) -> Result<Outcome, CommandError> 
     let clock = Instant::now();
     let stored = Stored::read(
         &arguments.run,
-        &arguments.overrides,
+        &set(&arguments.overrides),
         &SECTIONS,
         arguments.quiet,
     )?;

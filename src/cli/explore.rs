@@ -4,7 +4,7 @@ use std::io::Write as _;
 use std::path::Path;
 
 use super::args::{ExploreArguments, SweepInput};
-use super::stored::Stored;
+use super::stored::{Stored, set};
 use super::sweep::progress::Progress;
 use super::{CommandError, Outcome};
 use crate::cancellation::Cancellation;
@@ -33,7 +33,7 @@ pub(super) fn run(arguments: &ExploreArguments) -> Result<Outcome, CommandError>
     }
     let stored = Stored::read(
         &arguments.target,
-        &arguments.overrides,
+        &set(&arguments.overrides),
         &["detect", "locate"],
         arguments.quiet,
     )?;

@@ -4,7 +4,7 @@ mod plane;
 
 use super::args::PlotArguments;
 use super::output::OutputFolder;
-use super::stored::Stored;
+use super::stored::{Override, Stored, set};
 use super::sweep::draw;
 use super::{CommandError, Outcome};
 use crate::continuation::{Point, SweepResult};
@@ -23,10 +23,10 @@ const OFFERED: usize = 3;
 /// [`CommandError`] when the run cannot be read or a figure not be drawn.
 pub(super) fn run(arguments: &PlotArguments) -> Result<Outcome, CommandError> {
     let mut overrides = overrides(arguments)?;
-    overrides.extend(arguments.overrides.iter().cloned());
+    overrides.extend(set(&arguments.overrides));
     if let Some(stored) = StoredPlane::open(&arguments.run)? {
         // Names of its figures are not those of a sweep.
-        overrides.retain(|one| !one.starts_with("figures.draw="));
+        overrides.retain(|(_, one)| !one.starts_with("figures.draw="));
         return plane::run(&stored, arguments, &overrides);
     }
     if !arguments.with.is_empty() {
@@ -84,23 +84,26 @@ fn check_names(stored: &Stored) -> Result<(), CommandError> {
 }
 
 /// The short options as keys.
-fn overrides(arguments: &PlotArguments) -> Result<Vec<String>, CommandError> {
+fn overrides(arguments: &PlotArguments) -> Result<Vec<Override>, CommandError> {
     let mut keys = Vec::new();
     let texts = |words: &[String]| {
         let quoted = words.iter().map(|word| format!("{:?}", word.trim()));
         quoted.collect::<Vec<_>>().join(", ")
     };
     if !arguments.only.is_empty() {
-        keys.push(format!("figures.draw=[{}]", texts(&arguments.only)));
+        let names = texts(&arguments.only);
+        keys.push(("--only", format!("figures.draw=[{names}]")));
     }
     if !arguments.format.is_empty() {
-        keys.push(format!("figures.formats=[{}]", texts(&arguments.format)));
+        let names = texts(&arguments.format);
+        keys.push(("--format", format!("figures.formats=[{names}]")));
     }
     if !arguments.at.is_empty() {
-        keys.push(format!("figures.at=[{}]", arguments.at.join(", ")));
+        let values = arguments.at.join(", ");
+        keys.push(("--at", format!("figures.at=[{values}]")));
     }
     for word in &arguments.style {
-        keys.push(style_key(word.trim())?);
+        keys.push(("--style", style_key(word.trim())?));
     }
     Ok(keys)
 }

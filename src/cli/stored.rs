@@ -8,6 +8,15 @@ use crate::continuation::SweepResult;
 use crate::run::{RunError, StoredRun};
 use crate::sweep_file::{Diagnostic, Report, Sweep, list};
 
+/// An option of the command line, and the `KEY=VALUE` that it stands for.
+pub(super) type Override = (&'static str, String);
+
+/// What was given with `--set`.
+pub(super) fn set(overrides: &[String]) -> Vec<Override> {
+    let overrides = overrides.iter();
+    overrides.map(|one| ("--set", one.clone())).collect()
+}
+
 /// A run that was read, and what is found in it.
 pub(super) struct Stored {
     pub(super) run: StoredRun,
@@ -22,14 +31,17 @@ impl Stored {
     /// [`CommandError::Input`] for overrides, [`CommandError::Run`] for the run's files.
     pub(super) fn read(
         path: &Path,
-        overrides: &[String],
+        overrides: &[Override],
         sections: &[&str],
         quiet: bool,
     ) -> Result<Self, CommandError> {
         let run = StoredRun::open(path)?;
         check_overrides(overrides, sections)?;
         let mut file = run.sweep_file();
-        let spec = file.set_all("--set", overrides).validate()?.fixed()?;
+        for (option, setting) in overrides {
+            file.set_all(option, [setting]);
+        }
+        let spec = file.validate()?.fixed()?;
         let result = run.detect(&spec)?;
         let stored = Self { run, spec, result };
         if !quiet {
@@ -56,8 +68,8 @@ impl Stored {
 }
 
 /// Refuses overrides of keys that a finished run has used up.
-pub(super) fn check_overrides(overrides: &[String], sections: &[&str]) -> Result<(), Report> {
-    for argument in overrides {
+pub(super) fn check_overrides(overrides: &[Override], sections: &[&str]) -> Result<(), Report> {
+    for (_, argument) in overrides {
         let key = argument.split('=').next().unwrap_or_default().trim();
         let section = key.split('.').next().unwrap_or_default().trim();
         if !sections.contains(&section) {

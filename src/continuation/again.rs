@@ -1,10 +1,12 @@
 //! Detection and location repeated on the points of a finished sweep, without solving.
 
+use rayon::prelude::*;
+
 use super::grid::{
     Checked, CheckedBy, CheckedIndicator, Checks, GridCheck, Leak, Seen, check, known, leak,
 };
 use super::span::Span;
-use super::sweep::fill_distances;
+use super::sweep::distance_between;
 use super::{Goal, LocateOptions, Point, Subject, SweepResult, locate::label_points};
 use crate::topology::Detector;
 
@@ -22,14 +24,12 @@ pub fn detect_again(
     options: &LocateOptions,
 ) -> SweepResult {
     points.sort_by(|a, b| a.value.total_cmp(&b.value));
-    for point in &mut points {
+    points.par_iter_mut().for_each(|point| {
         let densities = point.densities.iter();
         point.detections = densities.map(|one| detector.detect(one)).collect();
         point.distance = None;
-    }
-    for place in 0..points.len() {
-        fill_distances(&mut points, place);
-    }
+    });
+    fill_all_distances(&mut points);
     let span = Span::new(&subject, given);
     let options = &options.goal(span.length());
     let mut repeated = Repeated {
@@ -44,6 +44,19 @@ pub fn detect_again(
         labels,
         checks,
         interrupted: false,
+    }
+}
+
+/// Fills all distances, each from the point with densities before it.
+fn fill_all_distances(points: &mut [Point]) {
+    let has = |index: &usize| !points[*index].densities.is_empty();
+    let solved: Vec<usize> = (0..points.len()).filter(has).collect();
+    let pairs = solved.par_windows(2);
+    let distances: Vec<Option<f64>> = pairs
+        .map(|pair| distance_between(&points[pair[0]], &points[pair[1]]))
+        .collect();
+    for (&place, distance) in solved.iter().skip(1).zip(distances) {
+        points[place].distance = distance;
     }
 }
 

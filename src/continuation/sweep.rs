@@ -358,7 +358,7 @@ impl Run<'_> {
 type Labelled = (Vec<LabelledPoint>, Option<Vec<CheckedIndicator>>);
 
 /// Largest Hellinger distance over the watched densities of two points; `None` when one has none.
-fn distance_between(a: &Point, b: &Point) -> Option<f64> {
+pub(super) fn distance_between(a: &Point, b: &Point) -> Option<f64> {
     let pairs = a.densities.iter().zip(&b.densities);
     pairs
         .filter_map(|(a, b)| hellinger(&a.density, &b.density).ok())
@@ -366,7 +366,7 @@ fn distance_between(a: &Point, b: &Point) -> Option<f64> {
 }
 
 /// Fills the distances that a new point at `place` changes: its own, and that of the next one with densities.
-pub(super) fn fill_distances(points: &mut [Point], place: usize) {
+fn fill_distances(points: &mut [Point], place: usize) {
     if points[place].densities.is_empty() {
         return;
     }

@@ -66,7 +66,9 @@ fn draw(scene: &ComparisonScene<'_>) -> Result<Option<Page>, DrawError> {
         "" => String::new(),
         title => format!("{title}; "),
     };
-    let value = symbols::rounded(accuracy.value);
+    let value = symbols::rounded(accuracy.value)
+        .to_string()
+        .replace('-', "−");
     let heading = Heading::new(
         look,
         &format!("{title}at {} = {value}", family.parameter()),

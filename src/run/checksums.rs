@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use rayon::prelude::*;
 use sha2::{Digest as _, Sha256};
 
 use super::RunError;
@@ -168,22 +169,51 @@ fn is_below(name: &str, entry: &str) -> bool {
 
 /// Adds the checksums of a file, or of all below a folder; nothing where there is none.
 fn add(run: &Path, name: &str, sums: &mut Sums) -> Result<(), RunError> {
+    let mut names = Vec::new();
+    list(run, name, &mut names)?;
+    let summed = names.into_par_iter().map(|name| {
+        let path = run.join(&name);
+        match std::fs::read(&path) {
+            Ok(bytes) => Ok((name, sum(&bytes))),
+            Err(source) => Err(RunError::Read { path, source }),
+        }
+    });
+    let summed: Vec<Result<(String, String), RunError>> = summed.collect();
+    for one in summed {
+        sums.extend([one?]);
+    }
+    Ok(())
+}
+
+/// Names of a file, or of all files below a folder.
+fn list(run: &Path, name: &str, names: &mut Vec<String>) -> Result<(), RunError> {
     let path = run.join(name);
     let unreadable = |source| RunError::Read {
         path: path.clone(),
         source,
     };
-    if path.is_dir() {
+    let Ok(found) = std::fs::metadata(&path) else {
+        return Ok(());
+    };
+    if found.is_dir() {
         for entry in std::fs::read_dir(&path).map_err(unreadable)? {
-            let entry = entry.map_err(unreadable)?.file_name();
-            add(run, &format!("{name}/{}", entry.to_string_lossy()), sums)?;
+            let entry = entry.map_err(unreadable)?;
+            let name = format!("{name}/{}", entry.file_name().to_string_lossy());
+            // What a folder says of its entries spares thousands of questions.
+            match entry.file_type().map_err(unreadable)?.is_file() {
+                true => names.push(name),
+                false => list(run, &name, names)?,
+            }
         }
-    } else if path.is_file() {
-        let digest = Sha256::digest(std::fs::read(&path).map_err(unreadable)?);
-        let hex = digest.iter().map(|byte| format!("{byte:02x}"));
-        sums.insert(name.to_owned(), hex.collect());
+    } else if found.is_file() {
+        names.push(name.to_owned());
     }
     Ok(())
+}
+
+fn sum(bytes: &[u8]) -> String {
+    let digest = Sha256::digest(bytes);
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 fn put(run: &Path, sums: &Sums) -> Result<(), RunError> {

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use rayon::prelude::*;
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 
@@ -236,14 +237,19 @@ impl StoredRun {
         }
         let path = exchange::standing(&self.path.join("densities.zarr"), "zarr.json");
         let stored = StoredDensities::open(&path, subject, (space, bins))?;
-        for point in points.iter_mut().filter(|point| !point.moments.is_empty()) {
+        let read = |point: &mut Point| -> Result<(), RunError> {
             point.densities = stored.at(point.value)?.ok_or_else(|| RunError::NoDensity {
                 path: path.clone(),
                 parameter: family.parameter().to_owned(),
                 value: point.value,
             })?;
-            check_finite(&path, family, point)?;
-        }
+            check_finite(&path, family, point)
+        };
+        let solved = points.par_iter_mut();
+        let solved = solved.filter(|point| !point.moments.is_empty());
+        let results: Vec<Result<(), RunError>> = solved.map(read).collect();
+        // Of several faults the same one is told each time: that of the first point.
+        results.into_iter().collect::<Result<(), RunError>>()?;
         self.check_sums()?;
         Ok(points)
     }

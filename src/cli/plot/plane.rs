@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::super::args::PlotArguments;
 use super::super::output::OutputFolder;
-use super::super::stored::{Stored, check_overrides};
+use super::super::stored::{Override, Stored, check_overrides};
 use super::super::{CommandError, Outcome};
 use crate::continuation::curve::{Curve, Plane, RowInPlane, SweepInPlane};
 use crate::figure::{
@@ -21,7 +21,7 @@ use crate::system::Family;
 pub(super) fn run(
     stored: &StoredPlane,
     arguments: &PlotArguments,
-    overrides: &[String],
+    overrides: &[Override],
 ) -> Result<Outcome, CommandError> {
     if !arguments.at.is_empty() {
         let report = Diagnostic::new("`--at` is for the run of a sweep")
@@ -31,7 +31,10 @@ pub(super) fn run(
     }
     check_overrides(overrides, &["figures"])?;
     let mut file = SweepFile::parse("the stored sweep", stored.resolved());
-    let spec = file.set_all("--set", overrides).validate()?.fixed()?;
+    for (option, setting) in overrides {
+        file.set_all(option, [setting]);
+    }
+    let spec = file.validate()?.fixed()?;
     let (settings, family) = (&spec.settings, spec.problem.family());
     let (title, style) = (&settings.title, &settings.figure_style);
     let content = stored.content(&spec.problem)?;
