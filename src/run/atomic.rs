@@ -1,6 +1,6 @@
 //! Files that appear whole or not at all: written beside their place, then renamed into it.
 
-use std::fs::File;
+use std::fs::{File, FileType};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -83,21 +83,33 @@ const AT_ONCE: usize = 16;
 /// # Errors
 /// [`RunError::Read`] when a folder cannot be read, [`RunError::Write`] when the disk takes a file not.
 pub(super) fn sync_all(places: &[PathBuf]) -> Result<(), RunError> {
-    let (mut files, mut folders) = (Vec::new(), Vec::new());
-    let mut open: Vec<PathBuf> = places.to_vec();
-    while let Some(path) = open.pop() {
-        if path.is_dir() {
-            for entry in std::fs::read_dir(&path).map_err(|source| unreadable(&path, source))? {
-                open.push(entry.map_err(|source| unreadable(&path, source))?.path());
-            }
-            folders.push(path);
-        } else if path.is_file() {
-            files.push(path);
+    let (mut files, mut open, mut folders) = (Vec::new(), Vec::new(), Vec::new());
+    let mut sort = |path: PathBuf, kind: FileType, open: &mut Vec<PathBuf>| match () {
+        () if kind.is_dir() => open.push(path),
+        () if kind.is_file() => files.push(path),
+        () => {}
+    };
+    for place in places {
+        if let Ok(found) = place.metadata() {
+            sort(place.clone(), found.file_type(), &mut open);
         }
     }
-    sync_each(&files)?;
+    while let Some(path) = open.pop() {
+        for entry in std::fs::read_dir(&path).map_err(|source| unreadable(&path, source))? {
+            let entry = entry.map_err(|source| unreadable(&path, source))?;
+            // What a folder says of its entries spares thousands of questions.
+            let kind = entry.file_type();
+            let kind = kind.map_err(|source| unreadable(&path, source))?;
+            sort(entry.path(), kind, &mut open);
+        }
+        folders.push(path);
+    }
+    sync_each(&files, sync_file)?;
     // Names of files that are not on the disk would be worth nothing.
-    sync_each(&folders)
+    sync_each(&folders, |folder| {
+        sync_folder(folder);
+        Ok(())
+    })
 }
 
 fn unreadable(path: &Path, source: std::io::Error) -> RunError {
@@ -107,12 +119,15 @@ fn unreadable(path: &Path, source: std::io::Error) -> RunError {
     }
 }
 
-fn sync_each(paths: &[PathBuf]) -> Result<(), RunError> {
+fn sync_each(
+    paths: &[PathBuf],
+    sync: impl Fn(&Path) -> Result<(), RunError> + Sync,
+) -> Result<(), RunError> {
     let next = AtomicUsize::new(0);
     let failure = Mutex::new(None);
     let work = || {
         while let Some(path) = paths.get(next.fetch_add(1, Ordering::Relaxed)) {
-            if let Err(error) = sync_one(path) {
+            if let Err(error) = sync(path) {
                 let mut failure = failure.lock().unwrap_or_else(PoisonError::into_inner);
                 failure.get_or_insert(error);
             }
@@ -129,11 +144,7 @@ fn sync_each(paths: &[PathBuf]) -> Result<(), RunError> {
     failure.map_or(Ok(()), Err)
 }
 
-fn sync_one(path: &Path) -> Result<(), RunError> {
-    if path.is_dir() {
-        sync_folder(path);
-        return Ok(());
-    }
+fn sync_file(path: &Path) -> Result<(), RunError> {
     // Some systems synchronise only what may be written.
     let mut options = File::options();
     options.read(true).write(cfg!(windows));
@@ -176,7 +187,7 @@ mod tests {
             std::fs::write(deep.join(number.to_string()), "x").unwrap();
         }
         sync_all(&[folder.path().join("a"), folder.path().join("missing")]).unwrap();
-        assert!(sync_one(&deep.join("gone")).is_err());
+        assert!(sync_file(&deep.join("gone")).is_err());
         sync_all(&[]).unwrap();
     }
 

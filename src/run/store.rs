@@ -14,9 +14,13 @@ use zarrs::array::{Array, ArrayBuilder, data_type};
 use zarrs::storage::store::MemoryStore;
 use zarrs::storage::{ListableStorageTraits, ReadableStorageTraits};
 
-use super::arrays::{Layout, PARAMETER_CHUNK, REPLICATE_CHUNK};
+use super::arrays::{KINK_AT, Layout, PARAMETER_CHUNK, REPLICATE_CHUNK};
 use super::exchange::{Fresh, Leftover};
-use super::{RunError, atomic::write_atomically, tree::link_tree};
+use super::{
+    RunError,
+    atomic::write_atomically,
+    tree::{link_numbered, link_tree},
+};
 use crate::density::{EstimatedDensity, Variants};
 use crate::space::Axis;
 use crate::system::Family;
@@ -30,6 +34,8 @@ pub struct DensityStore {
     axes: Vec<Layout>,
     /// Every array so far with a dimension along the parameter.
     arrays: Vec<Layout>,
+    /// Whether the chunks of arrays and axes are not written, because they stand elsewhere and will be linked.
+    is_linked: bool,
     /// Arrays with the lengths that their metadata say.
     described: Vec<Layout>,
 }
@@ -46,6 +52,7 @@ impl DensityStore {
             values: Vec::new(),
             axes: Vec::new(),
             arrays: Vec::new(),
+            is_linked: false,
             described: Vec::new(),
         }
     }
@@ -100,16 +107,15 @@ impl DensityStore {
             known.position(|one| one.to_bits() == value.to_bits())
         };
         let places: Option<Vec<usize>> = densities.iter().map(place).collect();
-        let mut store = match places {
-            Some(places) => self.reordered(&fresh.path, &places)?,
-            None => {
-                let mut store = Self::new(&fresh.path);
-                for (value, densities) in densities {
-                    store.add(family, *value, densities)?;
-                }
-                store
-            }
-        };
+        let mut store = Self::new(&fresh.path);
+        store.is_linked = places.is_some();
+        for (value, densities) in densities {
+            store.add(family, *value, densities)?;
+        }
+        if let Some(places) = places {
+            store.link_chunks(self, &places)?;
+            store.is_linked = false;
+        }
         store.write_parameters(family)?;
         store.write_all_metadata(family, store.values.len() as u64)?;
         let before = fresh.take_place(&self.path)?;
@@ -118,40 +124,45 @@ impl DensityStore {
         Ok(before)
     }
 
-    /// The same store at `path` with the parameter values that stand at these places, in this order: its chunks are linked. Parameter and metadata are not
-    /// written yet.
-    fn reordered(&self, path: &Path, places: &[usize]) -> Result<Self, RunError> {
-        let chunks = |store: &Path, layout: &Layout| store.join(&layout.name).join("c");
-        let folder = |layout: &Layout| -> Result<(PathBuf, PathBuf), RunError> {
-            let folder = chunks(path, layout);
-            let made = std::fs::create_dir_all(&folder);
-            made.map_err(|source| RunError::Write {
-                path: folder.clone(),
-                source,
-            })?;
-            Ok((chunks(&self.path, layout), folder))
+    /// Gives all chunks of arrays and axes a second place here: those that stand in another store at these places.
+    fn link_chunks(&self, other: &Self, places: &[usize]) -> Result<(), RunError> {
+        let chunks = |store: &Self, layout: &Layout| store.path.join(&layout.name).join("c");
+        let folders = |layout: &Layout, known: &Layout| -> Result<(PathBuf, PathBuf), RunError> {
+            let to = chunks(self, layout);
+            match std::fs::create_dir_all(&to) {
+                Ok(()) => Ok((chunks(other, known), to)),
+                Err(source) => Err(RunError::Write { path: to, source }),
+            }
         };
         for layout in &self.axes {
-            let (from, to) = folder(layout)?;
+            let (from, to) = folders(layout, layout)?;
             link_tree(&from.join("0"), &to.join("0"))?;
         }
         // Arrays stand in folders of their own: nobody waits for another.
         let linked = self.arrays.par_iter().map(|layout| {
-            let (from, to) = folder(layout)?;
-            let mut places = places.iter().enumerate();
-            places.try_for_each(|(new, old)| {
-                link_tree(&from.join(old.to_string()), &to.join(new.to_string()))
-            })
+            // The numbers of kinks depend on the order of the values.
+            let is_kink = layout.attributes.contains_key(KINK_AT);
+            let is_it = |known: &&Layout| match is_kink {
+                true => known.is_kink(layout),
+                false => known.name == layout.name,
+            };
+            let Some(known) = other.arrays.iter().find(is_it) else {
+                return Ok(());
+            };
+            let (from, to) = folders(layout, known)?;
+            let dimensions = layout.dimensions.iter().zip(&layout.chunk).skip(1);
+            let counts: Vec<u64> = dimensions.map(|(d, chunk)| d.1.div_ceil(*chunk)).collect();
+            for (new, old) in places.iter().enumerate() {
+                let (from, to) = (from.join(old.to_string()), to.join(new.to_string()));
+                // A kink may be missing at some value.
+                if from.exists() {
+                    link_numbered(&from, &to, &counts)?;
+                }
+            }
+            Ok(())
         });
         let linked: Vec<Result<(), RunError>> = linked.collect();
-        linked.into_iter().collect::<Result<(), RunError>>()?;
-        let values = places.iter().filter_map(|&place| self.values.get(place));
-        Ok(Self {
-            values: values.copied().collect(),
-            axes: self.axes.clone(),
-            arrays: self.arrays.clone(),
-            ..Self::new(path)
-        })
+        linked.into_iter().collect()
     }
 
     /// Writes the chunks of one parameter value, and with the first those of the axes.
@@ -250,6 +261,9 @@ impl DensityStore {
         replicates: &[Vec<f64>],
     ) -> Result<(), RunError> {
         let layout = self.register(layout);
+        if self.is_linked {
+            return Ok(());
+        }
         let length = layout.chunk.iter().product::<u64>() as usize;
         for (number, part) in replicates.chunks(REPLICATE_CHUNK as usize).enumerate() {
             let mut values = part.concat();
@@ -320,6 +334,9 @@ impl DensityStore {
 
     /// Writes one chunk of an array.
     fn write_chunk(&self, layout: &Layout, place: &[u64], values: &[f64]) -> Result<(), RunError> {
+        if self.is_linked {
+            return Ok(());
+        }
         let (memory, array) = self.array(layout)?;
         array
             .store_chunk(place, values)

@@ -26,6 +26,22 @@ pub(super) fn link_tree(from: &Path, to: &Path) -> Result<(), RunError> {
     Ok(())
 }
 
+/// The same of folders whose entries are numbered, so many of them at each level, files at the last: they need not be listed.
+///
+/// # Errors
+/// As [`link_tree`].
+pub(super) fn link_numbered(from: &Path, to: &Path, counts: &[u64]) -> Result<(), RunError> {
+    let Some((&count, deeper)) = counts.split_first() else {
+        return match std::fs::hard_link(from, to) {
+            Ok(()) => Ok(()),
+            Err(_) => link_tree(from, to),
+        };
+    };
+    make(to)?;
+    let mut numbers = (0..count).map(|number| number.to_string());
+    numbers.try_for_each(|name| link_numbered(&from.join(&name), &to.join(&name), deeper))
+}
+
 /// Whether everything below `part` is also below `whole`, with the same bytes.
 pub(super) fn is_part(part: &Path, whole: &Path) -> bool {
     if part.is_dir() {
