@@ -111,6 +111,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         "explore",
         &[
             "cancellation",
+            "formula",
             "system",
             "space",
             "monte_carlo",
