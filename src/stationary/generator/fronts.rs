@@ -15,6 +15,7 @@ use faer::linalg::triangular_solve::{
 use faer::{Accum, MatMut, MatRef, Par};
 
 use super::symbolic::{Front, Symbolic};
+use super::updates::Updates;
 use crate::cancellation::{Cancellation, Cancelled};
 
 /// Numbers a factorisation is made of: `f64`, or `f32` at half the memory and twice the speed.
@@ -73,8 +74,17 @@ pub(super) struct Factor<T> {
     pub(super) rows: Vec<u32>,
 }
 
+/// The numbers of a factorisation, and the memory that makes them.
+#[derive(Debug)]
+pub(super) struct Factors<T> {
+    /// Of every front.
+    pub(super) fronts: Vec<Factor<T>>,
+    /// For the updates of fronts in flight; kept, because memory that is asked for anew costs as much as writing it.
+    updates: Vec<T>,
+}
+
 /// Makes room for the factors.
-pub(super) fn allocate<T: Number>(symbolic: &Symbolic) -> Vec<Factor<T>> {
+pub(super) fn allocate<T: Number>(symbolic: &Symbolic) -> Factors<T> {
     let factor = |front: &Front| {
         let (k, m) = (front.node.own.len(), front.boundary);
         Factor {
@@ -83,7 +93,10 @@ pub(super) fn allocate<T: Number>(symbolic: &Symbolic) -> Vec<Factor<T>> {
             rows: vec![0; k],
         }
     };
-    symbolic.fronts.iter().map(factor).collect()
+    Factors {
+        fronts: symbolic.fronts.iter().map(factor).collect(),
+        updates: vec![T::from_rate(0.0); symbolic.updates().total()],
+    }
 }
 
 /// Factorises: `values` are the rates in the order of the matrix's data, scaled to about one, zero in the row and column of the
@@ -95,7 +108,7 @@ pub(super) fn factorise<T: Number>(
     symbolic: &Symbolic,
     values: &[f64],
     held: usize,
-    factors: &mut [Factor<T>],
+    factors: &mut Factors<T>,
     cancellation: &Cancellation,
 ) -> Result<(), Cancelled> {
     if let Some(root) = symbolic.fronts.len().checked_sub(1) {
@@ -105,7 +118,8 @@ pub(super) fn factorise<T: Number>(
             held,
             cancellation,
         };
-        task.subtree(root, factors)?;
+        let updates = Updates::new(&mut factors.updates, symbolic.updates());
+        task.subtree(root, &mut factors.fronts, updates)?;
     }
     cancellation.check()
 }
@@ -119,34 +133,38 @@ struct Task<'a> {
 }
 
 impl Task<'_> {
-    /// Factorises a subtree (`factors` are those of its nodes); gives the m × m update of its top.
+    /// Factorises a subtree (`factors` are those of its nodes); the m × m update of its top comes first in `updates`.
     fn subtree<T: Number>(
         &self,
         top: usize,
         factors: &mut [Factor<T>],
-    ) -> Result<Vec<T>, Cancelled> {
+        mut updates: Updates<'_, T>,
+    ) -> Result<(), Cancelled> {
         let fronts = &self.symbolic.fronts;
         let front = &fronts[top];
         let Some((factor, below)) = factors.split_last_mut() else {
-            return Ok(Vec::new());
+            return Ok(());
         };
-        let updates = front.node.children.map(|[left, right]| {
+        if let Some([left, right]) = front.node.children {
             let (of_left, of_right) = below.split_at_mut(left + 1 - front.node.first);
-            rayon::join(
-                || self.subtree(left, of_left),
-                || self.subtree(right, of_right),
-            )
-        });
-        self.cancellation.check()?;
-        let m = front.boundary;
-        let mut update = vec![T::from_rate(0.0); m * m];
-        self.assemble(front, factor);
-        if let (Some([left, right]), Some((of_left, of_right))) = (front.node.children, updates) {
-            extend(&fronts[left], of_left?, front, factor, &mut update);
-            extend(&fronts[right], of_right?, front, factor, &mut update);
+            let [first, second] = updates.below(fronts[left].updates);
+            let done = rayon::join(
+                || self.subtree(left, of_left, first),
+                || self.subtree(right, of_right, second),
+            );
+            done.0.and(done.1)?;
         }
-        eliminate(front, factor, &mut update, self.cancellation);
-        Ok(update)
+        self.cancellation.check()?;
+        self.assemble(front, factor);
+        let (update, children) = updates.top(front.boundary);
+        update.fill(T::from_rate(0.0));
+        if let Some([left, right]) = front.node.children {
+            let (of_left, of_right) = children.split_at(fronts[left].updates.of_top);
+            extend(&fronts[left], of_left, front, factor, update);
+            extend(&fronts[right], of_right, front, factor, update);
+        }
+        eliminate(front, factor, update, self.cancellation);
+        Ok(())
     }
 
     /// Puts the matrix's own entries into the front.
@@ -173,10 +191,10 @@ impl Task<'_> {
     }
 }
 
-/// Adds a child's update; its boundary is ascending in the parent's local numbers, own cells first.
+/// Adds a child's update, with which `of_child` begins; its boundary is ascending in the parent's local numbers, own cells first.
 fn extend<T: Number>(
     child: &Front,
-    of_child: Vec<T>,
+    of_child: &[T],
     front: &Front,
     factor: &mut Factor<T>,
     update: &mut [T],

@@ -10,6 +10,7 @@
 //! | `dissection` | elimination order from the geometry of the grid |
 //! | `prediction` | memory and work before any matrix is there |
 //! | `symbolic`, `fronts`, `triangular` | multifrontal LU: structure, numbers, substitution |
+//! | `updates` | where fronts leave what they add to their parents' |
 //! | `narrowing` | a matrix of reach one that stands in where the factors would not fit |
 //! | `preconditioner` | one of these factorisations, with one cell held |
 //! | `balance` | residual and Jacobian of the (quasi-)steady state |
@@ -37,6 +38,7 @@ mod symmetric;
 #[cfg(test)]
 mod tests;
 mod triangular;
+mod updates;
 
 pub use memory::SolverMemory;
 pub use preconditioner::{Estimate, RateMethod, estimate};

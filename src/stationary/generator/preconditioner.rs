@@ -4,7 +4,7 @@ use sprs::CsMat;
 
 use super::RateError;
 use super::dissection::{Dissection, Grid};
-use super::fronts::{Factor, allocate, factorise};
+use super::fronts::{Factors, allocate, factorise};
 use super::narrowing::narrow;
 use super::prediction::{Prediction, predict};
 use super::symbolic::Symbolic;
@@ -162,8 +162,8 @@ pub(super) fn estimate_of(
 }
 
 enum Numbers {
-    Double(Vec<Factor<f64>>),
-    Single(Vec<Factor<f32>>),
+    Double(Factors<f64>),
+    Single(Factors<f32>),
 }
 
 /// M⁻¹ for M = Q (or its stand-in) with the row and column of one cell replaced by the identity's.
@@ -262,8 +262,8 @@ impl Preconditioner {
         let mut x: [Vec<f64>; R] = residuals.map(ordered);
         let vectors = x.each_mut().map(Vec::as_mut_slice);
         match &self.numbers {
-            Numbers::Double(factors) => triangular::solve(&self.symbolic, factors, vectors),
-            Numbers::Single(factors) => triangular::solve(&self.symbolic, factors, vectors),
+            Numbers::Double(factors) => triangular::solve(&self.symbolic, &factors.fronts, vectors),
+            Numbers::Single(factors) => triangular::solve(&self.symbolic, &factors.fronts, vectors),
         }
         x.map(|x| {
             let mut out = vec![0.0; x.len()];

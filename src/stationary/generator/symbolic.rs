@@ -5,6 +5,7 @@
 use sprs::CsMat;
 
 use super::dissection::{Dissection, Node};
+use super::updates::UpdateSpace;
 
 /// A stored rate and its place in a front: local row and column, own cells first, then the boundary.
 #[derive(Debug, Clone, Copy)]
@@ -28,6 +29,8 @@ pub(super) struct Front {
     pub(super) in_parent: Vec<u32>,
     /// The rates assembled here.
     pub(super) entries: Vec<Entry>,
+    /// What the updates of the subtree take.
+    pub(super) updates: UpdateSpace,
 }
 
 /// The structure of all fronts, children before parents.
@@ -103,11 +106,15 @@ impl Symbolic {
             for place in own.clone().chain(boundary.iter().map(|&p| p as usize)) {
                 local[place] = u32::MAX;
             }
+            let below = node
+                .children
+                .map(|pair| pair.map(|child| fronts[child].updates));
             fronts.push(Front {
                 node: node.clone(),
                 boundary: boundary.len(),
                 in_parent: Vec::new(),
                 entries,
+                updates: UpdateSpace::above(below.unwrap_or_default(), boundary.len()),
             });
             boundaries.push(boundary);
         }
@@ -121,6 +128,13 @@ impl Symbolic {
     pub(super) fn first_unknown(&self, top: usize) -> usize {
         let first = self.fronts[top].node.first;
         self.fronts[first].node.own.start
+    }
+
+    /// What the updates of all fronts take.
+    pub(super) fn updates(&self) -> UpdateSpace {
+        self.fronts
+            .last()
+            .map_or_else(UpdateSpace::default, |root| root.updates)
     }
 
     /// Numbers in the factors.
