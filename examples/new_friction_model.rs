@@ -16,7 +16,7 @@ use pbif::space::{Axis, CellSpace};
 use pbif::system::friction::{FrictionLaw, Motion};
 use pbif::system::{
     AxisDescription, Duffing, Family, Model, Oscillator, ParameterDescription, ParameterRange,
-    Path, SwitchingSurface, VELOCITY, Viscous, contract,
+    Path, Viscous, contract,
 };
 use pbif::topology::{DetectOptions, PersistenceDetector};
 
@@ -85,11 +85,8 @@ impl FrictionLaw<0> for StribeckOnBelt {
         }
     }
 
-    fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
-        vec![SwitchingSurface {
-            axis: VELOCITY,
-            at: self.speed,
-        }]
+    fn base_velocity(&self) -> Option<f64> {
+        Some(self.speed)
     }
 }
 

@@ -36,6 +36,15 @@ Exit status: 0 done; 1 finished, but some row is unresolved, did not converge or
 Results are never overwritten: an earlier run in the same folder is kept in its folder previous/1,
 previous/2, and so on.";
 
+const SYSTEMS_EXAMPLES: &str = "\
+Examples:
+  pbif systems
+  pbif systems dahl
+  pbif systems lugre --plot
+  pbif systems lugre --plot --set f_s=2 --set v_s=0.2 --format pdf,csv,txt --style single,serif --out figures
+
+A parameter that has no default and is not set takes a value about 1 that shows the shape of the law.";
+
 const DETECT_EXAMPLES: &str = "\
 Examples:
   pbif detect output/coulomb_fc --set detect.confidence=0.99
@@ -246,12 +255,35 @@ pub(super) enum Command {
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
     },
-    /// List the models, or show one: equations, axes, parameters, domain, source
-    #[command(after_help = "Examples:\n  pbif systems\n  pbif systems dahl")]
+    /// List the models, or show one: equations, axes, parameters, domain, source; or draw its friction law
+    #[command(after_help = SYSTEMS_EXAMPLES)]
     Systems {
         /// Model to show
         name: Option<String>,
+        /// How it is drawn.
+        #[command(flatten)]
+        drawn: FrictionPlotArguments,
     },
+}
+
+/// How a friction law is drawn.
+#[derive(Debug, Args)]
+pub(crate) struct FrictionPlotArguments {
+    /// Draw the friction law of the model: force against velocity, and hysteresis loops
+    #[arg(long, requires = "name")]
+    pub(crate) plot: bool,
+    /// Value of a parameter of the law, such as f_s=1.5, or a key under figures (repeatable; the last one counts)
+    #[arg(long = "set", value_name = "NAME=VALUE", requires = "plot")]
+    pub(crate) overrides: Vec<String>,
+    /// Style: a width, and words such as serif, grey, dark, no-title
+    #[arg(long, value_name = "WORDS", value_delimiter = ',', requires = "plot")]
+    pub(crate) style: Vec<String>,
+    /// File formats: svg, png, pdf; csv for the numbers behind the figure, txt for its caption [default: svg,png]
+    #[arg(long, value_name = "FORMATS", value_delimiter = ',', requires = "plot")]
+    pub(crate) format: Vec<String>,
+    /// Folder for the figure [default: output/systems]
+    #[arg(long, value_name = "DIR", requires = "plot")]
+    pub(crate) out: Option<PathBuf>,
 }
 
 /// A sweep file with its overrides.

@@ -9,6 +9,7 @@ mod curve;
 mod detect;
 mod explore;
 mod export;
+mod friction;
 mod interrupts;
 mod list;
 mod manual;
@@ -201,8 +202,17 @@ fn dispatch(command: &Command) -> Result<Outcome, CommandError> {
         Command::Cite { run } => cite::run(run.as_deref()),
         Command::Verify { run } => verify::run(run),
         Command::New { file, like } => print(&new::run(file.as_deref(), like.as_deref())?),
-        Command::Systems { name: None } => print(&systems::list()),
-        Command::Systems { name: Some(name) } => print(&systems::describe(name)?),
+        Command::Systems { name: None, .. } => print(&systems::list()),
+        Command::Systems {
+            name: Some(name),
+            drawn,
+        } if drawn.plot => {
+            let model = systems::find(name)?;
+            friction::run(&model, drawn)
+        }
+        Command::Systems {
+            name: Some(name), ..
+        } => print(&systems::describe(name)?),
     }
 }
 

@@ -109,7 +109,7 @@ fn overrides(arguments: &PlotArguments) -> Result<Vec<Override>, CommandError> {
 }
 
 /// The key that a word of `--style` sets.
-fn style_key(word: &str) -> Result<String, CommandError> {
+pub(super) fn style_key(word: &str) -> Result<String, CommandError> {
     let is_name = |names: &[&str]| names.contains(&word);
     let widths: Vec<&str> = FigureWidth::NAMED
         .into_iter()

@@ -1,10 +1,12 @@
 //! `pbif systems`: the list of models, and everything that is known of one.
 
 use std::fmt::Write as _;
+use std::sync::Arc;
 
 use comfy_table::{Table, presets};
 
 use crate::sweep_file::{Diagnostic, Report, starting_files};
+use crate::system::friction::pulled::{has_friction, shown_values};
 use crate::system::{Model, System, registry};
 
 /// The table of models.
@@ -35,15 +37,24 @@ fn table(header: &[&str]) -> Table {
     table
 }
 
-/// Everything about one model.
+/// The model of that name.
 ///
 /// # Errors
 /// A report when there is no such model.
-pub(super) fn describe(name: &str) -> Result<String, Report> {
-    let model = registry::find(name).map_err(|error| {
+pub(super) fn find(name: &str) -> Result<Arc<Model>, Report> {
+    let found = registry::find(name).map_err(|error| {
         let names = registry::models().iter().map(|model| model.name.as_str());
         Diagnostic::new(error.to_string()).nearest(name, names)
-    })?;
+    });
+    Ok(found?)
+}
+
+/// Everything about one model.
+///
+/// # Errors
+/// As [`find`].
+pub(super) fn describe(name: &str) -> Result<String, Report> {
+    let model = find(name)?;
     let mut text = String::new();
     // Writing to a string cannot fail.
     let _ = write_model(&mut text, &model);
@@ -86,6 +97,14 @@ fn write_model(text: &mut String, model: &Model) -> std::fmt::Result {
         writeln!(
             text,
             "\nA sweep to start from\n  pbif new mine.toml --like {name}"
+        )?;
+    }
+    let shown = shown_values(model, &[]);
+    if shown.is_ok_and(|values| has_friction(model.system(&values).as_ref())) {
+        writeln!(
+            text,
+            "\nA picture of its force\n  pbif systems {} --plot",
+            model.name
         )?;
     }
     Ok(())

@@ -13,6 +13,12 @@ pub enum FigureError {
     /// Nothing was given to draw.
     #[error("there is nothing to draw")]
     Nothing,
+    /// The model has no friction law, or one that exerts no force with the values it has.
+    #[error("`{model}` has no friction force to draw")]
+    NoFriction {
+        /// Name of the model.
+        model: String,
+    },
     /// There is no figure of that name.
     #[error("there is no figure `{name}`, only {}", known.join(", "))]
     Unknown {

@@ -136,6 +136,13 @@ pub trait System: Send + Sync {
         None
     }
 
+    /// Friction force per unit mass at a state, its viscous part left out, of an oscillator with a friction law (axes: displacement,
+    /// velocity, internal states of the law); `None` without one.
+    fn friction_force(&self, state: &[f64]) -> Option<f64> {
+        let _ = state;
+        None
+    }
+
     /// Logarithm of the steady-state density at a state, up to a constant, where it is known exactly.
     fn exact_log_density(&self, state: &[f64]) -> Option<f64> {
         let _ = state;

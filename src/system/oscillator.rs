@@ -209,6 +209,17 @@ impl<D: Damping, F: FrictionLaw<N>, const N: usize> System for Oscillator<D, F, 
         })
     }
 
+    fn friction_force(&self, state: &[f64]) -> Option<f64> {
+        let (&[displacement, velocity], internal) = state.split_first_chunk()?;
+        let internal: &[f64; N] = internal.try_into().ok()?;
+        let motion = Motion {
+            displacement,
+            velocity,
+        };
+        let rates = self.friction.rates(motion, internal);
+        (!self.friction.is_absent()).then(|| self.friction.force(motion, internal, &rates))
+    }
+
     /// Known without friction and with noise: p ∝ exp(-(2/σ²) ∫₀ᴴ h dH).
     fn exact_log_density(&self, state: &[f64]) -> Option<f64> {
         let &[displacement, velocity] = state else {
@@ -261,15 +272,8 @@ mod tests {
             Some((-limit, limit))
         }
 
-        fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
-            vec![SwitchingSurface {
-                axis: VELOCITY,
-                at: 0.0,
-            }]
-        }
-
-        fn is_odd(&self) -> bool {
-            true
+        fn base_velocity(&self) -> Option<f64> {
+            Some(0.0)
         }
     }
 

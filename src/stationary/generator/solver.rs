@@ -1,27 +1,21 @@
 //! The solver: iterates with the factorisation it has, factorises when iterating would cost more.
 
+mod factors;
+mod held;
+mod restore;
+
 use sprs::CsMat;
 
 use super::balance::Balance;
-use super::memory::SolverMemory;
-use super::narrowing;
 use super::newton::{Newton, Progress};
 use super::passes::{Seat, alone, together};
-use super::preconditioner::{Estimate, Preconditioner, Structure, estimate_of};
+use super::preconditioner::{Estimate, Preconditioner, Structure};
 use super::response::{Question, answer};
 use super::{RateError, RateInfo, RateMethod, RateOptions, RateSteadyState};
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::space::CellSpace;
-
-/// Iterations that a factorisation takes the time of: so many for moving every number of the factors about, and so many
-/// for each arithmetic operation a number. Measured (`benches/rates.rs`) from 50² to 30³ cells, in both precisions, within
-/// a third: iterations are bound by memory, factorisations by arithmetic the larger they are.
-const RENEWAL: (f64, f64) = (12.0, 0.027);
-/// If the held cell carries less than this share of the largest mass, another one is held in new factors, and new ones are
-/// made if a solve fails.
-const WEAK_HELD_SHARE: f64 = 1e-2;
-/// The held cell must carry at least this share of the largest mass, or another one is held.
-const LEAST_HELD_SHARE: f64 = 1e-8;
+use factors::renewal;
+use held::{WEAK_HELD_SHARE, largest};
 
 /// Solves generators on one cell space, keeping the factorisation from one to the next.
 pub(super) struct DirectSolver {
@@ -73,77 +67,6 @@ impl DirectSolver {
     /// Factorisations that were made since the solver was.
     pub(super) fn factorisations(&self) -> usize {
         self.factorisations
-    }
-
-    /// Where the solver stands, but for the matrices.
-    pub(super) fn memory(&self) -> SolverMemory {
-        let of = |(structure, plan): &(Structure, Estimate)| (structure.reach.clone(), plan.method);
-        SolverMemory {
-            plan: self.plan.as_ref().map(of),
-            factorised: self.factorised.clone(),
-            folded: false,
-            held: self.preconditioner.as_ref().map_or(0, |kept| kept.held),
-            excess: self.excess,
-            baseline: self.baseline,
-        }
-    }
-
-    /// Brings a fresh solver to where another one on the same cells was: `factorised` is the matrix that it had factorised, `last`
-    /// that of its last solve with the escape. What is solved then is the same to the bit.
-    ///
-    /// # Errors
-    /// As [`RateSolver::solve`].
-    pub(super) fn restore(
-        &mut self,
-        memory: &SolverMemory,
-        factorised: Option<&CsMat<f64>>,
-        last: Option<(CsMat<f64>, Vec<f64>)>,
-    ) -> Result<(), RateError> {
-        let cells = self.space.n_cells();
-        shape(
-            cells,
-            "held cell",
-            if memory.held < cells {
-                cells
-            } else {
-                memory.held
-            },
-        )?;
-        for matrix in factorised
-            .into_iter()
-            .chain(last.as_ref().map(|last| &last.0))
-        {
-            shape(cells, "columns", matrix.cols())?;
-        }
-        if let (Some((reach, method)), Some(matrix)) = (&memory.factorised, factorised) {
-            let (space, cancellation) = (&self.space, &self.cancellation);
-            let held = memory.held;
-            let structure = self.structure_of(reach);
-            let made =
-                Preconditioner::new(space, &structure, *method, matrix, held, None, cancellation)?;
-            self.preconditioner = Some(made);
-        }
-        self.plan = match &memory.plan {
-            Some((reach, method)) => {
-                let limit = self.options.memory_limit_bytes;
-                let structure = self.structure_of(reach);
-                let plan = estimate_of(&self.space, &structure, limit, Some(*method))?;
-                Some((structure, plan))
-            }
-            None => None,
-        };
-        self.factorised.clone_from(&memory.factorised);
-        (self.excess, self.baseline) = (memory.excess, memory.baseline);
-        self.last = last;
-        Ok(())
-    }
-
-    /// The structure of a matrix of this reach.
-    fn structure_of(&self, reach: &[usize]) -> Structure {
-        Structure {
-            reach: reach.to_vec(),
-            ..self.given.clone().unwrap_or_default()
-        }
     }
 
     /// The (quasi-)steady state of a generator: `matrix` is n × n by columns (CSC), column j the rates out of
@@ -233,41 +156,6 @@ impl DirectSolver {
         Ok((steady, answer))
     }
 
-    /// Whether iterating with the factorisation at hand has come to cost more than a new one would.
-    pub(super) fn is_worn(&self) -> bool {
-        let plan = self.plan.as_ref();
-        plan.is_some_and(|(_, plan)| self.excess >= renewal(plan))
-    }
-
-    /// Factorises a matrix near those that are solved next, in place of the first of them; `mass` is about its steady state.
-    ///
-    /// # Errors
-    /// As [`DirectSolver::solve`].
-    pub(super) fn renew(
-        &mut self,
-        matrix: &CsMat<f64>,
-        escape: &[f64],
-        mass: &[f64],
-    ) -> Result<(), RateError> {
-        self.check(matrix, escape)?;
-        shape(self.space.n_cells(), "mass", mass.len())?;
-        let plan = self.plan(matrix)?;
-        let held = self.better_held(self.choose_held(matrix, mass), mass);
-        Ok(self.factorise(matrix, held, &plan)?)
-    }
-
-    /// The plan to fall back to when single precision did not converge; kept for later solves.
-    fn in_double_precision(&mut self, plan: &Estimate) -> Option<Estimate> {
-        let (structure, _) = self.plan.as_ref()?;
-        let limit = self.options.memory_limit_bytes;
-        if plan.method != RateMethod::LuSingle || self.options.method.is_some() {
-            return None;
-        }
-        let double = estimate_of(&self.space, structure, limit, Some(RateMethod::Lu)).ok()?;
-        self.plan = Some((structure.clone(), double));
-        Some(double)
-    }
-
     pub(super) fn check(&self, matrix: &CsMat<f64>, escape: &[f64]) -> Result<(), RateError> {
         let cells = self.space.n_cells();
         shape(cells, "rows", matrix.rows())?;
@@ -294,89 +182,6 @@ impl DirectSolver {
             return Err(RateError::Guess);
         }
         Ok(guess.iter().map(|value| value / sum).collect())
-    }
-
-    /// The method, chosen again only when the stencil's reach grows.
-    fn plan(&mut self, matrix: &CsMat<f64>) -> Result<Estimate, RateError> {
-        if let (Some((_, plan)), Some((last, _))) = (&self.plan, &self.last)
-            && last.indptr() == matrix.indptr()
-            && last.indices() == matrix.indices()
-        {
-            return Ok(*plan);
-        }
-        let structure = self.given.clone().unwrap_or_else(|| Structure {
-            reach: narrowing::reach(&self.space, matrix),
-            folded: None,
-        });
-        if let Some((planned, plan)) = &self.plan
-            && planned
-                .reach
-                .iter()
-                .zip(&structure.reach)
-                .all(|(old, new)| new <= old)
-        {
-            return Ok(*plan);
-        }
-        let options = &self.options;
-        let plan = estimate_of(
-            &self.space,
-            &structure,
-            options.memory_limit_bytes,
-            options.method,
-        )?;
-        self.plan = Some((structure, plan));
-        Ok(plan)
-    }
-
-    /// The cell to hold: the one that is held, if it carries mass; the most probable one of the guess; without
-    /// a guess the one that is left most slowly, which is near a point of rest.
-    fn choose_held(&self, matrix: &CsMat<f64>, mass: &[f64]) -> usize {
-        if mass.is_empty() {
-            let rate = |cell: usize| matrix.get(cell, cell).map_or(0.0, |rate| rate.abs());
-            let cells = 0..matrix.cols();
-            let slowest = cells.min_by(|&a, &b| rate(a).total_cmp(&rate(b)));
-            return slowest.unwrap_or(0);
-        }
-        let (best, largest) = largest(mass);
-        let kept = self.preconditioner.as_ref().map(|kept| kept.held);
-        // Between wiggles, and at the nodes of a series, a cell's mass may be below zero: its size is what holds.
-        kept.filter(|&held| mass[held].abs() >= LEAST_HELD_SHARE * largest)
-            .unwrap_or(best)
-    }
-
-    /// The cell to hold in new factors: the old one unless it carries little mass, which would be lost in the next
-    /// points.
-    fn better_held(&self, held: usize, mass: &[f64]) -> usize {
-        if mass.is_empty() {
-            return held;
-        }
-        let (best, largest) = largest(mass);
-        if mass[held].abs() < WEAK_HELD_SHARE * largest {
-            best
-        } else {
-            held
-        }
-    }
-
-    fn factorise(
-        &mut self,
-        matrix: &CsMat<f64>,
-        held: usize,
-        plan: &Estimate,
-    ) -> Result<(), Cancelled> {
-        let unplanned = Structure::default();
-        let structure = self
-            .plan
-            .as_ref()
-            .map_or(&unplanned, |(structure, _)| structure);
-        let old = self.preconditioner.take();
-        let (space, method, cancellation) = (&self.space, plan.method, &self.cancellation);
-        let new = Preconditioner::new(space, structure, method, matrix, held, old, cancellation)?;
-        self.factorised = Some((structure.reach.clone(), method));
-        self.preconditioner = Some(new);
-        self.factorisations += 1;
-        self.excess = 0;
-        Ok(())
     }
 
     /// Improves `mass` with the factorisation at hand; gives the answer to the question, if there is one.
@@ -474,18 +279,4 @@ pub(super) fn shape(cells: usize, part: &'static str, found: usize) -> Result<()
     } else {
         Err(RateError::Shape { cells, part, found })
     }
-}
-
-/// Iterations that cost as much as a factorisation.
-fn renewal(plan: &Estimate) -> usize {
-    let numbers = 0.5 * plan.iteration_operations;
-    (RENEWAL.0 + RENEWAL.1 * plan.operations / numbers) as usize
-}
-
-/// The cell with the largest mass, and that mass.
-fn largest(mass: &[f64]) -> (usize, f64) {
-    let cells = mass.iter().copied().enumerate();
-    cells.fold((0, f64::NEG_INFINITY), |best, cell| {
-        if cell.1 > best.1 { cell } else { best }
-    })
 }

@@ -5,6 +5,8 @@
 //! images are then summed: half the unknowns, half the memory, less than half the work. Symmetry is seen in the matrix itself, to
 //! rounding; a change that is not symmetric is answered on all cells.
 
+mod along;
+mod folding;
 #[cfg(test)]
 mod tests;
 
@@ -17,13 +19,13 @@ use super::response::Question;
 use super::solver::DirectSolver;
 use super::{RateError, RateOptions, RateSteadyState};
 use crate::cancellation::Cancellation;
-use crate::space::{Axis, CellSpace};
+use crate::space::CellSpace;
+pub use along::Along;
+use along::FoldedQuestion;
+use folding::{Folding, is_centrosymmetric, is_symmetric};
 
 /// Unknowns below which halving them is not worth the while.
 const WORTH_FOLDING: usize = 12_000;
-
-/// Deviation from symmetry, relative to the largest rate (or change), that is rounding.
-const ROUNDING: f64 = 1e-11;
 
 /// Solves generators on one cell space, keeping the factorisation from one to the next.
 pub struct RateSolver {
@@ -34,44 +36,6 @@ pub struct RateSolver {
     half: Option<Half>,
     /// The last matrix, with its escape, that was solved on half of the cells; `None` after one that was not.
     folded: Option<(CsMat<f64>, Vec<f64>)>,
-}
-
-/// A change of the generator whose effect on the steady state is wanted along with a solve.
-#[derive(Debug, Clone, Copy)]
-pub struct Along<'a> {
-    /// dQ, of the generator's size (CSC, any pattern).
-    pub derivative: &'a CsMat<f64>,
-    /// The answer that is expected, Σ = 0.
-    pub expected: Option<&'a [f64]>,
-    /// Relative error of the answer in L1.
-    pub tolerance: f64,
-}
-
-impl<'a> Along<'a> {
-    fn question(&self, change: &'a [f64]) -> Question<'a> {
-        Question {
-            change,
-            guess: self.expected,
-            tolerance: self.tolerance,
-        }
-    }
-}
-
-/// A question on half of the cells.
-struct FoldedQuestion {
-    change: Vec<f64>,
-    guess: Option<Vec<f64>>,
-    tolerance: f64,
-}
-
-impl FoldedQuestion {
-    fn question(&self) -> Question<'_> {
-        Question {
-            change: &self.change,
-            guess: self.guess.as_deref(),
-            tolerance: self.tolerance,
-        }
-    }
 }
 
 /// The solver on half of the cells.
@@ -150,7 +114,7 @@ impl RateSolver {
         let guess = guess.map(|guess| folding.fold(guess));
         let (folded, escaping) = folding.generator(matrix, escape);
         let question = question.filter(|question| is_symmetric(question.change));
-        let question = question.map(|question| folding.fold_question(&question));
+        let question = question.map(|question| FoldedQuestion::new(&question, folding));
         let question = question.as_ref().map(FoldedQuestion::question);
         let solver = &mut half.solver;
         let (steady, answer) =
@@ -320,7 +284,7 @@ impl RateSolver {
         };
         self.plain.shapes(&question, mass)?;
         if let Some(half) = self.half.as_mut().filter(|_| is_symmetric(change)) {
-            let folded = half.folding.fold_question(&question);
+            let folded = FoldedQuestion::new(&question, &half.folding);
             let mass = half.folding.fold(mass);
             let response = half.solver.response(&folded.question(), &mass)?;
             return Ok(half.folding.unfold(&response));
@@ -330,132 +294,5 @@ impl RateSolver {
             self.plain.solve(matrix, escape, Some(mass))?;
         }
         self.plain.response(&question, mass)
-    }
-}
-
-/// Whether rates and escape are the same counted from the other end.
-pub(super) fn is_centrosymmetric(matrix: &CsMat<f64>, escape: &[f64]) -> bool {
-    let (rows, rates) = (matrix.indices(), matrix.data());
-    let Some(last) = matrix.rows().checked_sub(1) else {
-        return false;
-    };
-    let starts = matrix.indptr();
-    let starts = starts.raw_storage();
-    let mirrored = |values: &[usize], sum: usize| {
-        let pairs = values.iter().zip(values.iter().rev());
-        pairs
-            .take(values.len().div_ceil(2))
-            .all(|(a, b)| a + b == sum)
-    };
-    mirrored(starts, rates.len())
-        && mirrored(rows, last)
-        && is_symmetric(rates)
-        && is_symmetric(escape)
-}
-
-/// Whether numbers are the same from the other end, to rounding of the largest.
-fn is_symmetric(values: &[f64]) -> bool {
-    let largest = values
-        .iter()
-        .fold(0.0_f64, |most, value| most.max(value.abs()));
-    let pairs = values.iter().zip(values.iter().rev());
-    let mut half = pairs.take(values.len() / 2);
-    half.all(|(a, b)| (a - b).abs() <= ROUNDING * largest)
-}
-
-/// The upper half of the cells along one axis, each standing for itself and its mirror image.
-struct Folding {
-    /// The axis that is halved.
-    axis: usize,
-    /// The half. Of its axes only the numbers of cells mean anything.
-    half: CellSpace,
-    /// The cell of the whole space that each cell of the half is, ascending.
-    upper: Vec<u32>,
-    /// The cell of the half that each cell of the whole is, or is the image of.
-    place: Vec<u32>,
-}
-
-impl Folding {
-    /// Halves the longest axis of cells with an even number of them.
-    fn new(space: &CellSpace) -> Option<Self> {
-        let axes = space.axes().iter().enumerate();
-        let even = axes.filter(|(_, axis)| !axis.is_modes() && axis.count() % 2 == 0);
-        let (axis, longest) = even.max_by_key(|(_, axis)| axis.count())?;
-        let middle = longest.count() / 2;
-        let mut axes = space.axes().to_vec();
-        axes[axis] = Axis::uniform(0.0, 1.0, middle).ok()?;
-        let half = CellSpace::new(axes).ok()?;
-        let cells = 0..space.n_cells();
-        let upper: Vec<u32> = cells
-            .filter(|&cell| space.position(cell, axis) >= middle)
-            .map(|cell| cell as u32)
-            .collect();
-        let mut place = vec![0; space.n_cells()];
-        for (index, &cell) in upper.iter().enumerate() {
-            let cell = cell as usize;
-            place[cell] = index as u32;
-            place[space.n_cells() - 1 - cell] = index as u32;
-        }
-        Some(Self {
-            axis,
-            half,
-            upper,
-            place,
-        })
-    }
-
-    /// Sums of cells and their images.
-    fn fold(&self, values: &[f64]) -> Vec<f64> {
-        let last = values.len() - 1;
-        let sum = |&cell: &u32| values[cell as usize] + values[last - cell as usize];
-        self.upper.iter().map(sum).collect()
-    }
-
-    fn fold_question(&self, question: &Question<'_>) -> FoldedQuestion {
-        FoldedQuestion {
-            change: self.fold(question.change),
-            guess: question.guess.map(|guess| self.fold(guess)),
-            tolerance: question.tolerance,
-        }
-    }
-
-    /// Shares a cell's value with its image.
-    fn unfold(&self, values: &[f64]) -> Vec<f64> {
-        let share = |&index: &u32| 0.5 * values[index as usize];
-        self.place.iter().map(share).collect()
-    }
-
-    /// The generator of the sums, and their escape.
-    fn generator(&self, matrix: &CsMat<f64>, escape: &[f64]) -> (CsMat<f64>, Vec<f64>) {
-        let cells = self.upper.len();
-        let starts = matrix.indptr();
-        let starts = starts.raw_storage();
-        let (mut start, mut rows, mut rates) = (vec![0], Vec::new(), Vec::new());
-        let mut column: Vec<(usize, f64)> = Vec::new();
-        for &cell in &self.upper {
-            let entries = starts[cell as usize]..starts[cell as usize + 1];
-            column.clear();
-            column.extend(entries.map(|entry| {
-                let row = self.place[matrix.indices()[entry]] as usize;
-                (row, matrix.data()[entry])
-            }));
-            column.sort_by_key(|entry| entry.0);
-            let first = rows.len();
-            for &(row, rate) in &column {
-                match rates.last_mut() {
-                    Some(last) if rows.len() > first && rows.last() == Some(&row) => *last += rate,
-                    _ => {
-                        rows.push(row);
-                        rates.push(rate);
-                    }
-                }
-            }
-            start.push(rows.len());
-        }
-        let escape = self.upper.iter().map(|&cell| escape[cell as usize]);
-        (
-            CsMat::new_csc((cells, cells), start, rows, rates),
-            escape.collect(),
-        )
     }
 }

@@ -6,7 +6,7 @@ use crate::system::oscillator::{axes, parameters, with_friction};
 use crate::system::parameters::{
     FAST_FORCE, FAST_LEVEL, SLIDING_DISTANCE, SLOW_FORCE, SLOW_LEVEL, SWIFTNESS,
 };
-use crate::system::{AxisDescription, Model, SwitchingSurface, VELOCITY};
+use crate::system::{AxisDescription, Model};
 
 /// x' = y, y' = -κy - αx - μx³ - (u - v) + ξ, u' = (f₁y - |y|u)/(ρε), v' = (f₂y - |y|v)/ε.
 pub(in crate::system) fn model() -> Model {
@@ -73,15 +73,8 @@ impl FrictionLaw<2> for BlimanSorine {
         Some((-level, level))
     }
 
-    fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
-        vec![SwitchingSurface {
-            axis: VELOCITY,
-            at: 0.0,
-        }]
-    }
-
-    fn is_odd(&self) -> bool {
-        true
+    fn base_velocity(&self) -> Option<f64> {
+        Some(0.0)
     }
 }
 

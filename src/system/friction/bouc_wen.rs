@@ -6,9 +6,7 @@ use crate::system::oscillator::{axes, parameters, with_friction};
 use crate::system::parameters::{
     HYSTERESIS_FORCE, HYSTERESIS_GROWTH, HYSTERESIS_LOSS, HYSTERESIS_SHAPE, SHARPNESS, Z,
 };
-use crate::system::{
-    AxisDescription, FIRST_INTERNAL_STATE, Model, SwitchingSurface, System, VELOCITY,
-};
+use crate::system::{AxisDescription, FIRST_INTERNAL_STATE, Model, SwitchingSurface, System};
 use std::sync::Arc;
 
 /// x' = y, y' = -κy - αx - μx³ - λz + ξ, z' = A y - β|y||z|ⁿ⁻¹z - γy|z|ⁿ.
@@ -137,25 +135,19 @@ impl<E: Exponent> FrictionLaw<1> for BoucWen<E> {
         (self.loss + self.shape > 0.0 && limit.is_finite()).then_some((-limit, limit))
     }
 
-    /// The rate bends where the velocity changes sign, and with |z| where n is one.
+    fn base_velocity(&self) -> Option<f64> {
+        Some(0.0)
+    }
+
+    /// The rate bends with |z| too where n is one.
     fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
-        let at_rest = SwitchingSurface {
-            axis: VELOCITY,
-            at: 0.0,
-        };
         let at_zero = SwitchingSurface {
             axis: FIRST_INTERNAL_STATE,
             at: 0.0,
         };
         let bends = self.sharpness <= 1.0 && self.shape != 0.0;
-        [Some(at_rest), bends.then_some(at_zero)]
-            .into_iter()
-            .flatten()
-            .collect()
-    }
-
-    fn is_odd(&self) -> bool {
-        true
+        let of_the_state = bends.then_some(at_zero);
+        self.at_base().into_iter().chain(of_the_state).collect()
     }
 }
 

@@ -5,7 +5,7 @@
 use super::{FrictionLaw, Motion};
 use crate::system::oscillator::{axes, parameters, with_friction};
 use crate::system::parameters::COULOMB_LEVEL;
-use crate::system::{AxisDescription, Model, SwitchingSurface, VELOCITY};
+use crate::system::{AxisDescription, Model};
 
 /// x' = y, y' = -κy - αx - μx³ - f_c sgn(y) + ξ.
 pub(in crate::system) fn model() -> Model {
@@ -50,15 +50,8 @@ impl FrictionLaw<0> for Coulomb {
         self.level * sign(motion.velocity)
     }
 
-    fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
-        vec![SwitchingSurface {
-            axis: VELOCITY,
-            at: 0.0,
-        }]
-    }
-
-    fn is_odd(&self) -> bool {
-        true
+    fn base_velocity(&self) -> Option<f64> {
+        Some(0.0)
     }
 
     fn is_absent(&self) -> bool {

@@ -6,7 +6,7 @@
 use super::{FrictionLaw, Motion};
 use crate::system::oscillator::{axes, parameters, with_friction};
 use crate::system::parameters::{DAHL_LEVEL, LAMBDA, Z};
-use crate::system::{AxisDescription, Model, SwitchingSurface, VELOCITY};
+use crate::system::{AxisDescription, Model};
 
 /// x' = y, y' = -κy - αx - μx³ - λz + ξ, z' = y - (λ|y|/f_c) z.
 pub(in crate::system) fn model() -> Model {
@@ -73,14 +73,6 @@ impl Contact {
     }
 }
 
-/// The rate bends where the velocity changes sign; the force does not jump.
-fn surfaces() -> Vec<SwitchingSurface> {
-    vec![SwitchingSurface {
-        axis: VELOCITY,
-        at: 0.0,
-    }]
-}
-
 /// Dahl's law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Dahl(Contact);
@@ -100,12 +92,8 @@ impl FrictionLaw<1> for Dahl {
         Some((-self.0.limit, self.0.limit))
     }
 
-    fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
-        surfaces()
-    }
-
-    fn is_odd(&self) -> bool {
-        true
+    fn base_velocity(&self) -> Option<f64> {
+        Some(0.0)
     }
 }
 
@@ -124,12 +112,8 @@ impl FrictionLaw<1> for DahlAsPrinted {
         self.0.stiffness * z
     }
 
-    fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
-        surfaces()
-    }
-
-    fn is_odd(&self) -> bool {
-        true
+    fn base_velocity(&self) -> Option<f64> {
+        Some(0.0)
     }
 }
 

@@ -6,7 +6,7 @@ use super::{FrictionLaw, Motion};
 use crate::formula::arithmetic::{reduced_cosine, sign};
 use crate::system::oscillator::{axes, parameters, with_friction};
 use crate::system::parameters::{CONTACT_DAMPING, ELASTIC_LEVEL, LAMBDA, YIELDING_LEVEL, Z};
-use crate::system::{AxisDescription, Model, SwitchingSurface, VELOCITY};
+use crate::system::{AxisDescription, Model};
 
 /// x' = y, y' = -κy - αx - μx³ - λz - ηz' + ξ, z' = y (1 - a(w) w/(f_b + f_t)), w = λ z sgn y.
 pub(in crate::system) fn model() -> Model {
@@ -80,15 +80,8 @@ impl FrictionLaw<1> for ElastoPlastic {
         Some((-limit, limit))
     }
 
-    fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
-        vec![SwitchingSurface {
-            axis: VELOCITY,
-            at: 0.0,
-        }]
-    }
-
-    fn is_odd(&self) -> bool {
-        true
+    fn base_velocity(&self) -> Option<f64> {
+        Some(0.0)
     }
 }
 

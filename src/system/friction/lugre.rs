@@ -6,7 +6,7 @@ use crate::system::oscillator::{axes, parameters, with_friction};
 use crate::system::parameters::{
     CONTACT_DAMPING, DAHL_LEVEL, LAMBDA, STATIC_LEVEL_OF_BRISTLES, STRIBECK_VELOCITY, Z,
 };
-use crate::system::{AxisDescription, Model, SwitchingSurface, VELOCITY};
+use crate::system::{AxisDescription, Model};
 
 /// x' = y, y' = -κy - αx - μx³ - λz - ηz' + ξ, z' = y - (λ|y|/g(y)) z.
 pub(in crate::system) fn model() -> Model {
@@ -74,15 +74,8 @@ impl FrictionLaw<1> for LuGre {
         Some((-limit, limit))
     }
 
-    fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
-        vec![SwitchingSurface {
-            axis: VELOCITY,
-            at: 0.0,
-        }]
-    }
-
-    fn is_odd(&self) -> bool {
-        true
+    fn base_velocity(&self) -> Option<f64> {
+        Some(0.0)
     }
 }
 

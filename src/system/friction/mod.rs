@@ -6,10 +6,11 @@ pub(super) mod coulomb;
 pub(super) mod dahl;
 pub(super) mod elasto_plastic;
 pub(super) mod lugre;
+pub mod pulled;
 mod sliding;
 pub(super) mod stribeck;
 
-use super::SwitchingSurface;
+use super::{SwitchingSurface, VELOCITY};
 
 /// Motion of the body that rubs, as its friction contact sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,7 +34,7 @@ pub struct Motion {
 ///
 /// ```
 /// use pbif::system::friction::{FrictionLaw, Motion};
-/// use pbif::system::{Duffing, Oscillator, SwitchingSurface, System, VELOCITY, Viscous, contract};
+/// use pbif::system::{Duffing, Oscillator, System, Viscous, contract};
 ///
 /// struct Bristles {
 ///     stiffness: f64,
@@ -55,11 +56,8 @@ pub struct Motion {
 ///         let limit = self.level / self.stiffness;
 ///         Some((-limit, limit))
 ///     }
-///     fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
-///         vec![SwitchingSurface { axis: VELOCITY, at: 0.0 }]
-///     }
-///     fn is_odd(&self) -> bool {
-///         true
+///     fn base_velocity(&self) -> Option<f64> {
+///         Some(0.0)
 ///     }
 /// }
 ///
@@ -85,15 +83,29 @@ pub trait FrictionLaw<const N: usize>: Send + Sync {
         None
     }
 
-    /// Planes where force or rates are not smooth, by the axes of the oscillator
-    /// ([`VELOCITY`](super::VELOCITY), [`FIRST_INTERNAL_STATE`](super::FIRST_INTERNAL_STATE) + i).
-    fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
-        Vec::new()
+    /// Velocity of the base on which the body rubs, if it rubs on one: there the force jumps or a rate bends. Friction on a base at
+    /// rest is taken to be odd.
+    fn base_velocity(&self) -> Option<f64> {
+        None
     }
 
-    /// Whether force and rates change sign with displacement, velocity and internal states.
+    /// The plane where the body rests on its base.
+    fn at_base(&self) -> Option<SwitchingSurface> {
+        let at = self.base_velocity()?;
+        Some(SwitchingSurface { axis: VELOCITY, at })
+    }
+
+    /// Planes where force or rates are not smooth, by the axes of the oscillator
+    /// ([`VELOCITY`](super::VELOCITY), [`FIRST_INTERNAL_STATE`](super::FIRST_INTERNAL_STATE) + i): [`FrictionLaw::at_base`], unless
+    /// there are others.
+    fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
+        self.at_base().into_iter().collect()
+    }
+
+    /// Whether force and rates change sign with displacement, velocity and internal states: unless the law says otherwise, where it
+    /// rubs on a base at rest.
     fn is_odd(&self) -> bool {
-        false
+        self.base_velocity() == Some(0.0)
     }
 
     /// Whether the law, with the values it has, exerts no force at all.

@@ -8,7 +8,7 @@ use crate::system::oscillator::{axes, parameters, with_friction};
 use crate::system::parameters::{
     BELT_VELOCITY, COULOMB_LEVEL, LEAST_LEVEL, LEAST_VELOCITY, STATIC_LEVEL, STRIBECK_VELOCITY,
 };
-use crate::system::{AxisDescription, Model, SwitchingSurface, VELOCITY};
+use crate::system::{AxisDescription, Model};
 
 const KINK: &str = "The density has a kink where the body moves with the base: the jump of ∂p/∂y over p across y = v_b is -4 f_s/σ². \
      With v_b = 0 the marginal of y therefore changes from two peaks to one exactly at f_s = 0.";
@@ -102,15 +102,8 @@ impl<G: SlidingForce> FrictionLaw<0> for Sliding<G> {
         self.force.at(motion.velocity - self.base)
     }
 
-    fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
-        vec![SwitchingSurface {
-            axis: VELOCITY,
-            at: self.base,
-        }]
-    }
-
-    fn is_odd(&self) -> bool {
-        self.base == 0.0
+    fn base_velocity(&self) -> Option<f64> {
+        Some(self.base)
     }
 }
 

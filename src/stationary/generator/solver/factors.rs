@@ -1,0 +1,114 @@
+//! When to factorise, how, and where.
+
+use sprs::CsMat;
+
+use super::{DirectSolver, shape};
+use crate::cancellation::Cancelled;
+use crate::stationary::generator::preconditioner::{
+    Estimate, Preconditioner, Structure, estimate_of,
+};
+use crate::stationary::generator::{RateError, RateMethod, narrowing};
+
+/// Iterations that a factorisation takes the time of: so many for moving every number of the factors about, and so many
+/// for each arithmetic operation a number. Measured (`benches/rates.rs`) from 50² to 30³ cells, in both precisions, within
+/// a third: iterations are bound by memory, factorisations by arithmetic the larger they are.
+const RENEWAL: (f64, f64) = (12.0, 0.027);
+impl DirectSolver {
+    /// Whether iterating with the factorisation at hand has come to cost more than a new one would.
+    pub(in crate::stationary::generator) fn is_worn(&self) -> bool {
+        let plan = self.plan.as_ref();
+        plan.is_some_and(|(_, plan)| self.excess >= renewal(plan))
+    }
+
+    /// Factorises a matrix near those that are solved next, in place of the first of them; `mass` is about its steady state.
+    ///
+    /// # Errors
+    /// As [`DirectSolver::solve`].
+    pub(in crate::stationary::generator) fn renew(
+        &mut self,
+        matrix: &CsMat<f64>,
+        escape: &[f64],
+        mass: &[f64],
+    ) -> Result<(), RateError> {
+        self.check(matrix, escape)?;
+        shape(self.space.n_cells(), "mass", mass.len())?;
+        let plan = self.plan(matrix)?;
+        let held = self.better_held(self.choose_held(matrix, mass), mass);
+        Ok(self.factorise(matrix, held, &plan)?)
+    }
+
+    /// The plan to fall back to when single precision did not converge; kept for later solves.
+    pub(super) fn in_double_precision(&mut self, plan: &Estimate) -> Option<Estimate> {
+        let (structure, _) = self.plan.as_ref()?;
+        let limit = self.options.memory_limit_bytes;
+        if plan.method != RateMethod::LuSingle || self.options.method.is_some() {
+            return None;
+        }
+        let double = estimate_of(&self.space, structure, limit, Some(RateMethod::Lu)).ok()?;
+        self.plan = Some((structure.clone(), double));
+        Some(double)
+    }
+
+    /// The method, chosen again only when the stencil's reach grows.
+    pub(super) fn plan(&mut self, matrix: &CsMat<f64>) -> Result<Estimate, RateError> {
+        if let (Some((_, plan)), Some((last, _))) = (&self.plan, &self.last)
+            && last.indptr() == matrix.indptr()
+            && last.indices() == matrix.indices()
+        {
+            return Ok(*plan);
+        }
+        let structure = self.given.clone().unwrap_or_else(|| Structure {
+            reach: narrowing::reach(&self.space, matrix),
+            folded: None,
+        });
+        if let Some((planned, plan)) = &self.plan
+            && planned
+                .reach
+                .iter()
+                .zip(&structure.reach)
+                .all(|(old, new)| new <= old)
+        {
+            return Ok(*plan);
+        }
+        let options = &self.options;
+        let plan = estimate_of(
+            &self.space,
+            &structure,
+            options.memory_limit_bytes,
+            options.method,
+        )?;
+        self.plan = Some((structure, plan));
+        Ok(plan)
+    }
+
+    /// Factorises a matrix with a cell held.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn factorise(
+        &mut self,
+        matrix: &CsMat<f64>,
+        held: usize,
+        plan: &Estimate,
+    ) -> Result<(), Cancelled> {
+        let unplanned = Structure::default();
+        let structure = self
+            .plan
+            .as_ref()
+            .map_or(&unplanned, |(structure, _)| structure);
+        let old = self.preconditioner.take();
+        let (space, method, cancellation) = (&self.space, plan.method, &self.cancellation);
+        let new = Preconditioner::new(space, structure, method, matrix, held, old, cancellation)?;
+        self.factorised = Some((structure.reach.clone(), method));
+        self.preconditioner = Some(new);
+        self.factorisations += 1;
+        self.excess = 0;
+        Ok(())
+    }
+}
+
+/// Iterations that cost as much as a factorisation.
+pub(super) fn renewal(plan: &Estimate) -> usize {
+    let numbers = 0.5 * plan.iteration_operations;
+    (RENEWAL.0 + RENEWAL.1 * plan.operations / numbers) as usize
+}

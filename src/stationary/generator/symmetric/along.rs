@@ -1,0 +1,53 @@
+//! Questions to a solve, and what they become on half of the cells.
+
+use sprs::CsMat;
+
+use super::folding::Folding;
+use crate::stationary::generator::response::Question;
+
+/// A change of the generator whose effect on the steady state is wanted along with a solve.
+#[derive(Debug, Clone, Copy)]
+pub struct Along<'a> {
+    /// dQ, of the generator's size (CSC, any pattern).
+    pub derivative: &'a CsMat<f64>,
+    /// The answer that is expected, Σ = 0.
+    pub expected: Option<&'a [f64]>,
+    /// Relative error of the answer in L1.
+    pub tolerance: f64,
+}
+
+impl<'a> Along<'a> {
+    pub(super) fn question(&self, change: &'a [f64]) -> Question<'a> {
+        Question {
+            change,
+            guess: self.expected,
+            tolerance: self.tolerance,
+        }
+    }
+}
+
+/// A question on half of the cells.
+pub(super) struct FoldedQuestion {
+    change: Vec<f64>,
+    guess: Option<Vec<f64>>,
+    tolerance: f64,
+}
+
+impl FoldedQuestion {
+    /// A question on the sums of cells and their images.
+    pub(super) fn new(question: &Question<'_>, folding: &Folding) -> Self {
+        Self {
+            change: folding.fold(question.change),
+            guess: question.guess.map(|guess| folding.fold(guess)),
+            tolerance: question.tolerance,
+        }
+    }
+
+    pub(super) fn question(&self) -> Question<'_> {
+        Question {
+            change: &self.change,
+            guess: self.guess.as_deref(),
+            tolerance: self.tolerance,
+        }
+    }
+}

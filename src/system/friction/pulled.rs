@@ -1,0 +1,322 @@
+//! A friction law by itself, as a test bench shows it: the force on a body that is pulled along a given path.
+//!
+//! The path is given, so that only the internal states of the law have to be integrated: by the classical Runge-Kutta method, with
+//! steps that are halved until the states no longer change.
+
+use std::f64::consts::TAU;
+
+use crate::system::{FIRST_INTERNAL_STATE, Model, ParameterValues, System, SystemError};
+
+/// Places of a cycle whose states are given; a multiple of four, so that the path turns at one of them.
+const PLACES: usize = 400;
+/// Cycles after which a state that has not come back to itself never will.
+const MOST_CYCLES: usize = 60;
+/// Pieces in which a body is pulled in one direction until it slides steadily, over so many yielding distances.
+const PIECES: usize = 200;
+const FAR: f64 = 40.0;
+/// Relative change of the states with half the step, or from cycle to cycle, that is none.
+const SAME: f64 = 1e-7;
+/// Halvings of a step, at most.
+const MOST_HALVINGS: u32 = 12;
+
+/// Values that show the shape of a law, of parameters without a default; of all others 1 does.
+const SHOWN: [(&str, f64); 6] = [
+    ("f_s", 1.5),
+    ("f_m", 0.6),
+    ("v_s", 0.5),
+    ("v_m", 0.5),
+    ("f_2", 0.5),
+    ("rho", 0.4),
+];
+
+/// Values that show the shape of a model's friction law: those that are given, else defaults, else numbers about 1.
+///
+/// # Errors
+/// As [`Model::values`].
+pub fn shown_values(model: &Model, given: &[(&str, f64)]) -> Result<ParameterValues, SystemError> {
+    let free = model.parameters.iter().filter(|one| one.default.is_none());
+    let shown = |name: &str| {
+        let known = SHOWN.iter().find(|(one, _)| *one == name);
+        known.map_or(1.0, |&(_, value)| value)
+    };
+    let mut values: Vec<(&str, f64)> = free
+        .map(|one| (one.name.as_str(), shown(&one.name)))
+        .collect();
+    values.extend(given);
+    model.values(&values)
+}
+
+/// Whether a system has a friction law that exerts a force.
+pub fn has_friction(system: &dyn System) -> bool {
+    system
+        .friction_force(&vec![0.0; system.dimension()])
+        .is_some()
+}
+
+/// One place of a cycle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pulled {
+    /// Displacement x.
+    pub displacement: f64,
+    /// Velocity x'.
+    pub velocity: f64,
+    /// Friction force per unit mass, without its viscous part.
+    pub force: f64,
+}
+
+/// Distance over which a law's contact yields: the largest of what its internal states may be over the rate at which they grow from
+/// zero, a unit of distance. `None` without bounded internal states.
+pub fn yielding_distance(system: &dyn System) -> Option<f64> {
+    let mut moving = vec![0.0; system.dimension()];
+    *moving.get_mut(1)? = 1.0;
+    let rates = system.drift_at(0.0, &moving);
+    let distance = |axis: usize| {
+        let (low, high) = system.bounds(axis)?;
+        Some(0.5 * (high - low) / rates[axis].abs())
+    };
+    let distances = (FIRST_INTERNAL_STATE..system.dimension()).filter_map(distance);
+    distances.filter(|one| one.is_finite()).reduce(f64::max)
+}
+
+/// Friction force at a velocity that has been kept for long. `None` where the system has no friction law, or its states do not settle.
+pub fn steady_sliding(system: &dyn System, velocity: f64) -> Option<f64> {
+    if !has_friction(system) {
+        return None;
+    }
+    let mut states = vec![0.0; system.dimension().saturating_sub(FIRST_INTERNAL_STATE)];
+    if !states.is_empty() && velocity != 0.0 {
+        let time = FAR * yielding_distance(system)? / velocity.abs();
+        let path = |time: f64| [velocity * time, velocity];
+        let piece = time / PIECES as f64;
+        for index in 0..PIECES {
+            advance(system, &path, index as f64 * piece, piece, &mut states);
+        }
+        let before = states.clone();
+        advance(system, &path, time, time / FAR, &mut states);
+        if !is_same(system, &before, &states, 10.0 * SAME) {
+            return None;
+        }
+    }
+    force(system, [0.0, velocity], &states)
+}
+
+/// One cycle of a body that is pulled to and fro, x = `amplitude` sin(ωt) with a largest velocity of `fastest`, from the middle upward
+/// and back to it, after as many cycles as the states need to come back to themselves. Empty where the system has no friction law, or
+/// amplitude or velocity is not positive.
+pub fn cycle(system: &dyn System, amplitude: f64, fastest: f64) -> Vec<Pulled> {
+    let is_path = amplitude > 0.0 && fastest > 0.0 && (amplitude + fastest).is_finite();
+    if !is_path || !has_friction(system) {
+        return Vec::new();
+    }
+    let period = TAU * amplitude / fastest;
+    let path = |time: f64| {
+        let phase = TAU * time / period;
+        [amplitude * phase.sin(), fastest * phase.cos()]
+    };
+    let mut states = vec![0.0; system.dimension().saturating_sub(FIRST_INTERNAL_STATE)];
+    let piece = period / PLACES as f64;
+    let mut found = Vec::new();
+    for _ in 0..MOST_CYCLES {
+        let before = states.clone();
+        found.clear();
+        for place in 0..=PLACES {
+            let time = place as f64 * piece;
+            let [displacement, velocity] = path(time);
+            found.extend(
+                force(system, [displacement, velocity], &states).map(|force| Pulled {
+                    displacement,
+                    velocity,
+                    force,
+                }),
+            );
+            if place < PLACES {
+                advance(system, &path, time, piece, &mut states);
+            }
+        }
+        if is_same(system, &before, &states, SAME) {
+            break;
+        }
+    }
+    found
+}
+
+fn force(system: &dyn System, motion: [f64; 2], states: &[f64]) -> Option<f64> {
+    let force = system.friction_force(&[&motion[..], states].concat())?;
+    force.is_finite().then_some(force)
+}
+
+/// Whether internal states are the same, measured in what they may be.
+fn is_same(system: &dyn System, one: &[f64], other: &[f64], share: f64) -> bool {
+    let pairs = one.iter().zip(other).enumerate();
+    pairs.into_iter().all(|(index, (a, b))| {
+        let bounds = system.bounds(FIRST_INTERNAL_STATE + index);
+        let size = bounds.map_or(a.abs().max(b.abs()), |(low, high)| 0.5 * (high - low));
+        (a - b).abs() <= share * size
+    })
+}
+
+/// Brings the internal states on over a piece of the path, with so many steps that half as many give the same.
+fn advance(
+    system: &dyn System,
+    path: &dyn Fn(f64) -> [f64; 2],
+    from: f64,
+    length: f64,
+    states: &mut Vec<f64>,
+) {
+    if states.is_empty() {
+        return;
+    }
+    let mut coarse = integrate(system, path, (from, length, 1), states);
+    for halvings in 1..=MOST_HALVINGS {
+        let fine = integrate(system, path, (from, length, 1 << halvings), states);
+        let done = is_same(system, &coarse, &fine, 0.01 * SAME);
+        coarse = fine;
+        if done {
+            break;
+        }
+    }
+    *states = coarse;
+}
+
+fn integrate(
+    system: &dyn System,
+    path: &dyn Fn(f64) -> [f64; 2],
+    (from, length, steps): (f64, f64, u32),
+    states: &[f64],
+) -> Vec<f64> {
+    let rates = |time: f64, states: &[f64]| -> Vec<f64> {
+        let state = [&path(time)[..], states].concat();
+        system.drift_at(0.0, &state).split_off(FIRST_INTERNAL_STATE)
+    };
+    let along = |states: &[f64], step: f64, rates: &[f64]| -> Vec<f64> {
+        let pairs = states.iter().zip(rates);
+        pairs.map(|(state, rate)| state + step * rate).collect()
+    };
+    let step = length / f64::from(steps);
+    let mut states = states.to_vec();
+    for index in 0..steps {
+        let time = from + f64::from(index) * step;
+        let first = rates(time, &states);
+        let second = rates(time + 0.5 * step, &along(&states, 0.5 * step, &first));
+        let third = rates(time + 0.5 * step, &along(&states, 0.5 * step, &second));
+        let fourth = rates(time + step, &along(&states, step, &third));
+        for (index, state) in states.iter_mut().enumerate() {
+            let middle = second[index] + third[index];
+            *state += step / 6.0 * (first[index] + 2.0 * middle + fourth[index]);
+        }
+    }
+    states
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::system::contract::tests::bound;
+
+    const MASS: [(&str, f64); 2] = [("kappa", 0.3), ("sigma2", 0.1)];
+
+    fn system(name: &str, values: &[(&str, f64)]) -> std::sync::Arc<dyn System> {
+        bound(name, &[&MASS[..], values].concat())
+    }
+
+    /// Work of friction in a cycle, by trapezoids.
+    fn work(cycle: &[Pulled]) -> f64 {
+        let pieces = cycle.windows(2);
+        pieces
+            .map(|two| {
+                0.5 * (two[0].force + two[1].force) * (two[1].displacement - two[0].displacement)
+            })
+            .sum()
+    }
+
+    /// Between two turns at ±a, F = f_c - (f_c + F(a)) e^(-λ(x + a)/f_c), so that F(a) = f_c tanh(λa/f_c).
+    #[test]
+    fn dahls_loop_is_that_of_the_closed_form() {
+        let dahl = system("dahl", &[("lambda", 2.0), ("f_c", 0.5)]);
+        assert_eq!(yielding_distance(dahl.as_ref()), Some(0.25));
+        for amplitude in [0.1, 0.25, 2.0_f64] {
+            let turn = 0.5 * (4.0 * amplitude).tanh();
+            let cycle = cycle(dahl.as_ref(), amplitude, 3.0);
+            assert_eq!(cycle.len(), PLACES + 1);
+            for one in &cycle {
+                let way = if one.velocity > 0.0 { 1.0 } else { -1.0 };
+                let gone = amplitude + way * one.displacement;
+                let exact = way * (0.5 - (0.5 + turn) * (-4.0 * gone).exp());
+                assert!((one.force - exact).abs() < 1e-6, "{one:?} {exact}");
+            }
+        }
+    }
+
+    /// A loop of Coulomb's law is a rectangle: 4 a f_c, but for the trapezoids at its two sides.
+    #[test]
+    fn coulombs_loop_is_a_rectangle() {
+        let coulomb = system("coulomb", &[("f_c", 0.2)]);
+        let cycle = cycle(coulomb.as_ref(), 1.5, 1.0);
+        assert!((work(&cycle) - 1.2).abs() < 1e-3);
+        assert_eq!(yielding_distance(coulomb.as_ref()), None);
+        assert_eq!(steady_sliding(coulomb.as_ref(), -3.0), Some(-0.2));
+    }
+
+    #[test]
+    fn steady_sliding_is_at_the_level_of_the_law() {
+        let own = [
+            ("lambda", 3.0),
+            ("eta", 0.4),
+            ("f_c", 0.5),
+            ("f_s", 0.8),
+            ("v_s", 0.2),
+        ];
+        let lugre = system("lugre", &own);
+        for velocity in [-1.0, -0.1, 0.05, 0.2, 2.0_f64] {
+            let level = 0.5 + 0.3 * (-(velocity / 0.2).powi(2)).exp();
+            let found = steady_sliding(lugre.as_ref(), velocity).unwrap();
+            assert!(
+                (found - level.copysign(velocity)).abs() < 1e-6,
+                "{velocity} {found}"
+            );
+        }
+        let own = [("lambda", 3.0), ("f_b", 0.5), ("f_t", 0.25)];
+        let found = steady_sliding(system("elasto_plastic", &own).as_ref(), 0.3).unwrap();
+        assert!((found - 0.75).abs() < 1e-6, "{found}");
+        let own = [("f_1", 0.75), ("f_2", 0.25), ("epsilon", 0.5), ("rho", 0.2)];
+        let found = steady_sliding(system("bliman_sorine", &own).as_ref(), -0.3).unwrap();
+        assert!((found + 0.5).abs() < 1e-6, "{found}");
+        // z∞ = (A/(β + γ))^(1/n).
+        let own = [("lambda", 2.0), ("beta", 3.0), ("gamma", 1.0), ("n", 2.0)];
+        let found = steady_sliding(system("bouc_wen", &own).as_ref(), 1.0).unwrap();
+        assert!((found - 1.0).abs() < 1e-6, "{found}");
+    }
+
+    #[test]
+    fn below_its_level_an_elastic_contact_takes_no_work() {
+        let own = [("lambda", 2.0), ("f_b", 0.5), ("f_t", 0.25)];
+        let contact = system("elasto_plastic", &own);
+        assert!(work(&cycle(contact.as_ref(), 0.2, 1.0)).abs() < 1e-6);
+        assert!(work(&cycle(contact.as_ref(), 0.6, 1.0)) > 0.1);
+    }
+
+    #[test]
+    fn what_is_given_stands_before_what_is_shown() {
+        let lugre = crate::system::registry::find("lugre").unwrap();
+        let values = shown_values(&lugre, &[("f_s", 3.0)]).unwrap();
+        let of = |name: &str| values.as_slice()[lugre.parameter_index(name).unwrap()];
+        assert_eq!(
+            (of("f_s"), of("v_s"), of("f_c"), of("eta")),
+            (3.0, 0.5, 1.0, 0.0)
+        );
+        assert!(shown_values(&lugre, &[("nu", 3.0)]).is_err());
+    }
+
+    #[test]
+    fn what_has_no_steady_sliding_says_so() {
+        let own = [("lambda", 2.0), ("beta", 1.0), ("gamma", -2.0)];
+        let hardening = system("bouc_wen", &own);
+        assert_eq!(steady_sliding(hardening.as_ref(), 1.0), None);
+        let bistable = bound("bistable", &[("sigma2", 0.5)]);
+        assert_eq!(steady_sliding(bistable.as_ref(), 1.0), None);
+        assert!(cycle(bistable.as_ref(), 1.0, 1.0).is_empty());
+        let still = system("coulomb", &[("f_c", 0.2)]);
+        assert!(cycle(still.as_ref(), 0.0, 1.0).is_empty());
+        assert!(cycle(still.as_ref(), f64::NAN, 1.0).is_empty());
+    }
+}
