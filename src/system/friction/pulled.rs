@@ -312,7 +312,7 @@ mod tests {
         let own = [("lambda", 2.0), ("beta", 1.0), ("gamma", -2.0)];
         let hardening = system("bouc_wen", &own);
         assert_eq!(steady_sliding(hardening.as_ref(), 1.0), None);
-        let bistable = bound("bistable", &[("sigma2", 0.5)]);
+        let bistable = bound("bistable", &[("a", 1.0), ("sigma2", 0.5)]);
         assert_eq!(steady_sliding(bistable.as_ref(), 1.0), None);
         assert!(cycle(bistable.as_ref(), 1.0, 1.0).is_empty());
         let still = system("coulomb", &[("f_c", 0.2)]);
