@@ -464,6 +464,43 @@ fn where_no_affordable_number_of_modes_is_enough_no_change_is_located() {
     }
 }
 
+/// With eight modes x has 4 and 6 peaks at τ = 10, one a node; cells along the noise show 2.
+#[test]
+fn too_few_modes_are_told_when_they_were_given() {
+    let run = |tau: [f64; 2]| {
+        let text = format!(
+            "[system]\nmodel = \"bistable\"\nnoise = {{ kind = \"ornstein-uhlenbeck\" }}\n\
+             [system.parameters]\na = -0.1\nsigma2 = 0.2\n\
+             [sweep]\nparameter = \"tau\"\nfrom = {}\nto = {}\npoints = 3\n\
+             [cells]\nx = {{ from = -2.2, to = 2.2, count = 60 }}\nnoise = {{ modes = 8 }}\n\
+             [locate]\nlargest_distance = 0.9\n",
+            tau[0], tau[1]
+        );
+        let never = Cancellation::new();
+        let settings = SweepFile::parse("modes.toml", &text).validate().unwrap();
+        let sweep = settings.prepare(&never).unwrap();
+        sweep.run(&never, &mut ()).unwrap()
+    };
+    let is_told =
+        |finding: &Finding| matches!(finding, Finding::FewModes { change } if *change > 0.1);
+    let long = run([1.0, 30.0]);
+    let told = |point: &pbif::continuation::Point| point.report.findings.iter().any(is_told);
+    assert!(long.points.iter().all(told));
+    assert!(
+        long.labels
+            .iter()
+            .all(|row| row.status != Some(BifurcationStatus::Located))
+    );
+    let short = run([0.05, 0.15]);
+    let few = |finding: &Finding| matches!(finding, Finding::FewModes { .. });
+    assert!(
+        !short
+            .points
+            .iter()
+            .any(|point| point.report.findings.iter().any(few))
+    );
+}
+
 #[test]
 fn what_modes_of_noise_are_not_for_is_refused() {
     let system = linear(0.5);

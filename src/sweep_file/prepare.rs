@@ -11,7 +11,8 @@ use super::settings::{Modes, Settings, at_cells, cell_space};
 use super::sweep::Sweep;
 use crate::cancellation::Cancellation;
 use crate::method::{
-    PILOT_BOX, Problem, RangeError, SgcmOptions, automatic_modes, automatic_ranges, check_sticking,
+    PILOT_BOX, Problem, RangeError, SgcmOptions, automatic_modes, automatic_ranges,
+    change_by_more_modes, check_sticking,
 };
 use crate::space::Axis;
 use crate::system::{ParameterValues, System};
@@ -176,7 +177,7 @@ impl Settings {
             .map(|(index, _)| index)
             .collect();
         if open.is_empty() {
-            return Ok(());
+            return self.judge_modes(cancellation);
         }
         // With any number they make a space; the right one is then found.
         for &axis in &open {
@@ -205,6 +206,27 @@ impl Settings {
         for axis in open {
             self.axes[axis].modes = Some(Modes::Number(found.count));
         }
+        Ok(())
+    }
+
+    /// Says what numbers of modes that are given leave out, where that is much.
+    fn judge_modes(&mut self, cancellation: &Cancellation) -> Result<(), Report> {
+        let kind = self.method.kind;
+        let mut by_modes = self.axes.iter().filter_map(|axis| axis.modes_by(kind));
+        if by_modes.next().is_none() {
+            return Ok(());
+        }
+        let problem = self.clone().fixed()?.problem;
+        let found = change_by_more_modes(&problem, &self.method.generator, cancellation);
+        let found = found.map_err(|error| self.refuse_cells(Diagnostic::new(error.to_string())))?;
+        let Some(change) = found else {
+            return Ok(());
+        };
+        self.method.generator.change_by_modes = Some(change);
+        self.chosen.push(format!(
+            "modes: more than are given change the watched densities by {change:.1e} of their largest value, which is much: \
+             give `modes` for more, or `count` for cells"
+        ));
         Ok(())
     }
 

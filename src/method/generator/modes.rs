@@ -39,6 +39,44 @@ pub struct ModesFound {
     pub is_enough: bool,
 }
 
+/// Cells of the other axes on which numbers of modes that are given are judged.
+const COARSER: [usize; 2] = [64, 20];
+
+/// Change that more modes than are given may make without being told: then peaks may still come and go by it.
+const MUCH: f64 = 1e-2;
+
+/// By how much more modes along all axes that have modes would change what is watched, relative to the largest value of each density,
+/// where that is much: the largest change at both ends and in the middle of the path. `None` where it is little, cannot be afforded, or
+/// not be solved.
+///
+/// # Errors
+/// [`MethodError::Cancelled`].
+pub fn change_by_more_modes(
+    problem: &Problem,
+    options: &GeneratorMethodOptions,
+    cancellation: &Cancellation,
+) -> Result<Option<f64>, MethodError> {
+    let axes = problem.space().axes().iter().filter(|axis| axis.is_modes());
+    let counts: Vec<usize> = axes.map(Axis::count).collect();
+    let more = |count: usize| (count + count.div_ceil(4)).max(count + 2);
+    let nodes: usize = counts.iter().map(|&count| more(count)).product();
+    if counts.is_empty() || nodes > MOST_NODES {
+        return Ok(None);
+    }
+    let solve = |count: &dyn Fn(usize) -> usize| {
+        let modes = |_: usize, axis: &Axis| count(axis.count());
+        let source = GeneratorSource::new(&coarse(problem, COARSER, &modes)?, options)?;
+        all_densities(&source, cancellation)
+    };
+    let both = solve(&|count| count).and_then(|as_given| Ok((as_given, solve(&more)?)));
+    match both {
+        Ok((as_given, with_more)) => Ok(Some(change(&as_given, &with_more))
+            .filter(|&change| change > MUCH && change.is_finite())),
+        Err(MethodError::Cancelled(cancelled)) => Err(cancelled.into()),
+        Err(_) => Ok(None),
+    }
+}
+
 /// Finds how many modes the axes `open` need (all alike) for what is watched along the path of a problem. The axes of `problem` are as
 /// wanted but for the number of modes of these.
 ///
@@ -50,8 +88,6 @@ pub fn automatic_modes(
     options: &GeneratorMethodOptions,
     cancellation: &Cancellation,
 ) -> Result<ModesFound, MethodError> {
-    let (from, to) = problem.family().ends();
-    let values = [from, 0.5 * (from + to), to];
     let mut before: Option<Vec<Option<Densities>>> = None;
     let mut found = ModesFound {
         count: TRIED[0],
@@ -61,12 +97,12 @@ pub fn automatic_modes(
     let nodes = |count: usize| open.iter().map(|_| count).product::<usize>();
     let affordable = |&count: &usize| open.len() < 2 || nodes(count) <= MOST_NODES;
     for count in TRIED.into_iter().filter(affordable) {
-        let source = GeneratorSource::new(&coarse(problem, open, count)?, options)?;
-        let now: Result<Vec<_>, MethodError> = values
-            .iter()
-            .map(|&value| densities(&source, value, cancellation))
-            .collect();
-        let now = now?;
+        let modes = |index: usize, axis: &Axis| match open.contains(&index) {
+            true => count,
+            false => axis.count(),
+        };
+        let source = GeneratorSource::new(&coarse(problem, COARSE, &modes)?, options)?;
+        let now = all_densities(&source, cancellation)?;
         if let Some(before) = before {
             let earlier = std::mem::replace(&mut found.change, change(&before, &now));
             // Where more modes stop telling, what is left is the coarse cells' doing.
@@ -85,19 +121,34 @@ pub fn automatic_modes(
 /// Values of all watched densities.
 type Densities = Vec<Vec<f64>>;
 
-/// The problem on coarse cells, with so many modes along some axes.
-fn coarse(problem: &Problem, open: &[usize], count: usize) -> Result<Problem, MethodError> {
+/// The problem on coarse cells (of one axis, of each of several), with so many modes along each axis that has modes.
+fn coarse(
+    problem: &Problem,
+    cells: [usize; 2],
+    modes: &dyn Fn(usize, &Axis) -> usize,
+) -> Result<Problem, MethodError> {
     let axes = problem.space().axes().iter().enumerate();
     let cut = axes.clone().filter(|(_, axis)| !axis.is_modes()).count();
-    let cells = COARSE[usize::from(cut > 1)];
+    let cells = cells[usize::from(cut > 1)];
     let axes: Result<Vec<Axis>, _> = axes
         .map(|(index, axis)| match axis.is_modes() {
-            true if open.contains(&index) => axis.with_modes(count),
-            true => Ok(axis.clone()),
+            true => axis.with_modes(modes(index, axis)),
             false => Axis::uniform(axis.from(), axis.to(), axis.count().min(cells)),
         })
         .collect();
     problem.on(CellSpace::new(axes?)?)
+}
+
+/// The watched densities at both ends and in the middle of the path.
+fn all_densities(
+    source: &GeneratorSource,
+    cancellation: &Cancellation,
+) -> Result<Vec<Option<Densities>>, MethodError> {
+    let (from, to) = source.problem.family().ends();
+    let values = [from, 0.5 * (from + to), to].into_iter();
+    values
+        .map(|value| densities(source, value, cancellation))
+        .collect()
 }
 
 /// The watched densities at a value; `None` where there is no steady state on these cells.
