@@ -530,6 +530,13 @@ fn what_is_located_in_random_systems_holds_the_truth() {
     }
 }
 
+/// A peak of e⁻¹⁶² of the highest comes near the end of the range: what is read there the end may have made.
+#[test]
+fn what_an_end_of_the_range_makes_is_not_located() {
+    let scores = run(cases(one_axis, 7011..7012));
+    assert!(scores.iter().all(|(_, score)| score.false_located == 0));
+}
+
 #[test]
 #[ignore = "prints the table of docs/location.md"]
 fn one_axis_in_full() {

@@ -2,6 +2,7 @@
 
 use super::change::{Change, Found, changes};
 use super::grid::{Checked, Checks, GridCheck, Leak, share_of_distance};
+use super::jump::instead_of_zero;
 use super::label::{self, BifurcationStatus, LabelledPoint, PointType};
 use super::reason::{
     MOST_NEGATIVE, change_by_modes, coarse, leaks, negative_share, not_checked, said_of, torn,
@@ -306,12 +307,14 @@ fn by_indicator(
     let is_torn = depends_on_cells && wiggles > MOST_NEGATIVE;
     let lacks_check = on_finer.is_none() && depends_on_cells && is_checkable(subject);
     let few_modes = [a, b].into_iter().find_map(change_by_modes);
+    let jump = instead_of_zero(points, crossing, detector);
     row.status = Some(match on_finer {
         Some(GridCheck::Unconfirmed) => BifurcationStatus::Unconfirmed,
         _ if failed.is_some() => BifurcationStatus::Unchecked,
         _ if unsound.is_some()
             || is_torn
             || few_modes.is_some()
+            || jump.is_some()
             || !narrow
             || error > options.tolerance =>
         {
@@ -322,6 +325,7 @@ fn by_indicator(
         _ => BifurcationStatus::Located,
     });
     row.reason = failed
+        .or(jump)
         .or_else(|| unsound.map(|point| said_of(point, subject)))
         .or_else(|| is_torn.then(|| torn(wiggles)))
         .or(few_modes)

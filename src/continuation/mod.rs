@@ -12,6 +12,7 @@ mod events;
 mod finding;
 mod follow;
 mod grid;
+mod jump;
 mod label;
 mod live;
 mod locate;

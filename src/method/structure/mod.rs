@@ -1,0 +1,163 @@
+//! What a system's equations imply for a density that is watched: its centre of symmetry, and its kinks.
+
+mod kink;
+mod smoothness;
+mod undriven;
+
+use std::sync::Arc;
+
+use crate::density::{Kink, Observable, Structure};
+use crate::space::CellSpace;
+use crate::system::{SwitchingSurface, System, proved_symmetry};
+use kink::kink;
+use smoothness::{Break, break_at};
+
+/// The switching surfaces with a kink of the density somewhere along a sweep, given systems along it. Where the drift
+/// across a surface is continuous (as Dahl's is), the density is smooth there.
+pub(super) fn kinked_surfaces(
+    systems: &[Arc<dyn System>],
+    space: &CellSpace,
+) -> Vec<SwitchingSurface> {
+    let Some(first) = systems.first() else {
+        return Vec::new();
+    };
+    let evenly = vec![1.0; space.n_cells()];
+    let jumps = |system: &Arc<dyn System>, surface: SwitchingSurface| {
+        let found = kink(system.as_ref(), space, &evenly, &[surface.axis], surface);
+        found.map_or(0.0, |kink| kink.jump_at(0).abs())
+    };
+    let mut surfaces = first.switching_surfaces();
+    surfaces.retain(|&surface| {
+        let width = space.axes()[surface.axis].to() - space.axes()[surface.axis].from();
+        let largest = systems.iter().map(|system| jumps(system, surface));
+        largest.fold(0.0, f64::max) * width > Kink::ROUNDING
+    });
+    surfaces
+}
+
+/// The same, with those across which no noise acts. What they make of a density is read from it, which a sampled one does not allow.
+pub(super) fn kinked_surfaces_of_smooth(
+    systems: &[Arc<dyn System>],
+    space: &CellSpace,
+) -> Vec<SwitchingSurface> {
+    let mut surfaces = kinked_surfaces(systems, space);
+    let declared = systems.first().map(|system| system.switching_surfaces());
+    let others = declared.unwrap_or_default().into_iter();
+    surfaces.extend(others.filter(|&surface| {
+        let mut along = systems.iter();
+        along.any(|system| undriven::has_kink(system.as_ref(), space, surface))
+    }));
+    surfaces
+}
+
+/// Whether the lower and upper end of each axis is a wall that the system cannot pass, all along the sweep, or belongs to a series.
+pub(super) fn closed_ends(systems: &[Arc<dyn System>], space: &CellSpace) -> Vec<[bool; 2]> {
+    let axes = space.axes().iter().enumerate();
+    axes.map(|(axis, cells)| {
+        if cells.is_modes() {
+            return [true; 2];
+        }
+        let range = (cells.from(), cells.to());
+        let walls = systems.iter().map(|system| system.walls(axis, range));
+        walls
+            .reduce(|one, other| [one[0] && other[0], one[1] && other[1]])
+            .unwrap_or_default()
+    })
+    .collect()
+}
+
+/// Structure of the density of an observable; `masses` are those of all cells, `surfaces` those with a kink.
+pub(super) fn structure(
+    system: &dyn System,
+    space: &CellSpace,
+    masses: &[f64],
+    observable: Observable,
+    surfaces: &[SwitchingSurface],
+) -> Structure {
+    let axes = observable.axes();
+    let jumps = surfaces.iter();
+    let mut kinks: Vec<Kink> = jumps
+        .filter_map(|&surface| match undriven::is_driven(system, surface) {
+            true => kink(system, space, masses, &axes, surface),
+            false => undriven::kink(system, space, masses, &axes, surface),
+        })
+        .collect();
+    let centre = centre(system, space, &axes);
+    let known: Vec<(usize, f64)> = surfaces.iter().map(|one| (one.axis, one.at)).collect();
+    let declared = system.switching_surfaces().into_iter();
+    let others = declared
+        .filter(|one| !known.contains(&(one.axis, one.at)))
+        .filter_map(|one| {
+            let axis = axes.iter().position(|&axis| axis == one.axis)?;
+            let jump = match (
+                break_at(system, space, one),
+                undriven::is_driven(system, one),
+            ) {
+                (Break::Bend, _) | (Break::Jump, false) => Vec::new(),
+                (Break::None, _) | (Break::Jump, true) => return None,
+            };
+            let at = one.at;
+            Some(Kink { axis, at, jump })
+        });
+    kinks.extend(others);
+    Structure { centre, kinks }
+}
+
+/// The point of symmetry, where all axes that are kept are reflected.
+fn centre(system: &dyn System, space: &CellSpace, axes: &[usize]) -> Option<Vec<f64>> {
+    let ends: Vec<(f64, f64)> = space
+        .axes()
+        .iter()
+        .map(|axis| (axis.from(), axis.to()))
+        .collect();
+    let symmetry = proved_symmetry(system, &ends)?;
+    let all = axes.iter().all(|&axis| symmetry.reflected[axis]);
+    all.then(|| axes.iter().map(|&axis| symmetry.centre[axis]).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::Axis;
+    use crate::system::registry;
+
+    #[test]
+    fn coulomb_friction_makes_the_slope_of_log_p_jump_by_four_friction_levels_over_the_noise() {
+        let model = registry::find("coulomb").unwrap();
+        let with_friction = |f_c| {
+            let given = [
+                ("kappa", 0.01),
+                ("alpha", 1.0),
+                ("mu", 0.01),
+                ("f_c", f_c),
+                ("sigma2", 0.01),
+            ];
+            model.system_with(&given).unwrap()
+        };
+        let system = with_friction(-0.02);
+        let axis = |count| Axis::uniform(-2.0, 2.0, count).unwrap();
+        let space = CellSpace::new(vec![axis(6), axis(10)]).unwrap();
+        let masses = vec![1.0 / 60.0; 60];
+        let without = with_friction(0.0);
+        assert!(kinked_surfaces(std::slice::from_ref(&without), &space).is_empty());
+        let surfaces = kinked_surfaces(&[without, system.clone()], &space);
+        assert_eq!(surfaces.len(), 1);
+        for (observable, place, bins) in [
+            (Observable::Marginal(1), 0, 1),
+            (Observable::Joint(0, 1), 1, 6),
+            (Observable::Joint(1, 0), 0, 6),
+        ] {
+            let structure = structure(system.as_ref(), &space, &masses, observable, &surfaces);
+            let [kink] = structure.kinks.as_slice() else {
+                panic!("one kink");
+            };
+            assert_eq!((kink.axis, kink.at, kink.jump.len()), (place, 0.0, bins));
+            // p'(0+)/p(0) = -2 f_c/σ² = 4 above, -4 below.
+            assert!(kink.jump.iter().all(|jump| (jump - 8.0).abs() < 1e-9));
+            assert_eq!(structure.centre, Some(vec![0.0; observable.axes().len()]));
+        }
+        let x = Observable::Marginal(0);
+        let of_x = structure(system.as_ref(), &space, &masses, x, &surfaces);
+        assert!(of_x.kinks.is_empty());
+    }
+}
