@@ -294,6 +294,43 @@ fn a_split_at_a_place_where_the_curvature_of_the_drift_jumps_is_held_by_its_erro
     }
 }
 
+/// An oscillator with a preloaded spring, whose force jumps at x = 0: p ∝ exp(-(2c/σ²)(y²/2 + x²/2 + θ|x|)) has two peaks at x = ±|θ| below zero, one above.
+#[test]
+fn a_spring_whose_preload_changes_its_sign_splits_the_density_there() {
+    let model = TypedModel::new("preload", "A preloaded spring", ["x", "y"])
+        .with_equation("x", "y")
+        .with_equation("y", "-x - theta sign(x) - 0.5 y")
+        .with_noise("y", ["0.7"])
+        .with_parameters(["theta"])
+        .build()
+        .unwrap();
+    let axes = || vec![(-4.0, 4.0, 48), (-3.5, 3.5, 40)];
+    for observable in [Observable::Marginal(0), Observable::Joint(0, 1)] {
+        let axes = axes().into_iter();
+        let axes = axes.map(|(from, to, count)| Axis::uniform(from, to, count).unwrap());
+        let (result, rows) = rows_of(
+            model.clone(),
+            observable,
+            (-0.53, 0.61),
+            8,
+            axes.collect(),
+            &LocateOptions::default(),
+        );
+        // The kink's slope follows from the equations: its sign is that of the preload on any cells.
+        assert_located(&rows, &[0.0], 1.14);
+        assert!(rows[0].value.abs() < 1e-9, "{}", words(&rows));
+        let kink = &result.points[7].densities[0].structure.kinks[0];
+        let (theta, middle) = (result.points[7].value, kink.jump.len() / 2);
+        let exact = -4.0 * theta * 0.5 / 0.49;
+        // Differences over the wide cells of y, of second order.
+        assert!(
+            (kink.jump_at(middle) / exact - 1.0).abs() < 0.02,
+            "{} {exact}",
+            kink.jump_at(middle)
+        );
+    }
+}
+
 #[test]
 fn a_peak_that_opens_to_a_ring_away_from_a_centre_is_located() {
     // p depends on the energy alone, and falls with it for θ < -1/4 b: the wells at x = ± 1 are peaks, and bottoms of rings after that.

@@ -1,6 +1,6 @@
 //! Where two changes may lie between two values that were solved: an indicator of one sign on either side comes near zero, or passes it twice.
 //!
-//! At a centre of symmetry and on the flanks of a marginal. The parabola through three neighbouring values shows where to look.
+//! At a centre of symmetry, on the flanks of a marginal, and on those of rings in a joint density. The parabola through three neighbouring values shows where to look.
 
 use super::Point;
 use crate::topology::Flank;
@@ -38,7 +38,7 @@ pub(super) fn at_centre(points: &[&Point], tolerance: f64) -> Option<f64> {
     })
 }
 
-/// The same on the flanks of marginals, away from any centre: a pair of peak and valley may come and go between neighbours, or go and come.
+/// The same on flanks, away from any centre: a pair of peak and valley may come and go between neighbours, or go and come.
 pub(super) fn on_flanks(points: &[(&Point, &Flanks)], tolerance: f64) -> Option<f64> {
     let observables = points.first().map_or(0, |point| point.1.len());
     let triples = points.windows(3);
@@ -80,11 +80,8 @@ pub(super) fn between_flanks(points: &[(&Point, &Flanks)], tolerance: f64) -> Op
             let reach = ONE_FLANK * (axis.to() - axis.from());
             let (below, above) = (&pair[0].1[observable], &pair[1].1[observable]);
             let zero = |flank: &Flank, rises: bool| {
-                let other = nearest(above, flank, reach)?;
-                let is_mutual = nearest(below, other, reach) == Some(flank);
-                let is_turn = (flank.value <= 0.0) == rises && (other.value <= 0.0) != rises;
-                let share = flank.value / (flank.value - other.value);
-                (is_mutual && is_turn).then_some(share)
+                let zero = zero_of(flank, below, above, reach)?;
+                ((flank.value <= 0.0) == rises).then_some(zero)
             };
             let born = below.iter().filter_map(|flank| zero(flank, true));
             let first = born.min_by(f64::total_cmp)?;
@@ -95,6 +92,46 @@ pub(super) fn between_flanks(points: &[(&Point, &Flanks)], tolerance: f64) -> Op
             Some(a.value + share * width)
         })
     })
+}
+
+/// A value between two neighbours at which a centre of symmetry turns and a pair is born on a flank, or vanishes there: between both zeros.
+pub(super) fn beside_centre(points: &[(&Point, &Flanks)], tolerance: f64) -> Option<f64> {
+    let observables = points.first().map_or(0, |point| point.1.len());
+    let mut pairs = points.windows(2);
+    pairs.find_map(|pair| {
+        let (a, b) = (pair[0].0, pair[1].0);
+        let width = b.value - a.value;
+        (0..observables)
+            .filter(|_| width > tolerance)
+            .find_map(|observable| {
+                let indicators = |point: &Point| point.detections[observable].indicators.clone();
+                let (first, second) = (indicators(a), indicators(b));
+                let turn = first.iter().zip(&second).find(|(one, other)| {
+                    let exact = one.sampling_error == 0.0 && other.sampling_error == 0.0;
+                    let is_turn = (one.value <= 0.0) != (other.value <= 0.0);
+                    exact && one.kind == other.kind && is_turn
+                });
+                let centre = turn.map(|(one, other)| one.value / (one.value - other.value))?;
+                let axis = a.densities[observable].density.axes.first()?;
+                let reach = ONE_FLANK * (axis.to() - axis.from());
+                let (below, above) = (&pair[0].1[observable], &pair[1].1[observable]);
+                let zeros = below
+                    .iter()
+                    .filter_map(|flank| zero_of(flank, below, above, reach));
+                let apart = |share: &f64| (share - centre).abs();
+                let zero = zeros.min_by(|x, y| apart(x).total_cmp(&apart(y)))?;
+                let share = (0.5 * (centre + zero)).clamp(NEAREST, 1.0 - NEAREST);
+                (apart(&zero) * width > tolerance).then_some(a.value + share * width)
+            })
+    })
+}
+
+/// Where between two neighbours, as a share of their distance, a flank of the first changes its sign.
+fn zero_of(flank: &Flank, below: &[Flank], above: &[Flank], reach: f64) -> Option<f64> {
+    let other = nearest(above, flank, reach)?;
+    let is_mutual = nearest(below, other, reach) == Some(flank);
+    let is_turn = (flank.value <= 0.0) != (other.value <= 0.0);
+    (is_mutual && is_turn).then_some(flank.value / (flank.value - other.value))
 }
 
 /// The flank of a neighbouring point that is the same, moved.

@@ -272,7 +272,8 @@ fn by_indicator(
             // Where a bend lies in its cell is chance: two grids may agree, and both be off by what a scheme makes of it.
             found.error.grid = match chance > 1.0 && density.density.axes.len() > 1 {
                 true => grid.max(found.error.grid),
-                false => grid,
+                false if density.is_by_quadrature() => grid,
+                false => grid.max(LEAST_CLAIM * options.tolerance),
             };
             found.value = *value;
         }
@@ -334,6 +335,9 @@ fn by_indicator(
         .or_else(|| lacks_check.then(|| not_checked(options)));
     row
 }
+
+/// Share of the tolerance below which no error is claimed where a scheme takes part: two grids may agree that well by chance.
+const LEAST_CLAIM: f64 = 1e-2;
 
 /// Cells on either side of a place that what is read there depends on.
 const REACH: usize = 4;

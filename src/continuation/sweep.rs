@@ -293,7 +293,9 @@ impl Run<'_> {
             .filter(|(point, _)| !point.detections.is_empty())
             .collect();
         let tolerance = self.options.tolerance;
-        dips::between_flanks(&solved, tolerance).or_else(|| dips::on_flanks(&solved, tolerance))
+        dips::between_flanks(&solved, tolerance)
+            .or_else(|| dips::beside_centre(&solved, tolerance))
+            .or_else(|| dips::on_flanks(&solved, tolerance))
     }
 
     /// Narrows every change of sign at a centre of symmetry, and looks at the stage between two of them.

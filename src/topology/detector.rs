@@ -3,8 +3,8 @@
 use super::critical::{Critical, height_above};
 use super::field::Field;
 use super::indicator::{
-    Found, at_centre, beside_kink, corrected, fold, level, put_right, quartic, ring_slope,
-    shoulder, shoulders,
+    Found, at_centre, beside_kink, corrected, flanks_from_centre, fold, level, put_right, quartic,
+    ring_slope, shoulder, shoulders,
 };
 use super::persistence::{Component, Grid, components};
 use super::refine::refine;
@@ -351,7 +351,10 @@ impl Detector for PersistenceDetector {
     }
 
     fn flanks(&self, density: &EstimatedDensity) -> Vec<Flank> {
-        shoulders(density)
+        match density.density.axes.len() {
+            1 => shoulders(density),
+            _ => flanks_from_centre(density),
+        }
     }
 
     fn confidence(&self) -> f64 {

@@ -7,11 +7,14 @@
 use std::ops::Range;
 
 use super::reconstruction::{Line, interpolating};
-use crate::density::EstimatedDensity;
+use crate::density::{EstimatedDensity, Kink};
 use crate::space::Axis;
 
 /// Half the number of cells of a window, in the finer and the rougher reconstruction.
 const REACH: [usize; 2] = [4, 3];
+
+/// Fewest cells that a window may have.
+const FEWEST: usize = 4;
 
 /// Value and derivatives at a point of a density of one or two axes; those along an axis that is not there are zero.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -155,31 +158,45 @@ impl<'a> Field<'a> {
         let cell = axis.find(at.clamp(axis.from(), axis.to()))?;
         let nearer_below = at - axis.edges()[cell] < axis.edges()[cell + 1] - at;
         let middle = if nearer_below { cell } else { cell + 1 };
-        let (mut low, mut high) = (0, axis.count());
-        for kink in self
-            .estimated
-            .structure
-            .kinks
-            .iter()
-            .filter(|kink| kink.axis == k)
-        {
-            let Some((below, above)) = sides(axis, kink.at) else {
-                continue;
-            };
-            // Both ends of the sides of a face are that face.
-            if at >= kink.at.max(axis.edges()[below]) {
-                low = low.max(above);
-            } else {
-                high = high.min(below);
-            }
+        let on_axis = self.estimated.structure.kinks.iter();
+        let on_axis = on_axis.filter(|kink| kink.axis == k);
+        let planes: Vec<&Kink> = on_axis.collect();
+        let (mut low, mut high) = between(axis, at, &planes);
+        if high < low + FEWEST {
+            // Across a bend polynomials err less than across a jump: of several bends too near to each other only the nearest is kept.
+            let distance = |kink: &Kink| (kink.at - at).abs();
+            let bends = planes.iter().filter(|kink| kink.is_bend());
+            let nearest = bends
+                .map(|kink| distance(kink))
+                .fold(f64::INFINITY, f64::min);
+            let kept = |kink: &&Kink| !kink.is_bend() || distance(kink) <= nearest;
+            let kept: Vec<&Kink> = planes.into_iter().filter(kept).collect();
+            (low, high) = between(axis, at, &kept);
         }
         let length = 2 * reach;
         if high < low + length {
-            return (high >= low + 4).then_some(low..high);
+            return (high >= low + FEWEST).then_some(low..high);
         }
         let first = middle.saturating_sub(reach).clamp(low, high - length);
         Some(first..first + length)
     }
+}
+
+/// The cells on the same side of every plane as a coordinate: the first, and the one after the last.
+fn between(axis: &Axis, at: f64, planes: &[&Kink]) -> (usize, usize) {
+    let (mut low, mut high) = (0, axis.count());
+    for kink in planes {
+        let Some((below, above)) = sides(axis, kink.at) else {
+            continue;
+        };
+        // Both ends of the sides of a face are that face.
+        if at >= kink.at.max(axis.edges()[below]) {
+            low = low.max(above);
+        } else {
+            high = high.min(below);
+        }
+    }
+    (low, high)
 }
 
 /// Where the cells wholly below a plane end, and where those wholly above it begin: a cell that the plane cuts belongs to neither side.

@@ -142,7 +142,8 @@ pub trait Detector: Send + Sync {
         None
     }
 
-    /// Places of a marginal where a pair of peak and valley may be about to come or go; none where the detector knows of none.
+    /// Places of a marginal where a pair of peak and valley may be about to come or go, or on a ray from the centre of a joint density where a ring and a
+    /// moat may; none where the detector knows of none.
     fn flanks(&self, density: &EstimatedDensity) -> Vec<Flank> {
         let _ = density;
         Vec::new()

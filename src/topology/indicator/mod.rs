@@ -23,6 +23,7 @@ mod level;
 mod pair;
 mod quartic;
 mod ring;
+mod section;
 mod shoulder;
 mod smooth;
 #[cfg(test)]
@@ -37,6 +38,7 @@ pub(super) use level::level;
 pub(super) use pair::put_right;
 pub(super) use quartic::quartic;
 pub(super) use ring::ring_slope;
+pub(super) use section::flanks_from_centre;
 pub use shoulder::Flank;
 pub(super) use shoulder::{shoulder, shoulders};
 
