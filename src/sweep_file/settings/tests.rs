@@ -156,6 +156,13 @@ fn the_resolved_file_holds_every_key() {
     });
     let [generator, sgcm, monte_carlo] = texts;
     let map = ["map.parameter=\"sigma2\"", "map.from=0.005", "map.to=0.02"];
+    let curve = map.map(|set| set.replace("map", "curve"));
+    let all = [
+        "curve.first_from=-0.01",
+        "curve.first_to=0.0",
+        "curve.rows=[\"PB1\"]",
+    ];
+    let curve: Vec<&str> = curve.iter().map(String::as_str).chain(all).collect();
     let texts = [
         generator,
         sgcm,
@@ -164,6 +171,7 @@ fn the_resolved_file_holds_every_key() {
         parse(DAHL, &["cells.z.modes=5"]).unwrap().to_toml(),
         parse(DAHL, &COLOURED).unwrap().to_toml(),
         parse(FILE, &map).unwrap().to_toml(),
+        parse(FILE, &curve).unwrap().to_toml(),
     ];
     let text = texts.join("\n# next\n");
     let tables = texts.map(|text| text.parse::<toml::Table>().unwrap());
