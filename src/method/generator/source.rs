@@ -8,7 +8,7 @@ use super::session::GeneratorSession;
 use crate::cancellation::Cancellation;
 use crate::continuation::{DensitySource, Session, SourceError, Subject};
 use crate::generator::{AdvectiveScheme, Generator, GeneratorError, GeneratorOptions, assemble};
-use crate::method::structure::{closed_ends, kinked_surfaces_of_smooth};
+use crate::method::structure::{all_kinked_surfaces, closed_ends};
 use crate::method::watched::{Maps, Masses};
 use crate::method::{MethodError, Problem, has_densities};
 use crate::space::CellSpace;
@@ -44,7 +44,7 @@ impl GeneratorSource {
             problem: problem.checked_by(GeneratorMethodOptions::cell_check(space)),
             options: options.clone(),
             closed_ends: closed_ends(&systems, space),
-            kinked: kinked_surfaces_of_smooth(&systems, space),
+            kinked: all_kinked_surfaces(&systems, space),
             enclosed: false,
             checks: false,
         })

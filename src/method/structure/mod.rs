@@ -36,7 +36,7 @@ pub(super) fn kinked_surfaces(
 }
 
 /// The same, with those across which no noise acts. What they make of a density is read from it, which a sampled one does not allow.
-pub(super) fn kinked_surfaces_of_smooth(
+pub(super) fn all_kinked_surfaces(
     systems: &[Arc<dyn System>],
     space: &CellSpace,
 ) -> Vec<SwitchingSurface> {

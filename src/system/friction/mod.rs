@@ -96,7 +96,7 @@ pub trait FrictionLaw<const N: usize>: Send + Sync {
     }
 
     /// Planes where force or rates are not smooth, by the axes of the oscillator
-    /// ([`VELOCITY`](super::VELOCITY), [`FIRST_INTERNAL_STATE`](super::FIRST_INTERNAL_STATE) + i): [`FrictionLaw::at_base`], unless
+    /// ([`VELOCITY`], [`FIRST_INTERNAL_STATE`](super::FIRST_INTERNAL_STATE) + i): [`FrictionLaw::at_base`], unless
     /// there are others.
     fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
         self.at_base().into_iter().collect()
