@@ -170,7 +170,14 @@ def saves(browser, folder, panels):
             # As a user does: a browser lets a page save many files only where it is asked for each.
             browser.click(f"{panel} .exports button:nth-child({number + 1})")
             end = time.time() + 20
-            while not (new := [name for name in set(os.listdir(folder)) - before if name.endswith(ending)]):
+            size = lambda name: os.path.getsize(os.path.join(folder, name))
+            # A file is there before it is whole.
+            last = 0
+            while True:
+                new = [name for name in set(os.listdir(folder)) - before if name.endswith(ending)]
+                if new and 0 < last == size(new[0]):
+                    break
+                last = size(new[0]) if new else 0
                 assert time.time() < end, f"{panel}: no {ending} was saved"
                 time.sleep(0.05)
             content = pathlib.Path(folder, new[0]).read_bytes()

@@ -131,7 +131,8 @@ fn zero_of(flank: &Flank, below: &[Flank], above: &[Flank], reach: f64) -> Optio
     let other = nearest(above, flank, reach)?;
     let is_mutual = nearest(below, other, reach) == Some(flank);
     let is_turn = (flank.value <= 0.0) != (other.value <= 0.0);
-    (is_mutual && is_turn).then_some(flank.value / (flank.value - other.value))
+    let share = flank.value / (flank.value - other.value);
+    (is_mutual && is_turn && share.is_finite()).then_some(share)
 }
 
 /// The flank of a neighbouring point that is the same, moved.

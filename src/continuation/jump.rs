@@ -25,6 +25,10 @@ pub(super) fn instead_of_zero(
                 .to_owned(),
         );
     }
+    // Noise makes every indicator uneven.
+    if crossing.ends.iter().any(|end| end.sampling_error > 0.0) {
+        return None;
+    }
     let [below, above] = [(left, &crossing.ends[0]), (right, &crossing.ends[1])];
     let inside = slope(points, below, above);
     let width = points[right].value - points[left].value;

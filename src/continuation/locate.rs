@@ -271,8 +271,10 @@ fn by_indicator(
             let grid = share * (value - found.value).abs();
             // Where a bend lies in its cell is chance: two grids may agree, and both be off by what a scheme makes of it.
             found.error.grid = match chance > 1.0 && density.density.axes.len() > 1 {
-                true => grid.max(found.error.grid),
-                false if density.is_by_quadrature() => grid,
+                _ if density.is_by_quadrature() => grid,
+                true => grid
+                    .max(found.error.grid)
+                    .max(LEAST_CLAIM * options.tolerance),
                 false => grid.max(LEAST_CLAIM * options.tolerance),
             };
             found.value = *value;

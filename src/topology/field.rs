@@ -163,15 +163,18 @@ impl<'a> Field<'a> {
         let planes: Vec<&Kink> = on_axis.collect();
         let (mut low, mut high) = between(axis, at, &planes);
         if high < low + FEWEST {
-            // Across a bend polynomials err less than across a jump: of several bends too near to each other only the nearest is kept.
+            // Across a bend polynomials err less than across a jump: of bends that lie too close only the nearest is kept, where it leaves room, else none.
+            let (bends, jumps): (Vec<&Kink>, Vec<&Kink>) =
+                planes.into_iter().partition(|kink| kink.is_bend());
             let distance = |kink: &Kink| (kink.at - at).abs();
-            let bends = planes.iter().filter(|kink| kink.is_bend());
             let nearest = bends
-                .map(|kink| distance(kink))
-                .fold(f64::INFINITY, f64::min);
-            let kept = |kink: &&Kink| !kink.is_bend() || distance(kink) <= nearest;
-            let kept: Vec<&Kink> = planes.into_iter().filter(kept).collect();
+                .iter()
+                .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+            let kept: Vec<&Kink> = jumps.iter().chain(nearest).copied().collect();
             (low, high) = between(axis, at, &kept);
+            if high < low + FEWEST {
+                (low, high) = between(axis, at, &jumps);
+            }
         }
         let length = 2 * reach;
         if high < low + length {

@@ -44,8 +44,12 @@ pub(super) fn all_kinked_surfaces(
     let declared = systems.first().map(|system| system.switching_surfaces());
     let others = declared.unwrap_or_default().into_iter();
     surfaces.extend(others.filter(|&surface| {
-        let mut along = systems.iter();
-        along.any(|system| undriven::has_kink(system.as_ref(), space, surface))
+        let along = systems.iter();
+        let jumping = along.filter(|system| undriven::jumps(system.as_ref(), space, surface));
+        let known: Vec<bool> = jumping
+            .map(|system| undriven::is_known(system.as_ref(), space, surface))
+            .collect();
+        !known.is_empty() && known.iter().all(|&known| known)
     }));
     surfaces
 }
@@ -82,7 +86,7 @@ pub(super) fn structure(
             false => undriven::kink(system, space, masses, &axes, surface),
         })
         .collect();
-    let centre = centre(system, space, &axes);
+    let mut centre = centre(system, space, &axes);
     let known: Vec<(usize, f64)> = surfaces.iter().map(|one| (one.axis, one.at)).collect();
     let declared = system.switching_surfaces().into_iter();
     let others = declared
@@ -100,6 +104,20 @@ pub(super) fn structure(
             Some(Kink { axis, at, jump })
         });
     kinks.extend(others);
+    // A slope that jumps at the centre by nobody knows how much: its curvature there says nothing, and persistence judges.
+    let is_torn = |centre: &Vec<f64>| {
+        let declared = system.switching_surfaces().into_iter();
+        let mut unknown = declared.filter(|one| !known.contains(&(one.axis, one.at)));
+        unknown.any(|one| {
+            let place = axes.iter().position(|&axis| axis == one.axis);
+            let on_centre = place
+                .is_some_and(|place| space.axes()[one.axis].is_same_place(one.at, centre[place]));
+            on_centre && undriven::jumps(system, space, one)
+        })
+    };
+    if centre.as_ref().is_some_and(is_torn) {
+        centre = None;
+    }
     Structure { centre, kinks }
 }
 

@@ -1,8 +1,10 @@
 //! Kinks of densities on planes across which no noise acts, as where a force on the velocity jumps at a position.
 //!
 //! The flux across such a plane is v p, with the drift v across it; where the drift f of other axes jumps by Δf there, the stationary
-//! equation asks that v ∂p/∂x jumps by -∇·(Δf p). So the slope of log p jumps by -∇·(Δf p)/(v p), which stays finite where v passes zero: states that
-//! do not move across the plane are as many on one side as on the other.
+//! equation asks that v ∂p/∂x jumps by -∇·(Δf p), so the slope of log p jumps by -∇·(Δf p)/(v p).
+//!
+//! The law is used where noise and the slope of v do not jump, and Δf is the same all over the plane. Then the jump is Δf times a
+//! number that depends on the density, and is zero exactly where Δf is.
 
 use super::kink::BESIDE;
 use super::smoothness::{Break, break_at};
@@ -12,6 +14,12 @@ use crate::system::{SwitchingSurface, System};
 
 /// A drift across the plane that is a smaller share of the largest is zero.
 const STANDS: f64 = 1e-9;
+/// A jump, or difference of jumps, that is a smaller share of the drift is rounding.
+const ROUNDING: f64 = 1e-6;
+/// A bend, over the range, that is a smaller share of the drift is its curvature.
+const CURVED: f64 = 1e-3;
+/// Times [`BESIDE`], for slopes of the drift.
+const FAR: f64 = 100.0;
 /// Cells with a smaller share of the largest mass beside the plane tell nothing of a slope.
 const EMPTY: f64 = 1e-10;
 
@@ -21,17 +29,20 @@ pub(super) fn is_driven(system: &dyn System, surface: SwitchingSurface) -> bool 
     channels.any(|&axis| axis == surface.axis)
 }
 
-/// Whether the drift of other axes jumps at a surface across which no noise acts, along axes of cells.
-pub(super) fn has_kink(system: &dyn System, space: &CellSpace, surface: SwitchingSurface) -> bool {
-    let axis = &space.axes()[surface.axis];
-    let (Some([_, cell]), false) = (axis.cells_beside(surface.at), is_driven(system, surface))
-    else {
+/// Whether something jumps at a surface across which no noise acts.
+pub(super) fn jumps(system: &dyn System, space: &CellSpace, surface: SwitchingSurface) -> bool {
+    !is_driven(system, surface) && break_at(system, space, surface) == Break::Jump
+}
+
+/// Whether the law tells what such a jump makes of the density, on axes of cells.
+pub(super) fn is_known(system: &dyn System, space: &CellSpace, surface: SwitchingSurface) -> bool {
+    let by_modes = space.axes().iter().any(|axis| axis.is_modes());
+    let beside = space.axes()[surface.axis].cells_beside(surface.at);
+    let Some([_, above]) = beside.filter(|_| !by_modes) else {
         return false;
     };
-    let by_modes = space.axes().iter().any(|axis| axis.is_modes());
-    !by_modes
-        && break_at(system, space, surface) == Break::Jump
-        && Plane::new(system, space, surface, cell).is_some_and(|plane| plane.is_crossed())
+    let plane = Plane::new(system, space, surface, above);
+    plane.is_some_and(|plane| plane.is_crossed() && plane.is_even() && plane.has_even_noise(system))
 }
 
 /// The kink that a surface makes in the density of the given axes, if it stands on one of them.
@@ -81,6 +92,10 @@ struct Plane<'a> {
     speeds: Vec<f64>,
     /// Jumps of the drift along all axes, as many.
     jumps: Vec<Vec<f64>>,
+    /// Jumps of the slope of the drift across the plane, as many.
+    bends: Vec<f64>,
+    /// Where it is.
+    at: f64,
 }
 
 impl<'a> Plane<'a> {
@@ -92,17 +107,29 @@ impl<'a> Plane<'a> {
     ) -> Option<Self> {
         let across = surface.axis;
         let step = BESIDE * space.axes()[across].width(above);
+        // Slopes are differences over more, so that rounding stays out of them.
+        let far = FAR * step;
         let cells = (0..space.n_cells()).filter(|&cell| space.position(cell, across) == above);
         let cells: Vec<usize> = cells.collect();
         let mut speeds = Vec::with_capacity(cells.len());
         let mut jumps = Vec::with_capacity(cells.len());
+        let mut bends = Vec::with_capacity(cells.len());
         for &cell in &cells {
             let mut state = space.centre(cell);
             state[across] = surface.at + step;
             speeds.push(system.drift_at(0.0, &state)[across]);
+            let mut speed = |offset: f64| {
+                state[across] = surface.at + offset;
+                system.drift_at(0.0, &state)[across]
+            };
+            let (above, below) = (
+                speed(2.0 * far) - speed(far),
+                speed(-far) - speed(-2.0 * far),
+            );
+            bends.push((above - below) / far);
             jumps.push(surface.drift_jump(system, &state, step));
         }
-        let numbers = speeds.iter().chain(jumps.iter().flatten());
+        let numbers = speeds.iter().chain(&bends).chain(jumps.iter().flatten());
         let is_finite = numbers.into_iter().all(|number| number.is_finite());
         is_finite.then_some(Self {
             space,
@@ -110,6 +137,8 @@ impl<'a> Plane<'a> {
             cells,
             speeds,
             jumps,
+            bends,
+            at: surface.at,
         })
     }
 
@@ -122,11 +151,45 @@ impl<'a> Plane<'a> {
         self.space.number(&positions)
     }
 
-    /// Whether states move across it, and its own drift does not jump.
+    /// Whether states move across it, and their drift neither jumps nor bends there.
     fn is_crossed(&self) -> bool {
         let fastest = self.fastest();
         let jumps = self.jumps.iter().map(|jump| jump[self.across].abs());
-        fastest > 0.0 && jumps.fold(0.0, f64::max) <= 1e-6 * fastest
+        let width = self.space.axes()[self.across].to() - self.space.axes()[self.across].from();
+        let bends = self.bends.iter().map(|bend| bend.abs() * width);
+        let (jump, bend) = (jumps.fold(0.0, f64::max), bends.fold(0.0, f64::max));
+        fastest > 0.0 && jump <= ROUNDING * fastest && bend <= CURVED * fastest
+    }
+
+    /// Whether the drift jumps by as much everywhere.
+    fn is_even(&self) -> bool {
+        let sizes = self.jumps.iter().flatten().map(|jump| jump.abs());
+        let largest = sizes.fold(0.0, f64::max);
+        let first = self.jumps.first();
+        let same = |jump: &Vec<f64>| {
+            let pairs = jump.iter().zip(first.into_iter().flatten());
+            pairs
+                .into_iter()
+                .all(|(one, other)| (one - other).abs() <= ROUNDING * largest)
+        };
+        self.jumps.iter().all(same)
+    }
+
+    /// Whether no noise jumps there.
+    fn has_even_noise(&self, system: &dyn System) -> bool {
+        let channels = 0..system.noise_axes().len();
+        let step = BESIDE * (self.space.axes()[self.across].to() - self.at);
+        self.cells.iter().all(|&cell| {
+            let mut state = self.space.centre(cell);
+            channels.clone().all(|channel| {
+                let mut square = |side: f64| {
+                    state[self.across] = self.at + side * step;
+                    system.amplitude_at(channel, 0.0, &state).powi(2)
+                };
+                let (below, above) = (square(-1.0), square(1.0));
+                (above - below).abs() <= 10.0 * BESIDE * above.abs().max(below.abs())
+            })
+        })
     }
 
     fn fastest(&self) -> f64 {
@@ -225,7 +288,8 @@ mod tests {
         let found = |count: usize| {
             let axis = |half: f64, count: usize| Axis::uniform(-half, half, count).unwrap();
             let space = CellSpace::new(vec![axis(4.0, 40), axis(3.0, count)]).unwrap();
-            assert!(has_kink(system.as_ref(), &space, surface));
+            assert!(jumps(system.as_ref(), &space, surface));
+            assert!(is_known(system.as_ref(), &space, surface));
             let density = |state: &[f64]| {
                 let energy = 0.5 * (state[0].powi(2) + state[1].powi(2)) + a * state[0].abs();
                 (-2.0 * c / (s * s) * energy).exp()
@@ -249,6 +313,42 @@ mod tests {
                     "{errors:?}"
                 );
             }
+        }
+    }
+    #[test]
+    fn the_law_is_used_only_where_it_holds() {
+        let known = |of_x: &str, force: &str, noise: &str| {
+            let model = TypedModel::new("bang", "A jump", ["x", "y"])
+                .with_equation("x", of_x)
+                .with_equation("y", force)
+                .with_noise("y", [noise])
+                .build()
+                .unwrap();
+            let system = model.system_with(&[]).unwrap();
+            let axis = |half: f64, count: usize| Axis::uniform(-half, half, count).unwrap();
+            let space = CellSpace::new(vec![axis(4.0, 40), axis(3.0, 30)]).unwrap();
+            let surface = SwitchingSurface { axis: 0, at: 0.0 };
+            let jumps = jumps(system.as_ref(), &space, surface);
+            (jumps, is_known(system.as_ref(), &space, surface))
+        };
+        assert_eq!(known("y", "-x - sign(x) - y", "0.7"), (true, true));
+        assert_eq!(
+            known("y + 0.3 sin(x)", "-x - sign(x) - y", "0.7"),
+            (true, true)
+        );
+        assert!(!known("y", "-x - y", "0.7").0);
+        // Jumps that differ from place to place, a velocity that bends, and a noise that jumps.
+        for (of_x, force, noise) in [
+            ("y", "-x - (1 - 0.4 y^2) sign(x) - y", "0.7"),
+            ("y", "-x - sign(x) y", "0.7"),
+            ("y + 0.3 abs(x)", "-x - sign(x) - y", "0.7"),
+            ("y", "-x - sign(x) - y", "0.7 + 0.1 sign(x)"),
+        ] {
+            assert_eq!(
+                known(of_x, force, noise),
+                (true, false),
+                "{of_x}, {force}, {noise}"
+            );
         }
     }
 }

@@ -89,11 +89,13 @@ pub fn steady_sliding(system: &dyn System, velocity: f64) -> Option<f64> {
         let path = |time: f64| [velocity * time, velocity];
         let piece = time / PIECES as f64;
         for index in 0..PIECES {
-            advance(system, &path, index as f64 * piece, piece, &mut states);
+            if !advance(system, &path, index as f64 * piece, piece, &mut states) {
+                return None;
+            }
         }
         let before = states.clone();
-        advance(system, &path, time, time / FAR, &mut states);
-        if !is_same(system, &before, &states, 10.0 * SAME) {
+        let goes_on = advance(system, &path, time, time / FAR, &mut states);
+        if !goes_on || !is_same(system, &before, &states, 10.0 * SAME) {
             return None;
         }
     }
@@ -102,7 +104,7 @@ pub fn steady_sliding(system: &dyn System, velocity: f64) -> Option<f64> {
 
 /// One cycle of a body that is pulled to and fro, x = `amplitude` sin(ωt) with a largest velocity of `fastest`, from the middle upward
 /// and back to it, after as many cycles as the states need to come back to themselves. Empty where the system has no friction law, or
-/// amplitude or velocity is not positive.
+/// amplitude or velocity is not positive, and where its states run away.
 pub fn cycle(system: &dyn System, amplitude: f64, fastest: f64) -> Vec<Pulled> {
     let is_path = amplitude > 0.0 && fastest > 0.0 && (amplitude + fastest).is_finite();
     if !is_path || !has_friction(system) {
@@ -129,8 +131,8 @@ pub fn cycle(system: &dyn System, amplitude: f64, fastest: f64) -> Vec<Pulled> {
                     force,
                 }),
             );
-            if place < PLACES {
-                advance(system, &path, time, piece, &mut states);
+            if place < PLACES && !advance(system, &path, time, piece, &mut states) {
+                return Vec::new();
             }
         }
         if is_same(system, &before, &states, SAME) {
@@ -155,16 +157,16 @@ fn is_same(system: &dyn System, one: &[f64], other: &[f64], share: f64) -> bool 
     })
 }
 
-/// Brings the internal states on over a piece of the path, with so many steps that half as many give the same.
+/// Brings the internal states on over a piece of the path, with so many steps that half as many give the same; false where they run away.
 fn advance(
     system: &dyn System,
     path: &dyn Fn(f64) -> [f64; 2],
     from: f64,
     length: f64,
     states: &mut Vec<f64>,
-) {
+) -> bool {
     if states.is_empty() {
-        return;
+        return true;
     }
     let mut coarse = integrate(system, path, (from, length, 1), states);
     for halvings in 1..=MOST_HALVINGS {
@@ -176,6 +178,7 @@ fn advance(
         }
     }
     *states = coarse;
+    states.iter().all(|state| state.is_finite())
 }
 
 fn integrate(

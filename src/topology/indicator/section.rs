@@ -28,7 +28,7 @@ pub(crate) fn flanks_from_centre(estimated: &EstimatedDensity) -> Vec<Flank> {
         let value = field.values()[cell];
         let second = field.second_scheme().map_or(value, |second| second[cell]);
         let jet = field.jet(&place)?;
-        let is_sure = value > least && (second - value).abs() <= UNSURE * value;
+        let is_sure = value > least && jet.value > 0.0 && (second - value).abs() <= UNSURE * value;
         is_sure.then(|| (at, jet.first[0] / (field.unit(0) * jet.value)))
     };
     let outward = first.edges().iter().filter(|&&at| at > x);
@@ -54,15 +54,14 @@ mod tests {
     use crate::density::{Density, EstimatedDensity, Observable, Structure, Variants};
     use crate::space::Axis;
 
-    /// log p = -∫ r (r² - 1) (r² - 2) (r² - s) dr: rings at 1 and √s, a moat between them at √2 for s above 2.
+    /// log p = ∫ -(q - 1) ((q - 2)² - ε)/2 dq with q = r²: two rings with a moat between them for ε above zero, and one for ε below.
     #[test]
-    fn the_flanks_of_a_moat_are_seen_while_it_stands_and_when_it_is_gone() {
-        let flanks = |s: f64| {
-            let axis = Axis::uniform(-2.5, 2.5, 80).unwrap();
+    fn the_slope_out_of_a_moat_passes_zero_with_it() {
+        let flanks = |epsilon: f64| {
+            let axis = Axis::uniform(-2.5, 2.5, 100).unwrap();
             let log = |q: f64| {
-                // In q = r²: the integral of (q - 1) (q - 2) (q - s)/2.
-                let (a, b, c) = (3.0 + s, 2.0 + 3.0 * s, 2.0 * s);
-                -0.5 * (q.powi(4) / 4.0 - a * q.powi(3) / 3.0 + b * q * q / 2.0 - c * q)
+                let v = q - 2.0;
+                -0.5 * (v.powi(4) / 4.0 + v.powi(3) / 3.0 - epsilon * (0.5 * v * v + v))
             };
             let centres = axis.centres();
             let rows = centres.iter();
@@ -86,18 +85,19 @@ mod tests {
             };
             flanks_from_centre(&estimated)
         };
-        let outward = |s: f64| {
-            let of = flanks(s);
-            let mut values = of.iter().filter(|one| one.rising && one.place > 1.2);
-            values.next().map(|one| one.value)
+        // The slope at q = 2 is r (q - 1) ε there: a maximum near it.
+        let slope = |epsilon: f64| {
+            let near =
+                |one: &&super::Flank| one.rising && (one.place - 2.0_f64.sqrt()).abs() < 0.15;
+            flanks(epsilon).iter().find(near).unwrap().value
         };
-        assert!(outward(3.0).unwrap() > 0.0);
-        assert!(outward(2.2).unwrap() > 0.0);
-        let falling = |s: f64| {
-            let of = flanks(s);
-            let mut values = of.iter().filter(|one| !one.rising);
-            values.next().map(|one| one.value).unwrap()
-        };
-        assert!(falling(3.0) > 0.0);
+        // The maximum itself is at q = 2 but for terms of ε². The nearest face may lie half a cell from the maximum: the slope there is lower by r (2 r h/2)².
+        let half_cell = 0.5 * 5.0 / 100.0;
+        let lower = 2.0_f64.sqrt() * (2.0 * 2.0_f64.sqrt() * half_cell).powi(2);
+        for epsilon in [-0.04, -0.02, 0.02, 0.04] {
+            let (found, exact) = (slope(epsilon), 2.0_f64.sqrt() * epsilon);
+            let is_near = found < exact + 0.5 * lower && found > exact - 1.5 * lower;
+            assert!(is_near, "{epsilon}: {found} {exact}");
+        }
     }
 }
