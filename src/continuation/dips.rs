@@ -104,9 +104,8 @@ pub(super) fn beside_centre(points: &[(&Point, &Flanks)], tolerance: f64) -> Opt
         (0..observables)
             .filter(|_| width > tolerance)
             .find_map(|observable| {
-                let indicators = |point: &Point| point.detections[observable].indicators.clone();
-                let (first, second) = (indicators(a), indicators(b));
-                let turn = first.iter().zip(&second).find(|(one, other)| {
+                let [first, second] = [a, b].map(|point| &point.detections[observable].indicators);
+                let turn = first.iter().zip(second).find(|(one, other)| {
                     let exact = one.sampling_error == 0.0 && other.sampling_error == 0.0;
                     let is_turn = (one.value <= 0.0) != (other.value <= 0.0);
                     exact && one.kind == other.kind && is_turn

@@ -79,15 +79,17 @@ pub(super) fn structure(
     surfaces: &[SwitchingSurface],
 ) -> Structure {
     let axes = observable.axes();
-    let jumps = surfaces.iter();
-    let mut kinks: Vec<Kink> = jumps
-        .filter_map(|&surface| match undriven::is_driven(system, surface) {
+    let mut kinks: Vec<Kink> = Vec::new();
+    let mut known = Vec::new();
+    for &surface in surfaces {
+        let found = match undriven::is_driven(system, surface) {
             true => kink(system, space, masses, &axes, surface),
             false => undriven::kink(system, space, masses, &axes, surface),
-        })
-        .collect();
+        };
+        known.extend(found.is_some().then_some((surface.axis, surface.at)));
+        kinks.extend(found);
+    }
     let mut centre = centre(system, space, &axes);
-    let known: Vec<(usize, f64)> = surfaces.iter().map(|one| (one.axis, one.at)).collect();
     let declared = system.switching_surfaces().into_iter();
     let others = declared
         .filter(|one| !known.contains(&(one.axis, one.at)))

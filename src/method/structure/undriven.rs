@@ -4,7 +4,8 @@
 //! equation asks that v ∂p/∂x jumps by -∇·(Δf p), so the slope of log p jumps by -∇·(Δf p)/(v p).
 //!
 //! The law is used where noise and the slope of v do not jump, and Δf is the same all over the plane. Then the jump is Δf times a
-//! number that depends on the density, and is zero exactly where Δf is.
+//! number that depends on the density. Where that number has one sign all over the plane, the jump is zero exactly where Δf is,
+//! whatever the cells; elsewhere the kink is not known.
 
 use super::kink::BESIDE;
 use super::smoothness::{Break, break_at};
@@ -20,6 +21,8 @@ const ROUNDING: f64 = 1e-6;
 const CURVED: f64 = 1e-3;
 /// Times [`BESIDE`], for slopes of the drift.
 const FAR: f64 = 100.0;
+/// Cells with a larger share of the largest mass beside the plane must agree on the sign of a kink.
+const HEAVY: f64 = 1e-3;
 /// Cells with a smaller share of the largest mass beside the plane tell nothing of a slope.
 const EMPTY: f64 = 1e-10;
 
@@ -45,7 +48,7 @@ pub(super) fn is_known(system: &dyn System, space: &CellSpace, surface: Switchin
     plane.is_some_and(|plane| plane.is_crossed() && plane.is_even() && plane.has_even_noise(system))
 }
 
-/// The kink that a surface makes in the density of the given axes, if it stands on one of them.
+/// The kink that a surface makes in the density of the given axes, if it stands on one of them and its sign follows from the equations.
 pub(super) fn kink(
     system: &dyn System,
     space: &CellSpace,
@@ -60,6 +63,19 @@ pub(super) fn kink(
         .map(|cell| 0.5 * (masses[plane.at(cell, below)] + masses[plane.at(cell, above)]))
         .collect();
     let gains = plane.gains(&on_plane);
+    let heavy = HEAVY * on_plane.iter().copied().fold(0.0, f64::max);
+    let heavy = gains
+        .iter()
+        .zip(&on_plane)
+        .filter(|(_, mass)| **mass > heavy);
+    let (mut rises, mut falls) = (false, false);
+    heavy.for_each(|(gain, _)| {
+        rises |= *gain > 0.0;
+        falls |= *gain < 0.0;
+    });
+    if rises && falls {
+        return None;
+    }
     let other = axes.iter().copied().find(|&axis| axis != surface.axis);
     let bins = other.map_or(1, |axis| space.axes()[axis].count());
     let (mut sums, mut weights) = (vec![0.0; bins], vec![0.0; bins]);
@@ -205,19 +221,22 @@ impl<'a> Plane<'a> {
             moves.then(|| -self.divergence(masses, cell) / self.speeds[cell])
         };
         let gains: Vec<Option<f64>> = (0..self.cells.len()).map(gain).collect();
-        // Where the drift across is zero, as much as beside.
+        // Where the drift across is zero, in proportion to the mass as much as beside.
         let beside = |cell: usize| {
             let sides = (0..self.space.dimension()).flat_map(|axis| self.beside(cell, axis));
-            let known: Vec<f64> = sides.flatten().filter_map(|cell| gains[cell]).collect();
-            known.iter().sum::<f64>() / known.len().max(1) as f64
+            let known = sides.flatten().filter(|&beside| masses[beside] > 0.0);
+            let shares: Vec<f64> = known
+                .filter_map(|beside| Some(gains[beside]? / masses[beside]))
+                .collect();
+            masses[cell] * shares.iter().sum::<f64>() / shares.len().max(1) as f64
         };
         (0..gains.len())
             .map(|cell| gains[cell].unwrap_or_else(|| beside(cell)))
             .collect()
     }
 
-    /// ∇·(Δf p), times the volume of a cell: p (∂Δf + Δf ∂ log p) along every axis, by central differences. Logarithms of densities are
-    /// followed farther than densities; where there is next to nothing the slope is nothing.
+    /// ∇·(Δf p) of an even jump, times the volume of a cell: p Δf ∂ log p along every axis, by central differences. Logarithms of densities
+    /// are followed farther than densities; where there is next to nothing the slope is nothing.
     fn divergence(&self, masses: &[f64], cell: usize) -> f64 {
         let along = (0..self.space.dimension()).filter(|&axis| axis != self.across);
         let of = |axis: usize| {
@@ -234,12 +253,11 @@ impl<'a> Plane<'a> {
                 masses[low] / cells.width(from),
                 masses[high] / cells.width(to),
             );
-            let rise = match first > 0.0 && last > 0.0 {
+            let rise = match first > 0.0 && last > 0.0 && apart > 0.0 {
                 true => (last / first).ln() / apart,
                 false => 0.0,
             };
-            let turn = (self.jumps[high][axis] - self.jumps[low][axis]) / apart;
-            masses[cell].max(0.0) * (turn + self.jumps[cell][axis] * rise)
+            masses[cell].max(0.0) * self.jumps[cell][axis] * rise
         };
         along.map(of).sum()
     }
@@ -302,19 +320,34 @@ mod tests {
             (of(&[0]).jump_at(0), of(&[0, 1]).jump_at(count / 2))
         };
         let exact = -4.0 * a * c / (s * s);
-        // Even and odd counts: with and without cells in which nothing crosses the plane.
-        for counts in [[40, 80], [41, 81]] {
-            let [coarse, fine] = counts.map(found);
-            for (coarse, fine) in [(coarse.0, fine.0), (coarse.1, fine.1)] {
-                let errors = [coarse - exact, fine - exact].map(f64::abs);
-                assert!(errors[1] < 0.01, "{errors:?}");
-                assert!(
-                    errors[1] < 0.3 * errors[0] || errors[1] < 1e-9,
-                    "{errors:?}"
-                );
-            }
+        // Even and odd counts: with and without cells in which nothing crosses the plane. Differences of the logarithm of a normal
+        // density are exact, but at the ends of y, where e⁻⁹ of it is.
+        for count in [40, 41, 80] {
+            let (marginal, joint) = found(count);
+            assert!((marginal / exact - 1.0).abs() < 1e-3, "{marginal} {exact}");
+            assert!((joint / exact - 1.0).abs() < 1e-9, "{joint} {exact}");
         }
     }
+
+    /// Where the density has a ring, it rises away from y = 0: the kink's sign is that of the density as well as of the force.
+    #[test]
+    fn a_kink_whose_sign_depends_on_the_density_is_not_known() {
+        let model = TypedModel::new("bang", "A spring with a preload", ["x", "y"])
+            .with_equation("x", "y")
+            .with_equation("y", "-x - 0.3 sign(x) - 0.5 y")
+            .with_noise("y", ["0.7"])
+            .build()
+            .unwrap();
+        let system = model.system_with(&[]).unwrap();
+        let axis = |half: f64, count: usize| Axis::uniform(-half, half, count).unwrap();
+        let space = CellSpace::new(vec![axis(3.0, 40), axis(3.0, 40)]).unwrap();
+        let ring = |state: &[f64]| (-(state[0].powi(2) + state[1].powi(2) - 1.0).powi(2)).exp();
+        let cells = 0..space.n_cells();
+        let masses: Vec<f64> = cells.map(|cell| ring(&space.centre(cell))).collect();
+        let surface = SwitchingSurface { axis: 0, at: 0.0 };
+        assert_eq!(kink(system.as_ref(), &space, &masses, &[0], surface), None);
+    }
+
     #[test]
     fn the_law_is_used_only_where_it_holds() {
         let known = |of_x: &str, force: &str, noise: &str| {
