@@ -11,7 +11,7 @@ use super::caption::number;
 use super::drawn::Figure;
 use super::style::FigureStyle;
 use crate::system::friction::pulled::{
-    Pulled, cycle, has_friction, steady_sliding, yielding_distance,
+    MOST_CYCLES, Pulled, closes, cycle, has_friction, steady_sliding, yielding_distance,
 };
 use crate::system::{DISPLACEMENT, Model, ParameterValues, System, VELOCITY};
 
@@ -159,6 +159,15 @@ impl<'a> Bench<'a> {
 
     fn caption(&self) -> String {
         let sizes: Vec<String> = self.loops.iter().map(|one| number(one.0)).collect();
+        let open = self.loops.iter().filter(|one| !closes(&one.1));
+        let open: Vec<String> = open.map(|one| number(one.0)).collect();
+        let settled = match open.as_slice() {
+            [] => "after the state has come back to itself".to_owned(),
+            open => format!(
+                "the last of {MOST_CYCLES} cycles, after which the state has not come back to itself for a = {}",
+                open.join(", ")
+            ),
+        };
         let steady = match self.sliding.is_empty() {
             true => {
                 "There is no line of steady sliding, because the internal state does not settle."
@@ -167,7 +176,7 @@ impl<'a> Bench<'a> {
         };
         format!(
             "{}, {}. Left: friction force against velocity; right: against displacement, with loops whose area is the work of friction in a cycle. \
-             {steady} Colours: pulled to and fro, x = a sin(ωt) with a = {} and a largest velocity of {}, after the state has come back to itself. \
+             {steady} Colours: pulled to and fro, x = a sin(ωt) with a = {} and a largest velocity of {}, {settled}. \
              The viscous part κ y is left out. Computed with pbif {}.\n",
             self.model.title,
             self.parameters(),
@@ -259,7 +268,11 @@ mod tests {
             let loops = figure.data.lines().filter(|line| line.starts_with("loop,"));
             assert_eq!(loops.count(), 3 * 401, "{}", model.name);
             assert!(!figure.data.contains("NaN") && figure.caption.contains(&model.title));
-            // The misprinted law does not settle.
+            // The misprinted law does not settle, and says so.
+            assert_eq!(
+                figure.caption.contains("has not come back to itself"),
+                model.name == "dahl_eq8"
+            );
             let steady = figure.data.contains("steady,");
             assert_eq!(steady, model.name != "dahl_eq8", "{}", model.name);
             assert_eq!(figure.svg().contains("sliding steadily"), steady);

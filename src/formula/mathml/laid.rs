@@ -147,6 +147,12 @@ impl Laid {
         first.is_some_and(|one| one.tag == "mn")
     }
 
+    /// Whether it would be read as a mixed number, such as 2½, beside another part without a sign between them.
+    fn is_mixed_with(&self, other: &Self) -> bool {
+        let tag = |element: Option<&Element>| element.map(|one| one.tag);
+        tag(self.elements.last()) == Some("mn") && tag(other.elements.first()) == Some("mfrac")
+    }
+
     /// Beside another part, with a sign between them.
     fn joined(mut self, sign: &str, other: Self) -> Self {
         self.elements.push(operator(sign));
@@ -196,7 +202,7 @@ impl Laid {
             false => self.at_least(Level::Product),
         };
         let right = other.at_least(Level::Product);
-        let product = match right.begins_with_number() {
+        let product = match right.begins_with_number() || left.is_mixed_with(&right) {
             true => left.joined("·", right),
             false => {
                 let mut product = left;

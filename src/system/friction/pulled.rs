@@ -10,12 +10,14 @@ use crate::system::{FIRST_INTERNAL_STATE, Model, ParameterValues, System, System
 /// Places of a cycle whose states are given; a multiple of four, so that the path turns at one of them.
 const PLACES: usize = 400;
 /// Cycles after which a state that has not come back to itself never will.
-const MOST_CYCLES: usize = 60;
+pub const MOST_CYCLES: usize = 60;
 /// Pieces in which a body is pulled in one direction until it slides steadily, over so many yielding distances.
 const PIECES: usize = 200;
 const FAR: f64 = 40.0;
 /// Relative change of the states with half the step, or from cycle to cycle, that is none.
 const SAME: f64 = 1e-7;
+/// Share of the largest force of a cycle that is no gap between its ends.
+const CLOSED: f64 = 1e-4;
 /// Halvings of a step, at most.
 const MOST_HALVINGS: u32 = 12;
 
@@ -103,8 +105,8 @@ pub fn steady_sliding(system: &dyn System, velocity: f64) -> Option<f64> {
 }
 
 /// One cycle of a body that is pulled to and fro, x = `amplitude` sin(ωt) with a largest velocity of `fastest`, from the middle upward
-/// and back to it, after as many cycles as the states need to come back to themselves. Empty where the system has no friction law, or
-/// amplitude or velocity is not positive, and where its states run away.
+/// and back to it, after as many cycles as the states need to come back to themselves, at most [`MOST_CYCLES`]: see [`closes`]. Empty where
+/// the system has no friction law, or amplitude or velocity is not positive, and where its states run away.
 pub fn cycle(system: &dyn System, amplitude: f64, fastest: f64) -> Vec<Pulled> {
     let is_path = amplitude > 0.0 && fastest > 0.0 && (amplitude + fastest).is_finite();
     if !is_path || !has_friction(system) {
@@ -140,6 +142,16 @@ pub fn cycle(system: &dyn System, amplitude: f64, fastest: f64) -> Vec<Pulled> {
         }
     }
     found
+}
+
+/// Whether a cycle ends with the force that it began with; it does not where the states never come back to themselves.
+pub fn closes(cycle: &[Pulled]) -> bool {
+    let sizes = cycle.iter().map(|one| one.force.abs());
+    let largest = sizes.fold(0.0, f64::max);
+    match (cycle.first(), cycle.last()) {
+        (Some(first), Some(last)) => (last.force - first.force).abs() <= CLOSED * largest,
+        _ => false,
+    }
 }
 
 fn force(system: &dyn System, motion: [f64; 2], states: &[f64]) -> Option<f64> {
@@ -296,6 +308,17 @@ mod tests {
         let contact = system("elasto_plastic", &own);
         assert!(work(&cycle(contact.as_ref(), 0.2, 1.0)).abs() < 1e-6);
         assert!(work(&cycle(contact.as_ref(), 0.6, 1.0)) > 0.1);
+    }
+
+    /// The law as it was misprinted lets its state creep on with every cycle.
+    #[test]
+    fn a_state_that_never_comes_back_leaves_its_cycle_open() {
+        let own = [("lambda", 2.0), ("f_c", 0.5)];
+        let [right, misprinted] = ["dahl", "dahl_eq8"].map(|name| system(name, &own));
+        assert!(closes(&cycle(right.as_ref(), 0.2, 1.0)));
+        let open = cycle(misprinted.as_ref(), 0.2, 1.0);
+        assert!(open.len() == PLACES + 1 && !closes(&open));
+        assert!(!closes(&[]));
     }
 
     #[test]

@@ -13,6 +13,7 @@ use crate::stationary::generator::{RateError, RateMethod, narrowing};
 /// for each arithmetic operation a number. Measured (`benches/rates.rs`) from 50² to 30³ cells, in both precisions, within
 /// a third: iterations are bound by memory, factorisations by arithmetic the larger they are.
 const RENEWAL: (f64, f64) = (12.0, 0.027);
+
 impl DirectSolver {
     /// Whether iterating with the factorisation at hand has come to cost more than a new one would.
     pub(in crate::stationary::generator) fn is_worn(&self) -> bool {
