@@ -331,6 +331,9 @@ fn sweeps_over_one_parameter_lie_in_the_band_of_coulomb_friction() {
             .all(|point| point.status == BifurcationStatus::Located)
     );
     assert_eq!(kink.check_work.solves, 0);
+    // So does how it changes with both parameters, which takes no solves beside the points.
+    let (points, work) = (kink.points.len(), kink.work);
+    assert!(work.solves <= points + 2, "{points}: {work:?}");
 }
 
 #[test]

@@ -92,7 +92,17 @@ pub trait Sensitivity {
     /// [`SourceError::Interrupted`].
     fn to_parameter(&mut self, name: &str) -> Result<Vec<Vec<f64>>, SourceError>;
 
-    /// The same for the coordinate of the path, which may move several parameters at once.
+    /// How the jumps that the equations imply at the kinks of every watched density change with a named parameter: those of its
+    /// [`Structure::kinks`](crate::density::Structure::kinks), one after the other in their order; nothing where the source does not know.
+    ///
+    /// # Errors
+    /// As [`Sensitivity::to_parameter`].
+    fn jumps_to_parameter(&mut self, name: &str) -> Result<Vec<Vec<f64>>, SourceError> {
+        let _ = name;
+        Ok(Vec::new())
+    }
+
+    /// The same as [`Sensitivity::to_parameter`] for the coordinate of the path, which may move several parameters at once.
     ///
     /// # Errors
     /// As [`Sensitivity::to_parameter`].

@@ -146,8 +146,15 @@ impl Scene<'_> {
         let place = |point: &CurvePoint| kept(self.curve, point.values[0], point.values[1]);
         let rim = || Stroke::solid(INK, 1.2);
         for (number, curve) in self.curves.iter().enumerate() {
-            let told =
-                |reason: &EndReason| matches!(reason, EndReason::Cusp | EndReason::DegenerateSplit);
+            let told = |reason: &EndReason| {
+                matches!(
+                    reason,
+                    EndReason::Cusp
+                        | EndReason::DegenerateSplit
+                        | EndReason::DegenerateKink
+                        | EndReason::KinkCorner
+                )
+            };
             for end in curve.ends.iter().filter(|end| !told(&end.reason)) {
                 let Some(point) = curve.points.get(end.point) else {
                     continue;

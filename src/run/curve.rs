@@ -156,10 +156,10 @@ pub(super) fn one_json(family: &Family, index: usize, curve: &Curve) -> serde_js
         "points": curve.points.len(),
         "start": curve.start,
         "ends": ends_json(curve),
-        "degenerate_splits": curve
+        "codimension_two": curve
             .degenerate
             .iter()
-            .map(|split| json!({ "label": split.label, "point": split.point }))
+            .map(|one| json!({ "label": one.label, "kind": one.kind.name(), "point": one.point }))
             .collect::<Vec<_>>(),
         "work": work_json(&curve.work),
         "check_work": work_json(&curve.check_work),

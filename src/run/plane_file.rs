@@ -8,7 +8,8 @@ use super::RunError;
 use super::checksums;
 use super::map_checkpoint::{node, node_json, signature, signature_json};
 use crate::continuation::curve::{
-    Curve, CurveEnd, CurveOrigin, CurvePoint, CurveWork, DegenerateSplit, EndReason, Plane,
+    CodimensionTwoKind, Curve, CurveEnd, CurveOrigin, CurvePoint, CurveWork, DegeneratePoint,
+    EndReason, Plane,
 };
 use crate::continuation::map::{MapWork, RegimeMap, RegionSample, Untraced};
 use crate::continuation::{BifurcationStatus, ErrorParts, Subject};
@@ -78,7 +79,7 @@ fn curve_json(curve: &Curve) -> Value {
         json!([end.label, end.point, word, detail])
     });
     let splits = curve.degenerate.iter();
-    let splits = splits.map(|one| json!([one.label, one.point]));
+    let splits = splits.map(|one| json!([one.label, one.point, one.kind.name()]));
     json!({
         "observable": curve.observable.axes(),
         "kind": curve.kind.code(),
@@ -114,7 +115,10 @@ fn reason_words(reason: &EndReason) -> (&'static str, Value) {
         EndReason::Closed => ("closed", Value::Null),
         EndReason::Cusp => ("cusp", Value::Null),
         EndReason::DegenerateSplit => ("degenerate split", Value::Null),
+        EndReason::DegenerateKink => ("degenerate kink", Value::Null),
+        EndReason::KinkCorner => ("corner at a kink", Value::Null),
         EndReason::FeatureLost => ("feature lost", Value::Null),
+        EndReason::SymmetryLost => ("symmetry lost", Value::Null),
         EndReason::Singular => ("singular", Value::Null),
         EndReason::NotConverged => ("not converged", Value::Null),
         EndReason::Sampling => ("sampling", Value::Null),
@@ -130,7 +134,10 @@ fn reason(word: &str, detail: &Value) -> Option<EndReason> {
         "closed" => EndReason::Closed,
         "cusp" => EndReason::Cusp,
         "degenerate split" => EndReason::DegenerateSplit,
+        "degenerate kink" => EndReason::DegenerateKink,
+        "corner at a kink" => EndReason::KinkCorner,
         "feature lost" => EndReason::FeatureLost,
+        "symmetry lost" => EndReason::SymmetryLost,
         "singular" => EndReason::Singular,
         "not converged" => EndReason::NotConverged,
         "sampling" => EndReason::Sampling,
@@ -293,8 +300,11 @@ fn curve(value: &Value, plane: &Plane) -> Option<Curve> {
         })
     };
     let split = |value: &Value| {
-        Some(DegenerateSplit {
+        let word = value[2].as_str()?;
+        let mut kinds = CodimensionTwoKind::ALL.into_iter();
+        Some(DegeneratePoint {
             label: value[0].as_str()?.to_owned(),
+            kind: kinds.find(|kind| kind.name() == word)?,
             point: within(&value[1])?,
         })
     };

@@ -3,8 +3,8 @@
 use super::critical::{Critical, height_above};
 use super::field::Field;
 use super::indicator::{
-    Found, at_centre, beside_kink, corrected, flanks_from_centre, fold, level, put_right, quartic,
-    ring_slope, shoulder, shoulders,
+    Found, at_centre, beside_kink, corrected, curvature_beside, flanks_from_centre, fold, level,
+    put_right, quartic, ring_slope, shoulder, shoulders,
 };
 use super::persistence::{Component, Grid, components};
 use super::refine::refine;
@@ -341,6 +341,9 @@ impl Detector for PersistenceDetector {
             IndicatorKind::Shoulder { rising } => shoulder(density, *near.first()?, rising),
             IndicatorKind::BesideKink { above, is_valley } => {
                 beside_kink(density, *near.first()?, above, is_valley)
+            }
+            IndicatorKind::CurvatureBesideKink { above } => {
+                curvature_beside(density, *near.first()?, above)
             }
             IndicatorKind::Fold => fold(density, near),
             IndicatorKind::Ring => ring_slope(density, near),

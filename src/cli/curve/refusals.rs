@@ -79,12 +79,15 @@ pub(super) fn held_value(name: &str, spec: &Sweep) -> Result<f64, CommandError> 
         true => format!("the second parameter is the swept one, `{name}`"),
         false => format!("there is no parameter `{name}`"),
     };
-    let report = Diagnostic::new(title)
-        .allowed(format!(
-            "the parameters that the sweep holds: {}",
-            list(&names)
-        ))
-        .nearest(name, names.iter().copied());
+    let report = Diagnostic::new(title);
+    let report = match names.is_empty() {
+        true => report.remedy(
+            "the system has no parameter but the swept one: name another number of its formulas, and give it under `[system.parameters]`",
+        ),
+        false => report
+            .allowed(format!("the parameters that the sweep holds: {}", list(&names)))
+            .nearest(name, names.iter().copied()),
+    };
     Err(CommandError::Input(report.into()))
 }
 

@@ -62,8 +62,7 @@ impl Job<'_> {
             line(&self.row.label, curve.start, "start");
         }
         for split in &curve.degenerate {
-            let words = "degenerate split: from here on peaks are born away from the centre";
-            line(&split.label, split.point, words);
+            line(&split.label, split.point, turn_in_words(split.kind));
         }
         if let Some(end) = curve.ends.last() {
             line(&end.label, end.point, &end.reason.words(&curve.plane));
@@ -105,6 +104,19 @@ fn place(plane: &Plane, values: [f64; 2], error: f64) -> String {
     values.collect::<Vec<_>>().join("  ")
 }
 
+/// What differs from a point between the ends of a curve on.
+fn turn_in_words(kind: CodimensionTwoKind) -> &'static str {
+    match kind {
+        CodimensionTwoKind::DegenerateSplit => {
+            "degenerate split: from here on peaks are born away from the centre"
+        }
+        CodimensionTwoKind::DegenerateKink => {
+            "degenerate kink: from here on peaks are born away from the kink"
+        }
+        _ => "crossing: what the change leads to differs from here on",
+    }
+}
+
 /// A point of codimension two in a line.
 pub(in crate::cli) fn codimension_line(point: &CodimensionTwo, plane: &Plane) -> String {
     let curves = point.curves.iter().map(|index| format!("C{}", index + 1));
@@ -114,6 +126,15 @@ pub(in crate::cli) fn codimension_line(point: &CodimensionTwo, plane: &Plane) ->
         CodimensionTwoKind::DegenerateSplit => format!(
             "degenerate split of {curves}: births at the centre turn into births away from it"
         ),
+        CodimensionTwoKind::DegenerateKink => {
+            format!("degenerate kink of {curves}: births at the kink turn into births away from it")
+        }
+        CodimensionTwoKind::KinkCorner => format!(
+            "corner of {curves}: the slopes on both sides of the kink vanish, and nothing happens on these lines beyond"
+        ),
+        CodimensionTwoKind::Crossing if point.curves.len() < 2 => {
+            format!("crossing of {curves} with a curve that was not followed")
+        }
         CodimensionTwoKind::Crossing => format!("crossing of {curves}"),
     };
     format!(

@@ -6,8 +6,7 @@ use super::walk::apart;
 use crate::continuation::ErrorParts;
 use crate::topology::IndicatorKind;
 
-/// How near to a degenerate split the curve of a joint density that begins there must have been met, in sides of the box: there its feature is of the size of
-/// cells.
+/// How near to its point of codimension two a curve that begins there must have been met, in sides of the box: there its feature is of the size of cells.
 const MEETS: f64 = 0.03;
 
 /// Moves ends in points that another curve knows better there, and ends the curves that begin at a degenerate split in it.
@@ -16,7 +15,7 @@ pub(in crate::continuation) fn agree(curves: &mut [Curve]) {
         for (index, curve) in curves.iter_mut().enumerate() {
             if known.curves.contains(&index) {
                 move_ends(curve, &known);
-            } else if known.kind == CodimensionTwoKind::DegenerateSplit {
+            } else if begins_there(curve.kind, known.kind) {
                 lengthen(curve, &known);
             }
         }
@@ -52,10 +51,20 @@ fn put(point: &mut CurvePoint, known: &CodimensionTwo) {
     point.status = known.status;
 }
 
-/// A curve of a joint density that was lost just before a degenerate split ends there.
+/// Whether curves of an indicator begin at such a point, and are lost before they come to it: those of joint densities at a degenerate split, and folds at a kink.
+fn begins_there(kind: IndicatorKind, known: CodimensionTwoKind) -> bool {
+    match known {
+        CodimensionTwoKind::DegenerateSplit => {
+            matches!(kind, IndicatorKind::Ring | IndicatorKind::Fold)
+        }
+        CodimensionTwoKind::DegenerateKink => matches!(kind, IndicatorKind::Shoulder { .. }),
+        _ => false,
+    }
+}
+
+/// A curve that was lost just before the point at which it begins ends there.
 fn lengthen(curve: &mut Curve, known: &CodimensionTwo) {
-    let begins_there = matches!(curve.kind, IndicatorKind::Ring | IndicatorKind::Fold);
-    if !begins_there || known.observables != [curve.observable] {
+    if known.observables != [curve.observable] {
         return;
     }
     let at = curve.plane.place(known.values);
@@ -108,7 +117,10 @@ fn lengthen(curve: &mut Curve, known: &CodimensionTwo) {
             };
         }
         let end = &mut curve.ends[index];
-        end.reason = EndReason::DegenerateSplit;
-        end.label = "DS1".to_owned();
+        end.reason = match known.kind {
+            CodimensionTwoKind::DegenerateKink => EndReason::DegenerateKink,
+            _ => EndReason::DegenerateSplit,
+        };
+        end.label = format!("{}1", known.kind.prefix());
     }
 }

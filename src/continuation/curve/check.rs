@@ -138,7 +138,7 @@ impl Checks<'_> {
                         Shown::Nothing
                     })
                 }
-                Err(Missing::Indicator) => Some(Shown::Nothing),
+                Err(Missing::Indicator | Missing::Symmetry) => Some(Shown::Nothing),
                 Err(Missing::Density(_)) => Some(Shown::Failed),
                 Err(Missing::Interrupted) => break,
             };

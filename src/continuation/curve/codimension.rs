@@ -1,4 +1,4 @@
-//! Points of codimension two of several curves: cusps and degenerate splits, each once for all curves that have it, and crossings.
+//! Points of codimension two of several curves: those that a curve knows of itself, each once for all curves that have it, and crossings.
 
 use super::found::{Curve, CurvePoint, EndReason};
 use super::piece::Piece;
@@ -16,16 +16,31 @@ pub enum CodimensionTwoKind {
     Cusp,
     /// A split at a centre turns from births at the centre to births away from it.
     DegenerateSplit,
+    /// Slope and curvature beside a kink vanish together: births at the kink turn into births away from it.
+    DegenerateKink,
+    /// The slopes on both sides of a kink vanish together, and the curves of both end.
+    KinkCorner,
     /// Two curves cross.
     Crossing,
 }
 
 impl CodimensionTwoKind {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Cusp,
+        Self::DegenerateSplit,
+        Self::DegenerateKink,
+        Self::KinkCorner,
+        Self::Crossing,
+    ];
+
     /// The letters of its label.
     pub fn prefix(self) -> &'static str {
         match self {
             Self::Cusp => "CP",
             Self::DegenerateSplit => "DS",
+            Self::DegenerateKink => "DK",
+            Self::KinkCorner => "KC",
             Self::Crossing => "CX",
         }
     }
@@ -35,6 +50,8 @@ impl CodimensionTwoKind {
         match self {
             Self::Cusp => "cusp",
             Self::DegenerateSplit => "degenerate split",
+            Self::DegenerateKink => "degenerate kink",
+            Self::KinkCorner => "corner at a kink",
             Self::Crossing => "crossing",
         }
     }
@@ -55,7 +72,7 @@ pub struct CodimensionTwo {
     pub status: BifurcationStatus,
     /// The observables of the curves; of a crossing there may be two.
     pub observables: Vec<Observable>,
-    /// Where the density has the feature, one coordinate an axis; of a crossing nothing.
+    /// Where the density has the feature, one coordinate an axis; of a crossing that its curves show together nothing.
     pub place: Vec<f64>,
     /// The curves that end, or pass, there, by their places in the list.
     pub curves: Vec<usize>,
@@ -108,12 +125,14 @@ pub(super) fn own(curve: &Curve) -> impl Iterator<Item = (CodimensionTwoKind, us
         let kind = match end.reason {
             EndReason::Cusp => CodimensionTwoKind::Cusp,
             EndReason::DegenerateSplit => CodimensionTwoKind::DegenerateSplit,
+            EndReason::DegenerateKink => CodimensionTwoKind::DegenerateKink,
+            EndReason::KinkCorner => CodimensionTwoKind::KinkCorner,
             _ => return None,
         };
         Some((kind, end.point))
     });
     let within = curve.degenerate.iter();
-    let within = within.map(|one| (CodimensionTwoKind::DegenerateSplit, one.point));
+    let within = within.map(|one| (one.kind, one.point));
     ends.chain(within)
         .filter_map(|(kind, index)| Some((kind, index, curve.points.get(index)?)))
 }

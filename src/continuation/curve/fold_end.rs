@@ -1,12 +1,12 @@
-//! Where the fold of a marginal ends inside the box: in a cusp, or at a degenerate split of the centre. Its last points tell, since both parameters are smooth
-//! functions of where the fold is in the density, through such a point and beyond.
+//! Where the fold of a marginal ends inside the box: in a cusp, at a degenerate split of the centre, or at a kink. Its last points tell, since both parameters
+//! are smooth functions of where the fold is in the density, through such a point and beyond.
 
 use super::CurveStart;
 use super::cusp::cusp;
 use super::found::{CurvePoint, EndReason};
 use super::plane::Plane;
 use super::polynomial::{evaluated, fitted};
-use super::walk::apart;
+use super::walk::{KinkAtEnd, apart};
 use crate::continuation::{BifurcationStatus, ErrorParts};
 use crate::topology::IndicatorKind;
 
@@ -14,12 +14,20 @@ use crate::topology::IndicatorKind;
 const FEWEST: usize = 8;
 /// Length of the end of a curve that they are taken from, in sides of the box.
 const LONGEST: f64 = 0.2;
+/// The same where these are too few.
+const FARTHEST: f64 = 0.6;
 /// Farthest that the end may be from where the curve was met last, in sides of the box.
 pub(super) const FAR: f64 = 0.05;
+/// The same of an end at a kink, beside which a fold is not read.
+const FAR_FROM_KINK: f64 = 0.15;
+/// Where the error of such an end would be larger, nothing is said of it.
+const MOST_VAGUE: f64 = 0.02;
 /// Degree in the square of the distance from a centre.
 const DEGREE: usize = 3;
 /// Cells from a centre nearer than which a fold is not told from its mirror image: such points are left out where it ends there.
 const TOLD_APART: f64 = 6.0;
+/// Cells from a kink nearer than which an inflection is not read from cells beside it.
+const BESIDE_KINK: f64 = 2.0;
 /// How far points may be off, over the root of the mean square of what polynomials leave of them.
 const SCATTERS: f64 = 3.0;
 /// A fold that ends at a centre comes nearer to it than this share of where the points that tell begin, both squared.
@@ -34,6 +42,8 @@ pub(super) struct Folds<'a> {
     pub(super) tolerance: f64,
     /// Where the densities have their centre of symmetry, where all of them have it, and the width of the cells there.
     pub(super) centre: Option<(f64, f64)>,
+    /// Where the slope of the densities jumps, at the first end and at the last.
+    pub(super) kinks: [Vec<KinkAtEnd>; 2],
 }
 
 impl Folds<'_> {
@@ -41,6 +51,27 @@ impl Folds<'_> {
     fn is_unsure(&self, point: &CurvePoint) -> bool {
         let place = point.place.first().zip(self.centre);
         place.is_some_and(|(x, (centre, cell))| (x - centre).abs() < TOLD_APART * cell)
+    }
+
+    /// The end of a fold at a kink, if there is one: where the fold comes nearest to.
+    fn at_kink(&self, inward: &[&CurvePoint], is_first: bool) -> Option<(Beyond, usize)> {
+        let last = inward.first()?.place.first()?;
+        let gap = |kink: &&KinkAtEnd| (kink.at - last).abs();
+        let nearest = self.kinks[usize::from(!is_first)].iter();
+        let kink = nearest.min_by(|a, b| gap(a).total_cmp(&gap(b)))?;
+        let unsure = inward.iter().take_while(|point| {
+            let place = point.place.first();
+            place.is_some_and(|x| (x - kink.at).abs() < BESIDE_KINK * kink.cell)
+        });
+        let unsure = unsure.count();
+        let tail = Tail::new(inward.get(unsure..)?, self.plane)?;
+        Some((at_kink(&tail, kink, self.is_centre(kink))?, unsure))
+    }
+
+    /// Whether a kink lies on the centre of symmetry.
+    fn is_centre(&self, kink: &KinkAtEnd) -> bool {
+        let centre = self.centre;
+        centre.is_some_and(|(centre, _)| (centre - kink.at).abs() < kink.cell)
     }
 }
 
@@ -73,10 +104,12 @@ impl<'p> Tail<'p> {
     /// The first of some points that follow each other inward; `None` where they are too few.
     fn new(inward: &[&'p CurvePoint], plane: &Plane) -> Option<Self> {
         let first = inward.first()?;
-        let near = inward
-            .iter()
-            .take_while(|point| (point.arclength - first.arclength).abs() <= LONGEST);
-        let points: Vec<&CurvePoint> = near.copied().collect();
+        let near = inward.iter().enumerate().take_while(|(index, point)| {
+            // Where steps are long, as many as it takes.
+            let longest = if *index <= FEWEST { FARTHEST } else { LONGEST };
+            (point.arclength - first.arclength).abs() <= longest
+        });
+        let points: Vec<&CurvePoint> = near.map(|(_, point)| *point).collect();
         let places = points
             .iter()
             .filter_map(|point| point.place.first().copied());
@@ -126,12 +159,16 @@ pub(super) fn add_ends(
         let unsure = inward.iter().take_while(|point| folds.is_unsure(point));
         let unsure = unsure.count();
         let beyond = || {
-            let centre = folds.centre.and_then(|(centre, _)| {
+            let mut kinks = folds.kinks.iter().flatten();
+            let on_kink = kinks.any(|kink| folds.is_centre(kink));
+            let smooth = folds.centre.filter(|_| !on_kink);
+            let centre = smooth.and_then(|(centre, _)| {
                 let tail = Tail::new(inward.get(unsure..)?, folds.plane)?;
                 Some((at_centre(&tail, centre)?, unsure))
             });
             let cusp = || Some((cusp(&Tail::new(&inward, folds.plane)?, rising)?, 0));
-            let (found, left_out) = centre.or_else(cusp)?;
+            let kink = || folds.at_kink(&inward, is_first);
+            let (found, left_out) = centre.or_else(kink).or_else(cusp)?;
             let last = inward.get(left_out)?;
             Some((point(&found, last, is_first, folds), found, left_out))
         };
@@ -229,6 +266,43 @@ fn at_centre(tail: &Tail<'_>, centre: f64) -> Option<Beyond> {
         scatter: SCATTERS * found.scatter,
         leaves: found.leaves,
         branch: (found.at, IndicatorKind::Curvature, centre),
+    })
+}
+
+/// Where a fold comes to a kink: both parameters are smooth functions of the distance from it.
+fn at_kink(tail: &Tail<'_>, beside: &KinkAtEnd, is_centre: bool) -> Option<Beyond> {
+    let kink = beside.at;
+    let distances: Vec<f64> = tail.places.iter().map(|x| (x - kink).abs()).collect();
+    let (nearest, scale) = (distances[0], distances[distances.len() - 1]);
+    let leaves = distances.windows(2).all(|pair| pair[1] > pair[0]);
+    if !leaves || nearest > NEAR_CENTRE.sqrt() * scale {
+        return None;
+    }
+    let scaled: Vec<f64> = distances.iter().map(|one| one / scale).collect();
+    let found = Meeting::new(&scaled, &tail.values, DEGREE);
+    let lower = Meeting::new(&scaled, &tail.values, DEGREE - 1);
+    let quarter = scaled.len() / 4;
+    let farther = Meeting::new(&scaled[quarter..], &tail.values[quarter..], DEGREE);
+    let doubt = apart(found.at, lower.at) + apart(found.at, farther.at);
+    let above = tail.places[0] > kink;
+    let kind = match is_centre {
+        true => IndicatorKind::KinkSlope,
+        // The kink is what it was before the pair on this side: the peak or valley that the other side says.
+        false => IndicatorKind::BesideKink {
+            above,
+            is_valley: beside.rises_away[usize::from(!above)],
+        },
+    };
+    let error = tail.known() + 2.0 * doubt + SCATTERS * found.scatter;
+    let is_near = apart(found.at, tail.values[0]) <= FAR_FROM_KINK;
+    (is_near && error <= MOST_VAGUE).then_some(Beyond {
+        reason: EndReason::DegenerateKink,
+        at: found.at,
+        place: kink,
+        error,
+        scatter: SCATTERS * found.scatter,
+        leaves: found.leaves,
+        branch: (found.at, kind, kink),
     })
 }
 

@@ -1,6 +1,6 @@
 //! What following a curve gives: its points with their errors, its ends with their reasons, and the work it took.
 
-use super::{CurveStart, Plane};
+use super::{CodimensionTwoKind, CurveStart, Plane};
 use crate::continuation::{BifurcationStatus, ErrorParts, LabelledPoint, SolveReport};
 use crate::density::Observable;
 use crate::topology::{IndicatorKind, Signature};
@@ -44,10 +44,16 @@ pub enum EndReason {
     NoDensity(String),
     /// The feature whose indicator was followed is not there beyond.
     FeatureLost,
+    /// The density has no centre of symmetry beyond, at which the indicator would be.
+    SymmetryLost,
     /// Two folds meet in a cusp: the last point, found from how both parameters depend on the place of the fold.
     Cusp,
     /// Two folds meet in a centre of symmetry, at which births away from it turn into births at it: the last point, found in the same way.
     DegenerateSplit,
+    /// Slope and curvature beside a kink vanish together: births at the kink turn into births away from it.
+    DegenerateKink,
+    /// The slopes on both sides of a kink vanish together: there two curves of the kink meet and end.
+    KinkCorner,
     /// The indicator changes in no direction: curves meet, or turn on the spot.
     Singular,
     /// However short the step, the curve was not met again.
@@ -62,7 +68,7 @@ pub enum EndReason {
 
 impl EndReason {
     /// The letters of its label, as AUTO has them: `EP` an end of the box, `CL` closed, `MX` no density or no
-    /// convergence; `CP` cusp, `DS` degenerate split, `FL` feature lost, `SP` singular point, `UN` unfinished.
+    /// convergence; `CP` cusp, `DS` degenerate split, `DK` degenerate kink, `KC` corner at a kink, `FL` feature lost, `SP` singular point, `UN` unfinished.
     pub fn prefix(&self) -> &'static str {
         match self {
             Self::Border(_) => "EP",
@@ -70,7 +76,9 @@ impl EndReason {
             Self::NoDensity(_) | Self::NotConverged | Self::Sampling => "MX",
             Self::Cusp => "CP",
             Self::DegenerateSplit => "DS",
-            Self::FeatureLost => "FL",
+            Self::DegenerateKink => "DK",
+            Self::KinkCorner => "KC",
+            Self::FeatureLost | Self::SymmetryLost => "FL",
             Self::Singular => "SP",
             Self::TooManyPoints | Self::Interrupted => "UN",
         }
@@ -87,6 +95,13 @@ impl EndReason {
             Self::NoDensity(reason) => format!("no density beyond: {reason}"),
             Self::Cusp => "cusp: two folds meet".to_owned(),
             Self::DegenerateSplit => "degenerate split: two folds meet at the centre".to_owned(),
+            Self::DegenerateKink => {
+                "degenerate kink: births at the kink turn into births away from it".to_owned()
+            }
+            Self::KinkCorner => "corner: the slopes on both sides of the kink vanish".to_owned(),
+            Self::SymmetryLost => {
+                "the symmetry is lost: beyond, the density has no centre".to_owned()
+            }
             Self::FeatureLost => "the feature is lost".to_owned(),
             Self::Singular => "the indicator changes in no direction".to_owned(),
             Self::NotConverged => "the curve was not met again".to_owned(),
@@ -108,12 +123,14 @@ pub struct CurveEnd {
     pub point: usize,
 }
 
-/// A degenerate split on the curve of a split at a centre: on one side of it two peaks leave the centre as one splits there, on the other side they are
-/// born away from it, on a fold that begins here.
+/// A point of codimension two between the ends of a curve: what the change leads to differs from there on. At a degenerate split two peaks
+/// leave the centre as one splits there on one side of it, on the other side they are born away from it, on a fold that begins here.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct DegenerateSplit {
+pub struct DegeneratePoint {
     /// Letters and ordinal: `DS1`.
     pub label: String,
+    /// What happens there.
+    pub kind: CodimensionTwoKind,
     /// The point, by its place in [`Curve::points`]. Its error holds in all directions.
     pub point: usize,
 }
@@ -183,8 +200,8 @@ pub struct Curve {
     pub start: usize,
     /// Its ends: that of the first point and that of the last. A closed curve has one.
     pub ends: Vec<CurveEnd>,
-    /// Its degenerate splits between the ends.
-    pub degenerate: Vec<DegenerateSplit>,
+    /// Its points of codimension two between the ends.
+    pub degenerate: Vec<DegeneratePoint>,
     /// Where other curves start from its points of codimension two.
     pub branches: Vec<CurveStart>,
     /// What following it took.

@@ -6,8 +6,11 @@
 //! interpolated along the curve. This module knows an indicator and sessions, and nothing of cells.
 
 mod agree;
+mod branch;
+mod broken;
 mod check;
 mod codimension;
+mod companion;
 mod crossed;
 mod cusp;
 mod degenerate;
@@ -23,7 +26,7 @@ mod walk;
 pub(super) use agree::agree;
 pub use codimension::{CodimensionTwo, CodimensionTwoKind, codimension_two};
 pub use crossed::{GapToCurve, NotInPlane, RowInPlane, SweepInPlane};
-pub use found::{Curve, CurveEnd, CurveOrigin, CurvePoint, CurveWork, DegenerateSplit, EndReason};
+pub use found::{Curve, CurveEnd, CurveOrigin, CurvePoint, CurveWork, DegeneratePoint, EndReason};
 pub use plane::{Plane, PlaneSide};
 pub use tree::{CurveTree, MissedBranch, follow_all};
 pub(super) use tree::{ON_IT, distance};
@@ -185,24 +188,32 @@ pub fn follow(
     };
     let mut walked = walk::Follower(task).both_ways(observer)?;
     let (mut points, mut check_work) = check::Checks(task).judged(&walked);
+    let seeker = degenerate::Seeker(task);
+    let mut broken = seeker.broken(&mut walked, &mut points, &mut check_work);
     // A zero beside which there is no curve is not one of a smooth indicator.
     if let [alone] = points.as_mut_slice()
         && matches!(
             alone.status,
             BifurcationStatus::Located | BifurcationStatus::Unchecked
         )
+        && broken.is_empty()
     {
         alone.status = BifurcationStatus::Unconfirmed;
     }
-    let splits = degenerate::Seeker(task).found(&walked, &points, &mut check_work);
-    let (degenerate, mut branches) = degenerate::add_splits(&mut points, &mut walked.start, splits);
+    let found = seeker.found(&walked, &points, &mut check_work);
+    let (degenerate, mut branches) = match companion::ends_there(start.kind) {
+        true => (Vec::new(), degenerate::cut(&mut points, &mut walked, found)),
+        false => degenerate::add(&mut points, &mut walked.start, found),
+    };
     let folds = fold_end::Folds {
         kind: start.kind,
         observable: start.observable,
         plane,
         tolerance: options.tolerance,
         centre: walked.centre(),
+        kinks: walked.kinks(),
     };
+    branches.append(&mut broken);
     branches.extend(fold_end::add_ends(
         &mut points,
         &mut walked.ends,

@@ -1,11 +1,12 @@
 //! The indicator at a place of the plane, and how it changes with both parameters.
 //!
 //! Where the solved point knows how its densities answer to parameters, the indicator's derivative is the indicator of the density moved a
-//! little along dp/dθ: exact to the digits of dp/dθ. Elsewhere two more solves beside the place give it by differences.
+//! little along dp/dθ, and of what the equations imply at its kinks: exact to the digits of dp/dθ. Elsewhere two more solves beside the
+//! place give it by differences.
 
-use super::{CurveStart, CurveWork, Plane};
+use super::{CurveStart, CurveWork, Plane, companion};
 use crate::cancellation::Cancellation;
-use crate::continuation::{DensitySource, PointStatus, Session, SourceError};
+use crate::continuation::{DensitySource, PointStatus, Sensitivity, Session, SourceError};
 use crate::density::{Density, EstimatedDensity};
 use crate::topology::{Detector, Indicator, IndicatorKind};
 
@@ -31,8 +32,10 @@ pub(super) struct Reading {
     /// Whether cells add diffusion of their own.
     pub(super) is_diffused: bool,
     pub(super) density: Density,
-    /// p''''/p at the centre, where the indicator is a curvature there.
-    pub(super) quartic: Option<f64>,
+    /// Values of the indicator's companions, in their order, as far as they are known.
+    pub(super) companions: Vec<Option<f64>>,
+    /// Where the slope of the density jumps, if it has one axis.
+    pub(super) kinks: Vec<f64>,
     /// The centre of symmetry of the density, where it has one.
     pub(super) centre: Option<Vec<f64>>,
     /// How far from the place the derivatives were read.
@@ -75,6 +78,8 @@ pub(super) enum Missing {
     Density(String),
     /// The density has no such indicator.
     Indicator,
+    /// The density has no centre of symmetry, at which the indicator would be.
+    Symmetry,
     /// The source was asked to stop.
     Interrupted,
 }
@@ -145,24 +150,27 @@ impl Reader<'_> {
         let density = solution.densities.get(self.observable);
         let density = density.ok_or_else(|| Missing::Density("no density".to_owned()))?;
         let indicator = self.detector.indicator(density, self.kind, near);
-        let indicator = indicator.ok_or(Missing::Indicator)?;
+        let has_centre = density.structure.centre.is_some() || !is_at_centre(self.kind);
+        let indicator = indicator.ok_or(match has_centre {
+            true => Missing::Indicator,
+            false => Missing::Symmetry,
+        })?;
         let mut gradient = [f64::NAN; 2];
-        // The slope at a kink follows from the equations, not from the density alone.
-        let wanted = with_gradient && self.kind != IndicatorKind::KinkSlope;
-        if let Some(sensitivity) = solution.sensitivity.as_mut().filter(|_| wanted) {
+        if let Some(sensitivity) = solution.sensitivity.as_mut().filter(|_| with_gradient) {
             for (part, side) in gradient.iter_mut().zip(self.plane.sides()) {
-                let changes = match sensitivity.to_parameter(&side.parameter) {
-                    Ok(changes) => changes,
+                let watched = (self.observable, density);
+                let asked = sensitivity.as_mut();
+                let along = along(self.detector, watched, &indicator, asked, &side.parameter);
+                *part = match along {
+                    Ok(along) => along.map_or(f64::NAN, |along| along * side.length()),
                     Err(SourceError::Interrupted) => return Err(Missing::Interrupted),
                     // At an end of a parameter's range; differences go inward.
                     Err(SourceError::Method(_)) => break,
                 };
-                let change = changes.get(self.observable).map_or(&[][..], Vec::as_slice);
-                let place = &indicator.place;
-                let along = derivative(self.detector, density, self.kind, place, change);
-                *part = along.map_or(f64::NAN, |along| along * side.length());
             }
         }
+        let kinks = density.structure.kinks.iter();
+        let kinks = kinks.filter(|kink| !kink.is_bend() && density.density.axes.len() == 1);
         Ok(Reading {
             coordinate,
             at,
@@ -171,7 +179,8 @@ impl Reader<'_> {
             edge_mass: report.edge_mass.iter().copied().fold(0.0, f64::max),
             status: report.status,
             is_diffused: !report.own.numerical_diffusion.is_empty(),
-            quartic: quartic(self.detector, density, self.kind),
+            companions: companion::values(self.detector, density, self.kind, &indicator.place),
+            kinks: kinks.map(|kink| kink.at).collect(),
             centre: density.structure.centre.clone(),
             density: density.density.clone(),
             indicator,
@@ -195,6 +204,17 @@ impl Reader<'_> {
     }
 }
 
+/// Whether an indicator is read at a centre of symmetry.
+fn is_at_centre(kind: IndicatorKind) -> bool {
+    use IndicatorKind::{
+        Curvature, CurvatureAlongKink, KinkSlope, LowerCurvature, Quartic, UpperCurvature,
+    };
+    matches!(
+        kind,
+        Curvature | CurvatureAlongKink | KinkSlope | LowerCurvature | Quartic | UpperCurvature
+    )
+}
+
 fn missing(error: SourceError) -> Missing {
     match error {
         SourceError::Interrupted => Missing::Interrupted,
@@ -202,16 +222,24 @@ fn missing(error: SourceError) -> Missing {
     }
 }
 
-/// What tells whether a split at the centre is degenerate, where the indicator is that of one.
-fn quartic(
+/// Derivative of the indicator of a watched density by a parameter; `None` where the source cannot tell.
+fn along(
     detector: &dyn Detector,
-    density: &EstimatedDensity,
-    kind: IndicatorKind,
-) -> Option<f64> {
-    use IndicatorKind::{Curvature, LowerCurvature, Quartic, UpperCurvature};
-    let splits = matches!(kind, Curvature | LowerCurvature | UpperCurvature);
-    let found = splits.then(|| detector.indicator(density, Quartic, &[]));
-    Some(found??.value)
+    (observable, density): (usize, &EstimatedDensity),
+    indicator: &Indicator,
+    sensitivity: &mut dyn Sensitivity,
+    parameter: &str,
+) -> Result<Option<f64>, SourceError> {
+    // The slope at a kink follows from the equations alone.
+    if indicator.kind == IndicatorKind::KinkSlope {
+        let jumps = sensitivity.jumps_to_parameter(parameter)?;
+        let jumps = jumps.get(observable);
+        return Ok(jumps.and_then(|jumps| by_jumps(detector, density, indicator, jumps)));
+    }
+    let changes = sensitivity.to_parameter(parameter)?;
+    let change = changes.get(observable).map_or(&[][..], Vec::as_slice);
+    let (kind, place) = (indicator.kind, &indicator.place);
+    Ok(derivative(detector, density, kind, place, change))
 }
 
 /// Derivative of an indicator when its density changes at this rate.
@@ -239,4 +267,25 @@ fn derivative(
         Some(indicator.value)
     };
     Some((moved(step)? - moved(-step)?) / (2.0 * step))
+}
+
+/// Derivative of an indicator that follows from the jumps at kinks, when these change at the given rates, one after the other.
+fn by_jumps(
+    detector: &dyn Detector,
+    estimated: &EstimatedDensity,
+    indicator: &Indicator,
+    rates: &[f64],
+) -> Option<f64> {
+    let kinks = &estimated.structure.kinks;
+    let count: usize = kinks.iter().map(|kink| kink.jump.len()).sum();
+    if count != rates.len() || rates.iter().any(|rate| !rate.is_finite()) {
+        return None;
+    }
+    let mut moved = estimated.clone();
+    let jumps = moved.structure.kinks.iter_mut();
+    let jumps = jumps.flat_map(|kink| &mut kink.jump);
+    // It is linear in them.
+    jumps.zip(rates).for_each(|(jump, rate)| *jump += rate);
+    let there = detector.indicator(&moved, indicator.kind, &indicator.place)?;
+    Some(there.value - indicator.value)
 }

@@ -12,6 +12,9 @@ use crate::topology::Detector;
 /// A start nearer to a curve than this is on it, in sides of the box.
 pub(in crate::continuation) const ON_IT: f64 = 0.01;
 
+/// A point of a curve nearer to another one of the same indicator than this is on it.
+const SAME_CURVE: f64 = 1e-3;
+
 /// A curve that should start from a point of codimension two, and was not met.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MissedBranch {
@@ -82,6 +85,8 @@ pub fn follow_all(
         }
         tried.push(start.clone());
         match trace(&start) {
+            // Where a start was vague, it may lead to a curve that is there already.
+            Ok(curve) if curves.iter().any(|known| known.passes_start_of(&curve)) => {}
             Ok(curve) => {
                 open.extend(curve.branches.iter().cloned());
                 curves.push(curve);
@@ -106,6 +111,18 @@ impl CurveStart {
 }
 
 impl Curve {
+    /// Whether another curve begins on this one, and is the same.
+    fn passes_start_of(&self, other: &Self) -> bool {
+        let Some(point) = other.points.get(other.start) else {
+            return false;
+        };
+        let at = self.plane.place(point.values);
+        let line = self.points.iter().map(|one| self.plane.place(one.values));
+        let line: Vec<[f64; 2]> = line.collect();
+        let is_same = (self.kind, self.observable) == (other.kind, other.observable);
+        is_same && distance(&line, at) <= SAME_CURVE
+    }
+
     /// Whether a start of the same observable is on this curve.
     pub(in crate::continuation) fn has(&self, start: &CurveStart) -> bool {
         let at = self.plane.place(start.values);

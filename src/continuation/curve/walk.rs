@@ -1,7 +1,7 @@
 //! Following a curve: predicted along tangent and curvature, corrected along the gradient, in steps as long as the curve allows.
 
 use super::reading::{Missing, Reader, Reading};
-use super::{CurveError, CurveWork, EndReason, Task};
+use super::{CurveError, CurveWork, EndReason, Task, companion};
 use crate::continuation::SourceError;
 use crate::density::hellinger;
 
@@ -23,6 +23,8 @@ const GROWTH: f64 = 1.6;
 const FAR: f64 = 0.05;
 /// Places of an indicator at neighbouring points farther apart than this, in ranges of the axes, are not one place that moved.
 const ONE_PLACE: f64 = 0.1;
+/// How many times as fast as along a curve its indicator's gradient may change across it.
+const ACROSS: f64 = 2.0;
 /// Fewest points of a closed curve.
 const FEWEST_CLOSED: usize = 6;
 
@@ -50,6 +52,12 @@ pub(super) struct Walked {
 }
 
 impl Walked {
+    /// The places at which the slope of the densities of one axis jumps, as they are at the first point and at the last.
+    pub(super) fn kinks(&self) -> [Vec<KinkAtEnd>; 2] {
+        [self.points.first(), self.points.last()]
+            .map(|node| node.map_or_else(Vec::new, KinkAtEnd::all_of))
+    }
+
     /// The centre of symmetry of the densities of one axis, where all have the same, and the width of the cells there.
     pub(super) fn centre(&self) -> Option<(f64, f64)> {
         let mut centres = self
@@ -64,6 +72,36 @@ impl Walked {
         centres
             .all(|one| one == Some(&[centre]))
             .then_some((centre, cell))
+    }
+}
+
+/// A place at which the slope of a density jumps, at the end of a curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct KinkAtEnd {
+    pub(super) at: f64,
+    /// Width of the cells there.
+    pub(super) cell: f64,
+    /// Whether the density rises away from it below, and above.
+    pub(super) rises_away: [bool; 2],
+}
+
+impl KinkAtEnd {
+    fn all_of(node: &Node) -> Vec<Self> {
+        let density = &node.reading.density;
+        let Some(axis) = density.axes.first() else {
+            return Vec::new();
+        };
+        let found = node.reading.kinks.iter().filter_map(|&at| {
+            let [below, above] = axis.cells_beside(at)?;
+            let value = |cell: usize| density.values.get(cell).copied();
+            let farther = [value(below.checked_sub(1)?)?, value(above + 1)?];
+            Some(Self {
+                at,
+                cell: axis.width(above),
+                rises_away: [farther[0] > value(below)?, farther[1] > value(above)?],
+            })
+        });
+        found.collect()
     }
 }
 
@@ -154,6 +192,7 @@ impl<'a> Follower<'a> {
     ) -> (Vec<Node>, EndReason) {
         let mut nodes: Vec<Node> = Vec::new();
         let mut bend = [0.0; 2];
+        let mut known = start.reading.companions.clone();
         let longest = self.0.options.largest_step;
         let mut step = 0.5 * longest;
         loop {
@@ -192,7 +231,12 @@ impl<'a> Follower<'a> {
                         });
                         return (nodes, EndReason::Closed);
                     }
+                    let turned = companion::turned(&mut known, &node.reading.companions);
                     nodes.push(node);
+                    // The last point is beyond the end, which lies between it and the one before.
+                    if turned.is_some() && companion::ends_there(self.0.start.kind) {
+                        return (nodes, EndReason::FeatureLost);
+                    }
                     if let Some(side) = border {
                         return (nodes, EndReason::Border(side));
                     }
@@ -256,6 +300,7 @@ fn correct(
             .map_err(|missing| match missing {
                 Missing::Density(reason) => EndReason::NoDensity(reason),
                 Missing::Indicator => EndReason::FeatureLost,
+                Missing::Symmetry => EndReason::SymmetryLost,
                 Missing::Interrupted => EndReason::Interrupted,
             })?;
         let steepness = reading.steepness();
@@ -303,12 +348,12 @@ fn not_met(reading: &Reading) -> EndReason {
     }
 }
 
-/// What the straight line to the foot may leave: half the curvature of the indicator, by how much its gradient changed since the point
-/// before, times the square of the distance.
+/// What the straight line to the foot may leave: half the curvature of the indicator times the square of the distance. By how much the gradient
+/// changed since the point before tells it along the curve; across, it may be as much again.
 fn remainder(reading: &Reading, size: f64, before: Option<&Node>) -> f64 {
     let bend = before.map_or(1.0, |before| {
         let change = apart(reading.gradient, before.reading.gradient);
-        change / (reading.steepness() * apart(reading.at, before.reading.at))
+        ACROSS * change / (reading.steepness() * apart(reading.at, before.reading.at))
     });
     0.5 * bend * size * (size + reading.doubt)
 }

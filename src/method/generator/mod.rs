@@ -3,6 +3,7 @@
 
 mod coarse;
 mod cost;
+mod jumps;
 mod memory;
 mod modes;
 mod one_axis;

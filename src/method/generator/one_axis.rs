@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::GeneratorSource;
+use super::jumps::Kinked;
 use super::source::METHOD;
 use crate::continuation::{Sensitivity, Solution, SourceError};
 use crate::density::{Moments, Observable};
@@ -76,13 +77,20 @@ struct QuadratureSensitivity<'session> {
 
 impl Sensitivity for QuadratureSensitivity<'_> {
     fn to_parameter(&mut self, name: &str) -> Result<Vec<Vec<f64>>, SourceError> {
-        let family = self.source.problem.family();
-        let model = family.model();
-        let values = family.values_at(self.value).map_err(MethodError::from)?;
-        let index = model.parameter_index(name).map_err(MethodError::from)?;
-        let at = |value: f64| Ok(model.system(&model.with(&values, name, value)?));
-        let centre = values.as_slice()[index];
-        Ok(self.of(at, centre)?)
+        let varied = self.source.varied(self.value, name)?;
+        Ok(self.of(|value| varied.at(value), varied.value)?)
+    }
+
+    fn jumps_to_parameter(&mut self, name: &str) -> Result<Vec<Vec<f64>>, SourceError> {
+        let varied = self.source.varied(self.value, name)?;
+        // On one axis a kink is a point, and no mass is spread over it.
+        let masses = vec![1.0; self.source.problem.space().n_cells()];
+        let kinked = Kinked {
+            source: self.source,
+            coordinate: self.value,
+            masses: &masses,
+        };
+        Ok(kinked.changes(|value| varied.at(value), varied.value, || Ok(Vec::new()))?)
     }
 
     fn along_path(&mut self) -> Result<Vec<Vec<f64>>, SourceError> {

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::GeneratorSource;
+use super::jumps::Kinked;
 use crate::continuation::{Sensitivity, SourceError};
 use crate::generator::{GeneratorOptions, assemble_derivative, cell_masses};
 use crate::method::MethodError;
@@ -28,13 +29,21 @@ pub(super) struct GeneratorSensitivity<'session> {
 
 impl Sensitivity for GeneratorSensitivity<'_> {
     fn to_parameter(&mut self, name: &str) -> Result<Vec<Vec<f64>>, SourceError> {
-        let family = self.source.problem.family();
-        let model = family.model().clone();
-        let values = family.values_at(self.value).map_err(MethodError::from)?;
-        let index = model.parameter_index(name).map_err(MethodError::from)?;
-        let value = values.as_slice()[index];
-        let at = |value: f64| Ok(model.system(&model.with(&values, name, value)?));
-        Ok(self.of(at, value)?)
+        let varied = self.source.varied(self.value, name)?;
+        Ok(self.of(|value| varied.at(value), varied.value)?)
+    }
+
+    fn jumps_to_parameter(&mut self, name: &str) -> Result<Vec<Vec<f64>>, SourceError> {
+        let varied = self.source.varied(self.value, name)?;
+        let (source, space) = (self.source, self.source.problem.space());
+        let masses = cell_masses(self.system.as_ref(), space, &self.unknowns);
+        let kinked = Kinked {
+            source,
+            coordinate: self.value,
+            masses: &masses,
+        };
+        let at = |value| varied.at(value);
+        Ok(kinked.changes(at, varied.value, || self.rates(at, varied.value))?)
     }
 
     fn along_path(&mut self) -> Result<Vec<Vec<f64>>, SourceError> {
@@ -50,6 +59,17 @@ impl GeneratorSensitivity<'_> {
         system_at: impl Fn(f64) -> Result<Arc<dyn System>, SystemError>,
         value: f64,
     ) -> Result<Vec<Vec<f64>>, MethodError> {
+        let masses = self.rates(system_at, value)?;
+        let problem = &self.source.problem;
+        self.source.maps(self.value)?.changes(problem, &masses)
+    }
+
+    /// The same of the masses of the cells.
+    fn rates(
+        &mut self,
+        system_at: impl Fn(f64) -> Result<Arc<dyn System>, SystemError>,
+        value: f64,
+    ) -> Result<Vec<f64>, MethodError> {
         let problem = &self.source.problem;
         let options = GeneratorOptions {
             scheme: self.source.options.scheme,
@@ -60,8 +80,7 @@ impl GeneratorSensitivity<'_> {
         let change = self
             .solver
             .sensitivity_within(matrix, unknowns, None, ACCURACY)?;
-        let masses = self.change_of_masses(&change);
-        self.source.maps(self.value)?.changes(problem, &masses)
+        Ok(self.change_of_masses(&change))
     }
 
     /// By how much the masses of the cells change with the unknowns, to first order.

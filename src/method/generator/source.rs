@@ -13,10 +13,27 @@ use crate::method::watched::{Maps, Masses};
 use crate::method::{MethodError, Problem, has_densities};
 use crate::space::CellSpace;
 use crate::stationary::generator::{RateOptions, RateSolver};
-use crate::system::{Enclosed, SwitchingSurface, System, SystemError};
+use crate::system::{Enclosed, Model, ParameterValues, SwitchingSurface, System, SystemError};
 
 /// Name of the method in tables.
 pub(super) const METHOD: &str = "generator";
+
+/// Systems that differ in one parameter alone.
+pub(super) struct Varied {
+    model: Arc<Model>,
+    values: ParameterValues,
+    name: String,
+    /// The value of the parameter about which it is varied.
+    pub(super) value: f64,
+}
+
+impl Varied {
+    /// The system at a value of the parameter.
+    pub(super) fn at(&self, value: f64) -> Result<Arc<dyn System>, SystemError> {
+        let values = self.model.with(&self.values, &self.name, value)?;
+        Ok(self.model.system(&values))
+    }
+}
 
 /// Densities along a path by the generator.
 #[derive(Debug, Clone)]
@@ -79,6 +96,19 @@ impl GeneratorSource {
     /// What turns masses into what is watched at a value of the path.
     pub(super) fn maps(&self, value: f64) -> Result<Arc<Maps>, MethodError> {
         self.problem.maps(value, &self.kinked, Masses::Exact)
+    }
+
+    /// The systems beside a value of the path that differ in a named parameter alone.
+    pub(super) fn varied(&self, coordinate: f64, name: &str) -> Result<Varied, MethodError> {
+        let family = self.problem.family();
+        let model = family.model().clone();
+        let values = family.values_at(coordinate)?;
+        Ok(Varied {
+            value: values.as_slice()[model.parameter_index(name)?],
+            name: name.to_owned(),
+            model,
+            values,
+        })
     }
 
     /// The generator of a system by one of the schemes.

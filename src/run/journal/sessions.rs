@@ -366,6 +366,11 @@ impl Sensitivity for Answering<'_> {
         self.keep(name, answer)
     }
 
+    fn jumps_to_parameter(&mut self, name: &str) -> Result<Vec<Vec<f64>>, SourceError> {
+        let answer = self.inner.jumps_to_parameter(name);
+        self.keep(&jumps_by(name), answer)
+    }
+
     fn along_path(&mut self) -> Result<Vec<Vec<f64>>, SourceError> {
         let answer = self.inner.along_path();
         self.keep("", answer)
@@ -378,6 +383,11 @@ struct Told {
     journal: SessionJournal,
 }
 
+/// What answers on jumps are kept as: no parameter has a space in its name.
+fn jumps_by(name: &str) -> String {
+    format!("jumps by {name}")
+}
+
 impl Sensitivity for Told {
     fn to_parameter(&mut self, name: &str) -> Result<Vec<Vec<f64>>, SourceError> {
         let found = self.answers.iter().find(|(known, _)| known == name);
@@ -388,6 +398,10 @@ impl Sensitivity for Told {
                 Err(self.journal.end(RunError::Journal { path }))
             }
         }
+    }
+
+    fn jumps_to_parameter(&mut self, name: &str) -> Result<Vec<Vec<f64>>, SourceError> {
+        self.to_parameter(&jumps_by(name))
     }
 
     fn along_path(&mut self) -> Result<Vec<Vec<f64>>, SourceError> {

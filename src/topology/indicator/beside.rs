@@ -4,10 +4,11 @@
 //! There the slope on that side, away from the kink, changes its sign while that on the other side does not. It goes through zero linearly, and
 //! nothing else does: there is no inflection.
 
-use super::{Indicator, IndicatorKind};
+use super::{Indicator, IndicatorKind, window};
 use crate::density::EstimatedDensity;
 use crate::topology::Feature;
 use crate::topology::field::{Field, Jet};
+use crate::topology::reconstruction::Line;
 
 /// Distance from the kink at which its sides are told apart, as a share of the range.
 const ASIDE: f64 = 1e-9;
@@ -19,16 +20,7 @@ pub(crate) fn beside_kink(
     above: bool,
     is_valley: bool,
 ) -> Option<Indicator> {
-    if estimated.density.axes.len() != 1 {
-        return None;
-    }
-    let distance = |at: f64| (at - near).abs();
-    let kinks = estimated.structure.kinks.iter();
-    let kinks = kinks.filter(|kink| !kink.is_bend()).map(|kink| kink.at);
-    let at = kinks.min_by(|a, b| distance(*a).total_cmp(&distance(*b)))?;
-    if !is_seen(estimated, at) {
-        return None;
-    }
+    let at = nearest(estimated, near)?;
     let field = Field::new(estimated).filter(|_| !estimated.is_noisy())?;
     let side = if above { 1.0 } else { -1.0 };
     let place = [at + side * ASIDE * field.unit(0)];
@@ -42,6 +34,40 @@ pub(crate) fn beside_kink(
         |values| of(fine.jet(values)),
         |values| of(rough.jet(values)),
     )
+}
+
+/// (log p)'' on one side of the kink nearest to a place; `None` where [`beside_kink`] is.
+pub(crate) fn curvature_beside(
+    estimated: &EstimatedDensity,
+    near: f64,
+    above: bool,
+) -> Option<Indicator> {
+    let at = nearest(estimated, near).filter(|_| !estimated.is_noisy())?;
+    let lines = window::one_sided(&estimated.density.axes[0], at, above)?;
+    let of = |lines: &[Line], values: &[f64]| {
+        let [p, slope, bend] = [0, 1, 2].map(|order: usize| lines[order].apply(values));
+        bend / p - (slope / p).powi(2)
+    };
+    let [fine, rough] = lines.both();
+    Indicator::derive(
+        estimated,
+        IndicatorKind::CurvatureBesideKink { above },
+        vec![at],
+        |values| of(fine, values),
+        |values| of(rough, values),
+    )
+}
+
+/// The kink of a marginal nearest to a place, if what is beside it can be read.
+fn nearest(estimated: &EstimatedDensity, near: f64) -> Option<f64> {
+    if estimated.density.axes.len() != 1 {
+        return None;
+    }
+    let distance = |at: f64| (at - near).abs();
+    let kinks = estimated.structure.kinks.iter();
+    let kinks = kinks.filter(|kink| !kink.is_bend()).map(|kink| kink.at);
+    let at = kinks.min_by(|a, b| distance(*a).total_cmp(&distance(*b)))?;
+    is_seen(estimated, at).then_some(at)
 }
 
 /// Whether what is beside a kink can be read off the cells: it lies on a face, or no scheme has blurred it.

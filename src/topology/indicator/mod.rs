@@ -9,6 +9,7 @@
 //! | the same at a kink | slope p'/p on the upper side of the kink |
 //! | a peak and a valley are born together elsewhere | slope \|p'\|/p at the inflection between them |
 //! | the same at a kink that is no centre | slope p'/p on one side of the kink |
+//! | where slope and curvature beside a kink are zero: births at the kink, or away from it | (log p)'' on one side of the kink |
 //! | joint density, smooth centre | the two curvatures of p/p along its principal directions |
 //! | joint density, centre on a kink | slope across the kink; curvature along it |
 //! | joint density, a peak opens to a ring away from a centre, or two rings merge | curvature along an axis there |
@@ -30,8 +31,8 @@ mod smooth;
 mod tests;
 mod window;
 
-pub(super) use beside::beside_kink;
 pub(crate) use beside::born_at_kink;
+pub(super) use beside::{beside_kink, curvature_beside};
 pub(super) use centre::{Found, at_centre, corrected};
 pub(super) use fold::fold;
 pub(super) use level::level;
@@ -71,6 +72,12 @@ pub enum IndicatorKind {
         /// Whether the kink is the valley of the two.
         is_valley: bool,
     },
+    /// Curvature of the logarithm of a marginal on one side of a kink. No bifurcation by itself, but a point of codimension two where the
+    /// slope there is zero too.
+    CurvatureBesideKink {
+        /// Whether the side is that of larger coordinates.
+        above: bool,
+    },
     /// Slope along a ridge or trench of a joint density where it is nearest to level, positive when a peak and a saddle (a
     /// saddle and a crater) are there.
     Fold,
@@ -98,6 +105,7 @@ impl IndicatorKind {
             Self::UpperCurvature => "upper curvature at the centre",
             Self::Shoulder { .. } => "slope at the inflection",
             Self::BesideKink { .. } => "slope beside the kink",
+            Self::CurvatureBesideKink { .. } => "curvature beside the kink",
             Self::Fold => "slope at the shoulder",
             Self::Ring => "slope to the ring",
             Self::Level { .. } => "curvature at a state of rest",
@@ -106,7 +114,7 @@ impl IndicatorKind {
     }
 
     /// All of them.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 18] = [
         Self::Curvature,
         Self::KinkSlope,
         Self::CurvatureAlongKink,
@@ -118,6 +126,8 @@ impl IndicatorKind {
         Self::beside_kink(false, true),
         Self::beside_kink(true, false),
         Self::beside_kink(true, true),
+        Self::CurvatureBesideKink { above: false },
+        Self::CurvatureBesideKink { above: true },
         Self::Fold,
         Self::Ring,
         Self::Level {
@@ -142,6 +152,8 @@ impl IndicatorKind {
                 (true, false) => "slope above the kink of a peak",
                 (true, true) => "slope above the kink of a valley",
             },
+            Self::CurvatureBesideKink { above: false } => "curvature below the kink",
+            Self::CurvatureBesideKink { above: true } => "curvature above the kink",
             Self::Level {
                 along_second: false,
             } => "curvature along the first axis at a state of rest",

@@ -69,6 +69,23 @@ fn beside(axis: &Axis, at: f64, orders: usize) -> Option<Lines> {
     })
 }
 
+/// Lines for p, p', p'' at a place, of the cells on one side of it.
+pub(super) fn one_sided(axis: &Axis, at: f64, above: bool) -> Option<Lines> {
+    let (below, from) = sides(axis, at)?;
+    let line = |reach: usize| {
+        let cells = match above {
+            true => from..from + reach,
+            false => below.checked_sub(reach)?..below,
+        };
+        let fits = cells.end <= axis.count();
+        fits.then(|| interpolating(axis, cells, at, 3))?
+    };
+    Some(Lines {
+        fine: line(BENT[0])?,
+        rough: line(BENT[1])?,
+    })
+}
+
 /// Lines for the value of the density on a plane where its derivative jumps: the mean of both sides.
 pub(super) fn on_kink(estimated: &EstimatedDensity, k: usize, at: f64) -> Option<Lines> {
     let axis = &estimated.density.axes[k];

@@ -1,0 +1,94 @@
+//! What vanishes beside a curve's own indicator at its points of codimension two.
+//!
+//! Along a curve one indicator is zero. What happens across it depends on the signs of others, its companions: where one of them passes
+//! zero too, what the change leads to differs from there on, and other curves begin.
+//!
+//! Beside a kink the slope of log p is s + c u + …, with the distance u from it. On the curve s = 0, and the curvature c tells whether
+//! the kink turns from a peak into a valley as s does (c < 0, at a centre of symmetry), or a peak away from it is there before (c > 0).
+//! Where there is no centre, the kink is an extremum only as long as the slope on its other side has its sign, and a peak or valley
+//! comes out of it, rather than moves off it, only as long as c has: beyond, nothing happens on the line s = 0, and the curve ends.
+
+use super::CodimensionTwoKind;
+use crate::density::EstimatedDensity;
+use crate::topology::{Detector, IndicatorKind};
+
+/// The companions of an indicator of a density with so many axes.
+pub(super) fn companions(kind: IndicatorKind, axes: usize) -> Vec<IndicatorKind> {
+    use IndicatorKind as Kind;
+    match (kind, axes) {
+        (Kind::Curvature | Kind::LowerCurvature | Kind::UpperCurvature, _) => vec![Kind::Quartic],
+        (Kind::KinkSlope, 1) => vec![Kind::CurvatureBesideKink { above: true }],
+        (Kind::KinkSlope, _) => vec![Kind::CurvatureAlongKink],
+        (Kind::CurvatureAlongKink, _) => vec![Kind::KinkSlope],
+        (Kind::BesideKink { above, is_valley }, _) => vec![
+            Kind::BesideKink {
+                above: !above,
+                is_valley,
+            },
+            Kind::CurvatureBesideKink { above },
+        ],
+        _ => Vec::new(),
+    }
+}
+
+/// What the point is where an indicator and this companion of it vanish.
+pub(super) fn meeting(companion: IndicatorKind) -> CodimensionTwoKind {
+    match companion {
+        IndicatorKind::Quartic => CodimensionTwoKind::DegenerateSplit,
+        IndicatorKind::CurvatureBesideKink { .. } => CodimensionTwoKind::DegenerateKink,
+        IndicatorKind::BesideKink { .. } => CodimensionTwoKind::KinkCorner,
+        _ => CodimensionTwoKind::Crossing,
+    }
+}
+
+/// Whether nothing happens on the line beyond the point at which a companion vanishes.
+pub(super) fn ends_there(kind: IndicatorKind) -> bool {
+    matches!(kind, IndicatorKind::BesideKink { .. })
+}
+
+/// The values of the companions, in their order; `None` where there is no such indicator. Of a kink's, where its sign is in doubt too.
+pub(super) fn values(
+    detector: &dyn Detector,
+    density: &EstimatedDensity,
+    kind: IndicatorKind,
+    place: &[f64],
+) -> Vec<Option<f64>> {
+    let all = companions(kind, density.density.axes.len()).into_iter();
+    all.map(|companion| {
+        let indicator = detector.indicator(density, companion, place)?;
+        let is_sure =
+            indicator.sampling_error == 0.0 && indicator.value.abs() > indicator.systematic_error;
+        (is_sure || companion == IndicatorKind::Quartic).then_some(indicator.value)
+    })
+    .collect()
+}
+
+/// The companion, by its place among them, that has another sign than where it was known last; what is known is brought up to date.
+pub(super) fn turned(known: &mut [Option<f64>], values: &[Option<f64>]) -> Option<usize> {
+    let mut found = None;
+    for (index, (known, value)) in known.iter_mut().zip(values).enumerate() {
+        let Some(value) = *value else {
+            continue;
+        };
+        if known.is_some_and(|before| (before > 0.0) != (value > 0.0)) {
+            found = found.or(Some(index));
+        }
+        *known = Some(value);
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_companion_turns_where_its_sign_is_known_to_differ() {
+        let mut known = vec![Some(1.0), None];
+        assert_eq!(turned(&mut known, &[None, Some(-2.0)]), None);
+        assert_eq!(turned(&mut known, &[Some(2.0), None]), None);
+        assert_eq!(turned(&mut known, &[Some(3.0), Some(0.5)]), Some(1));
+        assert_eq!(turned(&mut known, &[Some(-3.0), Some(0.6)]), Some(0));
+        assert_eq!(known, [Some(-3.0), Some(0.6)]);
+    }
+}
