@@ -1,5 +1,5 @@
-//! Says what the program is built from and by what, for `run.json`: commit, compiler, target. Whatever cannot be found out is left out, so that a package
-//! without git builds too.
+//! Says what the program is built from and by what, for `run.json`: commit, compiler, target. Whatever cannot be found
+//! out is left out, so that a package without git builds too.
 
 use std::path::Path;
 use std::process::Command;
@@ -28,8 +28,8 @@ fn tell(name: &str, value: Option<String>) {
     println!("cargo::rustc-env={name}={}", value.unwrap_or_default());
 }
 
-/// The commit of the repository whose root this is, with `-dirty` where tracked files are changed. A package that lies within somebody else's
-/// repository has none.
+/// The commit of the repository whose root this is, with `-dirty` where tracked files are changed. A package that lies
+/// within somebody else's repository has none.
 fn of_repository(root: &Path) -> Option<String> {
     let git = |arguments: &[&str]| said(Command::new("git").current_dir(root).args(arguments));
     let top = git(&["rev-parse", "--show-toplevel"])?;

@@ -1,5 +1,5 @@
-//! A curve of a P-bifurcation at 100 × 100 cells: about 100 points of the change of x under Coulomb friction, in the plane of friction level
-//! and noise, with its checks on finer cells and between closed ends of Ω.
+//! A curve of a P-bifurcation at 100 × 100 cells: about 100 points of the change of x under Coulomb friction, in the
+//! plane of friction level and noise, with its checks on finer cells and between closed ends of Ω.
 
 // A bench may stop where it cannot go on, and speaks to who runs it.
 #![allow(clippy::unwrap_used, clippy::print_stderr)]

@@ -1,5 +1,5 @@
-//! A built-in model against its twin as formulas, through the library: steps of sampled trajectories, and the assembly of a
-//! generator. Run with `cargo bench --bench typed`; figures are the fastest of several runs on one thread.
+//! A built-in model against its twin as formulas, through the library: steps of sampled trajectories, and the assembly
+//! of a generator. Run with `cargo bench --bench typed`; figures are the fastest of several runs on one thread.
 #![allow(missing_docs, clippy::print_stdout, clippy::unwrap_used)]
 
 use std::hint::black_box;

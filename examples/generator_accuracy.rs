@@ -1,6 +1,6 @@
-//! How accurate the generator is for the oscillator with Coulomb friction: against the exact density where there is no friction, and
-//! against finer cells and the exact jump of the slope where there is. Prints the Markdown tables of docs/accuracy.md; takes
-//! about half a minute on two cores.
+//! How accurate the generator is for the oscillator with Coulomb friction: against the exact density where there is no
+//! friction, and against finer cells and the exact jump of the slope where there is. Prints the Markdown tables of
+//! docs/accuracy.md; takes about half a minute on two cores.
 //!
 //! Run with `cargo run --release --example generator_accuracy`.
 

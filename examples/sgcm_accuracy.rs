@@ -1,7 +1,8 @@
 //! How accurate SGCM is: steady states of the oscillator without friction, whose density is known exactly, over map
 //! steps, grids and integrators. Prints the Markdown tables of docs/sgcm.md; takes about a minute on two cores.
 //!
-//! Run with `cargo run --release --example sgcm_accuracy`; with `-- quick` after it, the first grid of each table alone.
+//! Run with `cargo run --release --example sgcm_accuracy`; with `-- quick` after it, the first grid of each table
+//! alone.
 
 #![allow(clippy::print_stdout)] // An example talks to its reader.
 

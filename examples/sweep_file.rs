@@ -1,7 +1,7 @@
 //! A sweep file in a program: opened, changed, checked and run; what is said of mistakes; a stored run opened again.
 //!
-//! Run with `cargo run --release --example sweep_file [RUN]`, where RUN is a folder that `pbif sweep` wrote. The README shows the
-//! middle of this program.
+//! Run with `cargo run --release --example sweep_file [RUN]`, where RUN is a folder that `pbif sweep` wrote. The README
+//! shows the middle of this program.
 
 #![allow(clippy::print_stdout)] // An example talks to its reader.
 

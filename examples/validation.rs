@@ -1,5 +1,5 @@
-//! Every method against every density that is known exactly, and located bifurcations against exact ones. Prints the tables of
-//! docs/validation.md, the same on every machine but for the last digit; about a minute on two free cores.
+//! Every method against every density that is known exactly, and located bifurcations against exact ones. Prints the
+//! tables of docs/validation.md, the same on every machine but for the last digit; about a minute on two free cores.
 //!
 //! Run with `cargo run --release --example validation`.
 
@@ -421,7 +421,8 @@ impl Sweep {
 }
 
 /// Where x of `rayleigh` goes from one peak to two: the zero of ∂²p/∂x² at x = 0, p = ∫ exp(2(aH - bH²/2)/σ²) dy with
-/// H = (x² + y²)/2, hence of ∫ (a - bH) exp(…) dy there; bisection, and sums over equal steps (exact for this integrand).
+/// H = (x² + y²)/2, hence of ∫ (a - bH) exp(…) dy there; bisection, and sums over equal steps (exact for this
+/// integrand).
 fn rayleigh_split(b: f64, sigma2: f64) -> f64 {
     let curvature = |a: f64| -> f64 {
         let term = |k: i32| {

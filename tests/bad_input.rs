@@ -516,7 +516,8 @@ const PIECES: [&str; 24] = [
     "'''",
 ];
 
-/// A text with a few things changed in it: pieces put in, characters lost, lines doubled, lost or exchanged, the end cut off.
+/// A text with a few things changed in it: pieces put in, characters lost, lines doubled, lost or exchanged, the end
+/// cut off.
 fn changed(text: &str, numbers: &mut Numbers) -> String {
     let mut letters: Vec<char> = text.chars().collect();
     for _ in 0..=numbers.below(3) {

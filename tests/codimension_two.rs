@@ -15,7 +15,8 @@ use pbif::continuation::curve::{
 };
 use sweeps::prepared;
 
-/// Peaks of the density are zeros of the drift: the centre splits at a = 0, and for b > 0 two peaks are born away from it at a = -b²/4.
+/// Peaks of the density are zeros of the drift: the centre splits at a = 0, and for b > 0 two peaks are born away from
+/// it at a = -b²/4.
 const TRICRITICAL: &str = r#"
 [system.equations]
 x = "a x + b x^3 - x^5"
@@ -32,8 +33,8 @@ points = 6
 x = { from = -1.8, to = 1.8, count = 160 }
 "#;
 
-/// Damping c - bH + H², H the energy: the density is exp(-(2/σ²)(cH - bH²/2 + H³/3)). The centre is lost at c = 0, and for b > 0 a ring is born
-/// around it at c = b²/4.
+/// Damping c - bH + H², H the energy: the density is exp(-(2/σ²)(cH - bH²/2 + H³/3)). The centre is lost at c = 0, and
+/// for b > 0 a ring is born around it at c = b²/4.
 const RING: &str = r#"
 [system.equations]
 x = "y"
@@ -238,7 +239,8 @@ fn a_cusp_of_a_fold_that_no_finer_cells_have_checked_is_unchecked() {
     }
 }
 
-/// The centre splits at a = 0, and two pairs of a peak and a valley are born at x = ±1 where c = 0: both lines are exact, and cross.
+/// The centre splits at a = 0, and two pairs of a peak and a valley are born at x = ±1 where c = 0: both lines are
+/// exact, and cross.
 const CROSSING: &str = r#"
 [system.equations]
 x = "-10 x (x^2 - a) ((x^2 - 1)^2 - c)"

@@ -1,4 +1,5 @@
-//! Points of codimension two at kinks of densities, and the curves that start from them, against systems whose densities are known exactly.
+//! Points of codimension two at kinks of densities, and the curves that start from them, against systems whose
+//! densities are known exactly.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
@@ -16,8 +17,8 @@ use pbif::continuation::curve::{
 use pbif::topology::IndicatorKind;
 use sweeps::prepared;
 
-/// The density is exp(-(2/σ²)(f |x| - b x²/2 + |x|³/3)). The kink turns from a peak into a valley at f = 0: from one peak come two for b < 0, and for
-/// b > 0 two peaks stand beside it already, born where f = b²/4.
+/// The density is exp(-(2/σ²)(f |x| - b x²/2 + |x|³/3)). The kink turns from a peak into a valley at f = 0: from one
+/// peak come two for b < 0, and for b > 0 two peaks stand beside it already, born where f = b²/4.
 const AT_CENTRE: &str = r#"
 [system.equations]
 x = "-f sign(x) + b x - x abs(x)"
@@ -34,8 +35,9 @@ points = 6
 x = { from = -1.8, to = 1.8, count = 160 }
 "#;
 
-/// The same tilted: above the kink the slope of the potential is f - h - b x + x², below it -f - h - b x - x². For f > 0 the kink is a peak where |h| < f,
-/// and loses a valley at h = f for b > 0; for b < 0 nothing happens there. For f < 0 it is a valley where |h| < -f.
+/// The same tilted: above the kink the slope of the potential is f - h - b x + x², below it -f - h - b x - x². For f >
+/// 0 the kink is a peak where |h| < f, and loses a valley at h = f for b > 0; for b < 0 nothing happens there. For f <
+/// 0 it is a valley where |h| < -f.
 const TILTED: &str = r#"
 [system.equations]
 x = "h - f sign(x) + b x - x abs(x)"
@@ -53,7 +55,8 @@ points = 5
 x = { from = -2.2, to = 2.2, count = 160 }
 "#;
 
-/// Damping -a + 2H, H the energy, with dry friction: at f = 0 the density is exp(-(2/σ²)(-aH + H²)), and y has one peak there for a below 0.540903 √(2σ²).
+/// Damping -a + 2H, H the energy, with dry friction: at f = 0 the density is exp(-(2/σ²)(-aH + H²)), and y has one peak
+/// there for a below 0.540903 √(2σ²).
 const FRICTION: &str = r#"
 [system.equations]
 x = "y"
@@ -77,7 +80,8 @@ joint = []
 relative_tolerance = 1e-3
 "#;
 
-/// At f_c = 0 the density is exp(-(2κ/σ²)(y²/2 + αx²/2 + x⁴/4)): along the kink of the joint density, y = 0, its centre is a peak for α > 0 alone.
+/// At f_c = 0 the density is exp(-(2κ/σ²)(y²/2 + αx²/2 + x⁴/4)): along the kink of the joint density, y = 0, its centre
+/// is a peak for α > 0 alone.
 const JOINT: &str = r#"
 [system]
 model = "coulomb"
@@ -360,7 +364,8 @@ fn the_program_tells_stores_and_draws_a_degenerate_kink() {
     assert_eq!(read("again/curve.svg"), drawn);
 }
 
-/// With a tilt h, the centre and its kink are there at h = 0 alone: the kink turns in a corner, and one peak that splits is a cusp.
+/// With a tilt h, the centre and its kink are there at h = 0 alone: the kink turns in a corner, and one peak that
+/// splits is a cusp.
 #[test]
 fn where_the_second_parameter_breaks_the_symmetry_a_split_is_a_cusp_or_a_corner() {
     let tilted = TILTED

@@ -80,8 +80,8 @@ fn linear(tau: f64) -> Arc<dyn System> {
 
 #[test]
 fn second_moments_of_a_linear_oscillator_are_those_of_the_lyapunov_equation() {
-    // Central fluxes keep the second moments of a linear drift on uniform cells, whatever their width, and two modes are closed for
-    // them: what is left is wiggles that reach the ends, which grow with the memory.
+    // Central fluxes keep the second moments of a linear drift on uniform cells, whatever their width, and two modes
+    // are closed for them: what is left is wiggles that reach the ends, which grow with the memory.
     for tau in [0.1, 0.2, 0.3] {
         let exact = lyapunov(tau);
         let half = 8.0 * exact[1].max(exact[0]).sqrt();
@@ -248,8 +248,8 @@ fn a_short_memory_is_white_noise_to_first_order_read_as_stratonovich() {
 
 #[test]
 fn the_colour_of_noise_moves_a_pitchfork_by_six_times_its_memory_and_strength() {
-    // x' = a x - x³ under coloured noise of intensity σ² = 2 D: to first order in τ the effective diffusion is D (1 + τ f'(x)), so that
-    // (log p)'' = a/D + 6 τ at 0, and the peak splits at a = -6 D τ in place of 0.
+    // x' = a x - x³ under coloured noise of intensity σ² = 2 D: to first order in τ the effective diffusion is D (1 + τ
+    // f'(x)), so that (log p)'' = a/D + 6 τ at 0, and the peak splits at a = -6 D τ in place of 0.
     let located = |tau: f64| -> f64 {
         let text = format!(
             "[system]\nmodel = \"bistable\"\nnoise = {{ kind = \"ornstein-uhlenbeck\" }}\n\
@@ -271,7 +271,8 @@ fn the_colour_of_noise_moves_a_pitchfork_by_six_times_its_memory_and_strength() 
     assert!((2.0 * short - long + 0.6).abs() < 5e-3, "{long} {short}");
 }
 
-/// Time averages of x², y² and the mean product of y and the first noise, with standard errors from the lanes of a batch.
+/// Time averages of x², y² and the mean product of y and the first noise, with standard errors from the lanes of a
+/// batch.
 fn by_trajectories(system: &dyn System, steps: usize) -> [(f64, f64); 3] {
     const TIME_STEP: f64 = 0.01;
     let mut random = Xoshiro256Plus::seed_from_u64(7);
@@ -375,7 +376,8 @@ fn friction_that_remembers_agrees_with_trajectories_under_coloured_noise() {
     assert_agrees(&*system, axes);
 }
 
-/// x' = -α x + b ξ with b ξ harmonic noise, as linear equations of three states: the covariance Σ of A Σ + Σ Aᵀ + B = 0.
+/// x' = -α x + b ξ with b ξ harmonic noise, as linear equations of three states: the covariance Σ of A Σ + Σ Aᵀ + B =
+/// 0.
 fn harmonic_covariance(frequency: f64, damping: f64) -> DMatrix<f64> {
     let gain = (SIGMA2 * frequency / (4.0 * damping)).sqrt();
     let rates = [

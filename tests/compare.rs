@@ -1,4 +1,5 @@
-//! `pbif compare` through the program: what it writes, and that the methods stand to each other as the exact density says.
+//! `pbif compare` through the program: what it writes, and that the methods stand to each other as the exact density
+//! says.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
@@ -8,7 +9,8 @@ use std::process::{Command, Output};
 
 use tempfile::TempDir;
 
-/// A Coulomb oscillator that forgets three times as fast as the shipped one; at f_c = 0 its density is known, and the same.
+/// A Coulomb oscillator that forgets three times as fast as the shipped one; at f_c = 0 its density is known, and the
+/// same.
 const SMALL: &[&str] = &[
     "system.parameters.kappa=0.03",
     "system.parameters.sigma2=0.03",
@@ -57,8 +59,9 @@ fn methods_stand_to_each_other_as_the_exact_density_says() {
     let by = |name: &str| methods.iter().find(|row| row["method"] == name).unwrap();
     let error = |name: &str| number(by(name), "tv_exact_xy");
     let (generator, plain, slope) = (error("generator"), error("sgcm"), error("sgcm-slope"));
-    // The cells add a diffusion of up to h²/(12Δt) = 0.0017 to each axis beside a noise of 0.015 on one: about 20 % in variance, 0.37 times as
-    // much in total variation. The correction takes out most of it, and the generator has an error of the grid alone.
+    // The cells add a diffusion of up to h²/(12Δt) = 0.0017 to each axis beside a noise of 0.015 on one: about 20 % in
+    // variance, 0.37 times as much in total variation. The correction takes out most of it, and the generator has an
+    // error of the grid alone.
     assert!((0.04..0.12).contains(&plain), "{plain}");
     assert!(slope < plain / 3.0, "{slope} {plain}");
     assert!(generator < slope / 3.0, "{generator} {slope}");

@@ -1,5 +1,5 @@
-//! The rooms of the library together, without a disk: a sweep file in memory, one value solved, its densities detected in, a figure
-//! drawn to a string; then the file's sweep, which finds what is known.
+//! The rooms of the library together, without a disk: a sweep file in memory, one value solved, its densities detected
+//! in, a figure drawn to a string; then the file's sweep, which finds what is known.
 
 #![allow(clippy::unwrap_used)]
 

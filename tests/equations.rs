@@ -1,4 +1,5 @@
-//! Equations in a sweep file, driven as a user would: what is wrong is shown in the formula, and runs are as those of built-in models.
+//! Equations in a sweep file, driven as a user would: what is wrong is shown in the formula, and runs are as those of
+//! built-in models.
 
 #![allow(clippy::unwrap_used)]
 

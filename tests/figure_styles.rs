@@ -1,4 +1,5 @@
-//! Figures in every style: as wide as asked for, nothing cut off, no two texts on each other; PDF with its text and its fonts.
+//! Figures in every style: as wide as asked for, nothing cut off, no two texts on each other; PDF with its text and its
+//! fonts.
 
 // A test fails by panicking; clippy knows only functions marked `#[test]` for tests.
 #![allow(clippy::unwrap_used, clippy::print_stderr)]
@@ -69,8 +70,8 @@ fn texts(tree: &usvg::Tree) -> Vec<(String, usvg::Rect)> {
     found
 }
 
-/// No text leaves the page or touches another. Boxes reach from the lowest to the highest place of any letter of the font: half of what
-/// they overlap in height is air.
+/// No text leaves the page or touches another. Boxes reach from the lowest to the highest place of any letter of the
+/// font: half of what they overlap in height is air.
 fn assert_readable(figure: &Figure, style: &FigureStyle) {
     let tree = tree(figure.svg());
     let texts = texts(&tree);

@@ -1,4 +1,5 @@
-//! Every friction law by the generator against its exact balance of power and against free trajectories, which share only the drift.
+//! Every friction law by the generator against its exact balance of power and against free trajectories, which share
+//! only the drift.
 
 #![allow(
     clippy::unwrap_used,
@@ -134,8 +135,8 @@ fn by_trajectories<const Q: usize>(
     })
 }
 
-/// Noise feeds σ²/2 into the kinetic energy, force and friction take it out: E[y a_y] = -σ²/2 to the share `of_grid`. Mean squares of x, y and
-/// the internal state agree with trajectories to four standard errors and that share.
+/// Noise feeds σ²/2 into the kinetic energy, force and friction take it out: E[y a_y] = -σ²/2 to the share `of_grid`.
+/// Mean squares of x, y and the internal state agree with trajectories to four standard errors and that share.
 fn assert_agrees(system: &dyn System, cells: usize, modes: usize, of_grid: f64) {
     let axes = system.dimension();
     let look = |state: &[f64]| {
@@ -206,9 +207,10 @@ fn bliman_sorine_agrees_on_four_axes() {
     assert_agrees(&*system("bliman_sorine", &own), 30, 4, 1e-2);
 }
 
-/// A stiff contact is Coulomb's. Where the body turns round, its friction turns only after a distance f_c/λ. Noise takes a
-/// time (f_c/(λσ))^(2/3) for that, in which the velocity moves by (σ² f_c/λ)^(1/3): the force is wrong in a layer that thin, and what
-/// that shifts of the mass is of the order of its square. So E[y²] goes to Coulomb's with the power 2/3 of 1/λ.
+/// A stiff contact is Coulomb's. Where the body turns round, its friction turns only after a distance f_c/λ. Noise
+/// takes a time (f_c/(λσ))^(2/3) for that, in which the velocity moves by (σ² f_c/λ)^(1/3): the force is wrong in a
+/// layer that thin, and what that shifts of the mass is of the order of its square. So E[y²] goes to Coulomb's with the
+/// power 2/3 of 1/λ.
 #[test]
 fn a_stiff_dahl_contact_goes_to_coulombs_law_with_the_power_two_thirds() {
     let shared = [("kappa", 0.1), ("f_c", 0.1), ("sigma2", 0.1)];

@@ -201,7 +201,8 @@ fn a_harvester_agrees_with_free_trajectories() {
 
 #[test]
 fn the_colour_of_noise_alone_splits_a_peak() {
-    // Independent of the cells: twice as many of them and of the modes find the same to 1e-6. White noise never splits it.
+    // Independent of the cells: twice as many of them and of the modes find the same to 1e-6. White noise never splits
+    // it.
     let settings = [
         "sweep.points=4",
         "cells.x.count=120",

@@ -1,5 +1,6 @@
-//! Sweeps that were once wrong, or are hard: the files of `tests/hard_cases/` go through the program as a user would type them, and what it finds is compared with
-//! what is known exactly. The whole table of docs/location.md is printed by
+//! Sweeps that were once wrong, or are hard: the files of `tests/hard_cases/` go through the program as a user would
+//! type them, and what it finds is compared with what is known exactly. The whole table of docs/location.md is printed
+//! by
 //!
 //!     cargo test --release --test hard_cases -- --ignored --nocapture
 //!

@@ -1,5 +1,5 @@
-//! Located values against the truth, through the library: exact families by the generator and by SGCM, and the calibration
-//! of stated errors over many seeds (ignored by default; results in docs/location.md).
+//! Located values against the truth, through the library: exact families by the generator and by SGCM, and the
+//! calibration of stated errors over many seeds (ignored by default; results in docs/location.md).
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 

@@ -1,5 +1,5 @@
-//! Sweeps by free trajectories through the real binary: what they find, that nothing depends on threads, and that a time step
-//! which falsifies the density is told.
+//! Sweeps by free trajectories through the real binary: what they find, that nothing depends on threads, and that a
+//! time step which falsifies the density is told.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 

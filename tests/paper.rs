@@ -1,4 +1,5 @@
-//! What docs/paper.md says the shipped sweeps of the paper's examples find: shapes at the paper's values, and where they change.
+//! What docs/paper.md says the shipped sweeps of the paper's examples find: shapes at the paper's values, and where
+//! they change.
 
 #![allow(clippy::unwrap_used)]
 

@@ -1,4 +1,5 @@
-//! Densities and moments of quantities against closed forms and Monte Carlo, and quantities in sweep files from text to stored runs.
+//! Densities and moments of quantities against closed forms and Monte Carlo, and quantities in sweep files from text to
+//! stored runs.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
@@ -42,8 +43,8 @@ fn by_generator(problem: &Problem) -> Solution<'static> {
     session.solve(0.0).unwrap().detached()
 }
 
-/// Largest difference from averages over the bins of an exact density given by its integral, over its maximum; and the same of the
-/// density's own error.
+/// Largest difference from averages over the bins of an exact density given by its integral, over its maximum; and the
+/// same of the density's own error.
 fn errors(found: &EstimatedDensity, below: impl Fn(f64) -> f64) -> (f64, f64) {
     let edges = found.density.axes[0].edges().windows(2);
     let exact: Vec<f64> = edges
@@ -128,7 +129,8 @@ fn free_trajectories_find_the_same_densities() {
     assert!((a.mean - b.mean).abs() < 0.1, "{} {}", a.mean, b.mean);
 }
 
-/// Under damping -a + bH the density of H is exp(-(2/σ²)(-aH + bH²/2)) on H > 0; a crater of rest, and a force that is not linear.
+/// Under damping -a + bH the density of H is exp(-(2/σ²)(-aH + bH²/2)) on H > 0; a crater of rest, and a force that is
+/// not linear.
 #[test]
 fn every_method_has_the_exact_densities_of_quantities_where_damping_depends_on_energy() {
     let model = registry::find("rayleigh").unwrap();
@@ -172,8 +174,9 @@ fn every_method_has_the_exact_densities_of_quantities_where_damping_depends_on_e
         error: 0.01,
         ..MonteCarloOptions::default()
     };
-    // The cells of a cell map add a diffusion of up to h²/(12 Δt) = 8e-4 to each axis beside σ²/4 = 0.025: 3 % of the noise, which moves masses by about
-    // as much; the slope correction takes most of it. Monte Carlo has its noise, and 1600 samples a cell have 1 %.
+    // The cells of a cell map add a diffusion of up to h²/(12 Δt) = 8e-4 to each axis beside σ²/4 = 0.025: 3 % of the
+    // noise, which moves masses by about as much; the slope correction takes most of it. Monte Carlo has its noise, and
+    // 1600 samples a cell have 1 %.
     let methods: [(Box<dyn DensitySource>, f64); 4] = [
         (
             Box::new(GeneratorSource::new(&problem, &GeneratorMethodOptions::default()).unwrap()),

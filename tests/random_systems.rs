@@ -1,9 +1,9 @@
-//! Random systems with known answers, that nobody tuned for: every change must be found, and what is called located must hold
-//! the truth.
+//! Random systems with known answers, that nobody tuned for: every change must be found, and what is called located
+//! must hold the truth.
 //!
-//! On one axis the density is p ∝ (1/b²) exp ∫ 2a/b² dx, so that its extrema are the zeros of the polynomial a - b b'; an
-//! oscillator whose damping depends on its energy, and one in a potential, have densities of the energy. Folds of these zeros
-//! are roots of polynomials. The whole test is ignored by default:
+//! On one axis the density is p ∝ (1/b²) exp ∫ 2a/b² dx, so that its extrema are the zeros of the polynomial a - b b';
+//! an oscillator whose damping depends on its energy, and one in a potential, have densities of the energy. Folds of
+//! these zeros are roots of polynomials. The whole test is ignored by default:
 //!
 //!     cargo test --release --test random_systems -- --ignored --nocapture
 //!

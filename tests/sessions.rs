@@ -1,5 +1,5 @@
-//! Sessions of sources: several of one source beside each other, what a solved point says of other parameters, and how soon
-//! a cancelled solve ends.
+//! Sessions of sources: several of one source beside each other, what a solved point says of other parameters, and how
+//! soon a cancelled solve ends.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
@@ -89,8 +89,8 @@ fn densities(source: &dyn DensitySource, value: f64) -> Vec<Vec<f64>> {
     densities.map(|one| one.density.values.clone()).collect()
 }
 
-/// Central differences of fourth order: their error is about step⁴ p⁽⁵⁾/30, and the solver's 1e-12 over the step. The sensitivity
-/// itself is solved to 1e-6.
+/// Central differences of fourth order: their error is about step⁴ p⁽⁵⁾/30, and the solver's 1e-12 over the step. The
+/// sensitivity itself is solved to 1e-6.
 #[test]
 fn a_solved_point_knows_its_derivative_by_any_parameter() {
     // One session, swept over f_c, says what sessions over the other parameters find by differences.
@@ -195,8 +195,8 @@ fn on_one_axis_derivatives_are_those_of_the_exact_density() {
     }
 }
 
-/// Cancels a solve soon after it has begun and gives what becomes of it. Uncancelled, each of the sources below would work for
-/// minutes.
+/// Cancels a solve soon after it has begun and gives what becomes of it. Uncancelled, each of the sources below would
+/// work for minutes.
 fn cancelled(source: &dyn DensitySource) -> SourceError {
     let cancellation = Cancellation::new();
     let (begun, begins) = mpsc::channel();

@@ -1,4 +1,5 @@
-//! Sweeps cut into shards: each runs alone, is killed and goes on like any run, and together they are the sweep in one piece.
+//! Sweeps cut into shards: each runs alone, is killed and goes on like any run, and together they are the sweep in one
+//! piece.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
@@ -97,7 +98,8 @@ fn folders(folder: &TempDir) -> (PathBuf, PathBuf) {
     (folder.path().join("whole"), folder.path().join("run"))
 }
 
-/// Located rows are the same within `tolerance` of their errors, values that both have solved have the same moments within `moments`.
+/// Located rows are the same within `tolerance` of their errors, values that both have solved have the same moments
+/// within `moments`.
 fn assert_same(found: &Path, wanted: &Path, tolerance: f64, moments: f64) {
     let [a, b] = [found, wanted].map(|run| rows(&run.join("bifurcations.csv")));
     assert_eq!(a.len(), b.len(), "{a:?}\n{b:?}");

@@ -1,5 +1,6 @@
-//! Thousands of damaged runs, by a fixed seed: bytes flipped, files cut, doubled and emptied, numbers put in that no run has. Whatever is read of
-//! them is read or refused with a file's name, without a panic, a hang, or memory that grows.
+//! Thousands of damaged runs, by a fixed seed: bytes flipped, files cut, doubled and emptied, numbers put in that no
+//! run has. Whatever is read of them is read or refused with a file's name, without a panic, a hang, or memory that
+//! grows.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 

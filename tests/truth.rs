@@ -1,5 +1,6 @@
-//! Located values on systems with known answers that are not built in: what is called located must be so. The random sweeps are
-//! ignored by default (`cargo test --release --test truth -- --ignored --nocapture`); their results stand in docs/location.md.
+//! Located values on systems with known answers that are not built in: what is called located must be so. The random
+//! sweeps are ignored by default (`cargo test --release --test truth -- --ignored --nocapture`); their results stand in
+//! docs/location.md.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
@@ -294,7 +295,8 @@ fn a_split_at_a_place_where_the_curvature_of_the_drift_jumps_is_held_by_its_erro
     }
 }
 
-/// An oscillator with a preloaded spring, whose force jumps at x = 0: p ∝ exp(-(2c/σ²)(y²/2 + x²/2 + θ|x|)) has two peaks at x = ±|θ| below zero, one above.
+/// An oscillator with a preloaded spring, whose force jumps at x = 0: p ∝ exp(-(2c/σ²)(y²/2 + x²/2 + θ|x|)) has two
+/// peaks at x = ±|θ| below zero, one above.
 #[test]
 fn a_spring_whose_preload_changes_its_sign_splits_the_density_there() {
     let model = TypedModel::new("preload", "A preloaded spring", ["x", "y"])
@@ -322,7 +324,8 @@ fn a_spring_whose_preload_changes_its_sign_splits_the_density_there() {
         let kink = &result.points[7].densities[0].structure.kinks[0];
         let (theta, middle) = (result.points[7].value, kink.jump.len() / 2);
         let exact = -4.0 * theta * 0.5 / 0.49;
-        // Its size is read from cells a quarter as wide as the density along y: differences of second order, (h/σ_y)² = 0.06 of it.
+        // Its size is read from cells a quarter as wide as the density along y: differences of second order, (h/σ_y)² =
+        // 0.06 of it.
         let share = kink.jump_at(middle) / exact;
         assert!((share - 1.0).abs() < 0.06, "{share}");
     }
@@ -330,7 +333,8 @@ fn a_spring_whose_preload_changes_its_sign_splits_the_density_there() {
 
 #[test]
 fn a_peak_that_opens_to_a_ring_away_from_a_centre_is_located() {
-    // p depends on the energy alone, and falls with it for θ < -1/4 b: the wells at x = ± 1 are peaks, and bottoms of rings after that.
+    // p depends on the energy alone, and falls with it for θ < -1/4 b: the wells at x = ± 1 are peaks, and bottoms of
+    // rings after that.
     fn drift(a: f64, state: &[f64], slope: &mut [f64]) {
         let (x, y) = (state[0], state[1]);
         let energy = 0.5 * y * y - 0.5 * x * x + 0.25 * x.powi(4);
@@ -374,7 +378,8 @@ fn births_at_a_bend_of_the_noise_are_located_beside_it() {
         axes,
         &LocateOptions::default(),
     );
-    // Two pairs of changes, each within one step: zeros of θ + 0.36 x - x³ ∓ 0.198 · 0.973/2 that turn, or lie at the bend.
+    // Two pairs of changes, each within one step: zeros of θ + 0.36 x - x³ ∓ 0.198 · 0.973/2 that turn, or lie at the
+    // bend.
     let jump = 0.5 * 0.198 * 0.973;
     let turn = 2.0 * 0.12f64.powf(1.5);
     let at_bend = 0.36 * 0.135 - 0.135f64.powi(3);

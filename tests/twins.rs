@@ -1,5 +1,5 @@
-//! Every built-in model beside its twin as formulas in a sweep file: the same drift to rounding, the same densities, the same located
-//! values.
+//! Every built-in model beside its twin as formulas in a sweep file: the same drift to rounding, the same densities,
+//! the same located values.
 
 #![allow(clippy::unwrap_used)]
 

@@ -1,5 +1,5 @@
-//! Numbers and lists as bytes and back, the same to the bit: for what a program keeps for itself, such as the state of unfinished work.
-//! Tables and arrays that others read are written by [`run`](crate::run).
+//! Numbers and lists as bytes and back, the same to the bit: for what a program keeps for itself, such as the state of
+//! unfinished work. Tables and arrays that others read are written by [`run`](crate::run).
 
 /// Something that was not written by a [`Writer`] in this order, or is cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -73,7 +73,8 @@ impl Writer {
     }
 }
 
-/// Takes values in the order in which they were written. Whatever the bytes are, no more memory is taken than they have.
+/// Takes values in the order in which they were written. Whatever the bytes are, no more memory is taken than they
+/// have.
 #[derive(Debug)]
 pub struct Reader<'b>(&'b [u8]);
 

@@ -1,8 +1,8 @@
 //! Asking long work to stop.
 //!
-//! Whoever starts long work keeps a [`Cancellation`] and hands clones of it on; every long loop below looks at it, so that work ends
-//! within a fraction of a second of [`Cancellation::cancel`]. What ends in that way is an error of its own kind, never a
-//! result that looks finished.
+//! Whoever starts long work keeps a [`Cancellation`] and hands clones of it on; every long loop below looks at it, so
+//! that work ends within a fraction of a second of [`Cancellation::cancel`]. What ends in that way is an error of its
+//! own kind, never a result that looks finished.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,5 +1,5 @@
-//! `pbif compare`: solves by every method at the values of `figures.at`, and writes tables and figures of how they agree. What is solved is kept
-//! as it comes, so that a comparison that was stopped can be gone on with.
+//! `pbif compare`: solves by every method at the values of `figures.at`, and writes tables and figures of how they
+//! agree. What is solved is kept as it comes, so that a comparison that was stopped can be gone on with.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};

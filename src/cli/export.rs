@@ -11,7 +11,8 @@ use crate::sweep_file::Diagnostic;
 /// Writes the file, or the folder of tables, and says what is in it.
 ///
 /// # Errors
-/// [`CommandError::Run`] when the run cannot be read or the file not be written; [`CommandError::Input`] when something stands in its place.
+/// [`CommandError::Run`] when the run cannot be read or the file not be written; [`CommandError::Input`] when something
+/// stands in its place.
 pub(super) fn run(arguments: &ExportArguments) -> Result<Outcome, CommandError> {
     let out = arguments.out.clone().unwrap_or_else(|| beside(arguments));
     if out.symlink_metadata().is_ok() {

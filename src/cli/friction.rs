@@ -17,7 +17,8 @@ const FOLDER: &str = "output/systems";
 /// Draws the law and prints the files.
 ///
 /// # Errors
-/// [`CommandError`] when the model has no friction law, a value or an option cannot be understood, or a file cannot be written.
+/// [`CommandError`] when the model has no friction law, a value or an option cannot be understood, or a file cannot be
+/// written.
 pub(super) fn run(
     model: &Model,
     arguments: &FrictionPlotArguments,

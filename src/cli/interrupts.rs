@@ -2,8 +2,8 @@
 
 use crate::cancellation::Cancellation;
 
-/// Cancels when the system asks the program to end, and ends it when it is asked again. What was ignored when the program
-/// started stays ignored: a run under `nohup` outlives its terminal.
+/// Cancels when the system asks the program to end, and ends it when it is asked again. What was ignored when the
+/// program started stays ignored: a run under `nohup` outlives its terminal.
 ///
 /// # Errors
 /// The system's, where signals cannot be handled.
@@ -13,7 +13,8 @@ pub(super) fn cancel(cancellation: &Cancellation) -> std::io::Result<()> {
     use signal_hook::iterator::Signals;
     let ignored = ignored();
     let is_ignored = |signal: i32| ignored & (1 << (signal - 1)) != 0;
-    // A shell's `&` ignores both of these, by habit and for nobody's sake: an interrupt sent to such a run is meant for it.
+    // A shell's `&` ignores both of these, by habit and for nobody's sake: an interrupt sent to such a run is meant for
+    // it.
     let by_habit = is_ignored(SIGINT) && is_ignored(SIGQUIT);
     let heard = [SIGINT, SIGTERM, SIGHUP].into_iter();
     let heard = heard.filter(|&signal| !is_ignored(signal) || (signal == SIGINT && by_habit));

@@ -112,8 +112,9 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// The map, or what is wanted of it, that is solved with the nodes that are known; `None` where it was interrupted before there was anything. What is
-    /// solved is written now and then, so that a map that is killed can be gone on with.
+    /// The map, or what is wanted of it, that is solved with the nodes that are known; `None` where it was interrupted
+    /// before there was anything. What is solved is written now and then, so that a map that is killed can be gone on
+    /// with.
     fn made<T>(
         &self,
         known: &[MapNode],

@@ -26,7 +26,8 @@ fn list() -> String {
     text
 }
 
-/// What `pbif new` does: it lists the starting files where neither a file nor one of them is named, and writes one where a file is.
+/// What `pbif new` does: it lists the starting files where neither a file nor one of them is named, and writes one
+/// where a file is.
 ///
 /// # Errors
 /// [`CommandError::Input`] where there is no such starting file, no file to write, or it cannot be made.

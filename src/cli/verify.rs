@@ -8,7 +8,8 @@ use crate::cancellation::Cancellation;
 use crate::continuation::Point;
 use crate::run::{Checked, Damage, StoredRun, check_folder, format_number};
 
-/// Checks every file against its checksum and prints those that are not as they were; solves some points again where that is asked for.
+/// Checks every file against its checksum and prints those that are not as they were; solves some points again where
+/// that is asked for.
 ///
 /// # Errors
 /// [`CommandError::Run`] when the run cannot be read, or a point not be solved.

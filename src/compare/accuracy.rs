@@ -12,8 +12,8 @@ use crate::space::CellSpace;
 /// Cells an axis over those of the file, for the generator.
 const GENERATOR_GRIDS: [f64; 2] = [0.5, 0.7];
 
-/// Cells an axis of the finer grid that is the reference where no exact density is known; in more than two dimensions the file's own
-/// grid is the finest that a short comparison can afford.
+/// Cells an axis of the finer grid that is the reference where no exact density is known; in more than two dimensions
+/// the file's own grid is the finest that a short comparison can afford.
 const REFERENCE_GRIDS: [Option<f64>; 2] = [Some(1.5), None];
 
 /// Cells an axis over the paper's, for SGCM, in up to two dimensions and in more.

@@ -6,8 +6,8 @@ use crate::density::{EstimatedDensity, Observable};
 /// Standard errors within which two estimates are said to agree.
 const ERRORS: f64 = 3.0;
 
-/// A bin counts when Monte Carlo knows its density to a fifth: in the far tail it rests on a few excursions, whose visits come in clusters
-/// and of which blocks say too little.
+/// A bin counts when Monte Carlo knows its density to a fifth: in the far tail it rests on a few excursions, whose
+/// visits come in clusters and of which blocks say too little.
 const KNOWN: f64 = 5.0;
 
 /// Bins that the generator gives more than this share of the largest density count in any case.
@@ -18,7 +18,8 @@ const OCCUPIED: f64 = 1e-2;
 pub struct Agreement {
     /// The marginal.
     pub observable: Observable,
-    /// Bins whose density Monte Carlo knows to a fifth, or to which the generator gives more than 1 % of the largest density.
+    /// Bins whose density Monte Carlo knows to a fifth, or to which the generator gives more than 1 % of the largest
+    /// density.
     pub bins: usize,
     /// Those in which both agree within three standard errors of Monte Carlo.
     pub within: usize,

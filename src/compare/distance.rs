@@ -5,15 +5,16 @@ use crate::density::{
     total_variation_of_masses,
 };
 
-/// A distance with its uncertainty. A distance cannot be negative, so noise alone makes one: only what exceeds `noise` and
-/// `systematic` tells two densities apart.
+/// A distance with its uncertainty. A distance cannot be negative, so noise alone makes one: only what exceeds `noise`
+/// and `systematic` tells two densities apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Distance {
     /// The distance, 0 to 1.
     pub value: f64,
     /// Its standard error by sampling (jackknife).
     pub error: f64,
-    /// Largest change that the stated grid errors can make: the distances between the two schemes of each density that has two.
+    /// Largest change that the stated grid errors can make: the distances between the two schemes of each density that
+    /// has two.
     pub systematic: f64,
     /// Distance to be expected from sampling noise alone, were both densities the same.
     pub noise: f64,
@@ -38,8 +39,8 @@ pub struct Distances {
 /// Estimates that vary together: masses of the one and of the other.
 type Replicates = Vec<(Vec<f64>, Vec<f64>)>;
 
-/// Distances of two estimated densities on the same cells. `shared` says that both rest on the same samples, group by group, so that
-/// their replicates vary together.
+/// Distances of two estimated densities on the same cells. `shared` says that both rest on the same samples, group by
+/// group, so that their replicates vary together.
 ///
 /// # Errors
 /// [`DensityError::DifferentAxes`] or [`DensityError::Length`].
@@ -146,7 +147,8 @@ fn hellinger_noise(p: &[f64], q: &[f64], variance: &[f64]) -> f64 {
     let cells = p.iter().zip(q).zip(variance);
     let terms = cells.map(|((p, q), variance)| {
         let mean = 0.5 * (p + q);
-        // Where less than one sample is expected, the root is no small variation: it is at most that of the mass itself.
+        // Where less than one sample is expected, the root is no small variation: it is at most that of the mass
+        // itself.
         if mean > 0.0 {
             (0.25 * variance / mean).min(mean)
         } else {

@@ -19,7 +19,8 @@ fn quadrature() -> [(f64, f64); 4] {
     ]
 }
 
-/// Exact mass of every cell given Ω, Σ = 1, by quadrature with four points an axis; `None` where the model does not know the density.
+/// Exact mass of every cell given Ω, Σ = 1, by quadrature with four points an axis; `None` where the model does not
+/// know the density.
 pub fn exact_masses(system: &dyn System, space: &CellSpace) -> Option<Vec<f64>> {
     let points = quadrature();
     let dimension = space.dimension();
@@ -53,8 +54,8 @@ pub fn exact_masses(system: &dyn System, space: &CellSpace) -> Option<Vec<f64>> 
     (whole > 0.0 && whole.is_finite()).then(|| masses.iter().map(|mass| mass / whole).collect())
 }
 
-/// The exact density of an observable at a parameter value, integrated over the cells of `space` and brought to those of `common`; `None` where
-/// none is known, and for quantities.
+/// The exact density of an observable at a parameter value, integrated over the cells of `space` and brought to those
+/// of `common`; `None` where none is known, and for quantities.
 ///
 /// # Errors
 /// [`CompareError`] when the value is not allowed, or the observable names no axis.

@@ -1,8 +1,9 @@
-//! The methods side by side: the same densities by the generator, by SGCM as the paper has it and slope-corrected, and by Monte
-//! Carlo; times and work, distances with their uncertainties, and the error against time.
+//! The methods side by side: the same densities by the generator, by SGCM as the paper has it and slope-corrected, and
+//! by Monte Carlo; times and work, distances with their uncertainties, and the error against time.
 //!
-//! All densities are compared on *common cells*, the paper's: 50 cells of equal width along the first two axes, as many as the
-//! file has along the others (16 where the generator has modes). SGCM and Monte Carlo work on these cells; what others give is brought there by [`rebin()`].
+//! All densities are compared on *common cells*, the paper's: 50 cells of equal width along the first two axes, as many
+//! as the file has along the others (16 where the generator has modes). SGCM and Monte Carlo work on these cells; what
+//! others give is brought there by [`rebin()`].
 
 mod accuracy;
 mod agreement;
@@ -121,7 +122,8 @@ pub struct ComparedValue {
     pub value: f64,
     /// The methods in the order of [`Method::ALL`].
     pub solved: Vec<Solved>,
-    /// Every two methods with a density, and every method with the exact density where it is known, a row an observable.
+    /// Every two methods with a density, and every method with the exact density where it is known, a row an
+    /// observable.
     pub pairs: Vec<Pair>,
     /// Generator and Monte Carlo bin by bin, a row a marginal; empty unless both have densities.
     pub agreement: Vec<Agreement>,
@@ -141,9 +143,9 @@ impl ComparedValue {
             .map(|pair| &pair.distances)
     }
 
-    /// Marginals on which generator and Monte Carlo disagree beyond their stated uncertainties: in more than 1 % of the bins (two are let
-    /// pass), and as a whole by total variation. Bins err together, so that one fluctuation may put many of them outside; the
-    /// replicates of the distance know that.
+    /// Marginals on which generator and Monte Carlo disagree beyond their stated uncertainties: in more than 1 % of the
+    /// bins (two are let pass), and as a whole by total variation. Bins err together, so that one fluctuation may put
+    /// many of them outside; the replicates of the distance know that.
     pub fn disagreements(&self) -> Vec<Observable> {
         let disagrees = |one: &&Agreement| {
             let both = (Method::Generator, Some(Method::MonteCarlo));
@@ -155,8 +157,8 @@ impl ComparedValue {
         found.map(|one| one.observable).collect()
     }
 
-    /// Where generator and Monte Carlo disagree and mass leaves Ω: the escape rate and the share of the time outside. The one
-    /// is conditioned on never having left, the other on being inside.
+    /// Where generator and Monte Carlo disagree and mass leaves Ω: the escape rate and the share of the time outside.
+    /// The one is conditioned on never having left, the other on being inside.
     pub fn leaves(&self) -> Option<(f64, f64)> {
         let by = |method| self.solved.iter().find(|solved| solved.method == method);
         let rate = by(Method::Generator)?.report.escape_rate;
@@ -195,8 +197,8 @@ impl Comparison {
         all.all(|solved| solved.status.is_resolved())
     }
 
-    /// Bins of all marginals at all values, and those in which generator and Monte Carlo differ by more than three standard errors
-    /// and the generator's own error together.
+    /// Bins of all marginals at all values, and those in which generator and Monte Carlo differ by more than three
+    /// standard errors and the generator's own error together.
     pub fn bins(&self) -> (usize, usize) {
         let all = self.values.iter().flat_map(|value| &value.agreement);
         all.fold((0, 0), |(bins, beyond), one| {
@@ -254,8 +256,8 @@ impl From<MethodError> for CompareError {
     }
 }
 
-/// The common cells of a sweep on `space`: the same ranges, [`PAPER_CELLS`] cells of equal width along the first two axes and as many as
-/// `space` has along the others.
+/// The common cells of a sweep on `space`: the same ranges, [`PAPER_CELLS`] cells of equal width along the first two
+/// axes and as many as `space` has along the others.
 ///
 /// # Errors
 /// [`crate::space::SpaceError`].
@@ -279,9 +281,10 @@ fn uniform_cells(space: &CellSpace, count: usize) -> Result<CellSpace, crate::sp
     CellSpace::new(axes?)
 }
 
-/// Solves by every method at every value and compares. `observer` is told before every step, and may know what a step gives from a comparison
-/// that was ended early; a closure is only told. Cancelled, it ends early and says so, in [`CompareError::Interrupted`] before there is a value. Everything but the times is
-/// the same for any number of threads.
+/// Solves by every method at every value and compares. `observer` is told before every step, and may know what a step
+/// gives from a comparison that was ended early; a closure is only told. Cancelled, it ends early and says so, in
+/// [`CompareError::Interrupted`] before there is a value. Everything but the times is the same for any number of
+/// threads.
 ///
 /// # Errors
 /// [`CompareError`].

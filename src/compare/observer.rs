@@ -1,4 +1,5 @@
-//! Who watches a comparison: told how far it is, and keeper of what is solved, so that one that was ended early can be gone on with.
+//! Who watches a comparison: told how far it is, and keeper of what is solved, so that one that was ended early can be
+//! gone on with.
 
 use super::{CompareError, Progress, Solved};
 use crate::cancellation::{Cancellation, Cancelled};
@@ -11,8 +12,8 @@ pub trait CompareObserver {
     /// A step is about to begin.
     fn step(&mut self, progress: &Progress);
 
-    /// What the next solve gave before, in the order in which solves were [kept](CompareObserver::keep); `None` where it is still to be
-    /// made.
+    /// What the next solve gave before, in the order in which solves were [kept](CompareObserver::keep); `None` where
+    /// it is still to be made.
     fn known(&mut self) -> Option<Vec<Solved>> {
         None
     }

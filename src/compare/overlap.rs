@@ -1,15 +1,16 @@
 //! Densities brought to other cells: by the exact overlap of cells, with the density linear inside each.
 //!
-//! The slope in a cell is that of the parabola with the masses of the cell and its two neighbours (Colella and Woodward 1984, Eq. 1.7). Flat
-//! cells would put mass wrong by h²p'/8 at every edge that falls inside a cell, as much as a good method errs. Masses are
-//! conserved, the map is linear, and where no new edge falls inside an old cell it is exact.
+//! The slope in a cell is that of the parabola with the masses of the cell and its two neighbours (Colella and Woodward
+//! 1984, Eq. 1.7). Flat cells would put mass wrong by h²p'/8 at every edge that falls inside a cell, as much as a good
+//! method errs. Masses are conserved, the map is linear, and where no new edge falls inside an old cell it is exact.
 
 use crate::density::{
     Density, DensityError, EstimatedDensity, Observable, Variants, estimate_from_difference,
 };
 use crate::space::{Axis, CellSpace};
 
-/// Masses of the cells of `to` from those of the cells of `from`; what lies beyond the ends of `to` goes to its first and last cell.
+/// Masses of the cells of `to` from those of the cells of `from`; what lies beyond the ends of `to` goes to its first
+/// and last cell.
 pub fn rebin(masses: &[f64], from: &Axis, to: &Axis) -> Vec<f64> {
     let mut below = vec![0.0];
     for mass in masses {
@@ -87,8 +88,8 @@ fn rebin_product(masses: &[f64], from: &[Axis], to: &[Axis]) -> Vec<f64> {
     masses
 }
 
-/// A density with its uncertainty on the cells of other axes, one for each of its own. Of replicates and second schemes the same is
-/// made; densities that are on these cells already stay as they are.
+/// A density with its uncertainty on the cells of other axes, one for each of its own. Of replicates and second schemes
+/// the same is made; densities that are on these cells already stay as they are.
 ///
 /// # Errors
 /// [`DensityError`].
@@ -197,7 +198,8 @@ mod tests {
         let (coarse, fine) = (error(60), error(240));
         // Four times as many cells: 4³ = 64 times less, of which the places of edges in cells blur a part.
         assert!(fine < coarse / 30.0, "{coarse:e} {fine:e}");
-        // An edge in a cell of h = 0.17 errs by at most h³ max|p''|/(9√3·2) = 6e-5; 50 edges, on average a third of that.
+        // An edge in a cell of h = 0.17 errs by at most h³ max|p''|/(9√3·2) = 6e-5; 50 edges, on average a third of
+        // that.
         assert!(coarse < 2e-3, "{coarse:e}");
     }
 }

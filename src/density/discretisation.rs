@@ -3,13 +3,13 @@
 use super::{Density, DensityError, EstimatedDensity, Observable, Projection, Structure, Variants};
 use crate::space::CellSpace;
 
-/// Height of a wiggle from trough to crest, over the depth of its troughs below zero: what is below zero is the lower half of a wiggle
-/// about a positive density at most.
+/// Height of a wiggle from trough to crest, over the depth of its troughs below zero: what is below zero is the lower
+/// half of a wiggle about a positive density at most.
 pub(crate) const WIGGLE: f64 = 8.0;
 
 /// Density of an observable from the masses of all cells, with the difference to a second discretisation (masses,
-/// Σ = 0) as its error. Where two solutions happen to cross, the difference says too little, so every error is the root mean
-/// square over the cell and its neighbours.
+/// Σ = 0) as its error. Where two solutions happen to cross, the difference says too little, so every error is the root
+/// mean square over the cell and its neighbours.
 ///
 /// # Errors
 /// [`DensityError::Axis`], [`DensityError::RepeatedAxis`] or [`DensityError::Length`].
@@ -68,8 +68,8 @@ impl EstimatedDensity {
     }
 
     /// Share of the maximum below which heights tell nothing: what the solver leaves, or more where the density is
-    /// negative. A density is nowhere so: values below zero are wiggles of the scheme, and what is not clearly higher than they are
-    /// deep is one of them. Noise has errors of its own.
+    /// negative. A density is nowhere so: values below zero are wiggles of the scheme, and what is not clearly higher
+    /// than they are deep is one of them. Noise has errors of its own.
     pub fn negligible_height(&self) -> f64 {
         let maximum = self.density.maximum().max(f64::MIN_POSITIVE);
         if self.is_noisy() {

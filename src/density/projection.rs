@@ -85,9 +85,9 @@ impl Projection {
         })
     }
 
-    /// Works out the map with bins of equal width along axes of modes, of which the masses are integrals of the series; the maps of all
-    /// modes and of fewer (`is_coarse`) differ by what the last modes do to the density. Without such axes it is that of
-    /// [`Projection::new`].
+    /// Works out the map with bins of equal width along axes of modes, of which the masses are integrals of the series;
+    /// the maps of all modes and of fewer (`is_coarse`) differ by what the last modes do to the density. Without such
+    /// axes it is that of [`Projection::new`].
     ///
     /// # Errors
     /// [`DensityError::Axis`] or [`DensityError::RepeatedAxis`].
@@ -109,8 +109,9 @@ impl Projection {
         })
     }
 
-    /// Works out the map for one or two coordinates of which some are quantities; `planes` are axes of the space with coordinates at which the
-    /// derivative of the density jumps. The maps of two details differ by what sub-cells do to the density.
+    /// Works out the map for one or two coordinates of which some are quantities; `planes` are axes of the space with
+    /// coordinates at which the derivative of the density jumps. The maps of two details differ by what sub-cells do to
+    /// the density.
     ///
     /// # Errors
     /// [`DensityError::Axis`] or [`DensityError::Coordinates`].
@@ -158,8 +159,8 @@ impl Projection {
         &self.volumes
     }
 
-    /// Masses of the observable's cells, from the masses of all cells of the space. What lies beyond the bins of a quantity is
-    /// not among them.
+    /// Masses of the observable's cells, from the masses of all cells of the space. What lies beyond the bins of a
+    /// quantity is not among them.
     ///
     /// # Errors
     /// [`DensityError::Length`].
@@ -192,7 +193,8 @@ impl Projection {
     }
 }
 
-/// Mean and standard deviation of a quantity from the masses of cells, worked out once and applied to as many mass vectors as wanted.
+/// Mean and standard deviation of a quantity from the masses of cells, worked out once and applied to as many mass
+/// vectors as wanted.
 #[derive(Debug, Clone)]
 pub struct QuantityMoments {
     sums: Sums,
@@ -214,12 +216,14 @@ impl QuantityMoments {
         }
     }
 
-    /// A state next to which the quantity, or its square, is no number or beyond the range of numbers: there is no mean then.
+    /// A state next to which the quantity, or its square, is no number or beyond the range of numbers: there is no mean
+    /// then.
     pub fn undefined(&self) -> Option<&[f64]> {
         self.averages.undefined()
     }
 
-    /// The moments for the masses of all cells of the space, Σ = 1; not a number where the quantity is [`Self::undefined`].
+    /// The moments for the masses of all cells of the space, Σ = 1; not a number where the quantity is
+    /// [`Self::undefined`].
     ///
     /// # Errors
     /// [`DensityError::Length`].

@@ -10,8 +10,8 @@ const BINS: usize = 60;
 /// Modes that the coarser map leaves out: one of each parity, so that symmetric densities tell their error too.
 const LEFT_OUT: usize = 2;
 
-/// The axis along which a density is laid out: the axis itself, or bins of equal width over an axis of modes, the same whatever their
-/// number.
+/// The axis along which a density is laid out: the axis itself, or bins of equal width over an axis of modes, the same
+/// whatever their number.
 pub(crate) fn laid_out(axis: &Axis) -> Axis {
     let (from, to) = axis.series_range();
     match axis.is_modes() {
@@ -37,7 +37,8 @@ struct Step {
 }
 
 impl SeriesMap {
-    /// For an observable of axes of a space, `None` where none of them has modes; the coarser map leaves the last modes out.
+    /// For an observable of axes of a space, `None` where none of them has modes; the coarser map leaves the last modes
+    /// out.
     pub(super) fn new(space: &CellSpace, observable: Observable, is_coarse: bool) -> Option<Self> {
         let axes: Vec<&Axis> = observable
             .axes()

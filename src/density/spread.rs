@@ -1,10 +1,10 @@
 //! How the masses of cells spread over the bins of a quantity: its density, and its mean.
 //!
-//! Inside a sub-cell the quantity is taken as linear and the density too. The values of a linear function over a box have a trapezoid
-//! for their density, whose integral over each bin is known, so that no mass jumps from bin to bin as a point would: the counts of
-//! neighbouring bins differ by what the density does. The first moment is exact to fourth order in the sub-cell; what is left is the
-//! bend of the level lines inside sub-cells that a bin's edge crosses, and has no sign. A second map with coarser sub-cells and polynomials of
-//! lower degree shows how much that is.
+//! Inside a sub-cell the quantity is taken as linear and the density too. The values of a linear function over a box
+//! have a trapezoid for their density, whose integral over each bin is known, so that no mass jumps from bin to bin as
+//! a point would: the counts of neighbouring bins differ by what the density does. The first moment is exact to fourth
+//! order in the sub-cell; what is left is the bend of the level lines inside sub-cells that a bin's edge crosses, and
+//! has no sign. A second map with coarser sub-cells and polynomials of lower degree shows how much that is.
 
 use super::sub_cells::SubCells;
 use crate::space::{Axis, CellSpace};
@@ -211,7 +211,8 @@ const ROUNDING: f64 = 1e-6;
 /// A share of a sub-cell's mass: bin, share, and the share's change by a shift of the quantity.
 type Share = (usize, f64, f64);
 
-/// The bins that a sub-cell's values fall into. Where none of the values that were looked at lies beyond an end, nothing does.
+/// The bins that a sub-cell's values fall into. Where none of the values that were looked at lies beyond an end,
+/// nothing does.
 fn shares(bins: &Axis, seen: &Seen, shares: &mut Vec<Share>) {
     shares.clear();
     let (a, b) = seen.widths();

@@ -1,7 +1,9 @@
-//! Masses inside cells: each cell is cut into sub-cells, whose masses follow from those of the cells around by a polynomial.
+//! Masses inside cells: each cell is cut into sub-cells, whose masses follow from those of the cells around by a
+//! polynomial.
 //!
-//! Along each axis the mass below a coordinate is interpolated through the edges of several cells, so that the sub-cells of a cell hold
-//! exactly its mass. Windows do not reach across planes on which the derivative of the density jumps.
+//! Along each axis the mass below a coordinate is interpolated through the edges of several cells, so that the
+//! sub-cells of a cell hold exactly its mass. Windows do not reach across planes on which the derivative of the density
+//! jumps.
 
 use std::ops::Range;
 
@@ -28,8 +30,8 @@ struct Lines {
 }
 
 impl SubCells {
-    /// Cuts every cell into `parts` along each axis; polynomials go through `window` cells. `planes` are axes with coordinates at which the
-    /// derivative jumps.
+    /// Cuts every cell into `parts` along each axis; polynomials go through `window` cells. `planes` are axes with
+    /// coordinates at which the derivative jumps.
     pub(super) fn new(
         axes: &[&Axis],
         parts: usize,
@@ -67,7 +69,8 @@ impl SubCells {
         number / faster % lines.count() * lines.cells / lines.count()
     }
 
-    /// Masses of all sub-cells, and for each axis the change of mass along it from one end of the sub-cell to the other.
+    /// Masses of all sub-cells, and for each axis the change of mass along it from one end of the sub-cell to the
+    /// other.
     pub(super) fn apply(&self, masses: &[f64]) -> Vec<Vec<f64>> {
         let mut shape: Vec<usize> = self.axes.iter().map(|lines| lines.cells).collect();
         let mut found = vec![masses.to_vec()];

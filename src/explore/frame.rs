@@ -1,4 +1,5 @@
-//! What the page is told of one value of the parameter: how the solve went, and what the detector found. Arrays stand elsewhere.
+//! What the page is told of one value of the parameter: how the solve went, and what the detector found. Arrays stand
+//! elsewhere.
 
 use serde::Serialize;
 
@@ -110,8 +111,8 @@ impl Mark {
     }
 }
 
-/// Half-width of the band that is drawn around a density, one value a cell, and what it is in words: two standard errors of sampling, or
-/// what a second discretisation differs by; nothing where the method states neither.
+/// Half-width of the band that is drawn around a density, one value a cell, and what it is in words: two standard
+/// errors of sampling, or what a second discretisation differs by; nothing where the method states neither.
 pub(super) fn band(density: &EstimatedDensity) -> Option<(Vec<f64>, &'static str)> {
     if density.is_noisy() {
         let twice = density.standard_error.iter().map(|error| 2.0 * error);

@@ -1,5 +1,5 @@
-//! The page as one file: its sources put together, its data in blocks. It refers to nothing outside itself, and its content security
-//! policy lets it run its own script and nothing else.
+//! The page as one file: its sources put together, its data in blocks. It refers to nothing outside itself, and its
+//! content security policy lets it run its own script and nothing else.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -31,7 +31,8 @@ const SCRIPT: [&str; 19] = [
     include_str!("page/start.js"),
 ];
 
-/// The page with this title, this deflated scene and these blocks of packed values. A live one may ask the server that sent it.
+/// The page with this title, this deflated scene and these blocks of packed values. A live one may ask the server that
+/// sent it.
 pub(super) fn page(title: &str, scene: &[u8], blocks: &[Vec<u8>], live: bool) -> String {
     let script = format!("(() => {{\n\"use strict\";\n{}}})();\n", SCRIPT.concat());
     let policy = format!(

@@ -1,8 +1,8 @@
 //! Densities of a whole sweep in few bytes: quantised, predicted from the values before, deflated.
 //!
-//! Neighbouring densities of a sweep are nearly on a straight line, so what is kept of a value is how far it lies from the line
-//! through the two before it, in whole steps of the quantisation. `page/unpack.js` undoes it with the same arithmetic: every
-//! operation is one that IEEE 754 rounds exactly, in the same order.
+//! Neighbouring densities of a sweep are nearly on a straight line, so what is kept of a value is how far it lies from
+//! the line through the two before it, in whole steps of the quantisation. `page/unpack.js` undoes it with the same
+//! arithmetic: every operation is one that IEEE 754 rounds exactly, in the same order.
 
 use std::io::{Read as _, Write as _};
 
@@ -54,15 +54,16 @@ pub enum PackError {
     },
 }
 
-/// The largest step between neighbouring frames, as a multiple of the one before, over which the line is followed; beyond, the
-/// value before is the better guess.
+/// The largest step between neighbouring frames, as a multiple of the one before, over which the line is followed;
+/// beyond, the value before is the better guess.
 const LONGEST: f64 = 2.0;
 /// Bits of a quantisation at most: the distances then still fit into 32 bits.
 const MOST_BITS: u32 = 28;
 
 impl Packed {
-    /// Packs frames that belong to the parameter values `at`, with steps of the largest magnitude over 2^`bits` - 1; `bits` from 1 to 28.
-    /// What is not finite becomes zero. Frames that are longer than the first are cut, shorter ones filled with zeros.
+    /// Packs frames that belong to the parameter values `at`, with steps of the largest magnitude over 2^`bits` - 1;
+    /// `bits` from 1 to 28. What is not finite becomes zero. Frames that are longer than the first are cut, shorter
+    /// ones filled with zeros.
     ///
     /// # Errors
     /// [`PackError::Damaged`] when the bytes cannot be deflated.

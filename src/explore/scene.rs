@@ -138,8 +138,8 @@ fn model(family: &Family) -> Model {
     }
 }
 
-/// An element of MathML as a list: its name, its attributes, and its text or its elements. The page makes elements of it, so that no
-/// text of a model is ever read as markup.
+/// An element of MathML as a list: its name, its attributes, and its text or its elements. The page makes elements of
+/// it, so that no text of a model is ever read as markup.
 fn layout(element: &Element) -> serde_json::Value {
     let attributes = element.attributes.iter();
     let attributes = attributes.map(|&(name, value)| (name.to_owned(), value.into()));

@@ -1,4 +1,5 @@
-//! Numbers over the parameter, in panels below each other that share the abscissa, with the labelled bifurcations through all of them.
+//! Numbers over the parameter, in panels below each other that share the abscissa, with the labelled bifurcations
+//! through all of them.
 
 use plotters_backend::text_anchor::HPos;
 

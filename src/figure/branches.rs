@@ -51,8 +51,9 @@ fn link(at: f64, candidates: &[f64], farthest: f64) -> Option<usize> {
     (distance <= farthest && clear).then_some(index)
 }
 
-/// For each feature the one of the point before that it continues. A link is mutual, short and beyond doubt. As many features as
-/// before that all but stand still are linked in their order, however near each other they are: a pair just born.
+/// For each feature the one of the point before that it continues. A link is mutual, short and beyond doubt. As many
+/// features as before that all but stand still are linked in their order, however near each other they are: a pair just
+/// born.
 fn links(last: &[f64], found: &[f64], farthest: f64, still: f64) -> Vec<Option<usize>> {
     let moved = || last.iter().zip(found).map(|(a, b)| (a - b).abs());
     if last.len() == found.len() && moved().all(|step| step <= still) {
@@ -65,8 +66,8 @@ fn links(last: &[f64], found: &[f64], farthest: f64, still: f64) -> Vec<Option<u
     found.iter().enumerate().map(mutual).collect()
 }
 
-/// Follows the features of one kind of a marginal. Branches end where features jump, split or merge, and at points without
-/// a density.
+/// Follows the features of one kind of a marginal. Branches end where features jump, split or merge, and at points
+/// without a density.
 pub(super) fn branches(
     points: &[Point],
     observable: usize,

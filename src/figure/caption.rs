@@ -1,4 +1,5 @@
-//! The caption of a figure of a sweep, ready to be pasted: what is seen, of which system, by which method, what is marked.
+//! The caption of a figure of a sweep, ready to be pasted: what is seen, of which system, by which method, what is
+//! marked.
 
 use crate::continuation::{BifurcationStatus, LabelledPoint, Point, PointType, SweepResult};
 use crate::density::Observable;

@@ -1,5 +1,5 @@
-//! Marginal densities by every method: a row a parameter value, a column an axis; lines for what is solved, symbols with error bars for
-//! Monte Carlo.
+//! Marginal densities by every method: a row a parameter value, a column an axis; lines for what is solved, symbols
+//! with error bars for Monte Carlo.
 
 use plotters_backend::text_anchor::HPos;
 

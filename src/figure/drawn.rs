@@ -54,7 +54,8 @@ pub const KINDS: [&str; 12] = [
 /// The kinds that are drawn where none is named.
 pub const USUAL_KINDS: [&str; 3] = ["diagram", "marginals", "joint"];
 
-/// Whether a word names a figure: its whole name, the beginning of it up to a `_` (`joint` names `joint_xy_0.5`), or `all`.
+/// Whether a word names a figure: its whole name, the beginning of it up to a `_` (`joint` names `joint_xy_0.5`), or
+/// `all`.
 pub fn matches_figure(word: &str, figure: &str) -> bool {
     let rest = figure.strip_prefix(word);
     word == "all" || rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
@@ -115,7 +116,8 @@ impl Figure {
         render::png(&self.svg, self.dpi)
     }
 
-    /// The figure as a PDF of one page, in its size, with its fonts embedded and its text as text; equal figures give equal bytes.
+    /// The figure as a PDF of one page, in its size, with its fonts embedded and its text as text; equal figures give
+    /// equal bytes.
     ///
     /// # Errors
     /// [`DrawError`].
@@ -129,17 +131,17 @@ enum Scene<'a> {
     Comparison(ComparisonScene<'a>),
 }
 
-/// The figures that can be drawn of a sweep or of a comparison. Nothing is drawn before it is asked for, and no file is written:
-/// see [`write_figures`](super::write_figures).
+/// The figures that can be drawn of a sweep or of a comparison. Nothing is drawn before it is asked for, and no file is
+/// written: see [`write_figures`](super::write_figures).
 pub struct Figures<'a>(Scene<'a>);
 
 impl<'a> Figures<'a> {
-    /// The figures of a sweep: a diagram an observed marginal (`diagram_x`), the marginals at the parameter values `at`,
-    /// overlaid (`marginals`), and an observed pair's joint densities at these values, all on one sheet (`joint_xy`) and each
-    /// (`joint_xy_-0.5`).
+    /// The figures of a sweep: a diagram an observed marginal (`diagram_x`), the marginals at the parameter values
+    /// `at`, overlaid (`marginals`), and an observed pair's joint densities at these values, all on one sheet
+    /// (`joint_xy`) and each (`joint_xy_-0.5`).
     ///
-    /// For each value in `at` the nearest computed point is taken; points without densities are not drawn. `title` (plain text,
-    /// may be empty) stands above each figure.
+    /// For each value in `at` the nearest computed point is taken; points without densities are not drawn. `title`
+    /// (plain text, may be empty) stands above each figure.
     pub fn of_sweep(result: &'a SweepResult, title: &'a str, at: &[f64]) -> Self {
         Self(Scene::Sweep(SweepScene {
             result,
@@ -149,8 +151,8 @@ impl<'a> Figures<'a> {
         }))
     }
 
-    /// The figures of a comparison of methods: marginals by every method (`marginals`), joint densities side by side (`joint_xy`), and
-    /// the error against time (`time_to_accuracy`).
+    /// The figures of a comparison of methods: marginals by every method (`marginals`), joint densities side by side
+    /// (`joint_xy`), and the error against time (`time_to_accuracy`).
     pub fn of_comparison(comparison: &'a Comparison, title: &'a str) -> Self {
         Self(Scene::Comparison(ComparisonScene {
             comparison,
@@ -219,8 +221,8 @@ impl<'a> Figures<'a> {
         words.find(|word| !is_known(word))
     }
 
-    /// Draws the figures that some words name (see [`matches_figure`]), in their order; those without any density are left out, and words
-    /// that name none are passed over.
+    /// Draws the figures that some words name (see [`matches_figure`]), in their order; those without any density are
+    /// left out, and words that name none are passed over.
     ///
     /// # Errors
     /// [`FigureError::Draw`].

@@ -45,8 +45,8 @@ impl Format {
     }
 }
 
-/// Writes figures in every format into a folder, which is made if need be; returns the files in the order in which they were
-/// made. Files of the same names are replaced.
+/// Writes figures in every format into a folder, which is made if need be; returns the files in the order in which they
+/// were made. Files of the same names are replaced.
 ///
 /// # Errors
 /// [`FigureError::Draw`] for a PNG or a PDF, [`FigureError::Write`]; files made before stay.

@@ -1,4 +1,5 @@
-//! A friction law as a test bench shows it: force against velocity, and the hysteresis loops of a body that is pulled to and fro.
+//! A friction law as a test bench shows it: force against velocity, and the hysteresis loops of a body that is pulled
+//! to and fro.
 
 use super::FigureError;
 use super::canvas::frame::{self, Scale};
@@ -31,8 +32,9 @@ const FREE: f64 = 0.06;
 /// Parameters of the oscillator around the law, on which nothing here depends.
 const OUTSIDE: [&str; 4] = ["alpha", "kappa", "mu", "sigma2"];
 
-/// The figure `friction_NAME` of a model with a friction law: left the force against the velocity, sliding steadily and pulled to and fro;
-/// right the same loops against the displacement. `title` (plain text, may be empty) stands above it.
+/// The figure `friction_NAME` of a model with a friction law: left the force against the velocity, sliding steadily and
+/// pulled to and fro; right the same loops against the displacement. `title` (plain text, may be empty) stands above
+/// it.
 ///
 /// # Errors
 /// [`FigureError::NoFriction`], [`FigureError::Draw`].

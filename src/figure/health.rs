@@ -1,5 +1,5 @@
-//! The health of a sweep: what is left of the equation, what leaves the domain, negative masses, and how far neighbouring densities are
-//! apart, over the parameter. What is zero all along is left out.
+//! The health of a sweep: what is left of the equation, what leaves the domain, negative masses, and how far
+//! neighbouring densities are apart, over the parameter. What is zero all along is left out.
 
 use crate::continuation::{Point, PointStatus};
 

@@ -1,5 +1,6 @@
-//! The homological picture of a density: of the set where it exceeds a level, the number of pieces and of holes (its Betti numbers), over the parameter and the
-//! level. Peaks are where pieces appear as the level falls, saddles where they merge, bottoms of craters where holes close; a P-bifurcation is a change at some level.
+//! The homological picture of a density: of the set where it exceeds a level, the number of pieces and of holes (its
+//! Betti numbers), over the parameter and the level. Peaks are where pieces appear as the level falls, saddles where
+//! they merge, bottoms of craters where holes close; a P-bifurcation is a change at some level.
 
 use crate::continuation::Point;
 use crate::density::Observable;

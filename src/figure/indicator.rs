@@ -1,5 +1,5 @@
-//! The indicators of an observable over the parameter, with their errors and the line of zero that a bifurcation crosses: a panel an
-//! indicator.
+//! The indicators of an observable over the parameter, with their errors and the line of zero that a bifurcation
+//! crosses: a panel an indicator.
 
 use crate::topology::{Indicator, IndicatorKind};
 

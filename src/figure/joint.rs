@@ -1,4 +1,5 @@
-//! Joint densities of two axes as heat maps with contours: one figure a parameter value, and a sheet of all (`joint_sheet`).
+//! Joint densities of two axes as heat maps with contours: one figure a parameter value, and a sheet of all
+//! (`joint_sheet`).
 
 use plotters_backend::text_anchor::HPos;
 

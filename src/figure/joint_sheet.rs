@@ -46,8 +46,8 @@ struct Sheet {
 }
 
 impl Sheet {
-    /// Arranges maps in as many columns as there is room for between what stands left and right of them all, `beside` pixels;
-    /// on a given page none is narrower than `least`. Columns are `between` pixels apart.
+    /// Arranges maps in as many columns as there is room for between what stands left and right of them all, `beside`
+    /// pixels; on a given page none is narrower than `least`. Columns are `between` pixels apart.
     fn new(look: &Look, found: &[Found<'_>], (beside, between): (f64, f64), least: f64) -> Self {
         let own_columns = match found.len() {
             2 | 4 => 2,
@@ -125,8 +125,9 @@ fn widest(look: &Look, lines: &[String]) -> Result<f64, DrawError> {
     Ok(least)
 }
 
-/// The sheet with the lines above its maps; `arranged` gives the sheet whose maps are so wide at least. Many maps below each other fill no page of a journal:
-/// without letters, or with values in fewer digits, there may be room for a second column.
+/// The sheet with the lines above its maps; `arranged` gives the sheet whose maps are so wide at least. Many maps below
+/// each other fill no page of a journal: without letters, or with values in fewer digits, there may be room for a
+/// second column.
 fn with_lines(
     scene: &SweepScene<'_>,
     found: &[Found<'_>],

@@ -1,4 +1,5 @@
-//! A map of regimes: regions of one signature in pale colours with their words, and the curves between them with their bands.
+//! A map of regimes: regions of one signature in pale colours with their words, and the curves between them with their
+//! bands.
 
 use plotters_backend::text_anchor::HPos;
 
@@ -40,8 +41,8 @@ const GAP: f64 = 3.0;
 /// Radius of the dots where curves end inside the box, in pixels.
 const DOT: f64 = 3.0;
 
-/// One figure an observable of a map, `map_x` or `map_xy`. `title` (plain text, may be empty) stands above it. What `sweeps` over one of the
-/// parameters located is marked.
+/// One figure an observable of a map, `map_x` or `map_xy`. `title` (plain text, may be empty) stands above it. What
+/// `sweeps` over one of the parameters located is marked.
 ///
 /// # Errors
 /// [`FigureError::Draw`].

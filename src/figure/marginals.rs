@@ -152,8 +152,8 @@ fn marginal<'a>(scene: &SweepScene<'a>, number: usize) -> Result<Option<Overlaid
 }
 
 impl<'a> Overlaid<'a> {
-    /// Densities along an axis, with the numbers of their points among the chosen; `None` where there is nothing to see. The title is that of
-    /// the ordinate.
+    /// Densities along an axis, with the numbers of their points among the chosen; `None` where there is nothing to
+    /// see. The title is that of the ordinate.
     pub(super) fn new(
         scene: &SweepScene<'_>,
         axis: usize,

@@ -16,8 +16,8 @@
 //! # }
 //! ```
 //!
-//! `canvas` is what draws. A new kind of figure is one file like `diagram`, which lists what it can draw of a sweep or a
-//! comparison, and one line in `drawn`.
+//! `canvas` is what draws. A new kind of figure is one file like `diagram`, which lists what it can draw of a sweep or
+//! a comparison, and one line in `drawn`.
 
 mod along;
 mod bifurcations;

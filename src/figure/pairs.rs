@@ -1,4 +1,5 @@
-//! A joint density twice, as a surface and as a map beside it: a row a parameter value, as papers of this field print them.
+//! A joint density twice, as a surface and as a map beside it: a row a parameter value, as papers of this field print
+//! them.
 
 use crate::density::Observable;
 

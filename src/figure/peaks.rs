@@ -17,7 +17,8 @@ const HEIGHT: f64 = 170.0;
 /// Heights that differ by more than this factor are drawn on a logarithmic axis.
 const LOGARITHMIC: f64 = 30.0;
 
-/// The range of places as a share of where the density is, at least: a peak that stays where it is moves by rounding alone.
+/// The range of places as a share of where the density is, at least: a peak that stays where it is moves by rounding
+/// alone.
 const LEAST: f64 = 0.02;
 
 /// A peak diagram an observed marginal.

@@ -1,5 +1,5 @@
-//! Curves of P-bifurcations in their plane of two parameters: the lines, their bands of error, their ends, points of codimension two, and the row that the
-//! first was begun at.
+//! Curves of P-bifurcations in their plane of two parameters: the lines, their bands of error, their ends, points of
+//! codimension two, and the row that the first was begun at.
 
 use plotters_backend::text_anchor::HPos;
 
@@ -38,8 +38,9 @@ const DASHES: &[f64] = &[5.0, 4.0];
 /// Distance of letters from what they name, in pixels.
 const AWAY: f64 = 9.0;
 
-/// The figure `curve` of curves in one plane, the first of which was begun at a row of a sweep over its first parameter; there must be one. `family` gives
-/// names and symbols; `title` (plain text, may be empty) stands above it. What `sweeps` over one of the parameters located is marked.
+/// The figure `curve` of curves in one plane, the first of which was begun at a row of a sweep over its first
+/// parameter; there must be one. `family` gives names and symbols; `title` (plain text, may be empty) stands above it.
+/// What `sweeps` over one of the parameters located is marked.
 ///
 /// # Errors
 /// [`FigureError::Draw`].
@@ -277,7 +278,8 @@ pub(super) fn stroke_of<'c>(
     }
 }
 
-/// What a legend says beside the meaning of a curve's line: its band, where it is wider than the line, and what dashes mean.
+/// What a legend says beside the meaning of a curve's line: its band, where it is wider than the line, and what dashes
+/// mean.
 pub(super) fn remarks(curve: &Curve, stroke: Stroke, rect: Rectangle) -> Vec<(Sample, String)> {
     let mut entries = Vec::new();
     let shorter = rect.width.min(rect.height);

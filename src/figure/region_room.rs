@@ -29,7 +29,8 @@ impl<'p> Room<'p> {
         }
     }
 
-    /// The column and row of a region at which words of this half width and half height have most room; `None` where they have too little.
+    /// The column and row of a region at which words of this half width and half height have most room; `None` where
+    /// they have too little.
     pub(super) fn best(
         &self,
         region: usize,

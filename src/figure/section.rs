@@ -1,5 +1,5 @@
-//! Sections of a joint density through its centre of symmetry, or its summit where it has none: as they are (`section_xy`), and with an integral
-//! of one, which makes them conditional densities (`conditional_xy`).
+//! Sections of a joint density through its centre of symmetry, or its summit where it has none: as they are
+//! (`section_xy`), and with an integral of one, which makes them conditional densities (`conditional_xy`).
 
 use std::borrow::Cow;
 
@@ -205,7 +205,8 @@ mod tests {
 
     #[test]
     fn conditional_densities_are_those_of_a_gaussian() {
-        // x given y = 0.5 is normal with mean ρ and variance 1 - ρ²: linear between middles 0.025 apart, so 1e-3 at most.
+        // x given y = 0.5 is normal with mean ρ and variance 1 - ρ²: linear between middles 0.025 apart, so 1e-3 at
+        // most.
         let (rho, at) = (0.6, 0.5);
         let conditional = section(&gaussian(rho), 0, at, Kind::Conditional)
             .unwrap()

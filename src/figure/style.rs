@@ -112,7 +112,8 @@ impl Ground {
 pub struct FigureStyle {
     /// Width of every figure; panels, ticks and legends are laid out for it.
     pub width: FigureWidth,
-    /// Size of axis titles in points, of tick labels nine tenths of it; `None` for 8 where a width is given, 18 on slides, else 10.5.
+    /// Size of axis titles in points, of tick labels nine tenths of it; `None` for 8 where a width is given, 18 on
+    /// slides, else 10.5.
     pub text: Option<f64>,
     /// Width of curves in points, other lines in proportion; `None` for a width that suits the text.
     pub line: Option<f64>,
@@ -163,7 +164,8 @@ impl FigureStyle {
         (LEAST_WIDTH * text, MOST_WIDTH * text)
     }
 
-    /// Whether the width lies within [`FigureStyle::widths`]. Outside of them figures are drawn at the nearest of the two.
+    /// Whether the width lies within [`FigureStyle::widths`]. Outside of them figures are drawn at the nearest of the
+    /// two.
     pub fn has_room(&self) -> bool {
         let (least, most) = self.widths();
         self.width

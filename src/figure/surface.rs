@@ -1,5 +1,6 @@
-//! Joint densities of two axes as surfaces: one figure a parameter value, and a sheet of all. Heights are those of the cells' middles;
-//! where there are more cells than can be seen, lines of cells are left out, but never those beside a kink or through the summit.
+//! Joint densities of two axes as surfaces: one figure a parameter value, and a sheet of all. Heights are those of the
+//! cells' middles; where there are more cells than can be seen, lines of cells are left out, but never those beside a
+//! kink or through the summit.
 
 use crate::continuation::Point;
 use crate::density::{EstimatedDensity, Observable};
@@ -136,7 +137,8 @@ fn draw_single(
     Ok(Some(page))
 }
 
-/// All surfaces of a pair on one sheet, with the same windows, each with heights of its own; `None` for fewer than two densities.
+/// All surfaces of a pair on one sheet, with the same windows, each with heights of its own; `None` for fewer than two
+/// densities.
 fn draw_sheet(scene: &SweepScene<'_>, observable: usize) -> Result<Option<Page>, DrawError> {
     let (family, look) = (scene.family(), &scene.look);
     let watched = scene.result.subject.observables[observable];
@@ -210,7 +212,8 @@ fn lines(axis: &Axis, window: (f64, f64), most: usize, wanted: &[usize]) -> Vec<
     kept
 }
 
-/// The surface of a density over a window, in shares of the window and of `top`; `None` where there is too little of it.
+/// The surface of a density over a window, in shares of the window and of `top`; `None` where there is too little of
+/// it.
 fn heights(
     estimated: &EstimatedDensity,
     (x, y): ((f64, f64), (f64, f64)),

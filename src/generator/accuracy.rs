@@ -81,7 +81,8 @@ fn negative_mass(masses: &[f64]) -> f64 {
     masses.iter().map(|mass| (-mass).max(0.0)).sum()
 }
 
-/// p'(0+)/p(0) of the y marginal over -2 f_c/σ²: from the cubic whose integrals are the masses of the four cells above 0.
+/// p'(0+)/p(0) of the y marginal over -2 f_c/σ²: from the cubic whose integrals are the masses of the four cells above
+/// 0.
 fn slope_law_ratio(space: &CellSpace, masses: &[f64], f_c: f64) -> f64 {
     let axis = &space.axes()[1];
     let mut marginal = vec![0.0; axis.count()];

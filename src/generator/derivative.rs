@@ -17,8 +17,8 @@ const STEPS: usize = 8;
 /// Change between two steps, relative in the 1-norm, at which the derivative is accepted.
 const ACCEPTED: f64 = 1e-11;
 
-/// dQ/dθ at `value` and the derivative of the escape rates, for systems that depend on one number, with the pattern of Q, Ω and its
-/// walls held.
+/// dQ/dθ at `value` and the derivative of the escape rates, for systems that depend on one number, with the pattern of
+/// Q, Ω and its walls held.
 ///
 /// Q is linear in some parameters and analytic in the rest, so a fourth-order central difference with a step
 /// that shrinks until two steps agree reaches nine digits or more; it is exact to rounding where Q is linear.

@@ -1,11 +1,13 @@
 //! The rates along an axis of modes: a dense block for every place on the other axes.
 //!
 //! Tested with a polynomial f of degree below N, a drift b along the axis gives
-//! d/dt Σ_k u_k f(s_k) = Σ_k u_k b(s_k) f'(s_k), Gauss's rule for the exact ∫ p b f' ds. With f the Lagrange polynomials of the
-//! nodes that is the block; by the degree of the rule it is exact for every drift that is a polynomial of degree 2 in s, and
-//! spectrally accurate for any smooth one. Walls need no condition: nothing is tested beyond them.
+//! d/dt Σ_k u_k f(s_k) = Σ_k u_k b(s_k) f'(s_k), Gauss's rule for the exact ∫ p b f' ds. With f the Lagrange
+//! polynomials of the nodes that is the block; by the degree of the rule it is exact for every drift that is a
+//! polynomial of degree 2 in s, and spectrally accurate for any smooth one. Walls need no condition: nothing is tested
+//! beyond them.
 //!
-//! White noise behind a linear filter has D f'' more, at the nodes of Hermite polynomials, which are its eigenfunctions: exact.
+//! White noise behind a linear filter has D f'' more, at the nodes of Hermite polynomials, which are its
+//! eigenfunctions: exact.
 
 use super::GeneratorError;
 use crate::space::{Axis, Series};
@@ -152,7 +154,8 @@ mod tests {
 
     #[test]
     fn rates_of_the_moments_are_the_exact_products() {
-        // s' = c - s: P_m' = Σ (2k + 1) P_k over k = m - 1, m - 3, …, and s P_m' = m P_m + Σ (2k + 1) P_k over k = m - 2, m - 4, …
+        // s' = c - s: P_m' = Σ (2k + 1) P_k over k = m - 1, m - 3, …, and s P_m' = m P_m + Σ (2k + 1) P_k over k = m -
+        // 2, m - 4, …
         let c = 0.3;
         for count in [2, 5, 9] {
             let axis = Axis::modes(-1.0, 1.0, count).unwrap();

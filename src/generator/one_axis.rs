@@ -1,10 +1,11 @@
 //! The steady state of a system with one axis, free of subtraction: without flux the density is
 //! p ∝ (1/b²) exp ∫ (2a/b²) dx, with drift a and noise intensity b².
 //!
-//! Every cell is correct to many digits *of its own value*, however deep the valleys between: where barriers are many times the
-//! noise, weights of wells that no linear solver can tell from rounding come out of a quadrature. Polynomials through
-//! Gauss-Legendre points on panels of each cell give the exponent and its integral. A cell is cut where the drift jumps or bends, and halved where the
-//! exponent changes much, so that cells much wider than what they hold are right too.
+//! Every cell is correct to many digits *of its own value*, however deep the valleys between: where barriers are many
+//! times the noise, weights of wells that no linear solver can tell from rounding come out of a quadrature. Polynomials
+//! through Gauss-Legendre points on panels of each cell give the exponent and its integral. A cell is cut where the
+//! drift jumps or bends, and halved where the exponent changes much, so that cells much wider than what they hold are
+//! right too.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
@@ -27,8 +28,8 @@ pub struct OneAxis {
     pub moments: (f64, f64),
 }
 
-/// The steady state without flux through the ends; `None` where drift and noise do not allow it: more than one axis, noise that vanishes or is
-/// not finite somewhere.
+/// The steady state without flux through the ends; `None` where drift and noise do not allow it: more than one axis,
+/// noise that vanishes or is not finite somewhere.
 pub fn one_axis(system: &dyn System, axis: &Axis) -> Option<OneAxis> {
     if system.dimension() != 1 || system.period().is_some() {
         return None;
@@ -44,7 +45,8 @@ pub fn one_axis(system: &dyn System, axis: &Axis) -> Option<OneAxis> {
     })
 }
 
-/// Points and weights on [0, 1], and the integrals of the polynomial through values at the points from 0 to each of them.
+/// Points and weights on [0, 1], and the integrals of the polynomial through values at the points from 0 to each of
+/// them.
 struct Rule {
     points: [f64; NODES],
     weights: [f64; NODES],
@@ -126,7 +128,8 @@ fn look(system: &dyn System, places: &Lanes) -> (Lanes, Lanes) {
 
 /// Most times that a part of a cell is halved.
 const MOST_HALVINGS: usize = 12;
-/// Largest change of the exponent over a part, in one direction: eight points on each of four panels follow an exponential of that range to 1e-9.
+/// Largest change of the exponent over a part, in one direction: eight points on each of four panels follow an
+/// exponential of that range to 1e-9.
 const LARGEST_RISE: f64 = 24.0;
 
 /// The density along the axis as it is gone through, from below to above.
@@ -161,8 +164,8 @@ impl Integrals {
 }
 
 impl Walk<'_> {
-    /// Goes on from one coordinate to another of the cell that begins at `edge`; `None` where drift or noise do not allow it. Where the exponent
-    /// changes much the part is halved.
+    /// Goes on from one coordinate to another of the cell that begins at `edge`; `None` where drift or noise do not
+    /// allow it. Where the exponent changes much the part is halved.
     fn go(
         &mut self,
         (from, to): (f64, f64),

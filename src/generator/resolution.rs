@@ -25,8 +25,8 @@ pub struct Resolution {
     /// along this axis. Above 1 the density changes by more than e² from cell to cell.
     pub fitted_peclet: f64,
     /// Mass-weighted root mean square of |a| h/D in the cells beside switching surfaces: cell width over the
-    /// thickness of the layer that holds the kink. `None` without a surface, on a face of the axis, across which the drift
-    /// jumps.
+    /// thickness of the layer that holds the kink. `None` without a surface, on a face of the axis, across which the
+    /// drift jumps.
     pub layer: Option<f64>,
     /// Switching surfaces inside the range that no face falls on.
     pub surfaces_off_faces: Vec<f64>,
@@ -124,8 +124,8 @@ impl Seen<'_> {
         }
     }
 
-    /// Whether the drift jumps across a face of the cell. Dahl's friction bends other components with the sign of the velocity:
-    /// no jump across, no layer.
+    /// Whether the drift jumps across a face of the cell. Dahl's friction bends other components with the sign of the
+    /// velocity: no jump across, no layer.
     fn is_beside_jump(&self, cell: usize, position: usize, drift: f64) -> bool {
         let axis = &self.space.axes()[self.index];
         let beside = |face: &&usize| position == **face || position + 1 == **face;

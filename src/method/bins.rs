@@ -1,8 +1,9 @@
 //! The range of values over which a quantity is watched, where that is left to the program.
 //!
-//! The formula's least and largest value in Ω are the widest range. Where the mass does not reach them, as at the corners of Ω for an
-//! amplitude, the range ends beyond the quantiles of rough densities at both ends of the sweep and in its middle. Where it does, as at the
-//! energy of rest, the range ends exactly there: a bin of which a part holds no value would look like a valley.
+//! The formula's least and largest value in Ω are the widest range. Where the mass does not reach them, as at the
+//! corners of Ω for an amplitude, the range ends beyond the quantiles of rough densities at both ends of the sweep and
+//! in its middle. Where it does, as at the energy of rest, the range ends exactly there: a bin of which a part holds no
+//! value would look like a valley.
 
 use std::ops::RangeInclusive;
 
@@ -83,8 +84,8 @@ pub struct QuantityRange {
     pub extremes: (f64, f64),
 }
 
-/// The values of each of the family's quantities, in their order, for cells of a space. Where no bins are open, rough densities are not
-/// solved, and the ends are the extremes.
+/// The values of each of the family's quantities, in their order, for cells of a space. Where no bins are open, rough
+/// densities are not solved, and the ends are the extremes.
 ///
 /// # Errors
 /// [`BinsError`].

@@ -21,8 +21,8 @@ impl Problem {
     /// Puts the three together.
     ///
     /// # Errors
-    /// [`MethodError::Dimension`] when the cells have another number of axes than the model, and [`MethodError::Density`]
-    /// when an observable names an axis that does not exist.
+    /// [`MethodError::Dimension`] when the cells have another number of axes than the model, and
+    /// [`MethodError::Density`] when an observable names an axis that does not exist.
     pub fn new(
         family: Family,
         space: CellSpace,
@@ -31,7 +31,8 @@ impl Problem {
         Self::watching(family, space, observables, Vec::new())
     }
 
-    /// As [`Problem::new`], with bins for the family's quantities, in their order: observables may name those that have bins.
+    /// As [`Problem::new`], with bins for the family's quantities, in their order: observables may name those that have
+    /// bins.
     ///
     /// # Errors
     /// As [`Problem::new`].

@@ -16,8 +16,9 @@ const CELLS: usize = 64;
 const INSIDE: f64 = 0.9995;
 /// Share of an axis that must have been visited, else the box is shrunk to look more closely.
 const FILLED: f64 = 0.2;
-/// What visits reach is widened by this factor: some 1e5 states show a normal density to 4.3 standard deviations. With 5.4 of them
-/// 1e-7 of the mass is outside, and what leaks away moves located values by more than cells do; with 6.5 it is 1e-10.
+/// What visits reach is widened by this factor: some 1e5 states show a normal density to 4.3 standard deviations. With
+/// 5.4 of them 1e-7 of the mass is outside, and what leaks away moves located values by more than cells do; with 6.5 it
+/// is 1e-10.
 const MARGIN: f64 = 1.5;
 /// Most times that the box is changed.
 const MOST_CHANGES: usize = 40;
@@ -36,8 +37,8 @@ pub enum RangeError {
     Cancelled(#[from] crate::cancellation::Cancelled),
 }
 
-/// Ranges, one an axis, that hold the densities of all the systems, as known or found; `None` for an axis means that it is to be
-/// found.
+/// Ranges, one an axis, that hold the densities of all the systems, as known or found; `None` for an axis means that it
+/// is to be found.
 ///
 /// # Errors
 /// [`RangeError`].

@@ -1,4 +1,5 @@
-//! A report in the making: numbers of a solve, and findings by limits that are the same for all methods and stand here once.
+//! A report in the making: numbers of a solve, and findings by limits that are the same for all methods and stand here
+//! once.
 
 use crate::continuation::{Finding, PointStatus, ShiftedQuantity, SolveReport, SteadyClass};
 use crate::density::Moments;
@@ -162,8 +163,8 @@ impl<'a> Reporter<'a> {
         }
     }
 
-    /// The share of the mass that leaves within one relaxation time (none where that time is not known); `None` where it
-    /// is more than `limit`, and there is no steady state.
+    /// The share of the mass that leaves within one relaxation time (none where that time is not known); `None` where
+    /// it is more than `limit`, and there is no steady state.
     pub(super) fn escaping_share(
         &mut self,
         relaxation_time: Option<f64>,

@@ -1,5 +1,6 @@
-//! Friction that sticks: where the drift across a switching surface points toward it from both sides and no white noise acts
-//! across, a part of the probability lies on the surface itself, and there is no density (P. M. Geffert and W. Just, 2017).
+//! Friction that sticks: where the drift across a switching surface points toward it from both sides and no white noise
+//! acts across, a part of the probability lies on the surface itself, and there is no density (P. M. Geffert and W.
+//! Just, 2017).
 
 use super::MethodError;
 use crate::system::{Family, SwitchingSurface, System};
@@ -13,8 +14,8 @@ const ROUNDING: f64 = 1e-9;
 /// Halvings of the way between a state that is pushed up and one that is pushed down.
 const HALVINGS: usize = 60;
 
-/// Nothing, if at both ends and in the middle of a path nothing sticks to a switching surface of the domain, whose ranges are one an
-/// axis.
+/// Nothing, if at both ends and in the middle of a path nothing sticks to a switching surface of the domain, whose
+/// ranges are one an axis.
 ///
 /// # Errors
 /// [`MethodError::Sticks`]; [`MethodError::System`] for values that are not allowed.
@@ -52,8 +53,9 @@ fn stuck_state(system: &dyn System, ranges: &[(f64, f64)]) -> Option<(SwitchingS
     inside.find_map(|surface| Some((surface, stuck_on(system, surface, ranges)?)))
 }
 
-/// A state of the surface that the drift keeps there: below it the drift across points up and above it down. Where the drift jumps
-/// down everywhere, one lies between every state that is pushed up through the surface and every one that is pushed down.
+/// A state of the surface that the drift keeps there: below it the drift across points up and above it down. Where the
+/// drift jumps down everywhere, one lies between every state that is pushed up through the surface and every one that
+/// is pushed down.
 fn stuck_on(
     system: &dyn System,
     surface: SwitchingSurface,

@@ -1,7 +1,7 @@
 //! Integrated autocorrelation times by Sokal's windowing.
 
-/// A window ends at this many autocorrelation times (Sokal, "Monte Carlo methods in statistical mechanics", 1997): what is cut
-/// off is then below e⁻⁵ of an exponential, and longer windows add noise.
+/// A window ends at this many autocorrelation times (Sokal, "Monte Carlo methods in statistical mechanics", 1997): what
+/// is cut off is then below e⁻⁵ of an exponential, and longer windows add noise.
 const WINDOW: f64 = 5.0;
 
 /// What a stationary series says of itself.
@@ -78,7 +78,8 @@ mod tests {
         for a in [0.0, 0.5, 0.9, 0.98] {
             let found = correlation(&autoregressive(a, 100, 2000));
             let exact = 0.5 * (1.0 + a) / (1.0 - a);
-            // Relative error √(2(2W+1)/n) with a window of W = 5τ records, n = 2e5 (Madras and Sokal 1988); e⁻⁵ is cut off.
+            // Relative error √(2(2W+1)/n) with a window of W = 5τ records, n = 2e5 (Madras and Sokal 1988); e⁻⁵ is cut
+            // off.
             let error = (2.0 * (2.0 * WINDOW * exact + 1.0) / 2e5_f64).sqrt() + 0.007;
             assert!(
                 (found.time / exact - 1.0).abs() < 4.0 * error,

@@ -26,8 +26,8 @@ pub struct EnsembleRun {
     pub start: Vec<(f64, f64)>,
 }
 
-/// Estimates the density at one time on the cells of a space, conditioned on Ω: a histogram of independent states, whose errors
-/// are multinomial. Trajectories that leave Ω keep running, and those that run away are counted; see
+/// Estimates the density at one time on the cells of a space, conditioned on Ω: a histogram of independent states,
+/// whose errors are multinomial. Trajectories that leave Ω keep running, and those that run away are counted; see
 /// [`ergodic`](super::ergodic()). Blocks for the errors are batches of trajectories: give at least some hundred.
 ///
 /// # Errors

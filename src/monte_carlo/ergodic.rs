@@ -39,8 +39,8 @@ pub struct ErgodicRun {
 
 impl ErgodicRun {
     /// Steps between looks: the time that crossing a cell takes on its narrowest axis (root mean square width over root
-    /// mean square speed), but at most 0.5/ω. Denser looks see the same visit again and tell next to nothing. Even, because
-    /// normals come in pairs.
+    /// mean square speed), but at most 0.5/ω. Denser looks see the same visit again and tell next to nothing. Even,
+    /// because normals come in pairs.
     pub fn stride(relaxation: &Relaxation, time_step: f64) -> usize {
         let crossing = relaxation.crossing_time.iter().copied();
         let crossing = crossing.filter(|time| time.is_finite() && *time > 0.0);
@@ -85,10 +85,10 @@ fn tasks(batches: usize) -> (Vec<Range<usize>>, usize) {
 
 /// Estimates the steady-state density on the cells of a space, conditioned on Ω.
 ///
-/// Trajectories start from `starts` (any states, d values each; settled ones of a [`Relaxation`] need the least burn-in), drawn
-/// with replacement; without any, all over Ω. They keep running when they leave Ω; those that run away (not finite, or
-/// beyond a hundred times the half range) are counted and never restarted. Results are the same bits for any number of threads: the
-/// work is cut by the number of a trajectory.
+/// Trajectories start from `starts` (any states, d values each; settled ones of a [`Relaxation`] need the least
+/// burn-in), drawn with replacement; without any, all over Ω. They keep running when they leave Ω; those that run away
+/// (not finite, or beyond a hundred times the half range) are counted and never restarted. Results are the same bits
+/// for any number of threads: the work is cut by the number of a trajectory.
 ///
 /// # Errors
 /// [`MonteCarloError`].

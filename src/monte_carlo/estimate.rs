@@ -3,8 +3,8 @@
 use super::batch::Histogram;
 use crate::space::CellSpace;
 
-/// Blocks that standard errors rest on. Blocks are groups of independent trajectories, or, when there are fewer than this many
-/// batches, stretches of their time.
+/// Blocks that standard errors rest on. Blocks are groups of independent trajectories, or, when there are fewer than
+/// this many batches, stretches of their time.
 pub const BLOCKS: usize = 32;
 
 /// Counts of one task.

@@ -1,5 +1,6 @@
-//! What a time step does to the density, found by halving it: two paths of every trajectory, one with the step and one with half of
-//! it, driven by the same Wiener process, so that their difference is that of the steps and hardly that of chance.
+//! What a time step does to the density, found by halving it: two paths of every trajectory, one with the step and one
+//! with half of it, driven by the same Wiener process, so that their difference is that of the steps and hardly that of
+//! chance.
 
 use rayon::prelude::*;
 
@@ -21,8 +22,8 @@ const MOST_STEPS: f64 = 3e5;
 const LOOK: usize = 4;
 /// Half the width of the region about a switching surface, in standard deviations of the axis.
 const REGION: f64 = 0.1;
-/// A path farther than this many standard deviations from the mean counts as being that far: one that runs away must not
-/// turn sums into infinities.
+/// A path farther than this many standard deviations from the mean counts as being that far: one that runs away must
+/// not turn sums into infinities.
 const FARTHEST: f64 = 1e3;
 /// Shortenings of an automatic step.
 const MOST_ROUNDS: usize = 6;
@@ -45,8 +46,8 @@ pub enum BiasedQuantity {
 pub struct StepBias {
     /// What is shifted.
     pub quantity: BiasedQuantity,
-    /// (with this step - with infinitely short ones)/(with half the step), extrapolated from the difference of the two steps by
-    /// the integrator's weak order.
+    /// (with this step - with infinitely short ones)/(with half the step), extrapolated from the difference of the two
+    /// steps by the integrator's weak order.
     pub relative: f64,
     /// Standard error of it from the trajectories of the comparison.
     pub standard_error: f64,
@@ -69,8 +70,8 @@ impl StepBias {
     }
 }
 
-/// The bias of a time step, that of the quantity for which it is most certain to be large. Keyed by `seed`; does not depend on
-/// the number of threads. `None` where nothing settled in the relaxation.
+/// The bias of a time step, that of the quantity for which it is most certain to be large. Keyed by `seed`; does not
+/// depend on the number of threads. `None` where nothing settled in the relaxation.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -125,8 +126,8 @@ fn order(integrator: Integrator, additive: bool) -> u32 {
     }
 }
 
-/// A time step whose bias is not certain to be above `wanted` (relative, of variances and shares), with that bias: the pilot's
-/// rule, shortened until halving agrees.
+/// A time step whose bias is not certain to be above `wanted` (relative, of variances and shares), with that bias: the
+/// pilot's rule, shortened until halving agrees.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -339,8 +340,9 @@ mod tests {
 
     #[test]
     fn the_bias_of_a_linear_oscillator_is_what_its_damping_loses() {
-        // Variances are σ²/(2(κ - ω²dt)) by Euler-Maruyama: with κ = 0.1 and dt = 0.01 they are 1/0.9 of the exact ones, and with
-        // dt/2 1/0.95; the difference relative to the latter, 0.0556, extrapolates to 0.111, up to O(κdt).
+        // Variances are σ²/(2(κ - ω²dt)) by Euler-Maruyama: with κ = 0.1 and dt = 0.01 they are 1/0.9 of the exact
+        // ones, and with dt/2 1/0.95; the difference relative to the latter, 0.0556, extrapolates to 0.111, up to
+        // O(κdt).
         let (system, space, relaxation) = oscillator(0.1, 0.0);
         let step = (Integrator::EulerMaruyama, 0.01);
         let bias = bias(&*system, &space, &relaxation, step);

@@ -1,7 +1,8 @@
 //! Free trajectories as a reference: densities by counting visits, without a cell map and without a generator.
 //!
-//! [`relaxation()`] measures how long a system remembers; [`ergodic()`] averages a fixed number of long trajectories over time,
-//! [`ensemble()`] counts many at one time; [`sample_path`] follows a single one, to be looked at; [`step_bias`] finds what a time step does to the density.
+//! [`relaxation()`] measures how long a system remembers; [`ergodic()`] averages a fixed number of long trajectories
+//! over time, [`ensemble()`] counts many at one time; [`sample_path`] follows a single one, to be looked at;
+//! [`step_bias`] finds what a time step does to the density.
 
 mod autocorrelation;
 mod batch;

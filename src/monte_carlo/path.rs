@@ -28,16 +28,19 @@ pub struct PathRun {
 pub struct SamplePath {
     /// The states that were kept, d values each, from the start on; one stride of steps lies between them.
     pub states: Vec<Vec<f64>>,
-    /// Whether the path ran away (not finite, or beyond a hundred times the half range of an axis); it ends before it did.
+    /// Whether the path ran away (not finite, or beyond a hundred times the half range of an axis); it ends before it
+    /// did.
     pub ran_away: bool,
 }
 
 impl PathRun {
-    /// A run over a number of turns, of which at most `most_states` are kept. It is shorter where it would take more than `most_steps`, and has at least one step.
+    /// A run over a number of turns, of which at most `most_states` are kept. It is shorter where it would take more
+    /// than `most_steps`, and has at least one step.
     ///
-    /// A turn is 2π over the rate at which the state moves through where it is found: a period of a harmonic oscillator. The rate, root mean square drift over standard
-    /// deviation, is that of the slowest axis on which no noise acts, or of all axes where noise acts on each. A few trajectories keyed by `seed` tell it, and the
-    /// time step with it.
+    /// A turn is 2π over the rate at which the state moves through where it is found: a period of a harmonic
+    /// oscillator. The rate, root mean square drift over standard deviation, is that of the slowest axis on which no
+    /// noise acts, or of all axes where noise acts on each. A few trajectories keyed by `seed` tell it, and the time
+    /// step with it.
     ///
     /// # Errors
     /// [`MonteCarloError`].
@@ -87,7 +90,8 @@ impl PathRun {
     }
 }
 
-/// Root mean square drift over standard deviation, both of the same states, of the slowest axis on which no noise acts; of all where noise acts on each.
+/// Root mean square drift over standard deviation, both of the same states, of the slowest axis on which no noise acts;
+/// of all where noise acts on each.
 fn rate(system: &dyn System, states: &[Vec<f64>]) -> Option<f64> {
     let count = states.len() as f64;
     let drifts: Vec<Vec<f64>> = states.iter().map(|x| system.drift_at(0.0, x)).collect();
@@ -108,8 +112,8 @@ fn rate(system: &dyn System, states: &[Vec<f64>]) -> Option<f64> {
     slowest(&mut all().filter(quiet)).or_else(|| slowest(&mut all()))
 }
 
-/// Follows one path from a state, by stochastic Heun. The same seed gives the same noise from whatever state the path starts and whatever the parameters are. The space
-/// tells only how far a path may go.
+/// Follows one path from a state, by stochastic Heun. The same seed gives the same noise from whatever state the path
+/// starts and whatever the parameters are. The space tells only how far a path may go.
 ///
 /// # Errors
 /// [`MonteCarloError`].
@@ -204,8 +208,9 @@ mod tests {
                     .sum::<f64>()
                     / count
             };
-            // Over T = 1e5 a mean has the standard error √(2 S T⁻¹) with ∫C dt = σ²/2 for x and 0 for y, below √(σ²/T) = 3.2e-4; a variance that of
-            // √(4∫C²dt/T)/v = √((2/κ)/T) = 2 %. The step of 0.05 takes dt³/(4κ) = 6e-4 of the damping.
+            // Over T = 1e5 a mean has the standard error √(2 S T⁻¹) with ∫C dt = σ²/2 for x and 0 for y, below √(σ²/T)
+            // = 3.2e-4; a variance that of √(4∫C²dt/T)/v = √((2/κ)/T) = 2 %. The step of 0.05 takes dt³/(4κ) = 6e-4 of
+            // the damping.
             assert!(power(1).abs() < 4.0 * 3.2e-4, "mean {}", power(1));
             assert!(
                 (power(2) / variance - 1.0).abs() < 4.0 * 0.02,
@@ -239,7 +244,8 @@ mod tests {
         let run = |turns: f64, bounds: (usize, usize)| {
             PathRun::over_turns(&*system, &space, turns, bounds, 1, &never)
         };
-        // Visited cells fill a disc, in which root mean square drift and deviation are the same times the frequency, to the ragged edge of some hundred cells.
+        // Visited cells fill a disc, in which root mean square drift and deviation are the same times the frequency, to
+        // the ragged edge of some hundred cells.
         let ten = run(10.0, (100_000, 1 << 20)).unwrap();
         assert!((ten.time() / (10.0 * TAU) - 1.0).abs() < 0.1 && ten.stride == 1);
         let long = run(100.0, (1000, 1 << 20)).unwrap();

@@ -16,7 +16,8 @@ const BATCHES: u64 = 4;
 const RECORDS: usize = 512;
 /// Looks at the state that make one mean, and steps between looks, in the first window.
 const LOOKS: usize = 4;
-/// A window is long enough at this many autocorrelation times: all windows before it, together at least as long, are burn-in.
+/// A window is long enough at this many autocorrelation times: all windows before it, together at least as long, are
+/// burn-in.
 const LONG: f64 = 30.0;
 /// Most steps of one trajectory in a window.
 const MOST_STEPS: usize = 1 << 20;
@@ -59,8 +60,8 @@ impl Relaxation {
         &self.settled
     }
 
-    /// Variance of (x_i - m_i)² relative to its mean's square, the largest of all axes: 2 for a normal density. The relative
-    /// standard error of the variance of n independent states is the root of this over n.
+    /// Variance of (x_i - m_i)² relative to its mean's square, the largest of all axes: 2 for a normal density. The
+    /// relative standard error of the variance of n independent states is the root of this over n.
     pub fn relative_square(&self) -> f64 {
         let of_axis = |axis: usize| {
             let off = |state: &Vec<f64>| (state[axis] - self.mean[axis]).powi(2);
@@ -140,8 +141,8 @@ fn start(space: &CellSpace, seed: u64, number: u64) -> Watched {
 }
 
 impl Watched {
-    /// Records means over `LOOKS` looks, `stride` steps apart. What was recorded before is burn-in and forgotten. Means,
-    /// not values: an oscillation that is faster than the records must not look slow.
+    /// Records means over `LOOKS` looks, `stride` steps apart. What was recorded before is burn-in and forgotten.
+    /// Means, not values: an oscillation that is faster than the records must not look slow.
     fn window(
         &mut self,
         stepper: &Stepper<'_>,
@@ -284,8 +285,8 @@ mod tests {
         CellSpace::new(vec![axis.clone(), axis]).unwrap()
     }
 
-    /// x'' + κx' + x = ξ is Gaussian, so cov(x², x'²) = 2C², C(t) = v e^{-κt/2}(cos ωt + κ/(2ω) sin ωt), v = σ²/(2κ); the long-run
-    /// variance of x² is 2∫2C² dt.
+    /// x'' + κx' + x = ξ is Gaussian, so cov(x², x'²) = 2C², C(t) = v e^{-κt/2}(cos ωt + κ/(2ω) sin ωt), v = σ²/(2κ);
+    /// the long-run variance of x² is 2∫2C² dt.
     #[test]
     fn a_linear_oscillator_relaxes_as_theory_says() {
         let kappa = 0.05;

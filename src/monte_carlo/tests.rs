@@ -55,7 +55,8 @@ impl Case {
         .unwrap()
     }
 
-    /// Integrals of the exact density over the cells, by midpoints of 8 parts an axis: error h²/(24·64) of the second derivative.
+    /// Integrals of the exact density over the cells, by midpoints of 8 parts an axis: error h²/(24·64) of the second
+    /// derivative.
     fn exact(&self) -> Vec<f64> {
         const PARTS: usize = 8;
         let dimension = self.space.dimension();
@@ -91,8 +92,9 @@ fn deviations(found: &EstimatedDensity, exact: &[f64], space: &CellSpace, least:
         .collect()
 }
 
-/// Errors must be those that are stated: mean square 1, and 95.4 % within two of them. `independent` is the number of cells
-/// that vary for themselves: beside sampling the mean square scatters by √(2/independent), and the errors' own scatter adds to it.
+/// Errors must be those that are stated: mean square 1, and 95.4 % within two of them. `independent` is the number of
+/// cells that vary for themselves: beside sampling the mean square scatters by √(2/independent), and the errors' own
+/// scatter adds to it.
 fn assert_honest(case: &Case, found: &Estimate, observable: Observable, independent: f64) {
     let exact = case.exact();
     let found = estimate(&case.space, observable, &found.mass, &found.replicates).unwrap();

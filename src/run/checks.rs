@@ -1,7 +1,8 @@
-//! `checks.csv`: the indicators that were seen in the checks of located values, on finer cells and between closed ends of Ω.
+//! `checks.csv`: the indicators that were seen in the checks of located values, on finer cells and between closed ends
+//! of Ω.
 //!
-//! With them `pbif detect` repeats the checks without solving. A row without a `value` says that there was no such indicator, or
-//! why the solve failed.
+//! With them `pbif detect` repeats the checks without solving. A row without a `value` says that there was no such
+//! indicator, or why the solve failed.
 
 use std::path::Path;
 

@@ -1,4 +1,5 @@
-//! `checksums.sha256`: the SHA-256 of every file of a finished run, in the form that `sha256sum -c` reads, and whether they are still those.
+//! `checksums.sha256`: the SHA-256 of every file of a finished run, in the form that `sha256sum -c` reads, and whether
+//! they are still those.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -93,8 +94,8 @@ pub(super) fn renew(run: &Path, entry: &str) -> Result<(), RunError> {
     put(run, &sums)
 }
 
-/// The files below the given entries (all, if there are none) that are not as the run left them, and how many are; `None`
-/// for a run without checksums.
+/// The files below the given entries (all, if there are none) that are not as the run left them, and how many are;
+/// `None` for a run without checksums.
 ///
 /// # Errors
 /// [`RunError::Read`]; [`RunError::Checksums`] when the checksums are not readable themselves.
@@ -138,8 +139,8 @@ pub(super) fn check_listed(
     Ok(Some((whole, damaged)))
 }
 
-/// Removes the checksums of an ended run that goes on, and its figures as far as they are as the run left them: the run that goes on
-/// draws at other values.
+/// Removes the checksums of an ended run that goes on, and its figures as far as they are as the run left them: the run
+/// that goes on draws at other values.
 pub(super) fn reopen(run: &Path) {
     let Ok(Some(wanted)) = read(run) else {
         return;

@@ -13,8 +13,8 @@ pub(super) fn curve_name(index: usize) -> String {
     format!("C{}", index + 1)
 }
 
-/// The table of several curves in a plane; the first column has the curve's name. `starts` are the labels of their starts; those without one are called
-/// `start`.
+/// The table of several curves in a plane; the first column has the curve's name. `starts` are the labels of their
+/// starts; those without one are called `start`.
 pub(super) fn several_csv(
     family: &Family,
     plane: &Plane,

@@ -1,5 +1,5 @@
-//! Tables of records. Each column is declared once: its name, how a record is written into it, and, where the table is read back,
-//! what of the record is read from it.
+//! Tables of records. Each column is declared once: its name, how a record is written into it, and, where the table is
+//! read back, what of the record is read from it.
 
 use std::path::Path;
 
@@ -178,8 +178,8 @@ impl<T> Columns<'_, T> {
             .collect()
     }
 
-    /// Reads a table back; `blank` makes a record that has what no column tells. A last line without its end is one that a killed
-    /// run did not finish: it is left out, unless the table is said to be `complete`.
+    /// Reads a table back; `blank` makes a record that has what no column tells. A last line without its end is one
+    /// that a killed run did not finish: it is left out, unless the table is said to be `complete`.
     ///
     /// # Errors
     /// [`RunError::Read`], [`RunError::Column`], [`RunError::Row`].

@@ -14,7 +14,8 @@ pub fn date_in_utc(moment: SystemTime) -> String {
     format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}Z")
 }
 
-/// Year, month and day of the Gregorian calendar, by days since 1970. Years begin in March, so that the leap day comes last.
+/// Year, month and day of the Gregorian calendar, by days since 1970. Years begin in March, so that the leap day comes
+/// last.
 fn civil(days: u64) -> (u64, u64, u64) {
     // Days since 1 March of the year 0; 146 097 days are 400 years.
     let days = days + 719_468;

@@ -1,7 +1,7 @@
 //! A folder that is made beside the one whose place it takes.
 //!
-//! Where the system can, the two change places in one step. Where it cannot, a kill between two steps leaves the place empty, and
-//! readers take what stands beside it.
+//! Where the system can, the two change places in one step. Where it cannot, a kill between two steps leaves the place
+//! empty, and readers take what stands beside it.
 
 use std::path::{Path, PathBuf};
 
@@ -69,7 +69,8 @@ impl Drop for Fresh {
     }
 }
 
-/// Where the folder of this place is, which a kill may have left beside it; `mark` is the file that it has when it is whole.
+/// Where the folder of this place is, which a kill may have left beside it; `mark` is the file that it has when it is
+/// whole.
 pub(super) fn standing(place: &Path, mark: &str) -> PathBuf {
     let beside = ["new", "old"].map(|word| beside(place, word));
     let mut all = [place.to_owned()].into_iter().chain(beside);

@@ -1,11 +1,12 @@
-//! The column `findings`: codes and numbers of what a point's solve found, such as `escaping:0.012:3e-5;edge-mass-x:0.0031:-8:8`.
+//! The column `findings`: codes and numbers of what a point's solve found, such as
+//! `escaping:0.012:3e-5;edge-mass-x:0.0031:-8:8`.
 
 use super::number::format_number;
 use crate::continuation::Finding;
 use crate::system::Family;
 
-/// Findings as one cell, joined by `;`: the code, with the name of the axis where it has one, then the numbers, each after
-/// a `:`. Sentences of an older run have no code: the column `warnings` has them.
+/// Findings as one cell, joined by `;`: the code, with the name of the axis where it has one, then the numbers, each
+/// after a `:`. Sentences of an older run have no code: the column `warnings` has them.
 pub(super) fn findings_cell(family: &Family, findings: &[Finding]) -> String {
     let coded = findings
         .iter()

@@ -1,8 +1,8 @@
 //! Tables that grow by rows while a run goes on.
 //!
-//! Rows are added at the end of one file, in the order in which points are solved: a row costs the same however many there are.
-//! A killed run leaves the rows of the points that were done, the last of them perhaps without its end, which readers leave
-//! out. At the end of the run the table is written whole, in ascending order, in its place.
+//! Rows are added at the end of one file, in the order in which points are solved: a row costs the same however many
+//! there are. A killed run leaves the rows of the points that were done, the last of them perhaps without its end,
+//! which readers leave out. At the end of the run the table is written whole, in ascending order, in its place.
 
 use std::fs::File;
 use std::io::Write;

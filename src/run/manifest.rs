@@ -110,7 +110,8 @@ pub struct Manifest {
 }
 
 impl Manifest {
-    /// The manifest of a run that starts now. `resolved` is the resolved sweep file as TOML, `typed` what it was made of.
+    /// The manifest of a run that starts now. `resolved` is the resolved sweep file as TOML, `typed` what it was made
+    /// of.
     ///
     /// # Errors
     /// [`RunError::Resolved`] when `resolved` is not TOML.

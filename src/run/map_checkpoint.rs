@@ -1,4 +1,5 @@
-//! What a map has solved so far, on disk while it is made, so that one that was interrupted or killed can be gone on with.
+//! What a map has solved so far, on disk while it is made, so that one that was interrupted or killed can be gone on
+//! with.
 
 use std::path::{Path, PathBuf};
 
@@ -46,8 +47,8 @@ impl MapCheckpoint {
     /// The nodes that are there; none without the file.
     ///
     /// # Errors
-    /// [`RunError::OtherSweep`] with every difference where they are of another sweep or version; [`RunError::Checkpoint`] where the file cannot be
-    /// understood.
+    /// [`RunError::OtherSweep`] with every difference where they are of another sweep or version;
+    /// [`RunError::Checkpoint`] where the file cannot be understood.
     pub fn read(&self) -> Result<Vec<MapNode>, RunError> {
         let Ok(text) = std::fs::read_to_string(&self.path) else {
             return Ok(Vec::new());

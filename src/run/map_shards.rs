@@ -60,8 +60,9 @@ impl MapShards {
     /// Reads the shards in the folder of a map.
     ///
     /// # Errors
-    /// [`RunError::NoShards`]; [`RunError::MixedShards`] when the map was cut into shards in more than one way, [`RunError::MissingShards`] where some are not
-    /// complete, [`RunError::OtherSweep`] where they are of different sweeps or of another version, [`RunError::Plane`].
+    /// [`RunError::NoShards`]; [`RunError::MixedShards`] when the map was cut into shards in more than one way,
+    /// [`RunError::MissingShards`] where some are not complete, [`RunError::OtherSweep`] where they are of different
+    /// sweeps or of another version, [`RunError::Plane`].
     pub fn open(path: &Path) -> Result<Self, RunError> {
         let of = count(path)?;
         let mut sweep_file: Option<String> = None;

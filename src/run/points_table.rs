@@ -14,8 +14,8 @@ use crate::topology::Detection;
 
 /// The table's columns. `methods` are the names that a row may give as its method where the table is read.
 ///
-/// A point without a density has empty cells. `edge_mass` is the largest over the axes of the mass in cells at an end of that
-/// axis' range. Signatures and distances are not read back: they follow from the densities.
+/// A point without a density has empty cells. `edge_mass` is the largest over the axes of the mass in cells at an end
+/// of that axis' range. Signatures and distances are not read back: they follow from the densities.
 pub(super) fn columns<'a>(
     family: &'a Family,
     observables: &[Observable],
@@ -237,8 +237,8 @@ pub fn points_csv(subject: &Subject, points: &[Point]) -> Result<String, RunErro
     columns(&subject.family, &subject.observables, &[]).csv(ascending(points))
 }
 
-/// Reads the table back: everything of its points but densities and what follows from them, in the order of the table. One that is
-/// not `complete` may lack the end of its last row.
+/// Reads the table back: everything of its points but densities and what follows from them, in the order of the table.
+/// One that is not `complete` may lack the end of its last row.
 ///
 /// # Errors
 /// [`RunError::Read`]; [`RunError::Column`] and [`RunError::Row`] when the table is not one of this sweep.

@@ -14,8 +14,8 @@ pub struct Provenance {
     /// When the run ended; `None` before.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ended: Option<String>,
-    /// The commit that the program was built from, with `-dirty` where files were changed since: of the repository, of the package, or what `PBIF_COMMIT`
-    /// said at its build; `None` where nothing tells.
+    /// The commit that the program was built from, with `-dirty` where files were changed since: of the repository, of
+    /// the package, or what `PBIF_COMMIT` said at its build; `None` where nothing tells.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub commit: Option<&'static str>,
     /// The compiler with its version.

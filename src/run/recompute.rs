@@ -41,7 +41,8 @@ impl StoredRun {
         Ok(points)
     }
 
-    /// Solves a point of the run again in a session of its own, which knows of no neighbour, and compares. `sweep` is this run's.
+    /// Solves a point of the run again in a session of its own, which knows of no neighbour, and compares. `sweep` is
+    /// this run's.
     ///
     /// # Errors
     /// [`RunError::Recompute`] when it cannot be solved, or is solved on other cells.

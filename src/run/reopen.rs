@@ -16,8 +16,8 @@ impl StoredRun {
         }
     }
 
-    /// Detects and locates in the stored densities, by the settings of a sweep that is this run's but for them. With unchanged settings
-    /// it is the result of the run.
+    /// Detects and locates in the stored densities, by the settings of a sweep that is this run's but for them. With
+    /// unchanged settings it is the result of the run.
     ///
     /// # Errors
     /// As [`StoredRun::points`].

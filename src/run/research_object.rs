@@ -1,5 +1,6 @@
-//! `ro-crate-metadata.json`: the run described in the words of RO-Crate (Process Run Crate 0.5), which archives and catalogues of research data read: what was run,
-//! by which program, when, from what, and which files it left. It is made from `run.json`.
+//! `ro-crate-metadata.json`: the run described in the words of RO-Crate (Process Run Crate 0.5), which archives and
+//! catalogues of research data read: what was run, by which program, when, from what, and which files it left. It is
+//! made from `run.json`.
 
 use std::path::Path;
 
@@ -11,7 +12,8 @@ use super::atomic::write_atomically;
 /// Name of the file, which the format prescribes.
 pub(super) const NAME: &str = "ro-crate-metadata.json";
 
-/// Files and folders of a run that are described, each with what it is and its media type; those that are not there are left out.
+/// Files and folders of a run that are described, each with what it is and its media type; those that are not there are
+/// left out.
 const PARTS: [(&str, &str, &str); 10] = [
     (
         "run.json",

@@ -1,7 +1,8 @@
-//! A store of densities that is settled while something else is done: brought to the disk, and what stood in its place before removed.
+//! A store of densities that is settled while something else is done: brought to the disk, and what stood in its place
+//! before removed.
 //!
-//! A store has a file a density; waiting for all of them takes as long as drawing all figures, and the one waits for the disk while the other
-//! computes.
+//! A store has a file a density; waiting for all of them takes as long as drawing all figures, and the one waits for
+//! the disk while the other computes.
 
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;

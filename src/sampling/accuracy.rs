@@ -83,8 +83,8 @@ fn cells_widen_a_density_exactly_as_their_numerical_diffusion_says() {
         let (variance, diffusion) = variance_and_diffusion(map_step, 200_000);
         let widened = 0.25 + WIDTH * WIDTH / 6.0 / (1.0 - (-2.0 * map_step).exp());
         // The widening is 44 %, 13 % and 4.8 %. Sampling: the mean displacement of cell j is off by δ_j of deviation
-        // √(0.5Δt/n), which moves the variance by 2 Σ p_j x_j δ_j/(1 - e^{-2Δt}): 0.3 %, 0.2 % and 0.1 %. Heun's own error
-        // is of order dt²/4 = 1e-4.
+        // √(0.5Δt/n), which moves the variance by 2 Σ p_j x_j δ_j/(1 - e^{-2Δt}): 0.3 %, 0.2 % and 0.1 %. Heun's own
+        // error is of order dt²/4 = 1e-4.
         assert!(
             (variance / widened - 1.0).abs() < 1e-2,
             "{map_step}: {variance} {widened}"

@@ -22,8 +22,8 @@ pub(super) struct Column {
     pub(super) destinations: Vec<(u32, u32)>,
     /// Group of every sample, ordered by end cell and group.
     pub(super) groups: Vec<u8>,
-    /// Σ over the samples of an end cell and group of where they started in their cell, a value an axis, from -½ to ½ of its
-    /// width; in the order of `groups`. Empty unless starts are kept.
+    /// Σ over the samples of an end cell and group of where they started in their cell, a value an axis, from -½ to ½
+    /// of its width; in the order of `groups`. Empty unless starts are kept.
     pub(super) starts: Vec<f32>,
     /// Moments of the end points of the samples that did not end in the sink; empty unless starts are kept.
     pub(super) ends: Vec<EndMoments>,
@@ -32,8 +32,8 @@ pub(super) struct Column {
     pub(super) spreading: [f64; MAX_DIMENSION],
 }
 
-/// Sums over samples of one axis of their end points, plain and times where they started: what is needed to know moments
-/// one map step after any density that is linear in the cell.
+/// Sums over samples of one axis of their end points, plain and times where they started: what is needed to know
+/// moments one map step after any density that is linear in the cell.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct EndMoments {
     /// Σ x and Σ x².

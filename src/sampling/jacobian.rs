@@ -8,14 +8,15 @@ use crate::system::System;
 /// Share of a cell's width that a coordinate is moved by for a difference quotient.
 const SHARE: f64 = 1e-3;
 
-/// A kick of a noise with amplitude b changes b itself by b'√dt of its size. Counted as a rate so many times b'², it stays below a sixth at a tenth of
-/// the time scale: walls at which the noise vanishes are then not jumped over.
+/// A kick of a noise with amplitude b changes b itself by b'√dt of its size. Counted as a rate so many times b'², it
+/// stays below a sixth at a tenth of the time scale: walls at which the noise vanishes are then not jumped over.
 const KICKS: f64 = 4.0;
 
 /// What the eigenvalues λ of the drift's Jacobian at a state say.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct LocalRates {
-    /// Largest |λ|, or four times the square of a noise amplitude's derivative along the axis that it drives, where that is larger.
+    /// Largest |λ|, or four times the square of a noise amplitude's derivative along the axis that it drives, where
+    /// that is larger.
     pub(super) fastest: f64,
     /// Damping -2 Re λ of the energy of the fastest oscillating pair; `None` where nothing oscillates.
     pub(super) damping: Option<f64>,

@@ -31,7 +31,8 @@ const DAMPING_SHARE: f64 = 0.01;
 const ANGLE: f64 = 0.1;
 /// Largest increase of the noise power by the cells, relative and in units of the spread of each axis.
 const NOISE_SHARE: f64 = 0.05;
-/// Largest relative error of the density, from one end of its spread to the other, that sampled drifts may make along one axis.
+/// Largest relative error of the density, from one end of its spread to the other, that sampled drifts may make along
+/// one axis.
 const DRIFT_NOISE: f64 = 0.03;
 /// Longest map step for that, as a share of the time that the noise takes to cross the spread.
 const CROSSING_SHARE: f64 = 0.25;
@@ -81,10 +82,10 @@ impl Pilot {
     /// ε of the variance of both axes moves the density by a total variation of 0.37 ε. At least one time step, at
     /// most 1e5.
     ///
-    /// And not so short that samples cannot tell the drift: over a map step n samples a cell give it to √(2D/(n Δt)), and what that
-    /// makes of log p adds up along an axis to √(2 h s/(D m Δt)), s the standard deviation and m the samples of
-    /// all cells across, on four standard deviations of the other axes. That is
-    /// kept below 3 %, unless it takes longer than a quarter of s²/D.
+    /// And not so short that samples cannot tell the drift: over a map step n samples a cell give it to √(2D/(n Δt)),
+    /// and what that makes of log p adds up along an axis to √(2 h s/(D m Δt)), s the standard deviation and m the
+    /// samples of all cells across, on four standard deviations of the other axes. That is kept below 3 %, unless it
+    /// takes longer than a quarter of s²/D.
     pub fn automatic_map_step(&self, time_step: f64, samples: usize) -> f64 {
         let (mut cells, mut noise) = (0.0, 0.0);
         for (axis, &deviation) in self.standard_deviation.iter().enumerate() {

@@ -6,11 +6,12 @@ use crate::space::CellSpace;
 /// Largest Σ |s_a|: the density at the lowest corner of a cell stays at 5 % of the mean or above.
 const STEEPEST: f64 = 1.9;
 
-/// Relative slopes of the density in some cells: inside cell j it is p_j/V (1 + Σ_a s_a u_a), u_a from -½ to ½ across the cell.
+/// Relative slopes of the density in some cells: inside cell j it is p_j/V (1 + Σ_a s_a u_a), u_a from -½ to ½ across
+/// the cell.
 ///
-/// Slopes are differences over both neighbours, which errs by O(h²); at an end of the range over the one that is there. Where
-/// the density would fall below zero in a corner the slopes are shortened together. `mass` has one value a cell of the space.
-/// An empty cell is flat.
+/// Slopes are differences over both neighbours, which errs by O(h²); at an end of the range over the one that is there.
+/// Where the density would fall below zero in a corner the slopes are shortened together. `mass` has one value a cell
+/// of the space. An empty cell is flat.
 pub fn cell_slopes(space: &CellSpace, cells: &[usize], mass: &[f64]) -> Vec<[f64; MAX_DIMENSION]> {
     let dimension = space.dimension();
     let mut strides = vec![1; dimension];

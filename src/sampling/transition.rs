@@ -96,9 +96,9 @@ impl SampledTransitions {
     }
 
     /// The transition matrix for a density that is linear in each cell, p_j/V (1 + Σ_a s_a u_a) with u_a from -½ to ½
-    /// across the cell: every sample counts by the density at its start. `slopes` holds the s_a of every sampled cell, as
-    /// [`cell_slopes`](super::cell_slopes) makes them (Σ |s_a| < 2, so that no weight is negative). `left_out` names a group that is
-    /// not counted. Without kept starts this is the plain matrix.
+    /// across the cell: every sample counts by the density at its start. `slopes` holds the s_a of every sampled cell,
+    /// as [`cell_slopes`](super::cell_slopes) makes them (Σ |s_a| < 2, so that no weight is negative). `left_out` names
+    /// a group that is not counted. Without kept starts this is the plain matrix.
     pub fn corrected_matrix(
         &self,
         slopes: &[[f64; MAX_DIMENSION]],
@@ -141,9 +141,10 @@ impl SampledTransitions {
         (0..self.dimension).map(diffusion).collect()
     }
 
-    /// Diffusion that remains with densities linear in the cells, an axis, as [`Self::numerical_diffusion`]: by how much the
-    /// variance of the reconstructed density exceeds that of the end points which it is made of, over 2Δt. May be slightly
-    /// negative. `mass` and `slopes` are of the sampled cells; without kept starts the diffusion of flat cells.
+    /// Diffusion that remains with densities linear in the cells, an axis, as [`Self::numerical_diffusion`]: by how
+    /// much the variance of the reconstructed density exceeds that of the end points which it is made of, over 2Δt. May
+    /// be slightly negative. `mass` and `slopes` are of the sampled cells; without kept starts the diffusion of flat
+    /// cells.
     pub fn remaining_diffusion(
         &self,
         space: &CellSpace,
@@ -181,8 +182,8 @@ impl SampledTransitions {
         (0..self.dimension).map(diffusion).collect()
     }
 
-    /// Weights of one column, `left_out` not counted: destination and Σ over its samples of the density at their starts,
-    /// relative to the cell's mean.
+    /// Weights of one column, `left_out` not counted: destination and Σ over its samples of the density at their
+    /// starts, relative to the cell's mean.
     fn weights(
         &self,
         column: &Column,

@@ -5,8 +5,8 @@
 //! Its integral, the *cell coordinate* u(x), is closed, so finding a cell costs a few logarithms, and a
 //! face falls on every c_k. The bulk keeps a fixed share of the cells: too strong a grading starves it.
 //!
-//! An *axis of modes* carries a series in place of cells (`series.rs`, `hermite.rs`): its nodes are those of a Gauss rule, and its
-//! "cells" hold the weights, so that sums over cells are the rule.
+//! An *axis of modes* carries a series in place of cells (`series.rs`, `hermite.rs`): its nodes are those of a Gauss
+//! rule, and its "cells" hold the weights, so that sums over cells are the rule.
 
 #[cfg(feature = "store")] // a run's journal keeps axes
 mod bytes;
@@ -33,7 +33,8 @@ pub struct Axis {
     series: Option<Series>,
 }
 
-/// A finer axis has a mode more for each so many: one alone shows little of an error that falls as a power of their number.
+/// A finer axis has a mode more for each so many: one alone shows little of an error that falls as a power of their
+/// number.
 const MODES_A_FINER_MODE: usize = 4;
 
 impl Axis {
@@ -74,8 +75,8 @@ impl Axis {
         Self::split(from, to, count, bulk, &terms)
     }
 
-    /// An axis of `count` modes: the density along it is a polynomial of degree `count` - 1, given by its values at the nodes of
-    /// Gauss's rule for Legendre polynomials. For internal states that stay in the range and have no noise.
+    /// An axis of `count` modes: the density along it is a polynomial of degree `count` - 1, given by its values at the
+    /// nodes of Gauss's rule for Legendre polynomials. For internal states that stay in the range and have no noise.
     ///
     /// # Errors
     /// [`SpaceError::Range`] or [`SpaceError::Modes`].
@@ -103,9 +104,10 @@ impl Axis {
         })
     }
 
-    /// An axis of `count` Hermite modes: the density along it is a normal density of this mean and standard deviation, times a
-    /// polynomial of degree `count` - 1, given by its values at the nodes of Gauss's rule for the normal density. For white noise
-    /// behind a linear filter. The range reaches at least six standard deviations to either side.
+    /// An axis of `count` Hermite modes: the density along it is a normal density of this mean and standard deviation,
+    /// times a polynomial of degree `count` - 1, given by its values at the nodes of Gauss's rule for the normal
+    /// density. For white noise behind a linear filter. The range reaches at least six standard deviations to either
+    /// side.
     ///
     /// # Errors
     /// [`SpaceError::Range`] where the deviation is not a positive number, or [`SpaceError::Modes`].
@@ -143,8 +145,8 @@ impl Axis {
         self.series
     }
 
-    /// Of an axis of modes, the integrals of the series over bins with these edges: entry `bin · count + node` is what the mass at a
-    /// node adds to a bin, by the first `used` modes.
+    /// Of an axis of modes, the integrals of the series over bins with these edges: entry `bin · count + node` is what
+    /// the mass at a node adds to a bin, by the first `used` modes.
     pub(crate) fn series_weights(&self, edges: &[f64], used: usize) -> Vec<f64> {
         let (middle, half, is_hermite) = match self.series {
             Some(Series::Hermite { mean, deviation }) => (mean, deviation, true),
@@ -195,7 +197,8 @@ impl Axis {
         }
     }
 
-    /// Of an axis of modes, the derivatives of the Lagrange polynomials of its nodes: entry `k · count + i` is ℓ_i'(node k).
+    /// Of an axis of modes, the derivatives of the Lagrange polynomials of its nodes: entry `k · count + i` is
+    /// ℓ_i'(node k).
     pub(crate) fn differentiation(&self) -> Vec<f64> {
         differentiation(&self.nodes)
     }
@@ -264,9 +267,9 @@ impl Axis {
         }
     }
 
-    /// The same axis with about `factor` times as many cells (fewer below 1, at least two a stretch between graded points), graded
-    /// alike: faces stay on the points it is graded toward, and an even number of cells stays even, so that a face stays in the middle.
-    /// An axis of modes gets a quarter more of them, at least one (none below 1).
+    /// The same axis with about `factor` times as many cells (fewer below 1, at least two a stretch between graded
+    /// points), graded alike: faces stay on the points it is graded toward, and an even number of cells stays even, so
+    /// that a face stays in the middle. An axis of modes gets a quarter more of them, at least one (none below 1).
     pub fn refined(&self, factor: f64) -> Self {
         if self.is_modes() {
             let more = (self.count() / MODES_A_FINER_MODE).max(1);
@@ -330,7 +333,8 @@ impl Axis {
         &self.nodes
     }
 
-    /// Derivative dx/du of x by the cell coordinate (the local cell width) at the node of a cell; the weight of a node of modes.
+    /// Derivative dx/du of x by the cell coordinate (the local cell width) at the node of a cell; the weight of a node
+    /// of modes.
     pub(crate) fn node_stretch(&self, cell: usize) -> f64 {
         self.piece_of(cell)
             .map_or(self.width(cell), |piece| piece.stretch(self.nodes[cell]))

@@ -1,14 +1,15 @@
 //! Gauss's rule for a normal density, and cells around its nodes: what an axis of Hermite modes is made of.
 //!
-//! p = w(s) Σ_n a_n He_n(s), w the standard normal density, with N terms is the same as the N numbers u_k = W_k Σ_n a_n He_n(s_k) at
-//! the nodes of the rule (`series.rs` has the same for Legendre polynomials). White noise through a linear filter keeps this form:
-//! its generator has the eigenvalues -n/τ on it, without error.
+//! p = w(s) Σ_n a_n He_n(s), w the standard normal density, with N terms is the same as the N numbers u_k = W_k Σ_n a_n
+//! He_n(s_k) at the nodes of the rule (`series.rs` has the same for Legendre polynomials). White noise through a linear
+//! filter keeps this form: its generator has the eigenvalues -n/τ on it, without error.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::series::Rule;
 
-/// Standard deviations on either side of the mean that an axis of Hermite modes spans at least: 2e-9 of the mass lies beyond.
+/// Standard deviations on either side of the mean that an axis of Hermite modes spans at least: 2e-9 of the mass lies
+/// beyond.
 pub const NORMAL_RANGE: f64 = 6.0;
 
 /// Distance of the ends of the range from the outermost nodes, in standard deviations.
@@ -86,7 +87,8 @@ pub(super) fn gauss_hermite(count: usize) -> Rule {
     rule
 }
 
-/// Edges of cells around the nodes that hold the weights as masses of a standard normal density; the ends lie beyond the nodes.
+/// Edges of cells around the nodes that hold the weights as masses of a standard normal density; the ends lie beyond
+/// the nodes.
 pub(super) fn normal_edges(rule: &Rule) -> Vec<f64> {
     let count = rule.nodes.len();
     let end = NORMAL_RANGE.max(rule.nodes[count - 1] + BEYOND_NODES);

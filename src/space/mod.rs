@@ -1,5 +1,5 @@
-//! Cell space: a rectilinear grid of boxes over the domain Ω. Everything outside is the sink. An axis may carry a series of
-//! modes in place of cells.
+//! Cell space: a rectilinear grid of boxes over the domain Ω. Everything outside is the sink. An axis may carry a
+//! series of modes in place of cells.
 
 mod axis;
 mod cells;

@@ -1,14 +1,16 @@
 //! Series that carry a density along an axis in place of cells.
 //!
-//! p = Σ_n a_n φ_n(s) with N terms is the same as N numbers u_k = Σ_n a_n w_k P_n(s_k) φ-weights at the nodes of the Gauss rule:
-//! the moments a_n = Σ_k u_k P_n(s_k) for n < N are those numbers in another basis, and Σ u_k is the mass. In the basis of the
-//! nodes multiplication by any function of s is diagonal and a derivative is a dense N × N block, so an axis of modes is an axis
-//! of N nodes for everything that runs along the other axes (Gottlieb and Orszag 1977; *discrete ordinates* in transport).
+//! p = Σ_n a_n φ_n(s) with N terms is the same as N numbers u_k = Σ_n a_n w_k P_n(s_k) φ-weights at the nodes of the
+//! Gauss rule: the moments a_n = Σ_k u_k P_n(s_k) for n < N are those numbers in another basis, and Σ u_k is the mass.
+//! In the basis of the nodes multiplication by any function of s is diagonal and a derivative is a dense N × N block,
+//! so an axis of modes is an axis of N nodes for everything that runs along the other axes (Gottlieb and Orszag 1977;
+//! *discrete ordinates* in transport).
 //!
-//! The weights also tell cells around the nodes: by the theorem of Chebyshev, Markov and Stieltjes the sums of the first weights
-//! separate the nodes.
+//! The weights also tell cells around the nodes: by the theorem of Chebyshev, Markov and Stieltjes the sums of the
+//! first weights separate the nodes.
 
-/// Largest number of modes of an axis: nodes are found by Newton's method to rounding up to there, and nobody needs more.
+/// Largest number of modes of an axis: nodes are found by Newton's method to rounding up to there, and nobody needs
+/// more.
 pub const MOST_MODES: usize = 64;
 
 /// What carries the density along an axis in place of cells.
@@ -95,7 +97,8 @@ pub(super) fn legendre_integrals(count: usize, s: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Derivatives of the Lagrange polynomials of some nodes at these nodes: entry `k · n + i` is ℓ_i'(s_k). Rows sum to zero.
+/// Derivatives of the Lagrange polynomials of some nodes at these nodes: entry `k · n + i` is ℓ_i'(s_k). Rows sum to
+/// zero.
 pub(super) fn differentiation(nodes: &[f64]) -> Vec<f64> {
     let n = nodes.len();
     // Barycentric weights; products of distances of at most 64 nodes stay within range.

@@ -1,4 +1,5 @@
-//! What is tried of quantities once the cells are known: whether they have values all over them, means, and bins that hold any of these values.
+//! What is tried of quantities once the cells are known: whether they have values all over them, means, and bins that
+//! hold any of these values.
 
 use super::diagnostic::{Diagnostic, Place};
 use super::document::Document;
@@ -10,8 +11,8 @@ use crate::cancellation::Cancellation;
 use crate::method::{BinsError, QuantityRange, automatic_bins, check_averaged};
 
 impl Settings {
-    /// Finds the values over which quantities are watched, where the file leaves them open, and refuses quantities and bins that
-    /// cannot be.
+    /// Finds the values over which quantities are watched, where the file leaves them open, and refuses quantities and
+    /// bins that cannot be.
     ///
     /// # Errors
     /// A report with the place of what cannot be.

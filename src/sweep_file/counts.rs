@@ -1,5 +1,5 @@
-//! Numbers of cells that are left to the program: two coarse grids tell how fast the error of the watched densities falls, and with
-//! it how many cells they need.
+//! Numbers of cells that are left to the program: two coarse grids tell how fast the error of the watched densities
+//! falls, and with it how many cells they need.
 
 use std::sync::Arc;
 
@@ -16,8 +16,8 @@ use crate::system::System;
 
 /// Cells an axis of the first coarse grid, by the number of axes that are cut into cells.
 const COARSE: [usize; 4] = [100, 40, 14, 8];
-/// Most cells an axis that are chosen, by the number of axes that are cut into cells, less where modes carry others: what a sweep of
-/// some minutes can do.
+/// Most cells an axis that are chosen, by the number of axes that are cut into cells, less where modes carry others:
+/// what a sweep of some minutes can do.
 const MOST: [usize; 4] = [2000, 240, 60, 20];
 /// Cells an axis of the second coarse grid to those of the first.
 const FINER: f64 = 1.5;
@@ -117,8 +117,8 @@ impl Settings {
         }
     }
 
-    /// Largest error of a watched density at both ends of the sweep, in total variation, with this many cells; `None` where there is
-    /// no density.
+    /// Largest error of a watched density at both ends of the sweep, in total variation, with this many cells; `None`
+    /// where there is no density.
     fn error_with(
         &self,
         count: usize,
@@ -166,7 +166,8 @@ impl Settings {
         }
         let space = cell_space(&trial.document, &trial.family, &trial.axes, kind)
             .map_err(|diagnostic| self.refuse(*diagnostic))?;
-        // Quantities are looked at later, over bins that follow from these cells; where nothing else is watched, each axis is.
+        // Quantities are looked at later, over bins that follow from these cells; where nothing else is watched, each
+        // axis is.
         let axes = trial.axes.len();
         let of_axes = |one: &Observable| one.axes().into_iter().all(|axis| axis < axes);
         let mut observables = trial.observables;
@@ -195,8 +196,8 @@ impl Settings {
     }
 }
 
-/// Total variation between a density and the same by the second scheme; zero where there is none, as of systems with one axis, whose
-/// densities have all digits.
+/// Total variation between a density and the same by the second scheme; zero where there is none, as of systems with
+/// one axis, whose densities have all digits.
 fn error_of(density: &EstimatedDensity) -> f64 {
     let Some(second) = density.variants.second_scheme() else {
         return 0.0;

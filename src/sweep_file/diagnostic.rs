@@ -1,7 +1,7 @@
 //! What is said of bad input: where it stands, what is allowed, the nearest valid name, the remedy.
 //!
-//! A text that a value can come from (the sweep file, or one value that was set on top of it) is a *source*; a [`Place`]
-//! is a span of one of them. All findings are collected and drawn together, see [`Report`](super::Report).
+//! A text that a value can come from (the sweep file, or one value that was set on top of it) is a *source*; a
+//! [`Place`] is a span of one of them. All findings are collected and drawn together, see [`Report`](super::Report).
 
 use std::ops::Range;
 

@@ -1,5 +1,5 @@
-//! What a sweep file says, in the program's types, one field a key. What has a default has it from the start; what is ruled by other
-//! keys, or must be given, is `None`.
+//! What a sweep file says, in the program's types, one field a key. What has a default has it from the start; what is
+//! ruled by other keys, or must be given, is `None`.
 
 use std::sync::Arc;
 

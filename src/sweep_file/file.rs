@@ -7,7 +7,8 @@ use super::report::Report;
 use super::settings::Settings;
 use super::text::{self, SweepText, Text};
 
-/// A sweep file, and what was set on top of it. What is wrong with either is told by [`SweepFile::validate`], all at once.
+/// A sweep file, and what was set on top of it. What is wrong with either is told by [`SweepFile::validate`], all at
+/// once.
 #[derive(Debug, Clone)]
 pub struct SweepFile {
     document: Document,

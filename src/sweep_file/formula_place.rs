@@ -1,4 +1,5 @@
-//! Places inside a formula that stands in a sweep file: bytes of the formula are bytes of the file but for quotes and escapes.
+//! Places inside a formula that stands in a sweep file: bytes of the formula are bytes of the file but for quotes and
+//! escapes.
 
 use std::ops::Range;
 
@@ -7,8 +8,8 @@ use super::diagnostic::{Place, Sources};
 /// Longest piece of a formula that is marked, in bytes; a fault of the whole of a long one is shown at its beginning.
 const MOST_MARKED: usize = 60;
 
-/// The place of a part of a formula. `value` is the place of the string with its quotes; where the part cannot be told, it is the
-/// whole.
+/// The place of a part of a formula. `value` is the place of the string with its quotes; where the part cannot be told,
+/// it is the whole.
 pub(super) fn inside(sources: &Sources, value: &Place, part: &Range<usize>) -> Place {
     let text = sources.text(value.source).unwrap_or_default();
     let Some(raw) = text.get(value.span.clone()) else {
@@ -32,7 +33,8 @@ pub(super) fn inside(sources: &Sources, value: &Place, part: &Range<usize>) -> P
     }
 }
 
-/// Where each byte of a string's value, and its end, stands in the string as TOML has it; `None` where that cannot be told.
+/// Where each byte of a string's value, and its end, stands in the string as TOML has it; `None` where that cannot be
+/// told.
 fn offsets(raw: &str) -> Option<Vec<usize>> {
     let (open, escapes) = match raw {
         _ if raw.starts_with("\"\"\"") => (3, true),

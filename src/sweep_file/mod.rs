@@ -2,11 +2,11 @@
 //!
 //! 1. [`SweepFile`]: a text as a document whose keys and values know where they stand; values can be set on top.
 //! 2. [`Settings`]: everything it says, checked, with every default filled in. Nothing is run for that.
-//! 3. [`Sweep`]: ranges and gradings that were left to the program are found, by free trajectories. It can be run, and written as
-//!    a complete sweep file.
+//! 3. [`Sweep`]: ranges and gradings that were left to the program are found, by free trajectories. It can be run, and
+//!    written as a complete sweep file.
 //!
-//! What is wrong comes as a [`Report`] of all that was found, with file, line, column and remedy. Every key is declared once, see
-//! [`keys`].
+//! What is wrong comes as a [`Report`] of all that was found, with file, line, column and remedy. Every key is declared
+//! once, see [`keys`].
 //!
 //! ```
 //! use pbif::cancellation::Cancellation;

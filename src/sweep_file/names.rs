@@ -60,8 +60,8 @@ const GREEK: [(char, &str); 25] = [
     ('ω', "omega"),
 ];
 
-/// How a letter or digit that is not ASCII is spelt, where pbif's names spell it: Greek letters, the micro sign, raised and
-/// lowered digits.
+/// How a letter or digit that is not ASCII is spelt, where pbif's names spell it: Greek letters, the micro sign, raised
+/// and lowered digits.
 pub(super) fn ascii_name(c: char) -> Option<&'static str> {
     const DIGITS: [&str; 10] = ["0", "1", "2", "3", "4", "5", "6", "7", "8", "9"];
     let digit = match c {

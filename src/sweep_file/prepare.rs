@@ -1,5 +1,5 @@
-//! The stage between checked settings and a sweep: what takes work. It asks whether the cells fit into the machine, and finds by free
-//! trajectories what is left to the program.
+//! The stage between checked settings and a sweep: what takes work. It asks whether the cells fit into the machine, and
+//! finds by free trajectories what is left to the program.
 
 use std::sync::Arc;
 
@@ -18,8 +18,8 @@ use crate::space::Axis;
 use crate::system::{ParameterValues, System};
 
 impl Settings {
-    /// Finds the ranges and gradings that are left to the program, by free trajectories at both ends of the sweep, and asks whether
-    /// a point fits into this machine's memory.
+    /// Finds the ranges and gradings that are left to the program, by free trajectories at both ends of the sweep, and
+    /// asks whether a point fits into this machine's memory.
     ///
     /// # Errors
     /// A report where it does not fit, where no range holds the density, or when cancelled.
@@ -102,8 +102,8 @@ impl Settings {
         Ok(ends)
     }
 
-    /// Refuses systems of which a part of the probability lies on a surface: known once there are ranges, and before anything is
-    /// solved.
+    /// Refuses systems of which a part of the probability lies on a surface: known once there are ranges, and before
+    /// anything is solved.
     fn check_density(&self) -> Result<(), Report> {
         let ranges: Option<Vec<(f64, f64)>> = self.axes.iter().map(|axis| axis.range).collect();
         let Some(ranges) = ranges else {
@@ -123,7 +123,8 @@ impl Settings {
         })
     }
 
-    /// The parameters at both ends of the sweep, or at the corners of the map's box: what is chosen once is chosen for these.
+    /// The parameters at both ends of the sweep, or at the corners of the map's box: what is chosen once is chosen for
+    /// these.
     pub(super) fn corners(&self) -> Vec<ParameterValues> {
         let (from, to) = self.family.ends();
         let ends = [from, to].into_iter();
@@ -230,8 +231,8 @@ impl Settings {
         Ok(())
     }
 
-    /// Whether the model's bounds of one of the axes are not the same at both ends of the sweep: the range of its modes is then too wide
-    /// at one of them, where the density ends inside it.
+    /// Whether the model's bounds of one of the axes are not the same at both ends of the sweep: the range of its modes
+    /// is then too wide at one of them, where the density ends inside it.
     fn has_moving_bounds(&self, axes: &[usize]) -> bool {
         let (from, to) = self.family.ends();
         let (Ok(first), Ok(last)) = (self.family.at(from), self.family.at(to)) else {

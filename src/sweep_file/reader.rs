@@ -1,7 +1,7 @@
 //! Checks a document against the keys and fills a [`Draft`] from it; gathers what is wrong.
 //!
-//! Kind and range of every value are checked once, here. A value that is wrong does not reach the draft, so that whoever builds on the
-//! draft can go on and find more.
+//! Kind and range of every value are checked once, here. A value that is wrong does not reach the draft, so that
+//! whoever builds on the draft can go on and find more.
 
 use super::diagnostic::{Diagnostic, Place};
 use super::document::Document;

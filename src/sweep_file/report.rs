@@ -11,8 +11,8 @@ pub(super) const MOST_SHOWN: usize = 20;
 
 /// Everything found in a text, with the texts it was found in. Never empty when it is an error.
 ///
-/// [`Display`](fmt::Display) shows it as a terminal without colours would, [`Debug`] alike, so that a `main` that returns it as
-/// an error shows what a user needs.
+/// [`Display`](fmt::Display) shows it as a terminal without colours would, [`Debug`] alike, so that a `main` that
+/// returns it as an error shows what a user needs.
 #[derive(Clone, Default)]
 pub struct Report {
     sources: Sources,

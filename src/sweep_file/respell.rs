@@ -1,6 +1,8 @@
-//! One spelling for each name of a file's own equations: `α` is `alpha` in formulas, and so it is in the rest of the file.
+//! One spelling for each name of a file's own equations: `α` is `alpha` in formulas, and so it is in the rest of the
+//! file.
 //!
-//! Axes are spelled as in `system.equations`, parameters as in `system.parameters`. Names of built-in models are left as they are.
+//! Axes are spelled as in `system.equations`, parameters as in `system.parameters`. Names of built-in models are left
+//! as they are.
 
 use super::document::Document;
 use super::value::{Node, Value};

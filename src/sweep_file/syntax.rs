@@ -1,5 +1,5 @@
-//! What is wrong with a text that is not TOML, in the words of somebody who writes a sweep file: the parser knows what it expected,
-//! here it is said what was typed.
+//! What is wrong with a text that is not TOML, in the words of somebody who writes a sweep file: the parser knows what
+//! it expected, here it is said what was typed.
 
 use std::ops::Range;
 
@@ -12,8 +12,9 @@ use super::report::MOST_SHOWN;
 /// A slip: what stands there, and what to write.
 type Slip = (String, String);
 
-/// What is said of syntax errors: of the first one in a line (the others mostly follow from it), of at most [`MOST_SHOWN`] lines;
-/// and how many more lines have errors. `offset` moves the places: the text may stand behind a key.
+/// What is said of syntax errors: of the first one in a line (the others mostly follow from it), of at most
+/// [`MOST_SHOWN`] lines; and how many more lines have errors. `offset` moves the places: the text may stand behind a
+/// key.
 pub(super) fn findings(
     text: &str,
     errors: &[Error],

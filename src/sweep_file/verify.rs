@@ -1,5 +1,5 @@
-//! What is tried of a file's own equations once the domain is known: whether every formula is finite on it, and whether what was read
-//! off the formulas holds.
+//! What is tried of a file's own equations once the domain is known: whether every formula is finite on it, and whether
+//! what was read off the formulas holds.
 
 use super::diagnostic::Diagnostic;
 use super::document::Document;
@@ -9,8 +9,8 @@ use crate::system::contract::{self, ContractViolation, Quantity};
 use crate::system::{FormulaHazard, FormulaPlace, TypedEquations};
 
 impl Settings {
-    /// Refuses equations that are not finite somewhere on the domain, at some value along the sweep, and declarations that do not
-    /// hold. Built-in models are tried in their tests.
+    /// Refuses equations that are not finite somewhere on the domain, at some value along the sweep, and declarations
+    /// that do not hold. Built-in models are tried in their tests.
     ///
     /// # Errors
     /// A report with a state at which it shows.

@@ -1,5 +1,5 @@
-//! A draft as TOML, by the table of keys: what each getter gives, in the order of the table. What belongs to one axis stands on one
-//! line.
+//! A draft as TOML, by the table of keys: what each getter gives, in the order of the table. What belongs to one axis
+//! stands on one line.
 
 use super::draft::Draft;
 use super::keys::{KEYS, Key, is_stand_in};
@@ -61,8 +61,8 @@ fn names<'d>(key: &Key, draft: &'d Draft) -> Vec<&'d str> {
     }
 }
 
-/// Puts a value at a path of keys, of each of which is known whether it is a name of the model: its table stands on one line, with
-/// all that is below.
+/// Puts a value at a path of keys, of each of which is known whether it is a name of the model: its table stands on one
+/// line, with all that is below.
 fn put(entries: &mut Vec<Entry>, path: &[(&str, bool)], toml: String) {
     let Some(((key, is_name), rest)) = path.split_first() else {
         return;

@@ -1,5 +1,5 @@
-//! A system between walls: the same drift and noise, and nothing leaves given ranges. What the densities of the two differ by is what
-//! the mass that leaves the ranges does.
+//! A system between walls: the same drift and noise, and nothing leaves given ranges. What the densities of the two
+//! differ by is what the mass that leaves the ranges does.
 
 use std::sync::Arc;
 

@@ -29,8 +29,8 @@ pub struct Family {
 }
 
 impl Family {
-    /// Values of the parameters that the path does not move, and the path. Both ends of the path and its middle must be allowed;
-    /// the ends may be equal.
+    /// Values of the parameters that the path does not move, and the path. Both ends of the path and its middle must be
+    /// allowed; the ends may be equal.
     ///
     /// # Errors
     /// [`SystemError::UnknownParameter`], [`SystemError::MissingParameter`], [`SystemError::OutOfRange`], and
@@ -56,8 +56,8 @@ impl Family {
         Ok(family)
     }
 
-    /// The family with quantities that can be watched like axes, as [`quantities`](super::quantities) reads them: they are numbered
-    /// on from the axes of the state.
+    /// The family with quantities that can be watched like axes, as [`quantities`](super::quantities) reads them: they
+    /// are numbered on from the axes of the state.
     #[must_use]
     pub fn with_quantities(mut self, quantities: Vec<Arc<Quantity>>) -> Self {
         self.quantities = quantities;
@@ -138,7 +138,8 @@ impl Family {
         known.or_else(quantity).unwrap_or("?")
     }
 
-    /// Symbol of an axis, with `_{}` and `^{}`, for example `ẋ`, or of the quantity of that number; `?` where there is none.
+    /// Symbol of an axis, with `_{}` and `^{}`, for example `ẋ`, or of the quantity of that number; `?` where there is
+    /// none.
     pub fn axis_symbol(&self, axis: usize) -> &str {
         let known = self.model.axes.get(axis).map(|axis| axis.symbol.as_str());
         let quantity = || self.quantity(axis).map(|quantity| quantity.symbol());

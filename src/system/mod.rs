@@ -2,9 +2,9 @@
 //!
 //! A [`System`] is an Itô equation dX = a(X, t; θ) dt + B(X, t; θ) dW in d = 1…4 dimensions with its
 //! parameters θ already bound. A [`Model`] is what it comes from: names, equations, parameters
-//! with their meaning, and a function that binds values. A [`Family`] is a model with fixed values and a [`Path`] through its
-//! parameters: what is swept. [`registry`] lists the built-in models; a
-//! [`TypedModel`] makes one of equations as text.
+//! with their meaning, and a function that binds values. A [`Family`] is a model with fixed values and a [`Path`]
+//! through its parameters: what is swept. [`registry`] lists the built-in models; a [`TypedModel`] makes one of
+//! equations as text.
 
 mod bistable;
 mod coloured;
@@ -119,8 +119,8 @@ pub trait System: Send + Sync {
     }
 
     /// Mean and standard deviation of a coordinate that is a state of a linear filter of white noise, such as η in
-    /// η' = -(η - mean)/τ + b ξ with constant b and τ, upon which nothing else acts. Such coordinates are independent of one another
-    /// and normal; those of one filter may turn into one another, as η' = ω ν, ν' = -ω η - γ ν + b ξ do.
+    /// η' = -(η - mean)/τ + b ξ with constant b and τ, upon which nothing else acts. Such coordinates are independent
+    /// of one another and normal; those of one filter may turn into one another, as η' = ω ν, ν' = -ω η - γ ν + b ξ do.
     fn filtered_noise(&self, axis: usize) -> Option<(f64, f64)> {
         let _ = axis;
         None
@@ -136,8 +136,8 @@ pub trait System: Send + Sync {
         None
     }
 
-    /// Friction force per unit mass at a state, its viscous part left out, of an oscillator with a friction law (axes: displacement,
-    /// velocity, internal states of the law); `None` without one.
+    /// Friction force per unit mass at a state, its viscous part left out, of an oscillator with a friction law (axes:
+    /// displacement, velocity, internal states of the law); `None` without one.
     fn friction_force(&self, state: &[f64]) -> Option<f64> {
         let _ = state;
         None

@@ -14,8 +14,8 @@ pub struct AxisDescription {
     pub symbol: String,
     /// Meaning in words.
     pub meaning: String,
-    /// Whether modes carry it unless a file says otherwise: the density along it is smooth inside its bounds and no noise drives it,
-    /// or it is white noise behind a filter.
+    /// Whether modes carry it unless a file says otherwise: the density along it is smooth inside its bounds and no
+    /// noise drives it, or it is white noise behind a filter.
     pub by_modes: bool,
 }
 
@@ -127,8 +127,8 @@ impl ParameterDescription {
 /// Binds checked values, given in the order of a model's parameters.
 type Binding = dyn Fn(&[f64]) -> Arc<dyn System> + Send + Sync;
 
-/// Everything about a set of systems but the values of their parameters. It owns all it says, so that it may be compiled
-/// in or come from a file.
+/// Everything about a set of systems but the values of their parameters. It owns all it says, so that it may be
+/// compiled in or come from a file.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -299,10 +299,10 @@ impl Model {
         Self { noise_kind, ..self }
     }
 
-    /// The same model with coloured noise in place of white: each of its noises goes through a filter of this kind at the same
-    /// intensity. The states of the filter are axes (`noise`, of unit variance), and its parameters (`tau`) those of the model. As its
-    /// memory goes to 0 it becomes the white noise, in Stratonovich's reading: of a model in Rust the drift is taken to be that of
-    /// this reading.
+    /// The same model with coloured noise in place of white: each of its noises goes through a filter of this kind at
+    /// the same intensity. The states of the filter are axes (`noise`, of unit variance), and its parameters (`tau`)
+    /// those of the model. As its memory goes to 0 it becomes the white noise, in Stratonovich's reading: of a model in
+    /// Rust the drift is taken to be that of this reading.
     ///
     /// ```
     /// use pbif::system::{Model, NoiseKind, registry};

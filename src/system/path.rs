@@ -7,8 +7,8 @@ type Curve = dyn Fn(f64) -> Vec<f64> + Send + Sync;
 
 /// A path through the parameters of a model, with its two ends.
 ///
-/// The number that runs along it is its *coordinate*: the value of a parameter, or anything from which the values of several
-/// parameters follow. The path itself ends nowhere; its ends say which part of it is of interest.
+/// The number that runs along it is its *coordinate*: the value of a parameter, or anything from which the values of
+/// several parameters follow. The path itself ends nowhere; its ends say which part of it is of interest.
 ///
 /// ```
 /// use pbif::system::Path;
@@ -47,8 +47,8 @@ impl Path {
         }
     }
 
-    /// Any curve: `values` gives one value for each of the `moved` parameters, in their order. `name` and `symbol` (with `_{}` and
-    /// `^{}`) are those of the coordinate.
+    /// Any curve: `values` gives one value for each of the `moved` parameters, in their order. `name` and `symbol`
+    /// (with `_{}` and `^{}`) are those of the coordinate.
     pub fn curve<S: Into<String>>(
         name: impl Into<String>,
         symbol: impl Into<String>,

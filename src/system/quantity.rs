@@ -1,5 +1,5 @@
-//! Quantities: functions of the state given as formulas, such as an amplitude or an energy. Their densities can be watched like those of
-//! coordinates.
+//! Quantities: functions of the state given as formulas, such as an amplitude or an energy. Their densities can be
+//! watched like those of coordinates.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -108,8 +108,8 @@ impl QuantityFault {
     }
 }
 
-/// Reads quantities of a model: names with their formulas in the model's coordinates and parameters, in the names of its definitions, and in each
-/// other's names. A name without a formula is that of a definition of the model.
+/// Reads quantities of a model: names with their formulas in the model's coordinates and parameters, in the names of
+/// its definitions, and in each other's names. A name without a formula is that of a definition of the model.
 ///
 /// # Errors
 /// Everything that is wrong with them.

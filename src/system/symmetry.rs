@@ -8,9 +8,9 @@ const ROUNDING: f64 = 1e-9;
 /// Batches of states that are tried.
 const BATCHES: usize = 2;
 
-/// The reflection of a system on a box with the given ends, one pair an axis: the one it declares, where that holds, or else one about the
-/// origin or the middle of the box that is found by trial, with the most axes reflected. Trial cannot tell a symmetry that fails only in a part of the box that
-/// no tried state lies in.
+/// The reflection of a system on a box with the given ends, one pair an axis: the one it declares, where that holds, or
+/// else one about the origin or the middle of the box that is found by trial, with the most axes reflected. Trial
+/// cannot tell a symmetry that fails only in a part of the box that no tried state lies in.
 pub fn proved_symmetry(system: &dyn System, ends: &[(f64, f64)]) -> Option<Symmetry> {
     if let Some(declared) = system.symmetry() {
         return holds(system, &declared, ends).then_some(declared);
@@ -55,7 +55,8 @@ fn holds(system: &dyn System, symmetry: &Symmetry, ends: &[(f64, f64)]) -> bool 
     })
 }
 
-/// States over an interval, of no simple ratio to each other: multiples of the golden section and its like, one an axis.
+/// States over an interval, of no simple ratio to each other: multiples of the golden section and its like, one an
+/// axis.
 fn spread(batch: usize, axis: usize, (from, to): (f64, f64)) -> Lanes {
     const STEPS: [f64; 4] = [
         0.618_033_988_75,

@@ -165,7 +165,8 @@ pub(crate) fn bistable() -> SweepResult {
 }
 
 /// Caughey and Ma: p ∝ exp(-(2/σ²)(-aH + H²/2)), H = (x² + y²)/2, σ² = 0.4: peak, for a > 0 crater.
-/// Said to be of `model`, whose parameter is `scale` a. Peaks of the marginals are not exact, they are there to be drawn.
+/// Said to be of `model`, whose parameter is `scale` a. Peaks of the marginals are not exact, they are there to be
+/// drawn.
 pub(crate) fn rayleigh((model, parameter): (&str, &str), scale: f64, y: &Axis) -> SweepResult {
     let x = Axis::uniform(-3.0, 3.0, 60).unwrap();
     let observables = vec![

@@ -1,8 +1,8 @@
-//! Random systems whose drift and noise are no polynomials: sines, exponentials, Hill's function, noise that grows by orders along the axis, and
-//! densities that move through the range.
+//! Random systems whose drift and noise are no polynomials: sines, exponentials, Hill's function, noise that grows by
+//! orders along the axis, and densities that move through the range.
 //!
-//! With θ g(x) + e(x) the slope of the density but for a positive factor, its extrema lie where θ = -e(x)/g(x), and they are born and vanish
-//! where this function of x turns.
+//! With θ g(x) + e(x) the slope of the density but for a positive factor, its extrema lie where θ = -e(x)/g(x), and
+//! they are born and vanish where this function of x turns.
 
 use super::*;
 

@@ -1,5 +1,5 @@
-//! Random systems by stochastic generalized cell mapping with its defaults, each with a seed of its own: intervals must hold the truth, or say that they do
-//! not know.
+//! Random systems by stochastic generalized cell mapping with its defaults, each with a seed of its own: intervals must
+//! hold the truth, or say that they do not know.
 
 use pbif::method::{MethodOptions, MethodSource, SgcmOptions};
 

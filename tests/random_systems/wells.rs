@@ -1,5 +1,6 @@
-//! Random systems that the program had not seen: noise that differs from place to place, wells at random places under weak and strong noise, a swept
-//! noise, drifts with kinks and jumps, energies with cosines and with noise of their own; 81 to 401 cells.
+//! Random systems that the program had not seen: noise that differs from place to place, wells at random places under
+//! weak and strong noise, a swept noise, drifts with kinks and jumps, energies with cosines and with noise of their
+//! own; 81 to 401 cells.
 //!
 //! One axis is as in `formulas`. Of two, the density is a function of the energy, or of the energy in a potential.
 

@@ -1,4 +1,5 @@
-//! What `pbif check` says of a file's own equations: how they were read, what was found in them, and what costs accuracy.
+//! What `pbif check` says of a file's own equations: how they were read, what was found in them, and what costs
+//! accuracy.
 
 use crate::sweep_file::Sweep;
 

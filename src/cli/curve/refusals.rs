@@ -135,8 +135,8 @@ pub(super) fn which_box(second: &str) -> CommandError {
     CommandError::Input(report.into())
 }
 
-/// Refuses a plane with a corner that is not allowed, or at whose corners a state that modes carry goes beyond its axis, which the sweep has chosen for the
-/// values that it holds.
+/// Refuses a plane with a corner that is not allowed, or at whose corners a state that modes carry goes beyond its
+/// axis, which the sweep has chosen for the values that it holds.
 pub(super) fn check_corners(spec: &Sweep, plane: &Plane) -> Result<(), CommandError> {
     let (family, space) = (spec.problem.family(), spec.problem.space());
     let (model, [first, second]) = (family.model(), plane.sides());

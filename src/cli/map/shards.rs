@@ -1,4 +1,5 @@
-//! `--shard K/N` and `pbif merge` for maps of regimes: each shard solves its share of the rows; the merge follows the curves.
+//! `--shard K/N` and `pbif merge` for maps of regimes: each shard solves its share of the rows; the merge follows the
+//! curves.
 
 use std::path::Path;
 use std::time::Instant;
@@ -15,7 +16,8 @@ use crate::sweep_file::{Diagnostic, Sweep, SweepFile};
 /// Solves a shard of a map whose folder is `home`.
 ///
 /// # Errors
-/// [`CommandError`] where there are more shards than steps between rows, the box is not allowed, or the results cannot be written.
+/// [`CommandError`] where there are more shards than steps between rows, the box is not allowed, or the results cannot
+/// be written.
 pub(super) fn run(
     spec: &Sweep,
     (home, shard): (&Path, Shard),

@@ -14,7 +14,8 @@ use crate::run::{StoredPlane, StoredPlaneContent, format_with_error};
 use crate::sweep_file::{Diagnostic, Report, SweepFile};
 use crate::system::Family;
 
-/// Draws into the folder's `figures/` or another folder and prints the files; `overrides` are those of keys under `figures`.
+/// Draws into the folder's `figures/` or another folder and prints the files; `overrides` are those of keys under
+/// `figures`.
 ///
 /// # Errors
 /// [`CommandError`] when the file cannot be understood, a figure is not there, or cannot be drawn.

@@ -27,7 +27,8 @@ pub(super) fn check(spec: &Sweep, shard: Shard) -> Result<(), CommandError> {
     Err(CommandError::Input(found.into()))
 }
 
-/// What is said of a shard that has ended, and how. Rows are the business of the whole, where neighbours on both sides are known.
+/// What is said of a shard that has ended, and how. Rows are the business of the whole, where neighbours on both sides
+/// are known.
 pub(super) fn told(
     result: &SweepResult,
     (shard, home): (Shard, &Path),

@@ -1,4 +1,5 @@
-//! What several curves say of one point of codimension two, brought together: an end is where the curve that knows it best has it.
+//! What several curves say of one point of codimension two, brought together: an end is where the curve that knows it
+//! best has it.
 
 use super::codimension::{CodimensionTwo, CodimensionTwoKind, SAME, codimension_two, own};
 use super::found::{Curve, CurvePoint, EndReason};
@@ -6,10 +7,12 @@ use super::walk::apart;
 use crate::continuation::ErrorParts;
 use crate::topology::IndicatorKind;
 
-/// How near to its point of codimension two a curve that begins there must have been met, in sides of the box: there its feature is of the size of cells.
+/// How near to its point of codimension two a curve that begins there must have been met, in sides of the box: there
+/// its feature is of the size of cells.
 const MEETS: f64 = 0.03;
 
-/// Moves ends in points that another curve knows better there, and ends the curves that begin at a degenerate split in it.
+/// Moves ends in points that another curve knows better there, and ends the curves that begin at a degenerate split in
+/// it.
 pub(in crate::continuation) fn agree(curves: &mut [Curve]) {
     for known in codimension_two(curves) {
         for (index, curve) in curves.iter_mut().enumerate() {
@@ -51,7 +54,8 @@ fn put(point: &mut CurvePoint, known: &CodimensionTwo) {
     point.status = known.status;
 }
 
-/// Whether curves of an indicator begin at such a point, and are lost before they come to it: those of joint densities at a degenerate split, and folds at a kink.
+/// Whether curves of an indicator begin at such a point, and are lost before they come to it: those of joint densities
+/// at a degenerate split, and folds at a kink.
 fn begins_there(kind: IndicatorKind, known: CodimensionTwoKind) -> bool {
     match known {
         CodimensionTwoKind::DegenerateSplit => {

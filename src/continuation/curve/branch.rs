@@ -22,7 +22,8 @@ const NEAR_CURVE: f64 = 0.05;
 const BESIDE_CORNER: f64 = 0.03;
 
 impl Seeker<'_> {
-    /// Where another curve passes that begins at a point; `away` are the places of the points on the side of it where the companion is positive, from it on.
+    /// Where another curve passes that begins at a point; `away` are the places of the points on the side of it where
+    /// the companion is positive, from it on.
     pub(super) fn branch(
         &self,
         kind: CodimensionTwoKind,
@@ -46,7 +47,8 @@ impl Seeker<'_> {
         }
     }
 
-    /// The fold that begins at a degenerate split: beside the curve, on the side of it on which peaks stand away from the centre.
+    /// The fold that begins at a degenerate split: beside the curve, on the side of it on which peaks stand away from
+    /// the centre.
     fn fold_of_centre(
         &self,
         walked: &Walked,
@@ -90,8 +92,8 @@ impl Seeker<'_> {
         found
     }
 
-    /// The fold that begins at a degenerate kink: it leaves along the curve, so it is near on one side of the point or the other. Of the inflections beside the
-    /// kink that one tells which is nearest to a zero.
+    /// The fold that begins at a degenerate kink: it leaves along the curve, so it is near on one side of the point or
+    /// the other. Of the inflections beside the kink that one tells which is nearest to a zero.
     fn fold_of_kink(&self, both: &Both, work: &mut CurveWork) -> Option<CurveStart> {
         let kink = self.0.start.place.first().copied()?;
         let above = match self.0.start.kind {
@@ -149,7 +151,8 @@ impl Seeker<'_> {
         (is_it && within(foot)).then(|| (gap, self.start_at(foot, reader.kind, vec![place])))
     }
 
-    /// The curve of the slope on the other side of a kink, where that on this side has the sign of the extremum that the kink is.
+    /// The curve of the slope on the other side of a kink, where that on this side has the sign of the extremum that
+    /// the kink is.
     fn other_side(&self, both: &Both) -> Option<CurveStart> {
         let [own, other] = [&both.reading, &both.companion_reading].map(|one| one.gradient);
         let along = solved([(other, 0.0), (own, 1.0)])?;

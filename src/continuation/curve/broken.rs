@@ -1,7 +1,8 @@
 //! Splits at a centre in a plane whose other parameter breaks the symmetry.
 //!
-//! The centre is there on one line of the plane alone, and the split is a point. With a tilt, one peak that splits into two is a cusp, from which
-//! two folds leave, and a kink that turns is a corner, from which the curves of both of its sides leave.
+//! The centre is there on one line of the plane alone, and the split is a point. With a tilt, one peak that splits into
+//! two is a cusp, from which two folds leave, and a kink that turns is a corner, from which the curves of both of its
+//! sides leave.
 
 use super::degenerate::Seeker;
 use super::walk::{Walked, within};
@@ -15,7 +16,8 @@ const BESIDE: [f64; 3] = [0.05, 0.1, 0.02];
 const NEAR: f64 = 0.1;
 
 impl Seeker<'_> {
-    /// Ends a curve that is one point in it, where that is because the symmetry is lost beside it; gives where the curves pass that begin there.
+    /// Ends a curve that is one point in it, where that is because the symmetry is lost beside it; gives where the
+    /// curves pass that begin there.
     pub(super) fn broken(
         &self,
         walked: &mut Walked,

@@ -1,4 +1,5 @@
-//! Points of codimension two of several curves: those that a curve knows of itself, each once for all curves that have it, and crossings.
+//! Points of codimension two of several curves: those that a curve knows of itself, each once for all curves that have
+//! it, and crossings.
 
 use super::found::{Curve, CurvePoint, EndReason};
 use super::piece::Piece;
@@ -78,7 +79,8 @@ pub struct CodimensionTwo {
     pub curves: Vec<usize>,
 }
 
-/// The points of codimension two of curves in one plane: of what several curves say of one, the one with the smallest error is taken.
+/// The points of codimension two of curves in one plane: of what several curves say of one, the one with the smallest
+/// error is taken.
 pub fn codimension_two(curves: &[Curve]) -> Vec<CodimensionTwo> {
     let mut found: Vec<CodimensionTwo> = Vec::new();
     for (index, curve) in curves.iter().enumerate() {

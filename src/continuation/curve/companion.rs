@@ -1,12 +1,13 @@
 //! What vanishes beside a curve's own indicator at its points of codimension two.
 //!
-//! Along a curve one indicator is zero. What happens across it depends on the signs of others, its companions: where one of them passes
-//! zero too, what the change leads to differs from there on, and other curves begin.
+//! Along a curve one indicator is zero. What happens across it depends on the signs of others, its companions: where
+//! one of them passes zero too, what the change leads to differs from there on, and other curves begin.
 //!
-//! Beside a kink the slope of log p is s + c u + …, with the distance u from it. On the curve s = 0, and the curvature c tells whether
-//! the kink turns from a peak into a valley as s does (c < 0, at a centre of symmetry), or a peak away from it is there before (c > 0).
-//! Where there is no centre, the kink is an extremum only as long as the slope on its other side has its sign, and a peak or valley
-//! comes out of it, rather than moves off it, only as long as c has: beyond, nothing happens on the line s = 0, and the curve ends.
+//! Beside a kink the slope of log p is s + c u + …, with the distance u from it. On the curve s = 0, and the curvature
+//! c tells whether the kink turns from a peak into a valley as s does (c < 0, at a centre of symmetry), or a peak away
+//! from it is there before (c > 0). Where there is no centre, the kink is an extremum only as long as the slope on its
+//! other side has its sign, and a peak or valley comes out of it, rather than moves off it, only as long as c has:
+//! beyond, nothing happens on the line s = 0, and the curve ends.
 
 use super::CodimensionTwoKind;
 use crate::density::EstimatedDensity;
@@ -46,7 +47,8 @@ pub(super) fn ends_there(kind: IndicatorKind) -> bool {
     matches!(kind, IndicatorKind::BesideKink { .. })
 }
 
-/// The values of the companions, in their order; `None` where there is no such indicator. Of a kink's, where its sign is in doubt too.
+/// The values of the companions, in their order; `None` where there is no such indicator. Of a kink's, where its sign
+/// is in doubt too.
 pub(super) fn values(
     detector: &dyn Detector,
     density: &EstimatedDensity,
@@ -63,7 +65,8 @@ pub(super) fn values(
     .collect()
 }
 
-/// The companion, by its place among them, that has another sign than where it was known last; what is known is brought up to date.
+/// The companion, by its place among them, that has another sign than where it was known last; what is known is brought
+/// up to date.
 pub(super) fn turned(known: &mut [Option<f64>], values: &[Option<f64>]) -> Option<usize> {
     let mut found = None;
     for (index, (known, value)) in known.iter_mut().zip(values).enumerate() {

@@ -1,4 +1,5 @@
-//! A sweep over one parameter that lies in a plane of two: its rows as points of the plane, and how far they are from the curves there.
+//! A sweep over one parameter that lies in a plane of two: its rows as points of the plane, and how far they are from
+//! the curves there.
 
 use super::found::Curve;
 use super::piece::Piece;
@@ -168,7 +169,8 @@ impl SweepInPlane {
         }
     }
 
-    /// Distance of a row of this sweep from the nearest curve of its density and its indicator that crosses the sweep; `None` where none does.
+    /// Distance of a row of this sweep from the nearest curve of its density and its indicator that crosses the sweep;
+    /// `None` where none does.
     pub fn gap(&self, row: &RowInPlane, curves: &[Curve]) -> Option<GapToCurve> {
         let of_row = |curve: &Curve| {
             Some(curve.observable) == row.observable && Some(curve.kind) == row.indicator
@@ -203,7 +205,8 @@ fn check_model(family: &Family, swept: &Family) -> Result<(), NotInPlane> {
     }
 }
 
-/// The value at which a sweep holds the parameter of a side of the plane; refuses one that holds others at other values than the plane.
+/// The value at which a sweep holds the parameter of a side of the plane; refuses one that holds others at other values
+/// than the plane.
 fn held_of(plane: &Plane, side: usize, family: &Family, swept: &Family) -> Result<f64, NotInPlane> {
     let sides = plane.sides();
     let mut held = None;

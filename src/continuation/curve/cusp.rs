@@ -1,8 +1,9 @@
 //! Cusps: where the fold of a marginal ends because two folds meet and turn on the spot.
 //!
-//! On a fold a peak and a valley are one, at a place x where p' = p'' = 0. Along the fold both parameters are smooth functions of x, beyond the cusp
-//! as well, where x goes on and the other fold begins; at the cusp p''' = 0 too, and with it dθ/dx = 0. The indicator itself is no help there, since
-//! it is defined by the inflection between two extrema; the parameters as polynomials in x are.
+//! On a fold a peak and a valley are one, at a place x where p' = p'' = 0. Along the fold both parameters are smooth
+//! functions of x, beyond the cusp as well, where x goes on and the other fold begins; at the cusp p''' = 0 too, and
+//! with it dθ/dx = 0. The indicator itself is no help there, since it is defined by the inflection between two extrema;
+//! the parameters as polynomials in x are.
 
 use super::fold_end::{Beyond, FAR, Tail};
 use super::found::EndReason;
@@ -71,7 +72,8 @@ impl Turning {
     }
 }
 
-/// Where both parameters, as polynomials of the place near to these points, stand still; `None` where they do not do so together.
+/// Where both parameters, as polynomials of the place near to these points, stand still; `None` where they do not do so
+/// together.
 fn turning(places: &[f64], values: &[[f64; 2]], degree: usize) -> Option<Turning> {
     let (origin, last) = (*places.first()?, *places.last()?);
     let scaled: Vec<f64> = places

@@ -1,9 +1,10 @@
 //! Points of a curve at which its indicator and a companion of it vanish together.
 //!
-//! At a degenerate split the curvature at a centre and the fourth derivative do: of the density at such a point only terms of the sixth degree are left along one
-//! direction. On one side of it peaks leave the centre as it splits, on the other side they are born away from it, in folds whose curve begins here and leaves along
-//! the curve of splits. At a kink slope and curvature do, or the slopes on both of its sides, or the curvature along it. The point is found by Newton's method on
-//! both in the plane, on the given cells and on finer ones.
+//! At a degenerate split the curvature at a centre and the fourth derivative do: of the density at such a point only
+//! terms of the sixth degree are left along one direction. On one side of it peaks leave the centre as it splits, on
+//! the other side they are born away from it, in folds whose curve begins here and leaves along the curve of splits. At
+//! a kink slope and curvature do, or the slopes on both of its sides, or the curvature along it. The point is found by
+//! Newton's method on both in the plane, on the given cells and on finer ones.
 
 use super::companion::{companions, meeting};
 use super::found::DegeneratePoint;
@@ -34,8 +35,8 @@ pub(super) struct Found {
     point: Option<(CurvePoint, Option<CurveStart>)>,
 }
 
-/// Puts such points among those of their curve; gives them with their labels, and where the curves pass that begin there. `start` is the place of the
-/// curve's start.
+/// Puts such points among those of their curve; gives them with their labels, and where the curves pass that begin
+/// there. `start` is the place of the curve's start.
 pub(super) fn add(
     points: &mut Vec<CurvePoint>,
     start: &mut usize,
@@ -61,8 +62,8 @@ pub(super) fn add(
     (degenerate, branches)
 }
 
-/// Ends a curve at the points of codimension two on either side of its start, beyond which nothing happens on its line; gives where the curves pass that
-/// begin there.
+/// Ends a curve at the points of codimension two on either side of its start, beyond which nothing happens on its line;
+/// gives where the curves pass that begin there.
 pub(super) fn cut(
     points: &mut Vec<CurvePoint>,
     walked: &mut Walked,
@@ -146,7 +147,8 @@ impl Seeker<'_> {
         found
     }
 
-    /// The point between two places where a companion has different signs, and where another curve passes that begins there.
+    /// The point between two places where a companion has different signs, and where another curve passes that begins
+    /// there.
     fn point(
         &self,
         (walked, judged): (&Walked, &[CurvePoint]),
@@ -295,7 +297,8 @@ impl Seeker<'_> {
     }
 }
 
-/// The solution of two linear equations in the plane, each a gradient and what it shall give; `None` where they do not tell.
+/// The solution of two linear equations in the plane, each a gradient and what it shall give; `None` where they do not
+/// tell.
 pub(super) fn solved([(a, u), (b, v)]: [([f64; 2], f64); 2]) -> Option<[f64; 2]> {
     let determinant = a[0] * b[1] - a[1] * b[0];
     let step = [

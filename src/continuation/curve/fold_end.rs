@@ -1,5 +1,6 @@
-//! Where the fold of a marginal ends inside the box: in a cusp, at a degenerate split of the centre, or at a kink. Its last points tell, since both parameters
-//! are smooth functions of where the fold is in the density, through such a point and beyond.
+//! Where the fold of a marginal ends inside the box: in a cusp, at a degenerate split of the centre, or at a kink. Its
+//! last points tell, since both parameters are smooth functions of where the fold is in the density, through such a
+//! point and beyond.
 
 use super::CurveStart;
 use super::cusp::cusp;
@@ -24,7 +25,8 @@ const FAR_FROM_KINK: f64 = 0.15;
 const MOST_VAGUE: f64 = 0.02;
 /// Degree in the square of the distance from a centre.
 const DEGREE: usize = 3;
-/// Cells from a centre nearer than which a fold is not told from its mirror image: such points are left out where it ends there.
+/// Cells from a centre nearer than which a fold is not told from its mirror image: such points are left out where it
+/// ends there.
 const TOLD_APART: f64 = 6.0;
 /// Cells from a kink nearer than which an inflection is not read from cells beside it.
 const BESIDE_KINK: f64 = 2.0;
@@ -85,7 +87,8 @@ pub(super) struct Beyond {
     pub(super) error: f64,
     /// Direction in which the curve leaves it, of length one.
     pub(super) leaves: [f64; 2],
-    /// What the polynomials leave of the points, and what these are therefore uncertain by at least: checks lie too far apart to show it.
+    /// What the polynomials leave of the points, and what these are therefore uncertain by at least: checks lie too far
+    /// apart to show it.
     pub(super) scatter: f64,
     /// Where another curve that begins there passes: in the box, with its indicator and its place.
     pub(super) branch: ([f64; 2], IndicatorKind, f64),
@@ -133,8 +136,8 @@ impl<'p> Tail<'p> {
     }
 }
 
-/// Adds the points in which a fold ends, as points of their own: `reasons` are those of its ends, `start` the place of its start. Gives where other
-/// curves begin there.
+/// Adds the points in which a fold ends, as points of their own: `reasons` are those of its ends, `start` the place of
+/// its start. Gives where other curves begin there.
 pub(super) fn add_ends(
     points: &mut Vec<CurvePoint>,
     reasons: &mut [EndReason],
@@ -243,7 +246,8 @@ fn point(beyond: &Beyond, last: &CurvePoint, is_first: bool, folds: &Folds<'_>) 
     }
 }
 
-/// Where a fold and its mirror image meet in the centre: both parameters are smooth functions of the square of the distance from it.
+/// Where a fold and its mirror image meet in the centre: both parameters are smooth functions of the square of the
+/// distance from it.
 fn at_centre(tail: &Tail<'_>, centre: f64) -> Option<Beyond> {
     let squares: Vec<f64> = tail.places.iter().map(|x| (x - centre).powi(2)).collect();
     let (nearest, scale) = (squares[0], squares[squares.len() - 1]);

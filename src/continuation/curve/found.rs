@@ -10,12 +10,13 @@ use crate::topology::{IndicatorKind, Signature};
 pub struct CurvePoint {
     /// Values of both parameters.
     pub values: [f64; 2],
-    /// Half-width of the band that is believed to hold the true curve, across the curve, as a share of the sides of the box.
+    /// Half-width of the band that is believed to hold the true curve, across the curve, as a share of the sides of the
+    /// box.
     pub error: f64,
     /// Its parts, in the same unit.
     pub parts: ErrorParts,
-    /// From the curve to the edge of the band on the side where the indicator is positive, in units of the parameters; the other edge is
-    /// as far on the other side.
+    /// From the curve to the edge of the band on the side where the indicator is positive, in units of the parameters;
+    /// the other edge is as far on the other side.
     pub to_edge: [f64; 2],
     /// The indicator where it was solved last.
     pub indicator: f64,
@@ -48,7 +49,8 @@ pub enum EndReason {
     SymmetryLost,
     /// Two folds meet in a cusp: the last point, found from how both parameters depend on the place of the fold.
     Cusp,
-    /// Two folds meet in a centre of symmetry, at which births away from it turn into births at it: the last point, found in the same way.
+    /// Two folds meet in a centre of symmetry, at which births away from it turn into births at it: the last point,
+    /// found in the same way.
     DegenerateSplit,
     /// Slope and curvature beside a kink vanish together: births at the kink turn into births away from it.
     DegenerateKink,
@@ -68,7 +70,8 @@ pub enum EndReason {
 
 impl EndReason {
     /// The letters of its label, as AUTO has them: `EP` an end of the box, `CL` closed, `MX` no density or no
-    /// convergence; `CP` cusp, `DS` degenerate split, `DK` degenerate kink, `KC` corner at a kink, `FL` feature lost, `SP` singular point, `UN` unfinished.
+    /// convergence; `CP` cusp, `DS` degenerate split, `DK` degenerate kink, `KC` corner at a kink, `FL` feature lost,
+    /// `SP` singular point, `UN` unfinished.
     pub fn prefix(&self) -> &'static str {
         match self {
             Self::Border(_) => "EP",
@@ -123,8 +126,9 @@ pub struct CurveEnd {
     pub point: usize,
 }
 
-/// A point of codimension two between the ends of a curve: what the change leads to differs from there on. At a degenerate split two peaks
-/// leave the centre as one splits there on one side of it, on the other side they are born away from it, on a fold that begins here.
+/// A point of codimension two between the ends of a curve: what the change leads to differs from there on. At a
+/// degenerate split two peaks leave the centre as one splits there on one side of it, on the other side they are born
+/// away from it, on a fold that begins here.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DegeneratePoint {
     /// Letters and ordinal: `DS1`.

@@ -101,7 +101,8 @@ impl Piece {
         met.then_some((p, error))
     }
 
-    /// Where it has this value of one coordinate, 0 or 1, with its direction there, of length one; `None` where its ends do not lie on either side of it.
+    /// Where it has this value of one coordinate, 0 or 1, with its direction there, of length one; `None` where its
+    /// ends do not lie on either side of it.
     pub(super) fn crosses(&self, coordinate: usize, value: f64) -> Option<([f64; 2], [f64; 2])> {
         let beyond = |share: f64| self.at(share).0[coordinate] - value;
         let (begins, ends) = (beyond(0.0), beyond(1.0));
@@ -135,7 +136,8 @@ mod tests {
 
     #[test]
     fn cubic_pieces_meet_where_the_curves_do() {
-        // Of a circle of radius one about the origin, from 0 to 0.5; and the line through the origin at an angle of 0.3.
+        // Of a circle of radius one about the origin, from 0 to 0.5; and the line through the origin at an angle of
+        // 0.3.
         let on = |angle: f64| [angle.cos(), angle.sin()];
         let length = apart(on(0.0), on(0.5));
         let tangent = |angle: f64| [-length * angle.sin(), length * angle.cos()];

@@ -1,7 +1,8 @@
 //! A plane of two parameters, and the path that a curve is followed along in it.
 //!
-//! A session solves along a path. In a plane the path is not known before it is walked: it is laid leg by leg, each a straight line from
-//! where the last one ended. What is laid stays as it is, so that a value of the path's coordinate means the same for every session.
+//! A session solves along a path. In a plane the path is not known before it is walked: it is laid leg by leg, each a
+//! straight line from where the last one ended. What is laid stays as it is, so that a value of the path's coordinate
+//! means the same for every session.
 
 use std::sync::{Arc, PoisonError, RwLock};
 
@@ -26,7 +27,8 @@ impl PlaneSide {
     }
 }
 
-/// A box in the plane of two parameters, in which curves are followed. Clones are the same plane; [`Plane::afresh`] is another one.
+/// A box in the plane of two parameters, in which curves are followed. Clones are the same plane; [`Plane::afresh`] is
+/// another one.
 ///
 /// A [`Family`](crate::system::Family) along [`Plane::path`] is what a source is made for.
 ///
@@ -66,8 +68,8 @@ impl Leg {
     }
 }
 
-/// Coordinates of the path up to this one are not those of a curve: from the first to the second of [`DIAGONAL`] they cross the box
-/// from its lower to its upper corner, where methods look at what is chosen once for the whole plane.
+/// Coordinates of the path up to this one are not those of a curve: from the first to the second of [`DIAGONAL`] they
+/// cross the box from its lower to its upper corner, where methods look at what is chosen once for the whole plane.
 const BEFORE: f64 = -0.5;
 const DIAGONAL: (f64, f64) = (-2.0, -1.0);
 /// Length of the leg before a beginning, so that the path is straight on either side of it.

@@ -1,6 +1,7 @@
 //! Polynomials nearest to some points, with their derivatives.
 
-/// Coefficients, lowest power first, of the polynomial that is nearest to some points: by columns made orthogonal one after the other.
+/// Coefficients, lowest power first, of the polynomial that is nearest to some points: by columns made orthogonal one
+/// after the other.
 pub(super) fn fitted(places: &[f64], values: &[f64], degree: usize) -> Vec<f64> {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let mut rest = values.to_vec();

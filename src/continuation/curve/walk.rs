@@ -1,4 +1,5 @@
-//! Following a curve: predicted along tangent and curvature, corrected along the gradient, in steps as long as the curve allows.
+//! Following a curve: predicted along tangent and curvature, corrected along the gradient, in steps as long as the
+//! curve allows.
 
 use super::reading::{Missing, Reader, Reading};
 use super::{CurveError, CurveWork, EndReason, Task, companion};
@@ -21,7 +22,8 @@ const GENTLE: f64 = 0.99;
 const GROWTH: f64 = 1.6;
 /// Farthest that the curve may be from where it is said to begin.
 const FAR: f64 = 0.05;
-/// Places of an indicator at neighbouring points farther apart than this, in ranges of the axes, are not one place that moved.
+/// Places of an indicator at neighbouring points farther apart than this, in ranges of the axes, are not one place that
+/// moved.
 const ONE_PLACE: f64 = 0.1;
 /// How many times as fast as along a curve its indicator's gradient may change across it.
 const ACROSS: f64 = 2.0;
@@ -52,7 +54,8 @@ pub(super) struct Walked {
 }
 
 impl Walked {
-    /// The places at which the slope of the densities of one axis jumps, as they are at the first point and at the last.
+    /// The places at which the slope of the densities of one axis jumps, as they are at the first point and at the
+    /// last.
     pub(super) fn kinks(&self) -> [Vec<KinkAtEnd>; 2] {
         [self.points.first(), self.points.last()]
             .map(|node| node.map_or_else(Vec::new, KinkAtEnd::all_of))
@@ -340,7 +343,8 @@ fn correct(
     Err(EndReason::NotConverged)
 }
 
-/// Why a curve was not met where this was read: where samples leave more open than a place on the curve may be off, they are to blame.
+/// Why a curve was not met where this was read: where samples leave more open than a place on the curve may be off,
+/// they are to blame.
 fn not_met(reading: &Reading) -> EndReason {
     match reading.indicator.sampling_error > CLOSE * reading.steepness() {
         true => EndReason::Sampling,
@@ -348,8 +352,8 @@ fn not_met(reading: &Reading) -> EndReason {
     }
 }
 
-/// What the straight line to the foot may leave: half the curvature of the indicator times the square of the distance. By how much the gradient
-/// changed since the point before tells it along the curve; across, it may be as much again.
+/// What the straight line to the foot may leave: half the curvature of the indicator times the square of the distance.
+/// By how much the gradient changed since the point before tells it along the curve; across, it may be as much again.
 fn remainder(reading: &Reading, size: f64, before: Option<&Node>) -> f64 {
     let bend = before.map_or(1.0, |before| {
         let change = apart(reading.gradient, before.reading.gradient);
@@ -358,8 +362,8 @@ fn remainder(reading: &Reading, size: f64, before: Option<&Node>) -> f64 {
     0.5 * bend * size * (size + reading.doubt)
 }
 
-/// Where the next point is expected, and the side of the box at whose end it lies, if the step leads out; `None` where nothing of the box is
-/// left in this direction.
+/// Where the next point is expected, and the side of the box at whose end it lies, if the step leads out; `None` where
+/// nothing of the box is left in this direction.
 fn predicted(here: &Node, bend: [f64; 2], step: f64) -> Option<([f64; 2], Option<usize>)> {
     let at = |step: f64| {
         [0, 1].map(|k| here.foot[k] + step * here.tangent[k] + 0.5 * step * step * bend[k])

@@ -9,7 +9,8 @@ use crate::continuation::change::{Change, changes};
 use crate::continuation::root::between;
 use crate::topology::{Detector, IndicatorKind};
 
-/// A zero of an indicator between two neighbours of a row or a column. Places are those of the box with sides of length one.
+/// A zero of an indicator between two neighbours of a row or a column. Places are those of the box with sides of length
+/// one.
 #[derive(Debug, Clone)]
 pub(super) struct Crossing {
     pub(super) observable: usize,

@@ -1,8 +1,10 @@
-//! Maps of regimes: the signatures of densities over a box in the plane of two parameters, and the curves that part them.
+//! Maps of regimes: the signatures of densities over a box in the plane of two parameters, and the curves that part
+//! them.
 //!
-//! A coarse grid is solved strip by strip, to and fro, so that neighbours follow each other; where signatures of neighbours differ, the grid
-//! is refined. From every change that an indicator decides its curve is followed, each once. Strips, and parts of a refinement, are sessions of their
-//! own that share nothing, so that a map is the same on any number of threads.
+//! A coarse grid is solved strip by strip, to and fro, so that neighbours follow each other; where signatures of
+//! neighbours differ, the grid is refined. From every change that an indicator decides its curve is followed, each
+//! once. Strips, and parts of a refinement, are sessions of their own that share nothing, so that a map is the same on
+//! any number of threads.
 
 mod crossing;
 mod found;
@@ -32,7 +34,8 @@ use solve::Solver;
 /// Settings of maps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapOptions {
-    /// Values of the first and of the second parameter that make the coarse grid, both ends included; at least 2 of each.
+    /// Values of the first and of the second parameter that make the coarse grid, both ends included; at least 2 of
+    /// each.
     pub counts: [usize; 2],
     /// How often a cell of the coarse grid is halved at most, where signatures differ.
     pub depth: usize,
@@ -50,7 +53,8 @@ impl Default for MapOptions {
     }
 }
 
-/// Makes a source of densities that solves along the path of a plane. It is asked for one for every session, each along a path of its own.
+/// Makes a source of densities that solves along the path of a plane. It is asked for one for every session, each along
+/// a path of its own.
 pub type SourceInPlane<'a> =
     dyn Fn(&Plane) -> Result<Box<dyn DensitySource>, SourceError> + Sync + 'a;
 
@@ -124,8 +128,9 @@ pub fn regime_map(
     )
 }
 
-/// Goes on with a map of which some nodes are known already, from [`RegimeMap::nodes`] or as they were told, with the same options. Of those, the ones
-/// beside changes are solved again, since their densities are needed; all others are taken as they are, and curves are followed anew.
+/// Goes on with a map of which some nodes are known already, from [`RegimeMap::nodes`] or as they were told, with the
+/// same options. Of those, the ones beside changes are solved again, since their densities are needed; all others are
+/// taken as they are, and curves are followed anew.
 ///
 /// # Errors
 /// [`SourceError`] where no source can be made in this plane.
@@ -180,8 +185,9 @@ impl MapMaker<'_> {
         self.finished(&lattice, solver, leaves, found)
     }
 
-    /// A shard of the map: its share of the coarse rows with what refinement asks for between them, and the changes that are found there. Of `known` nodes,
-    /// those beside changes are solved again. `None` where there are more shards than steps between rows.
+    /// A shard of the map: its share of the coarse rows with what refinement asks for between them, and the changes
+    /// that are found there. Of `known` nodes, those beside changes are solved again. `None` where there are more
+    /// shards than steps between rows.
     ///
     /// # Errors
     /// [`SourceError`] where no source can be made in this plane.

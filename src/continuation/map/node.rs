@@ -1,5 +1,5 @@
-//! Nodes while a map is made: with the densities where a change may be near, and without them elsewhere, so that a map of thousands of
-//! nodes fits into memory.
+//! Nodes while a map is made: with the densities where a change may be near, and without them elsewhere, so that a map
+//! of thousands of nodes fits into memory.
 
 use std::collections::BTreeMap;
 
@@ -8,8 +8,8 @@ use super::lattice::{At, Lattice};
 use crate::continuation::Point;
 use crate::topology::Signature;
 
-/// Neighbours on either side whose signatures decide whether densities are kept: an indicator may pass zero a step or two before what it tells is
-/// counted.
+/// Neighbours on either side whose signatures decide whether densities are kept: an indicator may pass zero a step or
+/// two before what it tells is counted.
 pub(super) const NEAR: usize = 2;
 
 /// A node, and the solved point while it is kept.
@@ -51,8 +51,8 @@ impl Grid {
         }
     }
 
-    /// Lets go of the densities of coarse nodes around some places that are not near a change. Where a neighbour is not solved yet they are
-    /// kept, unless no more are to come.
+    /// Lets go of the densities of coarse nodes around some places that are not near a change. Where a neighbour is not
+    /// solved yet they are kept, unless no more are to come.
     pub(super) fn let_go(&mut self, around: &[At], lattice: &Lattice, is_complete: bool) {
         let step = lattice.coarse();
         let reach = NEAR * step;

@@ -7,8 +7,8 @@ use super::found::{MapNode, RegimeMap};
 use crate::continuation::curve::distance;
 use crate::topology::Signature;
 
-/// Nodes nearer to a curve than this share of the distance between coarse nodes tell nothing of its sides: features are counted a little
-/// later than they are born.
+/// Nodes nearer to a curve than this share of the distance between coarse nodes tell nothing of its sides: features are
+/// counted a little later than they are born.
 const BESIDE: f64 = 0.75;
 /// No region.
 const NONE: u32 = u32::MAX;
@@ -38,8 +38,9 @@ pub struct RegionPicture {
 }
 
 impl RegimeMap {
-    /// The regions of an observable (by its place in [`Subject::observables`](crate::continuation::Subject::observables)), in a picture of so many
-    /// columns and rows; `None` without a node, or a picture of nothing.
+    /// The regions of an observable (by its place in
+    /// [`Subject::observables`](crate::continuation::Subject::observables)), in a picture of so many columns and rows;
+    /// `None` without a node, or a picture of nothing.
     pub fn regions(&self, observable: usize, size: [usize; 2]) -> Option<RegionPicture> {
         if self.nodes.is_empty() || size.contains(&0) {
             return None;
@@ -121,8 +122,8 @@ pub(crate) struct FloodedRegion {
     pub(crate) room: f64,
 }
 
-/// Gives every pixel of a picture to the nearest seed that no line parts it from; `smallest` is the longer side of the smallest cell between the seeds.
-/// Pixels of one kind that hang together are a region.
+/// Gives every pixel of a picture to the nearest seed that no line parts it from; `smallest` is the longer side of the
+/// smallest cell between the seeds. Pixels of one kind that hang together are a region.
 pub(crate) fn flooded(
     size: [usize; 2],
     lines: &[Vec<[f64; 2]>],
@@ -214,8 +215,8 @@ impl Canvas {
         walls
     }
 
-    /// The kind of the nearest seed for every pixel, by ways that cross no wall. Seeds beside a wall count where no other leads, and walls
-    /// fall to either side.
+    /// The kind of the nearest seed for every pixel, by ways that cross no wall. Seeds beside a wall count where no
+    /// other leads, and walls fall to either side.
     fn flooded(&self, walls: &[bool], seeds: &[(usize, u32, bool)]) -> Vec<u32> {
         let mut owners = vec![NONE; walls.len()];
         let of = |beside: bool| {

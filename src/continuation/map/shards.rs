@@ -1,4 +1,5 @@
-//! Shards of a map: contiguous parts of its rows that are solved by processes that know nothing of each other, and what they found.
+//! Shards of a map: contiguous parts of its rows that are solved by processes that know nothing of each other, and what
+//! they found.
 
 use super::crossing::{Blurred, Crossing, in_order, sort};
 use super::found::MapNode;
@@ -12,7 +13,8 @@ pub struct MapChange {
     pub observable: usize,
     /// The two nodes.
     pub ends: [[f64; 2]; 2],
-    /// The indicator that is zero between them, where it is in the density, and about where the zero is; `None` where no indicator tells.
+    /// The indicator that is zero between them, where it is in the density, and about where the zero is; `None` where
+    /// no indicator tells.
     pub zero: Option<(IndicatorKind, Vec<f64>, [f64; 2])>,
 }
 

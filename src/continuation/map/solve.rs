@@ -1,5 +1,5 @@
-//! Solving the nodes of a map: the coarse grid in strips, then what neighbours that differ ask for, in parts of fixed length. Every strip
-//! and part is a session of its own along a path of its own.
+//! Solving the nodes of a map: the coarse grid in strips, then what neighbours that differ ask for, in parts of fixed
+//! length. Every strip and part is a session of its own along a path of its own.
 
 use std::ops::RangeInclusive;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -79,7 +79,8 @@ impl<'a> Solver<'a> {
         self.wanted.store(count, Ordering::Relaxed);
     }
 
-    /// Solves again what was recalled and is near to a change, of places that are `asked`: its densities tell which indicator's zero to follow.
+    /// Solves again what was recalled and is near to a change, of places that are `asked`: its densities tell which
+    /// indicator's zero to follow.
     fn complete(&self, asked: &dyn Fn(At) -> bool) -> Result<(), SourceError> {
         let wanted: Vec<At> = {
             let grid = self.grid();
@@ -94,8 +95,8 @@ impl<'a> Solver<'a> {
         self.solve_parts(&parts)
     }
 
-    /// Solves some rows of the coarse grid and refines between them; gives the cells that are not halved further. Of what was recalled, places near
-    /// changes that are `asked` for are solved again.
+    /// Solves some rows of the coarse grid and refines between them; gives the cells that are not halved further. Of
+    /// what was recalled, places near changes that are `asked` for are solved again.
     pub(super) fn solve_all(
         &self,
         rows: &RangeInclusive<usize>,
@@ -233,7 +234,8 @@ impl<'a> Solver<'a> {
     }
 }
 
-/// Solves where a coordinate of the path leads, and detects; with the reason where that fails. `None` where the source was asked to stop.
+/// Solves where a coordinate of the path leads, and detects; with the reason where that fails. `None` where the source
+/// was asked to stop.
 pub(super) fn solve_place(
     session: &mut dyn Session,
     method: &'static str,

@@ -18,9 +18,10 @@ pub struct PlaneState {
     pub point: Point,
 }
 
-/// Solves at all crossings of these values of the first and of the second parameter of a plane, to and fro, so that neighbours follow each other: every
-/// other row is in descending order of the first parameter. A row is a session of its own that shares nothing, so the states do not depend on the number
-/// of threads. `done` is told of every state, from whatever thread. Cancelled, rows that are not whole are left out; a state that fails is data.
+/// Solves at all crossings of these values of the first and of the second parameter of a plane, to and fro, so that
+/// neighbours follow each other: every other row is in descending order of the first parameter. A row is a session of
+/// its own that shares nothing, so the states do not depend on the number of threads. `done` is told of every state,
+/// from whatever thread. Cancelled, rows that are not whole are left out; a state that fails is data.
 ///
 /// # Errors
 /// [`SourceError`] where no source can be made in this plane.

@@ -28,7 +28,8 @@ pub(super) struct Tracer<'a> {
     pub(super) options: &'a CurveOptions,
 }
 
-/// Fewest points of a curve: with fewer its indicator exists on a single line of the plane, such as the one on which a system is symmetric.
+/// Fewest points of a curve: with fewer its indicator exists on a single line of the plane, such as the one on which a
+/// system is symmetric.
 const FEWEST: usize = 3;
 /// A curve whose middle error is larger is none that a map could show, in sides of the box.
 const VAGUE: f64 = 0.05;
@@ -126,7 +127,8 @@ impl Tracer<'_> {
         (curves, untraced)
     }
 
-    /// Where a curve starts from a point of codimension two that is not drawn and was not tried: it may be too narrow for the nodes to show.
+    /// Where a curve starts from a point of codimension two that is not drawn and was not tried: it may be too narrow
+    /// for the nodes to show.
     fn next_branch(
         &self,
         branches: &mut Vec<CurveStart>,
@@ -174,7 +176,8 @@ impl Tracer<'_> {
         )
     }
 
-    /// Whether a curve that was followed from a crossing is one that is drawn already: beyond the end of a curve its crossings are not explained by it.
+    /// Whether a curve that was followed from a crossing is one that is drawn already: beyond the end of a curve its
+    /// crossings are not explained by it.
     fn is_drawn(&self, drawn: &[Drawn], start: &Crossing, curve: &Curve) -> bool {
         let begins = curve.points.get(curve.start);
         let at = begins.map(|point| self.maker.plane.place(point.values));
@@ -260,8 +263,9 @@ fn add_work(work: &mut CurveWork, found: &Result<Curve, CurveError>) {
     }
 }
 
-/// Takes one crossing of every indicator from those that are open: the middle one, away from ends of curves where they turn and meet. An indicator
-/// that crosses only where another one of the same density does waits for that one's curve, which is its own then.
+/// Takes one crossing of every indicator from those that are open: the middle one, away from ends of curves where they
+/// turn and meet. An indicator that crosses only where another one of the same density does waits for that one's curve,
+/// which is its own then.
 fn starts(open: &mut Vec<Crossing>, failures: &[(Crossing, String)]) -> Vec<Crossing> {
     let mut kinds: Vec<(usize, IndicatorKind)> = Vec::new();
     for crossing in open.iter() {

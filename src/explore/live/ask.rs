@@ -64,7 +64,8 @@ pub(super) struct AskSweepFile {
     pub(super) values: BTreeMap<String, f64>,
 }
 
-/// Asks for the map of the plane at these values of the parameters that do not span it, or that the one in the making be given up.
+/// Asks for the map of the plane at these values of the parameters that do not span it, or that the one in the making
+/// be given up.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct AskMap {

@@ -6,8 +6,9 @@ use super::ask::{AskLocate, AskSolve};
 use crate::sweep_file::{Settings, Sweep};
 use crate::system::{Family, Path};
 
-/// Cells an axis at least, on which a preview is solved. A density that fills a third of its window then has eight cells across, enough to tell one peak from two;
-/// and 24 × 24 cells of `coulomb_fc` are solved in 3 ms, less than a page takes to draw: fewer would save nothing that is felt.
+/// Cells an axis at least, on which a preview is solved. A density that fills a third of its window then has eight
+/// cells across, enough to tell one peak from two; and 24 × 24 cells of `coulomb_fc` are solved in 3 ms, less than a
+/// page takes to draw: fewer would save nothing that is felt.
 const FEWEST: usize = 24;
 /// Values at which a span is solved before its changes are narrowed.
 const SPAN_POINTS: usize = 9;

@@ -36,7 +36,8 @@ impl Lanes {
         self.newest.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Takes the place of the older requests of a lane and cancels what is being solved of them; `None` where there is a newer one.
+    /// Takes the place of the older requests of a lane and cancels what is being solved of them; `None` where there is
+    /// a newer one.
     pub(super) fn enter<'l>(&'l self, name: &'l str, ticket: u64) -> Option<Place<'l>> {
         if name.len() > LONGEST_NAME {
             return None;

@@ -1,7 +1,8 @@
-//! What the live page asks for: densities at any values of the parameters, changes between two values, sample paths, a sweep file.
+//! What the live page asks for: densities at any values of the parameters, changes between two values, sample paths, a
+//! sweep file.
 //!
-//! Requests come in lanes with rising tickets: a newer one of a lane makes the older ones stale. What waits is dropped, what is being
-//! solved is cancelled. Solves are warm: sessions are kept for the parameters that do not move.
+//! Requests come in lanes with rising tickets: a newer one of a lane makes the older ones stale. What waits is dropped,
+//! what is being solved is cancelled. Solves are warm: sessions are kept for the parameters that do not move.
 
 mod ask;
 mod bound;
@@ -52,8 +53,8 @@ impl std::fmt::Debug for Live {
     }
 }
 
-/// What a request comes to, as JSON. That a value is refused or a request stale is an answer like others: browsers write failures
-/// into their consoles.
+/// What a request comes to, as JSON. That a value is refused or a request stale is an answer like others: browsers
+/// write failures into their consoles.
 #[derive(Debug, Serialize)]
 #[serde(rename_all = "lowercase")]
 enum Answer<T> {
@@ -91,7 +92,8 @@ struct Solved {
     milliseconds: f64,
 }
 
-/// The cells of a watched density, with its values and band as little-endian doubles in base64; `None` where they were not asked for.
+/// The cells of a watched density, with its values and band as little-endian doubles in base64; `None` where they were
+/// not asked for.
 #[derive(Debug, Serialize)]
 struct Grid {
     edges: Vec<Vec<f64>>,
@@ -252,8 +254,8 @@ impl Live {
 /// What a request is told when the program itself is at fault.
 const FAULT: &str = "the program met an error of its own at these values, which its terminal shows; other values can go on being asked for";
 
-/// The answer to a request. A panic is one too: it ends neither the server nor other requests. What it may leave behind is not used again: a session is kept only after
-/// a solve that came back.
+/// The answer to a request. A panic is one too: it ends neither the server nor other requests. What it may leave behind
+/// is not used again: a session is kept only after a solve that came back.
 fn answer<T: Serialize>(make: impl FnOnce() -> Result<T, Stop>) -> Vec<u8> {
     let made = catch_unwind(AssertUnwindSafe(make));
     let answer = match made {

@@ -7,7 +7,8 @@ use crate::continuation::{DensitySource as _, Session, Solution, SourceError};
 /// Sessions that are kept: the shown state, its preview, the sweep, and the parameter that moved before.
 const MOST: usize = 4;
 
-/// A session remembers what it has solved, about so many bytes a cell each time, and solves the next from the nearest; before it has so much in all, it begins anew.
+/// A session remembers what it has solved, about so many bytes a cell each time, and solves the next from the nearest;
+/// before it has so much in all, it begins anew.
 const REMEMBERED: usize = 16;
 const MOST_REMEMBERED: usize = 64 << 20;
 /// Solves of a session at least, however many cells it has: the first takes longer than all others.
@@ -44,8 +45,8 @@ pub(super) enum Solving {
 }
 
 impl Sessions {
-    /// Solves in the session that knows these parameters, or in a new one. `begin` is told what cancels the solve and says whether it
-    /// is still wanted.
+    /// Solves in the session that knows these parameters, or in a new one. `begin` is told what cancels the solve and
+    /// says whether it is still wanted.
     pub(super) fn solve(
         &mut self,
         bound: &Bound,

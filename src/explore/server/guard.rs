@@ -1,7 +1,7 @@
 //! Who may ask: pages that this server sent, and nobody else.
 //!
-//! A page of another origin can make a browser send requests here, and a name of another host can be made to lead here (DNS rebinding).
-//! Neither knows the token, and both are told apart by what the browser says of them.
+//! A page of another origin can make a browser send requests here, and a name of another host can be made to lead here
+//! (DNS rebinding). Neither knows the token, and both are told apart by what the browser says of them.
 
 use super::http::{Request, Response};
 

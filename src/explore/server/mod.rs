@@ -47,8 +47,8 @@ impl LiveServer {
     /// Takes a port of the loopback address, a free one for 0, and composes the page of a sweep.
     ///
     /// # Errors
-    /// [`ExploreError::Port`] when the port cannot be had, [`ExploreError::Random`] without random numbers for the token,
-    /// and what the page cannot be composed for.
+    /// [`ExploreError::Port`] when the port cannot be had, [`ExploreError::Random`] without random numbers for the
+    /// token, and what the page cannot be composed for.
     pub fn bind(sweep: &crate::sweep_file::Sweep, port: u16) -> Result<Self, ExploreError> {
         let taken = |source| ExploreError::Port { port, source };
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(taken)?;

@@ -9,8 +9,8 @@ const LIGHT: [f64; 3] = [-0.45, -0.35, 0.85];
 /// Share of a colour that is left in full shadow.
 const AMBIENT: f64 = 0.52;
 
-/// A facet as it is drawn: whole where it is nearly flat, else cut along the diagonal that keeps a ridge. Of a triangle the last corner stands
-/// twice; the parts follow each other toward the viewer.
+/// A facet as it is drawn: whole where it is nearly flat, else cut along the diagonal that keeps a ridge. Of a triangle
+/// the last corner stands twice; the parts follow each other toward the viewer.
 pub(super) fn parts(corners: [[f64; 3]; 4]) -> Vec<[[f64; 3]; 4]> {
     let [a, b, c, d] = corners;
     let bend = a[2] + c[2] - b[2] - d[2];
@@ -49,8 +49,8 @@ pub(super) fn shaded((r, g, b): (u8, u8, u8), brightness: f64) -> (u8, u8, u8) {
     (shade(r), shade(g), shade(b))
 }
 
-/// How far facets reach beyond their corners, in pixels: neighbours overlap by twice as much, so that no seam shines through. A rim around each would do the same
-/// in three times the time.
+/// How far facets reach beyond their corners, in pixels: neighbours overlap by twice as much, so that no seam shines
+/// through. A rim around each would do the same in three times the time.
 const OVERLAP: f64 = 0.4;
 /// A corner moves outward by so many times that at most, however sharp it is.
 const SHARPEST: f64 = 2.0;

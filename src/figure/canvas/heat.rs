@@ -56,8 +56,8 @@ impl Picture {
     }
 }
 
-/// A picture of areas, each of one colour, as an indexed PNG: the pixel `(column, row)`, counted from the **lower** left, has the colour with the
-/// number that `number` gives, of at most 256.
+/// A picture of areas, each of one colour, as an indexed PNG: the pixel `(column, row)`, counted from the **lower**
+/// left, has the colour with the number that `number` gives, of at most 256.
 ///
 /// # Errors
 /// [`DrawError::Png`].

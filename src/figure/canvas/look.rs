@@ -1,4 +1,5 @@
-//! What a style changes of a drawing: the size of a figure pixel and of the page, the weight of lines, typeface, colours.
+//! What a style changes of a drawing: the size of a figure pixel and of the page, the weight of lines, typeface,
+//! colours.
 
 use plotters::style::colors::colormaps::{ColorMap as _, ViridisRGB};
 

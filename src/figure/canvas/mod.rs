@@ -1,9 +1,9 @@
-//! What draws: pages and panels in figure pixels, axes, curves, maps, contours, legends, and the way to SVG and pixels. It
-//! knows nothing of sweeps and densities.
+//! What draws: pages and panels in figure pixels, axes, curves, maps, contours, legends, and the way to SVG and pixels.
+//! It knows nothing of sweeps and densities.
 //!
 //! plotters lays the data out on a canvas of its own making (`backend`), with sub-pixel places, real subscripts,
-//! and heat maps as one embedded picture. Lettering is DejaVu Sans or Serif, which comes with the program; no font of the
-//! machine is used, and equal drawings give equal bytes.
+//! and heat maps as one embedded picture. Lettering is DejaVu Sans or Serif, which comes with the program; no font of
+//! the machine is used, and equal drawings give equal bytes.
 
 mod backend;
 pub(super) mod colour_bar;

@@ -142,7 +142,8 @@ impl Page {
         Ok(self.area.draw(&Mark { points, shape })?)
     }
 
-    /// Fills neighbouring facets, in this order; corners in pixels. They overlap a little, so that no seams are between them.
+    /// Fills neighbouring facets, in this order; corners in pixels. They overlap a little, so that no seams are between
+    /// them.
     pub(in crate::figure) fn facets(&self, facets: &[([(f64, f64); 4], Colour)]) {
         let on_canvas =
             |(x, y): (f64, f64)| ((x * UNITS).round() as i32, (y * UNITS).round() as i32);

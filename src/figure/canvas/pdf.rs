@@ -1,4 +1,5 @@
-//! From an SVG to PDF: what the canvas writes (paths, pictures, lettering) and no more, with the fonts embedded and the text kept as text.
+//! From an SVG to PDF: what the canvas writes (paths, pictures, lettering) and no more, with the fonts embedded and the
+//! text kept as text.
 
 use std::collections::HashMap;
 
@@ -21,7 +22,8 @@ use super::render;
 /// Points of a length of 1/96 inch, which is the unit of a tree.
 const POINTS: f32 = 0.75;
 
-/// An SVG of the canvas as a PDF of one page, in its size. `title` is what a reader shows above its window. Equal drawings give equal bytes.
+/// An SVG of the canvas as a PDF of one page, in its size. `title` is what a reader shows above its window. Equal
+/// drawings give equal bytes.
 ///
 /// # Errors
 /// [`DrawError::Svg`], [`DrawError::Pdf`].
@@ -73,7 +75,8 @@ impl Writer<'_> {
         Ok(())
     }
 
-    /// Draws a text: glyphs of a font that follow each other on a line are one run, so that words are found and copied whole.
+    /// Draws a text: glyphs of a font that follow each other on a line are one run, so that words are found and copied
+    /// whole.
     fn text(&mut self, surface: &mut Surface<'_>, text: &usvg::Text) -> Result<(), DrawError> {
         for span in text.layouted() {
             let size = span.font_size.get();
@@ -111,7 +114,8 @@ impl Writer<'_> {
     }
 }
 
-/// The letters of a run, and its glyphs with advances as they were laid out; `back` leads from the page to the run's own line.
+/// The letters of a run, and its glyphs with advances as they were laid out; `back` leads from the page to the run's
+/// own line.
 fn laid_out(
     run: &[usvg::layout::PositionedGlyph],
     back: usvg::Transform,

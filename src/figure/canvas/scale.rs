@@ -116,8 +116,8 @@ impl Scale {
         Self::with(look, range, most(1.6).max(least), title)
     }
 
-    /// Lays out an axis of logarithms to base ten, labelled at as many powers of ten as its length has room for: `range` and what is drawn
-    /// are exponents.
+    /// Lays out an axis of logarithms to base ten, labelled at as many powers of ten as its length has room for:
+    /// `range` and what is drawn are exponents.
     ///
     /// # Errors
     /// [`DrawError::Svg`].

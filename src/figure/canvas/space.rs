@@ -1,5 +1,5 @@
-//! A box seen from above and aside, for surfaces: parallel projection, axes with titles, and facets drawn from the far end to the near one,
-//! so that near parts hide far ones.
+//! A box seen from above and aside, for surfaces: parallel projection, axes with titles, and facets drawn from the far
+//! end to the near one, so that near parts hide far ones.
 
 use plotters_backend::text_anchor::HPos;
 
@@ -25,7 +25,8 @@ const FLAT: f64 = 0.002;
 /// Width of the lines of the mesh, in pixels.
 const MESH: f64 = 0.35;
 
-/// Heights over a rectilinear grid, all in shares of the box: abscissas and ordinates ascending from 0 to 1, heights the ordinate fastest.
+/// Heights over a rectilinear grid, all in shares of the box: abscissas and ordinates ascending from 0 to 1, heights
+/// the ordinate fastest.
 pub(in crate::figure) struct Heights {
     /// Abscissas.
     pub(in crate::figure) x: Vec<f64>,
@@ -61,7 +62,8 @@ fn angles() -> ((f64, f64), (f64, f64)) {
     )
 }
 
-/// Place of a point of the unit box on a picture whose unit is a side of the box, from the middle of the floor; downward positive.
+/// Place of a point of the unit box on a picture whose unit is a side of the box, from the middle of the floor;
+/// downward positive.
 fn project([x, y, z]: [f64; 3]) -> (f64, f64) {
     let ((sin_a, cos_a), (sin_e, cos_e)) = angles();
     let (u, v, w) = (x - 0.5, y - 0.5, z * HEIGHT);

@@ -1,8 +1,9 @@
-//! How figures look: sizes, colours, dashes. Everything that makes them one family stands here; what a style changes of it
-//! is in [`look`](super::look).
+//! How figures look: sizes, colours, dashes. Everything that makes them one family stands here; what a style changes of
+//! it is in [`look`](super::look).
 //!
-//! Lengths are in figure pixels. Left to itself a figure is printed at 96 of them to the inch; with a width or a size of text asked for, a
-//! figure pixel is what makes the lettering of that size, and the layout has as many of them as the page is then wide.
+//! Lengths are in figure pixels. Left to itself a figure is printed at 96 of them to the inch; with a width or a size
+//! of text asked for, a figure pixel is what makes the lettering of that size, and the layout has as many of them as
+//! the page is then wide.
 
 use super::look::Look;
 

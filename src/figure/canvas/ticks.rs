@@ -56,8 +56,8 @@ pub(super) fn ticks(from: f64, to: f64, most: usize) -> Ticks {
     }
 }
 
-/// Ticks at the powers of ten between two exponents, small ones at 2 to 9 times each; where there are more than `most` powers, every
-/// second, third, … is labelled and the others are the small ticks.
+/// Ticks at the powers of ten between two exponents, small ones at 2 to 9 times each; where there are more than `most`
+/// powers, every second, third, … is labelled and the others are the small ticks.
 pub(super) fn decades(from: f64, to: f64, most: usize) -> Ticks {
     let slack = 1e-9;
     let inside = |exponent: f64| exponent >= from - slack && exponent <= to + slack;

@@ -6,7 +6,8 @@ impl Graph {
     /// The drift of the Itô equation that is the same process as the Stratonovich equation
     /// dX = drift dt + Σ_k b_k ∘ dW_k: drift_i + ½ Σ_k Σ_j b_jk ∂b_ik/∂x_j, for `noise[k][j]` the amplitude b_jk of
     /// process k on axis j. The second part lists what the amplitudes' derivatives do not hold at (see
-    /// [`Derivative::jumps`](crate::formula::graph::Derivative::jumps)): there the two readings of the equation differ by more.
+    /// [`Derivative::jumps`](crate::formula::graph::Derivative::jumps)): there the two readings of the equation differ
+    /// by more.
     ///
     /// # Errors
     /// [`TooLarge`].

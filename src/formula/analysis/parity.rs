@@ -38,7 +38,8 @@ const SCALES: [f64; 3] = [0.1, 1.0, 4.0];
 const ROUNDING: f64 = 1e-11;
 /// Trial states at each of [`FAR_SCALES`].
 const FAR_TRIALS: usize = 40;
-/// The same for systems in other units: an oscillator a micrometre wide has terms that are lost in rounding at states of size one.
+/// The same for systems in other units: an oscillator a micrometre wide has terms that are lost in rounding at states
+/// of size one.
 const FAR_SCALES: [f64; 6] = [1e-3, 1e3, 1e-6, 1e6, 1e-9, 1e9];
 /// Relative difference there that is none of rounding.
 const CLEAR: f64 = 1e-6;

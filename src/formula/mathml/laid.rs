@@ -1,4 +1,5 @@
-//! A part of a formula that has been laid out, and what its neighbours must know of it: its sign, and how tightly it holds together.
+//! A part of a formula that has been laid out, and what its neighbours must know of it: its sign, and how tightly it
+//! holds together.
 
 use super::{Content, DEEPEST, Element};
 use crate::formula::language::typeset_name;

@@ -41,7 +41,8 @@ pub enum Content {
     Elements(Vec<Element>),
 }
 
-/// The layout of a formula of the language that [`super`] describes; names of functions and constants as in print: `sgn`, `√`, `π`.
+/// The layout of a formula of the language that [`super`] describes; names of functions and constants as in print:
+/// `sgn`, `√`, `π`.
 ///
 /// ```
 /// use pbif::formula::mathml;

@@ -1,7 +1,8 @@
-//! The layout of an equation as people write it, such as `z' = y - (λ |y| / f_c) z,   |z| ≤ f_c/λ`. Built-in models state theirs so.
+//! The layout of an equation as people write it, such as `z' = y - (λ |y| / f_c) z,   |z| ≤ f_c/λ`. Built-in models
+//! state theirs so.
 //!
-//! Unlike formulas, such lines hold relations, bars, primes, functions that are defined in words, and words. What cannot be
-//! read is shown as it stands.
+//! Unlike formulas, such lines hold relations, bars, primes, functions that are defined in words, and words. What
+//! cannot be read is shown as it stands.
 
 use super::laid::{Fence, Laid};
 use super::{DEEPEST, Element, LONGEST};

@@ -1,7 +1,7 @@
 //! What a point costs by the generator: the matrices, and factors that the elimination order predicts.
 //!
-//! A stencil holds 2 reach + 1 rates along each axis, 16 bytes each, in up to four matrices: Q, dQ/dθ, that of the second
-//! scheme, and the one kept for sensitivities.
+//! A stencil holds 2 reach + 1 rates along each axis, 16 bytes each, in up to four matrices: Q, dQ/dθ, that of the
+//! second scheme, and the one kept for sensitivities.
 
 use super::GeneratorMethodOptions;
 use crate::space::CellSpace;

@@ -1,7 +1,8 @@
 //! How the jumps at the kinks of densities change with a parameter.
 //!
-//! They follow from the equations at once. Where the drift does not jump by as much all over the plane, they depend on how the mass is
-//! spread over it as well, and only then is the change of the masses asked for, which takes a triangular solve.
+//! They follow from the equations at once. Where the drift does not jump by as much all over the plane, they depend on
+//! how the mass is spread over it as well, and only then is the change of the masses asked for, which takes a
+//! triangular solve.
 
 use std::sync::Arc;
 
@@ -9,8 +10,8 @@ use super::GeneratorSource;
 use crate::method::MethodError;
 use crate::system::{System, SystemError};
 
-/// Step of differences, relative to the number that is varied (to `LEAST` where that is smaller). Their error is step⁴ times the fifth
-/// derivative over 30, and rounding over the step.
+/// Step of differences, relative to the number that is varied (to `LEAST` where that is smaller). Their error is step⁴
+/// times the fifth derivative over 30, and rounding over the step.
 const STEP: f64 = 2e-3;
 const LEAST: f64 = 1e-2;
 /// A share of the largest jump by which jumps differ that do not depend on the masses.
@@ -25,8 +26,8 @@ pub(super) struct Kinked<'a> {
 }
 
 impl Kinked<'_> {
-    /// Changes of the jumps of every watched density, for systems that depend on one number, at its value; `change` gives those of the
-    /// masses. Nothing where the number of jumps is not the same beside.
+    /// Changes of the jumps of every watched density, for systems that depend on one number, at its value; `change`
+    /// gives those of the masses. Nothing where the number of jumps is not the same beside.
     pub(super) fn changes(
         &self,
         system_at: impl Fn(f64) -> Result<Arc<dyn System>, SystemError>,

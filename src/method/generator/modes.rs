@@ -1,8 +1,8 @@
 //! How many modes an axis needs: as many as change nothing more in what is watched.
 //!
-//! The answer converges exponentially in the number of modes, whatever the cells along the other axes; so the number is found on
-//! coarse cells, at both ends and in the middle of a sweep, and holds for all of it: a number that changed from point to point would
-//! make densities jump.
+//! The answer converges exponentially in the number of modes, whatever the cells along the other axes; so the number is
+//! found on coarse cells, at both ends and in the middle of a sweep, and holds for all of it: a number that changed
+//! from point to point would make densities jump.
 
 use super::GeneratorMethodOptions;
 use super::source::GeneratorSource;
@@ -21,7 +21,8 @@ const MOST_NODES: usize = 150;
 /// Change of a watched density, relative to its largest value, that more modes may still make.
 const CHANGE: f64 = 1e-4;
 
-/// Change up to which it may be the cells' doing that it no longer falls, and the share of the change before it that it has then.
+/// Change up to which it may be the cells' doing that it no longer falls, and the share of the change before it that it
+/// has then.
 const FLOOR: f64 = 1e-3;
 const STALLED: f64 = 0.7;
 
@@ -45,9 +46,9 @@ const COARSER: [usize; 2] = [64, 20];
 /// Change that more modes than are given may make without being told: then peaks may still come and go by it.
 const MUCH: f64 = 1e-2;
 
-/// By how much more modes along all axes that have modes would change what is watched, relative to the largest value of each density,
-/// where that is much: the largest change at both ends and in the middle of the path. `None` where it is little, cannot be afforded, or
-/// not be solved.
+/// By how much more modes along all axes that have modes would change what is watched, relative to the largest value of
+/// each density, where that is much: the largest change at both ends and in the middle of the path. `None` where it is
+/// little, cannot be afforded, or not be solved.
 ///
 /// # Errors
 /// [`MethodError::Cancelled`].
@@ -77,8 +78,8 @@ pub fn change_by_more_modes(
     }
 }
 
-/// Finds how many modes the axes `open` need (all alike) for what is watched along the path of a problem. The axes of `problem` are as
-/// wanted but for the number of modes of these.
+/// Finds how many modes the axes `open` need (all alike) for what is watched along the path of a problem. The axes of
+/// `problem` are as wanted but for the number of modes of these.
 ///
 /// # Errors
 /// [`MethodError`].

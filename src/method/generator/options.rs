@@ -17,8 +17,8 @@ pub struct GeneratorMethodOptions {
     /// Largest share of the mass that may leave Ω within one relaxation time before there is said to be no
     /// steady state.
     pub escape_limit: f64,
-    /// Change of the watched densities that more modes would make, relative to their largest values, where it is known to be too
-    /// large: every point then says so, and no change is called located.
+    /// Change of the watched densities that more modes would make, relative to their largest values, where it is known
+    /// to be too large: every point then says so, and no change is called located.
     pub change_by_modes: Option<f64>,
 }
 

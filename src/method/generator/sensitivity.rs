@@ -13,8 +13,8 @@ use crate::system::{System, SystemError};
 /// Relative error of derivatives, in L1: a slope of an indicator to about as many digits as the indicator itself has.
 const ACCURACY: f64 = 1e-6;
 
-/// Size of the change of the unknowns, relative in L1, by which their map to masses is differentiated. It is linear but for its
-/// norm, so that the error is this squared times the small change of the norm.
+/// Size of the change of the unknowns, relative in L1, by which their map to masses is differentiated. It is linear but
+/// for its norm, so that the error is this squared times the small change of the norm.
 const SHARE: f64 = 1e-3;
 
 /// The answer of one solved point.

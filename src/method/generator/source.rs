@@ -44,8 +44,8 @@ pub struct GeneratorSource {
     pub(super) kinked: Vec<SwitchingSurface>,
     /// Whether nothing leaves Ω, whatever the system does there.
     pub(super) enclosed: bool,
-    /// Whether densities are all that is asked for: a check compares them with what another source found, whose errors and relaxation
-    /// are known.
+    /// Whether densities are all that is asked for: a check compares them with what another source found, whose errors
+    /// and relaxation are known.
     pub(super) checks: bool,
 }
 

@@ -13,7 +13,8 @@ pub(super) struct Stand {
 const LEAD: f64 = 0.6;
 
 impl Stand {
-    /// The value to factorise in place of one from which the sweep goes on between `ends` as it came; `None` where it turns.
+    /// The value to factorise in place of one from which the sweep goes on between `ends` as it came; `None` where it
+    /// turns.
     pub(super) fn ahead_of(self, value: f64, ends: (f64, f64)) -> Option<f64> {
         let served = value - self.factorised?;
         let step = value - self.solved?;

@@ -4,8 +4,8 @@ use super::{Estimator, MonteCarloOptions};
 use crate::method::StepChoice;
 use crate::monte_carlo::BLOCKS;
 
-/// Steps a second by Heun's integrator with looks, on two ordinary cores. Measured (`docs/monte-carlo.md`), good to a factor of
-/// two.
+/// Steps a second by Heun's integrator with looks, on two ordinary cores. Measured (`docs/monte-carlo.md`), good to a
+/// factor of two.
 const STEPS_A_SECOND: f64 = 3e8;
 
 /// What a point costs by Monte Carlo.

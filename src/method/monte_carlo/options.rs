@@ -46,8 +46,8 @@ pub struct MonteCarloOptions {
     pub seed: u64,
     /// Integrator of the trajectories.
     pub integrator: Integrator,
-    /// Largest share of the time outside Ω, or of the trajectories that run away within one autocorrelation time, before
-    /// there is said to be no steady state.
+    /// Largest share of the time outside Ω, or of the trajectories that run away within one autocorrelation time,
+    /// before there is said to be no steady state.
     pub escape_limit: f64,
 }
 

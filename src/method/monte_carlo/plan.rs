@@ -1,4 +1,5 @@
-//! What Monte Carlo does at every parameter value of a sweep, chosen once from trajectories at both ends and in the middle.
+//! What Monte Carlo does at every parameter value of a sweep, chosen once from trajectories at both ends and in the
+//! middle.
 
 use std::sync::Arc;
 

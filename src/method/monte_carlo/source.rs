@@ -73,7 +73,8 @@ impl MonteCarloSource {
         })
     }
 
-    /// The same trajectories for a share of the time during which states are counted; what was measured is not measured again.
+    /// The same trajectories for a share of the time during which states are counted; what was measured is not measured
+    /// again.
     pub fn shortened(&self, share: f64) -> Self {
         let mut source = self.clone();
         source.plan.length *= share;

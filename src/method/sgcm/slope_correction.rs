@@ -1,10 +1,10 @@
 //! The steady state of a cell map whose densities are linear inside the cells instead of flat.
 //!
 //! The plain cell map forgets where in a cell a sample ends, and starts the next step evenly spread: a diffusion of
-//! h²/(12Δt). Most of it is the slope: where the density falls across a cell, more of its mass sits at the higher side. So the
-//! samples, which know where they started, are weighted by the density at their starts. The weights depend on the density
-//! that is sought; the equation is solved by turns, slopes from the last masses, masses from the matrix with these
-//! slopes, until nothing changes.
+//! h²/(12Δt). Most of it is the slope: where the density falls across a cell, more of its mass sits at the higher side.
+//! So the samples, which know where they started, are weighted by the density at their starts. The weights depend on
+//! the density that is sought; the equation is solved by turns, slopes from the last masses, masses from the matrix
+//! with these slopes, until nothing changes.
 
 use super::Correction;
 use crate::MAX_DIMENSION;
@@ -31,10 +31,10 @@ pub struct Corrected {
     pub change: f64,
 }
 
-/// Solves the cell map with slope-corrected transitions, all samples or without one group of them. `guess` has one mass a cell
-/// of the space. Turns end when the masses change by less than `largest_change` in L1; a steady state that still changes by
-/// more after a hundred of them is marked as not converged. Without kept starts, or where there is no single steady state, the plain cell map's outcome is given: which cells
-/// communicate does not depend on weights.
+/// Solves the cell map with slope-corrected transitions, all samples or without one group of them. `guess` has one mass
+/// a cell of the space. Turns end when the masses change by less than `largest_change` in L1; a steady state that still
+/// changes by more after a hundred of them is marked as not converged. Without kept starts, or where there is no single
+/// steady state, the plain cell map's outcome is given: which cells communicate does not depend on weights.
 ///
 /// # Errors
 /// [`MethodError::Stationary`] when the transitions cannot be solved.

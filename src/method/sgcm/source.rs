@@ -286,8 +286,8 @@ impl SgcmSource {
         reporter
     }
 
-    /// Samples the cell map at a parameter value, to be solved by [`SgcmSource::solve_sampled`]. Where samples started is
-    /// kept when the options ask for slope correction.
+    /// Samples the cell map at a parameter value, to be solved by [`SgcmSource::solve_sampled`]. Where samples started
+    /// is kept when the options ask for slope correction.
     ///
     /// # Errors
     /// [`MethodError`] when the value is not allowed, or sampling was cancelled.
@@ -306,8 +306,8 @@ impl SgcmSource {
         })
     }
 
-    /// Solves a sampled cell map, with the correction of one's choice: the same samples serve both. `start` has one mass a cell, and so
-    /// has what is found beside the solution, where there is a steady state.
+    /// Solves a sampled cell map, with the correction of one's choice: the same samples serve both. `start` has one
+    /// mass a cell, and so has what is found beside the solution, where there is a steady state.
     ///
     /// # Errors
     /// [`MethodError`] when the samples cannot be solved, or the solve was cancelled.

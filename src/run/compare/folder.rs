@@ -1,5 +1,5 @@
-//! The folder of a comparison: written beside its place, and put there when it is whole; what was there before is kept. What is solved stands in
-//! its journal meanwhile.
+//! The folder of a comparison: written beside its place, and put there when it is whole; what was there before is kept.
+//! What is solved stands in its journal meanwhile.
 
 use std::path::{Path, PathBuf};
 
@@ -57,7 +57,8 @@ impl CompareFolder {
         home.join(PART).is_file()
     }
 
-    /// A new journal for what a comparison solves, which `of` describes as TOML; that of an unfinished one is kept below `previous/`.
+    /// A new journal for what a comparison solves, which `of` describes as TOML; that of an unfinished one is kept
+    /// below `previous/`.
     ///
     /// # Errors
     /// [`RunError::Read`] or [`RunError::Write`].
@@ -110,8 +111,8 @@ impl CompareFolder {
         Ok(())
     }
 
-    /// Puts the comparison in its place and returns its files; what an earlier one left goes below `previous/`. The journal goes, unless the
-    /// comparison was interrupted.
+    /// Puts the comparison in its place and returns its files; what an earlier one left goes below `previous/`. The
+    /// journal goes, unless the comparison was interrupted.
     ///
     /// # Errors
     /// [`RunError::Read`] or [`RunError::Write`].

@@ -1,4 +1,5 @@
-//! What an unfinished comparison has solved, in `compare.part.bin`: every solve in full, written when it is done, from which it goes on.
+//! What an unfinished comparison has solved, in `compare.part.bin`: every solve in full, written when it is done, from
+//! which it goes on.
 
 use std::collections::VecDeque;
 use std::path::Path;

@@ -66,18 +66,21 @@ impl Array {
     }
 }
 
-/// Everything that is exported: coordinates first, then moments, then densities, one value of the parameter after the other.
+/// Everything that is exported: coordinates first, then moments, then densities, one value of the parameter after the
+/// other.
 struct DataSet {
     title: String,
     arrays: Vec<Array>,
 }
 
-/// Writes the densities and moments of a run's points to a file, or to a folder of tables. Points without a density are left out. The arrays have the names of
-/// `densities.zarr`: `p_x` with dimensions of the parameter and `x`, normalised to ∫ = 1, its standard error `p_x_error`, its second discretisation
-/// `p_x_second`; centres `x` and edges `x_edges` of the cells; `mean_x` and `sd_x`.
+/// Writes the densities and moments of a run's points to a file, or to a folder of tables. Points without a density are
+/// left out. The arrays have the names of `densities.zarr`: `p_x` with dimensions of the parameter and `x`, normalised
+/// to ∫ = 1, its standard error `p_x_error`, its second discretisation `p_x_second`; centres `x` and edges `x_edges` of
+/// the cells; `mean_x` and `sd_x`.
 ///
 /// # Errors
-/// [`RunError::Write`], [`RunError::Export`] when the format cannot hold it, [`RunError::NothingToExport`] when no point has a density.
+/// [`RunError::Write`], [`RunError::Export`] when the format cannot hold it, [`RunError::NothingToExport`] when no
+/// point has a density.
 pub fn export(
     subject: &Subject,
     points: &[Point],

@@ -1,5 +1,5 @@
-//! The shards of a sweep: runs of their own in `shards/1-of-4`, `shards/2-of-4`, … of a run's folder, each with its own lock, and read
-//! together.
+//! The shards of a sweep: runs of their own in `shards/1-of-4`, `shards/2-of-4`, … of a run's folder, each with its own
+//! lock, and read together.
 
 mod source;
 
@@ -128,7 +128,8 @@ impl Shards {
         }
     }
 
-    /// All that was solved and seen. Of a value at a border, which two shards have, that of the first is taken: it was solved from its neighbour.
+    /// All that was solved and seen. Of a value at a border, which two shards have, that of the first is taken: it was
+    /// solved from its neighbour.
     ///
     /// # Errors
     /// As [`StoredRun::points`] and [`StoredRun::checks`].

@@ -78,7 +78,8 @@ impl Grid {
         }
     }
 
-    /// Cuts the box of all cells. The layers where images couple hold together across the whole fold, so they come last.
+    /// Cuts the box of all cells. The layers where images couple hold together across the whole fold, so they come
+    /// last.
     pub(super) fn cut_whole(&self) -> Cut {
         let mut rest = self.whole();
         let mut fold = None;

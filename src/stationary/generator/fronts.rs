@@ -99,8 +99,9 @@ pub(super) fn allocate<T: Number>(symbolic: &Symbolic) -> Factors<T> {
     }
 }
 
-/// Factorises: `values` are the rates in the order of the matrix's data, scaled to about one, zero in the row and column of the
-/// unknown that is held (its place in the elimination order), which gets a one on the diagonal. Cancelled factors are worth nothing.
+/// Factorises: `values` are the rates in the order of the matrix's data, scaled to about one, zero in the row and
+/// column of the unknown that is held (its place in the elimination order), which gets a one on the diagonal. Cancelled
+/// factors are worth nothing.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -191,7 +192,8 @@ impl Task<'_> {
     }
 }
 
-/// Adds a child's update, with which `of_child` begins; its boundary is ascending in the parent's local numbers, own cells first.
+/// Adds a child's update, with which `of_child` begins; its boundary is ascending in the parent's local numbers, own
+/// cells first.
 fn extend<T: Number>(
     child: &Front,
     of_child: &[T],
@@ -224,8 +226,8 @@ fn extend<T: Number>(
     }
 }
 
-/// Eliminates the own cells of an assembled front; `update` becomes the Schur complement. Cancelled, it leaves things half done:
-/// the largest fronts alone take seconds.
+/// Eliminates the own cells of an assembled front; `update` becomes the Schur complement. Cancelled, it leaves things
+/// half done: the largest fronts alone take seconds.
 fn eliminate<T: Number>(
     front: &Front,
     factor: &mut Factor<T>,
@@ -335,7 +337,8 @@ fn drop_small<T: Number>(block: Block<'_, T>) {
     }
 }
 
-/// Reorders the rows of a block, whose columns are contiguous: row `source[i]` goes to place `i`. Most stay where they are.
+/// Reorders the rows of a block, whose columns are contiguous: row `source[i]` goes to place `i`. Most stay where they
+/// are.
 fn exchange<T: Number>(block: Block<'_, T>, source: &[u32]) {
     let places = 0u32..;
     let moved = places.zip(source).filter(|(place, from)| place != *from);

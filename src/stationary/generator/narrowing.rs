@@ -52,7 +52,8 @@ impl Positions {
     }
 }
 
-/// The narrow stand-in for `matrix`; every column keeps its sum. Rates between the modes of a place are kept as they are.
+/// The narrow stand-in for `matrix`; every column keeps its sum. Rates between the modes of a place are kept as they
+/// are.
 pub(super) fn narrow(space: &CellSpace, matrix: &CsMat<f64>) -> CsMat<f64> {
     let positions = Positions::new(space);
     let shape = space.shape();

@@ -1,8 +1,9 @@
 //! Passes through the factors, which two iterations may share.
 //!
-//! A pass of forward and backward substitution is bound by reading the factors, so that two vectors take little longer than one.
-//! An iteration is written as a plain sequence of steps (an `async` function) that waits at its [`Seat`] whenever it needs a
-//! pass; whoever runs it lets all that wait have the same one. What an iteration gives does not depend on whom it shares with.
+//! A pass of forward and backward substitution is bound by reading the factors, so that two vectors take little longer
+//! than one. An iteration is written as a plain sequence of steps (an `async` function) that waits at its [`Seat`]
+//! whenever it needs a pass; whoever runs it lets all that wait have the same one. What an iteration gives does not
+//! depend on whom it shares with.
 
 use std::future::{Future, poll_fn};
 use std::pin::{Pin, pin};

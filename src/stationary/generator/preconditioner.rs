@@ -87,7 +87,8 @@ pub(super) struct Structure {
     pub(super) folded: Option<usize>,
 }
 
-/// The grid that a method dissects. Modes are all coupled, so that no cut runs across them: those of a place stay together.
+/// The grid that a method dissects. Modes are all coupled, so that no cut runs across them: those of a place stay
+/// together.
 fn grid(space: &CellSpace, structure: &Structure, method: RateMethod) -> Grid {
     let reach = &structure.reach;
     let axes = space.axes().iter().enumerate();

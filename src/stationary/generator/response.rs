@@ -1,4 +1,5 @@
-//! How a steady state answers to a change of its balance: p' (Σ = 0) from Q p' = -change, by itself or along with the solve.
+//! How a steady state answers to a change of its balance: p' (Σ = 0) from Q p' = -change, by itself or along with the
+//! solve.
 
 use sprs::CsMat;
 

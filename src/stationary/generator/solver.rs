@@ -83,8 +83,8 @@ impl DirectSolver {
         Ok(self.solve_along(matrix, escape, guess, None)?.0)
     }
 
-    /// [`DirectSolver::solve`] with a question that is answered by the same passes for the masses of the guess; there is no answer
-    /// without a guess, or when it took too long.
+    /// [`DirectSolver::solve`] with a question that is answered by the same passes for the masses of the guess; there
+    /// is no answer without a guess, or when it took too long.
     ///
     /// # Errors
     /// As [`DirectSolver::solve`].

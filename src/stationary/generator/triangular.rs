@@ -1,7 +1,7 @@
 //! Forward and backward substitution along the tree of fronts, for one vector or several in one pass.
 //!
-//! A subtree's unknowns are contiguous, so halves are solved in parallel. Sums always run in the same order, whether a vector is
-//! solved alone or with others: a pass is bound by reading the factors, which several vectors then share.
+//! A subtree's unknowns are contiguous, so halves are solved in parallel. Sums always run in the same order, whether a
+//! vector is solved alone or with others: a pass is bound by reading the factors, which several vectors then share.
 
 use std::array::from_fn;
 
@@ -167,8 +167,8 @@ fn subtract_one<T: Number>(column: &[T], x: f64, y: &mut [f64]) {
     }
 }
 
-/// y ← y - A x for each pair; columns of A start `stride` apart and are used as far as y is long. Large products are cut in two
-/// by rows.
+/// y ← y - A x for each pair; columns of A start `stride` apart and are used as far as y is long. Large products are
+/// cut in two by rows.
 fn subtract_product<T: Number, const R: usize>(
     matrix: &[T],
     stride: usize,
@@ -191,8 +191,8 @@ fn subtract_product<T: Number, const R: usize>(
     );
 }
 
-/// [`subtract_product`] in one task. Four columns at a time, so that y is read and written less often, and each four for all
-/// pairs, so that they are fetched once.
+/// [`subtract_product`] in one task. Four columns at a time, so that y is read and written less often, and each four
+/// for all pairs, so that they are fetched once.
 #[multiversion(targets = "simd")]
 fn columns_in_turn<T: Number, const R: usize>(
     matrix: &[T],

@@ -1,9 +1,10 @@
 //! Where the updates of fronts lie, from a front's elimination until its parent has taken it over.
 //!
-//! A front with m boundary cells gives an update of m² numbers. Both halves of every box may be in flight together, and a
-//! subtree's memory then is as much as the levels of its tree need at once. Two stretches serve by turns: a front's update lies
-//! in one, those of its children in the other, those of its grandchildren, which are no longer needed, in the first again. So
-//! every place is known beforehand, and one block of memory, kept from one factorisation to the next, holds them all.
+//! A front with m boundary cells gives an update of m² numbers. Both halves of every box may be in flight together, and
+//! a subtree's memory then is as much as the levels of its tree need at once. Two stretches serve by turns: a front's
+//! update lies in one, those of its children in the other, those of its grandchildren, which are no longer needed, in
+//! the first again. So every place is known beforehand, and one block of memory, kept from one factorisation to the
+//! next, holds them all.
 
 /// Numbers that the updates of a subtree take, whatever the number of threads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -77,7 +78,8 @@ mod tests {
         }
     }
 
-    /// Writes the number of every front into its whole update, children first, and finds those of its children as they were left.
+    /// Writes the number of every front into its whole update, children first, and finds those of its children as they
+    /// were left.
     fn fill(number: usize, boundaries: &[usize], mut updates: Updates<'_, usize>) {
         let Some((&top, below)) = boundaries.split_first() else {
             return;

@@ -1,4 +1,5 @@
-//! The cells of each axis: range, count, grading. What is given is checked here; what is left to the program is found later.
+//! The cells of each axis: range, count, grading. What is given is checked here; what is left to the program is found
+//! later.
 
 use std::sync::Arc;
 
@@ -69,7 +70,8 @@ impl AxisSettings {
 /// The key of `[cells]` that is no axis.
 const ACCURACY: &str = "accuracy";
 
-/// Checks `[cells]`; `None` if anything is wrong with it. Without a family there is no telling what bounds the model knows.
+/// Checks `[cells]`; `None` if anything is wrong with it. Without a family there is no telling what bounds the model
+/// knows.
 pub(super) fn read(
     reader: &mut Reader<'_>,
     draft: &Draft,
@@ -179,7 +181,8 @@ fn read_axis(
     }
 }
 
-/// Cells an axis below which a density along it has no shape: a peak is a cell that is higher than both of its neighbours.
+/// Cells an axis below which a density along it has no shape: a peak is a cell that is higher than both of its
+/// neighbours.
 const FEW_CELLS: usize = 4;
 
 /// Says so where an axis has too few cells for any shape.
@@ -296,7 +299,8 @@ struct Along<'a> {
 }
 
 impl Along<'_> {
-    /// The widest range that the model's bounds of an axis take at the corners; of coloured noise, what holds nearly all of it.
+    /// The widest range that the model's bounds of an axis take at the corners; of coloured noise, what holds nearly
+    /// all of it.
     fn bounds(&self, axis: usize) -> Option<(f64, f64)> {
         if let Some((mean, deviation)) = filter(self.family, axis) {
             let half = NORMAL_RANGE * deviation;
@@ -309,7 +313,8 @@ impl Along<'_> {
     }
 }
 
-/// The systems at both ends of a sweep, or at the corners of the map's box; those that are not allowed are refused elsewhere.
+/// The systems at both ends of a sweep, or at the corners of the map's box; those that are not allowed are refused
+/// elsewhere.
 fn corners(family: &Family, draft: &Draft) -> Vec<Arc<dyn System>> {
     let (model, (from, to)) = (family.model(), family.ends());
     let ends: Vec<ParameterValues> = [from, to]
@@ -382,7 +387,8 @@ fn read_grade(reader: &mut Reader<'_>, axis: &AxisDraft, name: &str) -> Option<G
     })
 }
 
-/// Builds an axis, `None` where something is left to the program; what the space refuses is shown at the key that it concerns.
+/// Builds an axis, `None` where something is left to the program; what the space refuses is shown at the key that it
+/// concerns.
 fn build_axis(
     document: &Document,
     name: &str,

@@ -1,5 +1,5 @@
-//! The model: a built-in one by its name, or the equations of the file, read with their places so that everything wrong with them is
-//! shown where it stands.
+//! The model: a built-in one by its name, or the equations of the file, read with their places so that everything wrong
+//! with them is shown where it stands.
 
 use std::sync::Arc;
 

@@ -13,8 +13,8 @@ use crate::system::Family;
 
 /// Checks `figures.at`; left out, it is both ends and two of the sweep's values between.
 ///
-/// A value outside the sweep is refused, but where the file has it and the ends were set on top of the file: then it is left out with
-/// a warning, so that a part of a sweep can be run without editing its figures too.
+/// A value outside the sweep is refused, but where the file has it and the ends were set on top of the file: then it is
+/// left out with a warning, so that a part of a sweep can be run without editing its figures too.
 pub(super) fn read_at(reader: &mut Reader<'_>, draft: &Draft, swept: &Swept) -> Vec<f64> {
     let Some(values) = &draft.figures_at else {
         return by_itself(swept);

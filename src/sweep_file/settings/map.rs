@@ -26,8 +26,8 @@ pub struct MapSettings {
 }
 
 impl MapSettings {
-    /// The box of the map: the swept range of a family's parameter, and the range of the second one; `None` where these make no box, which
-    /// checked settings always do.
+    /// The box of the map: the swept range of a family's parameter, and the range of the second one; `None` where these
+    /// make no box, which checked settings always do.
     pub fn plane(&self, family: &Family) -> Option<Plane> {
         let (low, high) = family.range();
         let first = (family.parameter(), low, high);
@@ -44,8 +44,8 @@ impl MapSettings {
     }
 }
 
-/// The second parameter with a value in the middle of its range, for a file that does not say at which value a sweep of the first alone
-/// holds it.
+/// The second parameter with a value in the middle of its range, for a file that does not say at which value a sweep of
+/// the first alone holds it.
 pub(super) fn held(draft: &Draft) -> Option<(&str, f64)> {
     let (from, to) = (draft.map.from?, draft.map.to?);
     Some((draft.map.parameter.as_deref()?, 0.5 * (from + to)))
@@ -95,7 +95,8 @@ pub(super) fn read(
     })
 }
 
-/// The second parameter of a plane by its name under `section`; refuses one that the model does not have, and the swept one.
+/// The second parameter of a plane by its name under `section`; refuses one that the model does not have, and the swept
+/// one.
 pub(super) fn is_second<'m>(
     reader: &mut Reader<'_>,
     (model, swept): (&'m Model, &str),

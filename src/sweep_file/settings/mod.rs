@@ -36,8 +36,8 @@ use super::respell;
 use super::text::SweepText;
 use super::write;
 
-/// What is swept and how: every number is checked, every default filled in. What takes work is still open: ranges and gradings that
-/// are left to the program, see [`Settings::prepare`].
+/// What is swept and how: every number is checked, every default filled in. What takes work is still open: ranges and
+/// gradings that are left to the program, see [`Settings::prepare`].
 #[derive(Debug, Clone)]
 pub struct Settings {
     /// Title of the run.
@@ -154,7 +154,8 @@ impl Settings {
         self.document.typed()
     }
 
-    /// The settings as a complete sweep file: every key that concerns the chosen method. Read again it gives the same settings.
+    /// The settings as a complete sweep file: every key that concerns the chosen method. Read again it gives the same
+    /// settings.
     pub fn to_toml(&self) -> String {
         write::to_toml(&self.draft())
     }

@@ -1,5 +1,5 @@
-//! Quantities as a file has them: `name = formula`, with the place of everything that is wrong with them; and the values over which they
-//! are watched.
+//! Quantities as a file has them: `name = formula`, with the place of everything that is wrong with them; and the
+//! values over which they are watched.
 
 use std::sync::Arc;
 

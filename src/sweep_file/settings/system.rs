@@ -77,8 +77,8 @@ pub(super) fn known_parameter<'m>(
     known
 }
 
-/// The values that are given, the swept one left out; `None` if anything is wrong with them. Of the swept one is known whether its name is right, or
-/// only the nearest to what is written.
+/// The values that are given, the swept one left out; `None` if anything is wrong with them. Of the swept one is known
+/// whether its name is right, or only the nearest to what is written.
 fn read_parameters<'m>(
     reader: &mut Reader<'_>,
     draft: &Draft,
@@ -96,8 +96,8 @@ fn read_parameters<'m>(
         };
         let mut given = draft.parameters.iter();
         if Some(parameter.name.as_str()) == swept && (model.typed().is_some() || !is_named) {
-            // Which of the parameters of a file's own equations is swept is changed more easily where all have values; of a name that is
-            // misspelt nothing more is to be said.
+            // Which of the parameters of a file's own equations is swept is changed more easily where all have values;
+            // of a name that is misspelt nothing more is to be said.
             continue;
         }
         if Some(parameter.name.as_str()) == swept {

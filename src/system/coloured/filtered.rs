@@ -5,7 +5,8 @@ use std::sync::Arc;
 use super::filter::Filter;
 use crate::system::{LANES, Lanes, SwitchingSurface, Symmetry, System};
 
-/// A system whose white noises come through filters, the states of which are axes after those of the system, noise by noise.
+/// A system whose white noises come through filters, the states of which are axes after those of the system, noise by
+/// noise.
 pub(super) struct Filtered {
     system: Arc<dyn System>,
     /// Axes of the system without its filters.
@@ -29,8 +30,8 @@ impl Filtered {
         }
     }
 
-    /// Whether an amplitude changes its sign with a reflection of the system: its noise is then reflected too, but for the axis's own
-    /// sign. `None` where it does neither.
+    /// Whether an amplitude changes its sign with a reflection of the system: its noise is then reflected too, but for
+    /// the axis's own sign. `None` where it does neither.
     fn is_odd(&self, channel: usize, symmetry: &Symmetry) -> Option<bool> {
         if self.system.additive_amplitude(channel).is_some() {
             return Some(false);

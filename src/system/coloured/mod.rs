@@ -1,4 +1,5 @@
-//! Coloured noise: every white noise of a model goes through a linear filter with a memory, whose states are axes of their own.
+//! Coloured noise: every white noise of a model goes through a linear filter with a memory, whose states are axes of
+//! their own.
 //!
 //! A filter of first order turns b ξ(t) into b η/√(2τ) with η' = -η/τ + √(2/τ) w(t), w white noise of unit intensity: an
 //! Ornstein-Uhlenbeck process. One of second order turns it into b √(ω_n/(4 ζ_n)) η with η' = ω_n ν and

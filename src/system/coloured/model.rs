@@ -1,4 +1,5 @@
-//! A model with coloured noise made of one with white noise: axes, parameters, equations, and the systems that it makes.
+//! A model with coloured noise made of one with white noise: axes, parameters, equations, and the systems that it
+//! makes.
 
 use std::sync::Arc;
 
@@ -7,7 +8,8 @@ use super::{ColouredNoiseError, NOISE_AXIS, NOISE_RATE_AXIS, NoiseKind};
 use crate::MAX_DIMENSION;
 use crate::system::{AxisDescription, Model, System};
 
-/// A model with coloured noise in place of each of `noises` white noises, with one set of parameters for all their filters.
+/// A model with coloured noise in place of each of `noises` white noises, with one set of parameters for all their
+/// filters.
 pub(in crate::system) fn coloured(
     model: &Arc<Model>,
     kind: NoiseKind,

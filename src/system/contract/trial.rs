@@ -6,7 +6,8 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use super::super::{LANES, Lanes, System};
 use super::{ContractViolation, Quantity};
 
-/// Difference that is rounding, in units of the root mean square of the drift (or of the mean noise intensity) on its axis.
+/// Difference that is rounding, in units of the root mean square of the drift (or of the mean noise intensity) on its
+/// axis.
 const ROUNDING: f64 = 1e-9;
 
 /// Times at which a system without a period is looked at beside time zero, and shares of the period of one with.
@@ -76,7 +77,8 @@ impl<'a> Trial<'a> {
         self.ranges.len()
     }
 
-    /// The squares of the amplitudes, which is what a density feels, are numbers too, and not zero where the amplitudes are not.
+    /// The squares of the amplitudes, which is what a density feels, are numbers too, and not zero where the amplitudes
+    /// are not.
     fn check_intensity(&self, axis: usize) -> Result<(), ContractViolation> {
         let infinite = |state: &&Vec<f64>| !self.intensity(0.0, state, axis).is_finite();
         if let Some(state) = self.states.iter().find(infinite) {
@@ -256,9 +258,10 @@ impl<'a> Trial<'a> {
         Ok(())
     }
 
-    /// The drift of filtered noise is -rate (x - mean), the rate from its noise and its deviation, and the same at all states. Beside
-    /// it is only what turns the states of filters into one another and keeps their joint normal density: Σ u c/deviation = 0, where
-    /// u = (x - mean)/deviation and c, which does not depend on x, is what the drift has beside.
+    /// The drift of filtered noise is -rate (x - mean), the rate from its noise and its deviation, and the same at all
+    /// states. Beside it is only what turns the states of filters into one another and keeps their joint normal
+    /// density: Σ u c/deviation = 0, where u = (x - mean)/deviation and c, which does not depend on x, is what the
+    /// drift has beside.
     pub(super) fn check_filters(&self) -> Result<(), ContractViolation> {
         let declared = (0..self.dimension()).filter_map(|axis| {
             let (mean, deviation) = self.system.filtered_noise(axis)?;

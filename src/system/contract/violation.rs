@@ -227,7 +227,8 @@ pub enum ContractViolation {
         /// Amplitude of a Wiener process there.
         amplitude: f64,
     },
-    /// A coordinate that is declared to be white noise behind a linear filter, and is not, or has another mean or deviation.
+    /// A coordinate that is declared to be white noise behind a linear filter, and is not, or has another mean or
+    /// deviation.
     #[error(
         "axis {axis} is declared to be filtered noise of mean {mean} and standard deviation {deviation}, which its drift and noise at \
          {state:?} do not fit"

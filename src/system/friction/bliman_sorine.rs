@@ -1,5 +1,5 @@
-//! The second-order law of Bliman and Sorine: two elements that yield over different distances, one against the other, so that the
-//! force peaks before it slides.
+//! The second-order law of Bliman and Sorine: two elements that yield over different distances, one against the other,
+//! so that the force peaks before it slides.
 
 use super::{FrictionLaw, Motion};
 use crate::system::oscillator::{axes, parameters, with_friction};

@@ -83,8 +83,8 @@ pub trait FrictionLaw<const N: usize>: Send + Sync {
         None
     }
 
-    /// Velocity of the base on which the body rubs, if it rubs on one: there the force jumps or a rate bends. Friction on a base at
-    /// rest is taken to be odd.
+    /// Velocity of the base on which the body rubs, if it rubs on one: there the force jumps or a rate bends. Friction
+    /// on a base at rest is taken to be odd.
     fn base_velocity(&self) -> Option<f64> {
         None
     }
@@ -102,8 +102,8 @@ pub trait FrictionLaw<const N: usize>: Send + Sync {
         self.at_base().into_iter().collect()
     }
 
-    /// Whether force and rates change sign with displacement, velocity and internal states: unless the law says otherwise, where it
-    /// rubs on a base at rest.
+    /// Whether force and rates change sign with displacement, velocity and internal states: unless the law says
+    /// otherwise, where it rubs on a base at rest.
     fn is_odd(&self) -> bool {
         self.base_velocity() == Some(0.0)
     }

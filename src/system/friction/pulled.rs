@@ -1,7 +1,7 @@
 //! A friction law by itself, as a test bench shows it: the force on a body that is pulled along a given path.
 //!
-//! The path is given, so that only the internal states of the law have to be integrated: by the classical Runge-Kutta method, with
-//! steps that are halved until the states no longer change.
+//! The path is given, so that only the internal states of the law have to be integrated: by the classical Runge-Kutta
+//! method, with steps that are halved until the states no longer change.
 
 use std::f64::consts::TAU;
 
@@ -66,8 +66,8 @@ pub struct Pulled {
     pub force: f64,
 }
 
-/// Distance over which a law's contact yields: the largest of what its internal states may be over the rate at which they grow from
-/// zero, a unit of distance. `None` without bounded internal states.
+/// Distance over which a law's contact yields: the largest of what its internal states may be over the rate at which
+/// they grow from zero, a unit of distance. `None` without bounded internal states.
 pub fn yielding_distance(system: &dyn System) -> Option<f64> {
     let mut moving = vec![0.0; system.dimension()];
     *moving.get_mut(1)? = 1.0;
@@ -80,7 +80,8 @@ pub fn yielding_distance(system: &dyn System) -> Option<f64> {
     distances.filter(|one| one.is_finite()).reduce(f64::max)
 }
 
-/// Friction force at a velocity that has been kept for long. `None` where the system has no friction law, or its states do not settle.
+/// Friction force at a velocity that has been kept for long. `None` where the system has no friction law, or its states
+/// do not settle.
 pub fn steady_sliding(system: &dyn System, velocity: f64) -> Option<f64> {
     if !has_friction(system) {
         return None;
@@ -104,9 +105,10 @@ pub fn steady_sliding(system: &dyn System, velocity: f64) -> Option<f64> {
     force(system, [0.0, velocity], &states)
 }
 
-/// One cycle of a body that is pulled to and fro, x = `amplitude` sin(ωt) with a largest velocity of `fastest`, from the middle upward
-/// and back to it, after as many cycles as the states need to come back to themselves, at most [`MOST_CYCLES`]: see [`closes`]. Empty where
-/// the system has no friction law, or amplitude or velocity is not positive, and where its states run away.
+/// One cycle of a body that is pulled to and fro, x = `amplitude` sin(ωt) with a largest velocity of `fastest`, from
+/// the middle upward and back to it, after as many cycles as the states need to come back to themselves, at most
+/// [`MOST_CYCLES`]: see [`closes`]. Empty where the system has no friction law, or amplitude or velocity is not
+/// positive, and where its states run away.
 pub fn cycle(system: &dyn System, amplitude: f64, fastest: f64) -> Vec<Pulled> {
     let is_path = amplitude > 0.0 && fastest > 0.0 && (amplitude + fastest).is_finite();
     if !is_path || !has_friction(system) {
@@ -169,7 +171,8 @@ fn is_same(system: &dyn System, one: &[f64], other: &[f64], share: f64) -> bool 
     })
 }
 
-/// Brings the internal states on over a piece of the path, with so many steps that half as many give the same; false where they run away.
+/// Brings the internal states on over a piece of the path, with so many steps that half as many give the same; false
+/// where they run away.
 fn advance(
     system: &dyn System,
     path: &dyn Fn(f64) -> [f64; 2],

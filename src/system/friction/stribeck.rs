@@ -1,6 +1,7 @@
 //! Coulomb's friction with Stribeck's part: more at rest than when sliding, on a base that stands or moves.
 //!
-//! A force that falls with the velocity of sliding feeds energy in where a base drags the body along: stick-slip and squeal.
+//! A force that falls with the velocity of sliding feeds energy in where a base drags the body along: stick-slip and
+//! squeal.
 
 use super::sliding::{CubicForce, SlidingForce, StribeckLevel};
 use super::{FrictionLaw, Motion};

@@ -1,5 +1,5 @@
-//! What is known of a model because its equations are formulas: they can be written for people, and searched for operations that
-//! fail somewhere.
+//! What is known of a model because its equations are formulas: they can be written for people, and searched for
+//! operations that fail somewhere.
 
 use std::sync::Arc;
 
@@ -43,8 +43,8 @@ impl TypedEquations {
         &self.model
     }
 
-    /// The equations in Unicode for people, one a line, with their noises `ξ₁`, `ξ₂` …; then the definitions, and the Itô drift
-    /// where it is not what was typed.
+    /// The equations in Unicode for people, one a line, with their noises `ξ₁`, `ξ₂` …; then the definitions, and the
+    /// Itô drift where it is not what was typed.
     pub fn typeset(&self) -> Vec<String> {
         let (scope, reading) = (&self.reading.scope, &self.reading);
         let axes = scope.symbols().states();
@@ -125,7 +125,8 @@ impl TypedEquations {
         unused.map(|(_, name)| name.as_str()).collect()
     }
 
-    /// Operations of drift and noise that fail, or may fail, somewhere in a box of states and of parameters: one range each.
+    /// Operations of drift and noise that fail, or may fail, somewhere in a box of states and of parameters: one range
+    /// each.
     pub fn hazards(&self, states: &[(f64, f64)], parameters: &[(f64, f64)]) -> Vec<FormulaHazard> {
         let reading = &self.reading;
         let domain = domain(states, parameters);
@@ -145,8 +146,8 @@ impl TypedEquations {
         found
     }
 
-    /// Amplitudes that depend on the state and may be zero somewhere in a box of states and of parameters, typeset; those beside
-    /// an additive noise on the same axis do no harm and are left out.
+    /// Amplitudes that depend on the state and may be zero somewhere in a box of states and of parameters, typeset;
+    /// those beside an additive noise on the same axis do no harm and are left out.
     pub fn vanishing_noises(
         &self,
         states: &[(f64, f64)],

@@ -27,8 +27,8 @@ pub use error::{FormulaPlace, TypedModelError};
 pub enum Interpretation {
     /// The equation is an Itô equation: the amplitude is taken before each increment.
     Ito,
-    /// The equation is a Stratonovich equation, the limit of noise with a short memory. Its Itô drift, which is what every
-    /// method uses, has ½ Σ_k b_k ∂b_k/∂x_i more on axis i.
+    /// The equation is a Stratonovich equation, the limit of noise with a short memory. Its Itô drift, which is what
+    /// every method uses, has ½ Σ_k b_k ∂b_k/∂x_i more on axis i.
     Stratonovich,
 }
 
@@ -47,9 +47,9 @@ impl Interpretation {
 
 /// A stochastic differential equation as text, from which [`TypedModel::build`] makes a [`Model`].
 ///
-/// An axis x has the equation x' = f(x, …) + Σ_k b_k ξ_k(t) with independent white noises E\[ξ(t) ξ(t+τ)\] = δ(τ). What a
-/// model declares beside its drift is read off the formulas: constant amplitudes, switching surfaces, and the reflection
-/// symmetry, which is verified at every value of the parameters.
+/// An axis x has the equation x' = f(x, …) + Σ_k b_k ξ_k(t) with independent white noises E\[ξ(t) ξ(t+τ)\] = δ(τ). What
+/// a model declares beside its drift is read off the formulas: constant amplitudes, switching surfaces, and the
+/// reflection symmetry, which is verified at every value of the parameters.
 ///
 /// ```
 /// use pbif::system::{Interpretation, ParameterDescription, ParameterRange, TypedModel, contract};
@@ -148,8 +148,9 @@ impl TypedModel {
         self
     }
 
-    /// One white noise that stands in the equations of several axes, with its amplitude in each. The methods need noises
-    /// that are independent between axes, so that [`TypedModel::build`] refuses all but one amplitude that is not zero.
+    /// One white noise that stands in the equations of several axes, with its amplitude in each. The methods need
+    /// noises that are independent between axes, so that [`TypedModel::build`] refuses all but one amplitude that is
+    /// not zero.
     #[must_use]
     pub fn with_shared_noise<A: Into<String>, S: Into<String>>(
         mut self,
@@ -161,16 +162,17 @@ impl TypedModel {
         self
     }
 
-    /// How the noise is read. It must be said where it makes a difference: where an amplitude on an axis depends on that
-    /// same axis.
+    /// How the noise is read. It must be said where it makes a difference: where an amplitude on an axis depends on
+    /// that same axis.
     #[must_use]
     pub fn with_interpretation(mut self, interpretation: Interpretation) -> Self {
         self.interpretation = Some(interpretation);
         self
     }
 
-    /// The noises coloured, as [`Model::with_coloured_noise`] has it: each gets axes of its own, and the model the filter's parameters.
-    /// Where an amplitude depends on the axis that it drives there is but one reading, Stratonovich's, which need not be said.
+    /// The noises coloured, as [`Model::with_coloured_noise`] has it: each gets axes of its own, and the model the
+    /// filter's parameters. Where an amplitude depends on the axis that it drives there is but one reading,
+    /// Stratonovich's, which need not be said.
     #[must_use]
     pub fn with_coloured_noise(mut self, kind: NoiseKind) -> Self {
         self.noise_kind = kind;
@@ -228,8 +230,8 @@ impl TypedModel {
         self
     }
 
-    /// Reads all formulas. Places where the drift is not smooth and that are no plane of one coordinate are named in the
-    /// model's notes.
+    /// Reads all formulas. Places where the drift is not smooth and that are no plane of one coordinate are named in
+    /// the model's notes.
     ///
     /// # Errors
     /// The first [`TypedModelError`] that is found.

@@ -66,8 +66,8 @@ impl From<TooLarge> for TypedModelError {
     }
 }
 
-/// The names and the definitions; `None` where the names alone are wrong. A definition that is wrong counts as zero after
-/// that, so that the formulas with it can be read.
+/// The names and the definitions; `None` where the names alone are wrong. A definition that is wrong counts as zero
+/// after that, so that the formulas with it can be read.
 fn scope(model: &TypedModel, errors: &mut Vec<TypedModelError>) -> Option<Scope> {
     let given = model.axes.len();
     if !(1..=MAX_DIMENSION).contains(&given) {

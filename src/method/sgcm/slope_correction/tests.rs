@@ -164,8 +164,8 @@ impl System for OrnsteinUhlenbeck {
     }
 }
 
-/// Flat cells widen the density to σ²/2 + (h²/6)/(1 - e^{-2Δt}) (`sampling::accuracy`). Linear ones leave the variance of the
-/// masses at that of exact cell masses, σ²/2 up to terms of the fourth order in h.
+/// Flat cells widen the density to σ²/2 + (h²/6)/(1 - e^{-2Δt}) (`sampling::accuracy`). Linear ones leave the variance
+/// of the masses at that of exact cell masses, σ²/2 up to terms of the fourth order in h.
 #[test]
 fn cells_no_longer_widen_a_density() {
     let width = 0.125;

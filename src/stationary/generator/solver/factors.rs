@@ -10,8 +10,8 @@ use crate::stationary::generator::preconditioner::{
 use crate::stationary::generator::{RateError, RateMethod, narrowing};
 
 /// Iterations that a factorisation takes the time of: so many for moving every number of the factors about, and so many
-/// for each arithmetic operation a number. Measured (`benches/rates.rs`) from 50² to 30³ cells, in both precisions, within
-/// a third: iterations are bound by memory, factorisations by arithmetic the larger they are.
+/// for each arithmetic operation a number. Measured (`benches/rates.rs`) from 50² to 30³ cells, in both precisions,
+/// within a third: iterations are bound by memory, factorisations by arithmetic the larger they are.
 const RENEWAL: (f64, f64) = (12.0, 0.027);
 
 impl DirectSolver {
@@ -21,7 +21,8 @@ impl DirectSolver {
         plan.is_some_and(|(_, plan)| self.excess >= renewal(plan))
     }
 
-    /// Factorises a matrix near those that are solved next, in place of the first of them; `mass` is about its steady state.
+    /// Factorises a matrix near those that are solved next, in place of the first of them; `mass` is about its steady
+    /// state.
     ///
     /// # Errors
     /// As [`DirectSolver::solve`].

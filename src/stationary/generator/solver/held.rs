@@ -4,8 +4,8 @@ use sprs::CsMat;
 
 use super::DirectSolver;
 
-/// If the held cell carries less than this share of the largest mass, another one is held in new factors, and new ones are
-/// made if a solve fails.
+/// If the held cell carries less than this share of the largest mass, another one is held in new factors, and new ones
+/// are made if a solve fails.
 pub(super) const WEAK_HELD_SHARE: f64 = 1e-2;
 /// The held cell must carry at least this share of the largest mass, or another one is held.
 const LEAST_HELD_SHARE: f64 = 1e-8;

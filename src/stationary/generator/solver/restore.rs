@@ -23,8 +23,8 @@ impl DirectSolver {
         }
     }
 
-    /// Brings a fresh solver to where another one on the same cells was: `factorised` is the matrix that it had factorised, `last`
-    /// that of its last solve with the escape. What is solved then is the same to the bit.
+    /// Brings a fresh solver to where another one on the same cells was: `factorised` is the matrix that it had
+    /// factorised, `last` that of its last solve with the escape. What is solved then is the same to the bit.
     ///
     /// # Errors
     /// As [`RateSolver::solve`].
