@@ -9,15 +9,18 @@ pub struct Structure {
     pub kinks: Vec<Kink>,
 }
 
-/// A plane on which the derivative of the density jumps, because the drift across it does, or bends.
+/// A plane on which the derivative of the density jumps, or bends: drift or noise across it does, or a force along it
+/// where states cross it without noise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Kink {
     /// Axis of the density (0 or 1) on which the plane stands.
     pub axis: usize,
     /// Its coordinate there.
     pub at: f64,
-    /// Jump of ∂(log p)/∂(axis) from below to above the plane, (2/b²)(a(above) - a(below)) with drift a and noise
-    /// amplitude b across it: one value a cell of the other axis, a single one for a marginal; none where only higher derivatives jump.
+    /// Jump of ∂(log p)/∂(axis) from below to above the plane: one value a cell of the other axis, a single one for a
+    /// marginal; none where only higher derivatives jump, or nobody knows by how much. With drift a and noise amplitude
+    /// b across the plane it is (2 Δa - Δ(b²)')/b²; without noise there, -∇·(Δf p)/(a p) for a jump Δf of the drift
+    /// along it.
     pub jump: Vec<f64>,
 }
 

@@ -3,7 +3,7 @@
 
 use super::codimension::{CodimensionTwo, CodimensionTwoKind, SAME, codimension_two, own};
 use super::found::{Curve, CurvePoint, EndReason};
-use super::walk::apart;
+use super::walked::apart;
 use crate::continuation::ErrorParts;
 use crate::topology::IndicatorKind;
 

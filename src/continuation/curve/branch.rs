@@ -3,7 +3,7 @@
 use super::companion::ends_there;
 use super::degenerate::{Both, Seeker, solved};
 use super::reading::Reader;
-use super::walk::{Walked, within};
+use super::walked::{Walked, within};
 use super::{CodimensionTwoKind, CurvePoint, CurveStart, CurveWork};
 use crate::density::Density;
 use crate::topology::IndicatorKind;

@@ -5,7 +5,7 @@
 //! sides leave.
 
 use super::degenerate::Seeker;
-use super::walk::{Walked, within};
+use super::walked::{Walked, within};
 use super::{CurvePoint, CurveStart, CurveWork, EndReason};
 use crate::continuation::BifurcationStatus;
 use crate::topology::IndicatorKind;

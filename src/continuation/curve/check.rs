@@ -4,7 +4,7 @@
 //! along it, and the error of that is stated from the distance between coarse and fine.
 
 use super::reading::{Missing, Reader};
-use super::walk::{Node, Walked};
+use super::walked::{Node, Walked};
 use super::{CurvePoint, CurveWork, Task};
 use crate::continuation::grid::share_of_distance;
 use crate::continuation::locate::QUIET;

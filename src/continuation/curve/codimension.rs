@@ -3,7 +3,7 @@
 
 use super::found::{Curve, CurvePoint, EndReason};
 use super::piece::Piece;
-use super::walk::apart;
+use super::walked::apart;
 use crate::continuation::BifurcationStatus;
 use crate::density::Observable;
 

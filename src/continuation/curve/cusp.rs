@@ -8,7 +8,7 @@
 use super::fold_end::{Beyond, FAR, Tail};
 use super::found::EndReason;
 use super::polynomial::{evaluated, fitted};
-use super::walk::apart;
+use super::walked::apart;
 use crate::topology::IndicatorKind;
 
 /// Degree of the polynomials.

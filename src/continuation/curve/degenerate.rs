@@ -9,7 +9,7 @@
 use super::companion::{companions, meeting};
 use super::found::DegeneratePoint;
 use super::reading::{Reader, Reading};
-use super::walk::{Node, Walked, apart, within};
+use super::walked::{Node, Walked, apart, within};
 use super::{CodimensionTwoKind, CurvePoint, CurveStart, CurveWork, EndReason, Task};
 use crate::continuation::grid::share_of_distance;
 use crate::continuation::locate::QUIET;

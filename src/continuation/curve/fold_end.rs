@@ -7,7 +7,7 @@ use super::cusp::cusp;
 use super::found::{CurvePoint, EndReason};
 use super::plane::Plane;
 use super::polynomial::{evaluated, fitted};
-use super::walk::{KinkAtEnd, apart};
+use super::walked::{KinkAtEnd, apart};
 use crate::continuation::{BifurcationStatus, ErrorParts};
 use crate::topology::IndicatorKind;
 

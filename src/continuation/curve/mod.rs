@@ -22,6 +22,7 @@ mod polynomial;
 mod reading;
 mod tree;
 mod walk;
+mod walked;
 
 pub(super) use agree::agree;
 pub use codimension::{CodimensionTwo, CodimensionTwoKind, codimension_two};

@@ -1,7 +1,7 @@
 //! A curve between two neighbouring points: where it meets another one, or a line of the grid.
 
 use super::found::{Curve, CurvePoint};
-use super::walk::apart;
+use super::walked::apart;
 use crate::continuation::BifurcationStatus;
 
 /// Curves at a smaller angle do not cross, but run along each other.

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use super::agree::agree;
-use super::walk::apart;
+use super::walked::apart;
 use super::{Curve, CurveError, CurveOptions, CurveStart, Plane, follow};
 use crate::cancellation::Cancellation;
 use crate::continuation::{DensitySource, SourceError};

@@ -2,7 +2,8 @@
 //! curve allows.
 
 use super::reading::{Missing, Reader, Reading};
-use super::{CurveError, CurveWork, EndReason, Task, companion};
+use super::walked::{Node, Walked, apart, within};
+use super::{CurveError, EndReason, Task, companion};
 use crate::continuation::SourceError;
 use crate::density::hellinger;
 
@@ -29,84 +30,6 @@ const ONE_PLACE: f64 = 0.1;
 const ACROSS: f64 = 2.0;
 /// Fewest points of a closed curve.
 const FEWEST_CLOSED: usize = 6;
-
-/// A point as it was met.
-#[derive(Debug, Clone)]
-pub(super) struct Node {
-    pub(super) reading: Reading,
-    /// The point of the curve, in the box with sides of length one.
-    pub(super) foot: [f64; 2],
-    /// Toward rising arclength, of length one.
-    pub(super) tangent: [f64; 2],
-    /// Error of the straight line from where it was read to the foot.
-    pub(super) remainder: f64,
-    pub(super) arclength: f64,
-    /// The side of the box on whose end it lies.
-    pub(super) border: Option<usize>,
-}
-
-/// A curve as it was met, without checks.
-pub(super) struct Walked {
-    pub(super) points: Vec<Node>,
-    pub(super) start: usize,
-    pub(super) ends: Vec<EndReason>,
-    pub(super) work: CurveWork,
-}
-
-impl Walked {
-    /// The places at which the slope of the densities of one axis jumps, as they are at the first point and at the
-    /// last.
-    pub(super) fn kinks(&self) -> [Vec<KinkAtEnd>; 2] {
-        [self.points.first(), self.points.last()]
-            .map(|node| node.map_or_else(Vec::new, KinkAtEnd::all_of))
-    }
-
-    /// The centre of symmetry of the densities of one axis, where all have the same, and the width of the cells there.
-    pub(super) fn centre(&self) -> Option<(f64, f64)> {
-        let mut centres = self
-            .points
-            .iter()
-            .map(|node| node.reading.centre.as_deref());
-        let Some(&[centre]) = centres.next()? else {
-            return None;
-        };
-        let axis = self.points.first()?.reading.density.axes.first()?;
-        let cell = axis.width(axis.find(centre)?);
-        centres
-            .all(|one| one == Some(&[centre]))
-            .then_some((centre, cell))
-    }
-}
-
-/// A place at which the slope of a density jumps, at the end of a curve.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct KinkAtEnd {
-    pub(super) at: f64,
-    /// Width of the cells there.
-    pub(super) cell: f64,
-    /// Whether the density rises away from it below, and above.
-    pub(super) rises_away: [bool; 2],
-}
-
-impl KinkAtEnd {
-    fn all_of(node: &Node) -> Vec<Self> {
-        let density = &node.reading.density;
-        let Some(axis) = density.axes.first() else {
-            return Vec::new();
-        };
-        let found = node.reading.kinks.iter().filter_map(|&at| {
-            let [below, above] = axis.cells_beside(at)?;
-            let value = |cell: usize| density.values.get(cell).copied();
-            let farther = [value(below.checked_sub(1)?)?, value(above + 1)?];
-            Some(Self {
-                at,
-                cell: axis.width(above),
-                rises_away: [farther[0] > value(below)?, farther[1] > value(above)?],
-            })
-        });
-        found.collect()
-    }
-}
 
 /// What follows a curve.
 pub(super) struct Follower<'a>(pub(super) Task<'a>);
@@ -390,11 +313,6 @@ fn predicted(here: &Node, bend: [f64; 2], step: f64) -> Option<([f64; 2], Option
     Some((place, Some(side)))
 }
 
-/// Whether a place is in the box with sides of length one.
-pub(super) fn within(place: [f64; 2]) -> bool {
-    place.iter().all(|part| (0.0..=1.0).contains(part))
-}
-
 /// The side of the box to whose ends a place is nearest.
 fn nearest_side(place: [f64; 2]) -> usize {
     let gap = |k: usize| place[k].min(1.0 - place[k]);
@@ -413,8 +331,4 @@ fn passes(from: [f64; 2], to: [f64; 2], by: [f64; 2]) -> bool {
 
 fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
-}
-
-pub(super) fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
 }
