@@ -430,3 +430,28 @@ x = { from = -2.2, to = 2.2, count = 240 }
         }
     }
 }
+
+/// In a map whose second parameter is given no value elsewhere: the folds on both sides of the centre are one curve.
+#[test]
+fn a_map_finds_the_degenerate_kink_and_draws_the_fold_of_both_sides_once() {
+    let text = AT_CENTRE
+        .replace("[system.parameters]\nb = -0.5\n", "")
+        .replace("points = 6", "points = 7")
+        + "[map]\nparameter = \"b\"\nfrom = -1.0\nto = 1.0\npoints = 7\ndepth = 1\n";
+    let never = Cancellation::new();
+    let map = prepared(&text, &[]).map(&never, &|_| ()).unwrap().unwrap();
+    let kinds: Vec<IndicatorKind> = map.curves.iter().map(|curve| curve.kind).collect();
+    let fold = IndicatorKind::Shoulder { rising: true };
+    assert_eq!(
+        kinds,
+        [IndicatorKind::KinkSlope, fold],
+        "{:?}",
+        map.untraced
+    );
+    let points = map.codimension_two();
+    assert_eq!(points.len(), 1, "{points:?}");
+    assert_eq!(
+        (points[0].label.as_str(), &points[0].curves[..]),
+        ("DK1", &[0, 1][..])
+    );
+}

@@ -107,7 +107,7 @@ fn along(
     let points: Vec<&Point> = solved.iter().map(|one| one.1).collect();
     let share = |index: usize| lattice.share(solved[index].0);
     for change in changes(&points, detector) {
-        match crossing(&change, &share) {
+        match crossing(&change, &share, &points) {
             Some(crossing) => found.push(crossing),
             None => blurred.push(Blurred {
                 observable: change.observable,
@@ -118,17 +118,65 @@ fn along(
 }
 
 /// `None` where no indicator changes its sign.
-fn crossing(change: &Change, share: &dyn Fn(usize) -> [f64; 2]) -> Option<Crossing> {
+fn crossing(
+    change: &Change,
+    share: &dyn Fn(usize) -> [f64; 2],
+    points: &[&Point],
+) -> Option<Crossing> {
     let crossing = change.crossing()?;
+    let centre = |index: usize| {
+        let density = points.get(index)?.densities.get(change.observable)?;
+        match density.structure.centre.as_deref() {
+            Some(&[centre]) => Some(centre),
+            _ => None,
+        }
+    };
+    let centre = centre(crossing.left).filter(|one| centre(crossing.left + 1) == Some(*one));
     let ends = [share(crossing.left), share(crossing.left + 1)];
     let [low, high] = &crossing.ends;
     let along = between((0.0, low.value), (1.0, high.value));
     let nearer = if along < 0.5 { low } else { high };
+    let (kind, place) = on_upper_side(crossing.kind(), nearer.place.clone(), centre);
     Some(Crossing {
         observable: change.observable,
-        kind: crossing.kind(),
-        place: nearer.place.clone(),
+        kind,
+        place,
         at: [0, 1].map(|k| (1.0 - along) * ends[0][k] + along * ends[1][k]),
         ends,
     })
+}
+
+/// Of a density over one axis that is symmetric about a centre, the indicator above it that has the same curve.
+fn on_upper_side(
+    kind: IndicatorKind,
+    place: Vec<f64>,
+    centre: Option<f64>,
+) -> (IndicatorKind, Vec<f64>) {
+    let (Some(centre), &[x]) = (centre, place.as_slice()) else {
+        return (kind, place);
+    };
+    let mirrored = match kind {
+        _ if x >= centre => return (kind, place),
+        IndicatorKind::Shoulder { rising } => IndicatorKind::Shoulder { rising: !rising },
+        IndicatorKind::BesideKink { above, is_valley } => IndicatorKind::BesideKink {
+            above: !above,
+            is_valley,
+        },
+        _ => return (kind, place),
+    };
+    (mirrored, vec![2.0 * centre - x])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mirror_images_have_one_indicator() {
+        let [rising, falling] = [true, false].map(|rising| IndicatorKind::Shoulder { rising });
+        let of = |kind, x: f64, centre| on_upper_side(kind, vec![x], centre);
+        assert_eq!(of(falling, -0.5, Some(0.25)), (rising, vec![1.0]));
+        assert_eq!(of(rising, 1.0, Some(0.25)), (rising, vec![1.0]));
+        assert_eq!(of(falling, -0.5, None), (falling, vec![-0.5]));
+    }
 }

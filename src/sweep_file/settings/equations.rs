@@ -179,10 +179,13 @@ fn parameters(reader: &Reader<'_>, draft: &Draft) -> Vec<ParameterDescription> {
             parameters.push(ParameterDescription::from(entry.key.as_str()));
         }
     }
-    if let Some(swept) = &draft.parameter {
-        let known = parameters.iter().any(|known| known.name == *swept);
+    // So is that of a parameter that the map moves, if a formula has it.
+    let moved = draft.map.parameter.iter();
+    let moved = moved.filter(|name| texts(draft).any(|text| text.contains(name.as_str())));
+    for name in draft.parameter.iter().chain(moved) {
+        let known = parameters.iter().any(|known| known.name == *name);
         if !known {
-            parameters.push(ParameterDescription::from(swept.as_str()));
+            parameters.push(ParameterDescription::from(name.as_str()));
         }
     }
     parameters
@@ -216,21 +219,23 @@ fn source(
     model.with_coloured_noise(draft.noise_kind.unwrap_or_default())
 }
 
+/// The formulas of drift, definitions and noise.
+fn texts(draft: &Draft) -> impl Iterator<Item = &String> {
+    let equations = &draft.equations;
+    let drift = equations.drift.iter().chain(&equations.define);
+    let noise = equations.noise.iter();
+    let noise = noise.flat_map(|(_, amplitudes)| amplitudes);
+    drift.map(|(_, text)| text).chain(noise)
+}
+
 /// Where other names are unknown, a swept parameter that no formula has is perhaps one of them.
 fn check_swept_name(reader: &mut Reader<'_>, draft: &Draft) {
     let Some(swept) = draft.parameter.as_deref() else {
         return;
     };
-    let equations = &draft.equations;
-    let drift = equations.drift.iter().chain(&equations.define);
-    let noise = equations
-        .noise
-        .iter()
-        .flat_map(|(_, amplitudes)| amplitudes);
-    let mut texts = drift.map(|(_, text)| text).chain(noise);
     let given = draft.parameters.iter().any(|(name, _)| name == swept);
     let of_noise = draft.noise_kind.unwrap_or_default().has_parameter(swept);
-    if given || of_noise || texts.any(|text| text.contains(swept)) {
+    if given || of_noise || texts(draft).any(|text| text.contains(swept)) {
         return;
     }
     let title = format!(
