@@ -42,7 +42,7 @@ pub(super) fn assemble_within(
 ) -> Result<Generator, GeneratorError> {
     check(system, space)?;
     let axes: Vec<AxisGeometry> = (0..space.dimension())
-        .map(|index| AxisGeometry::new(walls, index, &space.axes()[index], options.scheme))
+        .map(|index| AxisGeometry::new(walls, index, space, options.scheme))
         .collect();
     for (axis, geometry) in axes.iter().enumerate() {
         if let Some(modes) = &geometry.modes {

@@ -6,6 +6,7 @@ use sprs::CsMat;
 use super::geometry::AxisGeometry;
 use super::scheme::{REACH, Window};
 use super::{Generator, GeneratorError};
+use crate::MAX_DIMENSION;
 
 /// Columns that are filled as one task.
 const COLUMNS: usize = 2048;
@@ -40,9 +41,11 @@ pub(super) fn columns(
     let mut starts = Vec::with_capacity(n_cells + 1);
     starts.push(0);
     let mut total = 0;
-    for cell in 0..n_cells {
-        total += columns.entries(cell);
+    let mut place = columns.place(0);
+    for _ in 0..n_cells {
+        total += columns.entries(&place);
         starts.push(total);
+        columns.step(&mut place);
     }
     let mut rows = vec![0_usize; total];
     let mut values = vec![0.0; total];
@@ -60,11 +63,13 @@ pub(super) fn columns(
     tasks
         .into_par_iter()
         .for_each(|(first, mut rows, mut values, escape)| {
+            let mut place = columns.place(first);
             for (offset, escape) in escape.iter_mut().enumerate() {
-                let (row, later_rows) = rows.split_at_mut(columns.entries(first + offset));
+                let (row, later_rows) = rows.split_at_mut(columns.entries(&place));
                 let (value, later_values) = values.split_at_mut(row.len());
                 (rows, values) = (later_rows, later_values);
-                *escape = columns.fill(first + offset, row, value);
+                *escape = columns.fill(first + offset, &place, row, value);
+                columns.step(&mut place);
             }
         });
     let matrix = CsMat::try_new_csc((n_cells, n_cells), starts, rows, values);
@@ -75,22 +80,40 @@ pub(super) fn columns(
     Ok(Generator { matrix, escape })
 }
 
+/// Positions of a cell along all axes.
+type Place = [usize; MAX_DIMENSION];
+
 impl Columns<'_> {
-    fn position(&self, cell: usize, axis: usize) -> usize {
-        cell / self.strides[axis] % self.axes[axis].count()
+    /// The place of a cell.
+    fn place(&self, cell: usize) -> Place {
+        let mut place = [0; MAX_DIMENSION];
+        for ((position, geometry), stride) in place.iter_mut().zip(self.axes).zip(self.strides) {
+            *position = cell / stride % geometry.count();
+        }
+        place
+    }
+
+    /// Goes on to the next cell, without the divisions of [`Columns::place`].
+    fn step(&self, place: &mut Place) {
+        for (position, geometry) in place.iter_mut().zip(self.axes).rev() {
+            *position += 1;
+            if *position < geometry.count() {
+                return;
+            }
+            *position = 0;
+        }
     }
 
     /// Number of entries of a column.
-    fn entries(&self, cell: usize) -> usize {
-        let along = |(axis, geometry): (usize, &AxisGeometry)| {
-            let position = self.position(cell, axis);
+    fn entries(&self, place: &Place) -> usize {
+        let along = |(geometry, &position): (&AxisGeometry, &usize)| {
             position.min(geometry.reach) + (geometry.count() - 1 - position).min(geometry.reach)
         };
-        1 + self.axes.iter().enumerate().map(along).sum::<usize>()
+        1 + self.axes.iter().zip(place).map(along).sum::<usize>()
     }
 
     /// Writes a column, rows ascending, and returns its escape rate.
-    fn fill(&self, cell: usize, rows: &mut [usize], values: &mut [f64]) -> f64 {
+    fn fill(&self, cell: usize, place: &Place, rows: &mut [usize], values: &mut [f64]) -> f64 {
         let (mut diagonal, mut escape, mut next) = (0.0, 0.0, 0);
         let mut put = |row: usize, entry: f64, next: &mut usize| {
             (rows[*next], values[*next]) = (row, entry);
@@ -99,24 +122,24 @@ impl Columns<'_> {
         };
         // Below the diagonal the rows rise with the first axis first, above it with the last axis first.
         for axis in 0..self.axes.len() {
-            let (stride, position) = (self.strides[axis], self.position(cell, axis));
+            let (stride, position) = (self.strides[axis], place[axis]);
             let lowest = position.saturating_sub(self.axes[axis].reach);
-            escape += self.each_rate(cell, axis, lowest..position, |to, entry| {
+            escape += self.each_rate(place, axis, lowest..position, |to, entry| {
                 put(cell - (position - to) * stride, entry, &mut next);
             });
         }
-        let place = next;
+        let middle = next;
         next += 1;
         for axis in (0..self.axes.len()).rev() {
-            let (stride, position) = (self.strides[axis], self.position(cell, axis));
+            let (stride, position) = (self.strides[axis], place[axis]);
             let end = (position + self.axes[axis].reach + 1).min(self.axes[axis].count());
-            self.each_rate(cell, axis, position + 1..end, |to, entry| {
+            self.each_rate(place, axis, position + 1..end, |to, entry| {
                 put(cell + (to - position) * stride, entry, &mut next);
             });
         }
-        rows[place] = cell;
+        rows[middle] = cell;
         // What enters no other cell and does not leave stays.
-        values[place] = diagonal - escape;
+        values[middle] = diagonal - escape;
         escape
     }
 
@@ -124,14 +147,15 @@ impl Columns<'_> {
     /// axis's ends.
     fn each_rate(
         &self,
-        cell: usize,
+        place: &Place,
         axis: usize,
         positions: std::ops::Range<usize>,
         mut tell: impl FnMut(usize, f64),
     ) -> f64 {
-        let (count, stride) = (self.axes[axis].count(), self.strides[axis]);
-        let position = self.position(cell, axis);
-        let line = cell / (stride * count) * stride + cell % stride;
+        let (count, position) = (self.axes[axis].count(), place[axis]);
+        let others = self.axes.iter().zip(place).enumerate();
+        let others = others.filter(|(other, _)| *other != axis);
+        let line = others.fold(0, |line, (_, (other, at))| line * other.count() + at);
         let faces = match &self.rates[axis] {
             AxisRates::Blocks(blocks) => {
                 let rates = &blocks[(line * count + position) * count..][..count];
@@ -142,8 +166,8 @@ impl Columns<'_> {
         };
         // Weight of this cell in the flux through a face.
         let weight = |face: usize| {
-            let place = (position + REACH).wrapping_sub(face);
-            faces[face].get(place).copied().unwrap_or(0.0)
+            let index = (position + REACH).wrapping_sub(face);
+            faces[face].get(index).copied().unwrap_or(0.0)
         };
         positions.for_each(|to| tell(to, weight(to) - weight(to + 1)));
         weight(count) - weight(0)

@@ -1,8 +1,8 @@
 //! One axis as the discretisation sees it: nodes, local widths, ends, and the stencil of every face.
 
 use super::modes::ModeAxis;
-use super::scheme::{AdvectiveScheme, REACH, Window};
-use crate::space::Axis;
+use super::scheme::{AdvectiveScheme, DAMPING_BESIDE_MODES, REACH, Window};
+use crate::space::{Axis, CellSpace, Series};
 use crate::system::System;
 
 /// What lies beyond an end of the axis.
@@ -53,10 +53,12 @@ impl AxisGeometry {
     pub(super) fn new(
         system: &dyn System,
         index: usize,
-        axis: &Axis,
+        space: &CellSpace,
         scheme: AdvectiveScheme,
     ) -> Self {
+        let axis = &space.axes()[index];
         let count = axis.count();
+        let damping = damping(space);
         let noisy = system.noise_axes().contains(&index);
         let end = |wall: bool| if wall { End::Wall } else { End::Open };
         Self {
@@ -66,7 +68,7 @@ impl AxisGeometry {
             face_widths: (0..=count).map(|face| axis.edge_stretch(face)).collect(),
             ends: system.walls(index, (axis.from(), axis.to())).map(end),
             stencils: (0..=count)
-                .map(|face| stencil(scheme, face, count - face))
+                .map(|face| stencil(scheme, damping, face, count - face))
                 .collect(),
             reach: match (axis.is_modes(), noisy) {
                 (true, _) => count - 1,
@@ -92,10 +94,20 @@ pub(super) fn surface_faces(system: &dyn System, index: usize, axis: &Axis) -> V
         .collect()
 }
 
+/// Share of the upwind scheme's dissipation that the cells of a space need.
+fn damping(space: &CellSpace) -> f64 {
+    let mut series = space.axes().iter().map(Axis::series);
+    match series.any(|series| matches!(series, Some(Series::Legendre))) {
+        true => DAMPING_BESIDE_MODES,
+        false => 1.0,
+    }
+}
+
 /// The stencil of a face with that many cells below and above it.
-fn stencil(scheme: AdvectiveScheme, below: usize, above: usize) -> FaceStencil {
+fn stencil(scheme: AdvectiveScheme, damping: f64, below: usize, above: usize) -> FaceStencil {
     let cells = below.min(above);
     let (central, dissipation) = scheme.symmetric(cells);
+    let dissipation = dissipation.map(|weight| damping * weight);
     let derivative = match cells {
         0 => [0.0; 2 * REACH],
         1 => [0.0, 0.0, -1.0, 1.0, 0.0, 0.0],

@@ -1,11 +1,21 @@
 //! Axes graded toward switching surfaces, fine enough for the layer in which the kink of the density lives.
 
 use crate::space::Grading;
-use crate::system::System;
+use crate::system::{SwitchingSurface, System};
 
 /// Smallest cell, in thicknesses of the layer. At a quarter the slope law p'(0+)/p(0) = -2 f_c/σ² holds to
 /// half a per cent with 100 cells (docs/accuracy.md).
 const LAYER_SHARE: f64 = 0.25;
+
+/// Smallest cell on a surface across which the force does not jump, as a share of the uniform width. There only the rates of other
+/// states bend, as that of Dahl's z does: the density bends in a high derivative, over lengths that have nothing to do with the force.
+/// With 50 cells 0.3 to 0.5 serve alike; at a tenth the cells that are missing elsewhere cost more (docs/accuracy.md).
+const BEND_SHARE: f64 = 0.4;
+
+/// Jump of the force, relative to its root mean square, that is none.
+const NO_JUMP: f64 = 1e-6;
+/// Distance from a surface at which its jump is looked at, relative to the range.
+const BESIDE: f64 = 1e-5;
 
 /// Smallest cell at a wall that a coordinate without noise creeps up to, as a share of the uniform width.
 const WALL_SHARE: f64 = 0.2;
@@ -17,7 +27,8 @@ const PLACES: usize = 9;
 ///
 /// The density bends within a layer of thickness D/|a| on a surface, D = σ²/2 and a the drift across it: the
 /// smallest cell is a share of that thickness for the root mean square drift over the other axes' `ranges`
-/// (one range an axis, in the system's order).
+/// (one range an axis, in the system's order). Where the drift does not jump across the surface there is no such layer, and the cells
+/// become somewhat narrower only.
 ///
 /// An axis without noise is graded toward its walls: under steady sliding Dahl's z nears them exponentially,
 /// 1 - |z|λ/f_c shrinking by e for every f_c/λ that x moves, and so do the widths of what the density shows.
@@ -42,9 +53,12 @@ pub fn automatic_grading(
     let mut at: Vec<f64> = here.map(|surface| surface.at).filter(inside).collect();
     at.sort_by(f64::total_cmp);
     at.dedup();
-    let thickness = at.iter().map(|&at| layer(system, ranges, axis, at));
-    let smallest = LAYER_SHARE * thickness.fold(f64::INFINITY, f64::min);
     let uniform = (to - from) / count as f64;
+    let wanted = at.iter().map(|&at| match layer(system, ranges, axis, at) {
+        Some(thickness) => LAYER_SHARE * thickness,
+        None => BEND_SHARE * uniform,
+    });
+    let smallest = wanted.fold(f64::INFINITY, f64::min);
     (smallest > 0.0 && smallest < uniform).then_some(Grading { at, smallest })
 }
 
@@ -63,10 +77,12 @@ fn toward_walls(
     (!at.is_empty() && smallest > 0.0).then_some(Grading { at, smallest })
 }
 
-/// Thickness D/|a| of the layer on a surface; infinite without a force across it.
-fn layer(system: &dyn System, ranges: &[(f64, f64)], axis: usize, at: f64) -> f64 {
+/// Thickness D/|a| of the layer on a surface; `None` where the force does not jump there.
+fn layer(system: &dyn System, ranges: &[(f64, f64)], axis: usize, at: f64) -> Option<f64> {
     let others = u32::try_from(ranges.len() - 1).unwrap_or(0);
-    let (mut squares, mut diffusion, mut states) = (0.0, 0.0, 0.0);
+    let surface = SwitchingSurface { axis, at };
+    let distance = BESIDE * (ranges[axis].1 - ranges[axis].0);
+    let (mut squares, mut diffusion, mut states, mut jump) = (0.0, 0.0, 0.0, 0.0_f64);
     for number in 0..PLACES.pow(others) {
         let mut rest = number;
         let mut place = |range: &(f64, f64)| {
@@ -79,6 +95,7 @@ fn layer(system: &dyn System, ranges: &[(f64, f64)], axis: usize, at: f64) -> f6
             .map(|(index, range)| if index == axis { at } else { place(range) })
             .collect();
         let force = system.drift_at(0.0, &state)[axis];
+        jump = jump.max(surface.drift_jump(system, &state, distance)[axis].abs());
         if force.is_finite() {
             squares += force * force;
             states += 1.0;
@@ -90,7 +107,8 @@ fn layer(system: &dyn System, ranges: &[(f64, f64)], axis: usize, at: f64) -> f6
         }
     }
     let mean_diffusion = diffusion / PLACES.pow(others) as f64;
-    mean_diffusion / (squares / f64::max(states, 1.0)).sqrt()
+    let force = (squares / f64::max(states, 1.0)).sqrt();
+    (jump > NO_JUMP * force).then(|| mean_diffusion / force)
 }
 
 #[cfg(test)]
@@ -133,6 +151,24 @@ mod tests {
         assert_eq!(grading((-0.5, 0.5)), Some(vec![-0.5, 0.5]));
         assert_eq!(grading((-0.4, 0.5)), Some(vec![0.5]));
         assert_eq!(grading((-0.4, 0.4)), None);
+    }
+
+    #[test]
+    fn a_bend_of_another_rate_makes_cells_somewhat_narrower() {
+        let values = [
+            ("kappa", 0.1),
+            ("lambda", 0.2),
+            ("f_c", 0.1),
+            ("sigma2", 0.2),
+        ];
+        let dahl = registry::find("dahl")
+            .unwrap()
+            .system_with(&values)
+            .unwrap();
+        let ranges = [(-2.0, 2.0), (-3.0, 3.0), (-0.5, 0.5)];
+        let grading = automatic_grading(&*dahl, &ranges, 1, 50).unwrap();
+        assert_eq!(grading.at, vec![0.0]);
+        assert!((grading.smallest - BEND_SHARE * 0.12).abs() < 1e-12);
     }
 
     #[test]

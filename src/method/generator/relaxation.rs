@@ -73,6 +73,11 @@ impl Relaxation {
         }
     }
 
+    /// Whether less than `limit` of the mass leaves within it for sure, at this escape rate, at the point that it is of.
+    pub(super) fn is_quiet(&self, escape_rate: f64, limit: f64) -> bool {
+        escape_rate * self.time * if self.rough { ROUGHNESS } else { 1.0 } < limit
+    }
+
     /// Whether it is that of fewer cells.
     pub(super) fn is_rough(&self) -> bool {
         self.rough

@@ -103,7 +103,10 @@ impl GeneratorSession {
         if let Some(found) = one_axis::masses(&self.source, system.as_ref()) {
             return one_axis::solution(&self.source, value, system.as_ref(), &found);
         }
-        let before = self.trails.nearest(value).cloned();
+        let mut before = self.trails.nearest(value).cloned();
+        if let Some(trail) = &mut before {
+            trail.slope = self.slope(trail)?.map(Arc::new);
+        }
         let guess = before.as_ref().and_then(|trail| trail.mass_at(value));
         let expected = before.as_ref().and_then(|trail| trail.difference_at(value));
         let factorisations = self.solver.factorisations();
@@ -113,12 +116,9 @@ impl GeneratorSession {
         let mut solved = self.solved(value, system, guess.as_deref(), expected.as_deref())?;
         solved.steady.info.factorisations = self.solver.factorisations() - factorisations;
         let (mut solution, trail) = self.judge(&solved, before.as_ref())?;
-        let Some(mut trail) = trail else {
+        let Some(trail) = trail else {
             return Ok(solution);
         };
-        if before.is_none() && !self.source.checks {
-            trail.slope = self.slope(&solved)?.map(Arc::new);
-        }
         let unknowns = Arc::new(solved.steady.mass);
         self.keep(value, trail);
         solution.sensitivity = Some(Box::new(GeneratorSensitivity {
@@ -262,7 +262,8 @@ impl GeneratorSession {
         let carried = |known: &Relaxation| Relaxation::carried(known, rate, QUIET_ESCAPE);
         let of_fewer_cells = || {
             let time = rough_relaxation(&self.source, solved.value, &self.cancellation)?;
-            carried(&Relaxation::rough(time, mass, neighbour))
+            Some(Relaxation::rough(time, mass, neighbour))
+                .filter(|found| found.is_quiet(rate, QUIET_ESCAPE))
         };
         let near = neighbour.and_then(carried).or_else(|| {
             let rough = neighbour.is_none_or(Relaxation::is_rough);
@@ -301,19 +302,25 @@ impl GeneratorSession {
         Ok((densities, change))
     }
 
-    /// du/dθ at the solution; `None` where Q cannot be varied (at an end of the parameter's range) or the
-    /// solve fails: the neighbour then starts without a prediction.
-    fn slope(&mut self, solved: &Solved) -> Result<Option<Vec<f64>>, MethodError> {
-        let problem = &self.source.problem;
+    /// du/dθ at the only point of a trail, for the first step from it: worked out when there is one, as long as the solver stands at
+    /// that point. `None` where Q cannot be varied (at an end of the parameter's range) or the solve fails: the next point then
+    /// starts without a prediction.
+    fn slope(&mut self, trail: &Trail) -> Result<Option<Vec<f64>>, MethodError> {
+        let only = trail
+            .only()
+            .filter(|point| self.stand.solved == Some(point.value));
+        let Some(point) = only.filter(|_| !self.source.checks) else {
+            return Ok(None);
+        };
         let options = GeneratorOptions {
             scheme: self.source.options.scheme,
         };
         let at = |value: f64| self.source.system_at(value);
-        let derivative = assemble_derivative(at, solved.value, problem.space(), &options);
-        let Ok(derivative) = derivative else {
+        let space = self.source.problem.space();
+        let Ok(derivative) = assemble_derivative(at, point.value, space, &options) else {
             return Ok(None);
         };
-        let (matrix, mass) = (&derivative.matrix, &solved.steady.mass);
+        let (matrix, mass) = (&derivative.matrix, &point.mass);
         match self.solver.sensitivity_within(matrix, mass, None, ROUGH) {
             Ok(slope) => Ok(Some(slope)),
             Err(RateError::Cancelled(cancelled)) => Err(cancelled.into()),

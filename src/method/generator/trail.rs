@@ -33,7 +33,7 @@ pub(super) struct Solved {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(in crate::method) struct Trail {
     points: Vec<Arc<Solved>>,
-    /// Derivative of the unknowns by the parameter at the first point, Σ = 0: predicts while there is no second one.
+    /// Derivative of the unknowns by the parameter at the only point, Σ = 0: predicts the second one.
     pub(super) slope: Option<Arc<Vec<f64>>>,
     /// How fast deviations die out, where it was needed.
     pub(super) relaxation: Option<Arc<Relaxation>>,
@@ -117,9 +117,17 @@ impl Trail {
         self.points.first()
     }
 
+    /// The point, where there is no other.
+    pub(super) fn only(&self) -> Option<&Arc<Solved>> {
+        match self.points.as_slice() {
+            [only] => Some(only),
+            _ => None,
+        }
+    }
+
     /// Unknowns expected at a value; `None` without any point.
     pub(super) fn mass_at(&self, value: f64) -> Option<Vec<f64>> {
-        let [only] = self.points.as_slice() else {
+        let Some(only) = self.only() else {
             return self.extrapolated(value, POINTS, |point| &point.mass);
         };
         let mut mass = only.mass.to_vec();

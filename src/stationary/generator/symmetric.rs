@@ -19,13 +19,14 @@ use super::response::Question;
 use super::solver::DirectSolver;
 use super::{RateError, RateOptions, RateSteadyState};
 use crate::cancellation::Cancellation;
-use crate::space::CellSpace;
+use crate::space::{Axis, CellSpace};
 pub use along::Along;
 use along::FoldedQuestion;
 use folding::{Folding, is_centrosymmetric, is_symmetric};
 
-/// Unknowns below which halving them is not worth the while.
+/// Unknowns below which halving them is not worth the while, and the same where modes make dense blocks of them.
 const WORTH_FOLDING: usize = 12_000;
+const WORTH_FOLDING_WITH_MODES: usize = 7000;
 
 /// Solves generators on one cell space, keeping the factorisation from one to the next.
 pub struct RateSolver {
@@ -36,6 +37,14 @@ pub struct RateSolver {
     half: Option<Half>,
     /// The last matrix, with its escape, that was solved on half of the cells; `None` after one that was not.
     folded: Option<(CsMat<f64>, Vec<f64>)>,
+}
+
+/// Unknowns from which on half of them are worth having.
+fn worth_folding(space: &CellSpace) -> usize {
+    match space.axes().iter().any(Axis::is_modes) {
+        true => WORTH_FOLDING_WITH_MODES,
+        false => WORTH_FOLDING,
+    }
 }
 
 /// The solver on half of the cells.
@@ -103,7 +112,8 @@ impl RateSolver {
         };
         let question = along.zip(change.as_deref());
         let question = question.map(|(along, change)| along.question(change));
-        if self.space.n_cells() < WORTH_FOLDING || !is_centrosymmetric(matrix, escape) {
+        if self.space.n_cells() < worth_folding(&self.space) || !is_centrosymmetric(matrix, escape)
+        {
             return self.plain.solve_along(matrix, escape, guess, question);
         }
         self.plain.check(matrix, escape)?;

@@ -114,7 +114,7 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
     key("cells.<axis>.modes", Kind::Count(2, MOST_MODES as i128), Rule("`auto` where the model marks the axis and `count` is not given"), of_axis!(modes),
         "Number of modes that carry the density along the axis of an internal state without noise, or of coloured noise, in place of cells, by the generator; other methods use `count`. `auto` finds how many what is watched needs."),
     key("cells.<axis>.grade", Kind::Choice(automatic), Rule("cells of equal width"), of_axis!(grade),
-        "`auto` narrows the cells toward the model's switching surfaces, to a quarter of the layer that holds the kink of the density; or a table with `at` and `smallest`."),
+        "`auto` narrows the cells toward the model's switching surfaces, to a quarter of the layer that holds the kink of the density, or a little where the force does not jump; or a table with `at` and `smallest`."),
     key("cells.<axis>.grade.at", Kind::List(&Kind::Number(ANY)), Rule("cells of equal width"), of_axis!(grade_at),
         "Points toward which the cells get narrower, inside the range; a face falls on each."),
     key("cells.<axis>.grade.smallest", Kind::Number(POSITIVE), Rule("cells of equal width"), of_axis!(grade_smallest),
