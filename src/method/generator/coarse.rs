@@ -31,7 +31,7 @@ pub(in crate::method) fn rough_masses(
 /// Unknowns up to which a relaxation time is worked out on the cells themselves, and the same where axes have modes, whose fronts
 /// are larger.
 const FEW: usize = 20_000;
-const FEW_WITH_MODES: usize = 4000;
+const FEW_WITH_MODES: usize = 8000;
 
 /// Least modes with which it is worked out on fewer cells.
 const LEAST_MODES: usize = 3;
@@ -89,8 +89,8 @@ mod tests {
         let family = Family::new(registry::find("dahl").unwrap(), &given, path).unwrap();
         let bound = 0.05 / 0.06;
         let axes = vec![
-            Axis::uniform(-2.3, 2.3, 36).unwrap(),
-            Axis::uniform(-2.8, 2.8, 36).unwrap(),
+            Axis::uniform(-2.3, 2.3, 48).unwrap(),
+            Axis::uniform(-2.8, 2.8, 48).unwrap(),
             Axis::modes(-bound, bound, 6).unwrap(),
         ];
         let space = CellSpace::new(axes).unwrap();
