@@ -18,12 +18,12 @@ const ALLOWED: &[(&str, &[&str])] = &[
         "monte_carlo",
         &["cancellation", "system", "space", "sampling"],
     ),
-    ("generator", &["system", "space"]),
+    ("density", &["system", "space"]),
+    ("generator", &["system", "space", "density"]),
     (
         "stationary",
         &["cancellation", "space", "sampling", "bytes"],
     ),
-    ("density", &["system", "space"]),
     ("topology", &["space", "density"]),
     (
         "continuation",

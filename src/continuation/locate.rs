@@ -10,7 +10,7 @@ use super::reason::{
 use super::root::{Root, root};
 use super::{CellCheck, Goal, Point, PointStatus, Subject, persistence, words};
 use crate::density::{EstimatedDensity, Kink, Observable};
-use crate::topology::{Detector, IndicatorKind};
+use crate::topology::{Detector, Indicator, IndicatorKind};
 
 /// So many rows in a row that are not located are one.
 const FLICKER: usize = 3;
@@ -251,8 +251,8 @@ fn by_indicator(
     let mut found: Root = root(points, crossing, detector.confidence());
     let (a, b) = (points[crossing.left], points[crossing.left + 1]);
     let bracket = (a.value, b.value);
-    // The slope at a kink follows from the equations: no grid takes part.
-    let depends_on_cells = crossing.kind() != IndicatorKind::KinkSlope;
+    // What follows from the equations: no grid takes part.
+    let depends_on_cells = !crossing.ends.iter().all(Indicator::is_free_of_cells);
     let checked = Checked {
         observable: change.observable,
         kind: crossing.kind(),

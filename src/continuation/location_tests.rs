@@ -119,7 +119,7 @@ impl<F: Formula> DensitySource for Exact<F> {
 fn centred(axes: usize) -> Structure {
     Structure {
         centre: Some(vec![0.0; axes]),
-        kinks: Vec::new(),
+        ..Structure::default()
     }
 }
 

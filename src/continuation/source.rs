@@ -161,7 +161,7 @@ impl From<Cancelled> for SourceError {
 ///         standard_error: vec![0.0; values.len()],
 ///         density: Density { axes: vec![axis], values: values.iter().map(|p| p / mass).collect() },
 ///         variants: Variants::None,
-///         structure: Structure { centre: Some(vec![0.0]), kinks: Vec::new() },
+///         structure: Structure { centre: Some(vec![0.0]), ..Structure::default() },
 ///         negligible: 0.0,
 ///     }
 /// }

@@ -5,6 +5,7 @@
 mod discretisation;
 mod distance;
 mod moments;
+mod profile;
 mod projection;
 mod series_map;
 mod spread;
@@ -16,6 +17,7 @@ pub(crate) use discretisation::WIGGLE;
 pub use discretisation::{estimate_from_difference, estimate_from_second};
 pub use distance::{hellinger, hellinger_of_masses, total_variation, total_variation_of_masses};
 pub use moments::moments;
+pub use profile::{Extremum, Profile, SlopeJump, Turn};
 pub use projection::{Projection, QuantityMoments, project};
 pub(crate) use series_map::laid_out;
 pub use spread::{Coordinate, Detail};

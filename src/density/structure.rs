@@ -1,5 +1,9 @@
 //! What is known of a density beside its values: its symmetry, its kinks, and other estimates of it.
 
+use std::sync::Arc;
+
+use super::Profile;
+
 /// What a system's equations say of a density.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Structure {
@@ -7,6 +11,8 @@ pub struct Structure {
     pub centre: Option<Vec<f64>>,
     /// Planes on which a derivative of the density jumps.
     pub kinks: Vec<Kink>,
+    /// Of the density of a system with one axis that is known by quadrature: its extrema, free of the cells.
+    pub profile: Option<Arc<Profile>>,
 }
 
 /// A plane on which the derivative of the density jumps, or bends: drift or noise across it does, or a force along it

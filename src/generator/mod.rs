@@ -15,7 +15,7 @@
 //! | rates along an axis of modes | `modes.rs` |
 //! | the matrix | `assemble.rs`, `columns.rs` |
 //! | masses of cells and moments from the unknowns | `masses.rs` |
-//! | one axis: the steady state by quadrature | `one_axis.rs` |
+//! | one axis: the steady state by quadrature, its extrema from the equations | `one_axis/` |
 //! | dQ/dθ | `derivative.rs` |
 //! | axes graded toward switching surfaces | `grading.rs` |
 //! | is the grid fine enough for the noise | `resolution.rs` |
@@ -41,7 +41,7 @@ pub use assemble::assemble;
 pub use derivative::assemble_derivative;
 pub use grading::automatic_grading;
 pub use masses::{cell_masses, unknown_moments};
-pub use one_axis::{OneAxis, one_axis};
+pub use one_axis::{OneAxis, one_axis, profile};
 pub use resolution::{Resolution, resolution};
 pub use scheme::AdvectiveScheme;
 

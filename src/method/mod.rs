@@ -21,7 +21,7 @@ pub use bins::{BinsError, QuantityRange, automatic_bins, check_averaged};
 pub use cost::Cost;
 pub use generator::{
     GeneratorCost, GeneratorMethodOptions, GeneratorSource, ModesFound, automatic_modes,
-    change_by_more_modes,
+    change_by_more_modes, profile_of,
 };
 pub use monte_carlo::{
     Estimator, MonteCarloCost, MonteCarloOptions, MonteCarloPlan, MonteCarloSource,

@@ -210,7 +210,7 @@ impl Maps {
         }
         Structure {
             centre: self.centre(system, problem, &axes, kinked),
-            kinks: Vec::new(),
+            ..Structure::default()
         }
     }
 

@@ -12,8 +12,9 @@ use crate::continuation::Subject;
 use crate::density::{
     Density, EstimatedDensity, Kink, NEGLIGIBLE, Observable, Structure, Variants, laid_out,
 };
+use crate::method::profile_of;
 use crate::space::{Axis, CellSpace};
-use crate::system::{Family, Symmetry, proved_symmetry};
+use crate::system::{Family, Symmetry, System, proved_symmetry};
 
 type StoredArray = Array<FilesystemStore>;
 
@@ -81,13 +82,6 @@ impl StoredDensities {
         })
     }
 
-    /// The symmetry of the system at a parameter value: the centre that is stored is that of the value that was solved first, and others
-    /// need not have it.
-    fn symmetry(&self, value: f64) -> Option<Symmetry> {
-        let system = self.family.at(value).ok()?;
-        proved_symmetry(system.as_ref(), &self.ends)
-    }
-
     /// The densities at a parameter value; `None` if the store has none there.
     ///
     /// # Errors
@@ -96,14 +90,35 @@ impl StoredDensities {
         let Some(index) = self.values.iter().position(|&known| known == value) else {
             return Ok(None);
         };
+        let system = self.family.at(value).ok();
         let with_centre = self.observed.iter().any(|one| one.centre.is_some());
-        let symmetry = with_centre.then(|| self.symmetry(value)).flatten();
+        let symmetric = system.as_deref().filter(|_| with_centre);
+        // The centre that is stored is that of the value that was solved first, and others need not have it.
+        let symmetry = symmetric.and_then(|system| proved_symmetry(system, &self.ends));
         let densities = self.observed.iter();
         densities
-            .map(|observed| observed.estimate(&self.path, index as u64, symmetry.as_ref()))
+            .map(|observed| {
+                let mut estimate =
+                    observed.estimate(&self.path, index as u64, symmetry.as_ref())?;
+                if let Some(system) = &system {
+                    know_profile(&mut estimate, system.as_ref());
+                }
+                Ok(estimate)
+            })
             .collect::<Result<_, _>>()
             .map(Some)
     }
+}
+
+/// The extrema of the density of a system with one axis follow from its equations, where quadrature gave it.
+fn know_profile(estimate: &mut EstimatedDensity, system: &dyn System) {
+    let is_solved = estimate.variants.second_scheme().is_some();
+    if !is_solved || estimate.observable != Observable::Marginal(0) {
+        return;
+    }
+    let centre = estimate.structure.centre.as_ref().map(|centre| centre[0]);
+    let profile = profile_of(system, &estimate.density.axes[0], centre);
+    estimate.structure.profile = profile.map(Arc::new);
 }
 
 impl Observed {
@@ -129,6 +144,8 @@ impl Observed {
                 kinks.push(Kink { axis, at, jump });
             }
         }
+        let centre = self.centre.clone();
+        let centre = centre.filter(|_| symmetry.is_some_and(reflects));
         Ok(EstimatedDensity {
             observable: self.observable,
             density: Density {
@@ -138,11 +155,9 @@ impl Observed {
             standard_error: read(&self.error)?,
             variants: self.variants(path, index)?,
             structure: Structure {
-                centre: self
-                    .centre
-                    .clone()
-                    .filter(|_| symmetry.is_some_and(reflects)),
+                centre,
                 kinks,
+                profile: None,
             },
             negligible: self.negligible,
         })

@@ -1,6 +1,9 @@
 //! The detector by persistence: components of the superlevel and sublevel sets, judged and refined.
 
+use std::cmp::Ordering;
+
 use super::critical::{Critical, height_above};
+use super::exact;
 use super::field::Field;
 use super::indicator::{
     Found, at_centre, beside_kink, corrected, curvature_beside, flanks_from_centre, fold, level,
@@ -15,7 +18,7 @@ use super::{
     DetectOptions, Detection, Detector, Feature, FeatureKind, Flank, Indicator, IndicatorKind,
     Signature, Verdict,
 };
-use crate::density::{EstimatedDensity, Kink};
+use crate::density::{EstimatedDensity, Kink, Profile};
 
 /// How many absent features of each kind are listed, so that a birth can be followed.
 const ABSENT_LISTED: usize = 4;
@@ -254,6 +257,49 @@ fn grid(estimated: &EstimatedDensity) -> Option<Grid<'_>> {
     })
 }
 
+impl PersistenceDetector {
+    /// What the equations of a system with one axis say: every extremum is known, no cell has to show it.
+    fn by_equations(
+        &self,
+        density: &EstimatedDensity,
+        profile: &Profile,
+        limits: &Limits,
+    ) -> Detection {
+        let mut features = exact::features(profile, limits);
+        features.sort_by(by_kind_and_height);
+        let indicators = at_centre(density);
+        // Where a split is nearer than rounding lets its peaks be told apart, the centre decides.
+        let peaks = present_places(&features, FeatureKind::Peak);
+        let found = Found {
+            signature: Signature::of_peaks(peaks.len()),
+            peaks: &peaks,
+            craters: &[],
+            rings_around_centre: 0,
+        };
+        let signature = corrected(density, &indicators, self.doubt(), &found);
+        Detection {
+            signature,
+            is_seen: true,
+            indicators,
+            features,
+        }
+    }
+}
+
+/// Places of the features of a kind that are present.
+fn present_places(features: &[Feature], kind: FeatureKind) -> Vec<Vec<f64>> {
+    let present = features
+        .iter()
+        .filter(|feature| feature.kind == kind && feature.verdict == Verdict::Present);
+    present.map(|feature| feature.position.clone()).collect()
+}
+
+/// The order in which features are listed.
+fn by_kind_and_height(a: &Feature, b: &Feature) -> Ordering {
+    let heights = b.persistence.total_cmp(&a.persistence);
+    a.kind.cmp(&b.kind).then(heights)
+}
+
 impl Detector for PersistenceDetector {
     fn name(&self) -> &'static str {
         "persistence"
@@ -275,6 +321,9 @@ impl Detector for PersistenceDetector {
             grid.values.len(),
             (density.density.maximum(), density.negligible_height()),
         );
+        if let Some(profile) = &density.structure.profile {
+            return self.by_equations(density, profile, &limits);
+        }
         let (peaks, craters) = components(grid);
         let peaks = self.judged(peaks, false, density, &limits);
         let craters = self.judged(craters, true, density, &limits);
@@ -299,21 +348,10 @@ impl Detector for PersistenceDetector {
         for crater in &craters {
             features.push(crater.feature(density, FeatureKind::Crater, crater.component.birth));
         }
-        features.sort_by(|a, b| {
-            a.kind
-                .cmp(&b.kind)
-                .then(b.persistence.total_cmp(&a.persistence))
-        });
+        features.sort_by(by_kind_and_height);
         let indicators = at_centre(density);
-        let places = |kind| {
-            let present = features
-                .iter()
-                .filter(|feature| feature.kind == kind && feature.verdict == Verdict::Present);
-            present
-                .map(|feature| feature.position.clone())
-                .collect::<Vec<_>>()
-        };
-        let (peaks, craters) = (places(FeatureKind::Peak), places(FeatureKind::Crater));
+        let [peaks, craters] =
+            [FeatureKind::Peak, FeatureKind::Crater].map(|kind| present_places(&features, kind));
         let around_centre = rims.iter().filter(|one| one.holds_centre(density));
         let found = Found {
             signature: counted,

@@ -3,6 +3,7 @@
 mod critical;
 mod detector;
 mod enclosure;
+mod exact;
 mod extremum;
 mod field;
 mod indicator;

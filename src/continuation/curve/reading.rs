@@ -239,7 +239,26 @@ fn along(
     let changes = sensitivity.to_parameter(parameter)?;
     let change = changes.get(observable).map_or(&[][..], Vec::as_slice);
     let (kind, place) = (indicator.kind, &indicator.place);
-    Ok(derivative(detector, density, kind, place, change))
+    if density.structure.profile.is_none() {
+        return Ok(derivative(detector, density, kind, place, change));
+    }
+    // What the equations say of this density does not move with its cells: they give the derivative where they show the same place.
+    let mut by_cells = density.clone();
+    by_cells.structure.profile = None;
+    let seen = detector.indicator(&by_cells, kind, place);
+    let is_same = seen.is_some_and(|seen| is_one_place(density, &seen.place, place));
+    let along = is_same.then(|| derivative(detector, &by_cells, kind, place, change));
+    Ok(along.flatten())
+}
+
+/// Whether two places of a density over one axis are no farther apart than a cell.
+fn is_one_place(density: &EstimatedDensity, a: &[f64], b: &[f64]) -> bool {
+    let axis = density.density.axes.first();
+    let both = axis.zip(a.first().zip(b.first()));
+    both.is_some_and(|(axis, (a, b))| {
+        let width = axis.find(*b).map_or(0.0, |cell| axis.width(cell));
+        (a - b).abs() <= width
+    })
 }
 
 /// Derivative of an indicator when its density changes at this rate.

@@ -6,10 +6,11 @@ use super::GeneratorSource;
 use super::jumps::Kinked;
 use super::source::METHOD;
 use crate::continuation::{Sensitivity, Solution, SourceError};
-use crate::density::{Moments, Observable};
-use crate::generator::{OneAxis, one_axis};
+use crate::density::{Moments, Observable, Profile};
+use crate::generator::{OneAxis, one_axis, profile};
 use crate::method::MethodError;
 use crate::method::report::Reporter;
+use crate::space::Axis;
 use crate::system::{System, SystemError};
 
 /// Largest relative error of a cell that the quadrature may have; where noise nearly vanishes, or the drift jumps inside a cell,
@@ -26,12 +27,27 @@ pub(super) fn masses(source: &GeneratorSource, system: &dyn System) -> Option<On
     let [axis] = source.problem.space().axes() else {
         return None;
     };
+    between_ends(system, axis, source.closed_ends.first().copied()?)
+}
+
+/// The same between ends of which some may be closed.
+fn between_ends(system: &dyn System, axis: &Axis, [low, high]: [bool; 2]) -> Option<OneAxis> {
     let pushes_in = |at: f64, sign: f64| sign * system.drift_at(0.0, &[at])[0] > 0.0;
-    let [low, high] = source.closed_ends.first().copied()?;
     if !((low || pushes_in(axis.from(), 1.0)) && (high || pushes_in(axis.to(), -1.0))) {
         return None;
     }
     one_axis(system, axis).filter(|found| found.error < LARGEST_ERROR)
+}
+
+/// What the equations say of the extrema of the density over an axis, of a system with no other, given the centre of symmetry if there is one:
+/// what a density that was stored knew when it was solved. `None` where quadrature does not give it.
+pub fn profile_of(system: &dyn System, axis: &Axis, centre: Option<f64>) -> Option<Profile> {
+    if system.dimension() != 1 {
+        return None;
+    }
+    let walls = system.walls(0, (axis.from(), axis.to()));
+    let found = between_ends(system, axis, walls)?;
+    profile(system, axis, &found, centre)
 }
 
 /// The solution at a value.
@@ -52,6 +68,11 @@ pub(super) fn solution<'session>(
     for one in &mut densities {
         let kinked = &source.kinked;
         one.structure = maps.structure(system, problem, masses, one.observable, kinked);
+        if one.observable == Observable::Marginal(0) {
+            let centre = one.structure.centre.as_ref().map(|centre| centre[0]);
+            let profile = profile(system, &space.axes()[0], found, centre);
+            one.structure.profile = profile.map(Arc::new);
+        }
         // Sub-cells leave more than the quadrature does.
         let of_quantity = one.observable != Observable::Marginal(0);
         one.negligible = if of_quantity { one.negligible } else { 0.0 };

@@ -120,7 +120,11 @@ pub(super) fn structure(
     if centre.as_ref().is_some_and(is_torn) {
         centre = None;
     }
-    Structure { centre, kinks }
+    Structure {
+        centre,
+        kinks,
+        profile: None,
+    }
 }
 
 /// The point of symmetry, where all axes that are kept are reflected.

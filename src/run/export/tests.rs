@@ -33,10 +33,7 @@ fn point(value: f64, solved: bool) -> Point {
             standard_error: vec![0.25; cells],
             variants: Variants::Scheme(values.iter().map(|value| -value).collect()),
             density: Density { axes, values },
-            structure: Structure {
-                centre: None,
-                kinks: Vec::new(),
-            },
+            structure: Structure::default(),
             negligible: NEGLIGIBLE,
         }
     };

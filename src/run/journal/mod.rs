@@ -7,6 +7,7 @@
 
 mod check;
 mod log;
+mod profile;
 mod record;
 mod sessions;
 mod source;

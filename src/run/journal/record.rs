@@ -1,5 +1,8 @@
 //! A solve in full, as bytes and back.
 
+use std::sync::Arc;
+
+use super::profile::{read_profile, write_profile};
 use crate::bytes::{NotWhatWasWritten, Reader, Writer};
 use crate::continuation::{Finding, MethodPart, PointStatus, Solution, SolveReport};
 use crate::density::{Density, EstimatedDensity, Kink, Moments, Observable, Structure, Variants};
@@ -209,12 +212,20 @@ pub(in crate::run) fn write_density(writer: &mut Writer, estimate: &EstimatedDen
             }
         }
     }
-    let Structure { centre, kinks } = &estimate.structure;
+    let Structure {
+        centre,
+        kinks,
+        profile,
+    } = &estimate.structure;
     writer.flag(centre.is_some());
     writer.numbers(centre.as_deref().unwrap_or(&[]));
     writer.count(kinks.len());
     for kink in kinks {
         writer.count(kink.axis).number(kink.at).numbers(&kink.jump);
+    }
+    writer.flag(profile.is_some());
+    if let Some(profile) = profile {
+        write_profile(writer, profile);
     }
     writer.number(estimate.negligible);
 }
@@ -257,12 +268,18 @@ pub(in crate::run) fn read_density(
             jump: reader.numbers()?,
         });
     }
+    let has_profile = reader.flag()?;
+    let profile = has_profile.then(|| read_profile(reader)).transpose()?;
     Ok(EstimatedDensity {
         observable,
         density: Density { axes, values },
         standard_error,
         variants,
-        structure: Structure { centre, kinks },
+        structure: Structure {
+            centre,
+            kinks,
+            profile: profile.map(Arc::new),
+        },
         negligible: reader.number()?,
     })
 }

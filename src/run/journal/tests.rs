@@ -6,12 +6,40 @@ use crate::bytes::{Reader, Writer};
 use crate::continuation::{
     CheckedBy, CheckedIndicator, Finding, Solution, SolveReport, every_finding,
 };
-use crate::density::{Density, EstimatedDensity, Kink, Moments, Observable, Structure, Variants};
+use std::sync::Arc;
+
+use crate::density::{
+    Density, EstimatedDensity, Extremum, Kink, Moments, Observable, Profile, SlopeJump, Structure,
+    Turn, Variants,
+};
 use crate::space::{Axis, CellSpace};
 use crate::system::examples::coulomb;
 use crate::topology::IndicatorKind;
 
 const SWEEP: &str = "title = \"t\"\n[sweep]\npoints = 3\n[figures]\nat = [0.0]\n";
+
+fn profile() -> Profile {
+    Profile {
+        extrema: vec![Extremum {
+            place: 0.1,
+            is_peak: true,
+            density: 0.3,
+            gathered_error: 1e-12,
+        }],
+        turns: vec![Turn {
+            place: -0.1,
+            is_largest: false,
+            slope: 0.7,
+            error: 1e-13,
+        }],
+        jumps: vec![SlopeJump {
+            place: 0.2,
+            slopes: [0.1, -0.3],
+            error: 1e-14,
+        }],
+        curvature: Some((-1.0 / 3.0, 1e-9)),
+    }
+}
 
 fn space() -> CellSpace {
     let x = Axis::uniform(-1.0, 1.0, 2).unwrap();
@@ -40,6 +68,7 @@ fn density(observable: Observable, variants: fn(Vec<f64>) -> Variants) -> Estima
                 at: 0.1,
                 jump: vec![0.3],
             }],
+            profile: Some(Arc::new(profile())),
         },
         negligible: 1e-9,
     }

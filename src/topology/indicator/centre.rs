@@ -5,6 +5,7 @@
 //! saddle. The type is known long before peaks stand out from each other, and decides between the signatures
 //! that persistence cannot tell apart: other critical points come in pairs.
 
+use super::exact;
 use super::smooth::Smooth;
 use super::window;
 use super::{Indicator, IndicatorKind};
@@ -43,6 +44,10 @@ fn kink_at(estimated: &EstimatedDensity, k: usize, at: f64) -> Option<&Kink> {
 
 /// p''/p of a marginal.
 fn curvature(estimated: &EstimatedDensity, at: f64) -> Option<Indicator> {
+    let profile = estimated.structure.profile.as_ref();
+    if let Some(found) = profile.and_then(|profile| exact::curvature(profile, at)) {
+        return Some(found);
+    }
     if is_sampled(estimated) {
         let fit = Smooth::marginal(estimated, at)?;
         let of =

@@ -19,6 +19,7 @@
 
 mod beside;
 mod centre;
+mod exact;
 mod fold;
 mod level;
 mod pair;
@@ -197,6 +198,25 @@ impl Indicator {
             0.0
         };
         (self.value.abs() > self.systematic_error + sampling).then_some(self.value > 0.0)
+    }
+
+    /// Whether it follows from the equations, without cells or samples: no finer grid can tell more of it.
+    pub fn is_free_of_cells(&self) -> bool {
+        self.sensitivity == 0.0 && self.sampling_error == 0.0
+    }
+
+    /// An indicator whose value and error are known without cells.
+    fn known(kind: IndicatorKind, place: f64, value: f64, error: f64) -> Option<Self> {
+        (value.is_finite() && error.is_finite()).then(|| Self {
+            kind,
+            place: vec![place],
+            value,
+            sampling_error: 0.0,
+            degrees_of_freedom: f64::INFINITY,
+            systematic_error: error,
+            sensitivity: 0.0,
+            replicates: Vec::new(),
+        })
     }
 
     /// An indicator from the function that derives it from the values of a density, and a less accurate one.

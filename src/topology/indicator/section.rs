@@ -79,7 +79,7 @@ mod tests {
                 variants: Variants::None,
                 structure: Structure {
                     centre: Some(vec![0.0; 2]),
-                    kinks: Vec::new(),
+                    ..Structure::default()
                 },
                 negligible: 0.0,
             };

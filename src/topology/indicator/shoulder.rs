@@ -4,6 +4,7 @@
 //! comes nearest to zero; after it, the slope between the two has an extremum of the other sign. Followed as one
 //! extremum of p', signed so that it is positive when both are there, its value passes zero linearly.
 
+use super::exact;
 use super::window::around;
 use super::{Indicator, IndicatorKind};
 use crate::density::{EstimatedDensity, Variants};
@@ -28,6 +29,9 @@ pub(crate) fn shoulder(estimated: &EstimatedDensity, near: f64, rising: bool) ->
     let [axis] = estimated.density.axes.as_slice() else {
         return None;
     };
+    if let Some(profile) = &estimated.structure.profile {
+        return exact::shoulder(profile, near, rising);
+    }
     let sign = if rising { 1.0 } else { -1.0 };
     let kind = IndicatorKind::Shoulder { rising };
     if matches!(estimated.variants, Variants::Jackknife(_)) {
@@ -106,6 +110,9 @@ pub(crate) fn shoulders(estimated: &EstimatedDensity) -> Vec<Flank> {
     let [axis] = estimated.density.axes.as_slice() else {
         return Vec::new();
     };
+    if let Some(profile) = &estimated.structure.profile {
+        return exact::flanks(profile);
+    }
     let Some(field) = Field::new(estimated).filter(|_| !estimated.is_noisy()) else {
         return Vec::new();
     };

@@ -7,13 +7,16 @@
 //! drift jumps or bends, and halved where the exponent changes much, so that cells much wider than what they hold are
 //! right too.
 
-use nalgebra::{DMatrix, SymmetricEigen};
+mod profile;
+mod rule;
+mod series;
+
+pub use profile::profile;
 
 use crate::space::Axis;
-use crate::system::{LANES, Lanes, System};
+use crate::system::{LANES, System};
+use rule::{NODES, Rule, look};
 
-/// Gauss-Legendre points on a panel.
-const NODES: usize = 8;
 /// Panels a cell; eight points on each of eight panels fill a batch.
 const PANELS: usize = LANES / NODES;
 
@@ -26,6 +29,8 @@ pub struct OneAxis {
     pub error: f64,
     /// Mean and variance of the coordinate.
     pub moments: (f64, f64),
+    /// ln ∫ (1/b²) exp ∫ (2a/b²) over the axis, the inner integral from its lower end: what the density is divided by.
+    pub log_integral: f64,
 }
 
 /// The steady state without flux through the ends; `None` where drift and noise do not allow it: more than one axis,
@@ -45,6 +50,7 @@ pub fn one_axis(system: &dyn System, axis: &Axis) -> Option<OneAxis> {
     })
 }
 
+<<<<<<< HEAD:src/generator/one_axis.rs
 /// Points and weights on [0, 1], and the integrals of the polynomial through values at the points from 0 to each of
 /// them.
 struct Rule {
@@ -126,6 +132,8 @@ fn look(system: &dyn System, places: &Lanes) -> (Lanes, Lanes) {
     (drift[0], intensity)
 }
 
+=======
+>>>>>>> 3a52fec (Extrema of densities over one axis come from the equations, not from cells):src/generator/one_axis/mod.rs
 /// Most times that a part of a cell is halved.
 const MOST_HALVINGS: usize = 12;
 /// Largest change of the exponent over a part, in one direction: eight points on each of four panels follow an
@@ -218,23 +226,32 @@ impl Walk<'_> {
     }
 }
 
+/// Where drift or noise are not smooth, ascending.
+fn surfaces(system: &dyn System) -> Vec<f64> {
+    let declared = system.switching_surfaces().into_iter();
+    let mut surfaces: Vec<f64> = declared.map(|one| one.at).collect();
+    surfaces.sort_by(f64::total_cmp);
+    surfaces
+}
+
 /// Coordinates at which a cell is cut: its edges, and where the drift is not smooth.
 fn cuts(axis: &Axis, cell: usize, surfaces: &[f64]) -> Vec<f64> {
     let (from, to) = (axis.edges()[cell], axis.edges()[cell + 1]);
-    let inside = surfaces.iter().copied().filter(|at| from < *at && *at < to);
-    [from].into_iter().chain(inside).chain([to]).collect()
+    let mut cuts = vec![from];
+    for &at in surfaces.iter().filter(|&&at| from < at && at < to) {
+        let known = cuts[cuts.len() - 1];
+        let is_same = |other: f64| axis.is_same_place(at, other);
+        cuts.extend((!is_same(known) && !is_same(to)).then_some(at));
+    }
+    cuts.push(to);
+    cuts
 }
 
 fn integrate(system: &dyn System, axis: &Axis, rule: &Rule, panels: usize) -> Option<OneAxis> {
     let count = axis.count();
     let (mut logs, mut firsts, mut seconds) =
         (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
-    let mut surfaces: Vec<f64> = system
-        .switching_surfaces()
-        .iter()
-        .map(|one| one.at)
-        .collect();
-    surfaces.sort_by(f64::total_cmp);
+    let surfaces = surfaces(system);
     let mut walk = Walk {
         system,
         rule,
@@ -275,13 +292,14 @@ fn integrate(system: &dyn System, axis: &Axis, rule: &Rule, panels: usize) -> Op
         masses,
         error: 0.0,
         moments: (mean, variance),
+        log_integral: largest + total.ln(),
     })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::system::SwitchingSurface;
+    use crate::system::{Lanes, SwitchingSurface};
 
     /// dx = (h + x - x³) dt + σ dW.
     struct Tilted {

@@ -1,0 +1,60 @@
+//! Indicators of a density over one axis that follow from its equations: no cells take part.
+
+use super::{Flank, Indicator, IndicatorKind};
+use crate::density::Profile;
+
+/// The slope at its extremum of the given kind nearest to a place.
+pub(super) fn shoulder(profile: &Profile, near: f64, rising: bool) -> Option<Indicator> {
+    let distance = |place: f64| (place - near).abs();
+    let alike = profile.turns.iter().filter(|one| one.is_largest == rising);
+    let turn = alike.min_by(|a, b| distance(a.place).total_cmp(&distance(b.place)))?;
+    let value = if rising { turn.slope } else { -turn.slope };
+    Indicator::known(
+        IndicatorKind::Shoulder { rising },
+        turn.place,
+        value,
+        turn.error,
+    )
+}
+
+/// The slope on one side of the jump nearest to a place.
+pub(super) fn beside_kink(
+    profile: &Profile,
+    near: f64,
+    above: bool,
+    is_valley: bool,
+) -> Option<Indicator> {
+    let distance = |place: f64| (place - near).abs();
+    let jumps = profile.jumps.iter();
+    let jump = jumps.min_by(|a, b| distance(a.place).total_cmp(&distance(b.place)))?;
+    // Uphill is away from a valley.
+    let sign = if above == is_valley { 1.0 } else { -1.0 };
+    Indicator::known(
+        IndicatorKind::BesideKink { above, is_valley },
+        jump.place,
+        sign * jump.slopes[usize::from(above)],
+        jump.error,
+    )
+}
+
+/// The curvature at the centre of symmetry.
+pub(super) fn curvature(profile: &Profile, centre: f64) -> Option<Indicator> {
+    let (value, error) = profile.curvature?;
+    Indicator::known(IndicatorKind::Curvature, centre, value, error)
+}
+
+/// All extrema of the slope.
+pub(super) fn flanks(profile: &Profile) -> Vec<Flank> {
+    let turns = profile.turns.iter();
+    turns
+        .map(|turn| Flank {
+            rising: turn.is_largest,
+            place: turn.place,
+            value: if turn.is_largest {
+                turn.slope
+            } else {
+                -turn.slope
+            },
+        })
+        .collect()
+}
