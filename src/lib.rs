@@ -8,11 +8,11 @@
 //! | ask long work to stop | [`cancellation`] |
 //! | keep numbers as bytes, the same to the bit | [`bytes`] |
 //! | lay a grid of cells over the domain | [`space`] |
+//! | turn masses into densities, marginals, moments, distances | [`density`] |
 //! | sample a transition matrix by trajectories (SGCM) | [`sampling`] |
 //! | run free trajectories: reference densities, relaxation times, the bias of a time step | [`monte_carlo`] |
 //! | discretise the generator, the cell map in the limit of a short step | [`generator`] |
 //! | find the steady state of a transition matrix | [`stationary`] |
-//! | turn masses into densities, marginals, moments, distances | [`density`] |
 //! | count significant peaks and craters | [`topology`] |
 //! | sweep a parameter and locate changes of topology | [`continuation`] |
 //! | join the above into a source of densities | [`method`] |

@@ -209,9 +209,12 @@ fn indicator(density: &EstimatedDensity, feature: &Feature) -> Option<(Indicator
         ) {
             (FeatureKind::Ring, ..) => (IndicatorKind::Ring, partner.clone()),
             (FeatureKind::Peak, [peak], [valley]) => {
+                let (valley, peak) = (*valley, *peak);
                 let rising = valley < peak;
-                let at_kink = born_at_kink(density, feature, *valley);
-                at_kink.unwrap_or_else(|| (IndicatorKind::Shoulder { rising }, between()))
+                let at_kink = born_at_kink(density, feature, valley);
+                let steepest = steepest(density, [valley, peak]).map(|place| vec![place]);
+                let place = steepest.unwrap_or_else(between);
+                at_kink.unwrap_or((IndicatorKind::Shoulder { rising }, place))
             }
             (FeatureKind::Peak | FeatureKind::Crater, [_, _], _) => {
                 (IndicatorKind::Fold, between())
@@ -219,4 +222,15 @@ fn indicator(density: &EstimatedDensity, feature: &Feature) -> Option<(Indicator
             _ => return None,
         },
     )
+}
+
+/// Where between a valley and a peak the density is steepest, if its equations tell.
+fn steepest(density: &EstimatedDensity, [valley, peak]: [f64; 2]) -> Option<f64> {
+    let profile = density.structure.profile.as_ref()?;
+    let (low, high) = (valley.min(peak), valley.max(peak));
+    let turns = profile.turns.iter();
+    let between = turns.filter(|turn| low <= turn.place && turn.place <= high);
+    let alike = between.filter(|turn| turn.is_largest == (valley < peak));
+    let steepest = alike.max_by(|a, b| a.slope.abs().total_cmp(&b.slope.abs()))?;
+    Some(steepest.place)
 }

@@ -56,3 +56,121 @@ pub(super) fn instead_of_zero(
 fn slope(points: &[&Point], a: (usize, &Indicator), b: (usize, &Indicator)) -> f64 {
     ((b.1.value - a.1.value) / (points[b.0].value - points[a.0].value)).abs()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::continuation::SolveReport;
+    use crate::density::{Density, EstimatedDensity, Observable, Structure, Variants};
+    use crate::space::Axis;
+    use crate::topology::{Detection, IndicatorKind};
+
+    /// Densities whose first value is the indicator.
+    struct Told;
+
+    impl Detector for Told {
+        fn name(&self) -> &'static str {
+            "told"
+        }
+        fn detect(&self, _: &EstimatedDensity) -> Detection {
+            unreachable!("only indicators are asked for")
+        }
+        fn indicator(
+            &self,
+            density: &EstimatedDensity,
+            kind: IndicatorKind,
+            _: &[f64],
+        ) -> Option<Indicator> {
+            Some(indicator(kind, density.density.values[0]))
+        }
+    }
+
+    fn indicator(kind: IndicatorKind, value: f64) -> Indicator {
+        Indicator {
+            kind,
+            place: vec![0.0],
+            value,
+            sampling_error: 0.0,
+            degrees_of_freedom: f64::INFINITY,
+            systematic_error: 0.0,
+            sensitivity: 1.0,
+            replicates: Vec::new(),
+        }
+    }
+
+    fn point(value: f64, of: f64, negligible: f64) -> Point {
+        let density = EstimatedDensity {
+            observable: Observable::Marginal(0),
+            density: Density {
+                axes: vec![Axis::uniform(-1.0, 1.0, 1).unwrap()],
+                values: vec![of],
+            },
+            standard_error: vec![0.0],
+            variants: Variants::None,
+            structure: Structure::default(),
+            negligible,
+        };
+        Point {
+            value,
+            report: SolveReport::solved("exact"),
+            moments: Vec::new(),
+            densities: vec![density],
+            detections: Vec::new(),
+            distance: None,
+            seconds: 0.0,
+        }
+    }
+
+    /// What is said of a function of the parameter that changes its sign between 0.5 and 0.5 + width, given values beside.
+    fn said(of: impl Fn(f64) -> f64, width: f64, sampling_error: f64) -> Option<String> {
+        let values = [0.5 - 4.0 * width, 0.5, 0.5 + width, 0.5 + 5.0 * width];
+        let points = values.map(|value| point(value, of(value), 1e-7));
+        let ends = [1, 2].map(|index| Indicator {
+            sampling_error,
+            ..indicator(IndicatorKind::Curvature, of(values[index]))
+        });
+        let crossing = Crossing {
+            observable: 0,
+            left: 1,
+            ends,
+        };
+        assert!(crossing.ends[0].value * crossing.ends[1].value <= 0.0);
+        instead_of_zero(&points.each_ref(), &crossing, &Told)
+    }
+
+    #[test]
+    fn a_step_is_told_from_a_zero_however_narrow_the_bracket() {
+        let zero = 0.500_000_05;
+        for width in [1e-3, 1e-5, 1e-7] {
+            let at = 0.5 + 0.3 * width;
+            let smooth = |x: f64| 3.0 * (x - at) + (x - at).powi(2);
+            assert_eq!(said(smooth, width, 0.0), None);
+            let step = |x: f64| if x > zero { 0.2 } else { -0.1 } + 0.5 * (x - zero);
+            assert!(said(step, width, 0.0).is_some_and(|words| words.contains("jumps")));
+            // Noise makes every indicator uneven.
+            assert_eq!(said(step, width, 0.01), None);
+        }
+    }
+
+    #[test]
+    fn steep_is_no_jump() {
+        // A cubic root is the steepest of smooth branches that meet zero, two zeros at a distance of a bracket a fold of them.
+        let root = |x: f64| (x - 0.500_02_f64).cbrt();
+        assert_eq!(said(root, 1e-4, 0.0), None);
+        let two = |x: f64| (x - 0.500_05) * (x - 0.500_2) * -1e4;
+        assert_eq!(said(two, 1e-4, 0.0), None);
+    }
+
+    #[test]
+    fn densities_that_are_solved_in_different_ways_are_told() {
+        let points = [point(0.0, -1.0, 0.0), point(1.0, 1.0, 1e-7)];
+        let ends = [-1.0, 1.0].map(|value| indicator(IndicatorKind::Curvature, value));
+        let crossing = Crossing {
+            observable: 0,
+            left: 0,
+            ends,
+        };
+        let said = instead_of_zero(&points.each_ref(), &crossing, &Told);
+        assert!(said.is_some_and(|words| words.contains("points outward")));
+    }
+}

@@ -8,7 +8,7 @@ use crate::density::{Extremum, Profile};
 const ROUNDING: f64 = 1e-12;
 
 /// Peaks and the valleys that belong to them, judged. Where two hills meet at a valley, the lower one ends there: its peak is as high as it
-/// stands above the valley.
+/// stands above the valley. The partner of a peak is the higher of the valleys beside it, with which it was born or will vanish.
 pub(super) fn features(profile: &Profile, limits: &Limits) -> Vec<Feature> {
     let mut hills = hills(&profile.extrema);
     let mut features = Vec::new();
@@ -18,7 +18,9 @@ pub(super) fn features(profile: &Profile, limits: &Limits) -> Vec<Feature> {
             true => *left,
             false => *right,
         };
-        features.extend(pair(&lower, &valley, limits));
+        let [peak, valley] = pair(&lower, &valley, limits);
+        let partner = higher_beside(&profile.extrema, &lower).map(|place| vec![place]);
+        features.extend([Feature { partner, ..peak }, valley]);
         let kept = match left.density < right.density {
             true => hills[place + 1].peak,
             false => hills[place].peak,
@@ -29,7 +31,10 @@ pub(super) fn features(profile: &Profile, limits: &Limits) -> Vec<Feature> {
             valley_above: above.valley_above,
         };
     }
-    features.extend(hills.first().map(|hill| highest(&hill.peak)));
+    features.extend(hills.first().map(|hill| Feature {
+        partner: higher_beside(&profile.extrema, &hill.peak).map(|place| vec![place]),
+        ..highest(&hill.peak)
+    }));
     features
 }
 
@@ -62,12 +67,12 @@ fn highest_valley(hills: &[Hill]) -> Option<(usize, Extremum)> {
     valleys.max_by(|a, b| a.1.density.total_cmp(&b.1.density))
 }
 
-/// A peak with the valley where it ends.
+/// A peak and the valley where it ends, both as high as the peak stands above the valley.
 fn pair(peak: &Extremum, valley: &Extremum, limits: &Limits) -> [Feature; 2] {
     let height = peak.density - valley.density;
     let gathered = (peak.gathered_error - valley.gathered_error).abs();
     let judgement = limits.judge_exact(height, peak.density * (gathered + ROUNDING));
-    let feature = |of: &Extremum, kind: FeatureKind, partner: Option<Vec<f64>>| Feature {
+    let feature = |of: &Extremum, kind: FeatureKind| Feature {
         kind,
         position: vec![of.place],
         density: of.density,
@@ -75,15 +80,24 @@ fn pair(peak: &Extremum, valley: &Extremum, limits: &Limits) -> [Feature; 2] {
         standard_error: 0.0,
         significance: judgement.significance,
         verdict: judgement.verdict,
-        partner,
+        partner: None,
     };
     [
-        feature(peak, FeatureKind::Peak, Some(vec![valley.place])),
-        feature(valley, FeatureKind::Valley, None),
+        feature(peak, FeatureKind::Peak),
+        feature(valley, FeatureKind::Valley),
     ]
 }
 
-/// The highest peak, which ends nowhere.
+/// Place of the higher of the valleys beside a peak.
+fn higher_beside(extrema: &[Extremum], peak: &Extremum) -> Option<f64> {
+    let index = extrema.iter().position(|one| one.place == peak.place)?;
+    let below = index.checked_sub(1).and_then(|index| extrema.get(index));
+    let beside = below.into_iter().chain(extrema.get(index + 1));
+    let higher = beside.max_by(|a, b| a.density.total_cmp(&b.density))?;
+    Some(higher.place)
+}
+
+/// The highest peak, which is as high as its density.
 fn highest(peak: &Extremum) -> Feature {
     Feature {
         kind: FeatureKind::Peak,
@@ -94,5 +108,59 @@ fn highest(peak: &Extremum) -> Feature {
         significance: f64::INFINITY,
         verdict: super::Verdict::Present,
         partner: None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::topology::{DetectOptions, Verdict};
+
+    /// Extrema at 0, 1, 2 …, a peak first.
+    fn profile(densities: &[f64]) -> Profile {
+        let extrema = densities
+            .iter()
+            .enumerate()
+            .map(|(index, &density)| Extremum {
+                place: index as f64,
+                is_peak: index % 2 == 0,
+                density,
+                gathered_error: 0.0,
+            });
+        Profile {
+            extrema: extrema.collect(),
+            ..Profile::default()
+        }
+    }
+
+    fn found(densities: &[f64]) -> Vec<Feature> {
+        let limits = Limits::new(&DetectOptions::default(), 1, 1, 100, (1.0, 0.0));
+        features(&profile(densities), &limits)
+    }
+
+    #[test]
+    fn a_hill_ends_where_it_meets_a_higher_one_and_vanishes_with_the_valley_beside_it() {
+        // The outer hills are higher than the middle one: it ends at the higher valley, then they meet at the lower one.
+        let features = found(&[0.9, 0.2, 0.4, 0.3, 0.8]);
+        let of = |place: f64| features.iter().find(|one| one.position == [place]).unwrap();
+        let close = |value: f64, expected: f64| (value - expected).abs() < 1e-15;
+        assert!(close(of(2.0).persistence, 0.1) && close(of(3.0).persistence, 0.1));
+        assert!(close(of(4.0).persistence, 0.6) && close(of(1.0).persistence, 0.6));
+        assert_eq!(of(0.0).persistence, 0.9);
+        assert_eq!(of(2.0).partner, Some(vec![3.0]));
+        assert_eq!(of(4.0).partner, Some(vec![3.0]));
+        assert_eq!(of(0.0).partner, Some(vec![1.0]));
+        assert!(features.iter().all(|one| one.verdict == Verdict::Present));
+    }
+
+    #[test]
+    fn what_is_no_higher_than_rounding_is_absent_and_nothing_has_no_features() {
+        let features = found(&[0.9, 0.3, 0.3 * (1.0 + 1e-13)]);
+        let peaks = features.iter().filter(|one| one.kind == FeatureKind::Peak);
+        let present = peaks.filter(|one| one.verdict == Verdict::Present);
+        assert_eq!(present.count(), 1);
+        assert!(found(&[]).is_empty());
+        // Densities that are too small for a number are no peaks of their own.
+        assert_eq!(found(&[0.9, 0.0, 0.0])[0].verdict, Verdict::Absent);
     }
 }

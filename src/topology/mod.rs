@@ -93,7 +93,8 @@ pub struct Feature {
     pub significance: f64,
     /// Whether it is there.
     pub verdict: Verdict,
-    /// The saddle where it merges with another; of a ring a point inside. `None` for the highest peak and for valleys.
+    /// The saddle where it merges with another; of a ring a point inside. `None` for the highest peak and for valleys. Where extrema follow from
+    /// the equations, the higher of the valleys beside a peak.
     pub partner: Option<Vec<f64>>,
 }
 

@@ -19,12 +19,14 @@ const MOST_HALVINGS: usize = 10;
 const ROUNDING: f64 = 1e-11;
 /// Slopes that are a smaller share of what they are the difference of are zero.
 const NOTHING: f64 = 1e-13;
+/// Rounding of a logarithm of the noise.
+const OF_LOGARITHM: f64 = 1e-15;
+/// First and second derivative of the last Legendre polynomial at an end of [-1, 1]: what rounding grows by.
+const STEEPEST: [f64; 2] = [28.0, 378.0];
 /// Steps in which an extremum of the slope is looked for on a part.
 const LOOKS: usize = 16;
 /// Differences of log p below this are rounding.
 const LEVEL: f64 = 1e-11;
-/// Smallest logarithm of a density whose number can be told.
-const LEAST_LOGARITHM: f64 = -700.0;
 
 /// The profile of the density that [`super::one_axis`] found on the same axis; `centre` is that of a symmetry. `None` where drift and noise do not
 /// allow it.
@@ -116,14 +118,20 @@ impl Line {
         let level = logs[0];
         let log_noise = Series::through(rule, (from, to), &logs.map(|one| one - level));
         let of_noise = log_noise.derivative();
-        let error = rate.tail() + of_noise.tail();
+        let tail = rate.tail() + of_noise.tail();
         let size = (rate.size() + of_noise.size()).max(least);
         let middle = 0.5 * (from + to);
         let is_divisible = halvings > 0 && from < middle && middle < to;
-        if error > ROUGH * size && is_divisible {
+        if tail > ROUGH * size && is_divisible {
             self.add(system, rule, (from, middle), least, halvings - 1)?;
             return self.add(system, rule, (middle, to), least, halvings - 1);
         }
+        let rounding = if log_noise.size() > 0.0 {
+            OF_LOGARITHM
+        } else {
+            0.0
+        };
+        let error = tail + rounding * STEEPEST[0] * 2.0 / (to - from);
         let last = self.parts.last();
         let exponent = last.map_or(0.0, |part| part.exponent + part.rate.integral_to(from));
         let gathered = last.map_or(0.0, |part| {
@@ -208,7 +216,6 @@ impl Line {
             (logarithm, (place, is_peak, gathered))
         });
         let kept = without_rounding(extrema.collect()).into_iter();
-        let kept = kept.filter(|one| one.0 > LEAST_LOGARITHM);
         kept.map(|(logarithm, (place, is_peak, gathered_error))| Extremum {
             place,
             is_peak,
@@ -241,8 +248,16 @@ impl Line {
         let below = self.parts.iter().rfind(|part| part.slope.from < place)?;
         let of = |part: &Part| part.slope.derivative().at(place) + part.slope.at(place).powi(2);
         let (low, high) = (of(below), of(above));
-        let reach = |part: &Part| (NODES * NODES) as f64 / (part.slope.to - part.slope.from);
-        let rounding = |part: &Part| (part.error + NOTHING * part.size) * reach(part);
+        let rounding = |part: &Part| {
+            let steeper = 2.0 / (part.slope.to - part.slope.from);
+            let of_noise = if part.log_noise.size() > 0.0 {
+                OF_LOGARITHM
+            } else {
+                0.0
+            };
+            (part.error + NOTHING * part.size) * STEEPEST[0] * steeper
+                + of_noise * STEEPEST[1] * steeper * steeper
+        };
         let error = 0.5 * (high - low).abs() + rounding(below) + rounding(above);
         Some((0.5 * (low + high), error))
     }
