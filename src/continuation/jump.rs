@@ -102,10 +102,10 @@ mod tests {
         let density = EstimatedDensity {
             observable: Observable::Marginal(0),
             density: Density {
-                axes: vec![Axis::uniform(-1.0, 1.0, 1).unwrap()],
-                values: vec![of],
+                axes: vec![Axis::uniform(-1.0, 1.0, 2).unwrap()],
+                values: vec![of; 2],
             },
-            standard_error: vec![0.0],
+            standard_error: vec![0.0; 2],
             variants: Variants::None,
             structure: Structure::default(),
             negligible,

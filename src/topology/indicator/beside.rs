@@ -4,11 +4,7 @@
 //! There the slope on that side, away from the kink, changes its sign while that on the other side does not. It goes through zero linearly, and
 //! nothing else does: there is no inflection.
 
-<<<<<<< HEAD
-use super::{Indicator, IndicatorKind, window};
-=======
-use super::{Indicator, IndicatorKind, exact};
->>>>>>> 3a52fec (Extrema of densities over one axis come from the equations, not from cells)
+use super::{Indicator, IndicatorKind, exact, window};
 use crate::density::EstimatedDensity;
 use crate::topology::Feature;
 use crate::topology::field::{Field, Jet};
@@ -24,23 +20,10 @@ pub(crate) fn beside_kink(
     above: bool,
     is_valley: bool,
 ) -> Option<Indicator> {
-<<<<<<< HEAD
-    let at = nearest(estimated, near)?;
-=======
-    if estimated.density.axes.len() != 1 {
-        return None;
-    }
     if let Some(profile) = &estimated.structure.profile {
         return exact::beside_kink(profile, near, above, is_valley);
     }
-    let distance = |at: f64| (at - near).abs();
-    let kinks = estimated.structure.kinks.iter();
-    let kinks = kinks.filter(|kink| !kink.is_bend()).map(|kink| kink.at);
-    let at = kinks.min_by(|a, b| distance(*a).total_cmp(&distance(*b)))?;
-    if !is_seen(estimated, at) {
-        return None;
-    }
->>>>>>> 3a52fec (Extrema of densities over one axis come from the equations, not from cells)
+    let at = nearest(estimated, near)?;
     let field = Field::new(estimated).filter(|_| !estimated.is_noisy())?;
     let side = if above { 1.0 } else { -1.0 };
     let place = [at + side * ASIDE * field.unit(0)];
