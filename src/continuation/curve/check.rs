@@ -10,7 +10,7 @@ use crate::continuation::grid::share_of_distance;
 use crate::continuation::locate::QUIET;
 use crate::continuation::reason::{MOST_NEGATIVE, negative_share};
 use crate::continuation::{BifurcationStatus, CellCheck, DensitySource, ErrorParts, PointStatus};
-use crate::topology::{Indicator, two_sided_limit};
+use crate::topology::{IndicatorKind, two_sided_limit};
 
 /// A finer curve farther than this from the coarser one is not the same, in sides of the box.
 const SAME: f64 = 0.05;
@@ -85,11 +85,10 @@ impl Checks<'_> {
         (points.collect(), work)
     }
 
-    /// The points that are checked; none where the indicator follows from the equations: no grid takes part.
+    /// The points that are checked. The slope at a kink follows from the equations: no grid takes part.
     fn selected(&self, walked: &Walked) -> Vec<usize> {
         let every = self.0.options.check_every;
-        let mut readings = walked.points.iter().map(|node| &node.reading.indicator);
-        if every == 0 || readings.all(Indicator::is_free_of_cells) {
+        if every == 0 || self.0.start.kind == IndicatorKind::KinkSlope {
             return Vec::new();
         }
         let last = walked.points.len() - 1;
@@ -174,7 +173,7 @@ impl Checks<'_> {
             None => (0..2).for_each(|k| foot[k] += check.shift * uphill[k]),
         }
         let sides = self.0.plane.sides();
-        let depends_on_cells = !indicator.is_free_of_cells();
+        let depends_on_cells = self.0.start.kind != IndicatorKind::KinkSlope;
         let unknown = check.grid.is_none() && depends_on_cells && reading.is_diffused;
         let is_torn = depends_on_cells && negative_share(&reading.density) > MOST_NEGATIVE;
         let is_unsound = reading.status != PointStatus::Solved || is_torn;

@@ -147,6 +147,10 @@ impl Reader<'_> {
         if !report.status.is_resolved() {
             return Err(Missing::Density(report.status.word().to_owned()));
         }
+        // Derivatives are those of what cells show, and so must values be.
+        if let Some(density) = solution.densities.get_mut(self.observable) {
+            density.structure.profile = None;
+        }
         let density = solution.densities.get(self.observable);
         let density = density.ok_or_else(|| Missing::Density("no density".to_owned()))?;
         let indicator = self.detector.indicator(density, self.kind, near);
@@ -239,26 +243,7 @@ fn along(
     let changes = sensitivity.to_parameter(parameter)?;
     let change = changes.get(observable).map_or(&[][..], Vec::as_slice);
     let (kind, place) = (indicator.kind, &indicator.place);
-    if density.structure.profile.is_none() {
-        return Ok(derivative(detector, density, kind, place, change));
-    }
-    // What the equations say of this density does not move with its cells: they give the derivative where they show the same place.
-    let mut by_cells = density.clone();
-    by_cells.structure.profile = None;
-    let seen = detector.indicator(&by_cells, kind, place);
-    let is_same = seen.is_some_and(|seen| is_one_place(density, &seen.place, place));
-    let along = is_same.then(|| derivative(detector, &by_cells, kind, place, change));
-    Ok(along.flatten())
-}
-
-/// Whether two places of a density over one axis are no farther apart than a cell.
-fn is_one_place(density: &EstimatedDensity, a: &[f64], b: &[f64]) -> bool {
-    let axis = density.density.axes.first();
-    let both = axis.zip(a.first().zip(b.first()));
-    both.is_some_and(|(axis, (a, b))| {
-        let width = axis.find(*b).map_or(0.0, |cell| axis.width(cell));
-        (a - b).abs() <= width
-    })
+    Ok(derivative(detector, density, kind, place, change))
 }
 
 /// Derivative of an indicator when its density changes at this rate.

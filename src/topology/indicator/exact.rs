@@ -3,10 +3,12 @@
 use super::{Flank, Indicator, IndicatorKind};
 use crate::density::Profile;
 
-/// The slope at its extremum of the given kind nearest to a place.
+/// The slope at its extremum of the given kind nearest to a place; none at a jump, where the slope beside it tells.
 pub(super) fn shoulder(profile: &Profile, near: f64, rising: bool) -> Option<Indicator> {
     let distance = |place: f64| (place - near).abs();
-    let alike = profile.turns.iter().filter(|one| one.is_largest == rising);
+    let is_jump = |place: f64| profile.jumps.iter().any(|jump| jump.place == place);
+    let turns = profile.turns.iter();
+    let alike = turns.filter(|one| one.is_largest == rising && !is_jump(one.place));
     let turn = alike.min_by(|a, b| distance(a.place).total_cmp(&distance(b.place)))?;
     let value = if rising { turn.slope } else { -turn.slope };
     Indicator::known(
