@@ -400,14 +400,21 @@ fn without_the_check_on_finer_cells_nothing_is_located() {
         grid_check: false,
         ..LocateOptions::default()
     };
-    let axes = vec![Axis::uniform(-1.9, 1.9, 100).unwrap()];
-    let model = Arc::new(model(1, 0.3, tilted));
+    let model = TypedModel::new("wells", "An oscillator in a tilted well", ["x", "y"])
+        .with_equation("x", "y")
+        .with_equation("y", "theta + x - x^3 - y")
+        .with_noise("y", ["0.7"])
+        .with_parameters(["theta"])
+        .build()
+        .unwrap();
+    let axes = [(-2.4, 2.4, 64), (-3.2, 3.2, 48)];
+    let axes = axes.map(|(from, to, count)| Axis::uniform(from, to, count).unwrap());
     let (_, rows) = rows_of(
         model,
         Observable::Marginal(0),
         (-0.5, 0.5),
-        21,
-        axes,
+        11,
+        axes.to_vec(),
         &unchecked,
     );
     assert_eq!(rows.len(), 2, "{}", words(&rows));
