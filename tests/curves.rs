@@ -730,7 +730,7 @@ fn a_sweep_file_names_the_curves_that_its_sweep_is_followed_by() {
         assert_eq!(output.status.code(), Some(0), "{}", words(&output));
         assert!(table(name).unwrap() == followed, "{name}");
     }
-    // Complete, nothing is solved; of other settings they are refused.
+    // Complete, nothing is solved.
     let output = sweep(&["--resume"]);
     assert_eq!(
         words(&output).matches("nothing was solved").count(),
@@ -738,14 +738,6 @@ fn a_sweep_file_names_the_curves_that_its_sweep_is_followed_by() {
         "{}",
         words(&output)
     );
-    let output = sweep(&["--resume", "--set", "curve.step=0.1"]);
-    assert_eq!(output.status.code(), Some(2), "{}", words(&output));
-    assert!(
-        words(&output).contains("followed.step"),
-        "{}",
-        words(&output)
-    );
-
     let refusals = [
         ("curve.parameter=b", "no parameter `b`"),
         (
@@ -796,6 +788,65 @@ fn a_sweep_file_names_the_curves_that_its_sweep_is_followed_by() {
         assert_eq!(output.status.code(), Some(2));
         assert!(words(&output).contains(says), "{}", words(&output));
     }
+}
+
+#[test]
+fn curves_of_another_section_or_run_are_kept_apart_from_the_new_ones() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (file, run) = (at("cusp.toml"), at("run"));
+    let section = "[curve]\nparameter = \"a\"\nfrom = 0.8\nto = 1.2\nstep = 0.1\n";
+    std::fs::write(&file, format!("{CUSP}{section}")).unwrap();
+    let sweep = |more: &[&str]| pbif(&[&["sweep", &file, "--out", &run], more].concat());
+    let json = |name: &str| {
+        let text = std::fs::read_to_string(folder.path().join(name)).unwrap();
+        serde_json::from_str::<serde_json::Value>(&text).unwrap()
+    };
+    let to = |name: &str| {
+        let curve = json(&format!("{name}/curves/PB1-a/curve.json"));
+        curve["box"][1]["to"].as_f64()
+    };
+    let ended = |output: &std::process::Output, code: i32| {
+        let both = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes));
+        assert_eq!(output.status.code(), Some(code), "{}", both.concat());
+        both.concat()
+    };
+    // Two shards put together follow the curves of their file; the same again solves nothing.
+    for shard in ["1/2", "2/2"] {
+        ended(&sweep(&["--shard", shard, "--quiet"]), 0);
+    }
+    ended(&pbif(&["merge", &run, "--quiet"]), 0);
+    assert_eq!(to("run"), Some(1.2));
+    let again = ended(&pbif(&["merge", &run]), 0);
+    assert_eq!(again.matches("nothing was solved").count(), 2, "{again}");
+    // Another section: the run stays, and its curves are followed anew beside the earlier ones.
+    let other = ["--resume", "--set", "curve.to=1.1"];
+    let words = ended(&sweep(&other), 0);
+    for says in ["is complete: nothing was solved", "1.2", "followed anew"] {
+        assert!(words.contains(says), "{says}: {words}");
+    }
+    assert_eq!(to("run"), Some(1.1));
+    let earlier = json("run/curves/PB1-a/previous/1/curve.json");
+    assert_eq!(earlier["box"][1]["to"].as_f64(), Some(1.2));
+    // Drawn again they are the same rows; with other settings, rows may be others.
+    ended(
+        &pbif(&["detect", &run, "--set", "figures.at=[0.3]", "--quiet"]),
+        0,
+    );
+    assert_eq!((to("run"), to("run/previous/1")), (Some(1.1), Some(1.1)));
+    ended(
+        &pbif(&["detect", &run, "--set", "detect.confidence=0.9", "--quiet"]),
+        0,
+    );
+    assert!(!folder.path().join("run/curves").exists());
+    assert_eq!(to("run/previous/2"), Some(1.1));
+    // A new run has none but its own.
+    ended(&sweep(&["--set", "sweep.points=9", "--quiet"]), 0);
+    assert_eq!(to("run"), Some(1.2));
+    std::fs::write(&file, CUSP).unwrap();
+    ended(&sweep(&["--quiet"]), 0);
+    assert!(!folder.path().join("run/curves").exists());
+    assert_eq!(to("run/previous/4"), Some(1.2));
 }
 
 /// With linear damping the density is exp(-(2κ/σ²)(y²/2 + V)): peaks of the joint density are zeros of the spring's force.

@@ -253,6 +253,33 @@ fn a_complete_run_is_not_run_again_and_another_sweep_is_refused() {
 }
 
 #[test]
+fn a_run_that_was_killed_before_its_journal_was_there_begins() {
+    let folder = TempDir::new().unwrap();
+    let (whole, out) = folders(&folder);
+    let sweep = SWEEPS[4];
+    run(sweep, &whole, &["--quiet"]);
+    let mut begun = manifest(&whole);
+    begun["ending"] = "running".into();
+    begun["points"] = 0.into();
+    std::fs::create_dir(&out).unwrap();
+    std::fs::write(out.join("run.json"), begun.to_string()).unwrap();
+    // A beginning of the journal has another name.
+    std::fs::write(out.join(".pbif-x1"), "pbif").unwrap();
+    run(sweep, &out, &["--resume", "--quiet"]);
+    assert_same(&out, &whole, "killed before its journal");
+    // Where points are there, a missing journal is told.
+    let mut killed = manifest(&out);
+    killed["ending"] = "running".into();
+    std::fs::write(out.join("run.json"), killed.to_string()).unwrap();
+    let refused = command(sweep, &out, &["--resume"]).output().unwrap();
+    let words = String::from_utf8(refused.stderr).unwrap();
+    assert!(
+        refused.status.code() == Some(2) && words.contains("journal.bin"),
+        "{words}"
+    );
+}
+
+#[test]
 fn an_unfinished_run_is_kept_when_another_one_begins() {
     let folder = TempDir::new().unwrap();
     let (whole, out) = folders(&folder);

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 
 use crate::continuation::Shard;
+use crate::continuation::curve::CurveOptions;
 use crate::sweep_file;
 pub(crate) use runs::{
     CleanArguments, ExportArguments, ListArguments, MergeArguments, ShowArguments,
@@ -394,8 +395,8 @@ pub(crate) struct CurveArguments {
     /// Follow this curve alone, not those that start from its points of codimension two
     #[arg(long)]
     pub(crate) alone: bool,
-    /// Longest step between points, as a share of the sides of the box [default: 0.025]
-    #[arg(long, value_name = "SHARE", value_parser = share)]
+    /// Longest step between points, as a share of the sides of the box
+    #[arg(long, value_name = "SHARE", value_parser = share, help = step_help())]
     pub(crate) step: Option<f64>,
     /// Override a key of a sweep file, such as cells.x.count=60; of a run those under detect, locate, figures and curve (repeatable;
     /// the last one counts)
@@ -490,6 +491,14 @@ fn finite(text: &str) -> Result<f64, String> {
         )),
         _ => Err("allowed: a number".to_owned()),
     }
+}
+
+/// The help of `--step`, with the default where it stands.
+fn step_help() -> String {
+    format!(
+        "Longest step between points, as a share of the sides of the box [default: {}]",
+        CurveOptions::default().largest_step
+    )
 }
 
 fn share(text: &str) -> Result<f64, String> {

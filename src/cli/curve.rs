@@ -16,8 +16,8 @@ use super::{CommandError, Outcome};
 use crate::cancellation::Cancellation;
 use crate::continuation::{LabelledPoint, SweepResult};
 use crate::method::MethodError;
-use crate::run::CurveFolder;
-use crate::sweep_file::{MethodKind, SolveError, Sweep};
+use crate::run::{CURVES, CurveFolder, RunError};
+use crate::sweep_file::{MethodKind, SolveError, Sweep, list};
 use asked::Asked;
 use job::Job;
 use refusals::check_corners;
@@ -46,7 +46,10 @@ pub(super) fn run(arguments: &CurveArguments) -> Result<Outcome, CommandError> {
             spec: &spec,
             result: &result,
             home: &home,
-            resume: arguments.resume,
+            begin: match arguments.resume {
+                true => Begin::GoOn,
+                false => Begin::Anew,
+            },
             quiet: arguments.work.quiet,
             cancellation: &cancellation,
         }
@@ -96,8 +99,11 @@ pub(super) fn after_sweep(
             asked: &asked,
             spec: &stored.spec,
             result: &stored.result,
-            home: &|name| folder.join("curves").join(name),
-            resume,
+            home: &|name| folder.join(CURVES).join(name),
+            begin: match resume {
+                true => Begin::GoOnWhereTheSame,
+                false => Begin::Anew,
+            },
             quiet: work.quiet,
             cancellation: &cancellation,
         }
@@ -116,9 +122,20 @@ struct Following<'a> {
     result: &'a SweepResult,
     /// The folder for the results of a row, by the name that it has for itself.
     home: &'a dyn Fn(&str) -> PathBuf,
-    resume: bool,
+    begin: Begin,
     quiet: bool,
     cancellation: &'a Cancellation,
+}
+
+/// What is done with curves that are there.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Begin {
+    /// They are kept below `previous/`, and followed anew.
+    Anew,
+    /// Unfinished ones are gone on with, complete ones are left; those of other settings are refused.
+    GoOn,
+    /// The same, but those of other settings are kept and followed anew: the sweep file is what is wanted, and its section may have changed since.
+    GoOnWhereTheSame,
 }
 
 impl Following<'_> {
@@ -149,17 +166,26 @@ impl Following<'_> {
         )))?;
         let home = output.path();
         let of = job.described();
-        let going_on = self.resume && CurveFolder::has_journal(home);
-        if self.resume && !going_on && CurveFolder::is_complete(home, &of)? {
-            let home = home.display();
-            let text = format!("the curves in {home} are complete: nothing was solved\n");
-            return super::print(&text);
+        let goes_on = self.begin != Begin::Anew;
+        let has_journal = CurveFolder::has_journal(home);
+        if goes_on && !has_journal {
+            let complete = CurveFolder::is_complete(home, &of).map(|is| is.then_some(()));
+            if self.or_other(complete, home)?.is_some() {
+                let home = home.display();
+                let text = format!("the curves in {home} are complete: nothing was solved\n");
+                return super::print(&text);
+            }
         }
         let folder = CurveFolder::new(home)?;
-        let methods = MethodKind::ALL.map(MethodKind::name);
-        let journal = match going_on {
-            true => folder.go_on(&of, self.spec.problem.family(), &methods)?,
-            false => folder.begin(&of)?,
+        let mut journal = None;
+        if goes_on && has_journal {
+            let methods = MethodKind::ALL.map(MethodKind::name);
+            let there = folder.go_on(&of, self.spec.problem.family(), &methods);
+            journal = self.or_other(there.map(Some), home)?;
+        }
+        let journal = match journal {
+            Some(journal) => journal,
+            None => folder.begin(&of)?,
         };
         let kept = || kept(home);
         let found = job.follow(&journal, self.cancellation);
@@ -180,6 +206,29 @@ impl Following<'_> {
     }
 }
 
+impl Following<'_> {
+    /// What was found in a folder; `None` where curves of other settings are there that do not keep new ones away.
+    fn or_other<T>(
+        &self,
+        found: Result<Option<T>, RunError>,
+        home: &Path,
+    ) -> Result<Option<T>, RunError> {
+        match found {
+            Err(RunError::OtherSweep { differences, .. })
+                if self.begin == Begin::GoOnWhereTheSame =>
+            {
+                let (home, differences) = (home.display(), list(&differences));
+                let text = format!(
+                    "the curves in {home} are of other settings ({differences}): they are kept in its folder previous/, and followed anew\n"
+                );
+                tell(self.quiet, &text);
+                Ok(None)
+            }
+            found => found,
+        }
+    }
+}
+
 /// The folder for the results of the command, of one row or of several.
 fn place(arguments: &CurveArguments, name: &str, alone: bool) -> PathBuf {
     let target = &arguments.target;
@@ -193,7 +242,7 @@ fn place(arguments: &CurveArguments, name: &str, alone: bool) -> PathBuf {
             let stem = stem.unwrap_or_else(|| "sweep".to_owned());
             Path::new("output").join(format!("{stem}-{name}"))
         }
-        None => target.join("curves").join(name),
+        None => target.join(CURVES).join(name),
     }
 }
 

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use super::args::MergeArguments;
 use super::output::OutputFolder;
-use super::sweep::resume::Begin;
+use super::stored::Stored;
+use super::sweep::resume::{self, Begin};
 use super::sweep::{Kind, Task, draw, summary};
 use super::{CommandError, Outcome, curve, warnings};
 use crate::continuation::{SweepResult, detect_again};
@@ -31,29 +32,36 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<Outcome, CommandError> {
     if !shards.missing().is_empty() {
         return partial(&spec, &shards, gathered, output.path());
     }
-    let begin = begin(&spec, output.path())?;
     let kind = Kind::Merged(shards.of(), gathered);
     let (path, quiet) = (output.path(), arguments.work.quiet);
-    let task = Task {
-        spec: &spec,
-        path,
-        kind,
-        quiet,
+    let outcome = match begin(&spec, path, shards.of())? {
+        Begin::Done(stored) => resume::show(&stored, path, &kind)?,
+        begin => {
+            let task = Task {
+                spec: &spec,
+                path,
+                kind,
+                quiet,
+            };
+            task.carry_out(begin, arguments.work.threads)?
+        }
     };
-    let outcome = task.carry_out(begin, arguments.work.threads)?;
     curve::after_sweep(&spec, path, (&arguments.work, true), outcome)
 }
 
-/// Goes on where an earlier merge of the same sweep was stopped.
-fn begin(spec: &Sweep, path: &Path) -> Result<Begin, CommandError> {
+/// Goes on where an earlier merge of the same sweep was stopped; one that is complete is not made again.
+fn begin(spec: &Sweep, path: &Path, of: usize) -> Result<Begin, CommandError> {
     let run = match StoredRun::open(path) {
         Err(RunError::NotARun { .. }) => return Ok(Begin::Anew),
         run => run?,
     };
-    let is_ours = run.merged().is_some() && run.check_sweep(&spec.to_toml()).is_ok();
-    Ok(match is_ours && run.can_go_on() {
-        true => Begin::GoOn,
-        false => Begin::Anew,
+    let is_ours = run.merged() == Some(of) && run.check_sweep(&spec.to_toml()).is_ok();
+    Ok(match is_ours {
+        true if run.ending() == Ending::Complete => {
+            Begin::Done(Box::new(Stored::read(path, &[], &[], true)?))
+        }
+        true if run.can_go_on() => Begin::GoOn,
+        _ => Begin::Anew,
     })
 }
 

@@ -8,14 +8,14 @@ use super::staging::Entries;
 use super::tree::{is_part, link_tree, make, rename};
 
 /// Where earlier versions are kept.
-const PREVIOUS: &str = "previous";
+pub(super) const PREVIOUS: &str = "previous";
 
 /// Gives the entries of a folder a second place as a new version and returns where. It appears as a whole: it is put together in
 /// `room`, in the same file system.
 ///
 /// # Errors
 /// [`RunError::Read`] or [`RunError::Write`]; then everything is as it was.
-pub(super) fn keep(home: &Path, entries: Entries, room: &Path) -> Result<PathBuf, RunError> {
+pub(super) fn keep(home: &Path, entries: &[&str], room: &Path) -> Result<PathBuf, RunError> {
     let kept = room.join("kept");
     make(&kept)?;
     for entry in entries {
@@ -62,7 +62,7 @@ pub(super) fn take_away(home: &Path, leaving: &[&str], gone: &Path) -> Result<()
 }
 
 /// The latest version, where it holds all that is there of the entries: after a kill, or after a run that made the same again.
-pub(super) fn kept_already(home: &Path, entries: Entries) -> Option<PathBuf> {
+pub(super) fn kept_already(home: &Path, entries: &[&str]) -> Option<PathBuf> {
     let previous = home.join(PREVIOUS);
     let latest = previous.join(numbers(&previous).last()?.to_string());
     let mut there = entries.iter().filter(|entry| home.join(entry).exists());

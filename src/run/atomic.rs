@@ -12,18 +12,23 @@ use crate::UNFINISHED;
 /// Writes a file so that a killed program leaves either the old content or the new. Missing folders on the
 /// way are made.
 pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
-    write(path, bytes, false)
+    write(path, bytes, false).map(drop)
 }
 
 /// The same so that a machine that loses its power leaves either of them, too. It waits for the disk, about as long as a hundred files
 /// take that are written without: for files that tell of others.
 pub(super) fn write_durably(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
-    write(path, bytes, true)?;
-    sync_folder(path.parent().unwrap_or(Path::new(".")));
-    Ok(())
+    begin_durably(path, bytes).map(drop)
 }
 
-fn write(path: &Path, bytes: &[u8], durably: bool) -> Result<(), RunError> {
+/// The same of a file that is to grow: it is given open, at its end.
+pub(super) fn begin_durably(path: &Path, bytes: &[u8]) -> Result<File, RunError> {
+    let file = write(path, bytes, true)?;
+    sync_folder(path.parent().unwrap_or(Path::new(".")));
+    Ok(file)
+}
+
+fn write(path: &Path, bytes: &[u8], durably: bool) -> Result<File, RunError> {
     let failed = |source| RunError::Write {
         path: path.to_owned(),
         source,
@@ -39,8 +44,7 @@ fn write(path: &Path, bytes: &[u8], durably: bool) -> Result<(), RunError> {
     if durably {
         file.as_file().sync_all().map_err(failed)?;
     }
-    file.persist(path).map_err(|error| failed(error.error))?;
-    Ok(())
+    file.persist(path).map_err(|error| failed(error.error))
 }
 
 /// Removes the files in the making that a killed process has left in a run, which nobody else writes to: in its folder, and below its

@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use super::folder::ENTRIES;
+use super::archive::PREVIOUS;
+use super::folder::{ABOUT, ENTRIES};
 use super::lock::FolderLock;
-use super::{Ending, RunError, RunSummary, checksums, find_runs};
+use super::{Ending, RunError, RunSummary, checksums, curve, find_runs};
 
 /// The folder of figures, in which users put their own.
 const FIGURES: &str = "figures";
@@ -30,7 +31,8 @@ pub fn removable_runs(folder: &Path) -> Vec<Removable> {
             return None;
         }
         let why = why(folder, path, summary.as_ref())?;
-        let bytes = ENTRIES.iter().map(|entry| size(&path.join(entry))).sum();
+        let names = ENTRIES.iter().chain(&ABOUT);
+        let bytes = names.map(|name| size(&path.join(name))).sum();
         Some(Removable {
             path: path.clone(),
             why,
@@ -43,7 +45,7 @@ pub fn removable_runs(folder: &Path) -> Vec<Removable> {
 fn why(folder: &Path, path: &Path, summary: Option<&RunSummary>) -> Option<&'static str> {
     let below = path.strip_prefix(folder).unwrap_or(path);
     let mut above = below.parent().into_iter().flat_map(Path::components);
-    if above.any(|part| part.as_os_str() == "previous") {
+    if above.any(|part| part.as_os_str() == PREVIOUS) {
         return Some("earlier");
     }
     let run = &summary?.run;
@@ -79,10 +81,53 @@ pub fn remove_run(path: &Path) -> Result<(), RunError> {
         });
     }
     let lock = FolderLock::take(path)?;
-    // Of the figures those that are as the run left them: an annotated one is somebody's work.
+    remove_curves(&path.join(curve::FOLDER))?;
+    remove_entries(path, &ENTRIES)?;
+    drop(lock);
+    // Only empty folders can be removed so.
+    let mut empty = Some(path);
+    for _ in 0..2 {
+        empty = empty.filter(|folder| std::fs::remove_dir(folder).is_ok());
+        let parent = empty.and_then(Path::parent);
+        let ours = [PREVIOUS, "shards"];
+        empty = parent.filter(|folder| {
+            folder
+                .file_name()
+                .is_some_and(|name| ours.iter().any(|our| name == *our))
+        });
+    }
+    Ok(())
+}
+
+/// Removes the curves that were followed from a run, with the earlier ones in their folders.
+fn remove_curves(folder: &Path) -> Result<(), RunError> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    for path in entries.map(|entry| entry.path()) {
+        let [manifest, ..] = curve::ENTRIES;
+        if !path.is_dir()
+            || ![manifest, curve::PART]
+                .iter()
+                .any(|name| path.join(name).is_file())
+        {
+            continue;
+        }
+        let lock = FolderLock::take(&path)?;
+        remove_curves(&path.join(PREVIOUS))?;
+        remove_entries(&path, &[&curve::ENTRIES[..], &[curve::PART]].concat())?;
+        drop(lock);
+        // Only empty folders can be removed so.
+        let _ = std::fs::remove_dir(&path);
+    }
+    let _ = std::fs::remove_dir(folder);
+    Ok(())
+}
+
+/// Removes files and folders from the last to the first, which marks the folder; of the figures those that are as the program left them: an annotated one
+/// is somebody's work.
+fn remove_entries(path: &Path, entries: &[&str]) -> Result<(), RunError> {
     checksums::reopen(path);
     let _ = std::fs::remove_dir(path.join(FIGURES));
-    for entry in ENTRIES.iter().rev().filter(|entry| **entry != FIGURES) {
+    for entry in entries.iter().rev().filter(|entry| **entry != FIGURES) {
         let place = path.join(entry);
         let removed = match place.symlink_metadata() {
             Ok(data) if data.is_dir() => std::fs::remove_dir_all(&place),
@@ -93,19 +138,6 @@ pub fn remove_run(path: &Path) -> Result<(), RunError> {
             path: place,
             source,
         })?;
-    }
-    drop(lock);
-    // Only empty folders can be removed so.
-    let mut empty = Some(path);
-    for _ in 0..2 {
-        empty = empty.filter(|folder| std::fs::remove_dir(folder).is_ok());
-        let parent = empty.and_then(Path::parent);
-        let ours = ["previous", "shards"];
-        empty = parent.filter(|folder| {
-            folder
-                .file_name()
-                .is_some_and(|name| ours.iter().any(|our| name == *our))
-        });
     }
     Ok(())
 }
@@ -142,6 +174,29 @@ mod tests {
         std::fs::write(run.join("run.json"), "{}").unwrap();
         remove_run(&run).unwrap();
         assert!(!home.path().join("previous").exists() && home.path().exists());
+    }
+
+    #[test]
+    fn the_curves_of_a_run_go_with_it_and_what_stands_beside_them_stays() {
+        let home = tempfile::tempdir().unwrap();
+        let run = home.path().join("run");
+        let put = |name: &str| {
+            let path = run.join(name);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, "{}").unwrap();
+        };
+        put("run.json");
+        for name in ["PB1-a", "PB1-a/previous/1", "PB2-a"] {
+            put(&format!("curves/{name}/curve.json"));
+            put(&format!("curves/{name}/curves.csv"));
+        }
+        put("curves/PB3-a/curve.part.bin");
+        let mine = ["curves/PB2-a/notes.txt", "curves/mine/curves.csv"];
+        mine.map(put);
+        remove_run(&run).unwrap();
+        assert!(mine.iter().all(|name| run.join(name).is_file()));
+        assert!(!run.join("run.json").exists() && !run.join("curves/PB2-a/curve.json").exists());
+        assert!(!run.join("curves/PB1-a").exists() && !run.join("curves/PB3-a").exists());
     }
 
     #[test]

@@ -26,8 +26,11 @@ pub(super) const ENTRIES: [&str; 7] = [
     "figures",
 ];
 
+/// Folder of a run below which its curves have a folder each.
+pub const FOLDER: &str = "curves";
+
 /// What unfinished curves have solved.
-const PART: &str = "curve.part.bin";
+pub(super) const PART: &str = "curve.part.bin";
 
 /// The table of the points of curves in one plane, each from end to end, numbers in full; `start` is the label of the row that the first was begun at.
 ///

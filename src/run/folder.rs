@@ -35,6 +35,9 @@ pub(super) const ENTRIES: [&str; 16] = [
     "explorer.html",
 ];
 
+/// Folders of work that is about a run: it goes where the run goes, so that what stands beside a run is of that run.
+pub(super) const ABOUT: [&str; 1] = [super::curve::FOLDER];
+
 /// The folder of a run while it is written.
 #[derive(Debug)]
 pub struct RunFolder {
@@ -52,8 +55,8 @@ pub struct RunFolder {
 }
 
 impl RunFolder {
-    /// Prepares a folder: makes it if need be, and moves the files of an earlier run to `previous/1`, or the next number that is
-    /// free. Files that are not a run's are left alone. Until it is dropped, no other process writes to the folder.
+    /// Prepares a folder: makes it if need be, and moves the files of an earlier run, with the curves that were followed from it, to
+    /// `previous/1`, or the next number that is free. Files that are not a run's are left alone. Until it is dropped, no other process writes to the folder.
     ///
     /// # Errors
     /// [`RunError::InUse`], [`RunError::NotOurs`], [`RunError::Read`], [`RunError::Write`]; then the folder is as it was.
@@ -63,7 +66,9 @@ impl RunFolder {
             source,
         })?;
         // A run is written as it goes on, so that a reader sees how far it is: only the earlier one is staged.
-        let placed = Staging::new(path, &ENTRIES)?.take_place(&[])?;
+        let placed = Staging::new(path, &ENTRIES)?
+            .with(&ABOUT)?
+            .take_place(&[])?;
         Ok(Self {
             kept: placed.kept,
             _lock: Some(placed.lock),

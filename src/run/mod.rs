@@ -57,7 +57,7 @@ pub use bifurcations::{
 pub use checksums::{Checked, Damage, check_folder};
 pub use clean::{Removable, removable_runs, remove_run};
 pub use compare::{CompareFolder, CompareJournal, CompareTable, ComparedRun, compare_tables};
-pub use curve::{CurveFolder, curves_csv};
+pub use curve::{CurveFolder, FOLDER as CURVES, curves_csv};
 pub use date::date_in_utc;
 pub use export::{ExportFormat, export};
 pub use features_table::features_csv;

@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::staging::Staging;
 use super::tree::link_tree;
-use super::{RunError, RunFolder, checksums, exchange, folder, journal, research_object};
+use super::{
+    RunError, RunFolder, StoredRun, checksums, exchange, folder, journal, research_object,
+};
 
 /// What a sweep solved for: it stays when the run is detected again.
 const SOLVED: [&str; 2] = ["densities.zarr", "checks.csv"];
@@ -24,7 +26,7 @@ impl StagedRun {
     /// # Errors
     /// [`RunError::InUse`], [`RunError::NotOurs`], [`RunError::Read`] or [`RunError::Write`].
     pub fn new(home: &Path, solved: &Path) -> Result<Self, RunError> {
-        let staging = Staging::new(home, &folder::ENTRIES)?;
+        let staging = Staging::new(home, &folder::ENTRIES)?.with(&folder::ABOUT)?;
         let same = is_same(home, solved);
         for entry in SOLVED {
             let place = solved.join(entry);
@@ -47,19 +49,34 @@ impl StagedRun {
     }
 
     /// Puts the new version in place and returns its files. A run that was there becomes a complete one below `previous/`, its
-    /// densities linked.
+    /// densities linked. Curves that were followed from it go with it where rows may have changed.
     ///
     /// # Errors
     /// [`RunError::Read`] or [`RunError::Write`].
     pub fn take_place(self) -> Result<Vec<PathBuf>, RunError> {
         // A run that goes on needs its journal, which cannot be shared with another folder.
-        let staying = [&SOLVED[..], &[journal::NAME]].concat();
-        let staying: &[&str] = if self.same { &staying } else { &[] };
         let home = self.staging.home().to_owned();
-        let placed = self.staging.take_place(staying)?;
+        let mut staying = Vec::new();
+        if self.same {
+            staying.extend(SOLVED);
+            staying.push(journal::NAME);
+            if has_the_rows_of(&self.staging.fresh(), &home) {
+                staying.extend(folder::ABOUT);
+            }
+        }
+        let placed = self.staging.take_place(&staying)?;
         research_object::write(&home)?;
         checksums::write(&home)?;
         Ok(placed.files)
+    }
+}
+
+/// Whether two runs with the same densities were detected with the same settings.
+fn has_the_rows_of(one: &Path, other: &Path) -> bool {
+    let resolved = |run| StoredRun::open(run).map(|run| run.resolved().to_owned());
+    match (resolved(one), resolved(other)) {
+        (Ok(one), Ok(other)) => journal::different_keys(&one, &other).is_empty(),
+        _ => false,
     }
 }
 

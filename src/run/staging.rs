@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::RunError;
 use super::archive;
 use super::atomic::sync_folder;
-use super::lock::FolderLock;
+use super::lock::{FolderLock, holder_of};
 use super::tree::{make, rename};
 use crate::UNFINISHED;
 
@@ -19,6 +19,8 @@ pub(super) type Entries = &'static [&'static str];
 pub(super) struct Staging {
     home: PathBuf,
     entries: Entries,
+    /// Folders of work of its own that is about the files, see [`Staging::with`].
+    about: Entries,
     room: tempfile::TempDir,
     lock: FolderLock,
 }
@@ -42,11 +44,27 @@ impl Staging {
         let staging = Self {
             home: home.to_owned(),
             entries,
+            about: &[],
             room,
             lock,
         };
         make(&staging.fresh())?;
         Ok(staging)
+    }
+
+    /// The same where folders beside the files hold folders of work that is about them: where the files of an earlier version move, they do.
+    ///
+    /// # Errors
+    /// [`RunError::InUse`] when another process writes to one of those folders.
+    pub(super) fn with(self, about: Entries) -> Result<Self, RunError> {
+        let folders = about.iter().map(|name| self.home.join(name));
+        let entries = folders.flat_map(std::fs::read_dir).flatten().flatten();
+        for path in entries.map(|entry| entry.path()) {
+            if let Some(holder) = holder_of(&path) {
+                return Err(RunError::InUse { path, holder });
+            }
+        }
+        Ok(Self { about, ..self })
     }
 
     /// Where the files are to stand.
@@ -90,15 +108,17 @@ impl Staging {
         let is_there = |entry: &&str| self.home.join(entry).exists();
         let mut made = None;
         let mut kept = None;
+        let mut all = self.entries.to_vec();
         if self.entries.iter().any(&is_there) {
-            kept = archive::kept_already(&self.home, self.entries);
+            all.extend(self.about);
+            kept = archive::kept_already(&self.home, &all);
             if kept.is_none() {
-                made = Some(archive::keep(&self.home, self.entries, self.room.path())?);
+                made = Some(archive::keep(&self.home, &all, self.room.path())?);
                 kept.clone_from(&made);
             }
         }
         // A file is replaced in one step; folders, and what is not there any more, make room first.
-        let leaving = self.entries.iter().copied().filter(|entry| {
+        let leaving = all.into_iter().filter(|entry| {
             let stays = match is_new(entry) {
                 true => !self.home.join(entry).is_dir(),
                 false => staying.contains(entry),
@@ -235,6 +255,29 @@ mod tests {
         let staging = Staging::new(home, ENTRIES).unwrap();
         assert_eq!(staging.take_place(&[]).unwrap().kept, None);
         assert_holds(home, &[&beside[..], &first, &second, &oldest].concat());
+    }
+
+    #[test]
+    fn work_about_the_files_moves_with_them() {
+        let home = tempfile::tempdir().unwrap();
+        let home = home.path();
+        let staged = || Staging::new(home, ENTRIES).unwrap().with(&["about"]);
+        write(home, &[("about/a/b", "mine")]);
+        // Without files of an earlier version it is somebody else's.
+        staged().unwrap().take_place(&[]).unwrap();
+        assert_holds(home, &[("about/a/b", "mine")]);
+        write(home, &[("table", "1"), ("about/a/b", "1")]);
+        let lock = FolderLock::take(&home.join("about/a")).unwrap();
+        assert!(matches!(staged(), Err(RunError::InUse { .. })));
+        drop(lock);
+        staged().unwrap().take_place(&[]).unwrap();
+        let kept = [("previous/1/about/a/b", "1"), ("previous/1/table", "1")];
+        assert_holds(home, &kept);
+        // Where it stays it has a second place.
+        write(home, &[("table", "2"), ("about/a/b", "2")]);
+        staged().unwrap().take_place(&["about"]).unwrap();
+        let second = [("previous/2/about/a/b", "2"), ("previous/2/table", "2")];
+        assert_holds(home, &[&[("about/a/b", "2")], &kept[..], &second].concat());
     }
 
     #[test]

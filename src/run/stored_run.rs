@@ -157,7 +157,7 @@ impl StoredRun {
 
     /// Whether it is unfinished and can be gone on with.
     pub fn can_go_on(&self) -> bool {
-        self.ending() != Ending::Complete && self.path.join(journal::NAME).is_file()
+        self.ending() != Ending::Complete && journal::can_go_on(&self.path)
     }
 
     /// Refuses a sweep that is not the one that was run; titles and figures may differ.

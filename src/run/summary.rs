@@ -5,13 +5,13 @@ use std::time::SystemTime;
 
 use serde::Deserialize;
 
-use super::{Ending, RunError, StoredRun, lock};
+use super::{Ending, RunError, StoredRun, curve, lock};
 
 /// Folders below one another that are looked into: `output/NAME/shards/1-of-4/previous/2` is five deep.
 const DEEPEST: usize = 6;
 
 /// Folders of a run that hold no runs.
-const NOT_RUNS: [&str; 4] = ["densities.zarr", "figures", "curves", "target"];
+const NOT_RUNS: [&str; 4] = ["densities.zarr", "figures", curve::FOLDER, "target"];
 
 /// A located change, or one that could not be located, as `bifurcations.json` has it.
 #[derive(Debug, Clone, Deserialize)]

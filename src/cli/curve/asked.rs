@@ -53,7 +53,9 @@ impl Asked {
             (None, Some(curve)) => rows_of(curve),
             (None, None) => Rows::TheOnly,
         };
+        let usual = CurveOptions::default();
         let step = arguments.step.or(written.map(|curve| curve.step));
+        let branches = written.map_or(usual.branches, |curve| curve.branches);
         Ok(Self {
             second,
             ends: (from.min(to), from.max(to)),
@@ -62,8 +64,8 @@ impl Asked {
                 arguments.first_to.or(written.map(|curve| curve.first.1)),
             ),
             rows,
-            step: step.unwrap_or(CurveOptions::default().largest_step),
-            branches: !arguments.alone && written.is_none_or(|curve| curve.branches),
+            step: step.unwrap_or(usual.largest_step),
+            branches: branches && !arguments.alone,
         })
     }
 

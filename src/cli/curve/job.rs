@@ -8,7 +8,7 @@ use super::{kept, tell};
 use crate::cancellation::Cancellation;
 use crate::cli::{CommandError, Outcome};
 use crate::continuation::curve::{
-    Curve, CurveError, CurveOptions, CurveOrigin, CurveStart, CurveTree, Plane, follow, follow_all,
+    Curve, CurveError, CurveOptions, CurveOrigin, CurveStart, CurveTree, Plane, follow_all,
 };
 use crate::continuation::{LabelledPoint, LocateOptions, SourceError, SweepResult};
 use crate::figure::{curve_figure, write_figures};
@@ -107,6 +107,7 @@ impl<'a> Job<'a> {
     ) -> Result<Option<CurveTree>, CommandError> {
         let options = CurveOptions {
             largest_step: self.asked.step,
+            branches: self.asked.branches,
             ..self.spec.curve_options(self.plane.sides()[0].length())
         };
         let source = match self.spec.source_in(&self.plane, cancellation) {
@@ -137,30 +138,15 @@ impl<'a> Job<'a> {
                 ),
             );
         };
-        let detector = self.spec.detector();
-        let (source, plane, start) = (&source, &self.plane, &self.start);
-        let observer = &mut observer;
-        let found = match self.asked.branches {
-            true => follow_all(
-                source,
-                plane,
-                &detector,
-                start,
-                &options,
-                cancellation,
-                observer,
-            ),
-            false => follow(
-                source,
-                plane,
-                &detector,
-                start,
-                &options,
-                cancellation,
-                observer,
-            )
-            .map(CurveTree::from),
-        };
+        let found = follow_all(
+            &source,
+            &self.plane,
+            &self.spec.detector(),
+            &self.start,
+            &options,
+            cancellation,
+            &mut observer,
+        );
         match found {
             Ok(tree) => Ok(Some(tree)),
             Err(CurveError::Source(SourceError::Interrupted)) => Ok(None),

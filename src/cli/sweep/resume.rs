@@ -65,7 +65,11 @@ pub(super) fn journal(spec: &Sweep, path: &Path) -> Result<Journal, CommandError
 ///
 /// # Errors
 /// [`CommandError::Print`].
-pub(super) fn show(stored: &Stored, path: &Path, kind: &Kind) -> Result<Outcome, CommandError> {
+pub(in crate::cli) fn show(
+    stored: &Stored,
+    path: &Path,
+    kind: &Kind,
+) -> Result<Outcome, CommandError> {
     let done = format!(
         "the run in {} is complete: nothing was solved\n",
         path.display()

@@ -53,6 +53,8 @@ pub struct CurveOptions {
     /// Every which point is checked on finer cells, where the source has them, and the ends; zero for none: points are then
     /// [`BifurcationStatus::Unchecked`].
     pub check_every: usize,
+    /// Whether [`follow_all`] follows the curves that start from points of codimension two too.
+    pub branches: bool,
 }
 
 impl Default for CurveOptions {
@@ -63,6 +65,7 @@ impl Default for CurveOptions {
             tolerance: 1e-4,
             largest_distance: 0.2,
             check_every: 8,
+            branches: true,
         }
     }
 }

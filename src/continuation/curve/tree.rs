@@ -33,17 +33,8 @@ pub struct CurveTree {
     pub missed: Vec<MissedBranch>,
 }
 
-impl From<Curve> for CurveTree {
-    /// A curve alone.
-    fn from(curve: Curve) -> Self {
-        Self {
-            curves: vec![curve],
-            missed: Vec::new(),
-        }
-    }
-}
-
-/// Follows the curve through a start as [`follow`] does, and then those that start from its points of codimension two, and from theirs.
+/// Follows the curve through a start as [`follow`] does, and then, unless [`CurveOptions::branches`] is off, those that start from its points of
+/// codimension two, and from theirs.
 ///
 /// # Errors
 /// [`CurveError`] where the first one cannot be followed.
@@ -68,7 +59,10 @@ pub fn follow_all(
         )
     };
     let first = trace(start)?;
-    let mut open: VecDeque<CurveStart> = first.branches.iter().cloned().collect();
+    let mut open: VecDeque<CurveStart> = match options.branches {
+        true => first.branches.iter().cloned().collect(),
+        false => VecDeque::new(),
+    };
     let mut curves = vec![first];
     let mut missed = Vec::new();
     let mut tried: Vec<CurveStart> = Vec::new();

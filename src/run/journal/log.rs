@@ -9,9 +9,10 @@ use std::time::{Duration, Instant};
 use sha2::{Digest as _, Sha256};
 
 use super::different_keys;
+use crate::UNFINISHED;
 use crate::bytes::{NotWhatWasWritten, Reader, Writer};
 use crate::run::RunError;
-use crate::run::atomic::sync_folder;
+use crate::run::atomic::begin_durably;
 
 /// First bytes of the file: program and format.
 const MAGIC: &[u8; 8] = b"pbif-j3\n";
@@ -36,22 +37,16 @@ pub(in crate::run) struct Log {
 }
 
 impl Log {
-    /// A new file, of work that `of` describes as TOML.
+    /// A new file, of work that `of` describes as TOML. It appears with its first record: a kill leaves none, or one to go on from.
     ///
     /// # Errors
     /// [`RunError::Write`].
     pub(in crate::run) fn create(path: PathBuf, of: &str) -> Result<Self, RunError> {
-        let file = File::create_new(&path).map_err(|source| RunError::Write {
-            path: path.clone(),
-            source,
-        })?;
-        let mut log = Self::at(path, file);
-        log.write(MAGIC)?;
-        log.append(|first| {
+        let first = frame(Vec::new(), |first| {
             first.text(env!("CARGO_PKG_VERSION")).text(of);
-        })?;
-        sync_folder(log.path.parent().unwrap_or(Path::new(".")));
-        Ok(log)
+        });
+        let file = begin_durably(&path, &[MAGIC, &first[..]].concat())?;
+        Ok(Self::at(path, file))
     }
 
     /// Opens a file to go on with it; `each` is given all whole records but the first.
@@ -114,13 +109,7 @@ impl Log {
         compose: impl FnOnce(&mut Writer),
     ) -> Result<(), RunError> {
         // The room is used again and again: a new one would cost as much as the writing.
-        let mut writer = Writer::after(std::mem::take(&mut self.room));
-        writer.count(0).count(0);
-        compose(&mut writer);
-        let mut frame = writer.finish();
-        let (head, content) = frame.split_at_mut(2 * WORD);
-        head[..WORD].copy_from_slice(&(content.len() as u64).to_le_bytes());
-        head[WORD..].copy_from_slice(&checksum(content));
+        let frame = frame(std::mem::take(&mut self.room), compose);
         let written = self.write(&frame);
         self.room = frame;
         written?;
@@ -162,13 +151,25 @@ impl Log {
     }
 }
 
+/// A record with its length and checksum, put together in `room`.
+fn frame(room: Vec<u8>, compose: impl FnOnce(&mut Writer)) -> Vec<u8> {
+    let mut writer = Writer::after(room);
+    writer.count(0).count(0);
+    compose(&mut writer);
+    let mut frame = writer.finish();
+    let (head, content) = frame.split_at_mut(2 * WORD);
+    head[..WORD].copy_from_slice(&(content.len() as u64).to_le_bytes());
+    head[WORD..].copy_from_slice(&checksum(content));
+    frame
+}
+
 /// Gives a file that is linked elsewhere, in an earlier version of the run, a copy of its own, to which records can be added.
 #[cfg(unix)]
 fn own(path: &Path) -> std::io::Result<()> {
     use std::os::unix::fs::MetadataExt as _;
     match path.metadata() {
         Ok(data) if data.nlink() > 1 => {
-            let copy = path.with_extension("copy");
+            let copy = path.with_file_name(format!("{UNFINISHED}journal"));
             std::fs::copy(path, &copy)?;
             std::fs::rename(&copy, path)
         }

@@ -51,17 +51,21 @@ impl Journal {
         })
     }
 
-    /// Opens the journal of an unfinished run to go on with it. `resolved` is the sweep that is to be run, `family` what it runs through.
+    /// Opens the journal of an unfinished run to go on with it, and begins one where the run was stopped before that.
+    /// `resolved` is the sweep that is to be run, `family` what it runs through.
     ///
     /// # Errors
     /// [`RunError::NoJournal`]; [`RunError::OtherSweep`], with every difference, when the run is of another sweep or version;
-    /// [`RunError::Journal`]; [`RunError::Read`].
+    /// [`RunError::Journal`]; [`RunError::Read`]; [`RunError::Write`].
     pub fn open(
         folder: &Path,
         resolved: &str,
         family: &Family,
         methods: &[&'static str],
     ) -> Result<Self, RunError> {
+        if not_begun(folder) {
+            return Self::create(folder, resolved);
+        }
         let (mut stored, mut checks) = (Vec::new(), Vec::new());
         let log = Log::open(folder.join(NAME), resolved, &mut |reader| {
             let is_check = reader.flag()?;
@@ -95,6 +99,16 @@ impl Journal {
         self.log
             .append(|writer| check::write(writer.flag(true), check))
     }
+}
+
+/// Whether an unfinished run was stopped between its manifest and its journal, with nothing done.
+fn not_begun(run: &Path) -> bool {
+    !run.join(NAME).exists() && !run.join("points.csv").exists()
+}
+
+/// Whether an unfinished run has what it needs to be gone on with.
+pub(super) fn can_go_on(run: &Path) -> bool {
+    run.join(NAME).is_file() || not_begun(run)
 }
 
 /// Whether the manifest of a comparison or of curves says that they came to their end; `false` where there is none.

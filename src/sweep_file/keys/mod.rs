@@ -22,6 +22,8 @@ pub(super) enum KeyDefault {
     Required,
     /// The value that the program's options have by themselves.
     OfOptions,
+    /// The value that the options of its section have by themselves.
+    OfSection(fn() -> String),
     /// A rule in words.
     Rule(&'static str),
 }
@@ -68,6 +70,7 @@ impl Key {
         match self.default {
             KeyDefault::Required => "required".to_owned(),
             KeyDefault::OfOptions => self.option_words(),
+            KeyDefault::OfSection(value) => format!("`{}`", value()),
             KeyDefault::Rule(words) => words.to_owned(),
         }
     }

@@ -5,6 +5,8 @@ use super::field::{
 };
 use super::kind::{ANY, DPI, Kind, LINE, OPEN_UNIT, POSITIVE, SHARE, STEP, TEXT, UP_TO_ONE};
 use super::{Key, KeyDefault};
+use crate::continuation::curve::CurveOptions;
+use crate::continuation::map::MapOptions;
 use crate::figure::{ColourMap, Format, Ground, Typeface};
 use crate::generator::AdvectiveScheme;
 use crate::method::{Correction, Estimator};
@@ -34,7 +36,7 @@ const fn key(
     }
 }
 
-use KeyDefault::{OfOptions, Required, Rule};
+use KeyDefault::{OfOptions, OfSection, Required, Rule};
 
 /// The order is the one in which a file is best read, and in which it is written.
 #[rustfmt::skip]
@@ -81,7 +83,7 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
         "The other end."),
     key("map.points", Kind::Integer(2, 10_000), Rule("as many as `sweep.points`"), optional!(map.points),
         "Values of the second parameter in the coarse grid of a map, both ends included; `sweep.points` are those of the first."),
-    key("map.depth", Kind::Integer(0, 8), Rule("`2`"), optional!(map.depth),
+    key("map.depth", Kind::Integer(0, 8), OfSection(|| MapOptions::default().depth.to_string()), optional!(map.depth),
         "How often a cell of the coarse grid is halved at most, where signatures of neighbours differ."),
     key("map.curves", Kind::Choice(switch), Rule("`on`"), optional!(map.curves),
         "Whether the curves between regimes are followed."),
@@ -97,7 +99,7 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
         "Upper end of the box in the swept parameter."),
     key("curve.rows", Kind::List(&Kind::Text), Rule("every row that an indicator located"), optional!(curve.rows),
         "Labels of the rows that are followed, such as `PB1`."),
-    key("curve.step", Kind::Number(STEP), Rule("`0.025`"), optional!(curve.step),
+    key("curve.step", Kind::Number(STEP), OfSection(|| CurveOptions::default().largest_step.to_string()), optional!(curve.step),
         "Longest step between points of a curve, as a share of the sides of the box."),
     key("curve.branches", Kind::Choice(switch), Rule("`on`"), optional!(curve.branches),
         "Whether the curves that start from points of codimension two are followed too."),

@@ -81,14 +81,15 @@ pub(super) fn read(
     check_side(reader, name, (from, to), "to")?;
     check_side(reader, family.parameter(), first, "first_to")?;
     check_held(reader, (draft, family), name, (from, to))?;
+    let usual = CurveOptions::default();
     Some(CurveSettings {
         parameter: name.to_owned(),
         from,
         to,
         first,
         rows: curve.rows.clone().filter(|rows| !rows.is_empty()),
-        step: curve.step.unwrap_or(CurveOptions::default().largest_step),
-        branches: curve.branches.unwrap_or(true),
+        step: curve.step.unwrap_or(usual.largest_step),
+        branches: curve.branches.unwrap_or(usual.branches),
     })
 }
 
