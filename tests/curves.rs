@@ -3,16 +3,22 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod common;
+#[path = "common/cusp.rs"]
+mod cusp;
+#[path = "common/room.rs"]
+mod room;
 #[path = "common/sweeps.rs"]
 mod sweeps;
 
 use common::pbif;
+use cusp::off_the_fold;
 use pbif::cancellation::Cancellation;
 use pbif::continuation::curve::{
     Curve, CurveError, CurveOptions, CurvePoint, CurveStart, EndReason, Plane, follow,
 };
 use pbif::continuation::{BifurcationStatus, LabelledPoint, SweepResult};
 use pbif::sweep_file::Sweep;
+use room::{Room, words};
 use sweeps::prepared;
 
 /// Additive noise: peaks of the density are zeros of the drift, and two of them fold where 27 h² = 4 a³.
@@ -139,11 +145,6 @@ fn assert_on(curve: &Curve, off: impl Fn([f64; 2]) -> f64) {
 
 fn ends(curve: &Curve) -> Vec<&EndReason> {
     curve.ends.iter().map(|end| &end.reason).collect()
-}
-
-/// Distance of a point from the fold of the cusp, in a box with sides of these lengths.
-fn off_the_fold([h, a]: [f64; 2], [of_h, of_a]: [f64; 2]) -> f64 {
-    (27.0 * h * h - 4.0 * a.powi(3)) / (54.0 * h * of_h).hypot(12.0 * a * a * of_a)
 }
 
 #[test]
@@ -496,8 +497,8 @@ fn a_cancelled_curve_says_so() {
 
 #[test]
 fn the_program_follows_a_row_of_a_run_and_says_what_is_wrong() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let room = Room::new();
+    let at = |name: &str| room.at(name);
     let (file, run) = (at("cusp.toml"), at("run"));
     std::fs::write(&file, CUSP).unwrap();
     // At its first value the system is symmetric, and at no other.
@@ -531,12 +532,12 @@ fn the_program_follows_a_row_of_a_run_and_says_what_is_wrong() {
         "--row", "PB1", "--second", "a", "--from", "0.2", "--to", "1.6",
     ]);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
-    let said = String::from_utf8(output.stdout).unwrap();
+    let said = words(&output);
     assert!(
         said.contains("EP1") && said.contains("border of the box in a"),
         "{said}"
     );
-    let table = std::fs::read_to_string(at("run/curves/PB1-a/curves.csv")).unwrap();
+    let table = room.read("run/curves/PB1-a/curves.csv");
     let mut lines = table.lines();
     assert!(
         lines
@@ -550,10 +551,7 @@ fn the_program_follows_a_row_of_a_run_and_says_what_is_wrong() {
         assert!(off_the_fold([h, a], [1.4, 1.4]).abs() <= error, "{line}");
     }
     for file in ["curve.json", "figures/curve.svg", "figures/curve.png"] {
-        assert!(
-            folder.path().join("run/curves/PB1-a").join(file).is_file(),
-            "{file}"
-        );
+        assert!(room.holds(&format!("run/curves/PB1-a/{file}")), "{file}");
     }
     // The run is as it was, and a second curve keeps the first.
     assert!(pbif(&["verify", &run]).status.success());
@@ -561,12 +559,7 @@ fn the_program_follows_a_row_of_a_run_and_says_what_is_wrong() {
         "--second", "a", "--from", "0.2", "--to", "1.6", "--step", "0.1",
     ];
     assert_eq!(fold(&again).status.code(), Some(0));
-    assert!(
-        folder
-            .path()
-            .join("run/curves/PB1-a/previous/1/curves.csv")
-            .is_file()
-    );
+    assert!(room.holds("run/curves/PB1-a/previous/1/curves.csv"));
 
     let refusals: [(&[&str], &str); 6] = [
         (
@@ -596,12 +589,12 @@ fn the_program_follows_a_row_of_a_run_and_says_what_is_wrong() {
     ];
     for (arguments, wanted) in refusals {
         let output = fold(arguments);
-        let said = String::from_utf8(output.stderr).unwrap();
+        let said = words(&output);
         assert_eq!(output.status.code(), Some(2), "{said}");
         assert!(said.contains(wanted), "{said}");
     }
     // A run of another version is not read.
-    let manifest = std::fs::read_to_string(at("run/run.json")).unwrap();
+    let manifest = room.read("run/run.json");
     let version = format!("\"version\": \"{}\"", env!("CARGO_PKG_VERSION"));
     std::fs::write(
         at("run/run.json"),
@@ -609,7 +602,7 @@ fn the_program_follows_a_row_of_a_run_and_says_what_is_wrong() {
     )
     .unwrap();
     let output = fold(&["--second", "a", "--from", "0.2", "--to", "1.6"]);
-    let said = String::from_utf8(output.stderr).unwrap();
+    let said = words(&output);
     assert!(
         output.status.code() == Some(2) && said.contains("99.0.0"),
         "{said}"
@@ -689,8 +682,8 @@ x = {{ from = -3, to = 3, count = {cells} }}
 
 #[test]
 fn a_sweep_file_names_the_curves_that_its_sweep_is_followed_by() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let room = Room::new();
+    let at = |name: &str| room.at(name);
     let (file, run) = (at("cusp.toml"), at("run"));
     let section =
         "[curve]\nparameter = \"a\"\nfrom = 1.6\nto = 0.2\nfirst_from = -0.7\nfirst_to = 0.7\n";
@@ -700,10 +693,6 @@ fn a_sweep_file_names_the_curves_that_its_sweep_is_followed_by() {
         arguments.extend(more);
         pbif(&arguments)
     };
-    let words = |output: &std::process::Output| {
-        let both = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes));
-        both.concat()
-    };
     let output = sweep(&[]);
     assert_eq!(output.status.code(), Some(0), "{}", words(&output));
     assert!(
@@ -711,8 +700,8 @@ fn a_sweep_file_names_the_curves_that_its_sweep_is_followed_by() {
         "{}",
         words(&output)
     );
-    let table = |name: &str| std::fs::read_to_string(folder.path().join(name).join("curves.csv"));
-    let followed = table("run/curves/PB1-a").unwrap();
+    let table = |name: &str| room.read(&format!("{name}/curves.csv"));
+    let followed = table("run/curves/PB1-a");
     assert!(pbif(&["verify", &run]).status.success());
     // The same by the command that says it, and by the one that leaves it to the file.
     for (name, more) in [
@@ -728,7 +717,7 @@ fn a_sweep_file_names_the_curves_that_its_sweep_is_followed_by() {
         let arguments = ["curve", &run, "--quiet", "--out", &out];
         let output = pbif(&[&arguments, more].concat());
         assert_eq!(output.status.code(), Some(0), "{}", words(&output));
-        assert!(table(name).unwrap() == followed, "{name}");
+        assert!(table(name) == followed, "{name}");
     }
     // Complete, nothing is solved.
     let output = sweep(&["--resume"]);
@@ -792,24 +781,20 @@ fn a_sweep_file_names_the_curves_that_its_sweep_is_followed_by() {
 
 #[test]
 fn curves_of_another_section_or_run_are_kept_apart_from_the_new_ones() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let room = Room::new();
+    let at = |name: &str| room.at(name);
     let (file, run) = (at("cusp.toml"), at("run"));
     let section = "[curve]\nparameter = \"a\"\nfrom = 0.8\nto = 1.2\nstep = 0.1\n";
     std::fs::write(&file, format!("{CUSP}{section}")).unwrap();
     let sweep = |more: &[&str]| pbif(&[&["sweep", &file, "--out", &run], more].concat());
-    let json = |name: &str| {
-        let text = std::fs::read_to_string(folder.path().join(name)).unwrap();
-        serde_json::from_str::<serde_json::Value>(&text).unwrap()
-    };
+    let json = |name: &str| serde_json::from_str::<serde_json::Value>(&room.read(name)).unwrap();
     let to = |name: &str| {
         let curve = json(&format!("{name}/curves/PB1-a/curve.json"));
         curve["box"][1]["to"].as_f64()
     };
     let ended = |output: &std::process::Output, code: i32| {
-        let both = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes));
-        assert_eq!(output.status.code(), Some(code), "{}", both.concat());
-        both.concat()
+        assert_eq!(output.status.code(), Some(code), "{}", words(output));
+        words(output)
     };
     // Two shards put together follow the curves of their file; the same again solves nothing.
     for shard in ["1/2", "2/2"] {
@@ -821,9 +806,9 @@ fn curves_of_another_section_or_run_are_kept_apart_from_the_new_ones() {
     assert_eq!(again.matches("nothing was solved").count(), 2, "{again}");
     // Another section: the run stays, and its curves are followed anew beside the earlier ones.
     let other = ["--resume", "--set", "curve.to=1.1"];
-    let words = ended(&sweep(&other), 0);
+    let said = ended(&sweep(&other), 0);
     for says in ["is complete: nothing was solved", "1.2", "followed anew"] {
-        assert!(words.contains(says), "{says}: {words}");
+        assert!(said.contains(says), "{says}: {said}");
     }
     assert_eq!(to("run"), Some(1.1));
     let earlier = json("run/curves/PB1-a/previous/1/curve.json");
@@ -838,14 +823,14 @@ fn curves_of_another_section_or_run_are_kept_apart_from_the_new_ones() {
         &pbif(&["detect", &run, "--set", "detect.confidence=0.9", "--quiet"]),
         0,
     );
-    assert!(!folder.path().join("run/curves").exists());
+    assert!(!room.holds("run/curves"));
     assert_eq!(to("run/previous/2"), Some(1.1));
     // A new run has none but its own.
     ended(&sweep(&["--set", "sweep.points=9", "--quiet"]), 0);
     assert_eq!(to("run"), Some(1.2));
     std::fs::write(&file, CUSP).unwrap();
     ended(&sweep(&["--quiet"]), 0);
-    assert!(!folder.path().join("run/curves").exists());
+    assert!(!room.holds("run/curves"));
     assert_eq!(to("run/previous/4"), Some(1.2));
 }
 

@@ -218,6 +218,86 @@ fn table(file: &Path) -> Vec<std::collections::HashMap<String, String>> {
     reader.deserialize().map(Result::unwrap).collect()
 }
 
+/// What a page is told.
+fn told(page: &Path) -> serde_json::Value {
+    let html = std::fs::read_to_string(page).unwrap();
+    let packed = html.split("id=\"scene\">").nth(1).unwrap();
+    let packed = packed.split("</script>").next().unwrap();
+    let packed = base64::engine::general_purpose::STANDARD
+        .decode(packed)
+        .unwrap();
+    let mut told = Vec::new();
+    flate2::read::ZlibDecoder::new(packed.as_slice())
+        .read_to_end(&mut told)
+        .unwrap();
+    serde_json::from_slice(&told).unwrap()
+}
+
+/// The points of the curves of a plane over h and a are the numbers of a table, to the last digit.
+fn assert_curves_are_those_of(file: &Path, found: &serde_json::Value) {
+    let points: Vec<&serde_json::Value> = (found["curves"].as_array().unwrap().iter())
+        .flat_map(|curve| curve["points"].as_array().unwrap())
+        .collect();
+    let rows = table(file);
+    assert!(rows.len() > 20 && rows.len() == points.len());
+    for (row, point) in rows.iter().zip(points) {
+        for (column, k) in [
+            ("h", 0),
+            ("a", 1),
+            ("error", 2),
+            ("edge_h", 3),
+            ("edge_a", 4),
+        ] {
+            let wanted = row[column].parse::<f64>().unwrap();
+            assert_eq!(point[k].as_f64().unwrap(), wanted, "{column}");
+        }
+    }
+}
+
+#[test]
+fn the_page_of_curves_holds_them_and_the_densities_of_their_plane() {
+    let folder = TempDir::new().unwrap();
+    let sweep = "[system.equations]\nx = \"h + a x - x^3\"\n[system.noise]\nx = \"sqrt(0.1)\"\n\
+        [system.parameters]\na = 1.0\n[sweep]\nparameter = \"h\"\nfrom = 0.1\nto = 0.6\npoints = 6\n\
+        [cells]\nx = { from = -2.5, to = 2.5, count = 200 }\n\
+        [curve]\nparameter = \"a\"\nfrom = 0.6\nto = 1.2\n";
+    std::fs::write(folder.path().join("tilted.toml"), sweep).unwrap();
+    let run = ["sweep", "tilted.toml", "--out", "run", "--quiet"];
+    assert_eq!(pbif(&run, folder.path()).2, Some(0));
+    let (stdout, stderr, code) = pbif(&["explore", "run"], folder.path());
+    assert_eq!(code, Some(0), "{stderr}");
+    let curves = "run/curves/PB1-a";
+    assert!(
+        stdout.contains(&format!("pbif explore {curves}")),
+        "{stdout}"
+    );
+    let (_, stderr, code) = pbif(&["explore", curves, "--quiet"], folder.path());
+    assert_eq!(code, Some(0), "{stderr}");
+    let curves = folder.path().join(curves);
+    let told = told(&curves.join("explorer.html"));
+    let found = &told["plane"]["found"];
+    assert_curves_are_those_of(&curves.join("curves.csv"), found);
+    let kinds = found["regions"][0]["kinds"].as_array().unwrap();
+    assert!(
+        ["1 peak", "2 peaks"]
+            .iter()
+            .all(|one| kinds.contains(&(*one).into())),
+        "{kinds:?}"
+    );
+    // On both sides of the exact fold, 27 h² = 4 a³, as far from it as a shallow peak needs to be counted.
+    let frames = told["frames"].as_array().unwrap();
+    assert_eq!(frames.len(), 21 * 21);
+    for (frame, second) in frames.iter().zip(told["across"].as_array().unwrap()) {
+        let (h, a) = (frame["value"].as_f64().unwrap(), second.as_f64().unwrap());
+        let off = 27.0 * h * h - 4.0 * a.powi(3);
+        if off.abs() < 0.6 {
+            continue;
+        }
+        let words = if off < 0.0 { "2 peaks" } else { "1 peak" };
+        assert_eq!(frame["found"][0]["words"], words, "h = {h}, a = {a}");
+    }
+}
+
 #[test]
 fn the_page_of_a_map_holds_what_its_tables_hold() {
     let folder = TempDir::new().unwrap();
@@ -228,37 +308,10 @@ fn the_page_of_a_map_holds_what_its_tables_hold() {
     pbif(&arguments, folder.path());
     let (_, stderr, code) = pbif(&["explore", "map", "--html", "map.html"], folder.path());
     assert_eq!(code, Some(0), "{stderr}");
-    let html = std::fs::read_to_string(folder.path().join("map.html")).unwrap();
-    let packed = html.split("id=\"scene\">").nth(1).unwrap();
-    let packed = packed.split("</script>").next().unwrap();
-    let packed = base64::engine::general_purpose::STANDARD
-        .decode(packed)
-        .unwrap();
-    let mut told = Vec::new();
-    flate2::read::ZlibDecoder::new(packed.as_slice())
-        .read_to_end(&mut told)
-        .unwrap();
-    let told: serde_json::Value = serde_json::from_slice(&told).unwrap();
+    let told = told(&folder.path().join("map.html"));
     let found = &told["plane"]["found"];
-
-    // Curves and points are the numbers of the tables, to the last digit.
+    assert_curves_are_those_of(&folder.path().join("map/curves.csv"), found);
     let number = |text: &String| text.parse::<f64>().unwrap();
-    let points: Vec<&serde_json::Value> = (found["curves"].as_array().unwrap().iter())
-        .flat_map(|curve| curve["points"].as_array().unwrap())
-        .collect();
-    let rows = table(&folder.path().join("map/curves.csv"));
-    assert!(rows.len() > 20 && rows.len() == points.len());
-    for (row, point) in rows.iter().zip(points) {
-        for (column, k) in [
-            ("h", 0),
-            ("a", 1),
-            ("error", 2),
-            ("edge_h", 3),
-            ("edge_a", 4),
-        ] {
-            assert_eq!(point[k].as_f64().unwrap(), number(&row[column]), "{column}");
-        }
-    }
     let rows = table(&folder.path().join("map/codimension_two.csv"));
     assert_eq!(rows.len(), found["points"].as_array().unwrap().len());
     assert_eq!(

@@ -3,6 +3,10 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod common;
+#[path = "common/cusp.rs"]
+mod cusp;
+#[path = "common/room.rs"]
+mod room;
 #[path = "common/sweeps.rs"]
 mod sweeps;
 
@@ -10,6 +14,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use common::pbif;
+use cusp::off_the_fold;
 use pbif::cancellation::Cancellation;
 use pbif::continuation::BifurcationStatus;
 use pbif::continuation::curve::CurvePoint;
@@ -17,6 +22,7 @@ use pbif::continuation::map::{MapNode, MapProgress, RegimeMap};
 use pbif::run::MapCheckpoint;
 use pbif::sweep_file::SweepFile;
 use pbif::topology::Signature;
+use room::{Room, words};
 use sweeps::prepared;
 
 /// Additive noise: peaks of the density are zeros of the drift, and there are two where 27 h² < 4 a³.
@@ -74,11 +80,6 @@ fn mapped(text: &str, settings: &[&str]) -> RegimeMap {
     let never = Cancellation::new();
     let sweep = prepared(text, settings);
     sweep.map(&never, &|_| ()).unwrap().unwrap()
-}
-
-/// Distance of a point from the fold of the cusp, in a box with sides of these lengths.
-fn off_the_fold([h, a]: [f64; 2], [of_h, of_a]: [f64; 2]) -> f64 {
-    (27.0 * h * h - 4.0 * a.powi(3)) / (54.0 * h * of_h).hypot(12.0 * a * a * of_a)
 }
 
 #[test]
@@ -377,8 +378,8 @@ fn a_map_goes_on_from_what_was_solved_and_solves_only_what_it_must() {
 
 #[test]
 fn the_program_goes_on_with_a_map_that_was_killed() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let room = Room::new();
+    let at = |name: &str| room.at(name);
     let (file, out) = (at("cusp.toml"), at("out"));
     std::fs::write(&file, CUSP).unwrap();
     let never = Cancellation::new();
@@ -398,22 +399,21 @@ fn the_program_goes_on_with_a_map_that_was_killed() {
     let output = pbif(&["sweep", &file, "--out", &out, "--resume"]);
     // On these cells the cusp itself is not known well enough to be located.
     assert!(output.status.code() <= Some(1), "{output:?}");
-    let said = String::from_utf8(output.stderr).unwrap();
+    let said = words(&output);
     assert!(said.contains("going on after 60 nodes"), "{said}");
     assert!(checkpoint.read().unwrap().is_empty());
-    assert!(folder.path().join("out/map.csv").is_file());
+    assert!(room.holds("out/map.csv"));
 }
 
 #[test]
 fn a_map_in_shards_is_the_map_in_one_piece() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let room = Room::new();
+    let at = |name: &str| room.at(name);
     let (file, one, out) = (at("plane.toml"), at("one"), at("out"));
     std::fs::write(&file, RAYLEIGH).unwrap();
     let run = |arguments: &[&str]| {
         let output = pbif(arguments);
-        let said = [output.stdout, output.stderr].map(|part| String::from_utf8(part).unwrap());
-        (output.status.code(), said.concat())
+        (output.status.code(), words(&output))
     };
     let read = |name: &str| std::fs::read_to_string(at(name)).unwrap();
     let (code, said) = run(&["sweep", &file, "--quiet", "--out", &one]);
@@ -471,8 +471,8 @@ fn a_map_in_shards_is_the_map_in_one_piece() {
 
 #[test]
 fn the_program_makes_maps_and_says_what_is_wrong_with_them() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let room = Room::new();
+    let at = |name: &str| room.at(name);
     let (file, out) = (at("cusp.toml"), at("out"));
     std::fs::write(&file, CUSP).unwrap();
     let sweep = |more: &[&str]| {
@@ -481,7 +481,7 @@ fn the_program_makes_maps_and_says_what_is_wrong_with_them() {
         pbif(&arguments)
     };
     let output = sweep(&[]);
-    let text = String::from_utf8(output.stdout).unwrap();
+    let text = words(&output);
     assert!(
         text.contains("map of h and a") && text.contains("C2 "),
         "{text}"
@@ -496,15 +496,15 @@ fn the_program_makes_maps_and_says_what_is_wrong_with_them() {
         "figures/map_x.svg",
         "figures/map_x.png",
     ] {
-        assert!(folder.path().join("out").join(name).is_file(), "{name}");
+        assert!(room.holds(&format!("out/{name}")), "{name}");
     }
-    let table = std::fs::read_to_string(at("out/map.csv")).unwrap();
+    let table = room.read("out/map.csv");
     assert!(
         table.starts_with("h,a,signature_x,status,level,reason\n"),
         "{table}"
     );
     assert!(table.lines().any(|line| line.contains(",2 peaks,")));
-    let curves = std::fs::read_to_string(at("out/curves.csv")).unwrap();
+    let curves = room.read("out/curves.csv");
     assert!(curves.starts_with("curve,label,h,a,error,"));
     assert!(curves.lines().any(|line| line.starts_with("C2,start,")));
 
@@ -533,26 +533,22 @@ fn the_program_makes_maps_and_says_what_is_wrong_with_them() {
     ] {
         let output = draw(more);
         assert_eq!(output.status.code(), Some(2), "{output:?}");
-        let text = String::from_utf8(output.stderr).unwrap();
+        let text = words(&output);
         assert!(text.contains(says), "{says}:\n{text}");
     }
 
     let refused = |more: &[&str], says: &[&str]| {
         let output = sweep(more);
         assert_eq!(output.status.code(), Some(2), "{output:?}");
-        let text = String::from_utf8(output.stderr).unwrap();
-        for words in says {
-            assert!(text.contains(words), "{words}:\n{text}");
+        let text = words(&output);
+        for says in says {
+            assert!(text.contains(says), "{says}:\n{text}");
         }
     };
     // Complete, there is nothing to go on with; of another sweep it is refused.
     let again = sweep(&["--resume"]);
     assert_eq!(again.status.code(), Some(0), "{again:?}");
-    assert!(
-        String::from_utf8(again.stdout)
-            .unwrap()
-            .contains("the map is complete")
-    );
+    assert!(words(&again).contains("the map is complete"));
     refused(
         &["--resume", "--set", "map.points=6"],
         &["is of another sweep", "map.points"],
@@ -577,12 +573,8 @@ fn the_program_makes_maps_and_says_what_is_wrong_with_them() {
 
 #[test]
 fn what_sweeps_locate_is_marked_in_the_plane_that_they_lie_in() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
-    let text = |output: &std::process::Output| {
-        let both = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes));
-        both.concat()
-    };
+    let room = Room::new();
+    let at = |name: &str| room.at(name);
     let (map, line) = (at("map.toml"), at("line.toml"));
     std::fs::write(&map, CUSP).unwrap();
     let (before, after) = CUSP.split_once("[map]").unwrap();
@@ -609,7 +601,7 @@ fn what_sweeps_locate_is_marked_in_the_plane_that_they_lie_in() {
     ];
     let with = runs.map(|(name, settings)| {
         let output = sweep(&line, &at(name), settings);
-        assert!(output.status.code() < Some(2), "{}", text(&output));
+        assert!(output.status.code() < Some(2), "{}", words(&output));
         at(name)
     });
     let pictures = at("pictures");
@@ -625,16 +617,15 @@ fn what_sweeps_locate_is_marked_in_the_plane_that_they_lie_in() {
         pbif(&arguments)
     };
     let output = draw(&["--with", &with[0], "--with", &with[1]]);
-    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
-    let said = text(&output);
+    assert_eq!(output.status.code(), Some(0), "{}", words(&output));
+    let said = words(&output);
     // Both branches are crossed at a = 0.6, one at h = 0.2; the sweeps end where the curves pass.
     assert_eq!(
         said.matches("within the errors of both").count(),
         3,
         "{said}"
     );
-    let read =
-        |name: &str| std::fs::read_to_string(folder.path().join("pictures").join(name)).unwrap();
+    let read = |name: &str| room.read(&format!("pictures/{name}"));
     let table = read("map_x.csv");
     let rows: Vec<[f64; 2]> = table
         .lines()
@@ -688,11 +679,11 @@ fn what_sweeps_locate_is_marked_in_the_plane_that_they_lie_in() {
             "{settings:?}"
         );
         let output = draw(&["--with", &other]);
-        assert_eq!(output.status.code(), Some(2), "{}", text(&output));
-        assert!(text(&output).contains(says), "{says}:\n{}", text(&output));
+        assert_eq!(output.status.code(), Some(2), "{}", words(&output));
+        assert!(words(&output).contains(says), "{says}:\n{}", words(&output));
     }
     let of_a_run = pbif(&["plot", &with[0], "--with", &with[1]]);
-    assert!(text(&of_a_run).contains("`--with` marks sweeps in the figure of a plane"));
+    assert!(words(&of_a_run).contains("`--with` marks sweeps in the figure of a plane"));
 }
 
 #[test]

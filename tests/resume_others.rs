@@ -262,12 +262,17 @@ fn kills_at_any_moment_lose_nothing() {
     assert!(kills(2, sweep) > 0);
 }
 
-/// A few minutes: `cargo test --release --test resume_others -- --ignored`.
+/// A few minutes each: `cargo test --release --test resume_others -- --ignored`.
 #[test]
 #[ignore = "takes minutes"]
-fn forty_kills_at_any_moment_lose_nothing() {
+fn forty_kills_of_a_sweep_at_any_moment_lose_nothing() {
     let killed = kills(40, sweep);
     assert!(killed >= 30, "{killed}");
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn forty_kills_of_a_comparison_at_any_moment_lose_nothing() {
     let killed = kills(40, comparison);
     assert!(killed >= 30, "{killed}");
 }

@@ -1,7 +1,7 @@
 //! `pbif explore`: the page of a stored run, or a live one of a sweep file.
 
 use std::io::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::args::{ExploreArguments, SweepInput};
 use super::stored::{Stored, set};
@@ -9,7 +9,7 @@ use super::sweep::progress::Progress;
 use super::{CommandError, Outcome};
 use crate::cancellation::Cancellation;
 use crate::explore::{LiveServer, StoredPage};
-use crate::run::{MapTables, write_atomically};
+use crate::run::{CURVES, MapTables, StoredPlane, write_atomically};
 use crate::sweep_file::{Diagnostic, SweepFile};
 
 /// Densities of a map between two words of how many are solved.
@@ -28,8 +28,8 @@ pub(super) fn run(arguments: &ExploreArguments) -> Result<Outcome, CommandError>
             "`--port` is for a sweep file: the page of a run is a file",
         ));
     }
-    if MapTables::is_there(&arguments.target) {
-        return of_map(arguments);
+    if MapTables::is_there(&arguments.target) || MapTables::of_curves_are_there(&arguments.target) {
+        return of_plane(arguments);
     }
     let stored = Stored::read(
         &arguments.target,
@@ -37,19 +37,46 @@ pub(super) fn run(arguments: &ExploreArguments) -> Result<Outcome, CommandError>
         &["detect", "locate"],
         arguments.quiet,
     )?;
-    written(&StoredPage::new(&stored.spec, &stored.result)?, arguments)
+    let outcome = written(&StoredPage::new(&stored.spec, &stored.result)?, arguments)?;
+    super::print(&curves_of(&arguments.target))?;
+    Ok(outcome)
 }
 
-/// Writes the page of a map of regimes, whose densities are solved again.
-fn of_map(arguments: &ExploreArguments) -> Result<Outcome, CommandError> {
+/// How the curves of a run are looked at.
+fn curves_of(run: &Path) -> String {
+    let entries = std::fs::read_dir(run.join(CURVES)).into_iter().flatten();
+    let mut folders: Vec<_> = entries.flatten().map(|entry| entry.path()).collect();
+    folders.retain(|folder| MapTables::of_curves_are_there(folder));
+    folders.sort();
+    let line = |folder: &PathBuf| {
+        let folder = folder.display();
+        format!("its curves have a page of their own: pbif explore {folder}\n")
+    };
+    folders.iter().map(line).collect()
+}
+
+/// Writes the page of a map of regimes, or of curves, whose densities are solved.
+fn of_plane(arguments: &ExploreArguments) -> Result<Outcome, CommandError> {
     if !arguments.overrides.is_empty() {
         return Err(refused(
-            "`--set` is for a sweep file or the run of a sweep: what the page of a map shows stands in its tables",
+            "`--set` is for a sweep file or the run of a sweep: what the page of a map or of curves shows stands in its tables",
         ));
     }
-    let tables = MapTables::read(&arguments.target)?;
-    let file = SweepFile::parse("map.json", &tables.sweep_file);
-    let sweep = file.validate()?.fixed()?;
+    let folder = &arguments.target;
+    let stored = match MapTables::is_there(folder) {
+        true => None,
+        false => StoredPlane::open(folder)?,
+    };
+    let curves = stored.as_ref().and_then(StoredPlane::plane);
+    let tables = match &curves {
+        Some(_) => MapTables::of_curves(folder)?,
+        None => MapTables::read(folder)?,
+    };
+    let sweep = match &stored {
+        Some(stored) => SweepFile::parse("plane.json", stored.resolved()),
+        None => SweepFile::parse("map.json", &tables.sweep_file),
+    };
+    let sweep = sweep.validate()?.fixed()?;
     let (threads, cancellation) = super::interruptible(None)?;
     let progress = Progress::new(0, arguments.quiet);
     // Without a terminal every one would be a line.
@@ -58,7 +85,10 @@ fn of_map(arguments: &ExploreArguments) -> Result<Outcome, CommandError> {
             progress.count("densities", solved, all);
         }
     };
-    let page = threads.install(|| StoredPage::of_map(&sweep, &tables, &cancellation, &count));
+    let page = threads.install(|| match &curves {
+        Some(plane) => StoredPage::of_curves(&sweep, (plane, tables), &cancellation, &count),
+        None => StoredPage::of_map(&sweep, &tables, &cancellation, &count),
+    });
     progress.finish();
     if cancellation.is_cancelled() {
         super::print("interrupted: nothing was written\n")?;

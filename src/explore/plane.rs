@@ -7,7 +7,8 @@ use serde::Serialize;
 
 use super::ExploreError;
 use crate::continuation::Subject;
-use crate::continuation::map::{Seed, flooded};
+use crate::continuation::curve::Plane;
+use crate::continuation::map::{PlaneState, Seed, flooded};
 use crate::run::{MapTables, Rows};
 use crate::sweep_file::Sweep;
 
@@ -94,11 +95,19 @@ impl PlaneScene {
         sweep: &Sweep,
         tables: Option<&MapTables>,
     ) -> Result<Option<Self>, ExploreError> {
-        let family = &sweep.settings.family;
         let map = sweep.settings.map.as_ref();
-        let Some(plane) = map.and_then(|map| map.plane(family)) else {
-            return Ok(None);
-        };
+        let plane = map.and_then(|map| map.plane(&sweep.settings.family));
+        let scene = plane.map(|plane| Self::of(&plane, sweep, tables));
+        scene.transpose()
+    }
+
+    /// The same of the box of a plane, with what tables say of it.
+    pub(super) fn of(
+        plane: &Plane,
+        sweep: &Sweep,
+        tables: Option<&MapTables>,
+    ) -> Result<Self, ExploreError> {
+        let family = &sweep.settings.family;
         let symbol = |name: &str| {
             let mut parameters = family.model().parameters.iter();
             let known = parameters.find(|parameter| parameter.name == name);
@@ -115,10 +124,30 @@ impl PlaneScene {
         let subject = sweep.problem.subject();
         let scene = Self { sides, found: None };
         let found = tables.map(|tables| scene.found_in(tables, subject));
-        Ok(Some(Self {
+        Ok(Self {
             found: found.transpose()?,
             ..scene
-        }))
+        })
+    }
+
+    /// States as the nodes of a table.
+    pub(super) fn nodes_of(states: &[PlaneState], plane: &Plane, subject: &Subject) -> Rows {
+        let names = subject.observables.iter();
+        let names: Vec<String> = names
+            .map(|one| format!("signature_{}", one.name(&subject.family)))
+            .collect();
+        let row = |state: &PlaneState| {
+            let sides = plane.sides().iter().zip(state.values);
+            let values = sides.map(|(side, value)| (side.parameter.clone(), value.to_string()));
+            let found = state.point.detections.iter();
+            let found = found.map(|detection| detection.signature.to_string());
+            let level = ("level".to_owned(), "0".to_owned());
+            let cells = values
+                .chain([level])
+                .chain(names.iter().cloned().zip(found));
+            cells.collect()
+        };
+        states.iter().map(row).collect()
     }
 
     fn found_in(&self, tables: &MapTables, subject: &Subject) -> Result<PlaneFound, ExploreError> {

@@ -6,7 +6,9 @@ use super::ExploreError;
 use super::compose::Shown;
 use super::plane::PlaneScene;
 use crate::cancellation::Cancellation;
-use crate::continuation::{SourceError, SweepResult};
+use crate::continuation::curve::Plane;
+use crate::continuation::map::PlaneState;
+use crate::continuation::{SourceError, SweepResult, evenly_spaced};
 use crate::run::MapTables;
 use crate::sweep_file::Sweep;
 
@@ -60,15 +62,32 @@ impl StoredPage {
         if states.len() < all {
             return Err(SourceError::Interrupted.into());
         }
-        let shown = Shown {
-            sweep,
-            subject: sweep.problem.subject(),
-            labels: &[],
-            points: states.iter().map(|state| &state.point).collect(),
-            plane: Some(&plane),
-            across: states.iter().map(|state| state.values[1]).collect(),
-        };
-        shown.fitted()
+        shown(sweep, &plane, &states).fitted()
+    }
+
+    /// The page of curves that were begun at a row of a sweep: their plane, and densities at 21 × 21 places of its box, which are solved.
+    ///
+    /// # Errors
+    /// As [`StoredPage::of_map`].
+    pub fn of_curves(
+        sweep: &Sweep,
+        (plane, mut tables): (&Plane, MapTables),
+        cancellation: &Cancellation,
+        done: &(dyn Fn(usize, usize) + Sync),
+    ) -> Result<Self, ExploreError> {
+        let sides = plane.sides().each_ref();
+        let values = sides.map(|side| evenly_spaced((side.from, side.to), MOST_VALUES));
+        let (solved, all) = (AtomicUsize::new(0), MOST_VALUES * MOST_VALUES);
+        let count = || done(solved.fetch_add(1, Ordering::Relaxed) + 1, all);
+        let [first, second] = &values;
+        let states = sweep.states_in(plane, [first, second], cancellation, &count)?;
+        if states.len() < all {
+            return Err(SourceError::Interrupted.into());
+        }
+        let subject = sweep.problem.subject();
+        tables.nodes = PlaneScene::nodes_of(&states, plane, subject);
+        let plane = PlaneScene::of(plane, sweep, Some(&tables))?;
+        shown(sweep, &plane, &states).fitted()
     }
 
     /// The page.
@@ -79,6 +98,18 @@ impl StoredPage {
     /// Bits to which the square roots of joint densities are kept; `None` where none is watched.
     pub fn joint_bits(&self) -> Option<u32> {
         self.joint_bits
+    }
+}
+
+/// What the page of a plane shows.
+fn shown<'a>(sweep: &'a Sweep, plane: &'a PlaneScene, states: &'a [PlaneState]) -> Shown<'a> {
+    Shown {
+        sweep,
+        subject: sweep.problem.subject(),
+        labels: &[],
+        points: states.iter().map(|state| &state.point).collect(),
+        plane: Some(plane),
+        across: states.iter().map(|state| state.values[1]).collect(),
     }
 }
 

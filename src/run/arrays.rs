@@ -218,6 +218,19 @@ impl Layout {
         Self::new(name, dimensions, chunk, long_name)
     }
 
+    /// The places of all chunks of one parameter value, along the other dimensions.
+    pub(super) fn chunks_of_a_value(&self) -> Vec<Vec<u64>> {
+        let dimensions = self.dimensions.iter().zip(&self.chunk).skip(1);
+        let counts = dimensions.map(|((_, length), chunk)| length.div_ceil(*chunk));
+        counts.fold(vec![Vec::new()], |places, count| {
+            let with = |place: &Vec<u64>| {
+                let place = place.clone();
+                (0..count).map(move |number| [&place[..], &[number]].concat())
+            };
+            places.iter().flat_map(with).collect()
+        })
+    }
+
     /// Whether this is the array of that kink, whatever its number.
     pub(super) fn is_kink(&self, other: &Self) -> bool {
         let of = |layout: &Self| {

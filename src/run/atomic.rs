@@ -34,11 +34,14 @@ fn write(path: &Path, bytes: &[u8], durably: bool) -> Result<File, RunError> {
         source,
     };
     let folder = path.parent().unwrap_or(Path::new("."));
-    std::fs::create_dir_all(folder).map_err(failed)?;
-    let mut file = tempfile::Builder::new()
-        .prefix(UNFINISHED)
-        .permissions_of_new_files()
-        .tempfile_in(folder)
+    let begun = || {
+        let mut builder = tempfile::Builder::new();
+        let builder = builder.prefix(UNFINISHED).permissions_of_new_files();
+        builder.tempfile_in(folder)
+    };
+    // Most folders are there already: one is made only where it is missed.
+    let mut file = begun()
+        .or_else(|_| std::fs::create_dir_all(folder).and_then(|()| begun()))
         .map_err(failed)?;
     file.write_all(bytes).map_err(failed)?;
     if durably {

@@ -70,6 +70,29 @@ impl MapTables {
         })
     }
 
+    /// Whether a folder is that of curves.
+    pub fn of_curves_are_there(folder: &Path) -> bool {
+        folder.join("curve.json").is_file()
+    }
+
+    /// The tables of curves that were begun at a row of a sweep, from their folder. They have no nodes.
+    ///
+    /// # Errors
+    /// As [`MapTables::read`].
+    pub fn of_curves(folder: &Path) -> Result<Self, RunError> {
+        let table = |name: &str| {
+            let path = folder.join(name);
+            let text = std::fs::read_to_string(&path);
+            rows(&text.map_err(|source| RunError::Read { path, source })?)
+        };
+        Ok(Self {
+            sweep_file: String::new(),
+            nodes: Rows::new(),
+            curves: table("curves.csv")?,
+            codimension_two: table("codimension_two.csv")?,
+        })
+    }
+
     /// The tables that a map would leave.
     ///
     /// # Errors

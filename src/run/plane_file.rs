@@ -233,7 +233,8 @@ impl StoredPlane {
         Ok(StoredPlaneContent::Map(Box::new(map)))
     }
 
-    fn plane(&self) -> Option<Plane> {
+    /// The box; `None` where the file has none.
+    pub fn plane(&self) -> Option<Plane> {
         let side = |index: usize| {
             let side = &self.all["box"][index];
             Some((side[0].as_str()?, side[1].as_f64()?, side[2].as_f64()?))

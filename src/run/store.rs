@@ -5,25 +5,20 @@
 //! leave half a chunk. The densities of a running sweep stand in the order in which they were solved and are put in ascending
 //! order at the end.
 
+mod files;
+
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use rayon::prelude::*;
-use serde_json::{Map, Value, json};
-use zarrs::array::{Array, ArrayBuilder, data_type};
-use zarrs::storage::store::MemoryStore;
-use zarrs::storage::{ListableStorageTraits, ReadableStorageTraits};
 
-use super::arrays::{KINK_AT, Layout, PARAMETER_CHUNK, REPLICATE_CHUNK};
+use super::RunError;
+use super::arrays::{KINK_AT, Layout, REPLICATE_CHUNK};
 use super::exchange::{Fresh, Leftover};
-use super::{
-    RunError,
-    atomic::write_atomically,
-    tree::{link_numbered, link_tree},
-};
+use super::tree::link;
 use crate::density::{EstimatedDensity, Variants};
 use crate::space::Axis;
 use crate::system::Family;
+use files::chunk_name;
 
 /// The store of a run's densities.
 #[derive(Debug)]
@@ -126,17 +121,17 @@ impl DensityStore {
 
     /// Gives all chunks of arrays and axes a second place here: those that stand in another store at these places.
     fn link_chunks(&self, other: &Self, places: &[usize]) -> Result<(), RunError> {
-        let chunks = |store: &Self, layout: &Layout| store.path.join(&layout.name).join("c");
         let folders = |layout: &Layout, known: &Layout| -> Result<(PathBuf, PathBuf), RunError> {
-            let to = chunks(self, layout);
+            let to = self.path.join(&layout.name);
             match std::fs::create_dir_all(&to) {
-                Ok(()) => Ok((chunks(other, known), to)),
+                Ok(()) => Ok((other.path.join(&known.name), to)),
                 Err(source) => Err(RunError::Write { path: to, source }),
             }
         };
         for layout in &self.axes {
             let (from, to) = folders(layout, layout)?;
-            link_tree(&from.join("0"), &to.join("0"))?;
+            let name = chunk_name(&[0]);
+            link(&from.join(&name), &to.join(&name))?;
         }
         // Arrays stand in folders of their own: nobody waits for another.
         let linked = self.arrays.par_iter().map(|layout| {
@@ -150,13 +145,12 @@ impl DensityStore {
                 return Ok(());
             };
             let (from, to) = folders(layout, known)?;
-            let dimensions = layout.dimensions.iter().zip(&layout.chunk).skip(1);
-            let counts: Vec<u64> = dimensions.map(|(d, chunk)| d.1.div_ceil(*chunk)).collect();
+            let rest = layout.chunks_of_a_value();
             for (new, old) in places.iter().enumerate() {
-                let (from, to) = (from.join(old.to_string()), to.join(new.to_string()));
-                // A kink may be missing at some value.
-                if from.exists() {
-                    link_numbered(&from, &to, &counts)?;
+                for rest in &rest {
+                    let name = |place: usize| chunk_name(&[&[place as u64], &rest[..]].concat());
+                    // A kink may be missing at some value.
+                    link(&from.join(name(*old)), &to.join(name(new)))?;
                 }
             }
             Ok(())
@@ -184,26 +178,6 @@ impl DensityStore {
         for estimate in densities {
             self.write_estimate(family, estimate)?;
         }
-        Ok(())
-    }
-
-    /// Writes the metadata of every array with places for `count` parameter values, and last that of the store; nothing where it stands already.
-    fn write_all_metadata(&mut self, family: &Family, count: u64) -> Result<(), RunError> {
-        let mut layouts = self.axes.clone();
-        layouts.push(Layout::parameter(family, count));
-        layouts.extend(self.arrays.iter().cloned().map(|mut layout| {
-            layout.dimensions[0].1 = count;
-            layout
-        }));
-        if layouts == self.described {
-            return Ok(());
-        }
-        let mut metadata = Map::new();
-        for layout in &layouts {
-            self.write_metadata(layout, &mut metadata)?;
-        }
-        self.write_root(family, metadata)?;
-        self.described = layouts;
         Ok(())
     }
 
@@ -290,105 +264,6 @@ impl DensityStore {
             known.dimensions[0].1 = self.values.len() as u64;
         }
         self.arrays[index].clone()
-    }
-
-    /// Writes the chunk of parameter values that holds the last one.
-    fn write_parameter(&self, family: &Family) -> Result<(), RunError> {
-        let chunks = self.values.chunks(PARAMETER_CHUNK as usize);
-        let last = chunks.len().saturating_sub(1);
-        let values = chunks.last().unwrap_or(&[]);
-        self.write_parameter_chunk(family, last, values)
-    }
-
-    /// Writes all parameter values.
-    fn write_parameters(&self, family: &Family) -> Result<(), RunError> {
-        let mut chunks = self.values.chunks(PARAMETER_CHUNK as usize).enumerate();
-        chunks.try_for_each(|(index, values)| self.write_parameter_chunk(family, index, values))
-    }
-
-    fn write_parameter_chunk(
-        &self,
-        family: &Family,
-        index: usize,
-        values: &[f64],
-    ) -> Result<(), RunError> {
-        let layout = Layout::parameter(family, self.values.len() as u64);
-        let mut chunk = values.to_vec();
-        chunk.resize(PARAMETER_CHUNK as usize, f64::NAN);
-        self.write_chunk(&layout, &[index as u64], &chunk)
-    }
-
-    /// Writes an array's metadata, which is also added to `metadata`.
-    fn write_metadata(
-        &self,
-        layout: &Layout,
-        metadata: &mut Map<String, Value>,
-    ) -> Result<(), RunError> {
-        let (memory, array) = self.array(layout)?;
-        array
-            .store_metadata()
-            .map_err(|error| self.failed(error.to_string()))?;
-        metadata.insert(layout.name.clone(), serde_json::to_value(array.metadata())?);
-        self.put_in_place(&memory)
-    }
-
-    /// Writes one chunk of an array.
-    fn write_chunk(&self, layout: &Layout, place: &[u64], values: &[f64]) -> Result<(), RunError> {
-        if self.is_linked {
-            return Ok(());
-        }
-        let (memory, array) = self.array(layout)?;
-        array
-            .store_chunk(place, values)
-            .map_err(|error| self.failed(error.to_string()))?;
-        self.put_in_place(&memory)
-    }
-
-    /// An array in memory.
-    fn array(&self, layout: &Layout) -> Result<(Arc<MemoryStore>, Array<MemoryStore>), RunError> {
-        let memory = Arc::new(MemoryStore::new());
-        let shape: Vec<u64> = layout.dimensions.iter().map(|d| d.1).collect();
-        let names: Vec<&str> = layout.dimensions.iter().map(|d| d.0.as_str()).collect();
-        let array = ArrayBuilder::new(shape, layout.chunk.clone(), data_type::float64(), f64::NAN)
-            .dimension_names(names.into())
-            .attributes(layout.attributes.clone())
-            .build(memory.clone(), &format!("/{}", layout.name))
-            .map_err(|error| self.failed(error.to_string()))?;
-        Ok((memory, array))
-    }
-
-    /// Writes what was composed in memory.
-    fn put_in_place(&self, memory: &MemoryStore) -> Result<(), RunError> {
-        let keys = memory.list();
-        for key in keys.map_err(|error| self.failed(error.to_string()))? {
-            let bytes = memory.get(&key);
-            let bytes = bytes.map_err(|error| self.failed(error.to_string()))?;
-            write_atomically(&self.path.join(key.as_str()), &bytes.unwrap_or_default())?;
-        }
-        Ok(())
-    }
-
-    fn failed(&self, message: String) -> RunError {
-        RunError::Store {
-            path: self.path.clone(),
-            message,
-        }
-    }
-
-    /// Writes the group's metadata with that of all arrays, so that readers need not list the folder.
-    fn write_root(&self, family: &Family, metadata: Map<String, Value>) -> Result<(), RunError> {
-        let root = json!({
-            "zarr_format": 3,
-            "node_type": "group",
-            "attributes": { "title": family.model().title, "model": family.model().name },
-            "consolidated_metadata": {
-                "kind": "inline",
-                "must_understand": false,
-                "metadata": metadata,
-            },
-        });
-        let text = serde_json::to_string_pretty(&root)? + "\n";
-        write_atomically(&self.path.join("zarr.json"), text.as_bytes())
     }
 }
 

@@ -20,26 +20,21 @@ pub(super) fn link_tree(from: &Path, to: &Path) -> Result<(), RunError> {
             let entry = entry.map_err(unreadable)?;
             link_tree(&entry.path(), &to.join(entry.file_name()))?;
         }
-    } else if from.is_file() && std::fs::hard_link(from, to).is_err() {
-        std::fs::copy(from, to).map_err(|source| failed(to, source))?;
+    } else {
+        link(from, to)?;
     }
     Ok(())
 }
 
-/// The same of folders whose entries are numbered, so many of them at each level, files at the last: they need not be listed.
+/// The same of a file alone.
 ///
 /// # Errors
-/// As [`link_tree`].
-pub(super) fn link_numbered(from: &Path, to: &Path, counts: &[u64]) -> Result<(), RunError> {
-    let Some((&count, deeper)) = counts.split_first() else {
-        return match std::fs::hard_link(from, to) {
-            Ok(()) => Ok(()),
-            Err(_) => link_tree(from, to),
-        };
-    };
-    make(to)?;
-    let mut numbers = (0..count).map(|number| number.to_string());
-    numbers.try_for_each(|name| link_numbered(&from.join(&name), &to.join(&name), deeper))
+/// [`RunError::Write`].
+pub(super) fn link(from: &Path, to: &Path) -> Result<(), RunError> {
+    if std::fs::hard_link(from, to).is_err() && from.is_file() {
+        std::fs::copy(from, to).map_err(|source| failed(to, source))?;
+    }
+    Ok(())
 }
 
 /// Whether everything below `part` is also below `whole`, with the same bytes.

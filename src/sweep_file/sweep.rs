@@ -204,12 +204,25 @@ impl Sweep {
         done: &(dyn Fn() + Sync),
     ) -> Result<Option<Vec<PlaneState>>, SourceError> {
         let map = self.settings.map.as_ref();
-        let Some(plane) = map.and_then(|map| map.plane(&self.settings.family)) else {
-            return Ok(None);
-        };
+        let plane = map.and_then(|map| map.plane(&self.settings.family));
+        let states = plane.map(|plane| self.states_in(&plane, values, cancellation, done));
+        states.transpose()
+    }
+
+    /// The same in the box of a plane of its own, of curves for example.
+    ///
+    /// # Errors
+    /// As [`Sweep::plane_states`].
+    pub fn states_in(
+        &self,
+        plane: &Plane,
+        values: [&[f64]; 2],
+        cancellation: &Cancellation,
+        done: &(dyn Fn() + Sync),
+    ) -> Result<Vec<PlaneState>, SourceError> {
         let source = |plane: &Plane| self.boxed_source_in(plane, cancellation);
         let detector = self.detector();
-        plane_states(&source, &plane, values, &detector, cancellation, done).map(Some)
+        plane_states(&source, plane, values, &detector, cancellation, done)
     }
 
     /// How `[locate]` wants curves, in a box whose first side is so long.

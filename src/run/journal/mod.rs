@@ -5,10 +5,12 @@
 //! the program that reads it, with every bit of a solution and of what its session remembers; tables and arrays are made from it again. What
 //! checks of located values saw is written as the numbers that were seen, with what their sessions remember.
 
+mod asked;
 mod check;
 mod log;
 mod profile;
 mod record;
+mod replay;
 mod sessions;
 mod source;
 

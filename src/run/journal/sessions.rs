@@ -9,76 +9,14 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
+use super::asked::{Answer, Asked};
 use super::log::Log;
 use super::record::{Found, Record};
-use crate::bytes::{NotWhatWasWritten, Reader, Writer};
+use super::replay::{Keeper, Replay, in_words};
 use crate::cancellation::Cancellation;
 use crate::continuation::{DensitySource, Sensitivity, Session, Solution, SourceError, Subject};
 use crate::run::RunError;
 use crate::system::Family;
-
-/// How densities answer to a parameter, or what was said instead.
-type Answer = Result<Vec<Vec<f64>>, String>;
-
-/// A solve with what was asked of it: by the name of a parameter, or nothing for the coordinate of the path.
-#[derive(Debug)]
-struct Asked {
-    record: Record,
-    /// Whether the solution could be asked.
-    answers_questions: bool,
-    answers: Vec<(String, Answer)>,
-}
-
-impl Asked {
-    fn write(&self, writer: &mut Writer, family: &Family) {
-        self.record.write(writer, family);
-        writer.flag(self.answers_questions);
-        writer.count(self.answers.len());
-        for (name, answer) in &self.answers {
-            writer.text(name).flag(answer.is_ok());
-            match answer {
-                Ok(densities) => {
-                    writer.count(densities.len());
-                    for density in densities {
-                        writer.numbers(density);
-                    }
-                }
-                Err(words) => {
-                    writer.text(words);
-                }
-            }
-        }
-    }
-
-    fn read(
-        reader: &mut Reader<'_>,
-        family: &Family,
-        methods: &[&'static str],
-    ) -> Result<Self, NotWhatWasWritten> {
-        let record = Record::read(reader, family, methods)?;
-        let answers_questions = reader.flag()?;
-        let mut answers = Vec::new();
-        for _ in 0..reader.count()? {
-            let name = reader.text()?.to_owned();
-            let answer = match reader.flag()? {
-                true => {
-                    let mut densities = Vec::new();
-                    for _ in 0..reader.count()? {
-                        densities.push(reader.numbers()?);
-                    }
-                    Ok(densities)
-                }
-                false => Err(reader.text()?.to_owned()),
-            };
-            answers.push((name, answer));
-        }
-        Ok(Self {
-            record,
-            answers_questions,
-            answers,
-        })
-    }
-}
 
 /// The journal of all sessions of a source. Clones are the same journal.
 #[derive(Debug, Clone)]
@@ -145,8 +83,13 @@ impl SessionJournal {
     fn lock(&self) -> MutexGuard<'_, Shared> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
 
-    /// Ends a session with an error that is not the method's.
+impl Keeper for SessionJournal {
+    fn path(&self) -> PathBuf {
+        self.lock().log.path().to_owned()
+    }
+
     fn end(&self, error: RunError) -> SourceError {
         self.lock().failure.get_or_insert(error);
         SourceError::Interrupted
@@ -199,8 +142,7 @@ impl DensitySource for RecordedSource {
             number,
             family: self.source.subject().family.clone(),
             session: self.source.open(cancellation),
-            stored,
-            left: Vec::new(),
+            stored: Replay::new(stored),
             unwritten: None,
             journal: self.journal.clone(),
         })
@@ -219,9 +161,7 @@ struct RecordedSession {
     number: usize,
     family: Family,
     session: Box<dyn Session>,
-    stored: VecDeque<Asked>,
-    /// What the session is to recall before its first solve.
-    left: Vec<(f64, Vec<u8>)>,
+    stored: Replay<Asked>,
     /// The last solve, of which more may be asked; `None` where an answer was interrupted.
     unwritten: Option<Asked>,
     journal: SessionJournal,
@@ -230,10 +170,10 @@ struct RecordedSession {
 impl Session for RecordedSession {
     fn solve(&mut self, value: f64) -> Result<Solution<'_>, SourceError> {
         self.write_last()?;
-        if let Some(asked) = self.stored.pop_front() {
-            return self.give(value, asked);
+        if let Some(asked) = self.stored.give(value, &self.journal)? {
+            return self.told(asked);
         }
-        self.recall_all()?;
+        self.stored.recall(&mut *self.session, &self.journal)?;
         let clock = Instant::now();
         let solved = self.session.solve(value);
         let seconds = clock.elapsed().as_secs_f64();
@@ -285,43 +225,19 @@ impl RecordedSession {
         written.map_err(|error| self.journal.end(error))
     }
 
-    /// A stored solve, which must be the one that is asked for.
-    fn give(&mut self, value: f64, asked: Asked) -> Result<Solution<'static>, SourceError> {
+    /// A stored solve, which can be asked what it was asked.
+    fn told(&self, asked: Asked) -> Result<Solution<'static>, SourceError> {
         let Asked {
             record,
             answers_questions,
             answers,
         } = asked;
-        if record.value.to_bits() != value.to_bits() {
-            let path = self.journal.lock().log.path().to_owned();
-            return Err(self.journal.end(RunError::JournalOrder {
-                path,
-                stored: record.value,
-                wanted: value,
-            }));
-        }
-        self.left.push((value, record.memory));
         let mut solution = record.solved.map(Solution::from).map_err(in_words)?;
         solution.sensitivity = answers_questions.then(|| {
             let journal = self.journal.clone();
             Box::new(Told { answers, journal }) as Box<dyn Sensitivity>
         });
         Ok(solution)
-    }
-
-    fn recall_all(&mut self) -> Result<(), SourceError> {
-        let left = std::mem::take(&mut self.left);
-        if left.is_empty() {
-            return Ok(());
-        }
-        let left: Vec<(f64, &[u8])> = left.iter().map(|(v, bytes)| (*v, &bytes[..])).collect();
-        match self.session.recall(&left) {
-            Err(SourceError::Method(_)) => {
-                let path = self.journal.lock().log.path().to_owned();
-                Err(self.journal.end(RunError::Journal { path }))
-            }
-            recalled => recalled,
-        }
     }
 }
 
@@ -394,7 +310,7 @@ impl Sensitivity for Told {
         match found {
             Some((_, answer)) => answer.clone().map_err(in_words),
             None => {
-                let path = self.journal.lock().log.path().to_owned();
+                let path = self.journal.path();
                 Err(self.journal.end(RunError::Journal { path }))
             }
         }
@@ -407,8 +323,4 @@ impl Sensitivity for Told {
     fn along_path(&mut self) -> Result<Vec<Vec<f64>>, SourceError> {
         self.to_parameter("")
     }
-}
-
-fn in_words(words: String) -> SourceError {
-    SourceError::Method(words.into())
 }

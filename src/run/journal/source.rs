@@ -1,12 +1,12 @@
 //! A source of densities that writes every solve into a journal, and gives those that are there already from it.
 
-use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use super::Journal;
 use super::record::{Found, Record};
+use super::replay::{Keeper, Replay, in_words};
 use crate::cancellation::Cancellation;
 use crate::continuation::{DensitySource, KeptCheck, Session, Solution, SourceError, Subject};
 use crate::run::RunError;
@@ -119,8 +119,7 @@ impl DensitySource for JournalledSource {
         Box::new(JournalledSession {
             subject: self.source.subject().clone(),
             session,
-            stored: std::mem::take(&mut shared.journal.stored).into(),
-            left: Vec::new(),
+            stored: Replay::new(std::mem::take(&mut shared.journal.stored).into()),
             shared: self.shared.clone(),
         })
     }
@@ -137,18 +136,17 @@ impl DensitySource for JournalledSource {
 struct JournalledSession {
     subject: Subject,
     session: Box<dyn Session>,
-    stored: VecDeque<Record>,
-    /// What the session is to recall before its first solve.
-    left: Vec<(f64, Vec<u8>)>,
+    stored: Replay<Record>,
     shared: Arc<Mutex<Shared>>,
 }
 
 impl Session for JournalledSession {
     fn solve(&mut self, value: f64) -> Result<Solution<'_>, SourceError> {
-        if let Some(record) = self.stored.pop_front() {
-            return self.give(value, record);
+        if let Some(record) = self.stored.give(value, &self.shared)? {
+            lock(&self.shared).waiting = self.stored.waiting();
+            return record.solved.map(Solution::from).map_err(in_words);
         }
-        self.recall_all()?;
+        self.stored.recall(&mut *self.session, &self.shared)?;
         let clock = Instant::now();
         let solved = match self.session.solve(value) {
             Ok(solution) => Ok(Found::from(solution)),
@@ -165,56 +163,21 @@ impl Session for JournalledSession {
             .journal
             .add(&record, &self.subject.family);
         if let Err(error) = written {
-            return Err(self.end(error));
+            return Err(self.shared.end(error));
         }
         record.solved.map(Solution::from).map_err(in_words)
     }
 }
 
-impl JournalledSession {
-    /// A stored solve, which must be the one that is asked for.
-    fn give(&mut self, value: f64, record: Record) -> Result<Solution<'static>, SourceError> {
-        if record.value.to_bits() != value.to_bits() {
-            let path = self.path();
-            return Err(self.end(RunError::JournalOrder {
-                path,
-                stored: record.value,
-                wanted: value,
-            }));
-        }
-        self.left.push((value, record.memory));
-        lock(&self.shared).waiting = self.stored.len();
-        record.solved.map(Solution::from).map_err(in_words)
-    }
-
+impl Keeper for Arc<Mutex<Shared>> {
     fn path(&self) -> PathBuf {
-        lock(&self.shared).journal.log.path().to_owned()
+        lock(self).journal.log.path().to_owned()
     }
 
-    fn recall_all(&mut self) -> Result<(), SourceError> {
-        let left = std::mem::take(&mut self.left);
-        if left.is_empty() {
-            return Ok(());
-        }
-        let left: Vec<(f64, &[u8])> = left.iter().map(|(v, bytes)| (*v, &bytes[..])).collect();
-        match self.session.recall(&left) {
-            Err(SourceError::Method(_)) => {
-                let path = self.path();
-                Err(self.end(RunError::Journal { path }))
-            }
-            recalled => recalled,
-        }
-    }
-
-    /// Ends the session with an error that is not the method's.
     fn end(&self, error: RunError) -> SourceError {
-        lock(&self.shared).failure = Some(error);
+        lock(self).failure = Some(error);
         SourceError::Interrupted
     }
-}
-
-fn in_words(words: String) -> SourceError {
-    SourceError::Method(words.into())
 }
 
 /// What is shared holds no promises that a panic elsewhere could break.
