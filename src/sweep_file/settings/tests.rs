@@ -22,6 +22,26 @@ x = { from = -5, to = 5, count = 20 }
 y = { from = -5, to = 5, count = 20, grade = { at = [0], smallest = 0.1 } }
 "#;
 
+const DAHL: &str = r#"
+[system]
+model = "dahl"
+parameters = { kappa = 0.02, mu = 1, lambda = 0.06, f_c = 0.05, sigma2 = 0.02 }
+[sweep]
+parameter = "alpha"
+from = 0.5
+to = -1
+points = 3
+[cells]
+x = { from = -2.5, to = 2.5, count = 12 }
+y = { from = -2.5, to = 2.5, count = 12 }
+"#;
+
+/// Dahl's oscillator under coloured noise.
+const COLOURED: [&str; 2] = [
+    "system.noise.kind=ornstein-uhlenbeck",
+    "system.parameters.tau=0.5",
+];
+
 fn parse(text: &str, overrides: &[&str]) -> Result<Settings, Report> {
     let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
     SweepFile::parse("runs/a.toml", text)

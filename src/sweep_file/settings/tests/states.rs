@@ -2,20 +2,6 @@
 
 use super::*;
 
-const DAHL: &str = r#"
-[system]
-model = "dahl"
-parameters = { kappa = 0.02, mu = 1, lambda = 0.06, f_c = 0.05, sigma2 = 0.02 }
-[sweep]
-parameter = "alpha"
-from = 0.5
-to = -1
-points = 3
-[cells]
-x = { from = -2.5, to = 2.5, count = 12 }
-y = { from = -2.5, to = 2.5, count = 12 }
-"#;
-
 #[test]
 fn an_internal_state_is_carried_by_modes_unless_cells_are_given() {
     let modes = |sets: &[&str]| parse(DAHL, sets).unwrap().axes[2].modes;
@@ -68,12 +54,6 @@ fn an_internal_state_is_carried_by_modes_unless_cells_are_given() {
         [12, 12, 8]
     );
 }
-
-/// Dahl's oscillator under coloured noise.
-const COLOURED: [&str; 2] = [
-    "system.noise.kind=ornstein-uhlenbeck",
-    "system.parameters.tau=0.5",
-];
 
 #[test]
 fn coloured_noise_adds_an_axis_and_a_parameter_and_is_written_down_again() {
