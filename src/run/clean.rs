@@ -192,7 +192,9 @@ mod tests {
         }
         put("curves/PB3-a/curve.part.bin");
         let mine = ["curves/PB2-a/notes.txt", "curves/mine/curves.csv"];
-        mine.map(put);
+        for name in mine {
+            put(name);
+        }
         remove_run(&run).unwrap();
         assert!(mine.iter().all(|name| run.join(name).is_file()));
         assert!(!run.join("run.json").exists() && !run.join("curves/PB2-a/curve.json").exists());
