@@ -105,7 +105,8 @@ impl Journal {
 
 /// Whether an unfinished run was stopped between its manifest and its journal, with nothing done.
 fn not_begun(run: &Path) -> bool {
-    !run.join(NAME).exists() && !run.join("points.csv").exists()
+    let is_there = |name: &str| run.join(name).exists();
+    is_there("run.json") && !is_there(NAME) && !is_there("points.csv")
 }
 
 /// Whether an unfinished run has what it needs to be gone on with.
