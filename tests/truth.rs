@@ -398,6 +398,7 @@ fn births_at_a_bend_of_the_noise_are_located_beside_it() {
 fn without_the_check_on_finer_cells_nothing_is_located() {
     let unchecked = LocateOptions {
         grid_check: false,
+        tolerance: Some(2e-3),
         ..LocateOptions::default()
     };
     let model = TypedModel::new("wells", "An oscillator in a tilted well", ["x", "y"])
