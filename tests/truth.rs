@@ -427,3 +427,32 @@ fn without_the_check_on_finer_cells_nothing_is_located() {
         assert!(!LocateOptions::default().is_met_by(BifurcationStatus::Unchecked));
     }
 }
+
+/// A pair is born on a flank, and its peak then moves to a kink: nothing is counted there, although the slope beside it passes zero.
+#[test]
+fn a_peak_that_reaches_a_kink_is_not_born_there() {
+    let model = TypedModel::new("bent", "Noise that bends", ["x"])
+        .with_equation("x", "theta + 1.403 x - x^3")
+        .with_noise("x", ["sqrt(0.3 (1 + 0.466 abs(x - 0.73)))"])
+        .with_interpretation(Interpretation::Ito)
+        .with_parameters(["theta"])
+        .build()
+        .unwrap();
+    let axes = vec![Axis::uniform(-3.13, 2.94, 200).unwrap()];
+    let (_, rows) = rows_of(
+        model,
+        Observable::Marginal(0),
+        (-1.013, 0.987),
+        41,
+        axes,
+        &LocateOptions::default(),
+    );
+    // Below the kink peaks are where θ + 1.403 x - x³ + 0.3 · 0.466/2 falls through zero.
+    let turn = 2.0 / 3.0 * 1.403 * (1.403_f64 / 3.0).sqrt();
+    let half = 0.5 * 0.3 * 0.466;
+    assert_eq!(rows.len(), 2, "{}", words(&rows));
+    for (row, truth) in rows.iter().zip([-turn - half, turn - half]) {
+        assert_eq!(row.status, Some(BifurcationStatus::Located));
+        assert!((row.value - truth).abs() <= row.error, "{}", words(&rows));
+    }
+}

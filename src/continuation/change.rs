@@ -155,7 +155,7 @@ fn between(
         );
     }
     for event in events {
-        match follow(points, detector, observable, (left, right), &event) {
+        match followed(points, detector, observable, (left, right), &event) {
             Some(Followed::Crossing(crossing)) => {
                 found.push(change(Found::Crossing(crossing), Some(event)))
             }
@@ -169,6 +169,60 @@ fn between(
     }
     found
 }
+
+/// What follows an event. Where counts follow from the equations, a change of sign at which the count stays is another event's: a peak that was
+/// born on a flank before it reaches a kink. Then its inflection is followed in place of the kink.
+fn followed(
+    points: &[&Point],
+    detector: &dyn Detector,
+    observable: usize,
+    gap: (usize, usize),
+    event: &Event,
+) -> Option<Followed> {
+    let first = follow(points, detector, observable, gap, event);
+    let is_exact = |index: usize| {
+        let density = &points[index].densities[observable];
+        density.structure.profile.is_some()
+    };
+    let holds = |found: &Option<Followed>| match found {
+        Some(Followed::Crossing(crossing)) => separates(points, crossing, event.above),
+        _ => false,
+    };
+    if !(is_exact(gap.0) && is_exact(gap.1)) || holds(&first) {
+        return first;
+    }
+    let other = event.at_inflection()?;
+    let second = follow(points, detector, observable, gap, &other);
+    match (holds(&second), first) {
+        (true, _) => second,
+        (false, Some(Followed::Crossing(_))) => None,
+        (false, first) => first,
+    }
+}
+
+/// Whether the count changes where an indicator does. So near to its zero that its peak is lower than rounding, the count may come a point late.
+fn separates(points: &[&Point], crossing: &Crossing, above: bool) -> bool {
+    let signature = |index: usize| {
+        let detection = points.get(index)?.detections.get(crossing.observable)?;
+        Some(detection.signature)
+    };
+    let (left, right) = (crossing.left, crossing.left + 1);
+    let late = match above {
+        true => Some(right + 1),
+        false => left.checked_sub(1),
+    };
+    let [low, high] = crossing.ends.each_ref().map(|end| end.value.abs());
+    let is_near = if above {
+        high < NEAR_ZERO * low
+    } else {
+        low < NEAR_ZERO * high
+    };
+    let next = late.and_then(signature);
+    signature(left) != signature(right) || (is_near && next.is_some() && next != signature(left))
+}
+
+/// Share of its value at the other end of a bracket from which on an indicator is next to zero.
+const NEAR_ZERO: f64 = 1e-2;
 
 /// Takes away the events that a change at the centre explains: it makes one peak two, or closes one crater. Counts that change by more have
 /// other causes beside it.

@@ -31,6 +31,22 @@ pub(super) struct Event {
     pub(super) was_peak: bool,
 }
 
+impl Event {
+    /// The same born at an inflection beside the kink that it was seen at; `None` where no other place is known.
+    pub(super) fn at_inflection(&self) -> Option<Self> {
+        let (kind, place) = self.indicator.as_ref()?;
+        let IndicatorKind::BesideKink { above, is_valley } = *kind else {
+            return None;
+        };
+        // Above a valley, and below a peak, the density rises.
+        let rising = above == is_valley;
+        Some(Self {
+            indicator: Some((IndicatorKind::Shoulder { rising }, place.clone())),
+            ..self.clone()
+        })
+    }
+}
+
 /// All of them for one observable.
 pub(super) fn events(a: &Point, b: &Point, observable: usize) -> Vec<Event> {
     let lengths: Vec<f64> = a.densities[observable]
