@@ -31,9 +31,17 @@ pub(super) fn link_tree(from: &Path, to: &Path) -> Result<(), RunError> {
 /// # Errors
 /// [`RunError::Write`].
 pub(super) fn link(from: &Path, to: &Path) -> Result<(), RunError> {
-    if std::fs::hard_link(from, to).is_err() && from.is_file() {
-        std::fs::copy(from, to).map_err(|source| failed(to, source))?;
+    if std::fs::hard_link(from, to).is_ok() || !from.is_file() {
+        return Ok(());
     }
+    // Its folder may not be there yet.
+    if let Some(folder) = to.parent().filter(|folder| !folder.is_dir()) {
+        std::fs::create_dir_all(folder).map_err(|source| failed(folder, source))?;
+        if std::fs::hard_link(from, to).is_ok() {
+            return Ok(());
+        }
+    }
+    std::fs::copy(from, to).map_err(|source| failed(to, source))?;
     Ok(())
 }
 

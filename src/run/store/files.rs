@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use serde_json::{Map, Value, json};
-use zarrs::array::{Array, ArrayBuilder, ChunkKeySeparator, data_type};
+use zarrs::array::{Array, ArrayBuilder, data_type};
 use zarrs::storage::store::MemoryStore;
 use zarrs::storage::{ListableStorageTraits, ReadableStorageTraits};
 
@@ -13,9 +13,9 @@ use crate::run::arrays::{Layout, PARAMETER_CHUNK};
 use crate::run::atomic::write_atomically;
 use crate::system::Family;
 
-/// The name of a chunk in the folder of its array: with a dot between numbers, not a folder, of which there would be one more for every file.
+/// The name of a chunk in the folder of its array, as readers expect it that look for no other encoding of chunks' names.
 pub(super) fn chunk_name(place: &[u64]) -> String {
-    let numbers = place.iter().map(|number| format!(".{number}"));
+    let numbers = place.iter().map(|number| format!("/{number}"));
     format!("c{}", numbers.collect::<String>())
 }
 
@@ -107,7 +107,6 @@ impl DensityStore {
         let shape: Vec<u64> = layout.dimensions.iter().map(|d| d.1).collect();
         let names: Vec<&str> = layout.dimensions.iter().map(|d| d.0.as_str()).collect();
         let array = ArrayBuilder::new(shape, layout.chunk.clone(), data_type::float64(), f64::NAN)
-            .chunk_key_encoding_default_separator(ChunkKeySeparator::Dot)
             .dimension_names(names.into())
             .attributes(layout.attributes.clone())
             .build(memory.clone(), &format!("/{}", layout.name))
