@@ -244,7 +244,7 @@ fn points_are_solved_again_and_runs_are_cited() {
         ],
     );
     // More than there are is all of them. Without checksums a strange density is found by solving alone.
-    let chunk = |index: usize| home.join(format!("a/densities.zarr/p_x/c.{index}.0"));
+    let chunk = |index: usize| home.join(format!("a/densities.zarr/p_x/c/{index}/0"));
     std::fs::copy(chunk(0), chunk(5)).unwrap();
     std::fs::remove_file(home.join("a/checksums.sha256")).unwrap();
     let text = printed(home, &["verify", "a", "--recompute", "1000"], 1);

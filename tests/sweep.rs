@@ -278,7 +278,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
         "locate.largest_distance=0.99",
         "locate.tolerance=2e-3",
     ];
-    assert_same_on_one_thread_and_two(&overrides, &["densities.zarr/p_xy_error/c.1.0.0"]);
+    assert_same_on_one_thread_and_two(&overrides, &["densities.zarr/p_xy_error/c/1/0/0"]);
 }
 
 /// Every table, densities and a figure of a coulomb sweep are the same bits on one thread and on two; `seconds` apart.
@@ -294,7 +294,7 @@ fn assert_same_on_one_thread_and_two(overrides: &[&str], more: &[&str]) {
     let files = [
         "features.csv",
         "bifurcations.csv",
-        "densities.zarr/p_xy/c.1.0.0",
+        "densities.zarr/p_xy/c/1/0/0",
         "figures/diagram_x.svg",
     ];
     for file in files.iter().chain(more) {
