@@ -271,6 +271,8 @@ fn by_indicator(
             let grid = share * (value - found.value).abs();
             // Where a bend lies in its cell is chance: two grids may agree, and both be off by what a scheme makes of it.
             found.error.grid = match chance > 1.0 && density.density.axes.len() > 1 {
+                // No scheme takes part in closed forms that another source gives on cells. What the generator finds by
+                // quadrature does not come here: its indicators follow from a profile, which no cells change.
                 _ if density.is_by_quadrature() => grid,
                 true => grid
                     .max(found.error.grid)

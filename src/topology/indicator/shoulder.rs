@@ -143,6 +143,9 @@ pub(crate) fn shoulders(estimated: &EstimatedDensity) -> Vec<Flank> {
 }
 
 /// The extrema that the slope has beside its jumps: a pair is born there when one side turns its sign.
+///
+/// Densities that the generator finds by quadrature carry a profile, which has them already. This is for densities in
+/// closed form that another source gives with their kinks.
 fn kinks<'a>(
     estimated: &'a EstimatedDensity,
     field: &'a Field<'_>,
@@ -197,7 +200,9 @@ fn is_kinked(estimated: &EstimatedDensity, axis: &Axis, face: usize) -> bool {
     })
 }
 
-/// The places where the slope has an extremum because the drift bends: it rises to the place on one side, and falls from it on the other.
+/// The places where the slope has an extremum because the drift bends: it rises to the place on one side, and falls from
+/// it on the other. For densities by quadrature without a profile: curves take it away, as they follow the cells, and
+/// sources of densities in closed form have none.
 fn bends<'a>(
     estimated: &'a EstimatedDensity,
     field: &'a Field<'_>,

@@ -168,6 +168,38 @@ fn the_slope_at_a_shoulder_is_of_order_six_wherever_its_place_lies_in_a_cell() {
 }
 
 #[test]
+fn closed_forms_without_a_profile_have_extrema_of_the_slope_at_their_jumps_and_bends() {
+    // Of a closed form that tells where its slope jumps or bends, by this much.
+    let of = |log: &dyn Fn(f64) -> f64, jump: Vec<f64>| {
+        let mut estimated = marginal(&axis(40), |x| log(x).exp());
+        estimated.negligible = 0.0;
+        let (axis, at) = (0, 0.4);
+        estimated.structure.kinks = vec![Kink { axis, at, jump }];
+        estimated
+    };
+    // Averages by three points are off by p⁽⁶⁾ h⁶/2e6 < 1e-10, and sixth-order slopes by p⁽⁷⁾ h⁶/1e3 at most, below 1e-6.
+    let near = |value: f64, exact: f64| (value - exact).abs() < 1e-5;
+    // (log p)' = -2x ± 0.5: falls to -1.3 below 0.4, and from -0.3 above.
+    let jumping = of(&|x| -x * x + 0.5 * (x - 0.4).abs(), vec![1.0]);
+    let [highest, lowest] = shoulders(&jumping)[..] else {
+        panic!("two flanks: {:?}", shoulders(&jumping));
+    };
+    assert!(highest.rising && near(highest.place, 0.4) && near(highest.value, -0.3));
+    assert!(!lowest.rising && near(lowest.place, 0.4) && near(lowest.value, 1.3));
+    // (log p)' = -0.2 - |x - 0.4|: a maximum at the bend, which no parabola through the cells has.
+    let bending = of(
+        &|x| -0.2 * x - 0.5 * (x - 0.4) * (x - 0.4).abs(),
+        Vec::new(),
+    );
+    let [flank] = shoulders(&bending)[..] else {
+        panic!("one flank: {:?}", shoulders(&bending));
+    };
+    assert!(flank.rising && near(flank.place, 0.4) && near(flank.value, -0.2));
+    let followed = shoulder(&bending, 0.3, true).unwrap();
+    assert!(near(followed.place[0], 0.4) && near(followed.value, -0.2));
+}
+
+#[test]
 fn noise_makes_a_sign_doubtful() {
     let indicator = |value: f64| Indicator {
         kind: IndicatorKind::Curvature,
