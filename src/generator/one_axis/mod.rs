@@ -7,6 +7,7 @@
 //! drift jumps or bends, and halved where the exponent changes much, so that cells much wider than what they hold are
 //! right too.
 
+mod line;
 mod profile;
 mod rule;
 mod series;

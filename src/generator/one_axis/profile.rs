@@ -1,30 +1,18 @@
 //! Extrema of the density of a system with one axis, and of the slope of its logarithm, from drift and noise.
 //!
-//! Without flux (log p)' = 2a/b² - (b²)'/b². On parts of the axis this is a polynomial to ten digits; its zeros are the extrema of the density,
-//! however narrow, and its own extrema are where the next peak and valley are born. A part that ten digits need smaller is halved;
-//! cells are cut where drift and noise are not smooth.
+//! Without flux (log p)' = 2a/b² - (b²)'/b². On parts of the axis this is a polynomial to ten digits; its zeros are the
+//! extrema of the density, however narrow, and its own extrema are where the next peak and valley are born.
 
-use super::rule::{NODES, Rule, look};
-use super::series::Series;
-use super::{OneAxis, cuts, surfaces};
+use super::OneAxis;
+use super::line::{Line, Part, STEEPEST, Sample, zero};
 use crate::density::{Extremum, Profile, SlopeJump, Turn};
 use crate::space::Axis;
-use crate::system::{LANES, System};
+use crate::system::System;
 
-/// Last coefficients of a series, relative to the whole, from which on a part is halved.
-const ROUGH: f64 = 1e-10;
-/// Most times that a part is halved.
-const MOST_HALVINGS: usize = 10;
 /// Differences of slopes that are a smaller share of the slopes are rounding.
 const ROUNDING: f64 = 1e-11;
 /// Slopes that are a smaller share of what they are the difference of are zero.
 const NOTHING: f64 = 1e-13;
-/// Rounding of a logarithm of the noise.
-const OF_LOGARITHM: f64 = 1e-15;
-/// First and second derivative of the last Legendre polynomial at an end of [-1, 1]: what rounding grows by.
-const STEEPEST: [f64; 2] = [28.0, 378.0];
-/// Steps in which an extremum of the slope is looked for on a part.
-const LOOKS: usize = 16;
 /// Differences of log p below this are rounding.
 const LEVEL: f64 = 1e-11;
 
@@ -46,138 +34,7 @@ pub fn profile(
     })
 }
 
-/// A stretch of the axis on which the slope of log p is one polynomial.
-struct Part {
-    /// 2a/b².
-    rate: Series,
-    /// ln b² less its level.
-    log_noise: Series,
-    level: f64,
-    /// (log p)'.
-    slope: Series,
-    /// ∫ 2a/b² from the lower end of the axis to that of the part.
-    exponent: f64,
-    /// Error of the slope, and that of log p gathered up to the part.
-    error: f64,
-    gathered: f64,
-    /// Magnitude of what the slope is the difference of.
-    size: f64,
-}
-
-/// The axis in parts.
-struct Line {
-    parts: Vec<Part>,
-}
-
-/// The slope at a place, the first of equal ones being on the lower side.
-#[derive(Clone, Copy)]
-struct Sample {
-    place: f64,
-    slope: f64,
-    error: f64,
-    size: f64,
-}
-
 impl Line {
-    fn new(system: &dyn System, axis: &Axis) -> Option<Self> {
-        let rule = Rule::new();
-        let surfaces = surfaces(system);
-        let mut line = Self { parts: Vec::new() };
-        let least = 1.0 / (axis.to() - axis.from());
-        for cell in 0..axis.count() {
-            for ends in cuts(axis, cell, &surfaces).windows(2) {
-                line.add(system, &rule, (ends[0], ends[1]), least, MOST_HALVINGS)?;
-            }
-        }
-        Some(line)
-    }
-
-    /// Adds a part from one place to another. `least` is the size below which slopes are next to nothing.
-    fn add(
-        &mut self,
-        system: &dyn System,
-        rule: &Rule,
-        (from, to): (f64, f64),
-        least: f64,
-        halvings: usize,
-    ) -> Option<()> {
-        let mut places = [from; LANES];
-        for (place, point) in places.iter_mut().zip(&rule.points) {
-            *place = from + (to - from) * point;
-        }
-        let (drift, intensity) = look(system, &places);
-        let (mut rates, mut logs) = ([0.0; NODES], [0.0; NODES]);
-        for node in 0..NODES {
-            rates[node] = 2.0 * drift[node] / intensity[node];
-            logs[node] = intensity[node].ln();
-            if !(rates[node].is_finite() && logs[node].is_finite()) {
-                return None;
-            }
-        }
-        let rate = Series::through(rule, (from, to), &rates); // What is constant must not leave its rounding in the derivative.
-        let level = logs[0];
-        let log_noise = Series::through(rule, (from, to), &logs.map(|one| one - level));
-        let of_noise = log_noise.derivative();
-        let tail = rate.tail() + of_noise.tail();
-        let size = (rate.size() + of_noise.size()).max(least);
-        let middle = 0.5 * (from + to);
-        let is_divisible = halvings > 0 && from < middle && middle < to;
-        if tail > ROUGH * size && is_divisible {
-            self.add(system, rule, (from, middle), least, halvings - 1)?;
-            return self.add(system, rule, (middle, to), least, halvings - 1);
-        }
-        let rounding = if log_noise.size() > 0.0 {
-            OF_LOGARITHM
-        } else {
-            0.0
-        };
-        let error = tail + rounding * STEEPEST[0] * 2.0 / (to - from);
-        let last = self.parts.last();
-        let exponent = last.map_or(0.0, |part| part.exponent + part.rate.integral_to(from));
-        let gathered = last.map_or(0.0, |part| {
-            part.gathered + part.error * (part.slope.to - part.slope.from)
-        });
-        self.parts.push(Part {
-            slope: rate.plus(-1.0, &of_noise),
-            rate,
-            log_noise,
-            level,
-            exponent,
-            error,
-            gathered,
-            size,
-        });
-        Some(())
-    }
-
-    /// The part that holds a place, the upper one of two.
-    fn part(&self, place: f64) -> Option<&Part> {
-        let above = self.parts.partition_point(|part| part.slope.from <= place);
-        self.parts.get(above.saturating_sub(1))
-    }
-
-    /// Slopes at the ends of all parts and at the extrema on them, in ascending place: between two the slope is monotone.
-    fn samples(&self) -> Vec<Sample> {
-        let mut samples = Vec::with_capacity(2 * self.parts.len());
-        for part in &self.parts {
-            let (from, to) = (part.slope.from, part.slope.to);
-            let bend = part.slope.derivative();
-            let place = |step: usize| from + (to - from) * step as f64 / LOOKS as f64;
-            let steps = (0..LOOKS).map(|step| (place(step), place(step + 1)));
-            let turning = steps.filter(|(a, b)| bend.at(*a) * bend.at(*b) < 0.0);
-            let turns = turning.map(|(a, b)| zero(|x| bend.at(x), (a, b), bend.at(b) > 0.0));
-            for place in [from].into_iter().chain(turns).chain([to]) {
-                samples.push(Sample {
-                    place,
-                    slope: part.slope.at(place),
-                    error: part.error,
-                    size: part.size,
-                });
-            }
-        }
-        samples
-    }
-
     /// Peaks and valleys; `log_integral` is the logarithm of what the density is divided by.
     fn extrema(&self, samples: &[Sample], log_integral: f64) -> Vec<Extremum> {
         let slope = |place: f64| self.part(place).map_or(0.0, |part| part.slope.at(place));
@@ -250,13 +107,8 @@ impl Line {
         let (low, high) = (of(below), of(above));
         let rounding = |part: &Part| {
             let steeper = 2.0 / (part.slope.to - part.slope.from);
-            let of_noise = if part.log_noise.size() > 0.0 {
-                OF_LOGARITHM
-            } else {
-                0.0
-            };
             (part.error + NOTHING * part.size) * STEEPEST[0] * steeper
-                + of_noise * STEEPEST[1] * steeper * steeper
+                + part.log_rounding * STEEPEST[1] * steeper * steeper
         };
         let error = 0.5 * (high - low).abs() + rounding(below) + rounding(above);
         Some((0.5 * (low + high), error))
@@ -303,20 +155,6 @@ fn without_rounding<T>(mut extrema: Vec<(f64, T)>) -> Vec<(f64, T)> {
                 extrema.drain(place..place + 2);
             }
             _ => return extrema,
-        }
-    }
-}
-
-/// A zero between two places at which a function has different signs, by halving; `rises` tells whether it is positive at the upper one.
-fn zero(of: impl Fn(f64) -> f64, (mut low, mut high): (f64, f64), rises: bool) -> f64 {
-    loop {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            return middle;
-        }
-        match (of(middle) > 0.0) == rises {
-            true => high = middle,
-            false => low = middle,
         }
     }
 }
