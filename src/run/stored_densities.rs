@@ -12,9 +12,9 @@ use crate::continuation::Subject;
 use crate::density::{
     Density, EstimatedDensity, Kink, NEGLIGIBLE, Observable, Structure, Variants, laid_out,
 };
-use crate::method::profile_of;
+use crate::method::OneAxisFamily;
 use crate::space::{Axis, CellSpace};
-use crate::system::{Family, Symmetry, System, proved_symmetry};
+use crate::system::{Family, Symmetry, proved_symmetry};
 
 type StoredArray = Array<FilesystemStore>;
 
@@ -27,6 +27,8 @@ pub(super) struct StoredDensities {
     family: Family,
     /// Lower and upper end of every axis of the cells.
     ends: Vec<(f64, f64)>,
+    /// What the equations say where there is one axis.
+    one_axis: Option<OneAxisFamily>,
 }
 
 /// The arrays of one observable.
@@ -79,6 +81,7 @@ impl StoredDensities {
             ends: (cells.0.axes().iter())
                 .map(|axis| (axis.from(), axis.to()))
                 .collect(),
+            one_axis: OneAxisFamily::new(family, cells.0),
         })
     }
 
@@ -100,25 +103,19 @@ impl StoredDensities {
             .map(|observed| {
                 let mut estimate =
                     observed.estimate(&self.path, index as u64, symmetry.as_ref())?;
-                if let Some(system) = &system {
-                    know_profile(&mut estimate, system.as_ref());
+                // Which of its values were solved by quadrature, the store does not say; only the generator has a second
+                // scheme.
+                let is_solved = estimate.variants.second_scheme().is_some();
+                let is_whole = estimate.observable == Observable::Marginal(0);
+                let known = self.one_axis.filter(|_| is_solved && is_whole);
+                if let Some((one_axis, system)) = known.zip(system.as_deref()) {
+                    one_axis.restore(&mut estimate, system);
                 }
                 Ok(estimate)
             })
             .collect::<Result<_, _>>()
             .map(Some)
     }
-}
-
-/// The extrema of the density of a system with one axis follow from its equations, where quadrature gave it.
-fn know_profile(estimate: &mut EstimatedDensity, system: &dyn System) {
-    let is_solved = estimate.variants.second_scheme().is_some();
-    if !is_solved || estimate.observable != Observable::Marginal(0) {
-        return;
-    }
-    let centre = estimate.structure.centre.as_ref().map(|centre| centre[0]);
-    let profile = profile_of(system, &estimate.density.axes[0], centre);
-    estimate.structure.profile = profile.map(Arc::new);
 }
 
 impl Observed {

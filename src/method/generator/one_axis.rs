@@ -6,12 +6,13 @@ use super::GeneratorSource;
 use super::jumps::Kinked;
 use super::source::METHOD;
 use crate::continuation::{Sensitivity, Solution, SourceError};
-use crate::density::{Moments, Observable, Profile};
+use crate::density::{EstimatedDensity, Moments, NEGLIGIBLE, Observable};
 use crate::generator::{OneAxis, one_axis, profile};
 use crate::method::MethodError;
 use crate::method::report::Reporter;
-use crate::space::Axis;
-use crate::system::{System, SystemError};
+use crate::method::structure::closed_ends;
+use crate::space::{Axis, CellSpace};
+use crate::system::{Family, System, SystemError};
 
 /// Largest relative error of a cell that the quadrature may have; where noise nearly vanishes, or the drift jumps inside a cell,
 /// the generator serves better.
@@ -39,15 +40,49 @@ fn between_ends(system: &dyn System, axis: &Axis, [low, high]: [bool; 2]) -> Opt
     one_axis(system, axis).filter(|found| found.error < LARGEST_ERROR)
 }
 
-/// What the equations say of the extrema of the density over an axis, of a system with no other, given the centre of symmetry if there is one:
-/// what a density that was stored knew when it was solved. `None` where quadrature does not give it.
-pub fn profile_of(system: &dyn System, axis: &Axis, centre: Option<f64>) -> Option<Profile> {
-    if system.dimension() != 1 {
-        return None;
+/// What the equations say of densities of a family with one axis: those that come back from a store know it as they did
+/// when they were solved.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct OneAxisFamily {
+    /// Whether the ends of the axis are closed all along the sweep.
+    closed: [bool; 2],
+}
+
+impl OneAxisFamily {
+    /// `None` for a family with more axes.
+    pub(crate) fn new(family: &Family, space: &CellSpace) -> Option<Self> {
+        if space.dimension() != 1 {
+            return None;
+        }
+        let systems = family.along().ok()?;
+        let closed = closed_ends(&systems, space);
+        Some(Self {
+            closed: closed.first().copied()?,
+        })
     }
-    let walls = system.walls(0, (axis.from(), axis.to()));
-    let found = between_ends(system, axis, walls)?;
-    profile(system, axis, &found, centre)
+
+    /// Gives a density over the axis, solved by the generator for a system of the family, what it is known by: the extrema
+    /// of the equations where quadrature gives it, the solver's limit elsewhere.
+    pub(crate) fn restore(self, density: &mut EstimatedDensity, system: &dyn System) {
+        let [axis] = density.density.axes.as_slice() else {
+            return;
+        };
+        match between_ends(system, axis, self.closed) {
+            Some(found) => know(density, system, &found),
+            None => density.negligible = NEGLIGIBLE,
+        }
+    }
+}
+
+/// Gives a density over the only axis what quadrature tells of it: its extrema, and that none of it is negligible.
+fn know(density: &mut EstimatedDensity, system: &dyn System, found: &OneAxis) {
+    let Some(axis) = density.density.axes.first() else {
+        return;
+    };
+    let centre = density.structure.centre.as_ref();
+    let centre = centre.and_then(|centre| centre.first().copied());
+    density.structure.profile = profile(system, axis, found, centre).map(Arc::new);
+    density.negligible = 0.0;
 }
 
 /// The solution at a value.
@@ -68,14 +103,10 @@ pub(super) fn solution<'session>(
     for one in &mut densities {
         let kinked = &source.kinked;
         one.structure = maps.structure(system, problem, masses, one.observable, kinked);
+        // Of quantities sub-cells leave more than the quadrature does.
         if one.observable == Observable::Marginal(0) {
-            let centre = one.structure.centre.as_ref().map(|centre| centre[0]);
-            let profile = profile(system, &space.axes()[0], found, centre);
-            one.structure.profile = profile.map(Arc::new);
+            know(one, system, found);
         }
-        // Sub-cells leave more than the quadrature does.
-        let of_quantity = one.observable != Observable::Marginal(0);
-        one.negligible = if of_quantity { one.negligible } else { 0.0 };
     }
     let mut moments = vec![Moments {
         mean: found.moments.0,
