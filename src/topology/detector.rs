@@ -1,33 +1,21 @@
-//! The detector by persistence: components of the superlevel and sublevel sets, judged and refined.
+//! The detector by persistence: what is present of the components of superlevel and sublevel sets makes the signature.
 
 use std::cmp::Ordering;
 
-use super::critical::{Critical, height_above};
+use super::candidate::{Candidate, judged};
 use super::exact;
-use super::field::Field;
 use super::indicator::{
     Found, at_centre, beside_kink, corrected, curvature_beside, flanks_from_centre, fold, level,
     put_right, quartic, ring_slope, shoulder, shoulders,
 };
-use super::persistence::{Component, Grid, components};
-use super::refine::refine;
-use super::ridge;
-use super::significance::{Judgement, Limits};
+use super::persistence::{Grid, components};
+use super::significance::Limits;
 use super::surroundings::{contents, rims};
 use super::{
     DetectOptions, Detection, Detector, Feature, FeatureKind, Flank, Indicator, IndicatorKind,
     Signature, Verdict,
 };
-use crate::density::{EstimatedDensity, Kink, Profile};
-
-/// How many absent features of each kind are listed, so that a birth can be followed.
-const ABSENT_LISTED: usize = 4;
-
-/// How many components of each kind are looked at between the cells at most.
-const MOST_LOOKED: usize = 48;
-
-/// Extrema found from different cells closer than this, in widths of a cell, are one.
-const ONE_PLACE: f64 = 0.05;
+use crate::density::EstimatedDensity;
 
 /// Peaks, valleys and craters of densities over one or two axes by persistence.
 ///
@@ -49,193 +37,11 @@ pub struct PersistenceDetector {
     looks: usize,
 }
 
-/// A component with its verdict, before it is refined.
-pub(super) struct Candidate {
-    pub(super) component: Component,
-    pub(super) persistence: f64,
-    pub(super) standard_error: f64,
-    pub(super) judgement: Judgement,
-}
-
 impl PersistenceDetector {
     /// A detector for a sweep that looks at `looks` densities in all (parameter values × observables); the
     /// confidence of the options holds for all of them together.
     pub fn new(options: DetectOptions, looks: usize) -> Self {
         Self { options, looks }
-    }
-
-    /// Judges components and keeps those worth listing, by falling persistence.
-    fn judged(
-        &self,
-        mut found: Vec<Component>,
-        is_crater: bool,
-        estimated: &EstimatedDensity,
-        limits: &Limits,
-    ) -> Vec<Candidate> {
-        found.sort_by(|a, b| {
-            b.persistence
-                .total_cmp(&a.persistence)
-                .then(a.birth.cmp(&b.birth))
-        });
-        let field = Field::new(estimated).filter(|_| is_smooth(estimated));
-        let mut absent = 0;
-        let mut looked = 0;
-        let mut places: Vec<Vec<f64>> = Vec::new();
-        let mut candidates: Vec<Candidate> = found
-            .into_iter()
-            .filter_map(|component| {
-                // Few stand out of the noise by their cell values: only those are worth a closer look.
-                let by_cells =
-                    limits.judge(component.persistence, self.noise(estimated, &component));
-                let worth = match &field {
-                    Some(_) => looked < MOST_LOOKED && by_cells.significance > 0.0,
-                    None => by_cells.verdict != Verdict::Absent,
-                };
-                if !worth && absent >= ABSENT_LISTED {
-                    return None;
-                }
-                looked += 1;
-                let refined = field
-                    .as_ref()
-                    .and_then(|field| height(field, estimated, &component, is_crater))
-                    .map(|refined| refined.unless_known(&mut places, estimated));
-                let (persistence, standard_error, mut judgement) = match refined {
-                    Some((height, error)) => {
-                        (height.max(0.0), error, limits.judge_exact(height, error))
-                    }
-                    None => {
-                        let error = self.noise(estimated, &component);
-                        let persistence =
-                            ridge::persistence(estimated, &component, is_crater).max(0.0);
-                        (persistence, error, limits.judge(persistence, error))
-                    }
-                };
-                if component.death.is_none() {
-                    judgement.verdict = Verdict::Present;
-                }
-                absent += usize::from(judgement.verdict == Verdict::Absent);
-                (judgement.verdict != Verdict::Absent || absent <= ABSENT_LISTED).then_some(
-                    Candidate {
-                        component,
-                        persistence,
-                        standard_error,
-                        judgement,
-                    },
-                )
-            })
-            .collect();
-        candidates.sort_by(|a, b| b.persistence.total_cmp(&a.persistence));
-        candidates
-    }
-
-    /// Standard error of the difference between a component's cells of birth and death.
-    fn noise(&self, estimated: &EstimatedDensity, component: &Component) -> f64 {
-        let errors = &estimated.standard_error;
-        let death_error = component.death.map_or(0.0, |cell| errors[cell]);
-        errors[component.birth].hypot(death_error)
-    }
-}
-
-/// Whether the density can be judged between its cells. Noise forbids it, and a plane with a jump of the derivative in a joint density: along such a
-/// plane a ridge has a sharp edge, which no polynomial follows.
-pub(super) fn is_smooth(estimated: &EstimatedDensity) -> bool {
-    let is_marginal = estimated.density.axes.len() == 1;
-    !estimated.is_noisy() && (is_marginal || estimated.structure.kinks.iter().all(Kink::is_bend))
-}
-
-/// A component between the cells.
-struct Refined {
-    /// Height of its critical point over the saddle where it dies, of a crater its depth below.
-    height: f64,
-    error: f64,
-    /// Where the critical point is.
-    position: Vec<f64>,
-}
-
-impl Refined {
-    /// Height and error; none where the critical point is one of the `places` of others, to which it is added otherwise: cells to both
-    /// sides of one extremum may each be lower than their neighbours.
-    fn unless_known(self, places: &mut Vec<Vec<f64>>, estimated: &EstimatedDensity) -> (f64, f64) {
-        let axes = &estimated.density.axes;
-        let is_here = |other: &Vec<f64>| {
-            let pairs = other.iter().zip(&self.position).zip(axes);
-            pairs.into_iter().all(|((other, own), axis)| {
-                let width = axis.find(*own).map_or(0.0, |cell| axis.width(cell));
-                (other - own).abs() < ONE_PLACE * width
-            })
-        };
-        if places.iter().any(is_here) {
-            return (0.0, self.error);
-        }
-        if self.height > 0.0 {
-            places.push(self.position);
-        }
-        (self.height, self.error)
-    }
-}
-
-/// A component between the cells; `None` for the one that never dies.
-fn height(
-    field: &Field<'_>,
-    estimated: &EstimatedDensity,
-    component: &Component,
-    is_crater: bool,
-) -> Option<Refined> {
-    let death = component.death?;
-    let values = &estimated.density.values;
-    let kind = if is_crater {
-        FeatureKind::Crater
-    } else {
-        FeatureKind::Peak
-    };
-    let extremum = Critical::near(field, &field.centre(component.birth), kind, values)?;
-    let saddle = Critical::near(field, &field.centre(death), FeatureKind::Valley, values)?;
-    // Where features are no wider than cells, what joins two of them may be no saddle: the way around is not seen.
-    if saddle.is_extremum() {
-        return None;
-    }
-    let (height, error) = match is_crater {
-        true => height_above(&saddle, &extremum, estimated),
-        false => height_above(&extremum, &saddle, estimated),
-    };
-    // Else a cell that is the highest around it only because of how the cells lie.
-    let is_of_kind =
-        extremum.is_of_kind(kind, height) && extremum.is_level(height) && saddle.is_level(height);
-    Some(Refined {
-        height: if is_of_kind { height } else { 0.0 },
-        error,
-        position: extremum.position,
-    })
-}
-
-impl Candidate {
-    /// The feature of the given kind at the given cell, which is that of birth or death.
-    pub(super) fn feature(
-        &self,
-        estimated: &EstimatedDensity,
-        kind: FeatureKind,
-        cell: usize,
-    ) -> Feature {
-        let place = refine(estimated, cell, kind);
-        Feature {
-            kind,
-            position: place.position,
-            density: place.density,
-            persistence: self.persistence,
-            standard_error: self.standard_error,
-            significance: self.judgement.significance,
-            verdict: self.judgement.verdict,
-            partner: self.partner(estimated, kind),
-        }
-    }
-
-    /// The saddle where it merges.
-    fn partner(&self, estimated: &EstimatedDensity, kind: FeatureKind) -> Option<Vec<f64>> {
-        let saddle = self
-            .component
-            .death
-            .filter(|_| kind != FeatureKind::Valley)?;
-        Some(refine(estimated, saddle, FeatureKind::Valley).position)
     }
 }
 
@@ -257,37 +63,8 @@ fn grid(estimated: &EstimatedDensity) -> Option<Grid<'_>> {
     })
 }
 
-impl PersistenceDetector {
-    /// What the equations of a system with one axis say: every extremum is known, no cell has to show it.
-    fn by_equations(
-        &self,
-        density: &EstimatedDensity,
-        profile: &Profile,
-        limits: &Limits,
-    ) -> Detection {
-        let mut features = exact::features(profile, limits);
-        features.sort_by(by_kind_and_height);
-        let indicators = at_centre(density);
-        // Where a split is nearer than rounding lets its peaks be told apart, the centre decides.
-        let peaks = present_places(&features, FeatureKind::Peak);
-        let found = Found {
-            signature: Signature::of_peaks(peaks.len()),
-            peaks: &peaks,
-            craters: &[],
-            rings_around_centre: 0,
-        };
-        let signature = corrected(density, &indicators, self.doubt(), &found);
-        Detection {
-            signature,
-            is_seen: true,
-            indicators,
-            features,
-        }
-    }
-}
-
 /// Places of the features of a kind that are present.
-fn present_places(features: &[Feature], kind: FeatureKind) -> Vec<Vec<f64>> {
+pub(super) fn present_places(features: &[Feature], kind: FeatureKind) -> Vec<Vec<f64>> {
     let present = features
         .iter()
         .filter(|feature| feature.kind == kind && feature.verdict == Verdict::Present);
@@ -295,7 +72,7 @@ fn present_places(features: &[Feature], kind: FeatureKind) -> Vec<Vec<f64>> {
 }
 
 /// The order in which features are listed.
-fn by_kind_and_height(a: &Feature, b: &Feature) -> Ordering {
+pub(super) fn by_kind_and_height(a: &Feature, b: &Feature) -> Ordering {
     let heights = b.persistence.total_cmp(&a.persistence);
     a.kind.cmp(&b.kind).then(heights)
 }
@@ -322,11 +99,11 @@ impl Detector for PersistenceDetector {
             (density.density.maximum(), density.negligible_height()),
         );
         if let Some(profile) = &density.structure.profile {
-            return self.by_equations(density, profile, &limits);
+            return exact::detection(density, profile, &limits, self.doubt());
         }
         let (peaks, craters) = components(grid);
-        let peaks = self.judged(peaks, false, density, &limits);
-        let craters = self.judged(craters, true, density, &limits);
+        let peaks = judged(peaks, false, density, &limits);
+        let craters = judged(craters, true, density, &limits);
         let rims = rims(grid, density, &craters, &limits);
         let counted = contents(&peaks, &craters, &rims);
         let on_rim = |peak: &&Candidate| {

@@ -1,15 +1,46 @@
 //! Features of a density over one axis whose extrema are known from its equations: however narrow they are, none is lost between cells.
 
+use super::detector::{by_kind_and_height, present_places};
+use super::indicator::{Found, at_centre, corrected};
 use super::significance::Limits;
-use super::{Feature, FeatureKind};
-use crate::density::{Extremum, Profile};
+use super::{Detection, Feature, FeatureKind, Signature};
+use crate::density::{EstimatedDensity, Extremum, Profile};
 
 /// Relative error of a density computed from its logarithm.
 const ROUNDING: f64 = 1e-12;
 
+/// What the equations of a system with one axis say: every extremum is known, no cell has to show it.
+///
+/// `doubt` is the probability with which signs at the centre may be wrong.
+pub(super) fn detection(
+    density: &EstimatedDensity,
+    profile: &Profile,
+    limits: &Limits,
+    doubt: f64,
+) -> Detection {
+    let mut features = features(profile, limits);
+    features.sort_by(by_kind_and_height);
+    let indicators = at_centre(density);
+    // Where a split is nearer than rounding lets its peaks be told apart, the centre decides.
+    let peaks = present_places(&features, FeatureKind::Peak);
+    let found = Found {
+        signature: Signature::of_peaks(peaks.len()),
+        peaks: &peaks,
+        craters: &[],
+        rings_around_centre: 0,
+    };
+    let signature = corrected(density, &indicators, doubt, &found);
+    Detection {
+        signature,
+        is_seen: true,
+        indicators,
+        features,
+    }
+}
+
 /// Peaks and the valleys that belong to them, judged. Where two hills meet at a valley, the lower one ends there: its peak is as high as it
 /// stands above the valley. The partner of a peak is the higher of the valleys beside it, with which it was born or will vanish.
-pub(super) fn features(profile: &Profile, limits: &Limits) -> Vec<Feature> {
+fn features(profile: &Profile, limits: &Limits) -> Vec<Feature> {
     let mut hills = hills(&profile.extrema);
     let mut features = Vec::new();
     while let Some((place, valley)) = highest_valley(&hills) {

@@ -1,5 +1,6 @@
 //! What a density looks like: its significant peaks and craters, and the signature they make.
 
+mod candidate;
 mod critical;
 mod detector;
 mod enclosure;

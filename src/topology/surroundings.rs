@@ -1,7 +1,7 @@
 //! The rims of a joint density's craters: which are rings, which peaks stand on them, and what lies within.
 
+use super::candidate::{Candidate, is_smooth};
 use super::critical::{Critical, height_above};
-use super::detector::{Candidate, is_smooth};
 use super::enclosure::Enclosure;
 use super::field::Field;
 use super::persistence::Grid;
