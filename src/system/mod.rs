@@ -6,9 +6,11 @@
 //! through its parameters: what is swept. [`registry`] lists the built-in models; a [`TypedModel`] makes one of
 //! equations as text.
 
+mod binding;
 mod bistable;
 mod coloured;
 pub mod contract;
+mod description;
 mod enclosed;
 #[cfg(test)]
 pub(crate) mod examples;
@@ -27,16 +29,16 @@ mod typed;
 mod typeset;
 
 pub use crate::formula::{LANES, Lanes};
+pub use binding::{ParameterValues, SystemError};
 pub use coloured::{
     CORRELATION_TIME, ColouredNoiseError, NOISE_AXIS, NOISE_DAMPING, NOISE_FREQUENCY,
     NOISE_RATE_AXIS, NoiseKind,
 };
+pub use description::{AxisDescription, ParameterDescription, ParameterRange};
 pub(crate) use enclosed::Enclosed;
 pub use facts::{PeriodicDrift, SwitchingSurface, Symmetry};
 pub use family::Family;
-pub use model::{
-    AxisDescription, Model, ParameterDescription, ParameterRange, ParameterValues, SystemError,
-};
+pub use model::Model;
 pub use oscillator::{
     DISPLACEMENT, Damping, Duffing, FIRST_INTERNAL_STATE, Oscillator, VELOCITY, Viscous,
 };

@@ -3,126 +3,7 @@
 use std::sync::Arc;
 
 use super::coloured::{ColouredNoiseError, coloured};
-use super::{NoiseKind, System, TypedEquations};
-
-/// One axis of a model's state.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct AxisDescription {
-    /// Name used in files and on the command line, for example `y`.
-    pub name: String,
-    /// Symbol for figures; `_{}` and `^{}` set subscripts and superscripts, for example `ẋ`.
-    pub symbol: String,
-    /// Meaning in words.
-    pub meaning: String,
-    /// Whether modes carry it unless a file says otherwise: the density along it is smooth inside its bounds and no
-    /// noise drives it, or it is white noise behind a filter.
-    pub by_modes: bool,
-}
-
-impl AxisDescription {
-    /// An axis with its name, symbol and meaning.
-    pub fn new(
-        name: impl Into<String>,
-        symbol: impl Into<String>,
-        meaning: impl Into<String>,
-    ) -> Self {
-        Self {
-            name: name.into(),
-            symbol: symbol.into(),
-            meaning: meaning.into(),
-            by_modes: false,
-        }
-    }
-
-    /// The axis of an internal state that modes carry; a series in place of cells. The state has bounds, no noise,
-    /// and a smooth density between its bounds.
-    #[must_use]
-    pub fn carried_by_modes(self) -> Self {
-        Self {
-            by_modes: true,
-            ..self
-        }
-    }
-}
-
-/// Values a parameter may take.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ParameterRange {
-    /// Any finite number.
-    Any,
-    /// Zero or more.
-    NonNegative,
-    /// More than zero.
-    Positive,
-}
-
-impl ParameterRange {
-    /// Whether `value` is finite and in the range.
-    pub fn contains(self, value: f64) -> bool {
-        value.is_finite()
-            && match self {
-                Self::Any => true,
-                Self::NonNegative => value >= 0.0,
-                Self::Positive => value > 0.0,
-            }
-    }
-
-    /// The range in words.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Any => "a finite number",
-            Self::NonNegative => "a finite number, zero or more",
-            Self::Positive => "a finite number greater than zero",
-        }
-    }
-}
-
-/// One parameter of a model.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ParameterDescription {
-    /// Name used in files, for example `f_c`.
-    pub name: String,
-    /// Symbol for figures, with `_{}` and `^{}`, for example `f_{c}`.
-    pub symbol: String,
-    /// Meaning in words.
-    pub meaning: String,
-    /// Value used when a file leaves the parameter out; `None` if it must be given.
-    pub default: Option<f64>,
-    /// Values it may take.
-    pub range: ParameterRange,
-}
-
-impl ParameterDescription {
-    /// A parameter with its name, symbol and meaning; it must be given and may be any number.
-    pub fn new(
-        name: impl Into<String>,
-        symbol: impl Into<String>,
-        meaning: impl Into<String>,
-    ) -> Self {
-        Self {
-            name: name.into(),
-            symbol: symbol.into(),
-            meaning: meaning.into(),
-            default: None,
-            range: ParameterRange::Any,
-        }
-    }
-
-    /// The parameter with a value that is used where none is given.
-    #[must_use]
-    pub fn with_default(self, value: f64) -> Self {
-        Self {
-            default: Some(value),
-            ..self
-        }
-    }
-
-    /// The parameter with the values it may take.
-    #[must_use]
-    pub fn within(self, range: ParameterRange) -> Self {
-        Self { range, ..self }
-    }
-}
+use super::{AxisDescription, NoiseKind, ParameterDescription, System, TypedEquations};
 
 /// Binds checked values, given in the order of a model's parameters.
 type Binding = dyn Fn(&[f64]) -> Arc<dyn System> + Send + Sync;
@@ -180,9 +61,9 @@ pub struct Model {
     pub source: String,
     /// Anything a user should know, one paragraph a string.
     pub notes: Vec<String>,
-    definitions: Vec<(String, String)>,
+    pub(super) definitions: Vec<(String, String)>,
     noise_kind: NoiseKind,
-    bind: Box<Binding>,
+    pub(super) bind: Box<Binding>,
     typed: Option<Box<TypedEquations>>,
 }
 
@@ -194,70 +75,6 @@ impl std::fmt::Debug for Model {
             .field("parameters", &self.parameters)
             .finish_non_exhaustive()
     }
-}
-
-/// Named values, in the order of a model's parameters.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ParameterValues(Vec<f64>);
-
-impl ParameterValues {
-    /// The values in the order of the model's parameters.
-    pub fn as_slice(&self) -> &[f64] {
-        &self.0
-    }
-}
-
-/// Why a system could not be made.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum SystemError {
-    /// No model of that name.
-    #[error("unknown model `{name}`")]
-    UnknownModel {
-        /// The name that was given.
-        name: String,
-    },
-    /// The model has no parameter of that name.
-    #[error("model `{model}` has no parameter `{parameter}`")]
-    UnknownParameter {
-        /// The model.
-        model: String,
-        /// The name that was given.
-        parameter: String,
-    },
-    /// A parameter without a default was not given.
-    #[error("model `{model}` needs parameter `{parameter}` ({meaning})")]
-    MissingParameter {
-        /// The model.
-        model: String,
-        /// The missing parameter.
-        parameter: String,
-        /// Its meaning.
-        meaning: String,
-    },
-    /// A value that is given, and that a path gives too.
-    #[error("parameter `{parameter}` moves along the path, and a fixed value is given too")]
-    Moved {
-        /// The parameter.
-        parameter: String,
-    },
-    /// A value outside the parameter's range.
-    #[error("parameter `{parameter}` of model `{model}` is {value}; it must be {allowed}")]
-    OutOfRange {
-        /// The model.
-        model: String,
-        /// The parameter.
-        parameter: String,
-        /// The value that was given.
-        value: f64,
-        /// The range in words.
-        allowed: &'static str,
-    },
-    /// A quantity of another model.
-    #[error("quantity `{quantity}` cannot be worked out with the parameters of this model")]
-    QuantityNotBound {
-        /// The quantity.
-        quantity: String,
-    },
 }
 
 /// How a model is stated.
@@ -399,97 +216,5 @@ impl Model {
     pub fn with_notes<S: Into<String>>(self, notes: impl IntoIterator<Item = S>) -> Self {
         let notes = notes.into_iter().map(Into::into).collect();
         Self { notes, ..self }
-    }
-}
-
-/// How values become systems.
-impl Model {
-    /// Names and formulas that quantities may use.
-    pub fn definitions(&self) -> &[(String, String)] {
-        &self.definitions
-    }
-
-    /// Position of a parameter in [`Model::parameters`].
-    ///
-    /// # Errors
-    /// [`SystemError::UnknownParameter`].
-    pub fn parameter_index(&self, name: &str) -> Result<usize, SystemError> {
-        self.parameters
-            .iter()
-            .position(|parameter| parameter.name == name)
-            .ok_or_else(|| SystemError::UnknownParameter {
-                model: self.name.clone(),
-                parameter: name.to_owned(),
-            })
-    }
-
-    /// Checks named values, fills in defaults, and puts them in order.
-    ///
-    /// # Errors
-    /// [`SystemError::UnknownParameter`], [`SystemError::MissingParameter`] or [`SystemError::OutOfRange`].
-    pub fn values(&self, given: &[(&str, f64)]) -> Result<ParameterValues, SystemError> {
-        for (name, _) in given {
-            self.parameter_index(name)?;
-        }
-        let value_of = |parameter: &ParameterDescription| {
-            let named = given.iter().rev().find(|(name, _)| *name == parameter.name);
-            let value = named.map(|(_, value)| *value).or(parameter.default);
-            let value = value.ok_or_else(|| SystemError::MissingParameter {
-                model: self.name.clone(),
-                parameter: parameter.name.clone(),
-                meaning: parameter.meaning.clone(),
-            })?;
-            self.check(parameter, value)?;
-            Ok(value)
-        };
-        let values: Result<Vec<f64>, SystemError> = self.parameters.iter().map(value_of).collect();
-        values.map(ParameterValues)
-    }
-
-    /// The same values with one of them replaced.
-    ///
-    /// # Errors
-    /// [`SystemError::UnknownParameter`] or [`SystemError::OutOfRange`].
-    pub fn with(
-        &self,
-        values: &ParameterValues,
-        name: &str,
-        value: f64,
-    ) -> Result<ParameterValues, SystemError> {
-        let index = self.parameter_index(name)?;
-        self.check(&self.parameters[index], value)?;
-        let mut changed = values.clone();
-        changed.0[index] = value;
-        Ok(changed)
-    }
-
-    /// The system with these parameters.
-    pub fn system(&self, values: &ParameterValues) -> Arc<dyn System> {
-        self.bound(values.as_slice())
-    }
-
-    /// The system with values in the order of the parameters.
-    pub(super) fn bound(&self, values: &[f64]) -> Arc<dyn System> {
-        (self.bind)(values)
-    }
-
-    /// The system with these named values; see [`Model::values`].
-    ///
-    /// # Errors
-    /// As [`Model::values`].
-    pub fn system_with(&self, given: &[(&str, f64)]) -> Result<Arc<dyn System>, SystemError> {
-        Ok(self.system(&self.values(given)?))
-    }
-
-    fn check(&self, parameter: &ParameterDescription, value: f64) -> Result<(), SystemError> {
-        if parameter.range.contains(value) {
-            return Ok(());
-        }
-        Err(SystemError::OutOfRange {
-            model: self.name.clone(),
-            parameter: parameter.name.clone(),
-            value,
-            allowed: parameter.range.words(),
-        })
     }
 }
