@@ -1,17 +1,17 @@
 //! The cells of each axis: range, count, grading. What is given is checked here; what is left to the program is found
 //! later.
 
-use std::sync::Arc;
-
+use super::along::{Along, filter};
+use super::axis_checks::{check_modes, warn_of_few_cells, warn_of_idle_grade};
 use super::equations::model_in_words;
-use crate::space::{Axis, CellSpace, Grading, NORMAL_RANGE, SpaceError};
+use crate::space::{Axis, CellSpace, Grading, SpaceError};
 use crate::sweep_file::diagnostic::Diagnostic;
 use crate::sweep_file::document::Document;
 use crate::sweep_file::draft::{AxisDraft, Draft, MethodKind, Modes};
 use crate::sweep_file::names::quotable;
 use crate::sweep_file::reader::Reader;
 use crate::sweep_file::value::Value;
-use crate::system::{AxisDescription, Family, Model, ParameterValues, System};
+use crate::system::{AxisDescription, Family, Model};
 
 /// How one axis is cut into cells, or carried by modes.
 #[derive(Debug, Clone, PartialEq)]
@@ -90,10 +90,7 @@ pub(super) fn read(
             reader.report(diagnostic);
         }
     }
-    let along = family.map(|family| Along {
-        family,
-        corners: corners(family, draft),
-    });
+    let along = family.map(|family| Along::new(family, draft));
     // Every axis is read, so that all that is wrong is reported at once.
     let read: Vec<Option<AxisSettings>> = names
         .iter()
@@ -179,160 +176,6 @@ fn read_axis(
             None
         }
     }
-}
-
-/// Cells an axis below which a density along it has no shape: a peak is a cell that is higher than both of its
-/// neighbours.
-const FEW_CELLS: usize = 4;
-
-/// Says so where an axis has too few cells for any shape.
-fn warn_of_few_cells(
-    reader: &mut Reader<'_>,
-    name: &str,
-    settings: &AxisSettings,
-    method: MethodKind,
-) {
-    let count = settings.count.filter(|&count| count < FEW_CELLS);
-    let (Some(count), None) = (count, settings.modes_by(method)) else {
-        return;
-    };
-    let title = format!("{count} cells along `{name}` show no shape of a density");
-    let found = Diagnostic::warning(title).remedy(format!(
-        "give `cells.{name}.count` some tens, or leave it out: it is then found"
-    ));
-    let place = reader.place(&["cells", name, "count"]);
-    reader.warn(match place {
-        Some(place) => found.at(place, "as many cells"),
-        None => found,
-    });
-}
-
-/// Says so where a grading is given to an axis that no method of this file cuts into cells.
-fn warn_of_idle_grade(
-    reader: &mut Reader<'_>,
-    name: &str,
-    settings: &AxisSettings,
-    method: MethodKind,
-) {
-    let is_idle = settings.modes_by(method).is_some() && settings.count.is_none();
-    let (true, Some(place)) = (is_idle, reader.place(&["cells", name, "grade"])) else {
-        return;
-    };
-    let found = Diagnostic::warning(format!("the grading of `{name}` has no effect"))
-        .at(place, "modes carry this axis in place of cells")
-        .remedy(format!(
-            "leave it out, or give `cells.{name}.count` to have cells instead of modes"
-        ));
-    reader.warn(found);
-}
-
-/// Reports modes on an axis that cannot have them: it has noise, or its range is not that of a bounded state.
-fn check_modes(
-    reader: &mut Reader<'_>,
-    name: &str,
-    along: &Along<'_>,
-    index: usize,
-    range: Option<(f64, f64)>,
-) -> Option<()> {
-    let Along {
-        family,
-        corners: systems,
-    } = along;
-    let walled = |range| {
-        systems
-            .iter()
-            .all(|system| system.walls(index, range) == [true; 2])
-    };
-    let (why, remedy) = if filter(family, index).is_some() {
-        if range == along.bounds(index) {
-            return Some(());
-        }
-        (
-            "the modes of noise have a range of their own",
-            format!("leave `from` and `to` out, or give `cells.{name}.count` in place of modes"),
-        )
-    } else if systems
-        .iter()
-        .any(|system| system.noise_axes().contains(&index))
-    {
-        ("noise drives it", format!("give `cells.{name}.count`"))
-    } else if systems.iter().any(|system| system.bounds(index).is_none()) {
-        (
-            "the model knows no bounds of it",
-            match family.model().typed() {
-                Some(_) => format!(
-                    "give `cells.{name}.count`, or bounds of `{name}` in [system.bounds] that it never leaves"
-                ),
-                None => format!("give `cells.{name}.count`"),
-            },
-        )
-    } else if !range.is_some_and(walled) {
-        (
-            "the state may leave the range",
-            "leave the range out: the model knows the bounds".to_owned(),
-        )
-    } else {
-        return Some(());
-    };
-    let diagnostic = Diagnostic::new(format!("axis `{name}` cannot have modes: {why}"))
-        .allowed("modes carry a state without noise between the bounds that the model knows, or coloured noise")
-        .remedy(remedy);
-    let place = reader.place(&["cells", name, "modes"]);
-    reader.report(match place.or_else(|| reader.place(&["cells", name])) {
-        Some(place) => diagnostic.at(place, "refused"),
-        None => diagnostic,
-    });
-    None
-}
-
-/// Mean and standard deviation of an axis of coloured noise, the same all along the sweep.
-fn filter(family: &Family, axis: usize) -> Option<(f64, f64)> {
-    let (from, to) = family.ends();
-    let at = |value: f64| family.at(value).ok()?.filtered_noise(axis);
-    at(from).filter(|one| at(to).as_ref() == Some(one))
-}
-
-/// What is swept, with the systems at both ends of the sweep, or at the corners of the map's box.
-struct Along<'a> {
-    family: &'a Family,
-    corners: Vec<Arc<dyn System>>,
-}
-
-impl Along<'_> {
-    /// The widest range that the model's bounds of an axis take at the corners; of coloured noise, what holds nearly
-    /// all of it.
-    fn bounds(&self, axis: usize) -> Option<(f64, f64)> {
-        if let Some((mean, deviation)) = filter(self.family, axis) {
-            let half = NORMAL_RANGE * deviation;
-            return Some((mean - half, mean + half));
-        }
-        let bounds: Option<Vec<(f64, f64)>> =
-            self.corners.iter().map(|one| one.bounds(axis)).collect();
-        let bounds = bounds?.into_iter();
-        bounds.reduce(|one, other| (one.0.min(other.0), one.1.max(other.1)))
-    }
-}
-
-/// The systems at both ends of a sweep, or at the corners of the map's box; those that are not allowed are refused
-/// elsewhere.
-fn corners(family: &Family, draft: &Draft) -> Vec<Arc<dyn System>> {
-    let (model, (from, to)) = (family.model(), family.ends());
-    let ends: Vec<ParameterValues> = [from, to]
-        .into_iter()
-        .filter_map(|end| family.values_at(end).ok())
-        .collect();
-    let map = &draft.map;
-    let values = match (&map.parameter, map.from, map.to) {
-        (Some(name), Some(low), Some(high)) => {
-            let pairs = ends
-                .iter()
-                .flat_map(|end| [low, high].map(|value| (end, value)));
-            let corners = pairs.filter_map(|(end, value)| model.with(end, name, value).ok());
-            corners.collect()
-        }
-        _ => ends,
-    };
-    values.iter().map(|values| model.system(values)).collect()
 }
 
 /// The range that is given; what is left out is the model's bound, where it knows one (`None`: there is no telling).

@@ -1,6 +1,8 @@
 //! Everything a sweep file says, checked, with every default filled in.
 
+mod along;
 mod axes;
+mod axis_checks;
 mod curve;
 mod draft_of;
 mod equations;

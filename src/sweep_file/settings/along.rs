@@ -1,0 +1,65 @@
+//! What the systems along a sweep, or in a map's box, say of the range of each axis.
+
+use std::sync::Arc;
+
+use crate::space::NORMAL_RANGE;
+use crate::sweep_file::draft::Draft;
+use crate::system::{Family, ParameterValues, System};
+
+/// Mean and standard deviation of an axis of coloured noise, the same all along the sweep.
+pub(super) fn filter(family: &Family, axis: usize) -> Option<(f64, f64)> {
+    let (from, to) = family.ends();
+    let at = |value: f64| family.at(value).ok()?.filtered_noise(axis);
+    at(from).filter(|one| at(to).as_ref() == Some(one))
+}
+
+/// What is swept, with the systems at both ends of the sweep, or at the corners of the map's box.
+pub(super) struct Along<'a> {
+    pub(super) family: &'a Family,
+    pub(super) corners: Vec<Arc<dyn System>>,
+}
+
+impl<'a> Along<'a> {
+    /// Of a family, with the corners that a file says.
+    pub(super) fn new(family: &'a Family, draft: &Draft) -> Self {
+        Self {
+            family,
+            corners: corners(family, draft),
+        }
+    }
+
+    /// The widest range that the model's bounds of an axis take at the corners; of coloured noise, what holds nearly
+    /// all of it.
+    pub(super) fn bounds(&self, axis: usize) -> Option<(f64, f64)> {
+        if let Some((mean, deviation)) = filter(self.family, axis) {
+            let half = NORMAL_RANGE * deviation;
+            return Some((mean - half, mean + half));
+        }
+        let bounds: Option<Vec<(f64, f64)>> =
+            self.corners.iter().map(|one| one.bounds(axis)).collect();
+        let bounds = bounds?.into_iter();
+        bounds.reduce(|one, other| (one.0.min(other.0), one.1.max(other.1)))
+    }
+}
+
+/// The systems at both ends of a sweep, or at the corners of the map's box; those that are not allowed are refused
+/// elsewhere.
+fn corners(family: &Family, draft: &Draft) -> Vec<Arc<dyn System>> {
+    let (model, (from, to)) = (family.model(), family.ends());
+    let ends: Vec<ParameterValues> = [from, to]
+        .into_iter()
+        .filter_map(|end| family.values_at(end).ok())
+        .collect();
+    let map = &draft.map;
+    let values = match (&map.parameter, map.from, map.to) {
+        (Some(name), Some(low), Some(high)) => {
+            let pairs = ends
+                .iter()
+                .flat_map(|end| [low, high].map(|value| (end, value)));
+            let corners = pairs.filter_map(|(end, value)| model.with(end, name, value).ok());
+            corners.collect()
+        }
+        _ => ends,
+    };
+    values.iter().map(|values| model.system(values)).collect()
+}
