@@ -7,13 +7,12 @@ use super::label::{self, BifurcationStatus, LabelledPoint, PointType};
 use super::reason::{
     MOST_NEGATIVE, change_by_modes, coarse, leaks, negative_share, not_checked, said_of, torn,
 };
+
 use super::root::{Root, root};
-use super::{CellCheck, Goal, Point, PointStatus, Subject, persistence, words};
+use super::rows::{in_order, inseparable, merge, say, without_flicker};
+use super::{CellCheck, Goal, Point, PointStatus, Subject, persistence};
 use crate::density::{EstimatedDensity, Kink, Observable};
 use crate::topology::{Detector, Indicator, IndicatorKind};
-
-/// So many rows in a row that are not located are one.
-const FLICKER: usize = 3;
 
 /// All labelled points of a sweep, in ascending parameter. `points` must be ascending.
 pub(super) fn label_points(
@@ -57,94 +56,6 @@ pub(super) fn label_points(
     }
     labels.extend(rows);
     label::number(labels)
-}
-
-/// The rows of changes between the same two points, ascending, each from the signature that the one before leaves; those whose values cannot be told
-/// apart are one.
-fn in_order(mut found: Vec<(LabelledPoint, &Change)>) -> Vec<LabelledPoint> {
-    found.sort_by(|a, b| a.0.value.total_cmp(&b.0.value));
-    let Some(last) = found.last().map(|one| one.1.after) else {
-        return Vec::new();
-    };
-    let mut rows: Vec<LabelledPoint> = Vec::new();
-    for (mut row, change) in found {
-        let before = rows
-            .last()
-            .map_or(change.before, |row| row.after.unwrap_or(change.before));
-        row.before = Some(before);
-        row.after = Some(change.step(before));
-        match rows.last_mut() {
-            Some(last) if row.value - last.value <= last.error + row.error => merge(last, &row),
-            _ => rows.push(row),
-        }
-    }
-    if let Some(row) = rows.last_mut() {
-        row.after = Some(last);
-    }
-    rows
-}
-
-/// Where features come and go from point to point, one row says from where to where, instead of one a point. What has a place of its own keeps
-/// its row, however wide its error.
-fn without_flicker(rows: Vec<LabelledPoint>) -> Vec<LabelledPoint> {
-    let mut kept = Vec::new();
-    for run in rows.chunk_by(is_one_doubt) {
-        let (first, last) = (&run[0], &run[run.len() - 1]);
-        let returns = run.len() > 1 && first.before == last.after;
-        if run.len() < FLICKER && !returns {
-            kept.extend_from_slice(run);
-            continue;
-        }
-        let lower = run
-            .iter()
-            .map(|row| row.lower)
-            .fold(f64::INFINITY, f64::min);
-        let upper = run
-            .iter()
-            .map(|row| row.upper)
-            .fold(f64::NEG_INFINITY, f64::max);
-        kept.push(LabelledPoint {
-            value: 0.5 * (lower + upper),
-            error: 0.5 * (upper - lower),
-            lower,
-            upper,
-            after: last.after,
-            status: Some(BifurcationStatus::Unresolved),
-            method: "persistence",
-            indicator: None,
-            parts: None,
-            reason: Some(match returns {
-                true => "what is there at both ends cannot be told between them".to_owned(),
-                false => "the stages between cannot be told apart".to_owned(),
-            }),
-            place: Vec::new(),
-            slope: None,
-            ..first.clone()
-        });
-    }
-    kept
-}
-
-/// Whether two rows that follow each other are not located and cannot be kept apart: their intervals overlap, or, where one of them is no zero
-/// of an indicator, the stage between them is no wider than they are.
-fn is_one_doubt(first: &LabelledPoint, second: &LabelledPoint) -> bool {
-    let in_doubt = |row: &LabelledPoint| row.status != Some(BifurcationStatus::Located);
-    let is_zero = |row: &LabelledPoint| {
-        row.parts.is_some() && row.status != Some(BifurcationStatus::Unconfirmed)
-    };
-    let between = second.lower - first.upper;
-    let width = match is_zero(first) && is_zero(second) {
-        true => 0.0,
-        false => (first.upper - first.lower).max(second.upper - second.lower),
-    };
-    first.observable == second.observable && in_doubt(first) && in_doubt(second) && between <= width
-}
-
-/// Says what happens, once it is known between which signatures.
-fn say(row: &mut LabelledPoint) {
-    if let (Some(before), Some(after)) = (row.before, row.after) {
-        row.change = words::change(row.indicator, row.rises, before, after);
-    }
 }
 
 /// A row with all but value, error and status.
@@ -345,6 +256,7 @@ const LEAST_CLAIM: f64 = 1e-2;
 
 /// Cells on either side of a place that what is read there depends on.
 const REACH: usize = 4;
+
 /// By how much a distance to finer cells may be too small by chance there.
 const CHANCE: f64 = 10.0;
 
@@ -380,42 +292,4 @@ pub(super) const QUIET: f64 = 1e-11;
 /// The largest mass in the outermost cells of an axis.
 fn edge_mass(point: &Point) -> f64 {
     point.report.edge_mass.iter().copied().fold(0.0, f64::max)
-}
-
-/// Whether two changes of one observable follow each other so closely that the stage between them is not certain.
-fn inseparable(first: &LabelledPoint, second: &LabelledPoint) -> bool {
-    let both = first.parts.is_some() && second.parts.is_some();
-    let apart = (second.value - first.value).abs();
-    both && first.observable == second.observable
-        && first.after == second.before
-        && first.before != second.after
-        && apart <= first.error + second.error
-}
-
-/// Makes one row of two that cannot be told apart.
-fn merge(first: &mut LabelledPoint, second: &LabelledPoint) {
-    first.lower = first.lower.min(second.lower);
-    first.upper = first.upper.max(second.upper);
-    let value = 0.5 * (first.value + second.value);
-    let half = 0.5 * (second.value - first.value).abs();
-    first.error = first.error.max(second.error) + half;
-    if let Some(parts) = &mut first.parts {
-        parts.grid += half;
-    }
-    let later = second.value > first.value;
-    first.value = value;
-    first.after = second.after;
-    if first.status == Some(BifurcationStatus::Located) {
-        first.status = second.status;
-    }
-    let of_flank = |row: &LabelledPoint| {
-        matches!(
-            row.indicator,
-            Some(IndicatorKind::Shoulder { .. } | IndicatorKind::Fold)
-        )
-    };
-    if first.indicator != second.indicator && !(of_flank(first) && of_flank(second)) {
-        first.indicator = Some(IndicatorKind::LowerCurvature);
-        first.rises = later;
-    }
 }

@@ -22,6 +22,7 @@ mod persistence;
 mod reason;
 mod report;
 mod root;
+mod rows;
 mod shard;
 mod source;
 mod span;

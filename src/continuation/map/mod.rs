@@ -7,6 +7,7 @@
 //! any number of threads.
 
 mod crossing;
+mod drawn;
 mod found;
 mod lattice;
 mod node;
@@ -14,6 +15,7 @@ mod regions;
 mod samples;
 mod shards;
 mod solve;
+mod starts;
 mod states;
 mod trace;
 
