@@ -42,8 +42,6 @@ mod staged;
 mod staging;
 mod store;
 mod stored_densities;
-#[cfg(test)]
-mod stored_one_axis_tests;
 mod stored_run;
 #[cfg(test)]
 mod stored_tests;

@@ -1,10 +1,10 @@
 //! Densities of systems with one axis, solved and read back: by quadrature at some values, on cells at others.
 
-use super::{Manifest, RunFolder, StoredRun};
 use crate::cancellation::Cancellation;
 use crate::continuation::{DensitySource, Point};
 use crate::density::{EstimatedDensity, Observable};
 use crate::method::{GeneratorMethodOptions, GeneratorSource, Problem};
+use crate::run::{Manifest, RunFolder, StoredRun};
 use crate::space::{Axis, CellSpace};
 use crate::system::{Family, Path, TypedModel};
 
