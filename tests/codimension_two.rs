@@ -5,15 +5,17 @@
 mod common;
 #[path = "common/sweeps.rs"]
 mod sweeps;
+#[path = "common/trees.rs"]
+mod trees;
 
 use common::pbif;
 use pbif::cancellation::Cancellation;
 use pbif::continuation::BifurcationStatus;
 use pbif::continuation::curve::{
-    CodimensionTwoKind, CurveOptions, CurveStart, CurveTree, EndReason, Plane, codimension_two,
-    follow_all,
+    CodimensionTwoKind, CurveOptions, CurveTree, EndReason, codimension_two,
 };
 use sweeps::prepared;
+use trees::Start;
 
 /// Peaks of the density are zeros of the drift: the centre splits at a = 0, and for b > 0 two peaks are born away from
 /// it at a = -b²/4.
@@ -81,40 +83,16 @@ fn tree(
     second: (&str, f64, f64),
     (held, largest_step): (f64, f64),
 ) -> CurveTree {
-    checked_tree(text, first, second, (held, largest_step, 8))
-}
-
-/// The same with so many points from one check on finer cells to the next.
-fn checked_tree(
-    text: &str,
-    first: (&str, f64, f64),
-    second: (&str, f64, f64),
-    (held, largest_step, check_every): (f64, f64, usize),
-) -> CurveTree {
-    let never = Cancellation::new();
-    let sweep = prepared(text, &[]);
-    let result = sweep.run(&never, &mut ()).unwrap();
-    let subject = sweep.problem.subject();
-    let mut rows = result.labels.iter();
-    let start = rows.find_map(|row| CurveStart::from_row(row, held, subject));
-    let plane = Plane::new(first, second).unwrap();
-    let source = sweep.source_in(&plane, &never).unwrap();
     let options = CurveOptions {
-        tolerance: 1e-3,
         largest_step,
-        check_every,
         ..CurveOptions::default()
     };
-    follow_all(
-        &source,
-        &plane,
-        &sweep.detector(),
-        &start.unwrap(),
-        &options,
-        &never,
-        &mut |_| (),
-    )
-    .unwrap()
+    trees::tree(text, only_row(held), (first, second), options)
+}
+
+fn only_row(held: f64) -> Start {
+    let is_start = |_: &_| true;
+    Start { is_start, held }
 }
 
 #[test]
@@ -232,7 +210,12 @@ fn a_cusp_of_a_fold_that_no_finer_cells_have_checked_is_unchecked() {
         (0, BifurcationStatus::Unchecked),
         (8, BifurcationStatus::Located),
     ] {
-        let tree = checked_tree(CUSP, h, a, (0.8, 0.025, every));
+        let options = CurveOptions {
+            largest_step: 0.025,
+            check_every: every,
+            ..CurveOptions::default()
+        };
+        let tree = trees::tree(CUSP, only_row(0.8), (h, a), options);
         let points = codimension_two(&tree.curves);
         assert_eq!(points.len(), 1);
         assert_eq!(points[0].status, status);

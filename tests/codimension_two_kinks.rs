@@ -6,16 +6,18 @@
 mod common;
 #[path = "common/sweeps.rs"]
 mod sweeps;
+#[path = "common/trees.rs"]
+mod trees;
 
 use common::pbif;
 use pbif::cancellation::Cancellation;
-use pbif::continuation::BifurcationStatus;
 use pbif::continuation::curve::{
-    CodimensionTwoKind, Curve, CurveOptions, CurveStart, CurveTree, EndReason, Plane,
-    codimension_two, follow_all,
+    CodimensionTwoKind, Curve, CurveOptions, CurveTree, EndReason, codimension_two,
 };
+use pbif::continuation::{BifurcationStatus, LabelledPoint};
 use pbif::topology::IndicatorKind;
 use sweeps::prepared;
+use trees::Start;
 
 /// The density is exp(-(2/σ²)(f |x| - b x²/2 + |x|³/3)). The kink turns from a peak into a valley at f = 0: from one
 /// peak come two for b < 0, and for b > 0 two peaks stand beside it already, born where f = b²/4.
@@ -108,36 +110,23 @@ relative_tolerance = 1e-3
 /// The curves that hang together with the one of a row by an indicator.
 fn tree(
     text: &str,
-    by: fn(IndicatorKind) -> bool,
-    (first, second): ((&str, f64, f64), (&str, f64, f64)),
+    is_start: fn(&LabelledPoint) -> bool,
+    plane: ((&str, f64, f64), (&str, f64, f64)),
     (held, largest_step): (f64, f64),
 ) -> CurveTree {
-    let never = Cancellation::new();
-    let sweep = prepared(text, &[]);
-    let result = sweep.run(&never, &mut ()).unwrap();
-    let mut rows = result
-        .labels
-        .iter()
-        .filter(|row| row.indicator.is_some_and(by));
-    let start = rows.find_map(|row| CurveStart::from_row(row, held, sweep.problem.subject()));
-    let plane = Plane::new(first, second).unwrap();
-    let source = sweep.source_in(&plane, &never).unwrap();
     let options = CurveOptions {
-        tolerance: 1e-3,
         largest_step,
         ..CurveOptions::default()
     };
-    let (detector, start) = (sweep.detector(), start.unwrap());
-    follow_all(
-        &source,
-        &plane,
-        &detector,
-        &start,
-        &options,
-        &never,
-        &mut |_| (),
-    )
-    .unwrap()
+    trees::tree(text, Start { is_start, held }, plane, options)
+}
+
+fn is_kink(row: &LabelledPoint) -> bool {
+    row.indicator == Some(IndicatorKind::KinkSlope)
+}
+
+fn is_beside(row: &LabelledPoint) -> bool {
+    matches!(row.indicator, Some(IndicatorKind::BesideKink { .. }))
 }
 
 /// How far a place is from another, in sides of the box.
@@ -154,12 +143,7 @@ fn reasons(curve: &Curve) -> Vec<&EndReason> {
 #[test]
 fn births_at_a_kink_turn_into_births_away_from_it_and_their_fold_is_followed() {
     let plane = (("f", -0.2, 0.21), ("b", -1.0, 1.0));
-    let tree = tree(
-        AT_CENTRE,
-        |kind| kind == IndicatorKind::KinkSlope,
-        plane,
-        (-0.5, 0.05),
-    );
+    let tree = tree(AT_CENTRE, is_kink, plane, (-0.5, 0.05));
     assert!(tree.missed.is_empty(), "{:?}", tree.missed);
     let [kink, fold] = tree.curves.as_slice() else {
         panic!("{} curves", tree.curves.len());
@@ -205,7 +189,6 @@ fn births_at_a_kink_turn_into_births_away_from_it_and_their_fold_is_followed() {
 
 #[test]
 fn a_curve_beside_a_kink_ends_where_nothing_happens_beyond() {
-    let is_beside = |kind| matches!(kind, IndicatorKind::BesideKink { .. });
     let plane = (("h", 0.0, 0.4), ("b", -1.0, 1.0));
     let tree = tree(TILTED, is_beside, plane, (0.5, 0.05));
     assert!(tree.missed.is_empty(), "{:?}", tree.missed);
@@ -242,7 +225,6 @@ fn a_curve_beside_a_kink_ends_where_nothing_happens_beyond() {
 
 #[test]
 fn the_curves_of_both_sides_of_a_kink_meet_in_a_corner() {
-    let is_beside = |kind| matches!(kind, IndicatorKind::BesideKink { .. });
     let plane = (("h", -0.4, 0.4), ("f", -0.3, 0.3));
     let tree = tree(TILTED, is_beside, plane, (0.2, 0.05));
     assert!(tree.missed.is_empty(), "{:?}", tree.missed);
@@ -276,12 +258,7 @@ fn the_curves_of_both_sides_of_a_kink_meet_in_a_corner() {
 #[test]
 fn a_marginal_of_an_oscillator_with_friction_has_the_exact_point() {
     let plane = (("f", -0.05, 0.06), ("a", 0.0, 0.5));
-    let tree = tree(
-        FRICTION,
-        |kind| kind == IndicatorKind::KinkSlope,
-        plane,
-        (0.0, 0.1),
-    );
+    let tree = tree(FRICTION, is_kink, plane, (0.0, 0.1));
     assert!(tree.missed.is_empty(), "{:?}", tree.missed);
     let [_, fold] = tree.curves.as_slice() else {
         panic!("{} curves", tree.curves.len());
@@ -308,12 +285,7 @@ fn a_marginal_of_an_oscillator_with_friction_has_the_exact_point() {
 #[test]
 fn in_a_joint_density_the_curve_of_the_curvature_along_the_kink_crosses_and_is_followed() {
     let plane = (("f_c", -0.1, 0.11), ("alpha", -0.5, 0.6));
-    let tree = tree(
-        JOINT,
-        |kind| kind == IndicatorKind::KinkSlope,
-        plane,
-        (0.5, 0.1),
-    );
+    let tree = tree(JOINT, is_kink, plane, (0.5, 0.1));
     assert!(tree.missed.is_empty(), "{:?}", tree.missed);
     let kinds: Vec<IndicatorKind> = tree.curves.iter().map(|curve| curve.kind).collect();
     assert_eq!(
@@ -374,9 +346,8 @@ fn where_the_second_parameter_breaks_the_symmetry_a_split_is_a_cusp_or_a_corner(
         .replace("parameter = \"h\"", "parameter = \"f\"")
         .replace("from = 0.16", "from = -0.3")
         .replace("to = 0.4\n", "to = 0.35\n");
-    let kink = |kind| kind == IndicatorKind::KinkSlope;
     let plane = (("f", -0.3, 0.35), ("h", -0.4, 0.4));
-    let corner = tree(&tilted, kink, plane, (0.0, 0.05));
+    let corner = tree(&tilted, is_kink, plane, (0.0, 0.05));
     let cusp = r#"
 [system.equations]
 x = "h + a x - x^3"
@@ -392,7 +363,7 @@ points = 5
 [cells]
 x = { from = -2.2, to = 2.2, count = 240 }
 "#;
-    let split = |kind| kind == IndicatorKind::Curvature;
+    let split = |row: &LabelledPoint| row.indicator == Some(IndicatorKind::Curvature);
     let cusp = tree(
         cusp,
         split,

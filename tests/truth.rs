@@ -360,24 +360,25 @@ fn a_peak_that_opens_to_a_ring_away_from_a_centre_is_located() {
     assert!(found.error < 1e-4, "{}", words(&rows));
 }
 
-#[test]
-fn births_at_a_bend_of_the_noise_are_located_beside_it() {
+/// The rows of a sweep of θ over a system with one axis whose noise bends, in Itô's sense.
+fn with_bent_noise(drift: &str, noise: &str, (from, to): (f64, f64)) -> Vec<LabelledPoint> {
     let model = TypedModel::new("bent", "Noise that bends", ["x"])
-        .with_equation("x", "theta + 0.36 x - x^3")
-        .with_noise("x", ["sqrt(0.198 (1 + 0.973 abs(x + 0.135)))"])
+        .with_equation("x", drift)
+        .with_noise("x", [noise])
         .with_interpretation(Interpretation::Ito)
         .with_parameters(["theta"])
         .build()
         .unwrap();
-    let axes = vec![Axis::uniform(-2.81, 2.86, 200).unwrap()];
-    let (_, rows) = rows_of(
-        model,
-        Observable::Marginal(0),
-        (-1.013, 0.987),
-        41,
-        axes,
-        &LocateOptions::default(),
-    );
+    let axes = vec![Axis::uniform(from, to, 200).unwrap()];
+    let options = LocateOptions::default();
+    let watched = Observable::Marginal(0);
+    rows_of(model, watched, (-1.013, 0.987), 41, axes, &options).1
+}
+
+#[test]
+fn births_at_a_bend_of_the_noise_are_located_beside_it() {
+    let noise = "sqrt(0.198 (1 + 0.973 abs(x + 0.135)))";
+    let rows = with_bent_noise("theta + 0.36 x - x^3", noise, (-2.81, 2.86));
     // Two pairs of changes, each within one step: zeros of θ + 0.36 x - x³ ∓ 0.198 · 0.973/2 that turn, or lie at the
     // bend.
     let jump = 0.5 * 0.198 * 0.973;
@@ -431,22 +432,8 @@ fn without_the_check_on_finer_cells_nothing_is_located() {
 /// A pair is born on a flank, and its peak then moves to a kink: nothing is counted there, although the slope beside it passes zero.
 #[test]
 fn a_peak_that_reaches_a_kink_is_not_born_there() {
-    let model = TypedModel::new("bent", "Noise that bends", ["x"])
-        .with_equation("x", "theta + 1.403 x - x^3")
-        .with_noise("x", ["sqrt(0.3 (1 + 0.466 abs(x - 0.73)))"])
-        .with_interpretation(Interpretation::Ito)
-        .with_parameters(["theta"])
-        .build()
-        .unwrap();
-    let axes = vec![Axis::uniform(-3.13, 2.94, 200).unwrap()];
-    let (_, rows) = rows_of(
-        model,
-        Observable::Marginal(0),
-        (-1.013, 0.987),
-        41,
-        axes,
-        &LocateOptions::default(),
-    );
+    let noise = "sqrt(0.3 (1 + 0.466 abs(x - 0.73)))";
+    let rows = with_bent_noise("theta + 1.403 x - x^3", noise, (-3.13, 2.94));
     // Below the kink peaks are where θ + 1.403 x - x³ + 0.3 · 0.466/2 falls through zero.
     let turn = 2.0 / 3.0 * 1.403 * (1.403_f64 / 3.0).sqrt();
     let half = 0.5 * 0.3 * 0.466;
