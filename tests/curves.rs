@@ -1,4 +1,5 @@
-//! Curves of P-bifurcations in planes of two parameters, against curves that are known exactly and against sweeps over one parameter.
+//! Curves of P-bifurcations in planes of two parameters, against curves that are known exactly and against sweeps over
+//! one parameter.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
@@ -80,7 +81,8 @@ joint = []
 relative_tolerance = 1e-3
 "#;
 
-/// With damping -a + bH the density is exp(-(2/σ²)(-aH + bH²/2)): the crater opens at a = 0, and x splits at a = c √(b σ²).
+/// With damping -a + bH the density is exp(-(2/σ²)(-aH + bH²/2)): the crater opens at a = 0, and x splits at a = c √(b
+/// σ²).
 const RAYLEIGH: &str = r#"
 [system]
 model = "rayleigh"
@@ -131,8 +133,8 @@ fn curve(sweep: &Sweep, row: &LabelledPoint, plane: &Plane, held: f64) -> Curve 
     .unwrap()
 }
 
-/// Asserts that a curve lies where a function of both parameters is zero: `off` gives its distance to there across the curve, in sides of
-/// the box.
+/// Asserts that a curve lies where a function of both parameters is zero: `off` gives its distance to there across the
+/// curve, in sides of the box.
 fn assert_on(curve: &Curve, off: impl Fn([f64; 2]) -> f64) {
     for CurvePoint { values, error, .. } in &curve.points {
         let off = off(*values).abs();
@@ -834,7 +836,8 @@ fn curves_of_another_section_or_run_are_kept_apart_from_the_new_ones() {
     assert_eq!(to("run/previous/4"), Some(1.2));
 }
 
-/// With linear damping the density is exp(-(2κ/σ²)(y²/2 + V)): peaks of the joint density are zeros of the spring's force.
+/// With linear damping the density is exp(-(2κ/σ²)(y²/2 + V)): peaks of the joint density are zeros of the spring's
+/// force.
 const TILTED: &str = r#"
 [system.equations]
 x = "y"

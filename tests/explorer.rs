@@ -1,5 +1,5 @@
-//! The explorer through the real binary: the page of a stored run, read back by the page's own code where Node.js is installed and
-//! shown by a browser where Chromium is. Both tests say when they skip.
+//! The explorer through the real binary: the page of a stored run, read back by the page's own code where Node.js is
+//! installed and shown by a browser where Chromium is. Both tests say when they skip.
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr)]
 
@@ -333,7 +333,8 @@ fn the_page_of_a_map_holds_what_its_tables_hold() {
             node.unwrap()["signature_x"].as_str(),
             "{h} {a}"
         );
-        // p ∝ exp((2/σ²)(h x + a x²/2 - x⁴/4)), by the trapezoidal rule, which has all digits for a density that vanishes at both ends.
+        // p ∝ exp((2/σ²)(h x + a x²/2 - x⁴/4)), by the trapezoidal rule, which has all digits for a density that
+        // vanishes at both ends.
         let weight = |x: f64| (20.0 * (h * x + a * x * x / 2.0 - x.powi(4) / 4.0)).exp();
         let places = (0..=5000).map(|i| -2.5 + 1e-3 * f64::from(i));
         let (sum, first) = places.fold((0.0, 0.0), |(sum, first), x| {
@@ -736,7 +737,8 @@ fn sample_paths_go_where_the_density_is() {
         let moment = |k: usize| moments[axis][k].as_f64().unwrap();
         let expected = [moment(0), moment(0).powi(2) + moment(1).powi(2)];
         for (power, expected) in (1..).zip(expected) {
-            // Each path is an estimate of its own once it has forgotten its start; their spread tells the error of their mean.
+            // Each path is an estimate of its own once it has forgotten its start; their spread tells the error of
+            // their mean.
             let means: Vec<f64> = (found.iter())
                 .map(|path| {
                     let settled = &path[path.len() / 4..];

@@ -7,8 +7,8 @@
 //!
 //!     cargo test --release --test random_systems -- --ignored --nocapture
 //!
-//! prints the tables of docs/location.md. A few systems are run always. With `OTHER_SEEDS=420000` in the environment other
-//! systems of the same families are drawn.
+//! prints the tables of docs/location.md. A few systems are run always. With `OTHER_SEEDS=420000` in the environment
+//! other systems of the same families are drawn.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 

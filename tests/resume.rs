@@ -1,5 +1,5 @@
-//! Runs that are killed or interrupted and go on: in the end they have left what an uninterrupted run leaves, byte for byte, and whatever was
-//! in the folder before is there too.
+//! Runs that are killed or interrupted and go on: in the end they have left what an uninterrupted run leaves, byte for
+//! byte, and whatever was in the folder before is there too.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic)]
@@ -11,8 +11,8 @@ use std::process::{Command, Output, Stdio};
 
 use tempfile::TempDir;
 
-/// Sweeps that differ in what a session remembers (factors and trails, with and without mass that leaves; masses; nothing) and in what densities are on
-/// (cells, bins of quantities, a series).
+/// Sweeps that differ in what a session remembers (factors and trails, with and without mass that leaves; masses;
+/// nothing) and in what densities are on (cells, bins of quantities, a series).
 const SWEEPS: [(&str, &[&str]); 7] = [
     (
         "coulomb_fc",

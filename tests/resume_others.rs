@@ -1,4 +1,5 @@
-//! Comparisons and curves that are killed or interrupted and go on: they end with what uninterrupted ones leave, and earlier ones are there too.
+//! Comparisons and curves that are killed or interrupted and go on: they end with what uninterrupted ones leave, and
+//! earlier ones are there too.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic)]
@@ -174,7 +175,8 @@ fn an_interrupted_comparison_leaves_what_is_done() {
     let sent = Command::new("kill").args(["-INT", &pid]).status().unwrap();
     let code = child.wait().unwrap().code();
     assert!(sent.success() && code == Some(130), "{code:?}");
-    // With a value by all methods there are tables, and a journal to go on from; what was interrupted at once before leaves nothing.
+    // With a value by all methods there are tables, and a journal to go on from; what was interrupted at once before
+    // leaves nothing.
     let has_tables = out.join("compare.json").is_file();
     assert!(journal.is_file() || !has_tables);
     if has_tables {
@@ -202,8 +204,8 @@ fn sweep(out: &Path, options: &[&str]) -> Command {
     command
 }
 
-/// Kills at moments spread over the whole time of a command, that of its figures and of its renames included, each gone on with: the tables are those
-/// of an uninterrupted one every time, and the earlier one in the folder is whole.
+/// Kills at moments spread over the whole time of a command, that of its figures and of its renames included, each gone
+/// on with: the tables are those of an uninterrupted one every time, and the earlier one in the folder is whole.
 fn kills(count: u32, command: fn(&Path, &[&str]) -> Command) -> u32 {
     let folder = TempDir::new().unwrap();
     let whole = folder.path().join("whole");

@@ -429,7 +429,8 @@ fn without_the_check_on_finer_cells_nothing_is_located() {
     }
 }
 
-/// A pair is born on a flank, and its peak then moves to a kink: nothing is counted there, although the slope beside it passes zero.
+/// A pair is born on a flank, and its peak then moves to a kink: nothing is counted there, although the slope beside it
+/// passes zero.
 #[test]
 fn a_peak_that_reaches_a_kink_is_not_born_there() {
     let noise = "sqrt(0.3 (1 + 0.466 abs(x - 0.73)))";

@@ -1,5 +1,5 @@
-//! `pbif curve`, and `pbif sweep` of a file with `[curve]`: from located rows, the curves of the same P-bifurcations in the plane of the swept and a second
-//! parameter.
+//! `pbif curve`, and `pbif sweep` of a file with `[curve]`: from located rows, the curves of the same P-bifurcations in
+//! the plane of the swept and a second parameter.
 
 mod asked;
 mod job;
@@ -29,7 +29,8 @@ const SECTIONS: [&str; 4] = ["detect", "locate", "figures", "curve"];
 /// Follows curves, writes them, and prints what was found.
 ///
 /// # Errors
-/// [`CommandError`] when the run or the sweep file cannot be read, the row has no curve, or the results cannot be written.
+/// [`CommandError`] when the run or the sweep file cannot be read, the row has no curve, or the results cannot be
+/// written.
 pub(super) fn run(arguments: &CurveArguments) -> Result<Outcome, CommandError> {
     let (threads, cancellation) = super::interruptible(arguments.work.threads)?;
     threads.install(|| {
@@ -134,7 +135,8 @@ enum Begin {
     Anew,
     /// Unfinished ones are gone on with, complete ones are left; those of other settings are refused.
     GoOn,
-    /// The same, but those of other settings are kept and followed anew: the sweep file is what is wanted, and its section may have changed since.
+    /// The same, but those of other settings are kept and followed anew: the sweep file is what is wanted, and its
+    /// section may have changed since.
     GoOnWhereTheSame,
 }
 

@@ -10,12 +10,13 @@ use super::sweep::distance_between;
 use super::{Goal, LocateOptions, Point, Subject, SweepResult, locate::label_points};
 use crate::topology::Detector;
 
-/// Detects and locates again on all points there are, those that once refined brackets included, of a sweep with `given` given
-/// values. What the points held of detections and distances is replaced; points without a density stay as they are.
+/// Detects and locates again on all points there are, those that once refined brackets included, of a sweep with
+/// `given` given values. What the points held of detections and distances is replaced; points without a density stay as
+/// they are.
 ///
-/// Located values are checked against `checks`, what a sweep saw in its checks ([`SweepResult::checks`]). With unchanged
-/// settings that is the same check. Other settings may ask for values that were not solved: the zero then comes from those that were,
-/// and a change near which there are none is unconfirmed.
+/// Located values are checked against `checks`, what a sweep saw in its checks ([`SweepResult::checks`]). With
+/// unchanged settings that is the same check. Other settings may ask for values that were not solved: the zero then
+/// comes from those that were, and a change near which there are none is unconfirmed.
 pub fn detect_again(
     (subject, given): (Subject, usize),
     detector: &dyn Detector,

@@ -1,8 +1,8 @@
 //! Changes of signature between neighbouring points, and the indicator that decides each.
 //!
-//! A signature changes where a feature passes what noise and floor allow, or where an indicator changes sign. The indicator's own change
-//! of sign is the bifurcation: at a centre of symmetry, or at the place where a feature is born. Several features may change between the
-//! same two points; each is a change of its own.
+//! A signature changes where a feature passes what noise and floor allow, or where an indicator changes sign. The
+//! indicator's own change of sign is the bifurcation: at a centre of symmetry, or at the place where a feature is born.
+//! Several features may change between the same two points; each is a change of its own.
 
 use super::Point;
 use super::events::{Event, events};
@@ -32,8 +32,8 @@ pub(super) enum Found {
     Crossing(Crossing),
     /// An indicator is lost between the point with this index and the next one: values between would show more.
     Lost(usize),
-    /// An indicator says that the feature is there up to the end of the sweep, beyond the point with this index and the next one,
-    /// though too low to be counted: it was born before.
+    /// An indicator says that the feature is there up to the end of the sweep, beyond the point with this index and the
+    /// next one, though too low to be counted: it was born before.
     Beyond(usize),
     /// Only persistence tells.
     Persistence,
@@ -139,7 +139,8 @@ fn between(
     let mut centre: Vec<Crossing> = (left..right)
         .filter_map(|index| at_centre(points, observable, index))
         .collect();
-    // Where rings open or merge at a state of rest, curvatures at the centre touch zero, and errors may turn their signs for a moment.
+    // Where rings open or merge at a state of rest, curvatures at the centre touch zero, and errors may turn their
+    // signs for a moment.
     let at_rest = |event: &Event| matches!(event.indicator, Some((IndicatorKind::Level { .. }, _)));
     if events.iter().any(at_rest) {
         centre.clear();
@@ -170,8 +171,9 @@ fn between(
     found
 }
 
-/// What follows an event. Where counts follow from the equations, a change of sign at which the count stays is another event's: a peak that was
-/// born on a flank before it reaches a kink. Then its inflection is followed in place of the kink.
+/// What follows an event. Where counts follow from the equations, a change of sign at which the count stays is another
+/// event's: a peak that was born on a flank before it reaches a kink. Then its inflection is followed in place of the
+/// kink.
 fn followed(
     points: &[&Point],
     detector: &dyn Detector,
@@ -200,7 +202,8 @@ fn followed(
     }
 }
 
-/// Whether the count changes where an indicator does. So near to its zero that its peak is lower than rounding, the count may come a point late.
+/// Whether the count changes where an indicator does. So near to its zero that its peak is lower than rounding, the
+/// count may come a point late.
 fn separates(points: &[&Point], crossing: &Crossing, above: bool) -> bool {
     let signature = |index: usize| {
         let detection = points.get(index)?.detections.get(crossing.observable)?;
@@ -224,8 +227,8 @@ fn separates(points: &[&Point], crossing: &Crossing, above: bool) -> bool {
 /// Share of its value at the other end of a bracket from which on an indicator is next to zero.
 const NEAR_ZERO: f64 = 1e-2;
 
-/// Takes away the events that a change at the centre explains: it makes one peak two, or closes one crater. Counts that change by more have
-/// other causes beside it.
+/// Takes away the events that a change at the centre explains: it makes one peak two, or closes one crater. Counts that
+/// change by more have other causes beside it.
 fn take_those_of_centre(events: &mut Vec<Event>, before: &Signature, after: &Signature) {
     let others = before.peaks.abs_diff(after.peaks) > 1
         || before.craters.abs_diff(after.craters) > 1

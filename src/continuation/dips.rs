@@ -1,6 +1,8 @@
-//! Where two changes may lie between two values that were solved: an indicator of one sign on either side comes near zero, or passes it twice.
+//! Where two changes may lie between two values that were solved: an indicator of one sign on either side comes near
+//! zero, or passes it twice.
 //!
-//! At a centre of symmetry, on the flanks of a marginal, and on those of rings in a joint density. The parabola through three neighbouring values shows where to look.
+//! At a centre of symmetry, on the flanks of a marginal, and on those of rings in a joint density. The parabola through
+//! three neighbouring values shows where to look.
 
 use super::Point;
 use crate::topology::Flank;
@@ -38,7 +40,8 @@ pub(super) fn at_centre(points: &[&Point], tolerance: f64) -> Option<f64> {
     })
 }
 
-/// The same on flanks, away from any centre: a pair of peak and valley may come and go between neighbours, or go and come.
+/// The same on flanks, away from any centre: a pair of peak and valley may come and go between neighbours, or go and
+/// come.
 pub(super) fn on_flanks(points: &[(&Point, &Flanks)], tolerance: f64) -> Option<f64> {
     let observables = points.first().map_or(0, |point| point.1.len());
     let triples = points.windows(3);
@@ -59,8 +62,8 @@ pub(super) fn on_flanks(points: &[(&Point, &Flanks)], tolerance: f64) -> Option<
     })
 }
 
-/// A value between two neighbours whose signatures are the same although one pair of peak and valley was born on a flank between them and another
-/// has vanished: the shoulders of both have changed their signs.
+/// A value between two neighbours whose signatures are the same although one pair of peak and valley was born on a
+/// flank between them and another has vanished: the shoulders of both have changed their signs.
 pub(super) fn between_flanks(points: &[(&Point, &Flanks)], tolerance: f64) -> Option<f64> {
     let observables = points.first().map_or(0, |point| point.1.len());
     let mut pairs = points.windows(2);
@@ -94,7 +97,8 @@ pub(super) fn between_flanks(points: &[(&Point, &Flanks)], tolerance: f64) -> Op
     })
 }
 
-/// A value between two neighbours at which a centre of symmetry turns and a pair is born on a flank, or vanishes there: between both zeros.
+/// A value between two neighbours at which a centre of symmetry turns and a pair is born on a flank, or vanishes there:
+/// between both zeros.
 pub(super) fn beside_centre(points: &[(&Point, &Flanks)], tolerance: f64) -> Option<f64> {
     let observables = points.first().map_or(0, |point| point.1.len());
     let mut pairs = points.windows(2);

@@ -1,7 +1,9 @@
-//! What appears and what vanishes between two neighbouring points: features matched from one to the other by their places.
+//! What appears and what vanishes between two neighbouring points: features matched from one to the other by their
+//! places.
 //!
-//! Features of one kind are paired, the nearest first. What is left on one side was born, or has vanished, in between, and says which
-//! indicator passes zero there: the slope between a peak and the saddle where it merges, or from a ring's inside to the ring.
+//! Features of one kind are paired, the nearest first. What is left on one side was born, or has vanished, in between,
+//! and says which indicator passes zero there: the slope between a peak and the saddle where it merges, or from a
+//! ring's inside to the ring.
 
 use super::Point;
 use crate::density::EstimatedDensity;
@@ -11,7 +13,8 @@ use crate::topology::{Feature, FeatureKind, IndicatorKind, Verdict, born_at_kink
 pub(super) const COUNTED: [FeatureKind; 3] =
     [FeatureKind::Peak, FeatureKind::Crater, FeatureKind::Ring];
 
-/// Distance, in ranges, up to which a peak and the middle of a ring are one place: what a ring that has just opened lies beside its middle.
+/// Distance, in ranges, up to which a peak and the middle of a ring are one place: what a ring that has just opened
+/// lies beside its middle.
 const AT_REST: f64 = 0.03;
 
 /// A feature that one of two neighbouring points has and the other has not.
@@ -85,8 +88,8 @@ pub(super) fn events(a: &Point, b: &Point, observable: usize) -> Vec<Event> {
     found
 }
 
-/// Rings that open where a peak was, and rings that merge at the saddle between them, in either direction: both curvatures vanish there together. The peak
-/// that becomes the bottom within a ring is a part of the ring's event.
+/// Rings that open where a peak was, and rings that merge at the saddle between them, in either direction: both
+/// curvatures vanish there together. The peak that becomes the bottom within a ring is a part of the ring's event.
 fn rings_at_rest(
     events: &mut Vec<Event>,
     (a, b): (&Point, &Point),

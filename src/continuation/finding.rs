@@ -1,7 +1,7 @@
 //! What a user must know of a point: findings of its solve, each with its numbers.
 //!
-//! A finding is made by a method, stored in `points.csv` as a code with numbers, and put into a sentence where people read it. Its
-//! code and its axis are its kind: findings of one kind at several points are told once.
+//! A finding is made by a method, stored in `points.csv` as a code with numbers, and put into a sentence where people
+//! read it. Its code and its axis are its kind: findings of one kind at several points are told once.
 
 /// Something that a user must know of a point. Shares are of the whole mass or of the whole time.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,7 +88,8 @@ pub enum Finding {
     },
     /// Too few modes carry axes: with more of them watched densities change.
     FewModes {
-        /// Largest change of a watched density on coarse cells, relative to its largest value, when more modes were tried.
+        /// Largest change of a watched density on coarse cells, relative to its largest value, when more modes were
+        /// tried.
         change: f64,
     },
     /// The cells at a switching surface are wider than the layer that holds the kink of the density.

@@ -18,7 +18,8 @@ pub(super) enum Followed {
     Beyond(usize),
 }
 
-/// Follows the indicator of an event between two points toward the side where the feature is absent; `None` where the event has none.
+/// Follows the indicator of an event between two points toward the side where the feature is absent; `None` where the
+/// event has none.
 pub(super) fn follow(
     points: &[&Point],
     detector: &dyn Detector,

@@ -1,8 +1,8 @@
 //! The checks of a located value: on a finer grid, and between ends of Ω that let nothing out.
 //!
-//! The indicator's zero on the finer grid is found by a secant that starts with the slope known from the coarser one. The
-//! finer value is the better one and is kept. With r times as many cells an axis and order p its error is 1/(rᵖ - 1) of the
-//! distance between both: what order two gives is stated, and never less than the distance itself.
+//! The indicator's zero on the finer grid is found by a secant that starts with the slope known from the coarser one.
+//! The finer value is the better one and is kept. With r times as many cells an axis and order p its error is
+//! 1/(rᵖ - 1) of the distance between both: what order two gives is stated, and never less than the distance itself.
 
 use super::root::Root;
 use super::span::Span;
@@ -42,8 +42,8 @@ pub(super) enum Leak {
     Failed(String),
 }
 
-/// How located values are checked: by solves, or by what earlier solves saw. `None` where there is nothing to check with, or the
-/// sweep is to end.
+/// How located values are checked: by solves, or by what earlier solves saw. `None` where there is nothing to check
+/// with, or the sweep is to end.
 pub(super) trait Checks {
     /// On finer cells.
     fn on_finer_cells(&mut self, checked: &Checked<'_>) -> Option<GridCheck>;
@@ -140,8 +140,8 @@ pub(super) struct Checked<'a> {
     pub(super) root: Root,
 }
 
-/// What was seen of an indicator at a value before. Several rows may ask for the same, and a solve from another start differs
-/// by rounding.
+/// What was seen of an indicator at a value before. Several rows may ask for the same, and a solve from another start
+/// differs by rounding.
 pub(super) fn known(
     seen: &[CheckedIndicator],
     by: CheckedBy,

@@ -1,16 +1,18 @@
-//! Whether an indicator passes zero between two values, or jumps to the other side of it because what it is read from changes there.
+//! Whether an indicator passes zero between two values, or jumps to the other side of it because what it is read from
+//! changes there.
 
 use super::Point;
 use super::change::Crossing;
 use crate::topology::{Detector, Indicator};
 
-/// Times as steep as beside a bracket that an indicator must be inside it to have jumped. A smooth one is as steep, within a few times.
+/// Times as steep as beside a bracket that an indicator must be inside it to have jumped. A smooth one is as steep,
+/// within a few times.
 const STEEPER: f64 = 30.0;
 /// Widths of the bracket within which values beside it tell how steep the indicator is.
 const BESIDE: f64 = 16.0;
 
-/// The sentence for an indicator that does not pass zero: two densities on either side that are solved in different ways, or a value that does not
-/// come down while the bracket closes in on the zero.
+/// The sentence for an indicator that does not pass zero: two densities on either side that are solved in different
+/// ways, or a value that does not come down while the bracket closes in on the zero.
 pub(super) fn instead_of_zero(
     points: &[&Point],
     crossing: &Crossing,
@@ -121,7 +123,8 @@ mod tests {
         }
     }
 
-    /// What is said of a function of the parameter that changes its sign between 0.5 and 0.5 + width, given values beside.
+    /// What is said of a function of the parameter that changes its sign between 0.5 and 0.5 + width, given values
+    /// beside.
     fn said(of: impl Fn(f64) -> f64, width: f64, sampling_error: f64) -> Option<String> {
         let values = [0.5 - 4.0 * width, 0.5, 0.5 + width, 0.5 + 5.0 * width];
         let points = values.map(|value| point(value, of(value), 1e-7));
@@ -154,7 +157,8 @@ mod tests {
 
     #[test]
     fn steep_is_no_jump() {
-        // A cubic root is the steepest of smooth branches that meet zero, two zeros at a distance of a bracket a fold of them.
+        // A cubic root is the steepest of smooth branches that meet zero, two zeros at a distance of a bracket a fold
+        // of them.
         let root = |x: f64| (x - 0.500_02_f64).cbrt();
         assert_eq!(said(root, 1e-4, 0.0), None);
         let two = |x: f64| (x - 0.500_05) * (x - 0.500_2) * -1e4;

@@ -33,11 +33,13 @@ pub enum BifurcationStatus {
     Located,
     /// The data cannot tell where in the bracket it lies.
     Unresolved,
-    /// A finer grid does not show it there, or there is none to check a cell map that adds diffusion of its own, or, where
-    /// only persistence tells, its feature is nowhere more than a few cells from another: it may be an effect of the cells.
+    /// A finer grid does not show it there, or there is none to check a cell map that adds diffusion of its own, or,
+    /// where only persistence tells, its feature is nowhere more than a few cells from another: it may be an effect of
+    /// the cells.
     Unconfirmed,
-    /// Finer cells were not asked ([`LocateOptions::grid_check`](super::LocateOptions::grid_check) is off), so that its error lacks what the cells do
-    /// to it; or a check failed: [`LabelledPoint::reason`] says which. The value may be right.
+    /// Finer cells were not asked ([`LocateOptions::grid_check`](super::LocateOptions::grid_check) is off), so that its
+    /// error lacks what the cells do to it; or a check failed: [`LabelledPoint::reason`] says which. The value may be
+    /// right.
     Unchecked,
 }
 

@@ -103,7 +103,8 @@ impl<'a> Live<'a> {
         }
     }
 
-    /// The indicator at a value, by a solve unless it was seen there before; `None` where there is nothing to check with.
+    /// The indicator at a value, by a solve unless it was seen there before; `None` where there is nothing to check
+    /// with.
     fn evaluate(&mut self, by: CheckedBy, checked: &Checked<'_>, value: f64) -> Option<Seen> {
         self.source?;
         let before = known(&self.seen, by, checked, value);

@@ -180,7 +180,8 @@ fn by_indicator(
             let chance = by_chance(density, checked.place);
             let share = share_of_distance(subject.cell_check) * chance;
             let grid = share * (value - found.value).abs();
-            // Where a bend lies in its cell is chance: two grids may agree, and both be off by what a scheme makes of it.
+            // Where a bend lies in its cell is chance: two grids may agree, and both be off by what a scheme makes of
+            // it.
             found.error.grid = match chance > 1.0 && density.density.axes.len() > 1 {
                 // No scheme takes part in closed forms that another source gives on cells. What the generator finds by
                 // quadrature does not come here: its indicators follow from a profile, which no cells change.
@@ -251,7 +252,8 @@ fn by_indicator(
     row
 }
 
-/// Share of the tolerance below which no error is claimed where a scheme takes part: two grids may agree that well by chance.
+/// Share of the tolerance below which no error is claimed where a scheme takes part: two grids may agree that well by
+/// chance.
 const LEAST_CLAIM: f64 = 1e-2;
 
 /// Cells on either side of a place that what is read there depends on.
@@ -260,8 +262,8 @@ const REACH: usize = 4;
 /// By how much a distance to finer cells may be too small by chance there.
 const CHANCE: f64 = 10.0;
 
-/// One, or more beside a kink that lies inside a cell, as where in its cell differs from grid to grid, and with it the error; and beside a bend that a
-/// scheme has followed, whose order is not known there.
+/// One, or more beside a kink that lies inside a cell, as where in its cell differs from grid to grid, and with it the
+/// error; and beside a bend that a scheme has followed, whose order is not known there.
 fn by_chance(estimated: &EstimatedDensity, place: &[f64]) -> f64 {
     let is_cut = |kink: &Kink| {
         let Some((axis, place)) = estimated

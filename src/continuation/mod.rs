@@ -53,14 +53,15 @@ use crate::topology::Detection;
 /// Settings of location.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LocateOptions {
-    /// Wanted width of a P-bifurcation's bracket, in units of the parameter; `None` leaves it to the relative tolerance.
+    /// Wanted width of a P-bifurcation's bracket, in units of the parameter; `None` leaves it to the relative
+    /// tolerance.
     pub tolerance: Option<f64>,
     /// Wanted width of a bracket as a share of the range that is swept.
     pub relative_tolerance: f64,
     /// Hellinger distance between neighbouring densities above which a value between is solved too.
     pub largest_distance: f64,
-    /// Whether located values are checked on a finer grid, where the source has one; those that could be, and are not, are
-    /// [`BifurcationStatus::Unchecked`].
+    /// Whether located values are checked on a finer grid, where the source has one; those that could be, and are not,
+    /// are [`BifurcationStatus::Unchecked`].
     pub grid_check: bool,
 }
 
@@ -76,7 +77,8 @@ impl Default for LocateOptions {
 }
 
 impl LocateOptions {
-    /// Whether a row or a point of this status is all that was asked for: located, or unchecked where no check was wanted.
+    /// Whether a row or a point of this status is all that was asked for: located, or unchecked where no check was
+    /// wanted.
     pub fn is_met_by(&self, status: BifurcationStatus) -> bool {
         match status {
             BifurcationStatus::Located => true,

@@ -7,8 +7,8 @@ use super::{CheckedIndicator, Point};
 pub struct KeptCheck {
     /// What was seen.
     pub seen: CheckedIndicator,
-    /// What the solve has left in the session of its check ([`Session::memory`](super::Session::memory)); `None` where that is not known:
-    /// what is solved later then starts afresh.
+    /// What the solve has left in the session of its check ([`Session::memory`](super::Session::memory)); `None` where
+    /// that is not known: what is solved later then starts afresh.
     pub left: Option<Vec<u8>>,
 }
 
@@ -47,7 +47,8 @@ pub trait Observer {
         Ok(())
     }
 
-    /// What earlier checks of the same sweep saw: asked for once, when the first value is checked. It is taken for seen, not solved again.
+    /// What earlier checks of the same sweep saw: asked for once, when the first value is checked. It is taken for
+    /// seen, not solved again.
     fn kept_checks(&mut self) -> Vec<KeptCheck> {
         Vec::new()
     }

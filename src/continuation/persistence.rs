@@ -7,9 +7,9 @@
 //! is present, in the others: θ* lies between that zero and the last point where the feature is present.
 //! The zero's own uncertainty comes from shifting all q by ± two standard errors (common random numbers make
 //! neighbouring errors alike, so they do not average out) and from dropping the point farthest away. A feature only a
-//! few cells from its neighbour is seen through the cells' averages, which shift its birth: a second line through points
-//! where it is well apart must agree, and the band holds both zeros. A change whose feature is nowhere well apart is
-//! `unconfirmed`: it may be one of the cells, not of the density.
+//! few cells from its neighbour is seen through the cells' averages, which shift its birth: a second line through
+//! points where it is well apart must agree, and the band holds both zeros. A change whose feature is nowhere well
+//! apart is `unconfirmed`: it may be one of the cells, not of the density.
 
 use super::Point;
 use super::bracket::{count, deciding_feature};

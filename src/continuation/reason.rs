@@ -86,7 +86,8 @@ pub(super) fn leaks(
     ))
 }
 
-/// Standard deviations from the mean that hold all but what does not matter of a density whose tails fall as the normal one's.
+/// Standard deviations from the mean that hold all but what does not matter of a density whose tails fall as the normal
+/// one's.
 const TAILS: f64 = 7.5;
 
 /// The axis along which most of the mass leaves, and the range that would hold it.
@@ -102,8 +103,8 @@ fn wider(point: &Point, subject: &Subject) -> Option<String> {
     Some(format!("{name} (about {:.2} to {:.2})", ends[0], ends[1]))
 }
 
-/// Share of a density's mass that may be negative where its shape is to be believed. What is negative must be positive elsewhere, so
-/// that wiggles of this size hold as much mass as a small peak does.
+/// Share of a density's mass that may be negative where its shape is to be believed. What is negative must be positive
+/// elsewhere, so that wiggles of this size hold as much mass as a small peak does.
 pub(super) const MOST_NEGATIVE: f64 = 0.02;
 
 /// Negative mass of a density, as a share of the whole.

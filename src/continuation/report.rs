@@ -84,8 +84,8 @@ pub struct MethodPart {
     pub numerical_diffusion: Vec<f64>,
     /// Time one transition spans; `None` for methods without a map step.
     pub map_step: Option<f64>,
-    /// Relative shift of the variances (or of the mass beside a switching surface) by the time step of trajectories, the
-    /// largest that halving the step makes certain; `None` for methods without trajectories.
+    /// Relative shift of the variances (or of the mass beside a switching surface) by the time step of trajectories,
+    /// the largest that halving the step makes certain; `None` for methods without trajectories.
     pub time_step_bias: Option<f64>,
 }
 

@@ -67,9 +67,9 @@ const STEPS_BESIDE: usize = 3;
 /// Times as steep as the gentlest slope nearby from which on it is a jump.
 const JUMP: f64 = 10.0;
 
-/// Change of the indicator per unit of the parameter. A sampled one is read by a fit whose window and weights change with the parameter: where they do,
-/// the indicator jumps, and across a jump it is as steep as the bracket is narrow. There the gentlest slope in the neighbourhood is what an error
-/// of the indicator moves its zero by.
+/// Change of the indicator per unit of the parameter. A sampled one is read by a fit whose window and weights change
+/// with the parameter: where they do, the indicator jumps, and across a jump it is as steep as the bracket is narrow.
+/// There the gentlest slope in the neighbourhood is what an error of the indicator moves its zero by.
 fn slope(points: &[&Point], crossing: &Crossing) -> f64 {
     let [low, high] = &crossing.ends;
     let at = |index: usize| points[index].value;
@@ -183,8 +183,8 @@ fn limit_or_zero(limit: f64, error: f64) -> f64 {
     if error > 0.0 { limit * error } else { 0.0 }
 }
 
-/// A value beside a zero that is narrowed, where the sign of its indicator is beyond doubt, on a side that has none so near: what is
-/// there just before and just after the change shows only so, and pairs that are born shortly before it.
+/// A value beside a zero that is narrowed, where the sign of its indicator is beyond doubt, on a side that has none so
+/// near: what is there just before and just after the change shows only so, and pairs that are born shortly before it.
 pub(super) fn beyond_doubt(
     points: &[&Point],
     crossing: &Crossing,

@@ -1,4 +1,5 @@
-//! Rows of a sweep beside each other: in which order they come, and which of them are one because nothing tells them apart.
+//! Rows of a sweep beside each other: in which order they come, and which of them are one because nothing tells them
+//! apart.
 
 use super::change::Change;
 use super::label::{BifurcationStatus, LabelledPoint};
@@ -8,8 +9,8 @@ use crate::topology::IndicatorKind;
 /// So many rows in a row that are not located are one.
 const FLICKER: usize = 3;
 
-/// The rows of changes between the same two points, ascending, each from the signature that the one before leaves; those whose values cannot be told
-/// apart are one.
+/// The rows of changes between the same two points, ascending, each from the signature that the one before leaves;
+/// those whose values cannot be told apart are one.
 pub(super) fn in_order(mut found: Vec<(LabelledPoint, &Change)>) -> Vec<LabelledPoint> {
     found.sort_by(|a, b| a.0.value.total_cmp(&b.0.value));
     let Some(last) = found.last().map(|one| one.1.after) else {
@@ -33,8 +34,8 @@ pub(super) fn in_order(mut found: Vec<(LabelledPoint, &Change)>) -> Vec<Labelled
     rows
 }
 
-/// Where features come and go from point to point, one row says from where to where, instead of one a point. What has a place of its own keeps
-/// its row, however wide its error.
+/// Where features come and go from point to point, one row says from where to where, instead of one a point. What has a
+/// place of its own keeps its row, however wide its error.
 pub(super) fn without_flicker(rows: Vec<LabelledPoint>) -> Vec<LabelledPoint> {
     let mut kept = Vec::new();
     for run in rows.chunk_by(is_one_doubt) {
@@ -74,8 +75,8 @@ pub(super) fn without_flicker(rows: Vec<LabelledPoint>) -> Vec<LabelledPoint> {
     kept
 }
 
-/// Whether two rows that follow each other are not located and cannot be kept apart: their intervals overlap, or, where one of them is no zero
-/// of an indicator, the stage between them is no wider than they are.
+/// Whether two rows that follow each other are not located and cannot be kept apart: their intervals overlap, or, where
+/// one of them is no zero of an indicator, the stage between them is no wider than they are.
 fn is_one_doubt(first: &LabelledPoint, second: &LabelledPoint) -> bool {
     let in_doubt = |row: &LabelledPoint| row.status != Some(BifurcationStatus::Located);
     let is_zero = |row: &LabelledPoint| {

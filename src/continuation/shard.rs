@@ -5,8 +5,8 @@ use std::ops::RangeInclusive;
 
 /// One of several contiguous parts of a sweep, counted from 1.
 ///
-/// Neighbouring shards share the value at their border, so that every two neighbouring values belong to one shard: what lies between them is looked for
-/// there.
+/// Neighbouring shards share the value at their border, so that every two neighbouring values belong to one shard: what
+/// lies between them is looked for there.
 ///
 /// ```
 /// use pbif::continuation::Shard;
@@ -41,7 +41,8 @@ impl Shard {
         self.of
     }
 
-    /// The places of its values among `points` given values; `None` where there are more shards than steps between values.
+    /// The places of its values among `points` given values; `None` where there are more shards than steps between
+    /// values.
     pub fn places(self, points: usize) -> Option<RangeInclusive<usize>> {
         let steps = points.checked_sub(1)?;
         let border = |number: usize| (number as u128 * steps as u128 / self.of as u128) as usize;

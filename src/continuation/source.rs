@@ -1,8 +1,8 @@
 //! The seam of a sweep: whatever can give densities along a path.
 //!
-//! A [`DensitySource`] says what it gives densities of and is opened into sessions. A [`Session`] is a source at work: it remembers
-//! what it solved, starts each solve from there, and owns everything that takes memory. Sessions of one source know nothing of
-//! each other and may run side by side.
+//! A [`DensitySource`] says what it gives densities of and is opened into sessions. A [`Session`] is a source at work:
+//! it remembers what it solved, starts each solve from there, and owns everything that takes memory. Sessions of one
+//! source know nothing of each other and may run side by side.
 
 use super::SolveReport;
 use crate::bytes::NotWhatWasWritten;
@@ -43,8 +43,8 @@ pub struct Solution<'session> {
     pub moments: Vec<Moments>,
     /// The watched densities, in the order of [`Subject::observables`]; empty without a density.
     pub densities: Vec<EstimatedDensity>,
-    /// How the densities answer to parameters, from what the solve left in the session; `None` where the source cannot tell, or there
-    /// is no density.
+    /// How the densities answer to parameters, from what the solve left in the session; `None` where the source cannot
+    /// tell, or there is no density.
     pub sensitivity: Option<Box<dyn Sensitivity + 'session>>,
 }
 
@@ -81,19 +81,20 @@ impl std::fmt::Debug for Solution<'_> {
     }
 }
 
-/// How the watched densities of a solved point change with parameters. It belongs to one [`Solution`], so that it cannot be asked of
-/// another.
+/// How the watched densities of a solved point change with parameters. It belongs to one [`Solution`], so that it
+/// cannot be asked of another.
 pub trait Sensitivity {
-    /// dp/dθ of every watched density for a named parameter of the model, swept or not, all others held: one value a cell, in the
-    /// order of [`Density::values`](crate::density::Density::values), ∫ = 0.
+    /// dp/dθ of every watched density for a named parameter of the model, swept or not, all others held: one value a
+    /// cell, in the order of [`Density::values`](crate::density::Density::values), ∫ = 0.
     ///
     /// # Errors
     /// [`SourceError::Method`] for a name that is no parameter, and when the solve does not converge;
     /// [`SourceError::Interrupted`].
     fn to_parameter(&mut self, name: &str) -> Result<Vec<Vec<f64>>, SourceError>;
 
-    /// How the jumps that the equations imply at the kinks of every watched density change with a named parameter: those of its
-    /// [`Structure::kinks`](crate::density::Structure::kinks), one after the other in their order; nothing where the source does not know.
+    /// How the jumps that the equations imply at the kinks of every watched density change with a named parameter:
+    /// those of its [`Structure::kinks`](crate::density::Structure::kinks), one after the other in their order; nothing
+    /// where the source does not know.
     ///
     /// # Errors
     /// As [`Sensitivity::to_parameter`].
@@ -102,7 +103,8 @@ pub trait Sensitivity {
         Ok(Vec::new())
     }
 
-    /// The same as [`Sensitivity::to_parameter`] for the coordinate of the path, which may move several parameters at once.
+    /// The same as [`Sensitivity::to_parameter`] for the coordinate of the path, which may move several parameters at
+    /// once.
     ///
     /// # Errors
     /// As [`Sensitivity::to_parameter`].
@@ -137,8 +139,8 @@ impl From<Cancelled> for SourceError {
 ///
 /// # A source in full
 ///
-/// The density of a particle in a quartic potential, from its formula. What is left of a solve is nothing, so a session is a
-/// function.
+/// The density of a particle in a quartic potential, from its formula. What is left of a solve is nothing, so a session
+/// is a function.
 ///
 /// ```
 /// use pbif::cancellation::Cancellation;
@@ -200,8 +202,9 @@ pub trait DensitySource: Send + Sync {
     /// Opens a session, which ends its work when `cancellation` is cancelled.
     fn open(&self, cancellation: &Cancellation) -> Box<dyn Session>;
 
-    /// The same source on finer cells, to check what was found; `None` where there is none, or it would say nothing (sampling
-    /// errors differ from grid to grid). Its densities are compared, so that they need state no error of their own.
+    /// The same source on finer cells, to check what was found; `None` where there is none, or it would say nothing
+    /// (sampling errors differ from grid to grid). Its densities are compared, so that they need state no error of
+    /// their own.
     ///
     /// # Errors
     /// [`SourceError::Method`] when it cannot be made.
@@ -209,32 +212,34 @@ pub trait DensitySource: Send + Sync {
         Ok(None)
     }
 
-    /// The same source with ends of Ω that let nothing out, to tell what the mass that leaves does; `None` where there is none. Its
-    /// densities need state no error of their own.
+    /// The same source with ends of Ω that let nothing out, to tell what the mass that leaves does; `None` where there
+    /// is none. Its densities need state no error of their own.
     fn enclosed(&self) -> Option<Box<dyn DensitySource>> {
         None
     }
 }
 
-/// A source at work. It chooses its own start for every solve, from what it solved before: values are best asked for in an order
-/// in which neighbours follow each other.
+/// A source at work. It chooses its own start for every solve, from what it solved before: values are best asked for in
+/// an order in which neighbours follow each other.
 ///
 /// A function of a value is a session that remembers nothing.
 pub trait Session: Send {
     /// The densities at a value of the path's coordinate, which may lie beyond its ends.
     ///
     /// # Errors
-    /// [`SourceError`] when there is nothing to report; failed solves are reported in the solution. The session can be used on.
+    /// [`SourceError`] when there is nothing to report; failed solves are reported in the solution. The session can be
+    /// used on.
     fn solve(&mut self, value: f64) -> Result<Solution<'_>, SourceError>;
 
-    /// What the last solve has left in the session for later ones, so that [`Session::recall`] can bring another one there; nothing
-    /// for sessions that remember nothing.
+    /// What the last solve has left in the session for later ones, so that [`Session::recall`] can bring another one
+    /// there; nothing for sessions that remember nothing.
     fn memory(&self) -> Vec<u8> {
         Vec::new()
     }
 
-    /// Brings a fresh session of the same source to where another one was after its solves: `left` has the value of each, in their
-    /// order, with the [`Session::memory`] after it. Whatever is solved then is the same to the bit as it would have been there.
+    /// Brings a fresh session of the same source to where another one was after its solves: `left` has the value of
+    /// each, in their order, with the [`Session::memory`] after it. Whatever is solved then is the same to the bit as
+    /// it would have been there.
     ///
     /// # Errors
     /// [`SourceError::Method`] when that is not what a session of this source has left; [`SourceError::Interrupted`].

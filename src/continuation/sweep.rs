@@ -79,7 +79,8 @@ pub fn sweep(
     sweep_shard(source, detector, whole, options, cancellation, observer)
 }
 
-/// The same of one shard. What lies between its values is followed, narrowed and located as in the whole sweep, from what the shard knows.
+/// The same of one shard. What lies between its values is followed, narrowed and located as in the whole sweep, from
+/// what the shard knows.
 ///
 /// # Errors
 /// As [`sweep`]; [`SweepError::Shards`] where there are more shards than steps.

@@ -62,8 +62,8 @@ fn of_both(
 }
 
 impl EstimatedDensity {
-    /// Whether the cells' masses are integrals of the density itself, free of any scheme: that of a system with one axis
-    /// by quadrature, or a closed form.
+    /// Whether the cells' masses are integrals of the density itself, free of any scheme: that of a system with one
+    /// axis by quadrature, or a closed form.
     pub fn is_by_quadrature(&self) -> bool {
         self.negligible == 0.0
     }

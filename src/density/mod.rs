@@ -45,8 +45,8 @@ impl Observable {
         }
     }
 
-    /// Its name in files, for systems of a family: the names of its axes run together, for example `xy`; with `_` between
-    /// them where one is longer than a letter.
+    /// Its name in files, for systems of a family: the names of its axes run together, for example `xy`; with `_`
+    /// between them where one is longer than a letter.
     pub fn name(self, family: &Family) -> String {
         let axes = self.axes().into_iter();
         let names: Vec<&str> = axes.map(|axis| family.axis(axis)).collect();
@@ -113,14 +113,16 @@ pub struct EstimatedDensity {
     pub variants: Variants,
     /// Symmetry and kinks that the system's equations imply.
     pub structure: Structure,
-    /// Share of the maximum below which values are what the solver leaves; zero where every cell has its digits, whatever its mass.
+    /// Share of the maximum below which values are what the solver leaves; zero where every cell has its digits,
+    /// whatever its mass.
     pub negligible: f64,
 }
 
 /// [`EstimatedDensity::negligible`] of a density whose solver bounds the error of all masses together.
 pub const NEGLIGIBLE: f64 = 1e-7;
 
-/// [`EstimatedDensity::negligible`] of a density of quantities: values that the solver leaves in single cells add up along level lines.
+/// [`EstimatedDensity::negligible`] of a density of quantities: values that the solver leaves in single cells add up
+/// along level lines.
 pub const NEGLIGIBLE_OF_QUANTITIES: f64 = 1e-5;
 
 impl EstimatedDensity {

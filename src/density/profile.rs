@@ -1,13 +1,13 @@
-//! What the equations of a system with one axis say of its density between the cells: where it has extrema, and where its
-//! slope has.
+//! What the equations of a system with one axis say of its density between the cells: where it has extrema, and where
+//! its slope has.
 //!
-//! Without flux through the ends, (log p)' = 2a/b² - (b²)'/b² with drift a and noise intensity b² in the sense of Itô: the
-//! stationary solution in one variable, with D⁽¹⁾ = a and D⁽²⁾ = b²/2 in H. Risken, The Fokker-Planck Equation, 2nd edition,
-//! Springer 1989, section 5.2.
+//! Without flux through the ends, (log p)' = 2a/b² - (b²)'/b² with drift a and noise intensity b² in the sense of Itô:
+//! the stationary solution in one variable, with D⁽¹⁾ = a and D⁽²⁾ = b²/2 in H. Risken, The Fokker-Planck Equation, 2nd
+//! edition, Springer 1989, section 5.2.
 
-/// The extrema of a density over one axis and of the slope of its logarithm, found from drift and noise: they depend on no
-/// cells. Places are coordinates of the axis, in its unit; densities have the inverse of that unit, and their integral over
-/// the range of the axis is one.
+/// The extrema of a density over one axis and of the slope of its logarithm, found from drift and noise: they depend on
+/// no cells. Places are coordinates of the axis, in its unit; densities have the inverse of that unit, and their
+/// integral over the range of the axis is one.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Profile {
     /// Peaks and valleys by turns, in ascending place. An end of the range may be a peak.
@@ -16,7 +16,8 @@ pub struct Profile {
     pub turns: Vec<Turn>,
     /// Places where that slope jumps, ascending.
     pub jumps: Vec<SlopeJump>,
-    /// p''/p at the centre of symmetry, and its error, both over the square of the axis's unit; `None` without a centre.
+    /// p''/p at the centre of symmetry, and its error, both over the square of the axis's unit; `None` without a
+    /// centre.
     pub curvature: Option<(f64, f64)>,
 }
 

@@ -34,7 +34,8 @@ impl Kink {
     /// Jump of the slope of log p, times the range of the axis across, that is rounding.
     pub const ROUNDING: f64 = 1e-7;
 
-    /// Whether the derivative bends there, and does not jump: no polynomial follows the density across, yet its slope is one.
+    /// Whether the derivative bends there, and does not jump: no polynomial follows the density across, yet its slope
+    /// is one.
     pub fn is_bend(&self) -> bool {
         self.jump.is_empty()
     }

@@ -1,5 +1,5 @@
-//! What the page is told of a plane of two parameters: its regions, the curves between them, and the points where these meet, as they stand in the tables of
-//! a map.
+//! What the page is told of a plane of two parameters: its regions, the curves between them, and the points where these
+//! meet, as they stand in the tables of a map.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -188,7 +188,8 @@ impl PlaneScene {
         Ok([first?, second?])
     }
 
-    /// The values of both parameters that make the coarse grid of a map, ascending, at most so many of each; both ends are among them.
+    /// The values of both parameters that make the coarse grid of a map, ascending, at most so many of each; both ends
+    /// are among them.
     pub(super) fn grid(&self, nodes: &Rows, most: usize) -> Result<[Vec<f64>; 2], ExploreError> {
         let mut sides = [Vec::new(), Vec::new()];
         for row in nodes.iter().filter(|row| word(row, "level") == "0") {

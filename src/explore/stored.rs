@@ -25,8 +25,8 @@ pub struct StoredPage {
 impl StoredPage {
     /// The page of a sweep and what it found.
     ///
-    /// Marginals are kept to 2⁻²⁴ of their largest value. Joint densities are kept as square roots with 14 bits, or as few as
-    /// 8 where the page would exceed 3 MB otherwise: its packed numbers say what that does to a value.
+    /// Marginals are kept to 2⁻²⁴ of their largest value. Joint densities are kept as square roots with 14 bits, or as
+    /// few as 8 where the page would exceed 3 MB otherwise: its packed numbers say what that does to a value.
     ///
     /// # Errors
     /// [`ExploreError`].
@@ -42,8 +42,9 @@ impl StoredPage {
         shown.fitted()
     }
 
-    /// The page of a map: its plane as the tables of the map say it, and densities at nodes of its coarse grid, 21 values a side at most, which are
-    /// solved again. `done` is told how many of how many are solved, from whatever thread.
+    /// The page of a map: its plane as the tables of the map say it, and densities at nodes of its coarse grid, 21
+    /// values a side at most, which are solved again. `done` is told how many of how many are solved, from whatever
+    /// thread.
     ///
     /// # Errors
     /// [`ExploreError`]; [`ExploreError::Source`] with [`SourceError::Interrupted`] when it was cancelled.
@@ -65,7 +66,8 @@ impl StoredPage {
         shown(sweep, &plane, &states).fitted()
     }
 
-    /// The page of curves that were begun at a row of a sweep: their plane, and densities at 21 × 21 places of its box, which are solved.
+    /// The page of curves that were begun at a row of a sweep: their plane, and densities at 21 × 21 places of its box,
+    /// which are solved.
     ///
     /// # Errors
     /// As [`StoredPage::of_map`].

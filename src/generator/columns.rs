@@ -143,8 +143,8 @@ impl Columns<'_> {
         escape
     }
 
-    /// Tells the rates from a cell into the cells at some positions along an axis, and returns the rate into the sink through the
-    /// axis's ends.
+    /// Tells the rates from a cell into the cells at some positions along an axis, and returns the rate into the sink
+    /// through the axis's ends.
     fn each_rate(
         &self,
         place: &Place,

@@ -7,9 +7,10 @@ use crate::system::{SwitchingSurface, System};
 /// half a per cent with 100 cells (docs/accuracy.md).
 const LAYER_SHARE: f64 = 0.25;
 
-/// Smallest cell on a surface across which the force does not jump, as a share of the uniform width. There only the rates of other
-/// states bend, as that of Dahl's z does: the density bends in a high derivative, over lengths that have nothing to do with the force.
-/// With 50 cells 0.3 to 0.5 serve alike; at a tenth the cells that are missing elsewhere cost more (docs/accuracy.md).
+/// Smallest cell on a surface across which the force does not jump, as a share of the uniform width. There only the
+/// rates of other states bend, as that of Dahl's z does: the density bends in a high derivative, over lengths that have
+/// nothing to do with the force. With 50 cells 0.3 to 0.5 serve alike; at a tenth the cells that are missing elsewhere
+/// cost more (docs/accuracy.md).
 const BEND_SHARE: f64 = 0.4;
 
 /// Jump of the force, relative to its root mean square, that is none.
@@ -27,8 +28,8 @@ const PLACES: usize = 9;
 ///
 /// The density bends within a layer of thickness D/|a| on a surface, D = σ²/2 and a the drift across it: the
 /// smallest cell is a share of that thickness for the root mean square drift over the other axes' `ranges`
-/// (one range an axis, in the system's order). Where the drift does not jump across the surface there is no such layer, and the cells
-/// become somewhat narrower only.
+/// (one range an axis, in the system's order). Where the drift does not jump across the surface there is no such layer,
+/// and the cells become somewhat narrower only.
 ///
 /// An axis without noise is graded toward its walls: under steady sliding Dahl's z nears them exponentially,
 /// 1 - |z|λ/f_c shrinking by e for every f_c/λ that x moves, and so do the widths of what the density shows.

@@ -118,7 +118,8 @@ pub enum GeneratorError {
         /// The axis.
         axis: usize,
     },
-    /// An axis of Hermite modes that is not white noise behind a linear filter, with the mean and deviation of the axis.
+    /// An axis of Hermite modes that is not white noise behind a linear filter, with the mean and deviation of the
+    /// axis.
     #[error(
         "axis {axis} cannot have Hermite modes: they are for white noise behind a linear filter, of the mean and the standard deviation \
          of the axis"

@@ -10,15 +10,17 @@ pub(super) const REACH: usize = 3;
 /// Weights on the `2 REACH` cells around a face, from the lowest up.
 pub(super) type Window = [f64; 2 * REACH];
 
-/// Share of the dissipation that is kept where Legendre modes carry an internal state. With the state cut into cells a density is a thin
-/// ridge across them, which dissipation has to hold together; the coefficients of modes are smooth in the other coordinates, and half
-/// of it halves the error (docs/accuracy.md). Without any, what nears an end of the range comes back as wiggles.
+/// Share of the dissipation that is kept where Legendre modes carry an internal state. With the state cut into cells a
+/// density is a thin ridge across them, which dissipation has to hold together; the coefficients of modes are smooth in
+/// the other coordinates, and half of it halves the error (docs/accuracy.md). Without any, what nears an end of the
+/// range comes back as wiggles.
 pub(super) const DAMPING_BESIDE_MODES: f64 = 0.5;
 
 /// How the advective flux through a face is reconstructed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum AdvectiveScheme {
-    /// Fifth order, biased upwind: damps what the grid cannot resolve (half as much where modes carry an internal state).
+    /// Fifth order, biased upwind: damps what the grid cannot resolve (half as much where modes carry an internal
+    /// state).
     #[default]
     Upwind5,
     /// Fourth order, central: no dissipation of its own.

@@ -111,8 +111,8 @@ pub enum MethodError {
     Density(#[from] crate::density::DensityError),
 }
 
-/// Nothing, if all along its path a problem has densities that do not change with time: no system depends on time, and nothing
-/// sticks to a surface.
+/// Nothing, if all along its path a problem has densities that do not change with time: no system depends on time, and
+/// nothing sticks to a surface.
 fn has_densities(problem: &Problem) -> Result<(), MethodError> {
     for system in problem.family().along()? {
         system.autonomous()?;

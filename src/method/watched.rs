@@ -1,4 +1,5 @@
-//! From cell masses to what is watched: coordinates by sums, quantities by sub-cells, and the means that are wanted beside them.
+//! From cell masses to what is watched: coordinates by sums, quantities by sub-cells, and the means that are wanted
+//! beside them.
 
 use std::sync::{Arc, OnceLock};
 
@@ -101,8 +102,8 @@ impl Problem {
 }
 
 impl Maps {
-    /// The watched densities of masses without noise, with the difference to a second discretisation (masses, Σ = 0). Of quantities the second one
-    /// is read off coarser sub-cells too, so that its difference holds what these do.
+    /// The watched densities of masses without noise, with the difference to a second discretisation (masses, Σ = 0).
+    /// Of quantities the second one is read off coarser sub-cells too, so that its difference holds what these do.
     pub(super) fn exact(
         &self,
         problem: &Problem,

@@ -1,4 +1,5 @@
-//! Earlier versions of what a folder holds: kept for good in `previous/1`, `previous/2`, …, the highest number the latest.
+//! Earlier versions of what a folder holds: kept for good in `previous/1`, `previous/2`, …, the highest number the
+//! latest.
 
 use std::path::{Path, PathBuf};
 
@@ -10,8 +11,8 @@ use super::tree::{is_part, link_tree, make, rename};
 /// Where earlier versions are kept.
 pub(super) const PREVIOUS: &str = "previous";
 
-/// Gives the entries of a folder a second place as a new version and returns where. It appears as a whole: it is put together in
-/// `room`, in the same file system.
+/// Gives the entries of a folder a second place as a new version and returns where. It appears as a whole: it is put
+/// together in `room`, in the same file system.
 ///
 /// # Errors
 /// [`RunError::Read`] or [`RunError::Write`]; then everything is as it was.
@@ -61,7 +62,8 @@ pub(super) fn take_away(home: &Path, leaving: &[&str], gone: &Path) -> Result<()
     Ok(())
 }
 
-/// The latest version, where it holds all that is there of the entries: after a kill, or after a run that made the same again.
+/// The latest version, where it holds all that is there of the entries: after a kill, or after a run that made the same
+/// again.
 pub(super) fn kept_already(home: &Path, entries: &[&str]) -> Option<PathBuf> {
     let previous = home.join(PREVIOUS);
     let latest = previous.join(numbers(&previous).last()?.to_string());

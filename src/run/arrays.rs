@@ -11,7 +11,8 @@
 //! | `p_x_replicate` | parameter, replicate, axes … | densities without one group of samples each (SGCM) |
 //! | `p_y_kink_0` | parameter; for a joint density also the other axis | jump of ∂(log p)/∂(axis) across a plane; attributes `axis`, `at`; zero with the attribute `bends` where only higher derivatives jump |
 //!
-//! Kinks are numbered in the order in which they first occur. NaN stands for what is not there at a parameter value. A symmetry is that of the equations all along a sweep, hence an attribute.
+//! Kinks are numbered in the order in which they first occur. NaN stands for what is not there at a parameter value. A
+//! symmetry is that of the equations all along a sweep, hence an attribute.
 
 use serde_json::{Map, Value, json};
 
@@ -22,8 +23,8 @@ use crate::system::Family;
 /// Values a chunk of the parameter's coordinate holds.
 pub(super) const PARAMETER_CHUNK: u64 = 1024;
 
-/// Replicates a chunk holds. Groups of samples that leave no steady state give no replicate, so their number may grow along a
-/// sweep; chunks of fixed extent let it.
+/// Replicates a chunk holds. Groups of samples that leave no steady state give no replicate, so their number may grow
+/// along a sweep; chunks of fixed extent let it.
 pub(super) const REPLICATE_CHUNK: u64 = 8;
 
 /// Attribute of a density.

@@ -15,8 +15,8 @@ pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), RunError
     write(path, bytes, false).map(drop)
 }
 
-/// The same so that a machine that loses its power leaves either of them, too. It waits for the disk, about as long as a hundred files
-/// take that are written without: for files that tell of others.
+/// The same so that a machine that loses its power leaves either of them, too. It waits for the disk, about as long as
+/// a hundred files take that are written without: for files that tell of others.
 pub(super) fn write_durably(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
     begin_durably(path, bytes).map(drop)
 }
@@ -50,8 +50,8 @@ fn write(path: &Path, bytes: &[u8], durably: bool) -> Result<File, RunError> {
     file.persist(path).map_err(|error| failed(error.error))
 }
 
-/// Removes the files in the making that a killed process has left in a run, which nobody else writes to: in its folder, and below its
-/// folders `own`. Other folders are a user's.
+/// Removes the files in the making that a killed process has left in a run, which nobody else writes to: in its folder,
+/// and below its folders `own`. Other folders are a user's.
 pub(super) fn clear_unfinished(run: &Path, own: &[&str]) {
     let mut open = vec![run.to_owned()];
     while let Some(folder) = open.pop() {
@@ -84,8 +84,8 @@ pub(super) fn sync_folder(folder: &Path) {
 /// Files that the disk is asked to take side by side: it puts what is asked for at one time into one go.
 const AT_ONCE: usize = 16;
 
-/// Waits until files, and folders with all that they hold, are on the disk; those that are not there are left out. Only they are waited for, not what other
-/// programs write meanwhile.
+/// Waits until files, and folders with all that they hold, are on the disk; those that are not there are left out. Only
+/// they are waited for, not what other programs write meanwhile.
 ///
 /// # Errors
 /// [`RunError::Read`] when a folder cannot be read, [`RunError::Write`] when the disk takes a file not.

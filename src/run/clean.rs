@@ -21,8 +21,8 @@ pub struct Removable {
     pub bytes: u64,
 }
 
-/// The runs in a folder and below that may go: earlier versions, unfinished runs, and shards that were put together. Runs that are being written are
-/// left out.
+/// The runs in a folder and below that may go: earlier versions, unfinished runs, and shards that were put together.
+/// Runs that are being written are left out.
 pub fn removable_runs(folder: &Path) -> Vec<Removable> {
     let runs = find_runs(folder);
     let known = runs.iter().filter_map(|path| {
@@ -69,8 +69,8 @@ fn size(path: &Path) -> u64 {
     entries.map(|entry| size(&entry.path())).sum()
 }
 
-/// Removes what a run has left in its folder, and the folder itself where nothing else is in it. The file that marks the run goes last, so that one whose
-/// removal was cut short can be removed again.
+/// Removes what a run has left in its folder, and the folder itself where nothing else is in it. The file that marks
+/// the run goes last, so that one whose removal was cut short can be removed again.
 ///
 /// # Errors
 /// [`RunError::NotARun`], [`RunError::InUse`], [`RunError::Write`].
@@ -122,8 +122,8 @@ fn remove_curves(folder: &Path) -> Result<(), RunError> {
     Ok(())
 }
 
-/// Removes files and folders from the last to the first, which marks the folder; of the figures those that are as the program left them: an annotated one
-/// is somebody's work.
+/// Removes files and folders from the last to the first, which marks the folder; of the figures those that are as the
+/// program left them: an annotated one is somebody's work.
 fn remove_entries(path: &Path, entries: &[&str]) -> Result<(), RunError> {
     checksums::reopen(path);
     let _ = std::fs::remove_dir(path.join(FIGURES));

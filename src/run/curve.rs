@@ -32,7 +32,8 @@ pub const FOLDER: &str = "curves";
 /// What unfinished curves have solved.
 pub(super) const PART: &str = "curve.part.bin";
 
-/// The table of the points of curves in one plane, each from end to end, numbers in full; `start` is the label of the row that the first was begun at.
+/// The table of the points of curves in one plane, each from end to end, numbers in full; `start` is the label of the
+/// row that the first was begun at.
 ///
 /// # Errors
 /// [`RunError::Table`].
@@ -219,7 +220,8 @@ impl CurveFolder {
         home.join(PART).is_file()
     }
 
-    /// A new journal for what the curves ask to be solved, which `of` describes as TOML; that of unfinished ones is kept below `previous/`.
+    /// A new journal for what the curves ask to be solved, which `of` describes as TOML; that of unfinished ones is
+    /// kept below `previous/`.
     ///
     /// # Errors
     /// [`RunError::Read`] or [`RunError::Write`].
@@ -246,8 +248,8 @@ impl CurveFolder {
         self.staging.fresh().join("figures")
     }
 
-    /// Writes the tables; `origin` is the row that the first curve was begun at, `sweep` the resolved sweep as TOML, `of` what describes the curves
-    /// besides.
+    /// Writes the tables; `origin` is the row that the first curve was begun at, `sweep` the resolved sweep as TOML,
+    /// `of` what describes the curves besides.
     ///
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.
@@ -284,8 +286,8 @@ impl CurveFolder {
         Ok(())
     }
 
-    /// Puts the curve in its place and returns its files; what an earlier one left goes below `previous/`. The journal goes, unless the curves were
-    /// interrupted.
+    /// Puts the curve in its place and returns its files; what an earlier one left goes below `previous/`. The journal
+    /// goes, unless the curves were interrupted.
     ///
     /// # Errors
     /// [`RunError::Read`] or [`RunError::Write`].

@@ -55,11 +55,13 @@ pub struct RunFolder {
 }
 
 impl RunFolder {
-    /// Prepares a folder: makes it if need be, and moves the files of an earlier run, with the curves that were followed from it, to
-    /// `previous/1`, or the next number that is free. Files that are not a run's are left alone. Until it is dropped, no other process writes to the folder.
+    /// Prepares a folder: makes it if need be, and moves the files of an earlier run, with the curves that were
+    /// followed from it, to `previous/1`, or the next number that is free. Files that are not a run's are left alone.
+    /// Until it is dropped, no other process writes to the folder.
     ///
     /// # Errors
-    /// [`RunError::InUse`], [`RunError::NotOurs`], [`RunError::Read`], [`RunError::Write`]; then the folder is as it was.
+    /// [`RunError::InUse`], [`RunError::NotOurs`], [`RunError::Read`], [`RunError::Write`]; then the folder is as it
+    /// was.
     pub fn create(path: &Path) -> Result<Self, RunError> {
         std::fs::create_dir_all(path).map_err(|source| RunError::Write {
             path: path.to_owned(),
@@ -76,8 +78,9 @@ impl RunFolder {
         })
     }
 
-    /// Opens the folder of an unfinished run to go on with it. What is there is replaced whole, when the points of the run are
-    /// [added](RunFolder::add_points) again; figures of an interrupted run, which are of other values, are removed.
+    /// Opens the folder of an unfinished run to go on with it. What is there is replaced whole, when the points of the
+    /// run are [added](RunFolder::add_points) again; figures of an interrupted run, which are of other values, are
+    /// removed.
     ///
     /// # Errors
     /// [`RunError::InUse`], [`RunError::Write`].
@@ -155,8 +158,8 @@ impl RunFolder {
         self.write("run.json", &text)
     }
 
-    /// Stores a point's densities and adds its rows to the tables. What this costs does not depend on how many points there
-    /// are: until [`RunFolder::finish`], rows stand in the order in which the points came.
+    /// Stores a point's densities and adds its rows to the tables. What this costs does not depend on how many points
+    /// there are: until [`RunFolder::finish`], rows stand in the order in which the points came.
     ///
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.
@@ -181,7 +184,8 @@ impl RunFolder {
         Ok(())
     }
 
-    /// The same of several points at once, the first of the run: whatever was there of the tables and the store is replaced.
+    /// The same of several points at once, the first of the run: whatever was there of the tables and the store is
+    /// replaced.
     ///
     /// # Errors
     /// As [`RunFolder::add_point`].
@@ -203,7 +207,8 @@ impl RunFolder {
         Ok(())
     }
 
-    /// Describes a run that has ended for archives, and writes the checksums of all its files, see `docs/run-folder.md`.
+    /// Describes a run that has ended for archives, and writes the checksums of all its files, see
+    /// `docs/run-folder.md`.
     ///
     /// # Errors
     /// [`RunError::Read`], [`RunError::Manifest`] or [`RunError::Write`].
@@ -229,8 +234,8 @@ impl RunFolder {
         self.added
     }
 
-    /// Writes all tables of a finished sweep and puts the stored densities in ascending order. They are brought to the disk while the caller goes on, to the
-    /// figures for example, until the manifest is written.
+    /// Writes all tables of a finished sweep and puts the stored densities in ascending order. They are brought to the
+    /// disk while the caller goes on, to the figures for example, until the manifest is written.
     ///
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.

@@ -1,4 +1,5 @@
-//! The tables of a map of regimes, read from its folder or made of a map that was not written: what is shown of one is what stands in them.
+//! The tables of a map of regimes, read from its folder or made of a map that was not written: what is shown of one is
+//! what stands in them.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -35,8 +36,8 @@ impl MapTables {
     /// Reads the tables of a map's folder.
     ///
     /// # Errors
-    /// [`RunError::Manifest`] where `map.json` is not what a map leaves, [`RunError::Version`] where it is of another version, [`RunError::Read`] where a table
-    /// cannot be read, [`RunError::Table`] where it is none.
+    /// [`RunError::Manifest`] where `map.json` is not what a map leaves, [`RunError::Version`] where it is of another
+    /// version, [`RunError::Read`] where a table cannot be read, [`RunError::Table`] where it is none.
     pub fn read(folder: &Path) -> Result<Self, RunError> {
         let text = |name: &str| {
             let path = folder.join(name);

@@ -1,5 +1,5 @@
-//! What a run leaves on disk: tables, stored densities, manifest. Every file appears whole or not at all, and is read back as
-//! it was.
+//! What a run leaves on disk: tables, stored densities, manifest. Every file appears whole or not at all, and is read
+//! back as it was.
 
 mod archive;
 mod arrays;

@@ -1,4 +1,5 @@
-//! `plane.json`: all that figures of a map, or of curves, are drawn from, so that they can be drawn again without solving.
+//! `plane.json`: all that figures of a map, or of curves, are drawn from, so that they can be drawn again without
+//! solving.
 
 use std::path::{Path, PathBuf};
 

@@ -48,8 +48,8 @@ impl StagedRun {
         &self.folder
     }
 
-    /// Puts the new version in place and returns its files. A run that was there becomes a complete one below `previous/`, its
-    /// densities linked. Curves that were followed from it go with it where rows may have changed.
+    /// Puts the new version in place and returns its files. A run that was there becomes a complete one below
+    /// `previous/`, its densities linked. Curves that were followed from it go with it where rows may have changed.
     ///
     /// # Errors
     /// [`RunError::Read`] or [`RunError::Write`].

@@ -1,5 +1,5 @@
-//! New files of a folder, written beside their place and put there when they are whole; what was there before is kept for good, in
-//! `previous/1`, `previous/2`, …
+//! New files of a folder, written beside their place and put there when they are whole; what was there before is kept
+//! for good, in `previous/1`, `previous/2`, …
 
 use std::path::{Path, PathBuf};
 
@@ -26,12 +26,12 @@ pub(super) struct Staging {
 }
 
 impl Staging {
-    /// Room beside the files of `home`, an existing folder, of which other writers are kept away. `entries` are the names of all files and
-    /// folders that may ever stand there by this program's doing; others are left alone.
+    /// Room beside the files of `home`, an existing folder, of which other writers are kept away. `entries` are the
+    /// names of all files and folders that may ever stand there by this program's doing; others are left alone.
     ///
     /// # Errors
-    /// [`RunError::InUse`] when another process writes there; [`RunError::NotOurs`] when one of the entries is there without
-    /// the first, which marks the folder; [`RunError::Read`] and [`RunError::Write`].
+    /// [`RunError::InUse`] when another process writes there; [`RunError::NotOurs`] when one of the entries is there
+    /// without the first, which marks the folder; [`RunError::Read`] and [`RunError::Write`].
     pub(super) fn new(home: &Path, entries: Entries) -> Result<Self, RunError> {
         let lock = FolderLock::take(home)?;
         clear_rooms(home);
@@ -52,7 +52,8 @@ impl Staging {
         Ok(staging)
     }
 
-    /// The same where folders beside the files hold folders of work that is about them: where the files of an earlier version move, they do.
+    /// The same where folders beside the files hold folders of work that is about them: where the files of an earlier
+    /// version move, they do.
     ///
     /// # Errors
     /// [`RunError::InUse`] when another process writes to one of those folders.
@@ -93,11 +94,11 @@ impl Staging {
         Ok(())
     }
 
-    /// Puts the new files in place. Those that were there before become a complete version of their own below `previous/`; the
-    /// entries that are `staying` have their second place there.
+    /// Puts the new files in place. Those that were there before become a complete version of their own below
+    /// `previous/`; the entries that are `staying` have their second place there.
     ///
-    /// The earlier version is whole in `previous/` before the first file is replaced or taken away. Where that cannot be done, everything
-    /// is as it was.
+    /// The earlier version is whole in `previous/` before the first file is replaced or taken away. Where that cannot
+    /// be done, everything is as it was.
     ///
     /// # Errors
     /// [`RunError::Read`] or [`RunError::Write`].

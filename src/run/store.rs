@@ -2,8 +2,8 @@
 //!
 //! What the arrays are is said in `arrays`. One chunk a parameter value. The Zarr library composes every key in
 //! memory; the files are then put in place by renaming, since its own file store truncates in place and a kill would
-//! leave half a chunk. The densities of a running sweep stand in the order in which they were solved and are put in ascending
-//! order at the end.
+//! leave half a chunk. The densities of a running sweep stand in the order in which they were solved and are put in
+//! ascending order at the end.
 
 mod files;
 
@@ -35,8 +35,8 @@ pub struct DensityStore {
     described: Vec<Layout>,
 }
 
-/// Places along the parameter that a growing store has room for are a multiple of this: what is not done yet is NaN, and the metadata of all arrays need not be
-/// written for every point.
+/// Places along the parameter that a growing store has room for are a multiple of this: what is not done yet is NaN,
+/// and the metadata of all arrays need not be written for every point.
 const ROOM: u64 = 64;
 
 impl DensityStore {
@@ -57,8 +57,8 @@ impl DensityStore {
         &self.path
     }
 
-    /// Adds the densities of one parameter value at the end. Until it is replaced as a whole, the store has room for more: places without a density
-    /// are NaN, in the parameter too.
+    /// Adds the densities of one parameter value at the end. Until it is replaced as a whole, the store has room for
+    /// more: places without a density are NaN, in the parameter too.
     ///
     /// # Errors
     /// [`RunError::Store`] or [`RunError::Write`].

@@ -103,8 +103,8 @@ impl StoredDensities {
             .map(|observed| {
                 let mut estimate =
                     observed.estimate(&self.path, index as u64, symmetry.as_ref())?;
-                // Which of its values were solved by quadrature, the store does not say; only the generator has a second
-                // scheme.
+                // Which of its values were solved by quadrature, the store does not say; only the generator has a
+                // second scheme.
                 let is_solved = estimate.variants.second_scheme().is_some();
                 let is_whole = estimate.observable == Observable::Marginal(0);
                 let known = self.one_axis.filter(|_| is_solved && is_whole);

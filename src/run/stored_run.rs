@@ -114,7 +114,8 @@ impl StoredRun {
         &self.manifest.version
     }
 
-    /// The commit that the program was built from, with `-dirty` where files were changed; `None` where the run does not say.
+    /// The commit that the program was built from, with `-dirty` where files were changed; `None` where the run does
+    /// not say.
     pub fn commit(&self) -> Option<&str> {
         self.manifest.made["commit"].as_str()
     }
@@ -124,7 +125,8 @@ impl StoredRun {
         self.manifest.made["started"].as_str()
     }
 
-    /// The sweep file as it was typed, word for word, with what was set on top of it; `None` for runs of early versions.
+    /// The sweep file as it was typed, word for word, with what was set on top of it; `None` for runs of early
+    /// versions.
     pub fn typed(&self) -> Option<SweepText> {
         self.manifest.typed.as_ref().map(Typed::text)
     }
@@ -205,8 +207,9 @@ impl StoredRun {
         there.then(|| read_checks(&path, subject)).transpose()
     }
 
-    /// All points in the order of the table, with the densities of the observables of `subject` on these cells (and bins of quantities), bit for bit as they were solved; detections
-    /// are empty. A run that was killed may hold a density whose row was not written: it is left out.
+    /// All points in the order of the table, with the densities of the observables of `subject` on these cells (and
+    /// bins of quantities), bit for bit as they were solved; detections are empty. A run that was killed may hold a
+    /// density whose row was not written: it is left out.
     ///
     /// # Errors
     /// [`RunError::Read`], [`RunError::Column`] and [`RunError::Row`] for the table; [`RunError::ReadStore`],
@@ -254,7 +257,8 @@ impl StoredRun {
         Ok(points)
     }
 
-    /// Refuses a run whose tables or densities are not those that it left, by its checksums; nothing is known of a run without.
+    /// Refuses a run whose tables or densities are not those that it left, by its checksums; nothing is known of a run
+    /// without.
     fn check_sums(&self) -> Result<(), RunError> {
         let entries = ["run.json", "points.csv", "checks.csv", "densities.zarr"];
         let damaged = checksums::check(&self.path, &entries)?;
@@ -264,8 +268,8 @@ impl StoredRun {
         }
     }
 
-    /// How many files are as the run left them, and those that are not; `None` for a run without checksums: one that is not finished,
-    /// or of an early version.
+    /// How many files are as the run left them, and those that are not; `None` for a run without checksums: one that is
+    /// not finished, or of an early version.
     ///
     /// # Errors
     /// [`RunError::Read`], [`RunError::Checksums`].

@@ -123,8 +123,8 @@ fn rows(path: &Path) -> Option<Vec<FoundRow>> {
     Some(rows)
 }
 
-/// All runs in a folder and below: the folder itself, those beside each other in it, earlier versions, and shards. In the order of their names,
-/// with numbers by their size.
+/// All runs in a folder and below: the folder itself, those beside each other in it, earlier versions, and shards. In
+/// the order of their names, with numbers by their size.
 pub fn find_runs(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     look(folder, 0, &mut found);

@@ -4,8 +4,9 @@ use std::path::Path;
 
 use super::RunError;
 
-/// Gives a file or folder a second place: files are linked, and copied where the file system cannot link. What stands in the
-/// two places is then never changed, only replaced, so either may be rewritten or removed. Nothing where `from` is not there.
+/// Gives a file or folder a second place: files are linked, and copied where the file system cannot link. What stands
+/// in the two places is then never changed, only replaced, so either may be rewritten or removed. Nothing where `from`
+/// is not there.
 ///
 /// # Errors
 /// [`RunError::Read`] or [`RunError::Write`].

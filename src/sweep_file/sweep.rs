@@ -53,8 +53,8 @@ impl Sweep {
     /// A source of densities by the same method on the same cells in a plane of two parameters, one of which is swept.
     ///
     /// # Errors
-    /// [`MethodError`] where the method refuses, [`MethodError::System`] for a parameter that the model does not have, or a corner of
-    /// the plane's box that it does not allow.
+    /// [`MethodError`] where the method refuses, [`MethodError::System`] for a parameter that the model does not have,
+    /// or a corner of the plane's box that it does not allow.
     pub fn source_in(
         &self,
         plane: &Plane,
@@ -123,7 +123,8 @@ impl Sweep {
         self.map_from(&[], cancellation, observer)
     }
 
-    /// Goes on with the map of which these nodes are known ([`regime_map_from`](crate::continuation::map::regime_map_from)); `None` without `[map]`.
+    /// Goes on with the map of which these nodes are known
+    /// ([`regime_map_from`](crate::continuation::map::regime_map_from)); `None` without `[map]`.
     ///
     /// # Errors
     /// [`SourceError`] where the box has a corner that is not allowed.
@@ -136,8 +137,8 @@ impl Sweep {
         self.with_maker(cancellation, observer, |maker| maker.whole(known).map(Some))
     }
 
-    /// A shard of the map, of which these nodes are known ([`MapMaker::shard`]); `None` without `[map]`, and where there are more shards than steps between
-    /// values of the second parameter.
+    /// A shard of the map, of which these nodes are known ([`MapMaker::shard`]); `None` without `[map]`, and where
+    /// there are more shards than steps between values of the second parameter.
     ///
     /// # Errors
     /// [`SourceError`] where the box has a corner that is not allowed.
@@ -192,8 +193,8 @@ impl Sweep {
         })
     }
 
-    /// The densities at all crossings of these values of both parameters of the map's box ([`plane_states`]), with what is found in them; `done` is told of
-    /// each. `None` without `[map]`.
+    /// The densities at all crossings of these values of both parameters of the map's box ([`plane_states`]), with what
+    /// is found in them; `done` is told of each. `None` without `[map]`.
     ///
     /// # Errors
     /// [`SourceError`] where the box has a corner that is not allowed.

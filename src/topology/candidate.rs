@@ -1,5 +1,5 @@
-//! Components of superlevel and sublevel sets as candidates for features: judged between the cells where the density allows
-//! it, and by the cells where it does not.
+//! Components of superlevel and sublevel sets as candidates for features: judged between the cells where the density
+//! allows it, and by the cells where it does not.
 
 use super::critical::{Critical, height_above};
 use super::field::Field;
@@ -93,8 +93,8 @@ fn noise(estimated: &EstimatedDensity, component: &Component) -> f64 {
     errors[component.birth].hypot(death_error)
 }
 
-/// Whether the density can be judged between its cells. Noise forbids it, and a plane with a jump of the derivative in a joint density: along such a
-/// plane a ridge has a sharp edge, which no polynomial follows.
+/// Whether the density can be judged between its cells. Noise forbids it, and a plane with a jump of the derivative in
+/// a joint density: along such a plane a ridge has a sharp edge, which no polynomial follows.
 pub(super) fn is_smooth(estimated: &EstimatedDensity) -> bool {
     let is_marginal = estimated.density.axes.len() == 1;
     !estimated.is_noisy() && (is_marginal || estimated.structure.kinks.iter().all(Kink::is_bend))
@@ -110,8 +110,8 @@ struct Refined {
 }
 
 impl Refined {
-    /// Height and error; none where the critical point is one of the `places` of others, to which it is added otherwise: cells to both
-    /// sides of one extremum may each be lower than their neighbours.
+    /// Height and error; none where the critical point is one of the `places` of others, to which it is added
+    /// otherwise: cells to both sides of one extremum may each be lower than their neighbours.
     fn unless_known(self, places: &mut Vec<Vec<f64>>, estimated: &EstimatedDensity) -> (f64, f64) {
         let axes = &estimated.density.axes;
         let is_here = |other: &Vec<f64>| {

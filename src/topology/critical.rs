@@ -1,8 +1,8 @@
 //! Critical points of a density between its cells, and how certain the height of one above another is.
 //!
-//! A candidate (the cell of a peak, saddle or basin) is followed by Newton's method along those principal directions in which the
-//! density is curved. Along a rim of constant height nothing is curved, and the point stays on the rim where it was. On a plane where the
-//! derivative jumps from rising to falling (or back) the point stays on the plane.
+//! A candidate (the cell of a peak, saddle or basin) is followed by Newton's method along those principal directions in
+//! which the density is curved. Along a rim of constant height nothing is curved, and the point stays on the rim where
+//! it was. On a plane where the derivative jumps from rising to falling (or back) the point stays on the plane.
 
 use super::FeatureKind;
 use super::field::{Field, Jet, Stencil};
@@ -97,8 +97,8 @@ impl Critical {
         })
     }
 
-    /// Whether every direction in which the density is curved is curved as a peak, or a crater, is: no direction the other way along
-    /// which a cell's width changes the density by half the height that is asked about.
+    /// Whether every direction in which the density is curved is curved as a peak, or a crater, is: no direction the
+    /// other way along which a cell's width changes the density by half the height that is asked about.
     pub(super) fn is_of_kind(&self, kind: FeatureKind, height: f64) -> bool {
         let sign = match kind {
             FeatureKind::Peak | FeatureKind::Ring => 1.0,
@@ -167,8 +167,8 @@ impl Critical {
     }
 }
 
-/// Whether the density has an extremum across a plane with a jump of the derivative: slopes on both sides point to it, or
-/// away from it.
+/// Whether the density has an extremum across a plane with a jump of the derivative: slopes on both sides point to it,
+/// or away from it.
 fn holds(field: &Field<'_>, at: &[f64], k: usize, kind: FeatureKind, values: &[f64]) -> bool {
     let beside = |step: f64| {
         let mut point = at.to_vec();
@@ -239,9 +239,9 @@ fn step(
     }
 }
 
-/// Height of one critical point above another with its error: what a rougher reconstruction and the second discretisation change.
-/// Points within a few cells of each other share much of their errors; of those that are far apart the errors may cancel by chance only,
-/// as along a level moat.
+/// Height of one critical point above another with its error: what a rougher reconstruction and the second
+/// discretisation change. Points within a few cells of each other share much of their errors; of those that are far
+/// apart the errors may cancel by chance only, as along a level moat.
 pub(super) fn height_above(
     high: &Critical,
     low: &Critical,
@@ -256,7 +256,8 @@ pub(super) fn height_above(
     let far = high.cells_from(low);
     let far = ((far - ONE_ERROR) / ONE_ERROR).clamp(0.0, 1.0);
     let each = high.error(estimated) + low.error(estimated);
-    // A density is nowhere negative: where the lower one is, both are a wiggle of the scheme unless the upper one is clearly higher.
+    // A density is nowhere negative: where the lower one is, both are a wiggle of the scheme unless the upper one is
+    // clearly higher.
     let wiggle = WIGGLE * low.value(values).min(0.0).abs();
     (found, (rough + scheme).max(far * each) + wiggle)
 }

@@ -1,7 +1,8 @@
 //! What surrounds what in a joint density: rims of craters, rings (rims of constant height), and the peaks inside.
 //!
-//! A basin that higher ground encloses spills over at a saddle. The cells at least as high as the saddle that hang together
-//! with it are its *rim*. Where the highest point of the rim is no higher than the saddle, within the errors of both, the maximum lies along a closed curve: a *ring*, which has no peak of its own.
+//! A basin that higher ground encloses spills over at a saddle. The cells at least as high as the saddle that hang
+//! together with it are its *rim*. Where the highest point of the rim is no higher than the saddle, within the errors
+//! of both, the maximum lies along a closed curve: a *ring*, which has no peak of its own.
 
 use super::persistence::Grid;
 use crate::space::Axis;
@@ -93,8 +94,8 @@ impl Enclosure {
     }
 }
 
-/// Cells beside a cell: across its faces, or also across its corners. Rims are connected across corners, what lies on either side of them
-/// only across faces.
+/// Cells beside a cell: across its faces, or also across its corners. Rims are connected across corners, what lies on
+/// either side of them only across faces.
 fn neighbours(grid: Grid<'_>, cell: usize, corners: bool) -> impl Iterator<Item = usize> {
     let (row, column) = (cell / grid.columns, cell % grid.columns);
     let rows = row.saturating_sub(1)..(row + 2).min(grid.rows);

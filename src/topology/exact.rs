@@ -1,4 +1,5 @@
-//! Features of a density over one axis whose extrema are known from its equations: however narrow they are, none is lost between cells.
+//! Features of a density over one axis whose extrema are known from its equations: however narrow they are, none is
+//! lost between cells.
 
 use super::detector::{by_kind_and_height, present_places};
 use super::indicator::{Found, at_centre, corrected};
@@ -38,8 +39,9 @@ pub(super) fn detection(
     }
 }
 
-/// Peaks and the valleys that belong to them, judged. Where two hills meet at a valley, the lower one ends there: its peak is as high as it
-/// stands above the valley. The partner of a peak is the higher of the valleys beside it, with which it was born or will vanish.
+/// Peaks and the valleys that belong to them, judged. Where two hills meet at a valley, the lower one ends there: its
+/// peak is as high as it stands above the valley. The partner of a peak is the higher of the valleys beside it, with
+/// which it was born or will vanish.
 fn features(profile: &Profile, limits: &Limits) -> Vec<Feature> {
     let mut hills = hills(&profile.extrema);
     let mut features = Vec::new();
@@ -171,7 +173,8 @@ mod tests {
 
     #[test]
     fn a_hill_ends_where_it_meets_a_higher_one_and_vanishes_with_the_valley_beside_it() {
-        // The outer hills are higher than the middle one: it ends at the higher valley, then they meet at the lower one.
+        // The outer hills are higher than the middle one: it ends at the higher valley, then they meet at the lower
+        // one.
         let features = found(&[0.9, 0.2, 0.4, 0.3, 0.8]);
         let of = |place: f64| features.iter().find(|one| one.position == [place]).unwrap();
         let close = |value: f64, expected: f64| (value - expected).abs() < 1e-15;

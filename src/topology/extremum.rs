@@ -1,9 +1,9 @@
 //! Place and height of a peak or valley of a marginal without noise, to a high order.
 //!
-//! The polynomial through the averages over the seven cells about the feature, or over the eight about the face that it is
-//! nearest to, is smooth enough to show two peaks inside a cell: a pair is followed down to its birth by one and the same
-//! reading. On a smooth density the place is off by O(h⁶). A kink is never reconstructed across: the polynomials are those of
-//! either side, and an extremum of both is the kink itself.
+//! The polynomial through the averages over the seven cells about the feature, or over the eight about the face that it
+//! is nearest to, is smooth enough to show two peaks inside a cell: a pair is followed down to its birth by one and the
+//! same reading. On a smooth density the place is off by O(h⁶). A kink is never reconstructed across: the polynomials
+//! are those of either side, and an extremum of both is the kink itself.
 
 use std::ops::Range;
 
@@ -17,8 +17,8 @@ use crate::space::Axis;
 const REACH: usize = 4;
 /// Fewer cells than these say no more than a parabola.
 const LEAST: usize = 5;
-/// A feature within this share of a cell from a face has the face in the middle of its cells, so that what is symmetric about
-/// a face stays so.
+/// A feature within this share of a cell from a face has the face in the middle of its cells, so that what is symmetric
+/// about a face stays so.
 const NEAR_FACE: f64 = 0.25;
 /// Places at which the slope is looked at, in each cell.
 const LOOKS: usize = 8;
@@ -32,8 +32,8 @@ pub(super) struct Place {
     pub(super) density: f64,
 }
 
-/// The peak or valley of a marginal that is nearest to `guess`, not farther than in the cells beside the feature's. `None` for
-/// noisy densities, where the reconstruction is not trusted, and where there is none.
+/// The peak or valley of a marginal that is nearest to `guess`, not farther than in the cells beside the feature's.
+/// `None` for noisy densities, where the reconstruction is not trusted, and where there is none.
 pub(super) fn extremum(
     estimated: &EstimatedDensity,
     cell: usize,
@@ -167,7 +167,8 @@ fn window(axis: &Axis, cell: usize, guess: f64) -> (usize, usize) {
     }
 }
 
-/// A kink in or beside the cell at which the density turns: it rises toward a peak on both sides, and falls toward a valley.
+/// A kink in or beside the cell at which the density turns: it rises toward a peak on both sides, and falls toward a
+/// valley.
 fn at_kink(
     axis: &Axis,
     values: &[f64],
@@ -217,7 +218,8 @@ struct Local {
 }
 
 impl Local {
-    /// The polynomial over `count` cells from `first` on, moved to lie in a smooth range; fewer where the range has fewer.
+    /// The polynomial over `count` cells from `first` on, moved to lie in a smooth range; fewer where the range has
+    /// fewer.
     fn about(
         axis: &Axis,
         values: &[f64],
@@ -344,7 +346,8 @@ mod tests {
 
     #[test]
     fn kinks_are_not_reconstructed_across() {
-        // Rises with slope 1 up to a kink at 0.2, then falls as a parabola: the kink is the peak; without it 0.1 is off.
+        // Rises with slope 1 up to a kink at 0.2, then falls as a parabola: the kink is the peak; without it 0.1 is
+        // off.
         let primitive = |x: f64| match x < 0.2 {
             true => 0.5 * (x - 0.2).powi(2) + 2.0 * (x - 0.2),
             false => 2.0 * (x - 0.2) - (x - 0.2).powi(3) - 0.25 * (x - 0.2).powi(2),

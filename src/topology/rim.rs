@@ -1,8 +1,9 @@
 //! The density along the rim of a crater, as a function of the angle around a point inside.
 //!
-//! A rim may be level to a millionth part and have peaks all the same. Cells cannot show that: where a ridge runs oblique to them its values wave from cell
-//! to cell. Along the crest itself, found on rays from inside by Newton's method, the density is smooth, and what a rougher reconstruction
-//! and a second discretisation change of the height of one point above another is small.
+//! A rim may be level to a millionth part and have peaks all the same. Cells cannot show that: where a ridge runs
+//! oblique to them its values wave from cell to cell. Along the crest itself, found on rays from inside by Newton's
+//! method, the density is smooth, and what a rougher reconstruction and a second discretisation change of the height of
+//! one point above another is small.
 
 use std::collections::BTreeSet;
 
@@ -199,8 +200,8 @@ fn top_of_ray(
     None
 }
 
-/// Maxima of values around a circle, the highest first, each with the minimum where it merges with a higher one; the highest with the
-/// lowest.
+/// Maxima of values around a circle, the highest first, each with the minimum where it merges with a higher one; the
+/// highest with the lowest.
 fn pairs(values: &[f64]) -> Vec<(usize, usize)> {
     let count = values.len();
     let mut order: Vec<usize> = (0..count).collect();

@@ -2,7 +2,8 @@
 
 use std::fmt::{self, Display, Formatter};
 
-/// What is compared along a sweep: numbers of significant peaks, rings and craters. Of a marginal only peaks are counted.
+/// What is compared along a sweep: numbers of significant peaks, rings and craters. Of a marginal only peaks are
+/// counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Signature {
     /// Number of significant peaks: maxima at a point, those on the rims of craters included.
@@ -36,8 +37,8 @@ fn counted(number: usize, noun: &str) -> String {
 }
 
 impl Display for Signature {
-    /// `1 peak`, `2 peaks`; `crater` (its rim has no second peak), `crater with 2 peaks`; `ring`, `peak in a ring`, `2 rings`, `ring around 2
-    /// craters`, `ring and 1 peak`.
+    /// `1 peak`, `2 peaks`; `crater` (its rim has no second peak), `crater with 2 peaks`; `ring`, `peak in a ring`, `2
+    /// rings`, `ring around 2 craters`, `ring and 1 peak`.
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let outside = self.peaks - self.enclosed_peaks.min(self.peaks);
         if self.rings == 0 {

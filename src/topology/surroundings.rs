@@ -50,7 +50,8 @@ impl Rim {
         if self.is_ring { 0 } else { present.count() }
     }
 
-    /// The ring, or the peaks of the crest with the valleys between; `whole` is the peak of the cells that stands for the rim as a whole.
+    /// The ring, or the peaks of the crest with the valleys between; `whole` is the peak of the cells that stands for
+    /// the rim as a whole.
     pub(super) fn features(
         &self,
         estimated: &EstimatedDensity,
@@ -108,7 +109,8 @@ impl Rim {
     }
 }
 
-/// The rims of the craters that are present. Basins that spill over into each other before they spill over a common rim share it.
+/// The rims of the craters that are present. Basins that spill over into each other before they spill over a common rim
+/// share it.
 pub(super) fn rims(
     grid: Grid<'_>,
     estimated: &EstimatedDensity,

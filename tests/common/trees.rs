@@ -6,8 +6,8 @@ use pbif::continuation::curve::{CurveOptions, CurveStart, CurveTree, Plane, foll
 
 use crate::sweeps::prepared;
 
-/// What a curve needs of the sweep it starts from: the first row that `is_start` takes, and the value at which the sweep
-/// holds the second parameter.
+/// What a curve needs of the sweep it starts from: the first row that `is_start` takes, and the value at which the
+/// sweep holds the second parameter.
 pub(crate) struct Start {
     pub(crate) is_start: fn(&LabelledPoint) -> bool,
     pub(crate) held: f64,

@@ -77,8 +77,8 @@ pub(crate) struct CurveArguments {
     /// Folder of a run, as `pbif sweep` left it, or a sweep file (TOML), which is swept first
     #[arg(value_name = "RUN|FILE")]
     pub(crate) target: PathBuf,
-    /// Label of the P-bifurcation to start from, such as PB1; may be left out where only one can be followed [default: the rows of
-    /// `[curve]` in the sweep file]
+    /// Label of the P-bifurcation to start from, such as PB1; may be left out where only one can be followed [default:
+    /// the rows of `[curve]` in the sweep file]
     #[arg(long, value_name = "LABEL")]
     pub(crate) row: Option<String>,
     /// The second parameter, which the sweep holds [default: that of `[curve]` in the sweep file, and so the box]
@@ -102,8 +102,8 @@ pub(crate) struct CurveArguments {
     /// Longest step between points, as a share of the sides of the box
     #[arg(long, value_name = "SHARE", value_parser = share, help = step_help())]
     pub(crate) step: Option<f64>,
-    /// Override a key of a sweep file, such as cells.x.count=60; of a run those under detect, locate, figures and curve (repeatable;
-    /// the last one counts)
+    /// Override a key of a sweep file, such as cells.x.count=60; of a run those under detect, locate, figures and curve
+    /// (repeatable; the last one counts)
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,
     /// Folder for the results [default: RUN/curves/ROW-SECOND]

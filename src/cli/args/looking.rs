@@ -9,8 +9,8 @@ use clap::Args;
 pub(crate) struct DetectArguments {
     /// Folder of a run, as `pbif sweep` left it
     pub(crate) run: PathBuf,
-    /// Override a key of the run's sweep under detect, locate or figures, such as detect.confidence=0.99 (repeatable; the
-    /// last one counts)
+    /// Override a key of the run's sweep under detect, locate or figures, such as detect.confidence=0.99 (repeatable;
+    /// the last one counts)
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,
     /// Folder for the results, a complete run with the same densities [default: RUN itself]
@@ -56,7 +56,8 @@ pub(crate) struct PlotArguments {
     /// File formats: svg, png, pdf; csv for the numbers behind a figure, txt for its caption
     #[arg(long, value_name = "FORMATS", value_delimiter = ',')]
     pub(crate) format: Vec<String>,
-    /// Override a key of the run's sweep under figures, such as figures.formats=["svg"] (repeatable; the last one counts)
+    /// Override a key of the run's sweep under figures, such as figures.formats=["svg"] (repeatable; the last one
+    /// counts)
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,
     /// Folder for the figures [default: RUN/figures]
@@ -76,8 +77,8 @@ pub(crate) struct ExploreArguments {
     /// Of a run: file of the page; one that is there is replaced [default: RUN/explorer.html]
     #[arg(long, value_name = "FILE")]
     pub(crate) html: Option<PathBuf>,
-    /// Override a key of a sweep file, such as cells.x.count=60; of a run those under detect and locate (repeatable; the last one
-    /// counts)
+    /// Override a key of a sweep file, such as cells.x.count=60; of a run those under detect and locate (repeatable;
+    /// the last one counts)
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,
     /// Of a sweep file: port on the loopback address [default: one that is free]

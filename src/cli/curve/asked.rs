@@ -33,7 +33,8 @@ enum Rows {
 }
 
 impl Asked {
-    /// What a command asks for; what it leaves out is taken from the sweep file, where that has curves of the same parameter.
+    /// What a command asks for; what it leaves out is taken from the sweep file, where that has curves of the same
+    /// parameter.
     ///
     /// # Errors
     /// [`CommandError::Input`] where something is said in neither.

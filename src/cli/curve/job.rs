@@ -99,7 +99,8 @@ impl<'a> Job<'a> {
         )
     }
 
-    /// Follows the curve, and those that start from it; `None` when interrupted before there was one. What is in the journal is not solved again.
+    /// Follows the curve, and those that start from it; `None` when interrupted before there was one. What is in the
+    /// journal is not solved again.
     pub(super) fn follow(
         &self,
         journal: &SessionJournal,

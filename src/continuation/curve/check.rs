@@ -1,7 +1,8 @@
-//! The error of a curve's points: their own, and what solves on finer cells and between closed ends of Ω show at selected ones.
+//! The error of a curve's points: their own, and what solves on finer cells and between closed ends of Ω show at
+//! selected ones.
 //!
-//! As for the rows of a sweep, the finer value is the better one and is kept: the curve moves by what the checked points show, interpolated
-//! along it, and the error of that is stated from the distance between coarse and fine.
+//! As for the rows of a sweep, the finer value is the better one and is kept: the curve moves by what the checked
+//! points show, interpolated along it, and the error of that is stated from the distance between coarse and fine.
 
 use super::reading::{Missing, Reader};
 use super::walked::{Node, Walked};
@@ -14,8 +15,8 @@ use crate::topology::{IndicatorKind, two_sided_limit};
 
 /// A finer curve farther than this from the coarser one is not the same, in sides of the box.
 const SAME: f64 = 0.05;
-/// Checks on either side that the error of a point is taken from: where in its cell an indicator's place lies makes a single one small by
-/// chance.
+/// Checks on either side that the error of a point is taken from: where in its cell an indicator's place lies makes a
+/// single one small by chance.
 const NEIGHBOURS: usize = 2;
 
 /// What a check shows: how far uphill the curve is by it.

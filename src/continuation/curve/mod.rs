@@ -1,9 +1,11 @@
-//! Curves of P-bifurcations in a plane of two parameters: from a zero of an indicator g on, the line on which g(θ₁, θ₂) = 0.
+//! Curves of P-bifurcations in a plane of two parameters: from a zero of an indicator g on, the line on which
+//! g(θ₁, θ₂) = 0.
 //!
-//! The curve is followed by pseudo-arclength in the plane scaled by the sides of its box. The tangent is exact where the source knows how
-//! its densities answer to parameters; a step goes along the tangent and the curvature seen so far, and is corrected along the gradient.
-//! Selected points are checked on finer cells and between closed ends of Ω, as the rows of a sweep are, and what the checks show is
-//! interpolated along the curve. This module knows an indicator and sessions, and nothing of cells.
+//! The curve is followed by pseudo-arclength in the plane scaled by the sides of its box. The tangent is exact where
+//! the source knows how its densities answer to parameters; a step goes along the tangent and the curvature seen so
+//! far, and is corrected along the gradient. Selected points are checked on finer cells and between closed ends of Ω,
+//! as the rows of a sweep are, and what the checks show is interpolated along the curve. This module knows an indicator
+//! and sessions, and nothing of cells.
 
 mod agree;
 mod branch;
@@ -50,8 +52,8 @@ pub struct CurveOptions {
     pub tolerance: f64,
     /// Hellinger distance between densities of neighbouring points above which a step is halved.
     pub largest_distance: f64,
-    /// Every which point is checked on finer cells, where the source has them, and the ends; zero for none: points are then
-    /// [`BifurcationStatus::Unchecked`].
+    /// Every which point is checked on finer cells, where the source has them, and the ends; zero for none: points are
+    /// then [`BifurcationStatus::Unchecked`].
     pub check_every: usize,
     /// Whether [`follow_all`] follows the curves that start from points of codimension two too.
     pub branches: bool,
@@ -84,8 +86,8 @@ pub struct CurveStart {
 }
 
 impl CurveStart {
-    /// A row of a sweep over the first parameter at a value of the second; `None` for a row that was located by no indicator, or is of no
-    /// observable of the subject.
+    /// A row of a sweep over the first parameter at a value of the second; `None` for a row that was located by no
+    /// indicator, or is of no observable of the subject.
     pub fn from_row(row: &LabelledPoint, second: f64, subject: &Subject) -> Option<Self> {
         let mut observables = subject.observables.iter();
         let observable = observables.position(|&one| Some(one) == row.observable)?;
@@ -164,8 +166,8 @@ struct Task<'a> {
     cancellation: &'a Cancellation,
 }
 
-/// Follows the curve through a start in both directions, in the box of a plane along whose path `source` solves. `observer` is told the
-/// values of every point as it is met.
+/// Follows the curve through a start in both directions, in the box of a plane along whose path `source` solves.
+/// `observer` is told the values of every point as it is met.
 ///
 /// Cancelled, the curve ends early, and says so.
 ///

@@ -1,8 +1,8 @@
 //! The indicator at a place of the plane, and how it changes with both parameters.
 //!
-//! Where the solved point knows how its densities answer to parameters, the indicator's derivative is the indicator of the density moved a
-//! little along dp/dθ, and of what the equations imply at its kinks: exact to the digits of dp/dθ. Elsewhere two more solves beside the
-//! place give it by differences.
+//! Where the solved point knows how its densities answer to parameters, the indicator's derivative is the indicator of
+//! the density moved a little along dp/dθ, and of what the equations imply at its kinks: exact to the digits of dp/dθ.
+//! Elsewhere two more solves beside the place give it by differences.
 
 use super::{CurveStart, CurveWork, Plane, companion};
 use crate::cancellation::Cancellation;
@@ -10,7 +10,8 @@ use crate::continuation::{DensitySource, PointStatus, Sensitivity, Session, Sour
 use crate::density::{Density, EstimatedDensity};
 use crate::topology::{Detector, Indicator, IndicatorKind};
 
-/// Largest change of a density, as a share of its maximum, by which an indicator is differentiated: the error is this squared.
+/// Largest change of a density, as a share of its maximum, by which an indicator is differentiated: the error is this
+/// squared.
 const SHARE: f64 = 1e-5;
 /// Distance of the places beside, where derivatives come from differences; sides of the box have length one.
 const BESIDE: f64 = 5e-3;
@@ -273,7 +274,8 @@ fn derivative(
     Some((moved(step)? - moved(-step)?) / (2.0 * step))
 }
 
-/// Derivative of an indicator that follows from the jumps at kinks, when these change at the given rates, one after the other.
+/// Derivative of an indicator that follows from the jumps at kinks, when these change at the given rates, one after the
+/// other.
 fn by_jumps(
     detector: &dyn Detector,
     estimated: &EstimatedDensity,

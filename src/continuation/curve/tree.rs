@@ -33,8 +33,8 @@ pub struct CurveTree {
     pub missed: Vec<MissedBranch>,
 }
 
-/// Follows the curve through a start as [`follow`] does, and then, unless [`CurveOptions::branches`] is off, those that start from its points of
-/// codimension two, and from theirs.
+/// Follows the curve through a start as [`follow`] does, and then, unless [`CurveOptions::branches`] is off, those that
+/// start from its points of codimension two, and from theirs.
 ///
 /// # Errors
 /// [`CurveError`] where the first one cannot be followed.

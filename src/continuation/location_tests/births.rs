@@ -2,7 +2,8 @@
 
 use super::*;
 
-/// A main peak at -1 and, from θ = 0 on, a pair born at 0.5: (log p)' = -(x + 1)(2 (x - 0.5)² - θ); mirrored for sign -1.
+/// A main peak at -1 and, from θ = 0 on, a pair born at 0.5: (log p)' = -(x + 1)(2 (x - 0.5)² - θ); mirrored for sign
+/// -1.
 fn flank(sign: f64) -> Exact<impl Formula> {
     Exact::new(
         1,

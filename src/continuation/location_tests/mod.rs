@@ -282,7 +282,8 @@ fn nothing_is_located_in_a_density_that_is_negative() {
         (row.status, row.reason)
     };
     assert_eq!(status(0.0).0, Some(BifurcationStatus::Located));
-    // 0.8 in x at about a tenth of the height of a density some two wide: four per cent of the mass, or two thousandths of it.
+    // 0.8 in x at about a tenth of the height of a density some two wide: four per cent of the mass, or two thousandths
+    // of it.
     let (torn, reason) = status(0.1);
     assert_eq!(torn, Some(BifurcationStatus::Unresolved));
     assert!(reason.unwrap().contains("of the density there is negative"));

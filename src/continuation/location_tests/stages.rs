@@ -99,7 +99,8 @@ fn densities_that_change_fast_get_values_between() {
 
 #[test]
 fn two_folds_within_one_step_have_a_row_each() {
-    // (log p)' = -(x - 1.1) (x + 1.1) ... three peaks become one: shoulders of opposite flanks pass zero at 0.1 and 0.11.
+    // (log p)' = -(x - 1.1) (x + 1.1) ... three peaks become one: shoulders of opposite flanks pass zero at 0.1 and
+    // 0.11.
     let source = Exact::new(
         1,
         160,
@@ -132,7 +133,8 @@ fn two_folds_within_one_step_have_a_row_each() {
 
 #[test]
 fn changes_that_undo_each_other_far_apart_keep_their_rows_though_neither_is_located() {
-    // One bump of a wide hill grows as much as the other shrinks: by symmetry their pairs are born and vanish at θ and 0.6 - θ.
+    // One bump of a wide hill grows as much as the other shrinks: by symmetry their pairs are born and vanish at θ and
+    // 0.6 - θ.
     let source = Exact::new(
         1,
         160,

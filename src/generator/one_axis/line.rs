@@ -135,7 +135,8 @@ impl Line {
         self.parts.get(above.saturating_sub(1))
     }
 
-    /// Slopes at the ends of all parts and at the extrema on them, in ascending place: between two the slope is monotone.
+    /// Slopes at the ends of all parts and at the extrema on them, in ascending place: between two the slope is
+    /// monotone.
     pub(super) fn samples(&self) -> Vec<Sample> {
         let mut samples = Vec::with_capacity(2 * self.parts.len());
         for part in &self.parts {
@@ -158,8 +159,8 @@ impl Line {
     }
 }
 
-/// A zero between two places at which a function has different signs, by halving; `rises` tells whether it is positive at
-/// the upper one.
+/// A zero between two places at which a function has different signs, by halving; `rises` tells whether it is positive
+/// at the upper one.
 pub(super) fn zero(of: impl Fn(f64) -> f64, (mut low, mut high): (f64, f64), rises: bool) -> f64 {
     loop {
         let middle = 0.5 * (low + high);

@@ -16,8 +16,8 @@ const NOTHING: f64 = 1e-13;
 /// Differences of log p below this are rounding.
 const LEVEL: f64 = 1e-11;
 
-/// The profile of the density that [`super::one_axis`] found on the same axis; `centre` is that of a symmetry. `None` where drift and noise do not
-/// allow it.
+/// The profile of the density that [`super::one_axis`] found on the same axis; `centre` is that of a symmetry. `None`
+/// where drift and noise do not allow it.
 pub fn profile(
     system: &dyn System,
     axis: &Axis,
@@ -191,7 +191,8 @@ mod tests {
         }
         let peaks: Vec<bool> = profile.extrema.iter().map(|one| one.is_peak).collect();
         assert_eq!(peaks, [true, false, true, false, true]);
-        // The logarithm of the density between two of them is ∫ 2a/b², here by Simpson's rule, whose error is below 1e-14.
+        // The logarithm of the density between two of them is ∫ 2a/b², here by Simpson's rule, whose error is below
+        // 1e-14.
         let a = |x: f64| -zeros.iter().map(|zero| x - zero).product::<f64>();
         let (from, to) = (0.31, 0.33);
         let h = (to - from) / 200.0;

@@ -7,7 +7,8 @@ use crate::system::{LANES, Lanes, System};
 /// Gauss-Legendre points on a panel.
 pub(super) const NODES: usize = 8;
 
-/// Points and weights on [0, 1], and the integrals of the polynomial through values at the points from 0 to each of them.
+/// Points and weights on [0, 1], and the integrals of the polynomial through values at the points from 0 to each of
+/// them.
 pub(super) struct Rule {
     pub(super) points: [f64; NODES],
     pub(super) weights: [f64; NODES],

@@ -1,5 +1,5 @@
-//! The generator, solved directly: its settings, what a point costs, the source, its session, what the last points say of the next
-//! one, relaxation, and derivatives.
+//! The generator, solved directly: its settings, what a point costs, the source, its session, what the last points say
+//! of the next one, relaxation, and derivatives.
 
 mod coarse;
 mod cost;

@@ -14,12 +14,12 @@ use crate::method::structure::closed_ends;
 use crate::space::{Axis, CellSpace};
 use crate::system::{Family, System, SystemError};
 
-/// Largest relative error of a cell that the quadrature may have; where noise nearly vanishes, or the drift jumps inside a cell,
-/// the generator serves better.
+/// Largest relative error of a cell that the quadrature may have; where noise nearly vanishes, or the drift jumps
+/// inside a cell, the generator serves better.
 const LARGEST_ERROR: f64 = 1e-6;
 
-/// Step of differences, relative to the number that is varied (to `LEAST` where that is smaller). Their error is step⁴ p⁽⁵⁾/30, and
-/// rounding over the step.
+/// Step of differences, relative to the number that is varied (to `LEAST` where that is smaller). Their error is step⁴
+/// p⁽⁵⁾/30, and rounding over the step.
 const STEP: f64 = 2e-3;
 const LEAST: f64 = 1e-2;
 
@@ -61,8 +61,8 @@ impl OneAxisFamily {
         })
     }
 
-    /// Gives a density over the axis, solved by the generator for a system of the family, what it is known by: the extrema
-    /// of the equations where quadrature gives it, the solver's limit elsewhere.
+    /// Gives a density over the axis, solved by the generator for a system of the family, what it is known by: the
+    /// extrema of the equations where quadrature gives it, the solver's limit elsewhere.
     pub(crate) fn restore(self, density: &mut EstimatedDensity, system: &dyn System) {
         let [axis] = density.density.axes.as_slice() else {
             return;

@@ -1,8 +1,8 @@
 //! How fast a generator forgets its start: the slowest decay rate beside the steady state, by inverse iteration with
 //! the factorisation of the steady state.
 //!
-//! The time is compared with the time in which mass escapes, to say whether there is a steady state. Far from such a limit
-//! a neighbour's time will do, and close to it the iteration starts from the neighbour's mode.
+//! The time is compared with the time in which mass escapes, to say whether there is a steady state. Far from such a
+//! limit a neighbour's time will do, and close to it the iteration starts from the neighbour's mode.
 
 use std::sync::Arc;
 
@@ -73,7 +73,8 @@ impl Relaxation {
         }
     }
 
-    /// Whether less than `limit` of the mass leaves within it for sure, at this escape rate, at the point that it is of.
+    /// Whether less than `limit` of the mass leaves within it for sure, at this escape rate, at the point that it is
+    /// of.
     pub(super) fn is_quiet(&self, escape_rate: f64, limit: f64) -> bool {
         escape_rate * self.time * if self.rough { ROUGHNESS } else { 1.0 } < limit
     }
@@ -112,8 +113,8 @@ impl Relaxation {
         })
     }
 
-    /// From x ← Q⁻¹ x on vectors of sum zero: the mean growth over the last iterations is 1/|λ₂|. Rough (a few per cent,
-    /// more for oscillating modes), which is enough to compare with the time in which mass escapes. `None` when a
+    /// From x ← Q⁻¹ x on vectors of sum zero: the mean growth over the last iterations is 1/|λ₂|. Rough (a few per
+    /// cent, more for oscillating modes), which is enough to compare with the time in which mass escapes. `None` when a
     /// solve fails.
     pub(super) fn compute(
         solver: &mut RateSolver,

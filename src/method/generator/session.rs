@@ -1,5 +1,5 @@
-//! The generator at work: assemble Q, solve Q u = 0 with the neighbour's factorisation, and state the error of the grid as the
-//! difference to a second scheme.
+//! The generator at work: assemble Q, solve Q u = 0 with the neighbour's factorisation, and state the error of the grid
+//! as the difference to a second scheme.
 //!
 //! The slope du/dθ, which predicts the neighbour, and the difference to the second scheme come from the factorisation
 //! that is there: Q du = -(dQ/dθ) u, and with the second scheme's Q' = Q + δQ to first order Q δu = -(δQ) u. After the
@@ -37,8 +37,8 @@ const NO_ESCAPE: f64 = 1e-12;
 /// Relative error of slopes, which predict, and of differences between schemes, which estimate errors.
 const ROUGH: f64 = 1e-2;
 
-/// Distance in L1 of the unknowns that were expected to those that were found up to which a difference between schemes that was
-/// worked out for the first is that of the second, to [`ROUGH`].
+/// Distance in L1 of the unknowns that were expected to those that were found up to which a difference between schemes
+/// that was worked out for the first is that of the second, to [`ROUGH`].
 const NEAR: f64 = 1e-3;
 
 /// Owns the factorisation and what the solved points say of the next one.
@@ -61,8 +61,8 @@ struct Solved {
     steady: RateSteadyState,
     /// The generator by the second scheme; `None` in a check, which states no error of its own.
     second: Option<Generator>,
-    /// By how much the second scheme's unknowns differ, where that came along with the solve, and whether the unknowns were
-    /// expected well enough for that to be it.
+    /// By how much the second scheme's unknowns differ, where that came along with the solve, and whether the unknowns
+    /// were expected well enough for that to be it.
     along: Option<(Vec<f64>, bool)>,
 }
 
@@ -131,8 +131,8 @@ impl GeneratorSession {
         Ok(solution)
     }
 
-    /// Factorises ahead of a value in place of at it, where the sweep goes on: values on either side of the factorised one are as
-    /// near to it. Where that cannot be, the solve factorises at the value itself.
+    /// Factorises ahead of a value in place of at it, where the sweep goes on: values on either side of the factorised
+    /// one are as near to it. Where that cannot be, the solve factorises at the value itself.
     fn renew_ahead(&mut self, value: f64, guess: &[f64]) -> Result<(), MethodError> {
         let Some(ahead) = self
             .stand
@@ -252,7 +252,8 @@ impl GeneratorSession {
         ))
     }
 
-    /// The time in which deviations die out, where mass escapes: a neighbour's, or that of fewer cells, where it will do.
+    /// The time in which deviations die out, where mass escapes: a neighbour's, or that of fewer cells, where it will
+    /// do.
     fn relaxation(&mut self, solved: &Solved, before: Option<&Trail>) -> Option<Relaxation> {
         let (rate, mass) = (solved.steady.info.escape_rate, &solved.steady.mass);
         if self.source.checks || rate <= NO_ESCAPE {
@@ -302,9 +303,9 @@ impl GeneratorSession {
         Ok((densities, change))
     }
 
-    /// du/dθ at the only point of a trail, for the first step from it: worked out when there is one, as long as the solver stands at
-    /// that point. `None` where Q cannot be varied (at an end of the parameter's range) or the solve fails: the next point then
-    /// starts without a prediction.
+    /// du/dθ at the only point of a trail, for the first step from it: worked out when there is one, as long as the
+    /// solver stands at that point. `None` where Q cannot be varied (at an end of the parameter's range) or the solve
+    /// fails: the next point then starts without a prediction.
     fn slope(&mut self, trail: &Trail) -> Result<Option<Vec<f64>>, MethodError> {
         let only = trail
             .only()
@@ -361,8 +362,8 @@ fn trail_after(
         .with(point, relaxation.map(Arc::new))
 }
 
-/// Masses of the cells of the other axes. The values at the nodes of a series, which may be negative where the density is
-/// nothing, are the masses of no cells.
+/// Masses of the cells of the other axes. The values at the nodes of a series, which may be negative where the density
+/// is nothing, are the masses of no cells.
 fn summed_over_modes(space: &CellSpace, masses: &[f64]) -> Vec<f64> {
     let mut summed = masses.to_vec();
     let mut stride = 1;

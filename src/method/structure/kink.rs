@@ -1,8 +1,8 @@
 //! Kinks of densities on planes across which noise acts.
 //!
-//! On a plane where the drift across it jumps by Δa and the slope of b² by Δ(b²)', flux and density are continuous, so the derivative of
-//! log p across the plane jumps by (2 Δa - Δ(b²)')/b²: the jump law. Where axes are summed over, Δa is the mean over
-//! the mass beside the plane.
+//! On a plane where the drift across it jumps by Δa and the slope of b² by Δ(b²)', flux and density are continuous, so
+//! the derivative of log p across the plane jumps by (2 Δa - Δ(b²)')/b²: the jump law. Where axes are summed over, Δa
+//! is the mean over the mass beside the plane.
 
 use crate::density::Kink;
 use crate::space::CellSpace;
@@ -13,7 +13,8 @@ pub(super) const BESIDE: f64 = 1e-6;
 /// Times that distance, for slopes of the noise.
 const FARTHER: f64 = 100.0;
 
-/// The kink that a surface makes in the density of the given axes, if it stands on one of them and noise acts across it.
+/// The kink that a surface makes in the density of the given axes, if it stands on one of them and noise acts across
+/// it.
 pub(super) fn kink(
     system: &dyn System,
     space: &CellSpace,
@@ -58,7 +59,8 @@ pub(super) fn kink(
     })
 }
 
-/// The axis along which a kink of a joint density is told. Along an axis of modes nodes are no bins: the mean of all holds for each.
+/// The axis along which a kink of a joint density is told. Along an axis of modes nodes are no bins: the mean of all
+/// holds for each.
 fn beside_axis(space: &CellSpace, axes: &[usize], across: usize) -> Option<usize> {
     let mut others = axes.iter().copied();
     others.find(|&axis| axis != across && !space.axes()[axis].is_modes())

@@ -35,7 +35,8 @@ pub(super) fn kinked_surfaces(
     surfaces
 }
 
-/// The same, with those across which no noise acts. What they make of a density is read from it, which a sampled one does not allow.
+/// The same, with those across which no noise acts. What they make of a density is read from it, which a sampled one
+/// does not allow.
 pub(super) fn all_kinked_surfaces(
     systems: &[Arc<dyn System>],
     space: &CellSpace,
@@ -54,7 +55,8 @@ pub(super) fn all_kinked_surfaces(
     surfaces
 }
 
-/// Whether the lower and upper end of each axis is a wall that the system cannot pass, all along the sweep, or belongs to a series.
+/// Whether the lower and upper end of each axis is a wall that the system cannot pass, all along the sweep, or belongs
+/// to a series.
 pub(super) fn closed_ends(systems: &[Arc<dyn System>], space: &CellSpace) -> Vec<[bool; 2]> {
     let axes = space.axes().iter().enumerate();
     axes.map(|(axis, cells)| {
@@ -106,7 +108,8 @@ pub(super) fn structure(
             Some(Kink { axis, at, jump })
         });
     kinks.extend(others);
-    // A slope that jumps at the centre by nobody knows how much: its curvature there says nothing, and persistence judges.
+    // A slope that jumps at the centre by nobody knows how much: its curvature there says nothing, and persistence
+    // judges.
     let is_torn = |centre: &Vec<f64>| {
         let declared = system.switching_surfaces().into_iter();
         let mut unknown = declared.filter(|one| !known.contains(&(one.axis, one.at)));

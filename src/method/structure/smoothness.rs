@@ -14,15 +14,16 @@ pub(super) enum Break {
     Jump,
 }
 
-/// Distance between states from which values, slopes and curvatures on one side of a surface are taken, as a share of the range.
+/// Distance between states from which values, slopes and curvatures on one side of a surface are taken, as a share of
+/// the range.
 const APART: f64 = 1e-5;
 /// A jump of a value or of a slope that is a smaller share of the values, in units of the range, is rounding.
 const ROUNDING: f64 = 1e-6;
 /// The same of a curvature: smooth functions may turn fast.
 const SMOOTH: f64 = 0.1;
 
-/// How smooth drift and noise are across a surface, in so far as the density follows them: where noise acts across it, only what moves across it
-/// counts.
+/// How smooth drift and noise are across a surface, in so far as the density follows them: where noise acts across it,
+/// only what moves across it counts.
 pub(super) fn break_at(system: &dyn System, space: &CellSpace, surface: SwitchingSurface) -> Break {
     let axis = &space.axes()[surface.axis];
     if axis.find(surface.at).is_none() {

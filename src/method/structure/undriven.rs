@@ -1,11 +1,11 @@
 //! Kinks of densities on planes across which no noise acts, as where a force on the velocity jumps at a position.
 //!
-//! The flux across such a plane is v p, with the drift v across it; where the drift f of other axes jumps by Δf there, the stationary
-//! equation asks that v ∂p/∂x jumps by -∇·(Δf p), so the slope of log p jumps by -∇·(Δf p)/(v p).
+//! The flux across such a plane is v p, with the drift v across it; where the drift f of other axes jumps by Δf there,
+//! the stationary equation asks that v ∂p/∂x jumps by -∇·(Δf p), so the slope of log p jumps by -∇·(Δf p)/(v p).
 //!
-//! The law is used where noise and the slope of v do not jump, and Δf is the same all over the plane. Then the jump is Δf times a
-//! number that depends on the density. Where that number has one sign all over the plane, the jump is zero exactly where Δf is,
-//! whatever the cells; elsewhere the kink is not known.
+//! The law is used where noise and the slope of v do not jump, and Δf is the same all over the plane. Then the jump is
+//! Δf times a number that depends on the density. Where that number has one sign all over the plane, the jump is zero
+//! exactly where Δf is, whatever the cells; elsewhere the kink is not known.
 
 use super::kink::BESIDE;
 use super::smoothness::{Break, break_at};
@@ -48,7 +48,8 @@ pub(super) fn is_known(system: &dyn System, space: &CellSpace, surface: Switchin
     plane.is_some_and(|plane| plane.is_crossed() && plane.is_even() && plane.has_even_noise(system))
 }
 
-/// The kink that a surface makes in the density of the given axes, if it stands on one of them and its sign follows from the equations.
+/// The kink that a surface makes in the density of the given axes, if it stands on one of them and its sign follows
+/// from the equations.
 pub(super) fn kink(
     system: &dyn System,
     space: &CellSpace,
@@ -235,8 +236,9 @@ impl<'a> Plane<'a> {
             .collect()
     }
 
-    /// ∇·(Δf p) of an even jump, times the volume of a cell: p Δf ∂ log p along every axis, by central differences. Logarithms of densities
-    /// are followed farther than densities; where there is next to nothing the slope is nothing.
+    /// ∇·(Δf p) of an even jump, times the volume of a cell: p Δf ∂ log p along every axis, by central differences.
+    /// Logarithms of densities are followed farther than densities; where there is next to nothing the slope is
+    /// nothing.
     fn divergence(&self, masses: &[f64], cell: usize) -> f64 {
         let along = (0..self.space.dimension()).filter(|&axis| axis != self.across);
         let of = |axis: usize| {
@@ -276,7 +278,8 @@ impl<'a> Plane<'a> {
         ]
     }
 
-    /// Distance on the plane between neighbours along an axis: the first axis is slowest, and the one across is left out.
+    /// Distance on the plane between neighbours along an axis: the first axis is slowest, and the one across is left
+    /// out.
     fn stride(&self, axis: usize) -> usize {
         let later = self.space.axes().iter().enumerate().skip(axis + 1);
         let counts = later.filter(|(other, _)| *other != self.across);
@@ -290,7 +293,8 @@ mod tests {
     use crate::space::Axis;
     use crate::system::TypedModel;
 
-    /// x' = y, y' = -x - a sgn x - c y + s ξ has p ∝ exp(-(2c/s²)(y²/2 + x²/2 + a |x|)): the slope of log p jumps by -4 a c/s².
+    /// x' = y, y' = -x - a sgn x - c y + s ξ has p ∝ exp(-(2c/s²)(y²/2 + x²/2 + a |x|)): the slope of log p jumps by -4
+    /// a c/s².
     #[test]
     fn a_force_that_jumps_makes_the_kink_of_the_exact_density() {
         let (c, s, a) = (0.5, 0.7, 0.3);
@@ -320,8 +324,8 @@ mod tests {
             (of(&[0]).jump_at(0), of(&[0, 1]).jump_at(count / 2))
         };
         let exact = -4.0 * a * c / (s * s);
-        // Even and odd counts: with and without cells in which nothing crosses the plane. Differences of the logarithm of a normal
-        // density are exact, but at the ends of y, where e⁻⁹ of it is.
+        // Even and odd counts: with and without cells in which nothing crosses the plane. Differences of the logarithm
+        // of a normal density are exact, but at the ends of y, where e⁻⁹ of it is.
         for count in [40, 41, 80] {
             let (marginal, joint) = found(count);
             assert!((marginal / exact - 1.0).abs() < 1e-3, "{marginal} {exact}");
@@ -329,7 +333,8 @@ mod tests {
         }
     }
 
-    /// Where the density has a ring, it rises away from y = 0: the kink's sign is that of the density as well as of the force.
+    /// Where the density has a ring, it rises away from y = 0: the kink's sign is that of the density as well as of the
+    /// force.
     #[test]
     fn a_kink_whose_sign_depends_on_the_density_is_not_known() {
         let model = TypedModel::new("bang", "A spring with a preload", ["x", "y"])

@@ -1,4 +1,5 @@
-//! A file of records, to which records are added at its end: length, checksum, content. The first record says of what the others are.
+//! A file of records, to which records are added at its end: length, checksum, content. The first record says of what
+//! the others are.
 
 use std::fs::File;
 use std::io::{BufReader, Read as _, Seek as _, SeekFrom, Write as _};
@@ -37,7 +38,8 @@ pub(in crate::run) struct Log {
 }
 
 impl Log {
-    /// A new file, of work that `of` describes as TOML. It appears with its first record: a kill leaves none, or one to go on from.
+    /// A new file, of work that `of` describes as TOML. It appears with its first record: a kill leaves none, or one to
+    /// go on from.
     ///
     /// # Errors
     /// [`RunError::Write`].
@@ -52,8 +54,8 @@ impl Log {
     /// Opens a file to go on with it; `each` is given all whole records but the first.
     ///
     /// # Errors
-    /// [`RunError::NoJournal`]; [`RunError::OtherSweep`], with every difference, when it is of other work or of another version;
-    /// [`RunError::Journal`], also where `each` does not understand a record; [`RunError::Read`].
+    /// [`RunError::NoJournal`]; [`RunError::OtherSweep`], with every difference, when it is of other work or of another
+    /// version; [`RunError::Journal`], also where `each` does not understand a record; [`RunError::Read`].
     pub(in crate::run) fn open(
         path: PathBuf,
         of: &str,
@@ -163,7 +165,8 @@ fn frame(room: Vec<u8>, compose: impl FnOnce(&mut Writer)) -> Vec<u8> {
     frame
 }
 
-/// Gives a file that is linked elsewhere, in an earlier version of the run, a copy of its own, to which records can be added.
+/// Gives a file that is linked elsewhere, in an earlier version of the run, a copy of its own, to which records can be
+/// added.
 #[cfg(unix)]
 fn own(path: &Path) -> std::io::Result<()> {
     use std::os::unix::fs::MetadataExt as _;

@@ -1,9 +1,10 @@
 //! The journal of a run: every solve in full, written before it is reported, from which an interrupted run goes on.
 //!
-//! One file, `journal.bin`, to which records are added at the end. A kill leaves at most the last record incomplete, which is then cut off;
-//! a machine that loses its power may lose those of the last second. The first record says of which sweep the others are. It is written for
-//! the program that reads it, with every bit of a solution and of what its session remembers; tables and arrays are made from it again. What
-//! checks of located values saw is written as the numbers that were seen, with what their sessions remember.
+//! One file, `journal.bin`, to which records are added at the end. A kill leaves at most the last record incomplete,
+//! which is then cut off; a machine that loses its power may lose those of the last second. The first record says of
+//! which sweep the others are. It is written for the program that reads it, with every bit of a solution and of what
+//! its session remembers; tables and arrays are made from it again. What checks of located values saw is written as the
+//! numbers that were seen, with what their sessions remember.
 
 mod asked;
 mod check;
@@ -57,8 +58,8 @@ impl Journal {
     /// `resolved` is the sweep that is to be run, `family` what it runs through.
     ///
     /// # Errors
-    /// [`RunError::NoJournal`]; [`RunError::OtherSweep`], with every difference, when the run is of another sweep or version;
-    /// [`RunError::Journal`]; [`RunError::Read`]; [`RunError::Write`].
+    /// [`RunError::NoJournal`]; [`RunError::OtherSweep`], with every difference, when the run is of another sweep or
+    /// version; [`RunError::Journal`]; [`RunError::Read`]; [`RunError::Write`].
     pub fn open(
         folder: &Path,
         resolved: &str,

@@ -1,4 +1,5 @@
-//! What a session of an earlier process has solved: given again in its order, and then recalled by the session that goes on.
+//! What a session of an earlier process has solved: given again in its order, and then recalled by the session that
+//! goes on.
 
 use std::collections::VecDeque;
 use std::path::PathBuf;
@@ -48,7 +49,8 @@ impl<R: Stored> Replay<R> {
         self.stored.len()
     }
 
-    /// The next stored solve, which must be of the value that is asked for; `None` where the session is to solve itself.
+    /// The next stored solve, which must be of the value that is asked for; `None` where the session is to solve
+    /// itself.
     pub(super) fn give(
         &mut self,
         value: f64,

@@ -1,8 +1,8 @@
-//! All sessions of a source written into one journal, those of its finer and enclosed sources too, with the answers to what was asked of their
-//! solutions: what a curve needs to go on where it was.
+//! All sessions of a source written into one journal, those of its finer and enclosed sources too, with the answers to
+//! what was asked of their solutions: what a curve needs to go on where it was.
 //!
-//! Sessions are numbered in the order in which they are opened. Whoever asks for the same in the same order is given what is stored, and
-//! where a session's records end, it goes on as it would have.
+//! Sessions are numbered in the order in which they are opened. Whoever asks for the same in the same order is given
+//! what is stored, and where a session's records end, it goes on as it would have.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::path::PathBuf;
@@ -43,7 +43,8 @@ impl SessionJournal {
     /// Opens the file of unfinished work to go on with it.
     ///
     /// # Errors
-    /// [`RunError::NoJournal`]; [`RunError::OtherSweep`], with every difference; [`RunError::Journal`]; [`RunError::Read`].
+    /// [`RunError::NoJournal`]; [`RunError::OtherSweep`], with every difference; [`RunError::Journal`];
+    /// [`RunError::Read`].
     pub fn open(
         path: PathBuf,
         of: &str,
@@ -98,8 +99,8 @@ impl Keeper for SessionJournal {
 
 /// A source whose sessions are in a journal.
 ///
-/// What cannot be written, or asks for other values than the journal has, ends its session as if it had been interrupted;
-/// [`SessionJournal::failure`] says why.
+/// What cannot be written, or asks for other values than the journal has, ends its session as if it had been
+/// interrupted; [`SessionJournal::failure`] says why.
 pub struct RecordedSource {
     source: Box<dyn DensitySource>,
     journal: SessionJournal,

@@ -11,12 +11,12 @@ use crate::cancellation::Cancellation;
 use crate::continuation::{DensitySource, KeptCheck, Session, Solution, SourceError, Subject};
 use crate::run::RunError;
 
-/// A source whose first session goes on where the journal ends: solves that are in it are given from it, in its order, the same to the bit;
-/// all others are solved as they would have been, and written before they are given.
+/// A source whose first session goes on where the journal ends: solves that are in it are given from it, in its order,
+/// the same to the bit; all others are solved as they would have been, and written before they are given.
 ///
-/// What cannot be written, or asks for other values than the journal has, ends the session as if it had been interrupted;
-/// [`JournalledSource::failure`] says why. The sources that check located values are those of the source itself; whoever observes the sweep keeps what
-/// they see by [`JournalledSource::keep_check`].
+/// What cannot be written, or asks for other values than the journal has, ends the session as if it had been
+/// interrupted; [`JournalledSource::failure`] says why. The sources that check located values are those of the source
+/// itself; whoever observes the sweep keeps what they see by [`JournalledSource::keep_check`].
 pub struct JournalledSource {
     source: Box<dyn DensitySource>,
     shared: Arc<Mutex<Shared>>,

@@ -13,14 +13,16 @@ use crate::run::arrays::{Layout, PARAMETER_CHUNK};
 use crate::run::atomic::write_atomically;
 use crate::system::Family;
 
-/// The name of a chunk in the folder of its array, as readers expect it that look for no other encoding of chunks' names.
+/// The name of a chunk in the folder of its array, as readers expect it that look for no other encoding of chunks'
+/// names.
 pub(super) fn chunk_name(place: &[u64]) -> String {
     let numbers = place.iter().map(|number| format!("/{number}"));
     format!("c{}", numbers.collect::<String>())
 }
 
 impl DensityStore {
-    /// Writes the metadata of every array with places for `count` parameter values, and last that of the store; nothing where it stands already.
+    /// Writes the metadata of every array with places for `count` parameter values, and last that of the store; nothing
+    /// where it stands already.
     pub(super) fn write_all_metadata(
         &mut self,
         family: &Family,

@@ -8,8 +8,8 @@ use crate::run::{Manifest, RunFolder, StoredRun};
 use crate::space::{Axis, CellSpace};
 use crate::system::{Family, Path, TypedModel};
 
-/// dx = (a x³ - x) dt + 0.3 dW on [-2, 2]: the drift points outward at the ends from a = 1/4 on, so that there is no steady
-/// state without flux, and cells let the little out that comes so far.
+/// dx = (a x³ - x) dt + 0.3 dW on [-2, 2]: the drift points outward at the ends from a = 1/4 on, so that there is no
+/// steady state without flux, and cells let the little out that comes so far.
 fn source(space: &CellSpace) -> GeneratorSource {
     let model = TypedModel::new("outward", "A system that the ends may push out", ["x"])
         .with_equation("x", "a x^3 - x")

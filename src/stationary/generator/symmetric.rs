@@ -1,9 +1,9 @@
 //! Symmetric generators on half of the cells.
 //!
-//! Where the matrix does not change when all cells are counted from the other end (a system that is odd about the middle of its
-//! cells), the steady state is symmetric too, being the only one, and so is its answer to symmetric changes. Cells and their mirror
-//! images are then summed: half the unknowns, half the memory, less than half the work. Symmetry is seen in the matrix itself, to
-//! rounding; a change that is not symmetric is answered on all cells.
+//! Where the matrix does not change when all cells are counted from the other end (a system that is odd about the
+//! middle of its cells), the steady state is symmetric too, being the only one, and so is its answer to symmetric
+//! changes. Cells and their mirror images are then summed: half the unknowns, half the memory, less than half the work.
+//! Symmetry is seen in the matrix itself, to rounding; a change that is not symmetric is answered on all cells.
 
 mod along;
 mod folding;
@@ -92,9 +92,9 @@ impl RateSolver {
         Ok(self.solve_along(matrix, escape, guess, None)?.0)
     }
 
-    /// [`RateSolver::solve`], and along with it how the masses of the guess answer to a change of the generator, by the same passes
-    /// through the factors: nearly for nothing. There is no answer without a guess, to a change that breaks a symmetry that is
-    /// made use of, or when it took too long.
+    /// [`RateSolver::solve`], and along with it how the masses of the guess answer to a change of the generator, by the
+    /// same passes through the factors: nearly for nothing. There is no answer without a guess, to a change that breaks
+    /// a symmetry that is made use of, or when it took too long.
     ///
     /// # Errors
     /// As [`RateSolver::solve`]; [`RateError::Shape`] for a change of the wrong size.
@@ -137,8 +137,8 @@ impl RateSolver {
         Ok((RateSteadyState { mass, info }, answer))
     }
 
-    /// Whether iterating with the factorisation at hand has come to cost more than a new one would: the next solve factorises,
-    /// unless [`RateSolver::renew`] does before.
+    /// Whether iterating with the factorisation at hand has come to cost more than a new one would: the next solve
+    /// factorises, unless [`RateSolver::renew`] does before.
     pub fn is_worn(&self) -> bool {
         match (&self.folded, &self.half) {
             (Some(_), Some(half)) => half.solver.is_worn(),
@@ -146,8 +146,8 @@ impl RateSolver {
         }
     }
 
-    /// Factorises a generator in the middle of those that are solved next, which reaches about twice as many of them as the
-    /// factorisation of the first would. `mass` is about its steady state.
+    /// Factorises a generator in the middle of those that are solved next, which reaches about twice as many of them as
+    /// the factorisation of the first would. `mass` is about its steady state.
     ///
     /// # Errors
     /// As [`RateSolver::solve`].
@@ -183,8 +183,8 @@ impl RateSolver {
         }
     }
 
-    /// Brings a fresh solver to where another one on the same cells was: `factorised` is the matrix that it had factorised, `last`
-    /// that of its last solve with the escape. What is solved then is the same to the bit.
+    /// Brings a fresh solver to where another one on the same cells was: `factorised` is the matrix that it had
+    /// factorised, `last` that of its last solve with the escape. What is solved then is the same to the bit.
     ///
     /// # Errors
     /// As [`RateSolver::solve`].
@@ -272,8 +272,8 @@ impl RateSolver {
         self.response(&change, mass, guess, tolerance)
     }
 
-    /// How the last steady state `mass` answers to a change of its balance: p' (Σ = 0) from Q p' = -`change`, where `change`
-    /// is by how much more mass enters each cell than before, per unit time; what its sum lacks escapes.
+    /// How the last steady state `mass` answers to a change of its balance: p' (Σ = 0) from Q p' = -`change`, where
+    /// `change` is by how much more mass enters each cell than before, per unit time; what its sum lacks escapes.
     ///
     /// # Errors
     /// As [`RateSolver::sensitivity`].

@@ -1,5 +1,5 @@
-//! The keys of a sweep file. Each is declared once, in [`table`]: reading, writing, messages about unknown keys, the long help and
-//! `docs/sweep-file.md` are all made from there.
+//! The keys of a sweep file. Each is declared once, in [`table`]: reading, writing, messages about unknown keys, the
+//! long help and `docs/sweep-file.md` are all made from there.
 //!
 //! Defaults that a program option has are those of its `Default`, got as the value of a file that says nothing.
 

@@ -1,12 +1,12 @@
 //! Coloured noise: every white noise of a model goes through a linear filter with a memory, whose states are axes of
 //! their own.
 //!
-//! A filter of first order turns b ξ(t) into b η/√(2τ) with η' = -η/τ + √(2/τ) w(t), w white noise of unit intensity: an
-//! Ornstein-Uhlenbeck process. One of second order turns it into b √(ω_n/(4 ζ_n)) η with η' = ω_n ν and
-//! ν' = -ω_n η - 2 ζ_n ω_n ν + 2 √(ζ_n ω_n) w(t): harmonic noise (L. Schimansky-Geier and C. Zülicke, 1990), a spectrum with a peak.
-//! All states of a filter have mean 0 and variance 1, whatever its parameters are, so that their axes stay the same along a sweep.
-//! The intensity of the force, the integral of its correlation, is b², and it goes to the white noise as its memory goes to 0, in
-//! Stratonovich's reading where b depends on the state (E. Wong and M. Zakai, 1965).
+//! A filter of first order turns b ξ(t) into b η/√(2τ) with η' = -η/τ + √(2/τ) w(t), w white noise of unit intensity:
+//! an Ornstein-Uhlenbeck process. One of second order turns it into b √(ω_n/(4 ζ_n)) η with η' = ω_n ν and ν' = -ω_n
+//! η - 2 ζ_n ω_n ν + 2 √(ζ_n ω_n) w(t): harmonic noise (L. Schimansky-Geier and C. Zülicke, 1990), a spectrum with a
+//! peak. All states of a filter have mean 0 and variance 1, whatever its parameters are, so that their axes stay the
+//! same along a sweep. The intensity of the force, the integral of its correlation, is b², and it goes to the white
+//! noise as its memory goes to 0, in Stratonovich's reading where b depends on the state (E. Wong and M. Zakai, 1965).
 
 mod filter;
 mod filtered;

@@ -57,8 +57,8 @@ fn the_birth_of_a_peak_beside_another_is_where_the_slope_between_passes_zero() {
 
 #[test]
 fn a_crater_about_to_close_is_one_however_its_floor_lies_among_the_cells() {
-    // log p = b u² - u⁴ + v² - v⁴: a crater of relative depth b²/4 among four peaks. Its floor is a trench, and of the four cells at
-    // the centre the two along it are both lower than their neighbours.
+    // log p = b u² - u⁴ + v² - v⁴: a crater of relative depth b²/4 among four peaks. Its floor is a trench, and of the
+    // four cells at the centre the two along it are both lower than their neighbours.
     for count in [50, 51, 100] {
         let axis = uniform(2.5, count);
         for step in 0..6 {

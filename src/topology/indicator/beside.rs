@@ -1,8 +1,8 @@
-//! The indicator of a peak and a valley that are born together at a kink which is no centre of symmetry: one of them is the kink, the other
-//! comes out of it on one side.
+//! The indicator of a peak and a valley that are born together at a kink which is no centre of symmetry: one of them is
+//! the kink, the other comes out of it on one side.
 //!
-//! There the slope on that side, away from the kink, changes its sign while that on the other side does not. It goes through zero linearly, and
-//! nothing else does: there is no inflection.
+//! There the slope on that side, away from the kink, changes its sign while that on the other side does not. It goes
+//! through zero linearly, and nothing else does: there is no inflection.
 
 use super::{Indicator, IndicatorKind, exact, window};
 use crate::density::EstimatedDensity;
@@ -13,7 +13,8 @@ use crate::topology::reconstruction::Line;
 /// Distance from the kink at which its sides are told apart, as a share of the range.
 const ASIDE: f64 = 1e-9;
 
-/// The slope beside the kink nearest to a place; `None` for joint densities, sampled ones, and kinks that a scheme has blurred because they lie on no face.
+/// The slope beside the kink nearest to a place; `None` for joint densities, sampled ones, and kinks that a scheme has
+/// blurred because they lie on no face.
 pub(crate) fn beside_kink(
     estimated: &EstimatedDensity,
     near: f64,

@@ -1,11 +1,13 @@
-//! The indicator of two critical points of a joint density that are born together away from a centre of symmetry: a peak and a saddle, or
-//! a saddle and a crater.
+//! The indicator of two critical points of a joint density that are born together away from a centre of symmetry: a
+//! peak and a saddle, or a saddle and a crater.
 //!
-//! Between the two a curve leads along which the density is level across: the crest of a ridge, or the floor of a trench. Along it the
-//! slope has an extremum, where the curvature along the curve is zero. That point is there before the birth too, as a shoulder; the slope there,
-//! signed so that it is positive when both critical points exist, passes zero linearly.
+//! Between the two a curve leads along which the density is level across: the crest of a ridge, or the floor of a
+//! trench. Along it the slope has an extremum, where the curvature along the curve is zero. That point is there before
+//! the birth too, as a shoulder; the slope there, signed so that it is positive when both critical points exist, passes
+//! zero linearly.
 //!
-//! Where a force bends, at a plane, the curvature along the curve jumps there instead of passing zero, and the slope has its extremum on the plane.
+//! Where a force bends, at a plane, the curvature along the curve jumps there instead of passing zero, and the slope
+//! has its extremum on the plane.
 
 use super::{Indicator, IndicatorKind};
 use crate::density::EstimatedDensity;
@@ -55,8 +57,8 @@ pub(crate) fn fold(estimated: &EstimatedDensity, near: &[f64]) -> Option<Indicat
 /// Cells on either side of a bend in which the density is blurred, see [`blur`].
 const BLURRED: f64 = 4.0;
 
-/// What is not known of a slope near a place where a force bends inside a cell: the scheme sees the bend blurred over the cell, and the slope of log p at it may be
-/// off by a quarter of the cell's width times the jump of its curvature.
+/// What is not known of a slope near a place where a force bends inside a cell: the scheme sees the bend blurred over
+/// the cell, and the slope of log p at it may be off by a quarter of the cell's width times the jump of its curvature.
 fn blur(estimated: &EstimatedDensity, field: &Field<'_>, place: &[f64]) -> f64 {
     let of = |k: usize, at: f64| -> Option<f64> {
         let width = field.cell_width(k, at);
@@ -78,8 +80,8 @@ fn blur(estimated: &EstimatedDensity, field: &Field<'_>, place: &[f64]) -> f64 {
     bends.filter_map(|kink| of(kink.axis, kink.at)).sum()
 }
 
-/// A place on a plane where a force bends, at which the slope across the plane has an extremum: the density is level along the plane there, and curved to
-/// different sides below and above it.
+/// A place on a plane where a force bends, at which the slope across the plane has an extremum: the density is level
+/// along the plane there, and curved to different sides below and above it.
 struct AtBend {
     place: Vec<f64>,
     /// The axis that the plane stands on.
@@ -172,7 +174,8 @@ fn directions(jet: &Jet) -> (Curvature, Curvature) {
     }
 }
 
-/// The direction along the curve in which the curvature falls: from the saddle to the peak, from the crater to the saddle.
+/// The direction along the curve in which the curvature falls: from the saddle to the peak, from the crater to the
+/// saddle.
 fn oriented(jet: &Jet, along: Curvature) -> [f64; 2] {
     let [x, y] = along.direction;
     if jet.bend(along.direction, along.direction) > 0.0 {

@@ -1,13 +1,15 @@
-//! The indicator of places where both principal curvatures of a joint density pass zero together: a peak that becomes the bottom within a ring, and the saddle
-//! at which two rings merge.
+//! The indicator of places where both principal curvatures of a joint density pass zero together: a peak that becomes
+//! the bottom within a ring, and the saddle at which two rings merge.
 //!
-//! Where a density depends on the energy alone it is level at every state of rest when its slope over the energy is zero at that energy. The signs of
-//! both curvatures turn there at once, so that neither the lower nor the upper one shows it at a saddle; the curvature along one axis does. It is
-//! positive at the bottom within a ring and, from ring to ring, at the saddle between two.
+//! Where a density depends on the energy alone it is level at every state of rest when its slope over the energy is
+//! zero at that energy. The signs of both curvatures turn there at once, so that neither the lower nor the upper one
+//! shows it at a saddle; the curvature along one axis does. It is positive at the bottom within a ring and, from ring
+//! to ring, at the saddle between two.
 
 //!
-//! Where the slope over the energy is nearly zero the density is all but flat about the state of rest, and its extremum is nowhere in particular. With
-//! log p = c (H - H₀)² third derivatives vanish at the state of rest, and fourth ones do not: there it is.
+//! Where the slope over the energy is nearly zero the density is all but flat about the state of rest, and its extremum
+//! is nowhere in particular. With log p = c (H - H₀)² third derivatives vanish at the state of rest, and fourth ones do
+//! not: there it is.
 
 use super::{Indicator, IndicatorKind};
 use crate::density::EstimatedDensity;

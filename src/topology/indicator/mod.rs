@@ -1,7 +1,7 @@
 //! Indicators: signed, continuous functions of the parameter that are zero at a P-bifurcation.
 //!
-//! Near a smooth P-bifurcation the peaks stand above the valley by (θ - θ*)² or less, so that counting them is late; the
-//! derivative that changes sign there goes through zero linearly. Which one it is depends on what happens:
+//! Near a smooth P-bifurcation the peaks stand above the valley by (θ - θ*)² or less, so that counting them is late;
+//! the derivative that changes sign there goes through zero linearly. Which one it is depends on what happens:
 //!
 //! | what happens | indicator |
 //! | --- | --- |
@@ -66,27 +66,30 @@ pub enum IndicatorKind {
         /// Whether the density rises with the coordinate between the two.
         rising: bool,
     },
-    /// Slope of a marginal on one side of a kink, away from it; positive when the kink is an extremum and another one lies on that side.
+    /// Slope of a marginal on one side of a kink, away from it; positive when the kink is an extremum and another one
+    /// lies on that side.
     BesideKink {
         /// Whether the side is that of larger coordinates.
         above: bool,
         /// Whether the kink is the valley of the two.
         is_valley: bool,
     },
-    /// Curvature of the logarithm of a marginal on one side of a kink. No bifurcation by itself, but a point of codimension two where the
-    /// slope there is zero too.
+    /// Curvature of the logarithm of a marginal on one side of a kink. No bifurcation by itself, but a point of
+    /// codimension two where the slope there is zero too.
     CurvatureBesideKink {
         /// Whether the side is that of larger coordinates.
         above: bool,
     },
-    /// Slope along a ridge or trench of a joint density where it is nearest to level, positive when a peak and a saddle (a
-    /// saddle and a crater) are there.
+    /// Slope along a ridge or trench of a joint density where it is nearest to level, positive when a peak and a saddle
+    /// (a saddle and a crater) are there.
     Fold,
-    /// p''''/p at the centre, along the flattest direction of a joint density: negative where peaks are born at the centre as it splits, positive where
-    /// they are born away from it. No bifurcation by itself, but a point of codimension two where a curvature is zero too.
+    /// p''''/p at the centre, along the flattest direction of a joint density: negative where peaks are born at the
+    /// centre as it splits, positive where they are born away from it. No bifurcation by itself, but a point of
+    /// codimension two where a curvature is zero too.
     Quartic,
-    /// Curvature of a joint density along one axis at a place that turns from a peak to the bottom within a ring, or at the saddle between two
-    /// rings: positive when the ring is there. Both principal curvatures pass zero there together.
+    /// Curvature of a joint density along one axis at a place that turns from a peak to the bottom within a ring, or at
+    /// the saddle between two rings: positive when the ring is there. Both principal curvatures pass zero there
+    /// together.
     Level {
         /// Whether the axis is the second one of the density.
         along_second: bool,

@@ -1,8 +1,9 @@
 //! The peaks and the valley about a centre of symmetry that the indicator proves, when they are too near each other for
 //! persistence: features of a marginal then say what its signature says.
 //!
-//! The peak that persistence sees in their place is refined to one of them; the other is its mirror image. About the centre
-//! p/p(c) = 1 + g u²/2 + k u⁴/24 with g = p''/p and k = p''''/p: peaks at ±u stand by p g u²/4 above the valley between.
+//! The peak that persistence sees in their place is refined to one of them; the other is its mirror image. About the
+//! centre p/p(c) = 1 + g u²/2 + k u⁴/24 with g = p''/p and k = p''''/p: peaks at ±u stand by p g u²/4 above the valley
+//! between.
 
 use super::window::around;
 use super::{Indicator, IndicatorKind};
@@ -13,8 +14,8 @@ use crate::topology::{Feature, FeatureKind, Verdict};
 /// Cells on either side of the centre within which peaks belong to it.
 const REACH: usize = 4;
 
-/// Puts the features about the centre of a marginal right, where the sign of its indicator is beyond doubt; elsewhere a peak
-/// that stands there alone is moved onto it.
+/// Puts the features about the centre of a marginal right, where the sign of its indicator is beyond doubt; elsewhere a
+/// peak that stands there alone is moved onto it.
 pub(crate) fn put_right(
     estimated: &EstimatedDensity,
     indicators: &[Indicator],
@@ -95,7 +96,8 @@ impl<'a> Centre<'a> {
         }
     }
 
-    /// What persistence saw, unless it agrees with the indicator that the centre is a valley between two peaks, or a peak.
+    /// What persistence saw, unless it agrees with the indicator that the centre is a valley between two peaks, or a
+    /// peak.
     fn to_put_right(&self, features: &[Feature], split: bool) -> Option<Seen> {
         let present = features
             .iter()

@@ -1,8 +1,9 @@
-//! The fourth derivative at a centre of symmetry, which tells where two peaks are born when one splits: at the centre, or away from it.
+//! The fourth derivative at a centre of symmetry, which tells where two peaks are born when one splits: at the centre,
+//! or away from it.
 //!
-//! Where the curvature along a direction vanishes, the density along it is p(0) + p'''' s⁴/24 + …, odd terms being none by symmetry. With p'''' < 0
-//! peaks leave the centre as it splits; with p'''' > 0 they stand away from it already, and were born in folds before. Between lies a point of
-//! codimension two in the plane of two parameters.
+//! Where the curvature along a direction vanishes, the density along it is p(0) + p'''' s⁴/24 + …, odd terms being none
+//! by symmetry. With p'''' < 0 peaks leave the centre as it splits; with p'''' > 0 they stand away from it already, and
+//! were born in folds before. Between lies a point of codimension two in the plane of two parameters.
 
 use super::window::{self, Lines};
 use super::{Indicator, IndicatorKind};
@@ -14,8 +15,9 @@ const ORDERS: usize = 5;
 /// 4 over k.
 const BINOMIAL: [f64; 5] = [1.0, 4.0, 6.0, 4.0, 1.0];
 
-/// p''''/p at the centre of a marginal; of a joint density along the direction in which its curvature is nearest to zero, axes scaled to their ranges.
-/// `None` without a centre, on a kink, and for sampled densities, whose noise it drowns in.
+/// p''''/p at the centre of a marginal; of a joint density along the direction in which its curvature is nearest to
+/// zero, axes scaled to their ranges. `None` without a centre, on a kink, and for sampled densities, whose noise it
+/// drowns in.
 pub(crate) fn quartic(estimated: &EstimatedDensity) -> Option<Indicator> {
     let centre = estimated.structure.centre.as_ref()?;
     let axes = &estimated.density.axes;

@@ -1,8 +1,9 @@
 //! The indicator of a ring that is born together with the moat inside it.
 //!
-//! Along a ray from a point inside, the density falls to the moat and rises to the ring. Before both are there it has a shoulder; the
-//! largest outward slope beyond the first inflection, which is positive when they are there, passes zero linearly. A ring is of one height, and born everywhere at
-//! once: the mean over several rays is the indicator, and what they differ by a part of its error.
+//! Along a ray from a point inside, the density falls to the moat and rises to the ring. Before both are there it has a
+//! shoulder; the largest outward slope beyond the first inflection, which is positive when they are there, passes zero
+//! linearly. A ring is of one height, and born everywhere at once: the mean over several rays is the indicator, and
+//! what they differ by a part of its error.
 
 use super::{Indicator, IndicatorKind};
 use crate::density::EstimatedDensity;
@@ -14,7 +15,8 @@ const RAYS: usize = 12;
 const POINTS: usize = 100;
 /// Density, as a share of the largest on the ray, below which a ray ends.
 const FAINT: f64 = 1e-6;
-/// Share of the density by which the second scheme may differ where a ray goes on: beyond, slopes are those of what the cells do not resolve.
+/// Share of the density by which the second scheme may differ where a ray goes on: beyond, slopes are those of what the
+/// cells do not resolve.
 const UNSURE: f64 = 0.1;
 /// Most steps of Newton's method.
 const MOST_STEPS: usize = 8;
@@ -27,8 +29,8 @@ struct Shoulder {
     rough: Stencil,
 }
 
-/// The outward slope over the density at the shoulder around a point; `None` for marginals, for sampled densities, and where some ray has
-/// no shoulder.
+/// The outward slope over the density at the shoulder around a point; `None` for marginals, for sampled densities, and
+/// where some ray has no shoulder.
 pub(crate) fn ring_slope(estimated: &EstimatedDensity, inside: &[f64]) -> Option<Indicator> {
     let field = Field::new(estimated).filter(|_| inside.len() == 2 && !estimated.is_noisy())?;
     let shoulders: Option<Vec<Shoulder>> =

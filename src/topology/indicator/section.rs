@@ -1,4 +1,5 @@
-//! Flanks of a joint density on a ray from its centre of symmetry: where a ring and the moat beside it are about to come or go.
+//! Flanks of a joint density on a ray from its centre of symmetry: where a ring and the moat beside it are about to
+//! come or go.
 
 use super::Flank;
 use crate::density::EstimatedDensity;
@@ -9,8 +10,8 @@ const FAINT: f64 = 1e-6;
 /// Share of the density by which the second scheme may differ where the ray goes on.
 const UNSURE: f64 = 0.1;
 
-/// The extrema of the slope of log p outward along the first axis, on the upper side of the centre; none where a derivative of the density jumps, and
-/// of sampled densities. They say where to look, and are read on the faces.
+/// The extrema of the slope of log p outward along the first axis, on the upper side of the centre; none where a
+/// derivative of the density jumps, and of sampled densities. They say where to look, and are read on the faces.
 pub(crate) fn flanks_from_centre(estimated: &EstimatedDensity) -> Vec<Flank> {
     let [first, _] = estimated.density.axes.as_slice() else {
         return Vec::new();
@@ -54,7 +55,8 @@ mod tests {
     use crate::density::{Density, EstimatedDensity, Observable, Structure, Variants};
     use crate::space::Axis;
 
-    /// log p = ∫ -(q - 1) ((q - 2)² - ε)/2 dq with q = r²: two rings with a moat between them for ε above zero, and one for ε below.
+    /// log p = ∫ -(q - 1) ((q - 2)² - ε)/2 dq with q = r²: two rings with a moat between them for ε above zero, and one
+    /// for ε below.
     #[test]
     fn the_slope_out_of_a_moat_passes_zero_with_it() {
         let flanks = |epsilon: f64| {
@@ -91,7 +93,8 @@ mod tests {
                 |one: &&super::Flank| one.rising && (one.place - 2.0_f64.sqrt()).abs() < 0.15;
             flanks(epsilon).iter().find(near).unwrap().value
         };
-        // The maximum itself is at q = 2 but for terms of ε². The nearest face may lie half a cell from the maximum: the slope there is lower by r (2 r h/2)².
+        // The maximum itself is at q = 2 but for terms of ε². The nearest face may lie half a cell from the maximum:
+        // the slope there is lower by r (2 r h/2)².
         let half_cell = 0.5 * 5.0 / 100.0;
         let lower = 2.0_f64.sqrt() * (2.0 * 2.0_f64.sqrt() * half_cell).powi(2);
         for epsilon in [-0.04, -0.02, 0.02, 0.04] {

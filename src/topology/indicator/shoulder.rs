@@ -12,7 +12,8 @@ use crate::space::Axis;
 use crate::topology::field::{Field, Jet};
 use crate::topology::reconstruction::{Line, smoothing};
 
-/// Cells on either side when the density is sampled, as a share of all: noise of slopes falls with the window to the power 3/2.
+/// Cells on either side when the density is sampled, as a share of all: noise of slopes falls with the window to the
+/// power 3/2.
 const SAMPLED_SHARE: usize = 12;
 /// Least of them.
 const LEAST: usize = 3;
@@ -104,8 +105,9 @@ fn steepest(axis: &Axis, near: f64, slope_at: impl Fn(usize) -> Option<f64>) -> 
     })
 }
 
-/// All extrema of the slope of a marginal without noise, of both directions, where the density counts: each is where a pair of peak and valley is
-/// born or vanishes when its value passes zero. Values are read on the faces, to a parabola's accuracy.
+/// All extrema of the slope of a marginal without noise, of both directions, where the density counts: each is where a
+/// pair of peak and valley is born or vanishes when its value passes zero. Values are read on the faces, to a
+/// parabola's accuracy.
 pub(crate) fn shoulders(estimated: &EstimatedDensity) -> Vec<Flank> {
     let [axis] = estimated.density.axes.as_slice() else {
         return Vec::new();
@@ -161,7 +163,8 @@ fn kinks<'a>(
         let slope = |jet: &Jet| jet.first[0] / (field.unit(0) * jet.value);
         let falls = |jet: &Jet| jet.second[0] * jet.value < jet.first[0] * jet.first[0];
         let jumps_up = slope(&above) > slope(&below);
-        // The higher side is a maximum where the slope falls away from the jump, the lower one a minimum where it rises.
+        // The higher side is a maximum where the slope falls away from the jump, the lower one a minimum where it
+        // rises.
         let (highest, lowest) = match jumps_up {
             true => (
                 falls(&above).then_some(&above),
@@ -200,9 +203,9 @@ fn is_kinked(estimated: &EstimatedDensity, axis: &Axis, face: usize) -> bool {
     })
 }
 
-/// The places where the slope has an extremum because the drift bends: it rises to the place on one side, and falls from
-/// it on the other. For densities by quadrature without a profile: curves take it away, as they follow the cells, and
-/// sources of densities in closed form have none.
+/// The places where the slope has an extremum because the drift bends: it rises to the place on one side, and falls
+/// from it on the other. For densities by quadrature without a profile: curves take it away, as they follow the cells,
+/// and sources of densities in closed form have none.
 fn bends<'a>(
     estimated: &'a EstimatedDensity,
     field: &'a Field<'_>,
@@ -225,7 +228,8 @@ fn bends<'a>(
     })
 }
 
-/// The zero of the curvature there, by Newton's method: the slope at the vertex of a parabola is too low by the square of its distance.
+/// The zero of the curvature there, by Newton's method: the slope at the vertex of a parabola is too low by the square
+/// of its distance.
 fn settle(field: &Field<'_>, sign: f64, found: &Steepest) -> Option<f64> {
     let (low, high) = found.within;
     let mut place = found.place;

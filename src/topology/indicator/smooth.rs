@@ -1,10 +1,11 @@
 //! Curvatures at the centre of a sampled density: a polynomial fitted to log p over a wide stretch.
 //!
-//! Noise of a second derivative falls with the 3/2 to 5/2 power of the stretch it is taken over, so the stretch should be as
-//! wide as a polynomial of low degree follows the density. Densities of stochastic oscillators are exponentials of smooth
-//! potentials: log p is followed much farther than p, and its curvature at a centre of symmetry is p''/p. By the same
-//! symmetry only terms of even degree are needed; along a kink, terms in the distance from it are added. Where the fit leaves
-//! more than noise, the stretch is narrowed; a fit of a higher degree shows what is missed, as far as noise lets it.
+//! Noise of a second derivative falls with the 3/2 to 5/2 power of the stretch it is taken over, so the stretch should
+//! be as wide as a polynomial of low degree follows the density. Densities of stochastic oscillators are exponentials
+//! of smooth potentials: log p is followed much farther than p, and its curvature at a centre of symmetry is p''/p. By
+//! the same symmetry only terms of even degree are needed; along a kink, terms in the distance from it are added. Where
+//! the fit leaves more than noise, the stretch is narrowed; a fit of a higher degree shows what is missed, as far as
+//! noise lets it.
 
 use std::ops::Range;
 
@@ -60,8 +61,8 @@ fn term(powers: Powers, offset: &[f64], kinked: bool) -> f64 {
     offset[0].powi(powers[0]) * second.powi(powers[1])
 }
 
-/// What is fitted: terms of the first fit and of that of a higher degree, and the second derivatives that are wanted, by the
-/// powers of their terms.
+/// What is fitted: terms of the first fit and of that of a higher degree, and the second derivatives that are wanted,
+/// by the powers of their terms.
 struct Model {
     terms: [Vec<Powers>; 2],
     wanted: Vec<Powers>,
@@ -72,8 +73,8 @@ struct Model {
 pub(super) struct Smooth {
     cells: Vec<usize>,
     floor: f64,
-    /// Weights for the second derivatives, first fit and that of a higher degree: of a marginal [xx], of a joint density [xx, xy, yy],
-    /// along a kink [along].
+    /// Weights for the second derivatives, first fit and that of a higher degree: of a marginal [xx], of a joint
+    /// density [xx, xy, yy], along a kink [along].
     weights: [Vec<Vec<f64>>; 2],
 }
 
@@ -197,7 +198,8 @@ impl Window {
 
     /// Weights for the second derivatives that a model wants, and the misfit of its first terms.
     fn fit(self, estimated: &EstimatedDensity, model: &Model) -> Option<(Smooth, f64)> {
-        // log p of a histogram has the variance 1/(n p V): cells with little mass count less, nearly empty ones nothing.
+        // log p of a histogram has the variance 1/(n p V): cells with little mass count less, nearly empty ones
+        // nothing.
         let largest = estimated.density.maximum();
         let precision: Vec<f64> = (self.cells.iter())
             .map(|&cell| estimated.density.values[cell] / largest)

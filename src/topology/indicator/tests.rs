@@ -177,8 +177,8 @@ fn closed_forms_without_a_profile_have_extrema_of_the_slope_at_their_jumps_and_b
         estimated.structure.kinks = vec![Kink { axis, at, jump }];
         estimated
     };
-    // At an end of eight cells the slope of the polynomial through their averages is off by 0.6 p⁽⁸⁾ h⁷, with p⁽⁸⁾ < 2000 p
-    // and h = 0.05 by 1e-6.
+    // At an end of eight cells the slope of the polynomial through their averages is off by 0.6 p⁽⁸⁾ h⁷, with
+    // p⁽⁸⁾ < 2000 p and h = 0.05 by 1e-6.
     let near = |value: f64, exact: f64| (value - exact).abs() < 1e-5;
     // (log p)' = -2x ± 0.5: falls to -1.3 below 0.4, and from -0.3 above.
     let jumping = of(&|x| -x * x + 0.5 * (x - 0.4).abs(), vec![1.0]);

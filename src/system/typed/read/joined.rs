@@ -1,5 +1,5 @@
-//! What follows from all expressions of a typed model together: the drift in Itô's sense, the period, and where they are not
-//! smooth.
+//! What follows from all expressions of a typed model together: the drift in Itô's sense, the period, and where they
+//! are not smooth.
 
 use super::{Noise, Planes, Reader, Reading};
 use crate::formula::analysis::KinkPlace;
