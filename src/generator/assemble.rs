@@ -163,8 +163,8 @@ fn line_start(
 mod tests {
     use super::*;
     use crate::space::{Axis, Grading};
+    use crate::system::examples::OneState;
     use crate::system::registry;
-    use crate::system::{Lanes, System};
 
     fn dahl() -> std::sync::Arc<dyn System> {
         let values = [
@@ -219,30 +219,11 @@ mod tests {
         assert_eq!(one.escape, three.escape);
     }
 
-    struct Broken;
-
-    impl System for Broken {
-        fn dimension(&self) -> usize {
-            1
-        }
-        fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
-            for (slope, x) in drift[0].iter_mut().zip(&states[0]) {
-                *slope = x.ln();
-            }
-        }
-        fn noise_axes(&self) -> &[usize] {
-            &[0]
-        }
-        fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
-            Some(1.0)
-        }
-    }
-
     #[test]
     fn what_has_no_generator_is_an_error() {
         let line = CellSpace::new(vec![Axis::uniform(-1.0, 1.0, 8).unwrap()]).unwrap();
         let options = GeneratorOptions::default();
-        let broken = assemble(&Broken, &line, &options);
+        let broken = assemble(&OneState::new(1.0, f64::ln), &line, &options);
         assert!(matches!(
             broken,
             Err(GeneratorError::NotFinite { axis: 0, .. })

@@ -8,27 +8,7 @@
 use crate::cancellation::Cancellation;
 use crate::sampling::{Integrator, SamplingOptions, TransitionMatrix, sample_transitions};
 use crate::space::{Axis, CellSpace};
-use crate::system::{Lanes, System};
-
-/// dx = -x dt + √0.5 dW, of variance 1/4.
-struct OrnsteinUhlenbeck;
-
-impl System for OrnsteinUhlenbeck {
-    fn dimension(&self) -> usize {
-        1
-    }
-    fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
-        for (slope, x) in drift[0].iter_mut().zip(&states[0]) {
-            *slope = -x;
-        }
-    }
-    fn noise_axes(&self) -> &[usize] {
-        &[0]
-    }
-    fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
-        Some(0.5_f64.sqrt())
-    }
-}
+use crate::system::examples::OneState;
 
 const WIDTH: f64 = 0.25;
 
@@ -59,7 +39,8 @@ fn variance_and_diffusion(map_step: f64, samples: usize) -> (f64, f64) {
         keep_starts: false,
     };
     let sampled = sample_transitions(
-        &OrnsteinUhlenbeck,
+        // Of variance 1/4.
+        &OneState::new(0.5_f64.sqrt(), |x: f64| -x),
         &space,
         &[20],
         &options,

@@ -216,42 +216,17 @@ fn integrate(system: &dyn System, axis: &Axis, rule: &Rule, panels: usize) -> Op
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::system::{Lanes, SwitchingSurface};
-
-    /// dx = (h + x - x³) dt + σ dW.
-    struct Tilted {
-        h: f64,
-        sigma2: f64,
-    }
-
-    impl System for Tilted {
-        fn dimension(&self) -> usize {
-            1
-        }
-        fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
-            for (slope, x) in drift[0].iter_mut().zip(&states[0]) {
-                *slope = self.h + x - x.powi(3);
-            }
-        }
-        fn noise_axes(&self) -> &[usize] {
-            &[0]
-        }
-        fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
-            Some(self.sigma2.sqrt())
-        }
-    }
+    use crate::system::examples::OneState;
 
     #[test]
     fn cells_of_a_shallow_well_have_all_their_digits_beside_a_deep_one() {
         // Depths differ by more than 100 times the noise: e^-100 of the mass is in the left well.
-        let system = Tilted {
-            h: 0.38,
-            sigma2: 0.014,
-        };
+        let (h, sigma2) = (0.38, 0.014_f64);
+        let system = OneState::new(sigma2.sqrt(), |x: f64| h + x - x.powi(3));
         let axis = Axis::uniform(-1.9, 1.9, 200).unwrap();
         let found = one_axis(&system, &axis).unwrap();
-        let potential = |x: f64| -system.h * x - 0.5 * x * x + 0.25 * x.powi(4);
-        let p = |x: f64| (-2.0 / system.sigma2 * (potential(x) - potential(1.15))).exp();
+        let potential = |x: f64| -h * x - 0.5 * x * x + 0.25 * x.powi(4);
+        let p = |x: f64| (-2.0 / sigma2 * (potential(x) - potential(1.15))).exp();
         let mass = |cell: usize| {
             let (from, width) = (axis.edges()[cell], axis.width(cell));
             (0..1000)
@@ -274,63 +249,15 @@ mod tests {
     #[test]
     fn moments_are_those_of_the_density() {
         // A normal density of variance σ²/2: far inside the range.
-        struct Linear;
-        impl System for Linear {
-            fn dimension(&self) -> usize {
-                1
-            }
-            fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
-                for (slope, x) in drift[0].iter_mut().zip(&states[0]) {
-                    *slope = 0.3 - x;
-                }
-            }
-            fn noise_axes(&self) -> &[usize] {
-                &[0]
-            }
-            fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
-                Some(0.5)
-            }
-        }
+        let linear = OneState::new(0.5, |x: f64| 0.3 - x);
         let axis = Axis::uniform(-3.0, 4.0, 60).unwrap();
-        let (mean, variance) = one_axis(&Linear, &axis).unwrap().moments;
+        let (mean, variance) = one_axis(&linear, &axis).unwrap().moments;
         assert!((mean - 0.3).abs() < 1e-12 && (variance - 0.125).abs() < 1e-12);
-    }
-
-    /// dx = drift dt + σ dW with a surface.
-    struct Bent<D> {
-        drift: D,
-        sigma2: f64,
-        at: f64,
-    }
-
-    impl<D: Fn(f64) -> f64 + Send + Sync> System for Bent<D> {
-        fn dimension(&self) -> usize {
-            1
-        }
-        fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
-            for (slope, x) in drift[0].iter_mut().zip(&states[0]) {
-                *slope = (self.drift)(*x);
-            }
-        }
-        fn noise_axes(&self) -> &[usize] {
-            &[0]
-        }
-        fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
-            Some(self.sigma2.sqrt())
-        }
-        fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
-            let at = self.at;
-            vec![SwitchingSurface { axis: 0, at }]
-        }
     }
 
     #[test]
     fn cells_wider_than_what_they_hold_are_right_though_tails_fall_by_a_thousand_orders_a_cell() {
-        let system = Bent {
-            drift: |x: f64| 0.9 * x - x.powi(3),
-            sigma2: 0.25,
-            at: 0.0,
-        };
+        let system = OneState::new(0.5, |x: f64| 0.9 * x - x.powi(3)).with_surface(0.0);
         let (wide, narrow) = (
             Axis::uniform(-12.0, 13.0, 50).unwrap(),
             Axis::uniform(-12.0, 13.0, 2000).unwrap(),
@@ -350,11 +277,8 @@ mod tests {
     #[test]
     fn a_cell_is_cut_where_the_drift_jumps() {
         // p ∝ exp(-2 |x - 0.13| / σ²) on cells of a half: no face at 0.13.
-        let system = Bent {
-            drift: |x: f64| if x < 0.13 { 1.0 } else { -1.0 },
-            sigma2: 1.0,
-            at: 0.13,
-        };
+        let system =
+            OneState::new(1.0, |x: f64| if x < 0.13 { 1.0 } else { -1.0 }).with_surface(0.13);
         let axis = Axis::uniform(-5.0, 5.0, 20).unwrap();
         let found = one_axis(&system, &axis).unwrap();
         assert!(found.error < 1e-10, "{}", found.error);

@@ -4,7 +4,8 @@ use super::*;
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::sampling::{TransitionMatrix, pilot};
 use crate::space::Axis;
-use crate::system::{Lanes, registry};
+use crate::system::examples::OneState;
+use crate::system::registry;
 use std::sync::Arc;
 
 fn square(half: f64, count: usize) -> CellSpace {
@@ -195,30 +196,12 @@ fn only_cells_that_can_be_reached_are_sampled() {
     assert_eq!(sampled.n_steps(), (sampled.cells().len() * 240 * 20) as u64);
 }
 
-/// x' = 40 x³: leaves any range, and overflows, within the map step.
-struct Explosion;
-
-impl System for Explosion {
-    fn dimension(&self) -> usize {
-        1
-    }
-    fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
-        for (slope, x) in drift[0].iter_mut().zip(&states[0]) {
-            *slope = 40.0 * x.powi(3);
-        }
-    }
-    fn noise_axes(&self) -> &[usize] {
-        &[0]
-    }
-    fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
-        Some(0.1)
-    }
-}
-
 #[test]
 fn states_that_overflow_are_counted_in_the_sink() {
     let space = CellSpace::new(vec![Axis::uniform(1.0, 2.0, 4).unwrap()]).unwrap();
-    let sampled = sample(&Explosion, &space, &[1], &options());
+    // It leaves any range, and overflows, within the map step.
+    let explosion = OneState::new(0.1, |x: f64| 40.0 * x.powi(3));
+    let sampled = sample(&explosion, &space, &[1], &options());
     assert_eq!(sampled.matrix().escape, vec![1.0]);
     assert_eq!(sampled.matrix().matrix.nnz(), 0);
     assert_eq!(sampled.numerical_diffusion(&[1.0]), vec![0.0]);

@@ -7,7 +7,8 @@ use crate::cancellation::Cancellation;
 use crate::sampling::{Integrator, SampledTransitions, SamplingOptions, sample_transitions};
 use crate::space::{Axis, CellSpace};
 use crate::stationary::{Options, Outcome, Solver, SteadyState};
-use crate::system::{Lanes, System, registry};
+use crate::system::examples::OneState;
+use crate::system::{System, registry};
 
 fn options(map_step: f64, samples: usize) -> SamplingOptions {
     SamplingOptions {
@@ -144,26 +145,6 @@ fn without_kept_starts_the_plain_cell_map_is_solved() {
     assert_eq!(corrected.rounds, 1);
 }
 
-/// dx = -x dt + √0.5 dW, of variance 1/4.
-struct OrnsteinUhlenbeck;
-
-impl System for OrnsteinUhlenbeck {
-    fn dimension(&self) -> usize {
-        1
-    }
-    fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
-        for (slope, x) in drift[0].iter_mut().zip(&states[0]) {
-            *slope = -x;
-        }
-    }
-    fn noise_axes(&self) -> &[usize] {
-        &[0]
-    }
-    fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
-        Some(0.5_f64.sqrt())
-    }
-}
-
 /// Flat cells widen the density to σ²/2 + (h²/6)/(1 - e^{-2Δt}) (`sampling::accuracy`). Linear ones leave the variance
 /// of the masses at that of exact cell masses, σ²/2 up to terms of the fourth order in h.
 #[test]
@@ -176,7 +157,8 @@ fn cells_no_longer_widen_a_density() {
             ..options(map_step, 100_000)
         };
         let transitions = sample_transitions(
-            &OrnsteinUhlenbeck,
+            // Of variance 1/4.
+            &OneState::new(0.5_f64.sqrt(), |x: f64| -x),
             &space,
             &[40],
             &options,
