@@ -118,18 +118,7 @@ fn the_end_of_a_ring_around_a_peak_is_located() {
         },
     );
     let result = run(&source, (-0.2, 0.5, 11), 1e-4);
-    let found: Vec<String> = rows(&result)
-        .iter()
-        .map(|row| {
-            format!(
-                "{} {:?} {} {}",
-                words(row),
-                row.status,
-                row.value,
-                row.error
-            )
-        })
-        .collect();
+    let found = told(&result);
     assert_eq!(found.len(), 2, "{found:#?}");
     let rows = rows(&result);
     assert!(
@@ -161,18 +150,7 @@ fn a_peak_born_beside_another_in_the_plane_is_located() {
         },
     );
     let result = run(&source, (-0.55, 0.5, 12), 1e-4);
-    let found: Vec<String> = rows(&result)
-        .iter()
-        .map(|row| {
-            format!(
-                "{} {:?} {} {}",
-                words(row),
-                row.status,
-                row.value,
-                row.error
-            )
-        })
-        .collect();
+    let found = told(&result);
     assert_eq!(found.len(), 2, "{found:#?}");
     let truth = (4.0f64 / 27.0).sqrt();
     for (row, truth) in rows(&result).iter().zip([-truth, truth]) {
@@ -198,18 +176,7 @@ fn a_split_that_is_not_quite_symmetric_is_located_where_its_pair_is_born() {
     );
     let result = run(&source, (-1.0, 1.0, 41), 2e-4);
     let truth = 3.0 * (0.0005f64).powf(2.0 / 3.0);
-    let found: Vec<String> = rows(&result)
-        .iter()
-        .map(|row| {
-            format!(
-                "{} {:?} {} {} {truth}",
-                words(row),
-                row.status,
-                row.value,
-                row.error
-            )
-        })
-        .collect();
+    let found = told(&result);
     assert_eq!(found.len(), 1, "{found:#?}");
     let row = rows(&result)[0];
     assert!((row.value - truth).abs() <= row.error, "{found:#?}");

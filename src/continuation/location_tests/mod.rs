@@ -160,6 +160,15 @@ fn words(row: &LabelledPoint) -> String {
     )
 }
 
+/// Every row in words, with its status, value and error: for messages.
+fn told(result: &SweepResult) -> Vec<String> {
+    let told = |row: &&LabelledPoint| {
+        let (status, value, error) = (row.status, row.value, row.error);
+        format!("{} {status:?} {value} ± {error}", words(row))
+    };
+    rows(result).iter().map(told).collect()
+}
+
 /// One peak to two at θ = 0.03: log p = 2((θ - 0.03) x²/2 - x⁴/4)/σ², σ² = 0.5.
 fn split() -> Exact<impl Formula> {
     Exact::new(

@@ -113,10 +113,7 @@ fn two_folds_within_one_step_have_a_row_each() {
         },
     );
     let result = run(&source, (0.0, 0.3, 4), 1e-4);
-    let found: Vec<String> = rows(&result)
-        .iter()
-        .map(|row| format!("{} {:?} {}", words(row), row.status, row.value))
-        .collect();
+    let found = told(&result);
     assert_eq!(found.len(), 2, "{found:#?}");
     let rows = rows(&result);
     assert_eq!(words(rows[0]), "3 peaks → 2 peaks, peak and valley vanish");
