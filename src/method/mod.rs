@@ -19,11 +19,9 @@ mod watched;
 pub use any::MethodSource;
 pub use bins::{BinsError, QuantityRange, automatic_bins, check_averaged};
 pub use cost::Cost;
-#[cfg(feature = "store")]
-pub(crate) use generator::OneAxisFamily;
 pub use generator::{
-    GeneratorCost, GeneratorMethodOptions, GeneratorSource, ModesFound, automatic_modes,
-    change_by_more_modes,
+    GeneratorCost, GeneratorMethodOptions, GeneratorSource, ModesFound, OneAxisFamily,
+    automatic_modes, change_by_more_modes,
 };
 pub use monte_carlo::{
     Estimator, MonteCarloCost, MonteCarloOptions, MonteCarloPlan, MonteCarloSource,

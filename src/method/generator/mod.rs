@@ -18,6 +18,6 @@ mod trail;
 pub(super) use coarse::rough_masses;
 pub use cost::GeneratorCost;
 pub use modes::{ModesFound, automatic_modes, change_by_more_modes};
-pub(crate) use one_axis::OneAxisFamily;
+pub use one_axis::OneAxisFamily;
 pub use options::GeneratorMethodOptions;
 pub use source::GeneratorSource;
