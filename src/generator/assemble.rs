@@ -20,7 +20,8 @@ use crate::system::System;
 /// An end of the range that the system declares never to leave ([`System::bounds`]) is a wall without flux;
 /// what flows or diffuses out through any other end is lost and counted in [`Generator::escape`]. An axis of modes
 /// ([`crate::space::Axis::modes`]) lies between two such ends, and no noise drives it; one of Hermite modes
-/// ([`crate::space::Axis::hermite`]) is white noise behind a linear filter, and nothing leaves along it.
+/// ([`crate::space::Axis::hermite`]) is white noise behind a linear filter, or a state that relaxes linearly
+/// ([`System::relaxation_rate`]), and nothing leaves along it.
 ///
 /// # Errors
 /// Any [`GeneratorError`] but [`GeneratorError::System`].

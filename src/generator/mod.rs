@@ -118,11 +118,11 @@ pub enum GeneratorError {
         /// The axis.
         axis: usize,
     },
-    /// An axis of Hermite modes that is not white noise behind a linear filter, with the mean and deviation of the
-    /// axis.
+    /// An axis of Hermite modes that is neither white noise behind a linear filter, with the mean and deviation of the
+    /// axis, nor a state without noise that relaxes linearly.
     #[error(
-        "axis {axis} cannot have Hermite modes: they are for white noise behind a linear filter, of the mean and the standard deviation \
-         of the axis"
+        "axis {axis} cannot have Hermite modes: they are for white noise behind a linear filter, of the mean and the \
+         standard deviation of the axis, and for states without noise that relax linearly"
     )]
     Filter {
         /// The axis.

@@ -7,7 +7,8 @@
 //! beyond them.
 //!
 //! White noise behind a linear filter has D f'' more, at the nodes of Hermite polynomials, which are its
-//! eigenfunctions: exact.
+//! eigenfunctions: exact. A state without noise that relaxes linearly has the same polynomials without that term: the
+//! moments along it then couple downwards only, so those up to the last are exact wherever nothing else depends on it.
 
 use super::GeneratorError;
 use crate::space::{Axis, Series};
@@ -21,8 +22,8 @@ const ROUNDING: f64 = 1e-9;
 pub(super) struct ModeAxis {
     /// Derivatives of the Lagrange polynomials at the nodes, [`Axis::differentiation`].
     first: Vec<f64>,
-    /// Their second derivatives, mean and standard deviation of the density, for white noise behind a filter.
-    filter: Option<(Vec<f64>, f64, f64)>,
+    /// Their second derivatives, mean and standard deviation of the normal density, for Hermite modes.
+    normal: Option<(Vec<f64>, f64, f64)>,
 }
 
 impl ModeAxis {
@@ -30,13 +31,13 @@ impl ModeAxis {
     pub(super) fn new(axis: &Axis) -> Option<Self> {
         let series = axis.series()?;
         let first = axis.differentiation();
-        let filter = match series {
+        let normal = match series {
             Series::Legendre => None,
             Series::Hermite { mean, deviation } => {
                 Some((square(&first, axis.count()), mean, deviation))
             }
         };
-        Some(Self { first, filter })
+        Some(Self { first, normal })
     }
 
     /// Whether the axis number `axis` of a system, with or without walls at both ends, can have these modes.
@@ -47,8 +48,10 @@ impl ModeAxis {
         is_walled: bool,
     ) -> Result<(), GeneratorError> {
         let is_noisy = system.noise_axes().contains(&axis);
-        match &self.filter {
+        match &self.normal {
             None if is_noisy || !is_walled => Err(GeneratorError::Modes { axis }),
+            // However wide the normal density is: more modes make up for it.
+            Some(_) if !is_noisy && system.relaxation_rate(axis).is_some() => Ok(()),
             Some((_, mean, deviation)) => {
                 let same = |(m, d): (f64, f64)| {
                     (m - mean).abs() <= ROUNDING * deviation
@@ -73,21 +76,25 @@ impl ModeAxis {
         rates: &mut [f64],
     ) -> Result<(), GeneratorError> {
         block(&self.first, drift, rates);
-        let Some((second, mean, deviation)) = &self.filter else {
+        let Some((second, mean, deviation)) = &self.normal else {
             return Ok(());
         };
-        // An axis without noise has no diffusion.
+        // An axis without noise has no diffusion: a state that relaxes at a rate of its own, or one of a filter's.
         let first = diffusion.first().copied().unwrap_or(0.0);
-        let rate = first / deviation.powi(2);
-        // The other states of a filter may add what is the same all along the line.
+        let length = nodes[nodes.len() - 1] - nodes[0];
+        let rate = match first > 0.0 {
+            true => first / deviation.powi(2),
+            false => (drift[0] - drift[drift.len() - 1]) / length,
+        };
+        // Other states may add what is the same all along the line.
         let added = drift[0] + rate * (nodes[0] - mean);
-        let scale = rate * (nodes[nodes.len() - 1] - nodes[0]) + added.abs();
+        let scale = rate.abs() * length + added.abs();
         let mut along = nodes.iter().zip(drift);
         let linear = along
             .all(|(node, drift)| (drift + rate * (node - mean) - added).abs() <= ROUNDING * scale);
         let mut noises = diffusion.iter();
         let constant = noises.all(|noise| (noise - first).abs() <= ROUNDING * first);
-        if rate < 0.0 || !linear || !constant {
+        if rate < -ROUNDING * scale / length || !linear || !constant {
             return Err(GeneratorError::Filter { axis });
         }
         for (rate, second) in rates.iter_mut().zip(second) {

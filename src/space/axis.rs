@@ -37,6 +37,10 @@ pub struct Axis {
 /// number.
 const MODES_A_FINER_MODE: usize = 4;
 
+/// Standard deviations of the normal density from the middle to the ends of the range of a state that relaxes: ranges
+/// that are found hold 6.5 of the state's own, so that the normal density is a third wider than the state's.
+const DEVIATIONS_OF_A_RANGE: f64 = 5.0;
+
 impl Axis {
     /// Cells of equal width.
     ///
@@ -122,6 +126,18 @@ impl Axis {
             pieces: Vec::new(),
             series: Some(Series::Hermite { mean, deviation }),
         })
+    }
+
+    /// As [`Axis::hermite`], of a state that a range holds nearly always: the range is five standard deviations of the
+    /// normal density to either side of its mean. The density need not be normal. Modes are few where the state's own
+    /// deviation is a half to one and a half of that of the normal density.
+    ///
+    /// # Errors
+    /// [`SpaceError::Range`] or [`SpaceError::Modes`].
+    pub fn hermite_over(from: f64, to: f64, count: usize) -> Result<Self, SpaceError> {
+        Self::check(from, to, count.max(2))?;
+        let (mean, half) = (0.5 * (from + to), 0.5 * (to - from));
+        Self::hermite(mean, half / DEVIATIONS_OF_A_RANGE, count)
     }
 
     /// The same axis with another number of modes.

@@ -10,7 +10,7 @@ pub struct AxisDescription {
     /// Meaning in words.
     pub meaning: String,
     /// Whether modes carry it unless a file says otherwise: the density along it is smooth inside its bounds and no
-    /// noise drives it, or it is white noise behind a filter.
+    /// noise drives it, or it relaxes linearly without noise, or it is white noise behind a filter.
     pub by_modes: bool,
 }
 
@@ -29,8 +29,8 @@ impl AxisDescription {
         }
     }
 
-    /// The axis of an internal state that modes carry; a series in place of cells. The state has bounds, no noise,
-    /// and a smooth density between its bounds.
+    /// The axis of an internal state that modes carry; a series in place of cells. The state has no noise, and either
+    /// bounds, with a smooth density between them, or it relaxes linearly.
     #[must_use]
     pub fn carried_by_modes(self) -> Self {
         Self {

@@ -38,6 +38,9 @@ impl System for Enclosed {
     fn filtered_noise(&self, axis: usize) -> Option<(f64, f64)> {
         self.system.filtered_noise(axis)
     }
+    fn relaxation_rate(&self, axis: usize) -> Option<f64> {
+        self.system.relaxation_rate(axis)
+    }
     fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
         self.system.switching_surfaces()
     }

@@ -128,6 +128,15 @@ pub trait System: Send + Sync {
         None
     }
 
+    /// Rate λ > 0, per unit of time, at which a coordinate without noise and without bounds relaxes: its drift is
+    /// g - λ x, where g depends on the other coordinates only and λ on none. The voltage of a circuit that an
+    /// oscillator drives is one, and the force of a Maxwell element. Hermite modes can carry it
+    /// ([`crate::space::Axis::hermite`]).
+    fn relaxation_rate(&self, axis: usize) -> Option<f64> {
+        let _ = axis;
+        None
+    }
+
     /// Planes where the drift is not smooth.
     fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
         Vec::new()

@@ -28,6 +28,15 @@ impl<'a> Along<'a> {
         }
     }
 
+    /// Whether a coordinate has no bounds and relaxes linearly, at all corners.
+    pub(super) fn relaxes(&self, axis: usize) -> bool {
+        let mut corners = self.corners.iter();
+        let relaxes = |one: &Arc<dyn System>| {
+            one.bounds(axis).is_none() && one.relaxation_rate(axis).is_some()
+        };
+        !self.corners.is_empty() && corners.all(relaxes)
+    }
+
     /// The widest range that the model's bounds of an axis take at the corners; of coloured noise, what holds nearly
     /// all of it.
     pub(super) fn bounds(&self, axis: usize) -> Option<(f64, f64)> {

@@ -1,9 +1,10 @@
 //! The cells of each axis: range, count, grading. What is given is checked here; what is left to the program is found
 //! later.
 
-use super::along::{Along, filter};
+use super::along::Along;
 use super::axis_checks::{check_modes, warn_of_few_cells, warn_of_idle_grade};
 use super::equations::model_in_words;
+use super::modes_of::ModesOf;
 use crate::space::{Axis, CellSpace, Grading, SpaceError};
 use crate::sweep_file::diagnostic::Diagnostic;
 use crate::sweep_file::document::Document;
@@ -22,8 +23,8 @@ pub struct AxisSettings {
     pub count: Option<usize>,
     /// Where the cells get narrower.
     pub grade: Grade,
-    /// Mean and standard deviation of an axis of coloured noise: its modes are Hermite's.
-    pub filter: Option<(f64, f64)>,
+    /// What modes of the axis are made of.
+    pub series: ModesOf,
     /// Number of modes that carry it in place of cells, by methods that can ([`MethodKind::takes_modes`]).
     pub modes: Option<Modes>,
 }
@@ -50,12 +51,7 @@ impl AxisSettings {
         let (from, to) = self.range?;
         match self.modes_by(method) {
             Some(Modes::Auto) => return None,
-            Some(Modes::Number(count)) => {
-                return Some(match self.filter {
-                    Some((mean, deviation)) => Axis::hermite(mean, deviation, count),
-                    None => Axis::modes(from, to, count),
-                });
-            }
+            Some(Modes::Number(count)) => return Some(self.series.axis((from, to), count)),
             None => {}
         }
         let count = self.count?;
@@ -119,14 +115,18 @@ fn read_axis(
     index: usize,
 ) -> Option<AxisSettings> {
     let method = draft.method.kind;
-    let by_modes = described.by_modes && method.takes_modes();
-    let filter = along.and_then(|along| filter(along.family, index));
+    let series = ModesOf::new(along, index);
+    let by_modes = method.takes_modes() && series.serve(draft, described, along);
     if by_modes && reader.entry(&["cells", name]).is_none() {
+        let bounds = along?.bounds(index);
         return Some(AxisSettings {
-            range: Some(along?.bounds(index)?),
+            range: match series {
+                ModesOf::Relaxing => bounds,
+                ModesOf::Bounded | ModesOf::Noise { .. } => Some(bounds?),
+            },
             count: None,
             grade: Grade::Even,
-            filter,
+            series,
             modes: Some(Modes::Auto),
         });
     }
@@ -136,7 +136,7 @@ fn read_axis(
             range: along.and_then(|along| along.bounds(index)),
             count: None,
             grade: Grade::Auto,
-            filter,
+            series,
             modes: None,
         });
     };
@@ -153,13 +153,14 @@ fn read_axis(
         Some(_) => Some(bounds.flatten()),
         // What is wrong with it is reported already.
         None if reader.entry(&["cells", name, "range"]).is_some() => None,
+        None if bounds == Some(None) && !has_ends(reader, name) => Some(None),
         None => read_range(reader, axis, name, bounds).map(Some),
     };
     let settings = AxisSettings {
         range: range?,
         count: axis.count,
         grade: grade?,
-        filter,
+        series,
         modes,
     };
     if modes.is_some() && method.takes_modes() {
@@ -176,6 +177,12 @@ fn read_axis(
             None
         }
     }
+}
+
+/// Whether an end of the range is given.
+fn has_ends(reader: &Reader<'_>, name: &str) -> bool {
+    let mut ends = ["from", "to"].into_iter();
+    ends.any(|end| reader.entry(&["cells", name, end]).is_some())
 }
 
 /// The range that is given; what is left out is the model's bound, where it knows one (`None`: there is no telling).

@@ -68,7 +68,10 @@ pub(super) fn check_modes(
             .iter()
             .all(|system| system.walls(index, range) == [true; 2])
     };
-    let (why, remedy) = if filter(family, index).is_some() {
+    let (why, remedy) = if along.relaxes(index) {
+        // Its range is any that holds it.
+        return Some(());
+    } else if filter(family, index).is_some() {
         if range == along.bounds(index) {
             return Some(());
         }
@@ -83,7 +86,8 @@ pub(super) fn check_modes(
         ("noise drives it", format!("give `cells.{name}.count`"))
     } else if systems.iter().any(|system| system.bounds(index).is_none()) {
         (
-            "the model knows no bounds of it",
+            "the model knows no bounds of it, and it does not relax linearly, as v does in v' = g - c v with a number \
+             c > 0",
             match family.model().typed() {
                 Some(_) => format!(
                     "give `cells.{name}.count`, or bounds of `{name}` in [system.bounds] that it never leaves"
@@ -100,7 +104,10 @@ pub(super) fn check_modes(
         return Some(());
     };
     let diagnostic = Diagnostic::new(format!("axis `{name}` cannot have modes: {why}"))
-        .allowed("modes carry a state without noise between the bounds that the model knows, or coloured noise")
+        .allowed(
+            "modes carry a state without noise that relaxes linearly or has bounds that the model knows, or coloured \
+             noise",
+        )
         .remedy(remedy);
     let place = reader.place(&["cells", name, "modes"]);
     reader.report(match place.or_else(|| reader.place(&["cells", name])) {

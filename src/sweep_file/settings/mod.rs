@@ -9,6 +9,7 @@ mod equations;
 mod figures;
 mod map;
 mod method;
+mod modes_of;
 mod quantities;
 mod system;
 #[cfg(test)]
@@ -27,6 +28,7 @@ pub(super) use axes::{at_cells, cell_space};
 pub use curve::CurveSettings;
 pub(super) use equations::value_place as formula_place;
 pub use map::MapSettings;
+pub use modes_of::ModesOf;
 pub use quantities::BinSettings;
 pub(super) use quantities::quantity_name;
 

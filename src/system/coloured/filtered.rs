@@ -117,6 +117,13 @@ impl System for Filtered {
             .then_some((0.0, 1.0))
     }
 
+    fn relaxation_rate(&self, axis: usize) -> Option<f64> {
+        let is_driven = self.system.noise_axes().contains(&axis);
+        (axis < self.own && !is_driven)
+            .then(|| self.system.relaxation_rate(axis))
+            .flatten()
+    }
+
     fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
         self.system.switching_surfaces()
     }

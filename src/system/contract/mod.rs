@@ -12,6 +12,7 @@
 //! | [`System::symmetry`] | the image of a state has the image of its drift, its noise and its exact density |
 //! | [`System::bounds`] | at a bound the drift points inward or along, and noise does not act across |
 //! | [`System::filtered_noise`] | its drift and noise are those of a linear filter with this mean and deviation |
+//! | [`System::relaxation_rate`] | no noise acts on the axis, and its drift falls with the coordinate at this rate everywhere |
 //! | [`System::exact_log_density`] | solves the stationary Fokker-Planck equation (central differences) |
 //! | [`System::switching_surfaces`] | drift or its slope jumps there |
 //!
@@ -77,6 +78,7 @@ pub fn verify(system: &dyn System, ranges: &[(f64, f64)]) -> Result<(), Contract
     trial.check_symmetry()?;
     trial.check_bounds()?;
     trial.check_filters()?;
+    trial.check_relaxations()?;
     density::check(&trial)?;
     surfaces::check(&trial)
 }

@@ -355,3 +355,56 @@ fn states_of_a_filter_must_have_the_normal_density_that_is_declared() {
         assert!(!verified(wrong));
     }
 }
+
+/// v' = drift(x, v) on the second axis, said to relax at the rate 2; noise on the first.
+struct Circuit {
+    drift: fn(f64, f64) -> f64,
+    driven: [usize; 1],
+}
+
+impl System for Circuit {
+    fn dimension(&self) -> usize {
+        2
+    }
+
+    fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
+        for lane in 0..LANES {
+            drift[0][lane] = -states[0][lane];
+            drift[1][lane] = (self.drift)(states[0][lane], states[1][lane]);
+        }
+    }
+
+    fn noise_axes(&self) -> &[usize] {
+        &self.driven
+    }
+
+    fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
+        Some(1.0)
+    }
+
+    fn relaxation_rate(&self, axis: usize) -> Option<f64> {
+        (axis == 1).then_some(2.0)
+    }
+}
+
+#[test]
+fn a_coordinate_that_relaxes_does_so_at_the_declared_rate_and_without_noise() {
+    let found = |drift: fn(f64, f64) -> f64, driven: usize| {
+        let system = Circuit {
+            drift,
+            driven: [driven],
+        };
+        verify(&system, &[(-2.0, 2.0); 2])
+    };
+    assert_eq!(found(|x, v| x * x - 2.0 * v, 0), Ok(()));
+    for (wrong, driven) in [
+        ((|x, v| x - 1.9 * v) as fn(f64, f64) -> f64, 0),
+        (|x, v| x - 2.0 * v + 0.1 * v * v, 0),
+        (|x, v| x - (2.0 + 0.1 * x) * v, 0),
+        (|x, v| x - 2.0 * v, 1),
+    ] {
+        let found = found(wrong, driven);
+        let is_it = matches!(found, Err(ContractViolation::Relaxation { axis: 1, .. }));
+        assert!(is_it, "{found:?}");
+    }
+}

@@ -309,6 +309,29 @@ impl<'a> Trial<'a> {
         Ok(())
     }
 
+    /// The drift of a coordinate that relaxes falls with it at the declared rate, and no noise acts on it.
+    pub(super) fn check_relaxations(&self) -> Result<(), ContractViolation> {
+        for axis in 0..self.dimension() {
+            let Some(rate) = self.system.relaxation_rate(axis) else {
+                continue;
+            };
+            let length = self.ranges[axis].1 - self.ranges[axis].0;
+            for state in &self.states {
+                let mut moved = state.clone();
+                moved[axis] += length;
+                let at = |state: &[f64]| self.system.drift_at(self.times[0], state)[axis];
+                let fallen = at(state) - at(&moved);
+                let size = self.drift_size[axis] + rate.abs() * length;
+                let holds = rate > 0.0 && self.noise_size[axis] == 0.0;
+                if !holds || !same(fallen, rate * length, size) {
+                    let state = state.clone();
+                    return Err(ContractViolation::Relaxation { axis, rate, state });
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// What the drift of filtered noise has beside its own relaxation.
     fn beside_filter(&self, state: &[f64], (axis, mean, deviation): (usize, f64, f64)) -> f64 {
         let rate = 0.5 * self.intensity(self.times[0], state, axis) / deviation.powi(2);

@@ -243,6 +243,18 @@ pub enum ContractViolation {
         /// Where.
         state: Vec<f64>,
     },
+    /// A coordinate does not relax as it is declared to.
+    #[error(
+        "axis {axis} is declared to relax linearly at the rate {rate}, which its drift or noise at {state:?} does not fit"
+    )]
+    Relaxation {
+        /// The axis.
+        axis: usize,
+        /// Declared rate.
+        rate: f64,
+        /// Where.
+        state: Vec<f64>,
+    },
     /// The exact density does not solve the stationary Fokker-Planck equation.
     #[error(
         "the exact density is not stationary: the Fokker-Planck equation over p leaves {residual} at {state:?}, \

@@ -99,6 +99,11 @@ impl System for Typed {
         Some((self.value(lower), self.value(upper)))
     }
 
+    fn relaxation_rate(&self, axis: usize) -> Option<f64> {
+        let rate = self.reading.relaxation.get(axis).copied().flatten()?;
+        Some(self.value(rate)).filter(|rate| *rate > 0.0 && rate.is_finite())
+    }
+
     fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
         let mut surfaces: Vec<SwitchingSurface> = Vec::new();
         for &(axis, at) in &self.reading.surfaces {

@@ -11,6 +11,7 @@ mod bound;
 mod equations;
 mod error;
 mod read;
+mod relaxation;
 
 use std::sync::Arc;
 
@@ -256,9 +257,14 @@ impl TypedModel {
         let bound = Arc::clone(&reading);
         let bind = move |values: &[f64]| bound::bind(&bound, values);
         let notes = self.notes.iter().cloned().chain(found);
+        let axes = self.axes.iter().enumerate();
+        let axes = axes.map(|(index, axis)| match is_internal(&reading, index) {
+            true => axis.clone().carried_by_modes(),
+            false => axis.clone(),
+        });
         let model = Model::new(self.name.as_str(), self.title.as_str(), bind)
             .with_equations(lines)
-            .with_axes(self.axes.clone())
+            .with_axes(axes.collect::<Vec<_>>())
             .with_parameters(self.parameters.clone())
             .with_source(self.source.as_str())
             .with_notes(notes)
@@ -327,6 +333,14 @@ impl TypedModel {
         });
         laid.collect()
     }
+}
+
+/// Axes from this one on are internal states; those before it are the oscillator's, which are looked at.
+const FIRST_INTERNAL_AXIS: usize = 2;
+
+/// Whether an axis is that of an internal state that relaxes linearly, for which modes serve better than cells.
+fn is_internal(reading: &read::Reading, axis: usize) -> bool {
+    axis >= FIRST_INTERNAL_AXIS && reading.relaxation[axis].is_some()
 }
 
 /// An equation or a definition: its left side, its formula, and amplitudes with the names of their noises.

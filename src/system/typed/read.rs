@@ -36,6 +36,8 @@ pub(super) struct Reading {
     pub(super) bounds: Vec<Option<(Expression, Expression)>>,
     /// `None` where nothing depends on time.
     pub(super) period: Option<Expression>,
+    /// Rates, of parameters alone, at which axes without noise and bounds relax.
+    pub(super) relaxation: Vec<Option<Expression>>,
 }
 
 /// Reads a model; with it, sentences on what was found and cannot be declared.

@@ -5,7 +5,7 @@ use super::{Noise, Planes, Reader, Reading};
 use crate::formula::analysis::KinkPlace;
 use crate::formula::graph::{Expression, Symbol};
 use crate::formula::tape::{BindError, Program};
-use crate::system::typed::{FormulaPlace, Interpretation, TypedModelError};
+use crate::system::typed::{FormulaPlace, Interpretation, TypedModelError, relaxation};
 
 impl Reader<'_> {
     /// What follows from expressions that are all there.
@@ -21,6 +21,8 @@ impl Reader<'_> {
         let mut rough = drift_expressions.clone();
         rough.extend(noise.iter().flatten());
         let (surfaces, notes) = self.surfaces(&rough)?;
+        let free = |axis: usize| bounds[axis].is_none() && !noise_axes.contains(&axis);
+        let relaxation = relaxation::rates(self.scope.graph_mut(), &drift_expressions, &free)?;
         let scope = self.scope;
         let own = noise.iter().zip(&noise_axes);
         let amplitudes = own.map(|(process, &axis)| scope.compile(&process[axis..=axis]));
@@ -45,6 +47,7 @@ impl Reader<'_> {
             surfaces,
             bounds,
             period,
+            relaxation,
         };
         Ok((reading, notes))
     }

@@ -1,0 +1,69 @@
+//! What modes of an axis are made of, and when they serve without being asked for.
+
+use super::along::{Along, filter};
+use crate::space::{Axis, SpaceError};
+use crate::sweep_file::draft::Draft;
+use crate::system::AxisDescription;
+
+/// What an axis is of, if modes carry it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ModesOf {
+    /// A state between bounds: Legendre's.
+    Bounded,
+    /// Coloured noise with this mean and standard deviation: Hermite's.
+    Noise {
+        /// Mean.
+        mean: f64,
+        /// Standard deviation.
+        deviation: f64,
+    },
+    /// A state without noise and bounds that relaxes linearly: Hermite's, as wide as the range says.
+    Relaxing,
+}
+
+impl ModesOf {
+    /// Of an axis all along a sweep.
+    pub(super) fn new(along: Option<&Along<'_>>, axis: usize) -> Self {
+        let Some(along) = along else {
+            return Self::Bounded;
+        };
+        match filter(along.family, axis) {
+            Some((mean, deviation)) => Self::Noise { mean, deviation },
+            None if along.relaxes(axis) => Self::Relaxing,
+            None => Self::Bounded,
+        }
+    }
+
+    /// The axis with a number of modes.
+    pub(super) fn axis(self, (from, to): (f64, f64), count: usize) -> Result<Axis, SpaceError> {
+        match self {
+            Self::Bounded => Axis::modes(from, to, count),
+            Self::Noise { mean, deviation } => Axis::hermite(mean, deviation, count),
+            Self::Relaxing => Axis::hermite_over(from, to, count),
+        }
+    }
+
+    /// Whether modes carry the axis where the file says nothing of it: the model marks it, and nothing that is watched
+    /// needs cells. A typed axis is marked by the form of its equation; the values of the parameters decide.
+    pub(super) fn serve(
+        self,
+        draft: &Draft,
+        described: &AxisDescription,
+        along: Option<&Along<'_>>,
+    ) -> bool {
+        let is_typed = along.is_some_and(|along| along.family.model().typed().is_some());
+        let fit = !is_typed || self != Self::Bounded;
+        described.by_modes && fit && !is_in_formulas(draft, &described.name)
+    }
+}
+
+/// Whether a formula that is watched has the axis in it: such quantities are made from masses of cells.
+fn is_in_formulas(draft: &Draft, name: &str) -> bool {
+    let is_part = |letter: char| !(letter.is_alphanumeric() || letter == '_');
+    let has = |text: &str| text.split(is_part).any(|word| word == name);
+    let marginals = draft.marginals.iter().flatten();
+    let joint = draft.joint.iter().flatten().flatten();
+    // A name by itself is the axis, of which the series gives the density.
+    let mut texts = marginals.chain(joint).filter(|text| *text != name);
+    texts.any(|text| has(text)) || draft.averaged.iter().any(|(_, formula)| has(formula))
+}
