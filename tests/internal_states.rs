@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 use pbif::cancellation::Cancellation;
+use pbif::density::Observable;
 use pbif::generator::{
     AdvectiveScheme, GeneratorError, GeneratorOptions, assemble, unknown_moments,
 };
@@ -205,7 +206,9 @@ fn a_typed_circuit_is_carried_by_modes_and_the_prepared_file_gives_the_same_swee
     let found = sweep.run(&never, &mut ()).unwrap();
     let of_x = |found: &pbif::continuation::SweepResult| {
         let mut rows = found.labels.iter();
-        let row = rows.find(|row| row.observable.axes() == [0]).unwrap();
+        let row = rows
+            .find(|row| row.observable == Some(Observable::Marginal(0)))
+            .unwrap();
         (row.value, row.error)
     };
     let (value, error) = of_x(&found);
