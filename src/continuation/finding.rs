@@ -106,6 +106,13 @@ pub enum Finding {
         /// Where the surface is.
         at: f64,
     },
+    /// The same of a surface across which the drift jumps along a noisy axis: the kink of the density lies inside cells.
+    JumpInsideCells {
+        /// The axis across the surface.
+        axis: usize,
+        /// Where the surface is.
+        at: f64,
+    },
     /// The cells diffuse as if there were more noise.
     NumericalDiffusion {
         /// Relative increase of the noise, each axis in units of its variance.
@@ -170,6 +177,11 @@ pub enum ShiftedQuantity {
 }
 
 impl Finding {
+    /// Whether it puts the shape of the densities in doubt wherever they are read.
+    pub(super) fn blurs(&self) -> bool {
+        matches!(self, Self::FewModes { .. } | Self::JumpInsideCells { .. })
+    }
+
     /// What is stored of a finding: its code, the axis it speaks of, and its numbers, the one that matters most first.
     pub fn parts(&self) -> (&'static str, Option<usize>, Vec<f64>) {
         let plain = |code, numbers: &[f64]| (code, None, numbers.to_vec());
@@ -200,6 +212,7 @@ impl Finding {
             Self::UnresolvedSeries { axis, change } => along("unresolved-series", axis, &[change]),
             Self::SmearedKink { axis, widths } => along("smeared-kink", axis, &[widths]),
             Self::SurfaceOffFaces { axis, at } => along("surface-off-faces", axis, &[at]),
+            Self::JumpInsideCells { axis, at } => along("jump-inside-cells", axis, &[at]),
             Self::NumericalDiffusion { share } => plain("numerical-diffusion", &[share]),
             Self::StepBias {
                 quantity,
@@ -253,6 +266,7 @@ impl Finding {
             ("unresolved-series", Some(axis), &[change]) => Self::UnresolvedSeries { axis, change },
             ("smeared-kink", Some(axis), &[widths]) => Self::SmearedKink { axis, widths },
             ("surface-off-faces", Some(axis), &[at]) => Self::SurfaceOffFaces { axis, at },
+            ("jump-inside-cells", Some(axis), &[at]) => Self::JumpInsideCells { axis, at },
             ("numerical-diffusion", None, &[share]) => Self::NumericalDiffusion { share },
             ("unresolved-relaxation", None, &[time]) => Self::UnresolvedRelaxation { time },
             ("short-burn-in", None, &[burn_in, time]) => Self::ShortBurnIn { burn_in, time },
@@ -381,7 +395,8 @@ pub(crate) fn every_finding() -> Vec<Finding> {
         }),
         F::UnresolvedSeries { .. } => Some(F::FewModes { change: 0.16 }),
         F::FewModes { .. } => Some(F::SurfaceOffFaces { axis: 1, at: 0.1 }),
-        F::SurfaceOffFaces { .. } => Some(F::NumericalDiffusion { share: 0.2 }),
+        F::SurfaceOffFaces { .. } => Some(F::JumpInsideCells { axis: 1, at: 0.1 }),
+        F::JumpInsideCells { .. } => Some(F::NumericalDiffusion { share: 0.2 }),
         F::NumericalDiffusion { .. } => Some(shifted(ShiftedQuantity::Variance(0))),
         F::StepBias { quantity, .. } => Some(match quantity {
             ShiftedQuantity::Variance(_) => shifted(ShiftedQuantity::Energy),

@@ -5,7 +5,8 @@ use super::grid::{Checked, Checks, GridCheck, Leak, share_of_distance};
 use super::jump::instead_of_zero;
 use super::label::{self, BifurcationStatus, LabelledPoint, PointType};
 use super::reason::{
-    MOST_NEGATIVE, change_by_modes, coarse, leaks, negative_share, not_checked, said_of, torn,
+    MOST_NEGATIVE, change_by_modes, coarse, jump_inside_cells, leaks, negative_share, not_checked,
+    said_of, torn,
 };
 
 use super::root::{Root, root};
@@ -224,6 +225,8 @@ fn by_indicator(
     let is_torn = depends_on_cells && wiggles > MOST_NEGATIVE;
     let lacks_check = on_finer.is_none() && depends_on_cells && is_checkable(subject);
     let few_modes = [a, b].into_iter().find_map(change_by_modes);
+    let mut by_cells = [a, b].into_iter().filter(|_| depends_on_cells);
+    let blurred = by_cells.find_map(|point| jump_inside_cells(point, subject));
     let jump = instead_of_zero(points, crossing, detector);
     row.status = Some(match on_finer {
         Some(GridCheck::Unconfirmed) => BifurcationStatus::Unconfirmed,
@@ -231,6 +234,7 @@ fn by_indicator(
         _ if unsound.is_some()
             || is_torn
             || few_modes.is_some()
+            || blurred.is_some()
             || jump.is_some()
             || !narrow
             || error > options.tolerance =>
@@ -246,6 +250,7 @@ fn by_indicator(
         .or_else(|| unsound.map(|point| said_of(point, subject)))
         .or_else(|| is_torn.then(|| torn(wiggles)))
         .or(few_modes)
+        .or(blurred)
         .or_else(|| leaks(&found, error, options, subject, [a, b]))
         .or_else(|| coarse(&found, error, options, &a.densities[change.observable]))
         .or_else(|| lacks_check.then(|| not_checked(options)));

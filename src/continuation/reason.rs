@@ -122,6 +122,22 @@ pub(super) fn torn(wiggles: f64) -> String {
     )
 }
 
+/// The sentence for a value read off densities whose kink lies inside cells: their shape follows where in its cell the
+/// jump of the drift is, and as that moves along a sweep peaks come and go.
+pub(super) fn jump_inside_cells(point: &Point, subject: &Subject) -> Option<String> {
+    let mut findings = point.report.findings.iter();
+    findings.find_map(|finding| match *finding {
+        Finding::JumpInsideCells { axis, at } => {
+            let axis = subject.family.axis(axis);
+            Some(format!(
+                "the drift jumps at {axis} = {at:.4}, inside cells: a face there, or as {axis} the distance from it, \
+                 would show the kink"
+            ))
+        }
+        _ => None,
+    })
+}
+
 /// The sentence for a value read off densities that too few modes carry.
 pub(super) fn change_by_modes(point: &Point) -> Option<String> {
     let mut findings = point.report.findings.iter();

@@ -30,6 +30,9 @@ pub struct Resolution {
     pub layer: Option<f64>,
     /// Switching surfaces inside the range that no face falls on.
     pub surfaces_off_faces: Vec<f64>,
+    /// Those of them across which the drift along the axis jumps: the kink of the density lies inside cells, where
+    /// nothing tells it from a slope.
+    pub jumps_off_faces: Vec<f64>,
 }
 
 /// Judges every noisy axis of a cell space, given the masses of its cells (length `n_cells`).
@@ -75,16 +78,43 @@ fn judge(system: &dyn System, space: &CellSpace, masses: &[f64], index: usize) -
     }
     let surfaces = system.switching_surfaces();
     let here = surfaces.iter().filter(|surface| surface.axis == index);
+    let off_faces: Vec<f64> = here
+        .map(|surface| surface.at)
+        .filter(|&at| axis.is_inside_cell(at))
+        .collect();
+    let counting: Vec<usize> = (0..masses.len())
+        .filter(|&cell| masses[cell] / space.volume(cell) > lightest)
+        .collect();
+    let jumps = off_faces.iter().copied();
+    let jumps = jumps.filter(|&at| jumps_inside_cells(system, space, &counting, (index, at)));
     Resolution {
         axis: index,
         peclet: seen.peclet,
         fitted_peclet: seen.fitted_peclet,
         layer: (seen.weight > 0.0).then(|| (seen.layer / seen.weight).sqrt()),
-        surfaces_off_faces: here
-            .map(|surface| surface.at)
-            .filter(|&at| axis.is_inside_cell(at))
-            .collect(),
+        jumps_off_faces: jumps.collect(),
+        surfaces_off_faces: off_faces,
     }
+}
+
+/// Whether the drift along an axis jumps across a plane inside cells, at any of some cells that hold the plane.
+fn jumps_inside_cells(
+    system: &dyn System,
+    space: &CellSpace,
+    cells: &[usize],
+    (axis, at): (usize, f64),
+) -> bool {
+    let Some(position) = space.axes()[axis].find(at) else {
+        return false;
+    };
+    let distance = BESIDE * space.axes()[axis].width(position);
+    let mut holding = (cells.iter()).filter(|&&cell| space.position(cell, axis) == position);
+    holding.any(|&cell| {
+        let surface = SwitchingSurface { axis, at };
+        let state = space.centre(cell);
+        let jump = surface.drift_jump(system, &state, distance)[axis];
+        jump.abs() > NO_JUMP * system.drift_at(0.0, &state)[axis].abs()
+    })
 }
 
 /// What the grid lines along an axis have shown.
@@ -218,9 +248,10 @@ mod tests {
         };
         let graded = judged(Axis::graded(-2.0, 2.0, 40, &grading).unwrap());
         assert!(graded.fitted_peclet <= 1.0 && graded.layer.unwrap() <= 1.0);
-        assert!(graded.surfaces_off_faces.is_empty());
+        assert!(graded.surfaces_off_faces.is_empty() && graded.jumps_off_faces.is_empty());
         let odd = judged(Axis::uniform(-2.0, 2.0, 21).unwrap());
         assert_eq!(odd.surfaces_off_faces, vec![0.0]);
+        assert_eq!(odd.jumps_off_faces, vec![0.0]);
         assert_eq!(odd.layer, None);
     }
 }

@@ -115,7 +115,10 @@ impl<'a> Reporter<'a> {
             self.tell(Finding::SmearedKink { axis, widths });
         }
         for &at in &judged.surfaces_off_faces {
-            self.tell(Finding::SurfaceOffFaces { axis, at });
+            self.tell(match judged.jumps_off_faces.contains(&at) {
+                true => Finding::JumpInsideCells { axis, at },
+                false => Finding::SurfaceOffFaces { axis, at },
+            });
         }
     }
 

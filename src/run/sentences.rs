@@ -110,6 +110,14 @@ fn cells_in_words(family: &Family, finding: &Finding) -> Option<String> {
                  kink of the density, so the kink is smeared: grade = \"auto\" on {axis} resolves it"
             )
         }
+        Finding::JumpInsideCells { axis, at } => {
+            let axis = family.axis(axis);
+            format!(
+                "the drift jumps at {axis} = {at}, inside cells, where the kink of the density is not seen: give an \
+                 even count or grade {axis} toward it; where it moves along the sweep, take as {axis} the distance \
+                 from it (for a belt, the velocity relative to it), so that it stands still"
+            )
+        }
         Finding::SurfaceOffFaces { axis, at } => format!(
             "no face of {} falls on the switching surface at {at}: use an even count or grade the axis toward it",
             family.axis(axis)

@@ -60,6 +60,8 @@ pub use keys::{Key, help, keys};
 pub(crate) use memory::{bytes_in_words, machine_memory};
 pub use names::list;
 pub use report::Report;
-pub use settings::{AxisSettings, BinSettings, CurveSettings, Grade, MapSettings, Modes, Settings};
+pub use settings::{
+    AxisSettings, BinSettings, CurveSettings, Grade, MapSettings, Modes, ModesOf, Settings,
+};
 pub use sweep::{SolveError, Sweep};
 pub use text::SweepText;

@@ -177,7 +177,7 @@ impl Checks<'_> {
         let depends_on_cells = self.0.start.kind != IndicatorKind::KinkSlope;
         let unknown = check.grid.is_none() && depends_on_cells && reading.is_diffused;
         let is_torn = depends_on_cells && negative_share(&reading.density) > MOST_NEGATIVE;
-        let is_unsound = reading.status != PointStatus::Solved || is_torn;
+        let is_unsound = reading.status != PointStatus::Solved || is_torn || reading.is_blurred;
         let status = match check.status {
             Some(status) => status,
             None if is_unsound || error > self.0.options.tolerance => BifurcationStatus::Unresolved,

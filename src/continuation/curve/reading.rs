@@ -6,7 +6,7 @@
 
 use super::{CurveStart, CurveWork, Plane, companion};
 use crate::cancellation::Cancellation;
-use crate::continuation::{DensitySource, PointStatus, Sensitivity, Session, SourceError};
+use crate::continuation::{DensitySource, Finding, PointStatus, Sensitivity, Session, SourceError};
 use crate::density::{Density, EstimatedDensity};
 use crate::topology::{Detector, Indicator, IndicatorKind};
 
@@ -30,6 +30,8 @@ pub(super) struct Reading {
     /// Mass in the outermost cells, the largest over the axes.
     pub(super) edge_mass: f64,
     pub(super) status: PointStatus,
+    /// Whether the shape of the density is in doubt, by too few modes or a kink inside cells.
+    pub(super) is_blurred: bool,
     /// Whether cells add diffusion of their own.
     pub(super) is_diffused: bool,
     pub(super) density: Density,
@@ -183,6 +185,7 @@ impl Reader<'_> {
             solver_error: report.solver_error,
             edge_mass: report.edge_mass.iter().copied().fold(0.0, f64::max),
             status: report.status,
+            is_blurred: report.findings.iter().any(Finding::blurs),
             is_diffused: !report.own.numerical_diffusion.is_empty(),
             companions: companion::values(self.detector, density, self.kind, &indicator.place),
             kinks: kinks.map(|kink| kink.at).collect(),
