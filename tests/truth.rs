@@ -444,3 +444,32 @@ fn a_peak_that_reaches_a_kink_is_not_born_there() {
         assert!((row.value - truth).abs() <= row.error, "{}", words(&rows));
     }
 }
+
+#[test]
+fn a_jump_that_moves_through_the_cells_leaves_no_value_located() {
+    // x and y are independent; y is driven away from θ, and has peaks at ±0.5 as long as θ lies between them: two of
+    // y become one at θ = 0.5. Cells that hold the jump show peaks that come and go as it moves.
+    let model = TypedModel::new("belt", "A force that jumps at θ", ["x", "y"])
+        .with_equation("x", "-x")
+        .with_equation("y", "-y + 0.5 sign(y - theta)")
+        .with_noise("x", ["0.6"])
+        .with_noise("y", ["0.5"])
+        .with_parameters(["theta"])
+        .build()
+        .unwrap();
+    for observable in [Observable::Marginal(1), Observable::Joint(0, 1)] {
+        let axis = || Axis::uniform(-3.1, 3.1, 70).unwrap();
+        let ends = (0.111, 0.887);
+        let axes = vec![axis(), axis()];
+        let options = LocateOptions::default();
+        let (_, rows) = rows_of(model.clone(), observable, ends, 14, axes, &options);
+        assert!(!rows.is_empty());
+        for row in &rows {
+            let (status, reason) = (row.status, row.reason.as_deref().unwrap_or_default());
+            assert_ne!(status, Some(BifurcationStatus::Located), "{}", words(&rows));
+            let is_told =
+                reason.contains("jumps at y") || status != Some(BifurcationStatus::Unresolved);
+            assert!(is_told || row.parts.is_none(), "{}", words(&rows));
+        }
+    }
+}
