@@ -82,21 +82,28 @@ fn space(covariances: &DMatrix<f64>, cells: usize, modes: usize, width: f64) -> 
 
 #[test]
 fn second_moments_of_a_linear_oscillator_with_circuits_are_exact_with_three_modes() {
-    // Central fluxes keep the second moments of a linear drift, and three modes are closed for them, however wide.
-    for (axes, cells) in [(3, 48), (4, 36)] {
+    // Three modes are closed for second moments, however wide: what is left is the cells', of fourth order.
+    let worst = |system: &dyn System, cells: usize, width: f64| {
+        let exact = covariances(system);
+        let space = space(&exact, cells, 3, width);
+        let unknowns = solve(system, &space, AdvectiveScheme::Central6);
+        let found = unknown_moments(&space, &unknowns).into_iter().enumerate();
+        let errors = found.map(|(axis, (mean, variance))| {
+            assert!(mean.abs() < 1e-9, "{axis} {mean}");
+            (variance / exact[(axis, axis)] - 1.0).abs()
+        });
+        errors.fold(0.0, f64::max)
+    };
+    for (axes, [few, more]) in [(3, [48, 64]), (4, [36, 44])] {
         let system = linear(axes);
-        let exact = covariances(&*system);
         for width in [0.8, 1.6] {
-            let space = space(&exact, cells, 3, width);
-            let unknowns = solve(&*system, &space, AdvectiveScheme::Central6);
-            for (axis, (mean, variance)) in unknown_moments(&space, &unknowns).iter().enumerate() {
-                let expected = exact[(axis, axis)];
-                let off = (variance / expected - 1.0).abs();
-                assert!(
-                    off < 1e-6 && mean.abs() < 1e-9,
-                    "{axes} {width} {axis} {off}"
-                );
-            }
+            let errors = [few, more].map(|cells| worst(&*system, cells, width));
+            let order = (few as f64 / more as f64).powi(4);
+            let words = format!("{axes} {width} {errors:?}");
+            assert!(
+                errors[0] < 3e-5 && errors[1] < 1.1 * order * errors[0],
+                "{words}"
+            );
         }
     }
 }
