@@ -5,7 +5,7 @@
 //! method errs. Masses are conserved, the map is linear, and where no new edge falls inside an old cell it is exact.
 
 use crate::density::{
-    Density, DensityError, EstimatedDensity, Observable, Variants, estimate_from_difference,
+    Density, DensityError, EstimatedDensity, Kink, Observable, Variants, estimate_from_difference,
 };
 use crate::space::{Axis, CellSpace};
 
@@ -125,7 +125,26 @@ pub fn rebin_density(
         Variants::None => crate::density::estimate(&space, observable, &mass, &[])?,
     };
     rebinned.observable = estimated.observable;
+    let kinks = estimated.structure.kinks.iter();
+    rebinned.structure.kinks = kinks.map(|kink| moved(kink, from, to)).collect();
     Ok(rebinned)
+}
+
+/// A kink with its jump at the cells of other axes.
+fn moved(kink: &Kink, from: &[Axis], to: &[Axis]) -> Kink {
+    let jump = match (from, to, kink.jump.len()) {
+        ([_, _], [_, _], 2..) => {
+            let (old, new) = (&from[1 - kink.axis.min(1)], &to[1 - kink.axis.min(1)]);
+            let cell = |at: f64| old.find(at.clamp(old.from(), old.to())).unwrap_or(0);
+            let jumps = (0..new.count()).map(|number| kink.jump_at(cell(new.centre(number))));
+            jumps.collect()
+        }
+        _ => kink.jump.clone(),
+    };
+    Kink {
+        jump,
+        ..kink.clone()
+    }
 }
 
 #[cfg(test)]

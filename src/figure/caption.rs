@@ -5,9 +5,14 @@ use crate::continuation::{BifurcationStatus, LabelledPoint, Point, PointType, Sw
 use crate::density::Observable;
 use crate::space::Axis;
 use crate::system::Family;
+use crate::topology::Between;
 
 use super::canvas::symbols;
 use super::told::Shows;
+
+/// How densities without sampling noise are drawn.
+pub(super) const BETWEEN_CELLS: &str =
+    "Between the cells the density is followed by parabolas with the averages of the cells.";
 
 /// The caption of a figure; empty for one that has none.
 pub(super) fn caption(result: &SweepResult, shows: &Shows<'_>) -> String {
@@ -19,6 +24,7 @@ pub(super) fn caption(result: &SweepResult, shows: &Shows<'_>) -> String {
         seen,
         system_of(&result.subject.family),
         method(result),
+        between_cells(result, shows),
         marked(result, shows),
     ];
     let parts: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
@@ -167,6 +173,23 @@ fn method(result: &SweepResult) -> String {
         solved.report.method,
         cells.join(", ")
     )
+}
+
+/// What is drawn between the cells.
+fn between_cells(result: &SweepResult, shows: &Shows<'_>) -> String {
+    let is_shown = |observable: &Observable| match shows {
+        Shows::Diagram(number) | Shows::Joint(number, ..) => {
+            result.subject.observables.get(*number) == Some(observable)
+        }
+        Shows::Marginals(_) => matches!(observable, Observable::Marginal(_)),
+        _ => false,
+    };
+    let densities = result.points.iter().flat_map(|point| &point.densities);
+    let mut shown = densities.filter(|one| is_shown(&one.observable));
+    match shown.any(|one| Between::new(one).is_some()) {
+        true => BETWEEN_CELLS.to_owned(),
+        false => String::new(),
+    }
 }
 
 /// The P-bifurcations that are marked.

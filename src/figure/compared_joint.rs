@@ -10,10 +10,11 @@ use super::canvas::frame::Scale;
 use super::canvas::look::Look;
 use super::canvas::page::{Heading, Page, Rectangle};
 use super::canvas::style::{MARGIN, TEXT};
+use super::compared_marginals::shown;
 use super::joint::{Found, draw_map, windows, write_above};
+use super::names;
 use super::sketch::{ComparisonScene, Sketch};
 use super::told::Shows;
-use super::{names, select};
 
 /// Side of a map, in pixels.
 const SIDE: f64 = 165.0;
@@ -32,6 +33,7 @@ fn row(value: &ComparedValue, observable: Observable) -> Vec<(Method, Found<'_>)
         let found = Found {
             value: value.value,
             estimated,
+            shown: shown(method, estimated),
             features: &[],
         };
         Some((method, found))
@@ -86,7 +88,8 @@ fn draw(scene: &ComparisonScene<'_>, observable: Observable) -> Result<Option<Pa
     let up = Scale::vertical(look, y, side, &names::axis(family, second))?;
     let mut bars = Vec::new();
     for row in &rows {
-        let largest = select::largest(row.iter().map(|(_, found)| found.density()));
+        let largest = row.iter().map(|(_, found)| found.shown.largest);
+        let largest = largest.fold(0.0, f64::max);
         let title = names::density(family, observable);
         bars.push((largest, ColourBar::new(look, largest, side, &title)?));
     }

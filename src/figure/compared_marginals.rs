@@ -13,7 +13,8 @@ use super::canvas::legend::{self, Legend, Sample};
 use super::canvas::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
 use super::canvas::style::{ERROR_LINE, INK, MARGIN, Stroke, TEXT};
 use super::joint::lettered;
-use super::marginals::{cells, curve};
+use super::marginals::{cells, within};
+use super::shown::Shown;
 use super::sketch::{ComparisonScene, Sketch};
 use super::told::Shows;
 use super::{names, select};
@@ -35,6 +36,14 @@ const ERRORS: f64 = 2.0;
 pub(super) fn stroke(method: Method) -> Stroke {
     let number = Method::ALL.iter().position(|&one| one == method);
     Stroke::curve(number.unwrap_or(0))
+}
+
+/// What is shown of the density of a method: only that of the generator is followed between its cells.
+pub(super) fn shown(method: Method, estimated: &EstimatedDensity) -> Shown<'_> {
+    match method {
+        Method::Generator => Shown::new(estimated),
+        _ => Shown::by_cells(estimated),
+    }
 }
 
 /// A panel laid out.
@@ -143,8 +152,6 @@ fn lay_out<'a>(
     let Observable::Marginal(axis) = observable else {
         return Ok(None);
     };
-    let at = |value: &'a ComparedValue| densities(value, observable).map(|(_, one)| &one.density);
-    let own: Vec<&Density> = at(value).collect();
     let all: Vec<&Density> = scene
         .comparison
         .values
@@ -154,7 +161,8 @@ fn lay_out<'a>(
     let Some(window) = select::window(&all, 0) else {
         return Ok(None);
     };
-    let highest = select::largest(own);
+    let own = densities(value, observable).map(|(method, one)| shown(method, one).largest);
+    let highest = own.fold(0.0, f64::max);
     if highest <= 0.0 {
         return Ok(None);
     }
@@ -192,7 +200,7 @@ fn draw_panel(
     // Symbols lie over the lines, and the generator's line over those of SGCM.
     for method in [Method::Sgcm, Method::SgcmSlope, Method::Generator] {
         if let Some(estimated) = drawn(method) {
-            let line = curve(&estimated.density, laid.window, laid.up.range);
+            let line = within(shown(method, estimated).curve(laid.window), laid.up.range);
             panel.draw(&line, Shape::Line(stroke(method)))?;
         }
     }

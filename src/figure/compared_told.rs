@@ -19,11 +19,13 @@ pub(super) fn caption(comparison: &Comparison, shows: &Shows<'_>) -> String {
     let symbols = |observable: Observable| format!("p({})", observable.symbols(family).join(", "));
     let seen = match shows {
         Shows::ComparedMarginals => format!(
-            "Steady-state marginal densities{at} by each method; of Monte Carlo with two standard errors."
+            "Steady-state marginal densities{at} by each method; of Monte Carlo with two standard errors, of the generator \
+             followed between the cells by parabolas with their averages."
         ),
         Shows::ComparedJoint(observable) => {
             format!(
-                "Steady-state joint density {}{at} by each method.",
+                "Steady-state joint density {}{at} by each method; of the generator followed between the cells by parabolas \
+                 with their averages.",
                 symbols(*observable)
             )
         }
@@ -67,7 +69,8 @@ pub(super) fn table(comparison: &Comparison, shows: &Shows<'_>) -> String {
     }
 }
 
-/// The densities of some observables by every method on the common cells, a row a cell.
+/// The densities of some observables by every method on the common cells, a row a cell: the averages that drawn ones
+/// have.
 fn densities(comparison: &Comparison, is_shown: impl Fn(Observable) -> bool) -> String {
     let family = &comparison.subject.family;
     let columns = [

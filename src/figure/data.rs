@@ -1,8 +1,9 @@
 //! The numbers behind a figure of a sweep, as CSV: one row a number that is drawn, with everything that places it.
 
 use crate::continuation::{Point, SweepResult};
-use crate::density::{EstimatedDensity, Observable};
+use crate::density::{Density, EstimatedDensity, Observable};
 
+use super::shown::Shown;
 use super::told::Shows;
 use super::{homology, select};
 
@@ -42,14 +43,14 @@ pub(super) fn table(result: &SweepResult, shows: &Shows<'_>) -> String {
         | Shows::ComparedMarginals
         | Shows::ComparedJoint(_)
         | Shows::TimeToAccuracy => String::new(),
-        Shows::Diagram(observable) => marginals(result, &[*observable], &every),
+        Shows::Diagram(observable) => marginals(result, &[*observable], &every, by_cells),
         Shows::Marginals(points) => {
             let observables = result.subject.observables.iter().enumerate();
             let numbers: Vec<usize> = observables
                 .filter(|(_, observable)| matches!(observable, Observable::Marginal(_)))
                 .map(|(number, _)| number)
                 .collect();
-            marginals(result, &numbers, points)
+            marginals(result, &numbers, points, as_drawn)
         }
         Shows::Joint(observable, points, _) => joint(result, *observable, points),
         Shows::Peaks(observable) => peaks(result, *observable),
@@ -67,7 +68,36 @@ fn error(estimated: &EstimatedDensity, cell: usize) -> String {
     }
 }
 
-fn marginals(result: &SweepResult, observables: &[usize], points: &[&Point]) -> String {
+/// Coordinate, density and standard error of a row.
+type Row = (f64, f64, String);
+
+/// A marginal as its cells have it.
+fn by_cells(estimated: &EstimatedDensity, _window: (f64, f64)) -> Vec<Row> {
+    let centres = estimated.density.axes[0].centres().into_iter();
+    let values = centres.zip(&estimated.density.values).enumerate();
+    values
+        .map(|(cell, (centre, &value))| (centre, value, error(estimated, cell)))
+        .collect()
+}
+
+/// The points of a marginal's curve; with sampling noise its cells.
+fn as_drawn(estimated: &EstimatedDensity, window: (f64, f64)) -> Vec<Row> {
+    let shown = Shown::new(estimated);
+    if shown.between.is_none() {
+        return by_cells(estimated, window);
+    }
+    let curve = shown.curve(window).into_iter();
+    curve
+        .map(|(place, value)| (place, value, String::new()))
+        .collect()
+}
+
+fn marginals(
+    result: &SweepResult,
+    observables: &[usize],
+    points: &[&Point],
+    rows: fn(&EstimatedDensity, (f64, f64)) -> Vec<Row>,
+) -> String {
     let family = &result.subject.family;
     let parameter = family.parameter();
     let mut table = Table::new(&[parameter, "axis", "coordinate", "density", "standard_error"]);
@@ -79,14 +109,20 @@ fn marginals(result: &SweepResult, observables: &[usize], points: &[&Point]) -> 
             ) else {
                 continue;
             };
-            let centres = estimated.density.axes[0].centres().into_iter();
-            for (cell, (centre, &value)) in centres.zip(&estimated.density.values).enumerate() {
+            let all = points
+                .iter()
+                .filter_map(|point| select::density(point, observable));
+            let all: Vec<&Density> = all.map(|one| &one.density).collect();
+            let Some(window) = select::window(&all, 0) else {
+                continue;
+            };
+            for (place, value, error) in rows(estimated, window) {
                 table.row(&[
                     number(point.value),
                     family.axis(axis).to_owned(),
-                    number(centre),
+                    number(place),
                     number(value),
-                    error(estimated, cell),
+                    error,
                 ]);
             }
         }

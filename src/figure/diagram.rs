@@ -16,6 +16,7 @@ use super::canvas::legend::{self, Legend, Sample};
 use super::canvas::page::{Heading, Page, Panel, Rectangle, Shape};
 use super::canvas::style::{MARGIN, PNG_SCALE};
 use super::canvas::{DrawError, hatch};
+use super::shown::{self, Shown, middles};
 use super::sketch::{Sketch, SweepScene};
 use super::told::Shows;
 use super::{names, select};
@@ -23,6 +24,10 @@ use super::{names, select};
 /// Size of the map on a page of its own width, in pixels, and that width.
 const MAP: (f64, f64) = (380.0, 250.0);
 const USUAL: f64 = 505.0;
+
+/// Neighbouring densities at most so far apart (Hellinger) are joined: a straight line between them errs by about its
+/// square.
+const ALIKE: f64 = 0.1;
 
 /// A diagram an observed marginal.
 pub(super) fn sketches<'a>(scene: &'a SweepScene<'a>) -> Vec<Sketch<'a>> {
@@ -50,7 +55,9 @@ fn draw(scene: &SweepScene<'_>, observable: usize) -> Result<Option<Page>, DrawE
     let Some(window) = select::window(&densities, 0) else {
         return Ok(None);
     };
-    let largest = select::largest(densities.iter().copied());
+    let all = Columns::new(result, observable);
+    let largest = all.shown.iter().flatten().map(|shown| shown.largest);
+    let largest = largest.fold(0.0, f64::max);
     let range = parameter_range(&result.points);
     let high = look.height(MAP.1, USUAL);
     let up = Scale::vertical(look, window, high, &names::axis(family, axis))?;
@@ -140,17 +147,88 @@ fn draw_map(
         .flatten()
         .map(|density| &density.axes[0])
         .collect();
-    let columns = (map.width * PNG_SCALE).round() as usize;
-    let rows = select::resolution(&axes, window, map.height);
-    let point_of = heat::nearest(&edges, range, columns);
-    let picture = Picture::new((columns, rows), |column, row| {
-        let density = densities[point_of[column]]?;
-        let place = window.0 + (window.1 - window.0) * (row as f64 + 0.5) / rows as f64;
-        let cell = density.axes[0].find(place)?;
-        Some(density.values[cell] / largest)
+    let all = Columns::new(result, observable);
+    let size = match all
+        .shown
+        .iter()
+        .flatten()
+        .any(|shown| shown.between.is_some())
+    {
+        true => (shown::resolution(map.width), shown::resolution(map.height)),
+        false => (
+            (map.width * PNG_SCALE).round() as usize,
+            select::resolution(&axes, window, map.height),
+        ),
+    };
+    let values = all.values(&edges, (range, window), size);
+    let picture = Picture::new(size, |column, row| {
+        Some(values[column].as_ref()?[row] / largest)
     });
     let corners = [(range.0, window.0), (range.1, window.1)];
     panel.draw(&corners, Shape::Image(picture.png(page.look())?))
+}
+
+/// The densities of the points of a sweep.
+struct Columns<'a> {
+    points: &'a [Point],
+    shown: Vec<Option<Shown<'a>>>,
+}
+
+impl<'a> Columns<'a> {
+    fn new(result: &'a SweepResult, observable: usize) -> Self {
+        let points = result.points.iter();
+        let shown = points.map(|point| Some(Shown::new(select::density(point, observable)?)));
+        Self {
+            points: &result.points,
+            shown: shown.collect(),
+        }
+    }
+
+    /// The values in each column of pixels, from the lowest one up: those of the point whose column it is, and linear
+    /// between neighbouring points without noise that hardly differ; `None` without a density.
+    fn values(
+        &self,
+        edges: &[f64],
+        (range, window): ((f64, f64), (f64, f64)),
+        size: (usize, usize),
+    ) -> Vec<Option<Vec<f64>>> {
+        let rows = middles(window, size.1);
+        let of_point: Vec<Option<Vec<f64>>> = self
+            .shown
+            .iter()
+            .map(|shown| Some(shown.as_ref()?.along(&rows)))
+            .collect();
+        let places = middles(range, size.0).into_iter();
+        let owners = heat::nearest(edges, range, size.0).into_iter();
+        let column = |(place, owner): (f64, usize)| {
+            let above = self.points.partition_point(|point| point.value < place);
+            let Some(share) = self.share(above, place) else {
+                return of_point[owner].clone();
+            };
+            let (lower, upper) = (of_point[above - 1].as_ref()?, of_point[above].as_ref()?);
+            let pairs = lower.iter().zip(upper);
+            Some(pairs.map(|(a, b)| a + share * (b - a)).collect())
+        };
+        places.zip(owners).map(column).collect()
+    }
+
+    /// How far a value lies between the points before and at a number, where the density may be followed between them.
+    fn share(&self, above: usize, place: f64) -> Option<f64> {
+        let below = above.checked_sub(1)?;
+        let is_smooth = |number: usize| {
+            self.shown
+                .get(number)?
+                .as_ref()?
+                .between
+                .as_ref()
+                .map(|_| ())
+        };
+        is_smooth(below)?;
+        is_smooth(above)?;
+        let (from, to) = (self.points.get(below)?, self.points.get(above)?);
+        let is_near = to.distance.is_some_and(|distance| distance <= ALIKE);
+        is_near.then(|| (place - from.value) / (to.value - from.value))
+    }
 }
 
 /// Draws valleys, then peaks, as far as they lie in the window.

@@ -8,7 +8,7 @@ use crate::density::{Density, EstimatedDensity, Observable};
 use crate::topology::{Feature, FeatureKind, Verdict};
 
 use super::canvas::colour_bar::ColourBar;
-use super::canvas::contour::Grid;
+use super::canvas::contour::{Grid, thinned};
 use super::canvas::frame::{self, Scale};
 use super::canvas::heat::Picture;
 use super::canvas::legend::{self, Legend, Sample};
@@ -16,6 +16,7 @@ use super::canvas::look::Look;
 use super::canvas::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
 use super::canvas::style::{self, MARGIN, Stroke, TEXT};
 use super::canvas::{DrawError, symbols};
+use super::shown::{Shown, middles};
 use super::sketch::{Sketch, SweepScene};
 use super::told::Shows;
 use super::{joint_sheet, names, select};
@@ -26,6 +27,9 @@ pub(super) const LEVELS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 const WAY: &str = "as a map with contours at 10, 30, 50, 70 and 90 % of its maximum";
 /// Small multiples of a sweep: one to so many values of the parameter.
 const MULTIPLES: usize = 12;
+/// Contours are followed on squares of so many pixels, and lose points that lie so near to their neighbours' chord.
+const CONTOUR: f64 = 1.5;
+const ALIKE: f64 = 0.05;
 /// Side of the map of a single figure, in pixels.
 const SINGLE: f64 = 290.0;
 /// Highest map of a single figure.
@@ -35,6 +39,7 @@ const TALLEST: f64 = 420.0;
 pub(super) struct Found<'a> {
     pub(super) value: f64,
     pub(super) estimated: &'a EstimatedDensity,
+    pub(super) shown: Shown<'a>,
     pub(super) features: &'a [Feature],
 }
 
@@ -46,6 +51,7 @@ impl<'a> Found<'a> {
         Some(Self {
             value: point.value,
             estimated,
+            shown: Shown::new(estimated),
             features: detection.map_or(&[], |detection| &detection.features),
         })
     }
@@ -159,7 +165,7 @@ fn draw_single(
         return Ok(None);
     };
     let look = &scene.look;
-    let largest = select::largest([found[0].density()]);
+    let largest = found[0].shown.largest;
     let high = look
         .page
         .map_or(SINGLE, |page| (0.68 * page).clamp(170.0, TALLEST));
@@ -219,31 +225,22 @@ pub(super) fn draw_map(
     largest: f64,
 ) -> Result<(), DrawError> {
     let panel = page.panel(map, x, y);
-    let density = found.density();
-    let [across, up] = &density.axes[..] else {
+    if found.density().axes.len() != 2 {
         return Ok(());
-    };
+    }
     let size = (
-        select::resolution(&[across], x, map.width),
-        select::resolution(&[up], y, map.height),
+        found.shown.resolution(0, x, map.width),
+        found.shown.resolution(1, y, map.height),
     );
-    let middle = |window: (f64, f64), pixel: usize, count: usize| {
-        window.0 + (window.1 - window.0) * (pixel as f64 + 0.5) / count as f64
-    };
-    let columns: Vec<Option<usize>> = (0..size.0)
-        .map(|column| across.find(middle(x, column, size.0)))
-        .collect();
-    let rows: Vec<Option<usize>> = (0..size.1)
-        .map(|row| up.find(middle(y, row, size.1)))
-        .collect();
+    let values = found.shown.sheet(&middles(x, size.0), &middles(y, size.1));
     let picture = Picture::new(size, |column, row| {
-        Some(density.values[columns[column]? * up.count() + rows[row]?] / largest)
+        Some(values[column * size.1 + row] / largest)
     });
     panel.draw(
         &[(x.0, y.0), (x.1, y.1)],
         Shape::Image(picture.png(page.look())?),
     )?;
-    draw_contours(page.look(), &panel, density, (x, y), largest)?;
+    draw_contours(page.look(), (&panel, map), found, (x, y), largest)?;
     let inside = |&(px, py): &(f64, f64)| px >= x.0 && px <= x.1 && py >= y.0 && py <= y.1;
     for place in found.present(FeatureKind::Peak).filter(inside) {
         legend::plus(|points, shape| panel.draw(points, shape), place)?;
@@ -254,39 +251,35 @@ pub(super) fn draw_map(
     frame::border(page, map)
 }
 
-/// Draws the contours at [`LEVELS`] of the density's own maximum, through the centres of cells in the window.
+/// Draws the contours at [`LEVELS`] of the density's own maximum: through the centres of cells in the window, or
+/// between the cells where that is known.
 fn draw_contours(
     look: &Look,
-    panel: &Panel,
-    density: &Density,
+    (panel, map): (&Panel, Rectangle),
+    found: &Found<'_>,
     (x, y): ((f64, f64), (f64, f64)),
     largest: f64,
 ) -> Result<(), DrawError> {
-    let inside = |axis: usize, window: (f64, f64)| -> Vec<(usize, f64)> {
-        let centres = density.axes[axis].centres().into_iter().enumerate();
-        centres
-            .filter(|(_, centre)| *centre > window.0 && *centre < window.1)
-            .collect()
+    let lines = |k: usize, window: (f64, f64), length: f64| match &found.shown.between {
+        Some(between) => between.places(k, window, (length / CONTOUR).ceil() as usize),
+        None => {
+            let mut centres = found.density().axes[k].centres();
+            centres.retain(|centre| *centre > window.0 && *centre < window.1);
+            centres
+        }
     };
-    let (across, up) = (inside(0, x), inside(1, y));
-    let count = density.axes[1].count();
-    let values: Vec<f64> = across
-        .iter()
-        .flat_map(|(i, _)| up.iter().map(move |(j, _)| i * count + j))
-        .map(|cell| density.values[cell])
-        .collect();
-    let centres =
-        |cells: &[(usize, f64)]| -> Vec<f64> { cells.iter().map(|cell| cell.1).collect() };
-    let (across, up) = (centres(&across), centres(&up));
+    let (across, up) = (lines(0, x, map.width), lines(1, y, map.height));
     let grid = Grid {
         x: &across,
         y: &up,
-        values: &values,
+        values: &found.shown.sheet(&across, &up),
     };
-    let own = select::largest([density]);
+    let own = found.shown.largest;
+    let place = |&point: &(f64, f64)| panel.place(point);
     for share in LEVELS {
         let colour = style::on_heat(look, share * own / largest);
         for line in grid.contour(share * own) {
+            let line = thinned(&line, ALIKE, place);
             panel.draw(&line, Shape::Line(Stroke::solid(colour, 0.8)))?;
         }
     }

@@ -12,8 +12,8 @@ use super::canvas::render;
 use super::canvas::style::{MARGIN, TEXT};
 use super::canvas::symbols;
 use super::joint::{Found, LEVELS, draw_map, lettered, open_page, windows, write_above};
+use super::names;
 use super::sketch::SweepScene;
-use super::{names, select};
 
 /// Side of a map on a sheet.
 const SMALL: f64 = 190.0;
@@ -73,10 +73,7 @@ impl Sheet {
         let side = (width(columns), width(columns).min(TALLEST_SMALL));
         let rows = found.len().div_ceil(columns);
         let step = (side.0 + between, side.1 + BETWEEN + 1.4 * TEXT);
-        let own: Vec<f64> = found
-            .iter()
-            .map(|found| select::largest([found.density()]))
-            .collect();
+        let own: Vec<f64> = found.iter().map(|found| found.shown.largest).collect();
         let largest = own.iter().copied().fold(0.0, f64::max);
         let comparable = own.iter().all(|&own| own * COMPARABLE >= largest);
         Self {

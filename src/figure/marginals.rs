@@ -11,6 +11,7 @@ use super::canvas::legend::{Legend, Sample};
 use super::canvas::look::Look;
 use super::canvas::page::{Heading, Page, Rectangle, Shape};
 use super::canvas::style::{MARGIN, Stroke};
+use super::shown::Shown;
 use super::sketch::{Sketch, SweepScene};
 use super::told::Shows;
 use super::{names, select};
@@ -167,7 +168,10 @@ impl<'a> Overlaid<'a> {
         let Some(window) = select::window(&bare, 0) else {
             return Ok(None);
         };
-        let highest = select::largest(bare.iter().copied());
+        let shown = densities
+            .iter()
+            .map(|(_, estimated)| Shown::new(estimated).largest);
+        let highest = shown.fold(0.0, f64::max);
         let high = scene.look.height(HEIGHT, USUAL);
         let up = Scale::vertical(&scene.look, (0.0, 1.06 * highest), high, title)?;
         Ok(Some(Self {
@@ -190,11 +194,8 @@ fn draw_panel(page: &Page, laid: &Laid<'_>, rect: Rectangle) -> Result<(), DrawE
         }
     }
     for (number, estimated) in &laid.overlaid.densities {
-        let curve = curve(
-            &estimated.density,
-            laid.across.range,
-            laid.overlaid.up.range,
-        );
+        let curve = Shown::new(estimated).curve(laid.across.range);
+        let curve = within(curve, laid.overlaid.up.range);
         panel.draw(&curve, Shape::Line(Stroke::curve(*number)))?;
     }
     frame::border(page, rect)?;
@@ -208,12 +209,10 @@ pub(super) fn cells(density: &Density, window: (f64, f64)) -> impl Iterator<Item
     centres.filter(move |(_, centre)| *centre >= window.0 && *centre <= window.1)
 }
 
-/// The density at the centres of its cells.
-pub(super) fn curve(density: &Density, window: (f64, f64), range: (f64, f64)) -> Vec<(f64, f64)> {
-    cells(density, window)
-        .filter(|(cell, _)| density.values[*cell].is_finite())
-        .map(|(cell, centre)| (centre, density.values[cell].clamp(range.0, range.1)))
-        .collect()
+/// Points of a curve, kept in the range of the ordinate.
+pub(super) fn within(curve: Vec<(f64, f64)>, range: (f64, f64)) -> Vec<(f64, f64)> {
+    let kept = |(place, value): (f64, f64)| (place, value.clamp(range.0, range.1));
+    curve.into_iter().map(kept).collect()
 }
 
 /// The outline of ± 2 standard errors; empty for a method without sampling.

@@ -49,6 +49,7 @@ mod plane;
 mod region_room;
 mod section;
 mod select;
+mod shown;
 mod sketch;
 mod style;
 mod surface;

@@ -11,10 +11,10 @@ use super::canvas::page::{Heading, Page, Rectangle};
 use super::canvas::space::Space;
 use super::canvas::style::{MARGIN, TEXT};
 use super::joint::{Found, draw_map, lettered, windows, write_above};
+use super::names;
 use super::sketch::{Sketch, SweepScene};
 use super::surface::{COARSE, Frame};
 use super::told::Shows;
-use super::{names, select};
 
 /// Width of a surface with its axes on a page of its own width, in pixels.
 const SURFACE: f64 = 330.0;
@@ -83,10 +83,7 @@ fn draw(scene: &SweepScene<'_>, observable: usize) -> Result<Option<Page>, DrawE
     let Some(frame) = Frame::new(scene, watched, &found) else {
         return Ok(None);
     };
-    let tops: Vec<f64> = found
-        .iter()
-        .map(|found| select::largest([found.density()]))
-        .collect();
+    let tops: Vec<f64> = found.iter().map(|found| found.shown.largest).collect();
     let title = names::density(family, watched);
     let bars = |high: f64| {
         let bar = |&top: &f64| ColourBar::new(look, top, high, &title);

@@ -3,8 +3,9 @@
 
 use std::borrow::Cow;
 
-use crate::density::{Density, EstimatedDensity, Observable, Structure, Variants};
+use crate::density::{Density, EstimatedDensity, Kink, Observable, Structure, Variants};
 use crate::space::Axis;
+use crate::topology::Between;
 
 use super::canvas::page::Page;
 use super::canvas::{DrawError, symbols};
@@ -97,6 +98,18 @@ fn centre(estimated: &EstimatedDensity) -> Option<[f64; 2]> {
     Some([*across.centres().get(x)?, *along.centres().get(y)?])
 }
 
+/// The kinks that a section along an axis crosses.
+fn kinks_along(estimated: &EstimatedDensity, along: usize) -> Vec<Kink> {
+    let kinks = estimated.structure.kinks.iter();
+    let crossed = kinks.filter(|kink| kink.axis == along);
+    crossed
+        .map(|kink| Kink {
+            axis: 0,
+            ..kink.clone()
+        })
+        .collect()
+}
+
 /// The two cells whose middles lie beside a place on an axis, and the weight of the second one.
 fn beside(axis: &Axis, at: f64) -> (usize, usize, f64) {
     let centres = axis.centres();
@@ -112,7 +125,8 @@ fn beside(axis: &Axis, at: f64) -> (usize, usize, f64) {
     }
 }
 
-/// The density along axis `along` where the other axis has the value `at`, linear between the middles of cells.
+/// The density along axis `along` where the other axis has the value `at`, as averages over the cells of its own:
+/// followed between the cells of the other, with sampling noise linear between their middles.
 fn section(
     estimated: &EstimatedDensity,
     along: usize,
@@ -137,7 +151,11 @@ fn section(
             |i: usize| (1.0 - weight) * values[cell(i, below)] + weight * values[cell(i, above)];
         (0..own.count()).map(value).collect()
     };
-    let mut values = of(&estimated.density.values);
+    let between = Between::new(estimated);
+    let mut values = match &between {
+        Some(between) => between.section(along, at),
+        None => of(&estimated.density.values),
+    };
     let mut errors = match estimated.standard_error.len() == estimated.density.values.len() {
         true => of(&estimated.standard_error),
         false => Vec::new(),
@@ -159,12 +177,19 @@ fn section(
     Some(EstimatedDensity {
         observable: estimated.observable,
         standard_error: errors,
+        // What is without sampling noise stays so, whatever its error.
+        variants: match between.is_some() {
+            true => Variants::Scheme(values.clone()),
+            false => Variants::None,
+        },
         density: Density {
             axes: vec![own.clone()],
             values,
         },
-        variants: Variants::None,
-        structure: Structure::default(),
+        structure: Structure {
+            kinks: between.map_or_else(Vec::new, |_| kinks_along(estimated, along)),
+            ..Structure::default()
+        },
         negligible: 0.0,
     })
 }

@@ -1,9 +1,10 @@
-//! Joint densities of two axes as surfaces: one figure a parameter value, and a sheet of all. Heights are those of the
-//! cells' middles; where there are more cells than can be seen, lines of cells are left out, but never those beside a
-//! kink or through the summit.
+//! Joint densities of two axes as surfaces: one figure a parameter value, and a sheet of all. Heights are those on
+//! lines that lie evenly, with those on kinks and through the summit. A density with sampling noise has the heights
+//! of the cells' middles; where there are more cells than can be seen, lines of cells are left out, but never those
+//! beside a kink or through the summit.
 
 use crate::continuation::Point;
-use crate::density::{EstimatedDensity, Observable};
+use crate::density::Observable;
 use crate::space::Axis;
 
 use super::canvas::look::Look;
@@ -25,7 +26,7 @@ const NARROWEST: f64 = 250.0;
 const WIDEST: f64 = 560.0;
 /// Room of the line above a surface.
 const ABOVE: f64 = 1.5 * TEXT;
-/// Lines of cells of a single surface, and of one on a sheet.
+/// Lines of a single surface, and of one on a sheet.
 pub(super) const FINE: usize = 100;
 pub(super) const COARSE: usize = 90;
 
@@ -97,7 +98,7 @@ impl Frame {
         (found, top, most): (&Found<'_>, f64, usize),
     ) -> Result<(), DrawError> {
         let space = Space::new(page.look(), rect, self.ranges(top))?;
-        match heights(found.estimated, (self.x, self.y), top, most) {
+        match heights(found, (self.x, self.y), top, most) {
             Some(heights) => space.draw(page, &heights),
             None => Ok(()),
         }
@@ -119,7 +120,7 @@ fn draw_single(
         return Ok(None);
     };
     let look = &scene.look;
-    let top = select::largest([found[0].density()]);
+    let top = found[0].shown.largest;
     let width = look.page.unwrap_or(SINGLE + 2.0 * MARGIN);
     let wide = (width - 2.0 * MARGIN).min(WIDEST);
     let high = Space::height(look, wide, frame.ranges(top))?;
@@ -152,10 +153,7 @@ fn draw_sheet(scene: &SweepScene<'_>, observable: usize) -> Result<Option<Page>,
     };
     let (columns, wide) = arrangement(look, found.len());
     let width = look.page.unwrap_or(columns as f64 * wide + 2.0 * MARGIN);
-    let tops: Vec<f64> = found
-        .iter()
-        .map(|found| select::largest([found.density()]))
-        .collect();
+    let tops: Vec<f64> = found.iter().map(|found| found.shown.largest).collect();
     let mut high: f64 = 0.0;
     for &top in &tops {
         high = high.max(Space::height(look, wide - MARGIN, frame.ranges(top))?);
@@ -215,12 +213,12 @@ fn lines(axis: &Axis, window: (f64, f64), most: usize, wanted: &[usize]) -> Vec<
 /// The surface of a density over a window, in shares of the window and of `top`; `None` where there is too little of
 /// it.
 fn heights(
-    estimated: &EstimatedDensity,
+    found: &Found<'_>,
     (x, y): ((f64, f64), (f64, f64)),
     top: f64,
     most: usize,
 ) -> Option<Heights> {
-    let density = &estimated.density;
+    let (estimated, density) = (found.estimated, found.density());
     let [across, along] = &density.axes[..] else {
         return None;
     };
@@ -240,6 +238,26 @@ fn heights(
         }
         cells
     };
+    let height = |value: f64| match value.is_finite() {
+        true => (value / top).clamp(0.0, 1.0),
+        false => 0.0,
+    };
+    if let (Some(between), true) = (&found.shown.between, top > 0.0) {
+        let through = |k: usize, axis: &Axis, window: (f64, f64)| {
+            let mut places = between.places(k, window, most);
+            places.push(axis.centre(summit[k]));
+            places.sort_by(f64::total_cmp);
+            places.dedup_by(|a, b| (*a - *b).abs() < 1e-6 * (window.1 - window.0));
+            places
+        };
+        let (xs, ys) = (through(0, across, x), through(1, along, y));
+        let share = |(from, to): (f64, f64)| move |place: &f64| (place - from) / (to - from);
+        return Some(Heights {
+            x: xs.iter().map(share(x)).collect(),
+            y: ys.iter().map(share(y)).collect(),
+            z: between.sheet(&xs, &ys).into_iter().map(height).collect(),
+        });
+    }
     let i = lines(across, x, most, &wanted(0, across));
     let j = lines(along, y, most, &wanted(1, along));
     if i.len() < 2 || j.len() < 2 || top <= 0.0 {
@@ -255,10 +273,6 @@ fn heights(
             *last = 1.0;
         }
         shares
-    };
-    let height = |value: f64| match value.is_finite() {
-        true => (value / top).clamp(0.0, 1.0),
-        false => 0.0,
     };
     let cells = i
         .iter()

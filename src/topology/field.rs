@@ -152,6 +152,11 @@ impl<'a> Field<'a> {
         (low, high)
     }
 
+    /// The cells of the finer reconstruction around a coordinate.
+    pub(super) fn window_at(&self, k: usize, at: f64) -> Option<Range<usize>> {
+        self.window(k, at, REACH[0])
+    }
+
     /// Cells around a coordinate: as many on either side, moved inward at the ends and away from kinks.
     fn window(&self, k: usize, at: f64, reach: usize) -> Option<Range<usize>> {
         let axis = &self.axes()[k];

@@ -1,5 +1,6 @@
 //! What a density looks like: its significant peaks and craters, and the signature they make.
 
+mod between;
 mod candidate;
 mod critical;
 mod detector;
@@ -14,6 +15,7 @@ mod reconstruction;
 mod refine;
 mod ridge;
 mod rim;
+mod shape;
 mod signature;
 mod significance;
 mod surroundings;
@@ -25,6 +27,7 @@ mod calibration_tests;
 #[cfg(test)]
 mod invariance_tests;
 
+pub(crate) use between::Between;
 pub use detector::PersistenceDetector;
 pub use indicator::{Flank, Indicator, IndicatorKind};
 pub(crate) use indicator::{born_at_kink, two_sided_limit};

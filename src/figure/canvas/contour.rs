@@ -14,6 +14,9 @@ pub(in crate::figure) struct Grid<'a> {
     pub(in crate::figure) values: &'a [f64],
 }
 
+/// Most points between two that are kept when a line is thinned.
+const MOST_SKIPPED: usize = 64;
+
 /// Marks an end of a contour piece that nothing joins.
 const NONE: usize = usize::MAX;
 
@@ -134,6 +137,41 @@ fn follow(start: usize, neighbours: &[[usize; 2]], visited: &mut [bool]) -> Vec<
     line
 }
 
+/// A line without the points that lie within `alike` pixels of the chord between those that are kept; `place` gives
+/// the pixels of a point.
+pub(in crate::figure) fn thinned(
+    line: &[(f64, f64)],
+    alike: f64,
+    place: impl Fn(&(f64, f64)) -> (f64, f64),
+) -> Vec<(f64, f64)> {
+    let at: Vec<(f64, f64)> = line.iter().map(place).collect();
+    let is_straight = |from: usize, to: usize| {
+        let (dx, dy) = (at[to].0 - at[from].0, at[to].1 - at[from].1);
+        let length = dx.hypot(dy);
+        at[from + 1..to].iter().all(|point| {
+            let (x, y) = (point.0 - at[from].0, point.1 - at[from].1);
+            // A line that comes back on itself is not its chord.
+            (x * dy - y * dx).abs() <= alike * length
+                && (0.0..=length * length).contains(&(x * dx + y * dy))
+        })
+    };
+    let mut kept: Vec<usize> = Vec::new();
+    for point in 0..line.len() {
+        let from = match kept[..] {
+            [.., from, _] => from,
+            _ => {
+                kept.push(point);
+                continue;
+            }
+        };
+        if is_straight(from, point) && point - from <= MOST_SKIPPED {
+            kept.pop();
+        }
+        kept.push(point);
+    }
+    kept.into_iter().map(|point| line[point]).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -176,6 +214,24 @@ mod tests {
         assert!(coarse < 1.3 * 0.1f64.powi(2) / 8.0, "{coarse}");
         let order = (coarse / fine).log2();
         assert!(order > 1.7, "{order}");
+    }
+
+    #[test]
+    fn thinned_lines_stay_where_they_are() {
+        let at = |k: usize| (0.01 * k as f64 * std::f64::consts::TAU).sin_cos();
+        let circle: Vec<(f64, f64)> = (0..=100).map(at).collect();
+        let few = thinned(&circle, 0.01, |&point| point);
+        assert!(few.len() < 40, "{}", few.len());
+        assert_eq!((few[0], few.last()), (circle[0], circle.last()));
+        // A chord of a unit circle that is 0.01 away in the middle spans 2 acos(0.99) = 0.28.
+        assert!(few.len() > 20, "{}", few.len());
+        for pair in few.windows(2) {
+            let middle = (0.5 * (pair[0].0 + pair[1].0), 0.5 * (pair[0].1 + pair[1].1));
+            assert!((middle.0.hypot(middle.1) - 1.0).abs() < 0.011);
+        }
+        let back = [(0.0, 0.0), (2.0, 0.0), (1.0, 0.0)];
+        assert_eq!(thinned(&back, 0.01, |&point| point), back);
+        assert_eq!(thinned(&[], 0.01, |&point| point), []);
     }
 
     #[test]
