@@ -541,6 +541,16 @@ fn what_an_end_of_the_range_makes_is_not_located() {
     assert!(scores.iter().all(|(_, score)| score.false_located == 0));
 }
 
+/// The density at the centre is e⁻⁷⁰ of that on the ring: what a solver leaves there has curvatures of any sign.
+#[test]
+fn what_the_solver_leaves_at_a_centre_is_not_located() {
+    let scores = run([841_024]
+        .into_iter()
+        .filter_map(|seed| Some((seed, energy(seed)?))));
+    assert_eq!(scores.len(), 1);
+    assert!(scores.iter().all(|(_, score)| score.false_located == 0));
+}
+
 #[test]
 #[ignore = "prints the table of docs/location.md"]
 fn one_axis_in_full() {

@@ -8,7 +8,7 @@
 use super::exact;
 use super::smooth::Smooth;
 use super::window;
-use super::{Indicator, IndicatorKind};
+use super::{Indicator, IndicatorKind, is_told};
 use crate::density::{EstimatedDensity, Kink, Variants};
 use crate::space::Axis;
 use crate::topology::Signature;
@@ -18,7 +18,8 @@ use crate::topology::reconstruction::Line;
 const NEAR: f64 = 3.0;
 
 /// The indicators at the centre of symmetry: one of a marginal, two of a joint density; none where the system
-/// declares no symmetry or the cells about the centre are too few.
+/// declares no symmetry, the cells about the centre are too few, or the density there is no more than the solver
+/// leaves.
 pub(crate) fn at_centre(estimated: &EstimatedDensity) -> Vec<Indicator> {
     let Some(centre) = &estimated.structure.centre else {
         return Vec::new();
@@ -28,6 +29,7 @@ pub(crate) fn at_centre(estimated: &EstimatedDensity) -> Vec<Indicator> {
         .collect();
     let found = match (centre.as_slice(), kinks.as_slice()) {
         (_, [Some(kink)]) => slope(estimated, kink, centre).map(|one| vec![one]),
+        _ if !is_told(estimated, centre) => None,
         (&[at], [None]) => curvature(estimated, at).map(|one| vec![one]),
         (_, [None, None]) => principal(estimated, centre),
         (_, [Some(kink), None] | [None, Some(kink)]) => along_kink(estimated, kink, centre),

@@ -260,6 +260,19 @@ impl Indicator {
     }
 }
 
+/// Whether the cells tell the density at a place: derivatives of what the solver leaves where there is nothing have
+/// any sign. Noise has errors of its own.
+fn is_told(estimated: &EstimatedDensity, place: &[f64]) -> bool {
+    let density = &estimated.density;
+    let mut pairs = density.axes.iter().zip(place);
+    let cell = pairs.try_fold(0, |cell, (axis, &at)| {
+        Some(cell * axis.count() + axis.find(at)?)
+    });
+    let value = cell.and_then(|cell| density.values.get(cell)).copied();
+    let least = estimated.negligible_height() * density.maximum();
+    estimated.is_noisy() || value.is_some_and(|value| value > least)
+}
+
 /// Cells on either side of a place that its derivatives may depend on.
 const NEIGHBOURHOOD: usize = 4;
 /// Relative step of the differences that give a sensitivity.

@@ -219,6 +219,42 @@ fn noise_makes_a_sign_doubtful() {
 }
 
 #[test]
+fn where_a_density_is_less_than_the_solver_leaves_nothing_is_read() {
+    // A ring with a centre of e⁻ᵈ of its height: p ∝ exp(-d (r² - 1)²).
+    let ring = |depth: f64| {
+        let of = |x: f64, y: f64| (-depth * (x * x + y * y - 1.0).powi(2)).exp();
+        symmetric(joint(&axis(60), &axis(60), of))
+    };
+    let told = at_centre(&ring(12.0));
+    assert_eq!(told.len(), 2);
+    // ∂²p/∂x² / p = 4 d at the centre, times the range squared.
+    let wanted = 16.0 * 48.0;
+    assert!(
+        told.iter()
+            .all(|one| (one.value - wanted).abs() <= one.systematic_error),
+        "{told:?}"
+    );
+    assert!(at_centre(&ring(20.0)).is_empty(), "e⁻²⁰ is less than 1e-7");
+    // The same by quadrature has its digits everywhere.
+    let exact = EstimatedDensity {
+        negligible: 0.0,
+        ..ring(20.0)
+    };
+    assert_eq!(at_centre(&exact).len(), 2);
+    // A shoulder on the flank of a peak, two units away from it: p ∝ exp(d f(x) - y²).
+    let flank = |depth: f64| {
+        let log = |x: f64| -0.3 * x - 0.5 * (x - 1.0).powi(3);
+        let of = |x: f64, y: f64| (depth * (log(x) - log(-1.9)) - 4.0 * y * y).exp();
+        joint(&axis(120), &axis(60), of)
+    };
+    for depth in [0.8, 1.0] {
+        let found = fold(&flank(depth), &[0.9, 0.0]);
+        assert!(found.is_some_and(|one| one.value < 0.0), "{depth}");
+    }
+    assert!(fold(&flank(2.0), &[0.9, 0.0]).is_none(), "e⁻²⁶");
+}
+
+#[test]
 fn densities_too_coarse_or_without_symmetry_have_no_indicator() {
     assert!(at_centre(&bistable(0.1, 4)).is_empty());
     let plain = EstimatedDensity {
