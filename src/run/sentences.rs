@@ -96,7 +96,7 @@ fn cells_in_words(family: &Family, finding: &Finding) -> Option<String> {
             let axis = family.axis(axis);
             format!(
                 "the density along {axis} has not converged in the modes: the last two of them change it by {change:.1e} in total variation, \
-                 so that its details are not certain; give more `modes` along {axis}, or cells"
+                 so that its details are not certain; give more `modes` along {axis}: steep edges take about a hundred"
             )
         }
         Finding::FewModes { change } => format!(

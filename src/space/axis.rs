@@ -213,6 +213,21 @@ impl Axis {
         }
     }
 
+    /// Of an axis of Legendre modes, the orthonormal polynomials √(2m + 1) P_m at its nodes: entry `node · count + m`.
+    pub(crate) fn orthonormal_values(&self) -> Vec<f64> {
+        let (middle, half) = (
+            0.5 * (self.from() + self.to()),
+            0.5 * (self.to() - self.from()),
+        );
+        let at = |x: &f64| {
+            let values = legendre_values(self.count(), (x - middle) / half).into_iter();
+            values
+                .enumerate()
+                .map(|(m, value)| (2.0 * m as f64 + 1.0).sqrt() * value)
+        };
+        self.nodes.iter().flat_map(at).collect()
+    }
+
     /// Of an axis of modes, the derivatives of the Lagrange polynomials of its nodes: entry `k · count + i` is
     /// ℓ_i'(node k).
     pub(crate) fn differentiation(&self) -> Vec<f64> {

@@ -33,11 +33,12 @@ pub(in crate::method) fn rough_masses(
 const FEW: usize = 20_000;
 const FEW_WITH_MODES: usize = 8000;
 
-/// Least modes with which it is worked out on fewer cells.
+/// Least and most modes with which it is worked out on fewer cells: many are for the shape of a density along them.
 const LEAST_MODES: usize = 3;
+const MOST_MODES: usize = 8;
 
-/// Time in which deviations from the steady state die out, on half as many cells an axis, with half as many modes: many times as
-/// fast as on all of them. `None` where all of them are few enough, or half of them have no steady state to show.
+/// Time in which deviations from the steady state die out, on half as many cells an axis, with half as many modes, eight at most: many
+/// times as fast as on all of them. `None` where all of them are few enough, or half of them have no steady state to show.
 pub(super) fn rough_relaxation(
     source: &GeneratorSource,
     value: f64,
@@ -53,7 +54,7 @@ pub(super) fn rough_relaxation(
     }
     let half = |axis: &Axis| match axis.is_modes() {
         true => axis
-            .with_modes((axis.count() / 2).max(LEAST_MODES.min(axis.count())))
+            .with_modes((axis.count() / 2).clamp(LEAST_MODES.min(axis.count()), MOST_MODES))
             .ok(),
         false => Some(axis.refined(0.5)),
     };

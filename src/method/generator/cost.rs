@@ -57,7 +57,11 @@ impl GeneratorMethodOptions {
     pub fn cost(&self, space: &CellSpace) -> Result<GeneratorCost, RateError> {
         let reach = self.reach(space);
         let factors = estimate(space, &reach, (self.memory_limit * 1e9) as u64, None)?;
-        let rates = 1 + 2 * reach.iter().sum::<usize>();
+        // A node of a series sends to the others of its place, which are as many as its reach.
+        let sent = space.axes().iter().zip(&reach);
+        let rates = 1 + sent
+            .map(|(axis, reach)| if axis.is_modes() { *reach } else { 2 * reach })
+            .sum::<usize>();
         let matrices = MATRICES * RATE_BYTES * space.n_cells() as f64 * rates as f64;
         Ok(GeneratorCost {
             bytes: matrices + factors.peak_bytes as f64,

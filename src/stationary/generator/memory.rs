@@ -67,8 +67,7 @@ fn read_chosen(
     }
     let axes = reader.count()?;
     let name = reader.text()?;
-    let mut methods = RateMethod::ALL.into_iter();
-    let method = methods.find(|method| method.name() == name);
+    let method = RateMethod::named(&name);
     if axes > MOST_AXES {
         return Err(NotWhatWasWritten);
     }

@@ -12,6 +12,7 @@
 //! | `symbolic`, `fronts`, `triangular` | multifrontal LU: structure, numbers, substitution |
 //! | `updates` | where fronts leave what they add to their parents' |
 //! | `narrowing` | a matrix of reach one that stands in where the factors would not fit |
+//! | `modewise` | factors of every mode by itself, lower ones first, where there are many |
 //! | `preconditioner` | one of these factorisations, with one cell held |
 //! | `balance` | residual and Jacobian of the (quasi-)steady state |
 //! | `passes` | passes through the factors, which two iterations may share |
@@ -26,6 +27,7 @@ mod dissection;
 mod fronts;
 mod krylov;
 mod memory;
+mod modewise;
 mod narrowing;
 mod newton;
 mod passes;

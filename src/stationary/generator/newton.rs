@@ -39,8 +39,8 @@ pub(super) struct Newton<'a> {
     pub(super) limit: usize,
     /// Whether the factors are those of this matrix.
     pub(super) fresh: bool,
-    /// Whether the factors are those of a stand-in of reach one.
-    pub(super) narrow: bool,
+    /// Whether the factors are those of the matrix, not of a stand-in.
+    pub(super) exact: bool,
     pub(super) cancellation: &'a Cancellation,
 }
 
@@ -69,7 +69,7 @@ impl Newton<'_> {
             }
             progress.converged = progress.error <= self.tolerance;
             stalls = if size > 0.5 * previous { stalls + 1 } else { 0 };
-            let exact = self.fresh && !self.narrow;
+            let exact = self.fresh && self.exact;
             let plain = exact && (rounds == 0 || size <= FAST * previous);
             if progress.converged || plain {
                 add(mass, &step);
@@ -90,7 +90,7 @@ impl Newton<'_> {
             let early = self.balance.leaks() && rounds <= 2;
             smallest = outcome.smallest.min(if early { 1.0 } else { smallest });
             add(mass, &outcome.solution);
-            if !outcome.reached && !self.fresh && !self.narrow {
+            if !outcome.reached && !self.fresh && self.exact {
                 break;
             }
         }
@@ -105,7 +105,7 @@ impl Newton<'_> {
         Limits {
             reduction: (0.1 * self.tolerance / error).max(least),
             iterations: left.min(BASIS),
-            give_up_early: !self.fresh && !self.narrow,
+            give_up_early: !self.fresh && self.exact,
         }
     }
 }

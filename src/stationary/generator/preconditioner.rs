@@ -5,6 +5,7 @@ use sprs::CsMat;
 use super::RateError;
 use super::dissection::{Dissection, Grid};
 use super::fronts::{Factors, allocate, factorise};
+use super::modewise::{Layout, ModeFactors, others};
 use super::narrowing::narrow;
 use super::prediction::{Prediction, predict};
 use super::symbolic::Symbolic;
@@ -19,6 +20,10 @@ const LEAF: usize = 70;
 /// needed as many iterations as double in every trial, because GMRES refines in double.
 pub(super) const LARGE: u64 = 16 << 20;
 
+/// How many times the work of factors mode by mode those of all modes together may take: these need fewer iterations, and warm
+/// starts last longer with them. Four for two modes, and rising with their square.
+const MUCH_MORE: f64 = 4.0;
+
 /// The factorisation that solves or preconditions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RateMethod {
@@ -30,10 +35,12 @@ pub enum RateMethod {
     NarrowLu,
     /// The same in single precision.
     NarrowLuSingle,
+    /// LU of every Legendre mode by itself, in single precision, lower modes first: for many modes.
+    Modewise,
 }
 
 impl RateMethod {
-    /// All methods, most demanding first.
+    /// All methods that any axes can have, most demanding first.
     pub const ALL: [Self; 4] = [
         Self::Lu,
         Self::LuSingle,
@@ -48,6 +55,7 @@ impl RateMethod {
             Self::LuSingle => "lu-single",
             Self::NarrowLu => "narrow-lu",
             Self::NarrowLuSingle => "narrow-lu-single",
+            Self::Modewise => "modewise-lu-single",
         }
     }
 
@@ -55,10 +63,21 @@ impl RateMethod {
         matches!(self, Self::NarrowLu | Self::NarrowLuSingle)
     }
 
+    /// The method of this name, see [`RateMethod::name`].
+    pub(super) fn named(name: &str) -> Option<Self> {
+        let mut all = Self::ALL.into_iter().chain([Self::Modewise]);
+        all.find(|method| method.name() == name)
+    }
+
+    /// Whether its factors are those of the matrix itself, to rounding.
+    pub(super) fn is_exact(self) -> bool {
+        matches!(self, Self::Lu | Self::LuSingle)
+    }
+
     fn bytes_per_number(self) -> usize {
         match self {
             Self::Lu | Self::NarrowLu => size_of::<f64>(),
-            Self::LuSingle | Self::NarrowLuSingle => size_of::<f32>(),
+            Self::LuSingle | Self::NarrowLuSingle | Self::Modewise => size_of::<f32>(),
         }
     }
 }
@@ -104,6 +123,39 @@ fn grid(space: &CellSpace, structure: &Structure, method: RateMethod) -> Grid {
     Grid::new(&space.shape(), &reach, LEAF).folded_at(structure.folded)
 }
 
+/// The grid of the places at which modes stand, that of all other axes; `None` where there are no Legendre modes.
+fn grid_of_places(space: &CellSpace, structure: &Structure) -> Option<Grid> {
+    let (places, kept) = others(space)?;
+    let reach = kept.iter().map(|&axis| structure.reach.get(axis).copied());
+    let of_places = Structure {
+        reach: reach.map(|reach| reach.unwrap_or(1)).collect(),
+        folded: structure
+            .folded
+            .and_then(|folded| kept.iter().position(|&axis| axis == folded)),
+    };
+    Some(grid(&places, &of_places, RateMethod::Modewise))
+}
+
+/// Predicts what factors of every mode by itself take; `None` where there are no Legendre modes.
+fn predict_modewise(space: &CellSpace, structure: &Structure) -> Option<Estimate> {
+    let method = RateMethod::Modewise;
+    let prediction = predict(&grid_of_places(space, structure)?);
+    let places = others(space)?.0.n_cells() as f64;
+    let modes = space.n_cells() as f64 / places;
+    // The rates from lower modes into higher ones, and changing the basis there and back.
+    let below = places * 0.5 * modes * (modes - 1.0);
+    let number = method.bytes_per_number() as f64;
+    let entries = modes * prediction.factor_entries + below;
+    let change = places * modes.powi(2);
+    Some(Estimate {
+        method,
+        factor_bytes: (entries * number) as u64,
+        peak_bytes: (modes * prediction.bytes(method.bytes_per_number()) + below * number) as u64,
+        operations: modes * prediction.operations + 4.0 * change * modes,
+        iteration_operations: 2.0 * entries + 4.0 * change,
+    })
+}
+
 /// Predicts what one method takes.
 fn predict_method(space: &CellSpace, structure: &Structure, method: RateMethod) -> Estimate {
     let prediction: Prediction = predict(&grid(space, structure, method));
@@ -143,6 +195,18 @@ pub(super) fn estimate_of(
     method: Option<RateMethod>,
 ) -> Result<Estimate, RateError> {
     let mut needed = 0;
+    let modewise = predict_modewise(space, structure);
+    let fits = |plan: &Estimate| plan.peak_bytes <= memory_limit_bytes;
+    match (method, modewise.filter(fits)) {
+        (Some(RateMethod::Modewise), Some(plan)) => return Ok(plan),
+        (None, Some(plan)) => {
+            let whole = predict_method(space, structure, RateMethod::LuSingle);
+            if !fits(&whole) || whole.operations > MUCH_MORE * plan.operations {
+                return Ok(plan);
+            }
+        }
+        _ => {}
+    }
     for candidate in RateMethod::ALL {
         if method.is_some_and(|wanted| wanted != candidate) {
             continue;
@@ -162,13 +226,26 @@ pub(super) fn estimate_of(
     })
 }
 
+/// M⁻¹ for M = Q (or its stand-in) with the row and column of one cell replaced by the identity's.
+pub(super) struct Preconditioner {
+    factors: Kept,
+    /// The cell held in the current factors.
+    pub(super) held: usize,
+}
+
+/// What is kept of a matrix.
+enum Kept {
+    Whole(WholeFactors),
+    Modes(Box<ModeFactors>),
+}
+
 enum Numbers {
     Double(Factors<f64>),
     Single(Factors<f32>),
 }
 
-/// M⁻¹ for M = Q (or its stand-in) with the row and column of one cell replaced by the identity's.
-pub(super) struct Preconditioner {
+/// Factors of all cells together.
+struct WholeFactors {
     method: RateMethod,
     symbolic: Symbolic,
     numbers: Numbers,
@@ -176,12 +253,11 @@ pub(super) struct Preconditioner {
     pattern: (Vec<usize>, Vec<usize>),
     /// Power of two near the largest rate; the factors are those of the matrix over this.
     scale: f64,
-    /// The cell held in the current factors.
-    pub(super) held: usize,
 }
 
 impl Preconditioner {
-    /// Factorises; takes over the structure and memory of `old` when the pattern is the same.
+    /// Factorises; takes over the structure and memory of `old` when the pattern is the same. Factors mode by mode may hold
+    /// another cell than the one asked for.
     ///
     /// # Errors
     /// [`Cancelled`].
@@ -194,16 +270,65 @@ impl Preconditioner {
         old: Option<Self>,
         cancellation: &Cancellation,
     ) -> Result<Self, Cancelled> {
+        if method == RateMethod::Modewise
+            && let Some(grid) = grid_of_places(space, structure)
+            && let Some(layout) = Layout::new(space, grid)
+        {
+            let factors = ModeFactors::new(layout, matrix, held, cancellation)?;
+            return Ok(Self {
+                held: factors.held,
+                factors: Kept::Modes(Box::new(factors)),
+            });
+        }
+        let old = old.and_then(|old| match old.factors {
+            Kept::Whole(factors) => Some(factors),
+            Kept::Modes(_) => None,
+        });
+        let grid = || grid(space, structure, method);
         let narrowed = method.is_narrow().then(|| narrow(space, matrix));
         let matrix = narrowed.as_ref().unwrap_or(matrix);
+        let factors = WholeFactors::new(grid, method, (matrix, held), old, cancellation)?;
+        Ok(Self {
+            factors: Kept::Whole(factors),
+            held,
+        })
+    }
+
+    /// M⁻¹ r for each r, zero at the held cell, in one pass through the factors. To the bit what each gives by itself.
+    pub(super) fn apply<const R: usize>(&self, residuals: [&[f64]; R]) -> [Vec<f64>; R] {
+        match &self.factors {
+            Kept::Whole(factors) => factors.apply(residuals, self.held),
+            Kept::Modes(factors) => factors.apply(residuals),
+        }
+    }
+
+    /// Bytes of the factors.
+    pub(super) fn factor_bytes(&self) -> u64 {
+        match &self.factors {
+            Kept::Whole(factors) => {
+                let number = factors.method.bytes_per_number();
+                (factors.symbolic.factor_entries() * number) as u64
+            }
+            Kept::Modes(factors) => factors.bytes(),
+        }
+    }
+}
+
+impl WholeFactors {
+    fn new(
+        grid: impl FnOnce() -> Grid,
+        method: RateMethod,
+        (matrix, held): (&CsMat<f64>, usize),
+        old: Option<Self>,
+        cancellation: &Cancellation,
+    ) -> Result<Self, Cancelled> {
         let starts = matrix.indptr();
         let starts = starts.raw_storage();
         let reusable = old.filter(|old| {
             old.method == method && old.pattern.0 == starts && old.pattern.1 == matrix.indices()
         });
         let mut this = reusable.unwrap_or_else(|| {
-            let grid = grid(space, structure, method);
-            let symbolic = Symbolic::new(matrix, Dissection::new(&grid));
+            let symbolic = Symbolic::new(matrix, Dissection::new(&grid()));
             let numbers = match method {
                 RateMethod::Lu | RateMethod::NarrowLu => Numbers::Double(allocate(&symbolic)),
                 _ => Numbers::Single(allocate(&symbolic)),
@@ -214,17 +339,16 @@ impl Preconditioner {
                 numbers,
                 pattern: (starts.to_vec(), matrix.indices().to_vec()),
                 scale: 1.0,
-                held,
             }
         });
-        this.held = held;
-        this.factorise(matrix, cancellation)?;
+        this.factorise(matrix, held, cancellation)?;
         Ok(this)
     }
 
     fn factorise(
         &mut self,
         matrix: &CsMat<f64>,
+        held: usize,
         cancellation: &Cancellation,
     ) -> Result<(), Cancelled> {
         let starts = matrix.indptr();
@@ -239,13 +363,13 @@ impl Preconditioner {
             1.0
         };
         let mut values: Vec<f64> = matrix.data().iter().map(|rate| rate / self.scale).collect();
-        values[starts[self.held]..starts[self.held + 1]].fill(0.0);
+        values[starts[held]..starts[held + 1]].fill(0.0);
         for (value, &row) in values.iter_mut().zip(matrix.indices()) {
-            if row == self.held {
+            if row == held {
                 *value = 0.0;
             }
         }
-        let held = self.held as u32;
+        let held = held as u32;
         let place = self.symbolic.order.iter().position(|&cell| cell == held);
         let place = place.unwrap_or(0);
         let symbolic = &self.symbolic;
@@ -255,8 +379,7 @@ impl Preconditioner {
         }
     }
 
-    /// M⁻¹ r for each r, zero at the held cell, in one pass through the factors. To the bit what each gives by itself.
-    pub(super) fn apply<const R: usize>(&self, residuals: [&[f64]; R]) -> [Vec<f64>; R] {
+    fn apply<const R: usize>(&self, residuals: [&[f64]; R], held: usize) -> [Vec<f64>; R] {
         let order = &self.symbolic.order;
         let ordered =
             |residual: &[f64]| order.iter().map(|&cell| residual[cell as usize]).collect();
@@ -271,13 +394,8 @@ impl Preconditioner {
             for (&cell, value) in order.iter().zip(x) {
                 out[cell as usize] = value / self.scale;
             }
-            out[self.held] = 0.0;
+            out[held] = 0.0;
             out
         })
-    }
-
-    /// Bytes of the factors.
-    pub(super) fn factor_bytes(&self) -> u64 {
-        (self.symbolic.factor_entries() * self.method.bytes_per_number()) as u64
     }
 }

@@ -83,7 +83,12 @@ impl DirectSolver {
         let (seat, limit) = (Seat::default(), self.options.max_iterations);
         let asked = answer(&seat, &balance, mass, question, limit, &self.cancellation);
         let (response, used) = alone(kept, &seat, asked)?.ok_or(RateError::Sensitivity)?;
-        self.excess += used.saturating_sub(FRESH_RESPONSE);
+        // With a stand-in new factors would save no more than they do in a solve.
+        let fresh = match &self.plan {
+            Some((_, plan)) if !plan.method.is_exact() => self.baseline.max(FRESH_RESPONSE),
+            _ => FRESH_RESPONSE,
+        };
+        self.excess += used.saturating_sub(fresh);
         Ok(response)
     }
 }

@@ -23,12 +23,12 @@ pub(super) struct DirectSolver {
     pub(super) options: RateOptions,
     /// Of a folded matrix, whose entries do not show it.
     given: Option<Structure>,
-    plan: Option<(Structure, Estimate)>,
+    pub(super) plan: Option<(Structure, Estimate)>,
     pub(super) preconditioner: Option<Preconditioner>,
     /// Iterations that a new factorisation would have saved since this one was made.
     pub(super) excess: usize,
     /// Least iterations that a solve has taken since the last one for which a factorisation was made.
-    baseline: usize,
+    pub(super) baseline: usize,
     pub(super) last: Option<(CsMat<f64>, Vec<f64>)>,
     /// Factorisations that were made, and the reach and method of the last.
     factorisations: usize,
@@ -110,11 +110,11 @@ impl DirectSolver {
                 .preconditioner
                 .as_ref()
                 .is_none_or(|kept| kept.held != held);
-        // At most: the old factorisation, a new one, one with a better cell held, one in double precision.
+        // At most: the old factorisation, a new one, one with a better cell held, a more demanding one.
         for _ in 0..4 {
             if fresh {
                 held = self.better_held(held, &mass);
-                self.factorise(matrix, held, &plan)?;
+                held = self.factorise(matrix, held, &plan)?;
                 progress.factorisations += 1;
             }
             if mass.is_empty() || !mass.iter().sum::<f64>().is_finite() {
@@ -145,10 +145,10 @@ impl DirectSolver {
             if best != held && mass[held].abs() < WEAK_HELD_SHARE * largest {
                 held = best;
             } else if fresh {
-                let Some(double) = self.in_double_precision(&plan) else {
+                let Some(demanding) = self.fall_back(&plan) else {
                     break;
                 };
-                plan = double;
+                plan = demanding;
             }
             fresh = true;
         }
@@ -203,13 +203,14 @@ impl DirectSolver {
         };
         let (seat, other) = (Seat::default(), Seat::default());
         let limit = worth.min(self.options.max_iterations);
+        let limit = limit.min(self.patience(plan));
         let newton = Newton {
             balance,
             seat: &seat,
             tolerance: self.options.tolerance,
             limit,
             fresh,
-            narrow: plan.method.is_narrow(),
+            exact: plan.method.is_exact(),
             cancellation: &self.cancellation,
         };
         let (used, passes, given) = match question {

@@ -14,6 +14,10 @@ use crate::stationary::generator::{RateError, RateMethod, narrowing};
 /// within a third: iterations are bound by memory, factorisations by arithmetic the larger they are.
 const RENEWAL: (f64, f64) = (12.0, 0.027);
 
+/// Iterations of a cold solve with factors mode by mode that tell that they do not suit an equation: laws whose rate is a
+/// polynomial of the first degree take 10 to 45 (`docs/accuracy.md`).
+const PATIENCE: usize = 90;
+
 impl DirectSolver {
     /// Whether iterating with the factorisation at hand has come to cost more than a new one would.
     pub(in crate::stationary::generator) fn is_worn(&self) -> bool {
@@ -36,19 +40,41 @@ impl DirectSolver {
         shape(self.space.n_cells(), "mass", mass.len())?;
         let plan = self.plan(matrix)?;
         let held = self.better_held(self.choose_held(matrix, mass), mass);
-        Ok(self.factorise(matrix, held, &plan)?)
+        self.factorise(matrix, held, &plan)?;
+        Ok(())
     }
 
-    /// The plan to fall back to when single precision did not converge; kept for later solves.
-    pub(super) fn in_double_precision(&mut self, plan: &Estimate) -> Option<Estimate> {
+    /// Takes the plan to fall back to when factors mode by mode, or single precision, did not converge; later solves keep it.
+    pub(super) fn fall_back(&mut self, plan: &Estimate) -> Option<Estimate> {
+        let next = self.more_demanding(plan)?;
+        if let Some((_, plan)) = &mut self.plan {
+            *plan = next;
+        }
+        Some(next)
+    }
+
+    /// The next more demanding plan, where one is allowed and fits.
+    fn more_demanding(&self, plan: &Estimate) -> Option<Estimate> {
         let (structure, _) = self.plan.as_ref()?;
-        let limit = self.options.memory_limit_bytes;
-        if plan.method != RateMethod::LuSingle || self.options.method.is_some() {
+        let next = match plan.method {
+            RateMethod::Modewise => RateMethod::LuSingle,
+            RateMethod::LuSingle => RateMethod::Lu,
+            _ => return None,
+        };
+        if self.options.method.is_some() {
             return None;
         }
-        let double = estimate_of(&self.space, structure, limit, Some(RateMethod::Lu)).ok()?;
-        self.plan = Some((structure.clone(), double));
-        Some(double)
+        let limit = self.options.memory_limit_bytes;
+        estimate_of(&self.space, structure, limit, Some(next)).ok()
+    }
+
+    /// Iterations after which factors mode by mode are given up where others could be had.
+    pub(super) fn patience(&self, plan: &Estimate) -> usize {
+        let is_modewise = plan.method == RateMethod::Modewise;
+        match is_modewise && self.more_demanding(plan).is_some() {
+            true => PATIENCE,
+            false => usize::MAX,
+        }
     }
 
     /// The method, chosen again only when the stencil's reach grows.
@@ -83,7 +109,7 @@ impl DirectSolver {
         Ok(plan)
     }
 
-    /// Factorises a matrix with a cell held.
+    /// Factorises a matrix with a cell held; gives the cell that is.
     ///
     /// # Errors
     /// [`Cancelled`].
@@ -92,7 +118,7 @@ impl DirectSolver {
         matrix: &CsMat<f64>,
         held: usize,
         plan: &Estimate,
-    ) -> Result<(), Cancelled> {
+    ) -> Result<usize, Cancelled> {
         let unplanned = Structure::default();
         let structure = self
             .plan
@@ -102,10 +128,11 @@ impl DirectSolver {
         let (space, method, cancellation) = (&self.space, plan.method, &self.cancellation);
         let new = Preconditioner::new(space, structure, method, matrix, held, old, cancellation)?;
         self.factorised = Some((structure.reach.clone(), method));
+        let held = new.held;
         self.preconditioner = Some(new);
         self.factorisations += 1;
         self.excess = 0;
-        Ok(())
+        Ok(held)
     }
 }
 

@@ -19,7 +19,7 @@ fn space(shape: &[usize]) -> CellSpace {
 }
 
 /// Largest difference of two mass vectors in L1.
-fn distance(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| (x - y).abs()).sum()
 }
 

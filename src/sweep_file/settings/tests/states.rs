@@ -153,7 +153,7 @@ fn modes_where_they_cannot_be_are_refused_with_the_remedy() {
         ),
         (
             &["cells.z.modes=1"],
-            "an integer from 2 to 64, or `\"auto\"`",
+            "an integer from 2 to 128, or `\"auto\"`",
         ),
         (
             &["watch.power=\"y z\""],

@@ -1,0 +1,247 @@
+//! Factors of a generator mode by mode: of the cells of the other axes for every mode, no mode with another.
+//!
+//! Legendre moments of a bounded state without noise take from lower ones only: its drift, a polynomial of the first
+//! degree, leaves the degree of a polynomial as it is (∫ p b f' with f of degree m needs moments up to m). What the state
+//! does to the other coordinates, its force, is weak. So in the basis of the moments the generator is nearly lower
+//! triangular, block by block, with a generator of the other axes for each mode on the diagonal; that triangle, solved by
+//! forward substitution, stands in for the whole. About ten iterations of GMRES make good what it leaves out, whatever the
+//! number of modes; factors grow in proportion to it, those of all modes together with its square, and the work with its
+//! cube.
+
+mod layout;
+#[cfg(test)]
+mod tests;
+
+use rayon::prelude::*;
+use sprs::CsMat;
+
+use super::dissection::Dissection;
+use super::fronts::{Factors, allocate, factorise};
+use super::symbolic::Symbolic;
+use super::triangular;
+use crate::cancellation::{Cancellation, Cancelled};
+use layout::blocks;
+pub(super) use layout::{Layout, others};
+
+/// Share of its largest mass that the stand-in's own steady state must have in the held cell: less, and another cell is held.
+const LEAST_HELD: f64 = 0.1;
+
+/// Cells that are tried one after the other.
+const TRIED: usize = 3;
+
+/// The factors.
+pub(super) struct ModeFactors {
+    layout: Layout,
+    symbolic: Symbolic,
+    modes: Vec<Mode>,
+    /// Rates from lower modes into higher ones at a place, `place · count²/2 + row (row - 1)/2 + column`.
+    below: Vec<f32>,
+    /// The stand-in's own steady state.
+    null: Vec<f64>,
+    /// The cell held. The lowest mode is held at its place.
+    pub(super) held: usize,
+}
+
+/// The factors of one mode, of a matrix over `scale`.
+struct Mode {
+    factors: Factors<f32>,
+    scale: f64,
+}
+
+impl ModeFactors {
+    /// Of a generator, with the cell `held` held or, where the stand-in's own steady state has little mass there, another.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn new(
+        layout: Layout,
+        matrix: &CsMat<f64>,
+        held: usize,
+        cancellation: &Cancellation,
+    ) -> Result<Self, Cancelled> {
+        cancellation.check()?;
+        let blocks = blocks(&layout, matrix);
+        let (places, count) = (layout.places(), layout.modes());
+        let pattern = CsMat::new_csc(
+            (places, places),
+            blocks.starts,
+            blocks.rows,
+            vec![1.0; blocks.rates.len() / count],
+        );
+        let symbolic = Symbolic::new(&pattern, Dissection::new(layout.grid()));
+        let rates = |mode: usize| -> Vec<f64> {
+            let of_mode = blocks.rates.iter().skip(mode).step_by(count);
+            of_mode.copied().collect()
+        };
+        // Only the lowest mode has a steady state: the others die out.
+        let modes = (0..count).into_par_iter().map(|mode| {
+            let held = (mode == 0).then(|| layout.place(held));
+            Mode::new(&symbolic, &pattern, rates(mode), held, cancellation)
+        });
+        let modes: Result<Vec<Mode>, Cancelled> = modes.collect();
+        let mut this = Self {
+            modes: modes?,
+            null: Vec::new(),
+            layout,
+            symbolic,
+            below: blocks.below,
+            held,
+        };
+        let lowest = rates(0);
+        for tried in 1..=TRIED {
+            this.null = this.steady(&pattern, &lowest);
+            let size = |cell: usize| this.null[cell].abs();
+            let cells = 0..this.null.len();
+            let best = cells.fold(
+                this.held,
+                |best, cell| {
+                    if size(cell) > size(best) { cell } else { best }
+                },
+            );
+            if size(this.held) >= LEAST_HELD * size(best) || tried == TRIED {
+                break;
+            }
+            this.held = best;
+            let place = Some(this.layout.place(best));
+            this.modes[0] = Mode::new(
+                &this.symbolic,
+                &pattern,
+                lowest.clone(),
+                place,
+                cancellation,
+            )?;
+        }
+        Ok(this)
+    }
+
+    /// The stand-in's steady state, one in the lowest mode at the held place; `lowest` are the rates of that mode.
+    fn steady(&self, pattern: &CsMat<f64>, lowest: &[f64]) -> Vec<f64> {
+        let (places, count) = (self.layout.places(), self.layout.modes());
+        let held = self.layout.place(self.held);
+        let starts = pattern.indptr();
+        let starts = starts.raw_storage();
+        // What the held place sends is balanced by the rest.
+        let mut sent = vec![0.0; places * count];
+        for entry in starts[held]..starts[held + 1] {
+            sent[pattern.indices()[entry] * count] = -lowest[entry];
+        }
+        let [null] = self.substitute([sent], 1.0);
+        null
+    }
+
+    /// The stand-in's M⁻¹ r for each r, zero at the held cell, in one pass through the factors.
+    pub(super) fn apply<const R: usize>(&self, residuals: [&[f64]; R]) -> [Vec<f64>; R] {
+        let cell = self.held;
+        let moments = residuals.map(|residual| {
+            // What the held cell lacks, as all balances together are zero.
+            let lacking = residual[cell] - residual.iter().sum::<f64>();
+            self.layout.moments(residual, (cell, lacking))
+        });
+        let mut solved = self.substitute(moments, 0.0);
+        for vector in &mut solved {
+            let share = vector[cell] / self.null[cell];
+            for (value, null) in vector.iter_mut().zip(&self.null) {
+                *value -= share * null;
+            }
+            vector[cell] = 0.0;
+        }
+        solved
+    }
+
+    /// Forward substitution from the lowest mode up: from moments of the right sides, place by place, to masses of the
+    /// cells, with the lowest mode of the held place as given.
+    fn substitute<const R: usize>(&self, right: [Vec<f64>; R], held: f64) -> [Vec<f64>; R] {
+        let (places, count) = (self.layout.places(), self.layout.modes());
+        let triangle = count * (count - 1) / 2;
+        let order = &self.symbolic.order;
+        let mut moments = right;
+        for (number, mode) in self.modes.iter().enumerate() {
+            let row = number * number.saturating_sub(1) / 2;
+            let mut ordered = moments.each_ref().map(|moments| {
+                let left = |&place: &u32| {
+                    let place = place as usize;
+                    let at_place = &moments[place * count..][..number + 1];
+                    let rates = &self.below[place * triangle + row..][..number];
+                    at_place[number] - product(rates, &at_place[..number])
+                };
+                let mut values = vec![0.0; places];
+                values
+                    .par_iter_mut()
+                    .with_min_len(512)
+                    .zip(order)
+                    .for_each(|(value, place)| *value = left(place));
+                values
+            });
+            if number == 0 {
+                let place = self.layout.place(self.held);
+                let position = order.iter().position(|&one| one as usize == place);
+                for values in &mut ordered {
+                    values[position.unwrap_or(0)] = held * mode.scale;
+                }
+            }
+            let vectors = ordered.each_mut().map(Vec::as_mut_slice);
+            triangular::solve(&self.symbolic, &mode.factors.fronts, vectors);
+            for (moments, values) in moments.iter_mut().zip(&ordered) {
+                for (&place, value) in order.iter().zip(values) {
+                    moments[place as usize * count + number] = value / mode.scale;
+                }
+            }
+        }
+        moments.map(|moments| self.layout.masses(&moments))
+    }
+
+    /// Bytes of the factors.
+    pub(super) fn bytes(&self) -> u64 {
+        let numbers = self.symbolic.factor_entries() * self.modes.len() + self.below.len();
+        (numbers * size_of::<f32>()) as u64
+    }
+}
+
+impl Mode {
+    /// Factorises rates between places, with a place held if one is given.
+    fn new(
+        symbolic: &Symbolic,
+        pattern: &CsMat<f64>,
+        mut rates: Vec<f64>,
+        held: Option<usize>,
+        cancellation: &Cancellation,
+    ) -> Result<Self, Cancelled> {
+        let largest = rates
+            .iter()
+            .fold(0.0_f64, |most, rate| most.max(rate.abs()));
+        let scale = match largest > 0.0 && largest.is_finite() {
+            true => largest.log2().round().exp2(),
+            false => 1.0,
+        };
+        rates.iter_mut().for_each(|rate| *rate /= scale);
+        let mut position = None;
+        if let Some(held) = held {
+            let starts = pattern.indptr();
+            let starts = starts.raw_storage();
+            rates[starts[held]..starts[held + 1]].fill(0.0);
+            let entries = rates.iter_mut().zip(pattern.indices());
+            let row = entries.filter(|(_, row)| **row == held);
+            row.for_each(|(rate, _)| *rate = 0.0);
+            let mut order = symbolic.order.iter();
+            position = order.position(|&place| place as usize == held);
+        }
+        let mut factors = allocate(symbolic);
+        let position = position.unwrap_or(usize::MAX);
+        factorise(symbolic, &rates, position, &mut factors, cancellation)?;
+        Ok(Self { factors, scale })
+    }
+}
+
+/// Σ a b, in a fixed order.
+fn product(rates: &[f32], moments: &[f64]) -> f64 {
+    let mut sums = [0.0; 8];
+    let (left, right) = (rates.chunks_exact(8), moments.chunks_exact(8));
+    let rest = left.remainder().iter().zip(right.remainder());
+    let tail: f64 = rest.map(|(a, b)| f64::from(*a) * b).sum();
+    for (a, b) in left.zip(right) {
+        for lane in 0..8 {
+            sums[lane] += f64::from(a[lane]) * b[lane];
+        }
+    }
+    sums.iter().sum::<f64>() + tail
+}
