@@ -67,7 +67,7 @@ fn read_chosen(
     }
     let axes = reader.count()?;
     let name = reader.text()?;
-    let method = RateMethod::named(&name);
+    let method = RateMethod::named(name);
     if axes > MOST_AXES {
         return Err(NotWhatWasWritten);
     }
