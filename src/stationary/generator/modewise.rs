@@ -1,12 +1,12 @@
 //! Factors of a generator mode by mode: of the cells of the other axes for every mode, no mode with another.
 //!
 //! Legendre moments of a bounded state without noise take from lower ones only: its drift, a polynomial of the first
-//! degree, leaves the degree of a polynomial as it is (∫ p b f' with f of degree m needs moments up to m). What the state
-//! does to the other coordinates, its force, is weak. So in the basis of the moments the generator is nearly lower
-//! triangular, block by block, with a generator of the other axes for each mode on the diagonal; that triangle, solved by
-//! forward substitution, stands in for the whole. About ten iterations of GMRES make good what it leaves out, whatever the
-//! number of modes; factors grow in proportion to it, those of all modes together with its square, and the work with its
-//! cube.
+//! degree, leaves the degree of a polynomial as it is (∫ p b f' with f of degree m needs moments up to m). What the
+//! state does to the other coordinates, its force, is weak. So in the basis of the moments the generator is nearly
+//! lower triangular, block by block, with a generator of the other axes for each mode on the diagonal; that triangle,
+//! solved by forward substitution, stands in for the whole. Some tens of iterations of GMRES make good what it leaves
+//! out, whatever the number of modes. Factors grow in proportion to that number; those of all modes together grow with
+//! its square, and their work with its cube.
 
 mod layout;
 #[cfg(test)]
@@ -23,7 +23,8 @@ use crate::cancellation::{Cancellation, Cancelled};
 use layout::blocks;
 pub(super) use layout::{Layout, others};
 
-/// Share of its largest mass that the stand-in's own steady state must have in the held cell: less, and another cell is held.
+/// Share of its largest mass that the stand-in's own steady state must have in the held cell: with less, another cell
+/// is held.
 const LEAST_HELD: f64 = 0.1;
 
 /// Cells that are tried one after the other.
@@ -49,7 +50,8 @@ struct Mode {
 }
 
 impl ModeFactors {
-    /// Of a generator, with the cell `held` held or, where the stand-in's own steady state has little mass there, another.
+    /// Of a generator, with the cell `held` held or, where the stand-in's own steady state has little mass there,
+    /// another.
     ///
     /// # Errors
     /// [`Cancelled`].

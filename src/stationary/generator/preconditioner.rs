@@ -20,8 +20,8 @@ const LEAF: usize = 70;
 /// needed as many iterations as double in every trial, because GMRES refines in double.
 pub(super) const LARGE: u64 = 16 << 20;
 
-/// How many times the work of factors mode by mode those of all modes together may take: these need fewer iterations, and warm
-/// starts last longer with them. Four for two modes, and rising with their square.
+/// How many times the work of factors mode by mode those of all modes together may take: these need fewer iterations,
+/// and warm starts last longer with them. It is about four for two modes, and rises with the square of their number.
 const MUCH_MORE: f64 = 4.0;
 
 /// The factorisation that solves or preconditions.
@@ -256,8 +256,8 @@ struct WholeFactors {
 }
 
 impl Preconditioner {
-    /// Factorises; takes over the structure and memory of `old` when the pattern is the same. Factors mode by mode may hold
-    /// another cell than the one asked for.
+    /// Factorises; takes over the structure and memory of `old` when the pattern is the same. Factors mode by mode may
+    /// hold another cell than the one asked for.
     ///
     /// # Errors
     /// [`Cancelled`].

@@ -8,8 +8,8 @@ use sprs::CsMat;
 use crate::space::{Axis, CellSpace, Series};
 use crate::stationary::generator::dissection::Grid;
 
-/// A grid whose cells are places on the axes without Legendre modes, times nodes of those with them. Moments are laid out
-/// `place · modes + mode`, of orthonormal polynomials.
+/// A grid whose cells are places on the axes without Legendre modes, times nodes of those with them. Moments are laid
+/// out `place · modes + mode`, of orthonormal polynomials.
 #[derive(Debug, Clone)]
 pub(in crate::stationary::generator) struct Layout {
     grid: Grid,
@@ -177,8 +177,8 @@ pub(super) struct Blocks {
 /// What the moments of one place send: rows, their rates, and the triangle at the place itself.
 type Column = (Vec<usize>, Vec<f64>, Vec<f32>);
 
-/// The generator's blocks between places in the basis of the moments: their diagonals, and of those that stay at a place
-/// the lower triangle.
+/// The generator's blocks between places in the basis of the moments: their diagonals, and of those that stay at a
+/// place the lower triangle.
 pub(super) fn blocks(layout: &Layout, matrix: &CsMat<f64>) -> Blocks {
     let columns: Vec<Column> = (0..layout.places())
         .into_par_iter()
