@@ -29,13 +29,38 @@ pub(crate) fn at_centre(estimated: &EstimatedDensity) -> Vec<Indicator> {
         .collect();
     let found = match (centre.as_slice(), kinks.as_slice()) {
         (_, [Some(kink)]) => slope(estimated, kink, centre).map(|one| vec![one]),
-        _ if !is_told(estimated, centre) => None,
+        _ if !is_told(estimated, centre) || is_negative_about(estimated, centre) => None,
         (&[at], [None]) => curvature(estimated, at).map(|one| vec![one]),
         (_, [None, None]) => principal(estimated, centre),
         (_, [Some(kink), None] | [None, Some(kink)]) => along_kink(estimated, kink, centre),
         _ => None,
     };
     found.unwrap_or_default()
+}
+
+/// Cells on either side of the centre among which none may be negative.
+const ABOUT: usize = 4;
+
+/// Whether a cell about the centre of a density without noise is negative: what is read there is a wiggle of the scheme.
+fn is_negative_about(estimated: &EstimatedDensity, centre: &[f64]) -> bool {
+    let axes = &estimated.density.axes;
+    let near = |k: usize| -> Option<std::ops::Range<usize>> {
+        let cell = axes.get(k)?.find(*centre.get(k)?)?;
+        Some(cell.saturating_sub(ABOUT)..(cell + ABOUT + 1).min(axes[k].count()))
+    };
+    let (Some(rows), columns) = (near(0), near(1).unwrap_or(0..1)) else {
+        return false;
+    };
+    let along = axes.get(1).map_or(1, Axis::count);
+    let mut cells = rows.flat_map(|row| columns.clone().map(move |column| row * along + column));
+    let is_negative = |cell: usize| {
+        estimated
+            .density
+            .values
+            .get(cell)
+            .is_some_and(|value| *value < 0.0)
+    };
+    !estimated.is_noisy() && cells.any(is_negative)
 }
 
 fn kink_at(estimated: &EstimatedDensity, k: usize, at: f64) -> Option<&Kink> {

@@ -9,7 +9,7 @@
 //! Where a force bends, at a plane, the curvature along the curve jumps there instead of passing zero, and the slope
 //! has its extremum on the plane.
 
-use super::{Indicator, IndicatorKind, is_told};
+use super::{Indicator, IndicatorKind};
 use crate::density::EstimatedDensity;
 use crate::topology::field::{Curvature, Field, Jet, Stencil};
 
@@ -22,8 +22,7 @@ const FARTHEST: f64 = 25.0;
 /// A step that is a smaller share of a cell ends the search.
 const SETTLED: f64 = 1e-7;
 
-/// The shoulder nearest to a place; `None` for marginals, for sampled densities, and where there is none or the
-/// density there is no more than the solver leaves.
+/// The shoulder nearest to a place; `None` for marginals, for sampled densities, and where there is none.
 pub(crate) fn fold(estimated: &EstimatedDensity, near: &[f64]) -> Option<Indicator> {
     let field = Field::new(estimated).filter(|_| near.len() == 2 && !estimated.is_noisy())?;
     let smooth = settle(&field, near);
@@ -37,7 +36,7 @@ pub(crate) fn fold(estimated: &EstimatedDensity, near: &[f64]) -> Option<Indicat
     {
         return found.indicator(estimated, &field);
     }
-    let place = smooth.filter(|place| is_told(estimated, place))?;
+    let place = smooth?;
     let fine = field.stencil(&place, 0)?;
     let rough = field.stencil(&place, 1)?;
     let (along, _) = directions(&fine.jet(&estimated.density.values));
@@ -106,9 +105,6 @@ impl AtBend {
 
     /// The slope in the direction in which the curvature falls; both sides say the same but for their errors.
     fn indicator(self, estimated: &EstimatedDensity, field: &Field<'_>) -> Option<Indicator> {
-        if !is_told(estimated, &self.place) {
-            return None;
-        }
         let sign = if self.rises { 1.0 } else { -1.0 };
         let beside = Self::beside(&self.place, self.across, field.unit(self.across));
         let stencils = |level: usize| -> Option<Vec<Stencil>> {

@@ -269,7 +269,7 @@ fn is_told(estimated: &EstimatedDensity, place: &[f64]) -> bool {
         Some(cell * axis.count() + axis.find(at)?)
     });
     let value = cell.and_then(|cell| density.values.get(cell)).copied();
-    let least = estimated.negligible_height() * density.maximum();
+    let least = estimated.negligible * density.maximum();
     estimated.is_noisy() || value.is_some_and(|value| value > least)
 }
 
