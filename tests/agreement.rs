@@ -1,11 +1,11 @@
-//! The paper's argument, held by bins: at its eight values the densities by the generator and by free trajectories agree within
-//! three standard errors in every bin of a marginal but 1 %. The tables of docs/paper.md are printed by
+//! The paper's argument, held by bins: at its eight values the densities by the generator and by free trajectories
+//! agree within three standard errors in every bin of a marginal but 1 %. The tables of docs/paper.md are printed by
 //!
 //!     cargo test --release --test agreement -- --ignored --nocapture
 //!
-//! What is compared is what the sweeps ship: systems, cells and values are read from their files. The marginal of Dahl's friction
-//! state is compared over the bins on which its series is laid out, with as many modes as its steep edges take: many more than
-//! the densities of x and y do.
+//! What is compared is what the sweeps ship: systems, cells and values are read from their files. The marginal of
+//! Dahl's friction state is compared over the bins on which its series is laid out, with as many modes as its steep
+//! edges take: many more than the densities of x and y do.
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
@@ -149,8 +149,8 @@ const BINS_OF_A_SERIES: usize = 60;
 /// Bins with less are not compared: few independent visits stand behind them, and their errors are not normal.
 const LEAST_MASS: f64 = 1e-5;
 
-/// Bins are cells joined until they are as wide as this many equal ones would be. The cells beside a switching surface are far
-/// narrower than what trajectories resolve: a Heun step that crosses it is off by up to f_c dt.
+/// Bins are cells joined until they are as wide as this many equal ones would be. The cells beside a switching surface
+/// are far narrower than what trajectories resolve: a Heun step that crosses it is off by up to f_c dt.
 const EQUAL_BINS: f64 = 100.0;
 
 impl Agreement {
@@ -228,8 +228,8 @@ fn dot(first: &[f64], second: &[f64]) -> f64 {
     first.iter().zip(second).map(|(a, b)| a * b).sum()
 }
 
-/// n² over the sum of squared correlations: n for bins without correlation, 1 for bins that move as one. Replicates of G
-/// blocks correlate by chance with a mean square of 1/(G - 1), which is taken off.
+/// n² over the sum of squared correlations: n for bins without correlation, 1 for bins that move as one. Replicates of
+/// G blocks correlate by chance with a mean square of 1/(G - 1), which is taken off.
 fn independent_bins(deviations: &[&Vec<f64>]) -> f64 {
     let by_chance = 1.0 / (deviations[0].len() as f64 - 1.0);
     let mut squares = 0.0;
@@ -243,7 +243,8 @@ fn independent_bins(deviations: &[&Vec<f64>]) -> f64 {
     bins * bins / (bins + squares)
 }
 
-/// Compares all marginals at one value and prints a row each. Those of axes of modes are taken from `with_modes`, where given.
+/// Compares all marginals at one value and prints a row each. Those of axes of modes are taken from `with_modes`, where
+/// given.
 fn compare(
     example: &Example,
     with_modes: Option<&Example>,
@@ -315,8 +316,8 @@ fn pooled<'a>(found: impl IntoIterator<Item = &'a Agreement>) -> (usize, usize) 
     found.into_iter().fold((0, 0), add)
 }
 
-/// Runs all values of an example and pools all marginals. One bin in a hundred may be further off: the bins of a marginal vary by
-/// a few numbers only (its energy above all), so the share of a single one says little.
+/// Runs all values of an example and pools all marginals. One bin in a hundred may be further off: the bins of a
+/// marginal vary by a few numbers only (its energy above all), so the share of a single one says little.
 fn agrees_at_the_values_of_the_paper(
     example: &Example,
     with_modes: Option<&Example>,
@@ -353,10 +354,12 @@ fn dahl_at_the_four_values_of_the_paper() {
     agrees_at_the_values_of_the_paper(&shipped, Some(&with_modes), 11);
 }
 
-/// Modes with which the series of Dahl's friction state has converged to what trajectories can tell, see docs/accuracy.md.
+/// Modes with which the series of Dahl's friction state has converged to what trajectories can tell, see
+/// docs/accuracy.md.
 const MANY_MODES: [&str; 1] = ["cells.z.modes=96"];
 
-/// What fewer modes, and fewer cells along x and y, change of the density of the friction state, in total variation over its bins.
+/// What fewer modes, and fewer cells along x and y, change of the density of the friction state, in total variation
+/// over its bins.
 #[test]
 #[ignore = "minutes: prints a table of docs/accuracy.md; AT tries another alpha"]
 fn the_series_of_the_friction_state_over_modes_and_cells() {

@@ -265,3 +265,26 @@ fn the_citation_is_of_this_version() {
     let version = format!("\nversion: {}\n", env!("CARGO_PKG_VERSION"));
     assert!(citation.contains(&version), "{citation}");
 }
+
+#[test]
+fn comments_keep_to_120_characters() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut files = Vec::new();
+    for folder in ["src", "tests", "examples", "benches"] {
+        sources(&root.join(folder), &mut files);
+    }
+    let mut wrong = Vec::new();
+    for file in files {
+        let text = std::fs::read_to_string(&file).unwrap();
+        for (number, line) in text.lines().enumerate() {
+            // A word that long, such as an address, cannot be broken.
+            let mut words = line.split_whitespace();
+            let is_breakable = words.all(|word| word.chars().count() < 100);
+            let is_comment = line.trim_start().starts_with("//");
+            if is_comment && is_breakable && line.chars().count() > 120 {
+                wrong.push(format!("{}:{}", file.display(), number + 1));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

@@ -1,6 +1,5 @@
-//! Dahl's oscillator on 50 × 50 cells with modes, against a solve on four times as many cells along x and three times as many along
-//! y, in a wider Ω and with more modes; and the density of its friction state
-//! with many of them.
+//! Dahl's oscillator on 50 × 50 cells with modes, against a solve on four times as many cells along x and three times
+//! as many along y, in a wider Ω and with more modes; and the density of its friction state with many of them.
 
 #![allow(
     clippy::unwrap_used,
@@ -16,8 +15,8 @@ use pbif::space::{Axis, CellSpace};
 use pbif::stationary::generator::{RateOptions, RateSolver};
 use pbif::system::{Family, Path, registry};
 
-/// α, then E[x²], E[y²], E[z²] and E[xz] on 200 × 160 cells × 10 modes of [-3, 3] × [-3.2, 3.2], y graded to 0.02. 140 × 140 cells
-/// differ from it by at most 1e-5.
+/// α, then E[x²], E[y²], E[z²] and E[xz] on 200 × 160 cells × 10 modes of [-3, 3] × [-3.2, 3.2], y graded to 0.02.
+/// 140 × 140 cells differ from it by at most 1e-5.
 const REFERENCE: [(f64, [f64; 4]); 4] = [
     (0.5, [0.238006, 0.268425, 0.151582, 0.170613]),
     (0.0, [0.313413, 0.235196, 0.184442, 0.207603]),

@@ -106,7 +106,8 @@ pub enum Finding {
         /// Where the surface is.
         at: f64,
     },
-    /// The same of a surface across which the drift jumps along a noisy axis: the kink of the density lies inside cells.
+    /// The same of a surface across which the drift jumps along a noisy axis: the kink of the density lies inside
+    /// cells.
     JumpInsideCells {
         /// The axis across the surface.
         axis: usize,

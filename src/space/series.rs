@@ -9,8 +9,8 @@
 //! The weights also tell cells around the nodes: by the theorem of Chebyshev, Markov and Stieltjes the sums of the
 //! first weights separate the nodes.
 
-/// Largest number of modes of an axis: nodes are found by Newton's method to rounding up to there, and the steepest density of
-/// a friction state that was met needs fewer.
+/// Largest number of modes of an axis: nodes are found by Newton's method to rounding up to there, and the steepest
+/// density of a friction state that was met needs fewer.
 pub const MOST_MODES: usize = 128;
 
 /// What carries the density along an axis in place of cells.

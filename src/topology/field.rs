@@ -1,8 +1,9 @@
 //! The density between the cells: value and derivatives at any point, from the averages over the cells around it.
 //!
-//! A polynomial of high order along each axis, its window moved inward at the ends of the ranges and kept on one side of
-//! planes on which a derivative jumps. Two levels, of eight and of six cells; what they differ by is the error of the reconstruction.
-//! Derivatives are in units of the ranges of the axes, so that curvatures along different axes can be compared.
+//! A polynomial of high order along each axis, its window moved inward at the ends of the ranges and kept on one side
+//! of planes on which a derivative jumps. Two levels, of eight and of six cells; what they differ by is the error of
+//! the reconstruction. Derivatives are in units of the ranges of the axes, so that curvatures along different axes can
+//! be compared.
 
 use std::ops::Range;
 
@@ -97,8 +98,8 @@ impl<'a> Field<'a> {
         axis.width(cell) / self.unit(k)
     }
 
-    /// The stencil of a point inside the ranges. Where a plane with a jump of the derivative passes through the point, the side
-    /// above it is taken.
+    /// The stencil of a point inside the ranges. Where a plane with a jump of the derivative passes through the point,
+    /// the side above it is taken.
     pub(super) fn stencil(&self, at: &[f64], level: usize) -> Option<Stencil> {
         let axes = self.axes();
         let mut lines = Vec::with_capacity(axes.len());
@@ -168,7 +169,8 @@ impl<'a> Field<'a> {
         let planes: Vec<&Kink> = on_axis.collect();
         let (mut low, mut high) = between(axis, at, &planes);
         if high < low + FEWEST {
-            // Across a bend polynomials err less than across a jump: of bends that lie too close only the nearest is kept, where it leaves room, else none.
+            // Across a bend polynomials err less than across a jump: of bends that lie too close only the nearest is
+            // kept, where it leaves room, else none.
             let (bends, jumps): (Vec<&Kink>, Vec<&Kink>) =
                 planes.into_iter().partition(|kink| kink.is_bend());
             let distance = |kink: &Kink| (kink.at - at).abs();
@@ -207,7 +209,8 @@ fn between(axis: &Axis, at: f64, planes: &[&Kink]) -> (usize, usize) {
     (low, high)
 }
 
-/// Where the cells wholly below a plane end, and where those wholly above it begin: a cell that the plane cuts belongs to neither side.
+/// Where the cells wholly below a plane end, and where those wholly above it begin: a cell that the plane cuts belongs
+/// to neither side.
 pub(super) fn sides(axis: &Axis, plane: f64) -> Option<(usize, usize)> {
     match axis.face_at(plane) {
         Some(face) => Some((face, face)),

@@ -63,8 +63,8 @@ pub enum FeatureKind {
     Valley,
     /// A local minimum enclosed by a ridge (two dimensions only).
     Crater,
-    /// A maximum along a closed curve, of constant height within the density's error (two dimensions only); its place is one
-    /// point of the curve.
+    /// A maximum along a closed curve, of constant height within the density's error (two dimensions only); its place
+    /// is one point of the curve.
     Ring,
 }
 
@@ -97,19 +97,19 @@ pub struct Feature {
     pub significance: f64,
     /// Whether it is there.
     pub verdict: Verdict,
-    /// The saddle where it merges with another; of a ring a point inside. `None` for the highest peak and for valleys. Where extrema follow from
-    /// the equations, the higher of the valleys beside a peak.
+    /// The saddle where it merges with another; of a ring a point inside. `None` for the highest peak and for valleys.
+    /// Where extrema follow from the equations, the higher of the valleys beside a peak.
     pub partner: Option<Vec<f64>>,
 }
 
 /// The detector's findings on one density.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Detection {
-    /// Counts of the features whose verdict is `Present`, corrected by the indicators at a centre of symmetry, and what lies
-    /// within what.
+    /// Counts of the features whose verdict is `Present`, corrected by the indicators at a centre of symmetry, and what
+    /// lies within what.
     pub signature: Signature,
-    /// Whether all that the signature counts was seen. Where an indicator proves a bottom at the centre and the cells do not show the rim
-    /// around it, nobody knows whether that has peaks.
+    /// Whether all that the signature counts was seen. Where an indicator proves a bottom at the centre and the cells
+    /// do not show the rim around it, nobody knows whether that has peaks.
     pub is_seen: bool,
     /// Indicators at the centre of symmetry; empty without one.
     pub indicators: Vec<Indicator>,
@@ -148,8 +148,8 @@ pub trait Detector: Send + Sync {
         None
     }
 
-    /// Places of a marginal where a pair of peak and valley may be about to come or go, or on a ray from the centre of a joint density where a ring and a
-    /// moat may; none where the detector knows of none.
+    /// Places of a marginal where a pair of peak and valley may be about to come or go, or on a ray from the centre of
+    /// a joint density where a ring and a moat may; none where the detector knows of none.
     fn flanks(&self, density: &EstimatedDensity) -> Vec<Flank> {
         let _ = density;
         Vec::new()

@@ -28,8 +28,8 @@ pub(in crate::method) fn rough_masses(
     (whole.is_finite() && whole > 0.0).then(|| sizes.iter().map(|size| size / whole).collect())
 }
 
-/// Unknowns up to which a relaxation time is worked out on the cells themselves, and the same where axes have modes, whose fronts
-/// are larger.
+/// Unknowns up to which a relaxation time is worked out on the cells themselves, and the same where axes have modes,
+/// whose fronts are larger.
 const FEW: usize = 20_000;
 const FEW_WITH_MODES: usize = 8000;
 
@@ -37,8 +37,9 @@ const FEW_WITH_MODES: usize = 8000;
 const LEAST_MODES: usize = 3;
 const MOST_MODES: usize = 8;
 
-/// Time in which deviations from the steady state die out, on half as many cells an axis, with half as many modes, eight at most: many
-/// times as fast as on all of them. `None` where all of them are few enough, or half of them have no steady state to show.
+/// Time in which deviations from the steady state die out, on half as many cells an axis, with half as many modes,
+/// eight at most: many times as fast as on all of them. `None` where all of them are few enough, or half of them have
+/// no steady state to show.
 pub(super) fn rough_relaxation(
     source: &GeneratorSource,
     value: f64,

@@ -1,5 +1,5 @@
-//! Coordinates without noise that relax linearly, found in the formulas: v' = g - λ v, where g does not depend on v, and
-//! λ on parameters only. Hermite modes can carry them.
+//! Coordinates without noise that relax linearly, found in the formulas: v' = g - λ v, where g does not depend on v,
+//! and λ on parameters only. Hermite modes can carry them.
 
 use crate::formula::graph::{Expression, Graph, Symbol, TooLarge};
 

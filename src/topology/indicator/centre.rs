@@ -41,7 +41,8 @@ pub(crate) fn at_centre(estimated: &EstimatedDensity) -> Vec<Indicator> {
 /// Cells on either side of the centre among which none may be negative.
 const ABOUT: usize = 4;
 
-/// Whether a cell about the centre of a density without noise is negative: what is read there is a wiggle of the scheme.
+/// Whether a cell about the centre of a density without noise is negative: what is read there is a wiggle of the
+/// scheme.
 fn is_negative_about(estimated: &EstimatedDensity, centre: &[f64]) -> bool {
     let axes = &estimated.density.axes;
     let near = |k: usize| -> Option<std::ops::Range<usize>> {
@@ -223,8 +224,8 @@ pub(crate) struct Found<'a> {
     pub(crate) rings_around_centre: usize,
 }
 
-/// The signature that persistence found, corrected by the type of the centre where that is beyond doubt. Peaks, unlike rings, come in pairs
-/// about the centre.
+/// The signature that persistence found, corrected by the type of the centre where that is beyond doubt. Peaks, unlike
+/// rings, come in pairs about the centre.
 pub(crate) fn corrected(
     estimated: &EstimatedDensity,
     indicators: &[Indicator],

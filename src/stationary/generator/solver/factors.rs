@@ -14,8 +14,8 @@ use crate::stationary::generator::{RateError, RateMethod, narrowing};
 /// within a third: iterations are bound by memory, factorisations by arithmetic the larger they are.
 const RENEWAL: (f64, f64) = (12.0, 0.027);
 
-/// Iterations of a cold solve with factors mode by mode that tell that they do not suit an equation: laws whose rate is a
-/// polynomial of the first degree take 10 to 45 (`docs/accuracy.md`).
+/// Iterations of a cold solve with factors mode by mode that tell that they do not suit an equation: laws whose rate is
+/// a polynomial of the first degree take 10 to 45 (`docs/accuracy.md`).
 const PATIENCE: usize = 90;
 
 impl DirectSolver {
@@ -44,7 +44,8 @@ impl DirectSolver {
         Ok(())
     }
 
-    /// Takes the plan to fall back to when factors mode by mode, or single precision, did not converge; later solves keep it.
+    /// Takes the plan to fall back to when factors mode by mode, or single precision, did not converge; later solves
+    /// keep it.
     pub(super) fn fall_back(&mut self, plan: &Estimate) -> Option<Estimate> {
         let next = self.more_demanding(plan)?;
         if let Some((_, plan)) = &mut self.plan {
