@@ -1,5 +1,6 @@
 //! What a density looks like: its significant peaks and craters, and the signature they make.
 
+#[cfg(feature = "figures")] // figures draw densities between their cells
 mod between;
 mod candidate;
 mod critical;
@@ -15,6 +16,7 @@ mod reconstruction;
 mod refine;
 mod ridge;
 mod rim;
+#[cfg(feature = "figures")]
 mod shape;
 mod signature;
 mod significance;
@@ -27,6 +29,7 @@ mod calibration_tests;
 #[cfg(test)]
 mod invariance_tests;
 
+#[cfg(feature = "figures")]
 pub(crate) use between::Between;
 pub use detector::PersistenceDetector;
 pub use indicator::{Flank, Indicator, IndicatorKind};
