@@ -8,9 +8,10 @@
 //! crater. By Alexander duality these craters are the holes of the superlevel sets, provided that superlevel sets are
 //! 8-connected and sublevel sets 4-connected: else a diagonal pair would both join and separate.
 //!
-//! Ties need no care: components of equal birth die with the same persistence whichever is taken for the
-//! elder, and a plateau makes components of persistence zero, which are dropped. Hence mirroring or
-//! transposing the grid leaves the persistences as they are, to the last bit.
+//! Of components that are born equally high the one that the level reaches first is the elder: the highest peak, which
+//! is named apart, must not die too. Persistences are the same whichever is, and a plateau makes components of
+//! persistence zero, which are dropped. Hence mirroring or transposing the grid leaves the persistences as they are, to
+//! the last bit.
 
 /// A component of the superlevel (sublevel) sets.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -158,6 +159,19 @@ impl<'a> Forest<'a> {
         on(row, down, self.grid.rows) && on(column, right, self.grid.columns)
     }
 
+    /// Whether the level reaches a cell before another one, the outside before all. Heights over where they meet would
+    /// not tell: values that differ in the last bit may have the same.
+    fn is_reached_before(&self, one: u32, other: u32) -> bool {
+        let outside = self.grid.values.len() as u32;
+        if one == outside || other == outside {
+            return one == outside;
+        }
+        let [here, there] = [one, other].map(|cell| self.grid.values[cell as usize]);
+        let is_before = there.total_cmp(&here).then(one.cmp(&other)).is_lt();
+        // Craters are reached from below.
+        is_before != self.outside_joined
+    }
+
     /// Joins two trees at a cell and returns the root of both; the younger one dies.
     fn join(&mut self, cell: u32, root: u32, other: u32, deaths: &mut Vec<Component>) -> u32 {
         if root == UNREACHED || root == other {
@@ -172,10 +186,9 @@ impl<'a> Forest<'a> {
                 (values[root as usize] - values[cell as usize]).abs()
             }
         };
-        let (elder, younger) = if age(other) > age(root) {
-            (other, root)
-        } else {
-            (root, other)
+        let (elder, younger) = match self.is_reached_before(other, root) {
+            true => (other, root),
+            false => (root, other),
         };
         self.parent[younger as usize] = elder;
         if age(younger) > 0.0 {
@@ -193,6 +206,45 @@ impl<'a> Forest<'a> {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn of_peaks_as_high_as_each_other_each_is_found_once() {
+        // Heights over the valley are equal to the last bit for values that are not, and for those that are; either
+        // peak may be the first neighbour of the cell where they meet.
+        let next = f64::from_bits(0.495_5_f64.to_bits() + 1);
+        for bits in 0..40 {
+            let valley = f64::from_bits(0.243_9_f64.to_bits() + bits);
+            for [left, right] in [[0.495_5, next], [next, 0.495_5], [next, next]] {
+                let row = [0.1, left, valley, valley, right, 0.1];
+                for (rows, columns) in [(1, 6), (6, 1)] {
+                    let grid = Grid {
+                        rows,
+                        columns,
+                        values: &row,
+                    };
+                    let mut births: Vec<usize> =
+                        components(grid).0.iter().map(|one| one.birth).collect();
+                    births.sort_unstable();
+                    assert_eq!(births, [1, 4], "{left} {valley} {right}");
+                }
+            }
+        }
+        // Two peaks that meet at a cell which sees the later one first.
+        let values = [
+            0.0, 0.0, 0.0, 0.0, //
+            0.0, 0.2, 0.4, 0.9, //
+            0.0, 0.9, 0.4, 0.2, //
+            0.0, 0.0, 0.0, 0.0,
+        ];
+        let grid = Grid {
+            rows: 4,
+            columns: 4,
+            values: &values,
+        };
+        let mut births: Vec<usize> = components(grid).0.iter().map(|one| one.birth).collect();
+        births.sort_unstable();
+        assert_eq!(births, [7, 9]);
+    }
 
     /// Connected regions of the marked cells of a grid, by flooding.
     fn regions(marked: &[bool], columns: usize, steps: &[(isize, isize)]) -> usize {
