@@ -280,7 +280,9 @@ fn comments_keep_to_120_characters() {
             // A word that long, such as an address, cannot be broken.
             let mut words = line.split_whitespace();
             let is_breakable = words.all(|word| word.chars().count() < 100);
-            let is_comment = line.trim_start().starts_with("//");
+            // Neither can a row of a table.
+            let said = line.trim_start().trim_start_matches(['/', '!']);
+            let is_comment = line.trim_start().starts_with("//") && !said.starts_with(" |");
             if is_comment && is_breakable && line.chars().count() > 120 {
                 wrong.push(format!("{}:{}", file.display(), number + 1));
             }

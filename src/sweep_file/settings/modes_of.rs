@@ -53,7 +53,9 @@ impl ModesOf {
     ) -> bool {
         let is_typed = along.is_some_and(|along| along.family.model().typed().is_some());
         let fit = !is_typed || self != Self::Bounded;
-        described.by_modes && fit && !is_in_formulas(draft, &described.name)
+        // Of the states of built-in models cells show too little: what needs them is refused, with the remedy.
+        let needs_cells = self == Self::Relaxing && is_in_formulas(draft, &described.name);
+        described.by_modes && fit && !needs_cells
     }
 }
 
