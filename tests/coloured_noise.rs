@@ -5,6 +5,9 @@
     reason = "a test that cannot be set up should stop"
 )]
 
+#[path = "common/steady.rs"]
+mod steady;
+
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
@@ -13,34 +16,18 @@ use pbif::continuation::{BifurcationStatus, Finding};
 use pbif::density::{Density, Observable, Projection, total_variation};
 use pbif::generator::{AdvectiveScheme, GeneratorOptions, assemble, cell_masses};
 use pbif::space::{Axis, CellSpace};
-use pbif::stationary::generator::{RateOptions, RateSolver};
 use pbif::sweep_file::SweepFile;
 use pbif::system::{LANES, Lanes, Model, NoiseKind, System, TypedModel, registry};
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256Plus;
 use rand_xoshiro::rand_core::SeedableRng;
+use steady::solve;
 
 const OU: NoiseKind = NoiseKind::OrnsteinUhlenbeck;
 
 fn coloured(name: &str, given: &[(&str, f64)]) -> Arc<dyn System> {
     let model = Model::with_coloured_noise(&registry::find(name).unwrap(), OU).unwrap();
     model.system_with(given).unwrap()
-}
-
-/// Unknowns at the nodes, Σ = 1.
-fn solve(system: &dyn System, space: &CellSpace, scheme: AdvectiveScheme) -> Vec<f64> {
-    let generator = assemble(system, space, &GeneratorOptions { scheme }).unwrap();
-    let options = RateOptions {
-        tolerance: 1e-12,
-        ..RateOptions::default()
-    };
-    let mut solver = RateSolver::new(space.clone(), options);
-    let steady = solver
-        .solve(&generator.matrix, &generator.escape, None)
-        .unwrap();
-    assert!(steady.info.converged);
-    let total: f64 = steady.mass.iter().sum();
-    steady.mass.iter().map(|unknown| unknown / total).collect()
 }
 
 /// Mean of a function of the state.
