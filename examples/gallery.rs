@@ -14,7 +14,7 @@ use pbif::sweep_file::{StartingFile, SweepFile, starting_files};
 
 const BEGINNING: &str = "# Gallery\n\n\
     Systems from the literature as sweep files, in `sweeps/gallery/`. Each is a starting file too: `pbif new mine.toml --like NAME` writes a copy\n\
-    to change. Values that are known exactly, and densities against exact ones or free trajectories, are checked in `tests/gallery.rs`.\n\
+    to change. Values that are known exactly, and densities against exact ones or free trajectories, are checked in `tests/truth/gallery.rs`.\n\
     This page is written by `cargo run --release --example gallery`.\n";
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -4,7 +4,7 @@ use pbif::cancellation::Cancellation;
 use pbif::continuation::LabelledPoint;
 use pbif::continuation::curve::{CurveOptions, CurveStart, CurveTree, Plane, follow_all};
 
-use crate::sweeps::prepared;
+use super::sweeps::prepared;
 
 /// What a curve needs of the sweep it starts from: the first row that `is_start` takes, and the value at which the
 /// sweep holds the second parameter.

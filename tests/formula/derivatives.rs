@@ -1,5 +1,4 @@
 //! Derivatives of random formulas against differences of values, away from kinks and jumps.
-#![allow(clippy::unwrap_used)]
 
 use crate::support::PARAMETER_VALUES;
 use crate::support::random::Random;

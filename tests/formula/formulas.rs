@@ -1,6 +1,5 @@
 //! 10 000 random and damaged formulas against an independent reader and evaluators: no panic, equal values in every
 //! bit, texts that read back to the same expression.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::support::evaluate::{bounded, exact};
 use crate::support::random::Random;

@@ -1,5 +1,4 @@
 //! What nobody writes in good faith: everything ends quickly with a value or a message, on a small stack.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use pbif::formula::LANES;
 use pbif::formula::analysis::{Domain, Interval};

@@ -1,6 +1,12 @@
-//! The language of formulas against an independent reader, independent evaluators, and differences.
+//! The language of formulas against an independent reader, independent evaluators and differences, and models made of
+//! formulas.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 mod derivatives;
+mod equations;
 mod formulas;
 mod hostile;
 mod support;
+mod twins;
+mod typed;

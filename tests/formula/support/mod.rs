@@ -1,5 +1,4 @@
 //! An independent reader and evaluators of formulas, and random formulas.
-#![allow(clippy::unwrap_used)]
 
 pub(crate) mod evaluate;
 pub(crate) mod random;

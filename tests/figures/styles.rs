@@ -1,0 +1,270 @@
+//! Figures in every style: as wide as asked for, nothing cut off, no two texts on each other; PDF with its text and its
+//! fonts.
+
+use std::sync::{Arc, OnceLock};
+
+use proptest::prelude::*;
+use resvg::usvg::{self, fontdb};
+
+use pbif::continuation::{LabelledPoint, PointType, SweepResult};
+use pbif::figure::{
+    ColourMap, Figure, FigureStyle, FigureWidth, Figures, Ground, Typeface, matches_figure,
+};
+
+use crate::common::closed_forms::{bistable, rayleigh, uniform};
+
+const TITLE: &str = "Duffing oscillator with Coulomb friction, sweep of the friction level";
+
+fn drawn(result: &SweepResult, style: &FigureStyle) -> Vec<Figure> {
+    let figures = Figures::of_sweep(result, TITLE, &[-0.5, 0.25, 1.0]);
+    figures.with_style(style).draw_all().unwrap()
+}
+
+/// A figure read back with the fonts it was laid out with.
+fn tree(svg: &str) -> usvg::Tree {
+    static FONTS: OnceLock<Arc<fontdb::Database>> = OnceLock::new();
+    let fonts = FONTS.get_or_init(|| {
+        let mut fonts = fontdb::Database::new();
+        let faces = [
+            dejavu::sans::regular(),
+            dejavu::sans::oblique(),
+            dejavu::sans::bold(),
+            dejavu::serif::regular(),
+            dejavu::serif::italic(),
+            dejavu::serif::bold(),
+        ];
+        for face in faces {
+            fonts.load_font_data(face.to_vec());
+        }
+        Arc::new(fonts)
+    });
+    let options = usvg::Options {
+        fontdb: Arc::clone(fonts),
+        ..usvg::Options::default()
+    };
+    usvg::Tree::from_str(svg, &options).unwrap()
+}
+
+/// The texts of a figure with their boxes, in lengths of 1/96 inch.
+fn texts(tree: &usvg::Tree) -> Vec<(String, usvg::Rect)> {
+    fn gather(group: &usvg::Group, found: &mut Vec<(String, usvg::Rect)>) {
+        for node in group.children() {
+            match node {
+                usvg::Node::Group(group) => gather(group, found),
+                usvg::Node::Text(text) => {
+                    let letters = text.chunks().iter().map(usvg::TextChunk::text);
+                    found.push((letters.collect(), text.abs_bounding_box()));
+                }
+                _ => {}
+            }
+        }
+    }
+    let mut found = Vec::new();
+    gather(tree.root(), &mut found);
+    found
+}
+
+/// No text leaves the page or touches another. Boxes reach from the lowest to the highest place of any letter of the
+/// font: half of what they overlap in height is air.
+fn assert_readable(figure: &Figure, style: &FigureStyle) {
+    let tree = tree(figure.svg());
+    let texts = texts(&tree);
+    let unit = style.text_points() as f32 / 10.5;
+    let (name, page) = (&figure.name, tree.size());
+    assert!(!texts.is_empty(), "{name} has no text");
+    for (number, (text, one)) in texts.iter().enumerate() {
+        let inside = one.left() > -0.5 && one.right() < page.width() + 0.5;
+        assert!(
+            inside && one.top() > -0.5 && one.bottom() < page.height() + 0.5,
+            "{name}: `{text}` leaves the page of {page:?}: {one:?} in {style:?}"
+        );
+        for (other_text, other) in &texts[..number] {
+            let across = one.right().min(other.right()) - one.left().max(other.left());
+            let down = one.bottom().min(other.bottom()) - one.top().max(other.top());
+            assert!(
+                across < unit || down < 6.0 * unit,
+                "{name}: `{text}` on `{other_text}`, {across} by {down} in {style:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn every_figure_reads_in_every_named_width() {
+    let (bistable, rayleigh) = (bistable(), rayleigh(("coulomb", "f_c"), 1.0, &uniform()));
+    for (number, width) in FigureWidth::NAMED.into_iter().enumerate() {
+        let style = FigureStyle {
+            width,
+            font: Typeface::ALL[number % 2],
+            ground: Ground::ALL[number / 2 % 2],
+            colours: ColourMap::ALL[number % 4],
+            ..FigureStyle::default()
+        };
+        for result in [&bistable, &rayleigh] {
+            for figure in drawn(result, &style) {
+                assert_readable(&figure, &style);
+                if let Some(width) = width.millimetres() {
+                    let given = f64::from(tree(figure.svg()).size().width()) * 25.4 / 96.0;
+                    // A canvas counts in twentieths of a figure pixel.
+                    assert!((given - width).abs() < 0.05, "{}: {given}", figure.name);
+                }
+            }
+        }
+    }
+}
+
+/// Gives a sweep so many labelled changes, close to each other where there are many, of its observables by turns.
+fn with_labels(result: &mut SweepResult, count: usize) {
+    let Some(row) = result
+        .labels
+        .iter()
+        .find(|row| row.kind == PointType::Bifurcation)
+        .cloned()
+    else {
+        return;
+    };
+    let (from, to) = (
+        result.points[0].value,
+        result.points[result.points.len() - 1].value,
+    );
+    result
+        .labels
+        .retain(|row| row.kind != PointType::Bifurcation);
+    result.labels.extend((0..count).map(|number| {
+        let value = from + (to - from) * (number as f64 / count as f64).powi(3);
+        let observables = &result.subject.observables;
+        LabelledPoint {
+            label: format!("PB{}", number + 1),
+            value,
+            lower: value,
+            upper: value,
+            observable: Some(observables[number % observables.len()]),
+            ..row.clone()
+        }
+    }));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 6, ..ProptestConfig::default() })]
+
+    #[test]
+    fn figures_read_at_any_size(width in 60.0..400.0f64, share in 0.0..1.0f64, scale in -3.0..3.0f64, count in 0..14usize) {
+        // Text from the smallest allowed to the largest that has room.
+        let largest = FigureStyle { text: Some(1.0), ..FigureStyle::default() };
+        let most = (width / largest.widths().0).min(40.0);
+        let style = FigureStyle {
+            width: FigureWidth::Millimetres(width),
+            text: Some(4.0 + share * (most - 4.0).max(0.0) * 0.999),
+            ..FigureStyle::default()
+        };
+        if style.has_room() {
+            let spread = 10f64.powf(scale);
+            let mut result = rayleigh(("rayleigh", "a"), spread, &uniform());
+            with_labels(&mut result, count);
+            for figure in drawn(&result, &style) {
+                assert_readable(&figure, &style);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_pdf_has_the_size_its_fonts_and_is_the_same_each_time() {
+    let style = FigureStyle {
+        width: FigureWidth::Single,
+        ..FigureStyle::default()
+    };
+    let result = rayleigh(("rayleigh", "a"), 1.0, &uniform());
+    for figure in drawn(&result, &style) {
+        if !["diagram_x", "surface_xy", "marginals"]
+            .iter()
+            .any(|word| matches_figure(word, &figure.name))
+        {
+            continue;
+        }
+        let pdf = figure.pdf().unwrap();
+        assert_eq!(pdf, figure.pdf().unwrap());
+        assert!(pdf.starts_with(b"%PDF-") && pdf.len() < 1_000_000);
+        let text = String::from_utf8_lossy(&pdf);
+        assert!(
+            text.contains("DejaVuSans") && text.contains("/FontFile2"),
+            "{}",
+            figure.name
+        );
+        let size = text.split("/MediaBox").nth(1).unwrap();
+        let numbers: Vec<f64> = size
+            .split(|c: char| !(c.is_ascii_digit() || c == '.'))
+            .filter_map(|number| number.parse().ok())
+            .take(4)
+            .collect();
+        assert!(
+            (numbers[2] / 72.0 * 25.4 - 84.0).abs() < 0.05,
+            "{numbers:?}"
+        );
+    }
+}
+
+#[test]
+fn the_text_of_a_pdf_is_found() {
+    if std::process::Command::new("pdftotext")
+        .arg("-v")
+        .output()
+        .is_err()
+    {
+        eprintln!("skipped: pdftotext (of poppler-utils) is not installed");
+        return;
+    }
+    let style = FigureStyle {
+        width: FigureWidth::Double,
+        ..FigureStyle::default()
+    };
+    let result = rayleigh(("rayleigh", "a"), 1.0, &uniform());
+    let folder = tempfile::tempdir().unwrap();
+    for (figure, words) in [
+        ("diagram_x", ["peak", "valley"]),
+        ("marginals", ["p(x)", "p(ẋ)"]),
+        ("surface_xy", ["p(x, ẋ)", "x"]),
+    ] {
+        let drawn = drawn(&result, &style);
+        let one = drawn
+            .iter()
+            .find(|one| matches_figure(figure, &one.name))
+            .unwrap();
+        let file = folder.path().join("figure.pdf");
+        std::fs::write(&file, one.pdf().unwrap()).unwrap();
+        let output = std::process::Command::new("pdftotext")
+            .arg(&file)
+            .arg("-")
+            .output();
+        let text = String::from_utf8(output.unwrap().stdout).unwrap();
+        // Letters come composed or not, and lines where the reader puts them.
+        let plain = |text: &str| {
+            text.replace("x\u{307}", "ẋ")
+                .split_whitespace()
+                .collect::<String>()
+        };
+        for word in words {
+            assert!(
+                plain(&text).contains(&plain(word)),
+                "{figure}: no `{word}` in {text:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_png_says_its_resolution() {
+    let style = FigureStyle {
+        width: FigureWidth::Single,
+        dpi: 150.0,
+        ..FigureStyle::default()
+    };
+    let figures = drawn(&bistable(), &style);
+    let png = figures[0].png().unwrap();
+    let reader = png::Decoder::new(std::io::Cursor::new(&png))
+        .read_info()
+        .unwrap();
+    let dimensions = reader.info().pixel_dims.unwrap();
+    assert_eq!(dimensions.xppu, (150.0f64 / 0.0254).round() as u32);
+    assert_eq!(reader.info().width, (84.0f64 / 25.4 * 150.0).round() as u32);
+}

@@ -1,0 +1,431 @@
+//! Models made of typed equations: twins of built-in ones, both readings of multiplicative noise, and what is refused.
+
+use std::sync::Arc;
+
+use pbif::formula::language::Fault;
+use pbif::generator::{GeneratorOptions, assemble, cell_masses};
+use pbif::space::{Axis, CellSpace};
+use pbif::stationary::generator::{RateMethod, RateOptions, RateSolver};
+use pbif::system::{
+    FormulaPlace, Interpretation, Model, ParameterDescription, ParameterRange, System, TypedModel,
+    TypedModelError, contract, registry,
+};
+
+/// A model as text that stands for a built-in one: its axes and parameters.
+fn like(twin: &Model) -> TypedModel {
+    TypedModel::new(
+        format!("typed_{}", twin.name),
+        twin.title.as_str(),
+        twin.axes.clone(),
+    )
+    .with_parameters(twin.parameters.clone())
+}
+
+fn oscillator(twin: &Model, friction: &str) -> TypedModel {
+    let force = format!("-kappa y - x (alpha + mu x^2) - {friction}");
+    like(twin)
+        .with_equation("x", "y")
+        .with_equation("y", force)
+        .with_noise("y", ["sqrt(sigma2)"])
+}
+
+/// A built-in model, its twin as text, values, and half-widths and counts of a small grid.
+struct Twins {
+    built_in: Arc<Model>,
+    typed: Arc<Model>,
+    values: Vec<(&'static str, f64)>,
+    grid: Vec<(f64, usize)>,
+}
+
+fn twins() -> [Twins; 3] {
+    let coulomb = registry::find("coulomb").unwrap();
+    let dahl = registry::find("dahl").unwrap();
+    let bistable = registry::find("bistable").unwrap();
+    [
+        Twins {
+            typed: oscillator(&coulomb, "f_c sign(y)").build().unwrap(),
+            built_in: coulomb,
+            values: vec![("kappa", 0.2), ("mu", 0.3), ("f_c", 0.15), ("sigma2", 0.2)],
+            grid: vec![(2.5, 30); 2],
+        },
+        Twins {
+            typed: oscillator(&dahl, "λ z")
+                .with_equation("z", "y - slip abs(y) z")
+                .with_definition("slip", "lambda/f_c")
+                .with_bounds("z", "-f_c/lambda", "f_c/lambda")
+                .build()
+                .unwrap(),
+            built_in: dahl,
+            values: vec![
+                ("kappa", 0.3),
+                ("mu", 0.3),
+                ("lambda", 0.5),
+                ("f_c", 0.25),
+                ("sigma2", 0.2),
+            ],
+            grid: vec![(2.5, 16), (2.5, 16), (0.5, 10)],
+        },
+        Twins {
+            typed: like(&bistable)
+                .with_equation("x", "a x - x³")
+                .with_noise("x", ["sqrt(sigma2)"])
+                .build()
+                .unwrap(),
+            built_in: bistable,
+            values: vec![("a", 0.7), ("sigma2", 0.5)],
+            grid: vec![(2.5, 100)],
+        },
+    ]
+}
+
+/// Numbers in [-1, 1), the same for every run.
+fn random() -> impl FnMut() -> f64 {
+    let mut state = 7_u64;
+    move || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+}
+
+/// Steady masses of the cells, Σ = 1.
+fn masses(system: &dyn System, grid: &[(f64, usize)]) -> Vec<f64> {
+    let axes = grid.iter();
+    let axes = axes.map(|&(half, count)| Axis::uniform(-half, half, count).unwrap());
+    let space = CellSpace::new(axes.collect()).unwrap();
+    let generator = assemble(system, &space, &GeneratorOptions::default()).unwrap();
+    let options = RateOptions {
+        method: Some(RateMethod::Lu),
+        tolerance: 1e-14,
+        ..RateOptions::default()
+    };
+    let mut solver = RateSolver::new(space.clone(), options);
+    let steady = solver.solve(&generator.matrix, &generator.escape, None);
+    cell_masses(system, &space, &steady.unwrap().mass)
+}
+
+fn total_variation(one: &[f64], other: &[f64]) -> f64 {
+    let pairs = one.iter().zip(other);
+    0.5 * pairs.map(|(a, b)| (a - b).abs()).sum::<f64>()
+}
+
+#[test]
+fn twins_have_the_same_drift_noise_and_declarations() {
+    let mut random = random();
+    for twins in twins() {
+        let name = &twins.typed.name;
+        let built_in = twins.built_in.system_with(&twins.values).unwrap();
+        let typed = twins.typed.system_with(&twins.values).unwrap();
+        for _ in 0..1000 {
+            let state: Vec<f64> = (0..built_in.dimension()).map(|_| 3.0 * random()).collect();
+            let drifts = built_in.drift_at(0.0, &state).into_iter();
+            for (expected, found) in drifts.zip(typed.drift_at(0.0, &state)) {
+                // A few roundings of terms that are at most about 10.
+                assert!((expected - found).abs() < 2e-14, "{name} at {state:?}");
+            }
+        }
+        assert_eq!(typed.noise_axes(), built_in.noise_axes(), "{name}");
+        assert_eq!(typed.additive_amplitude(0), built_in.additive_amplitude(0));
+        assert_eq!(typed.switching_surfaces(), built_in.switching_surfaces());
+        assert_eq!(typed.symmetry(), built_in.symmetry(), "{name}");
+        for axis in 0..built_in.dimension() {
+            assert_eq!(typed.bounds(axis), built_in.bounds(axis), "{name}");
+        }
+        let values = twins.typed.values(&twins.values).unwrap();
+        let ranges = vec![(-2.0, 2.0); built_in.dimension()];
+        assert_eq!(
+            contract::verify_model(&twins.typed, &values, &ranges),
+            Ok(())
+        );
+    }
+}
+
+#[test]
+fn twins_have_the_same_density() {
+    for twins in twins() {
+        let built_in = twins.built_in.system_with(&twins.values).unwrap();
+        let typed = twins.typed.system_with(&twins.values).unwrap();
+        let distance = total_variation(
+            &masses(&*built_in, &twins.grid),
+            &masses(&*typed, &twins.grid),
+        );
+        assert!(distance < 1e-12, "{}: {distance:e}", twins.typed.name);
+    }
+}
+
+/// dx = (x - x³) dt + (multiplicative and additive noise), read in one way.
+fn multiplicative(drift: &str, interpretation: Interpretation) -> Arc<dyn System> {
+    let model = TypedModel::new("multiplicative", "Multiplicative noise", ["x"])
+        .with_equation("x", drift)
+        .with_noise("x", ["s x", "0.5"])
+        .with_interpretation(interpretation)
+        .with_parameters([ParameterDescription::from("s").with_default(0.7)])
+        .build()
+        .unwrap();
+    let values = model.values(&[]).unwrap();
+    contract::verify_model(&model, &values, &[(-2.0, 2.0)]).unwrap();
+    model.system(&values)
+}
+
+#[test]
+fn the_readings_of_multiplicative_noise_differ_by_the_drift_correction_and_give_their_exact_densities()
+ {
+    let stratonovich = multiplicative("x - x^3", Interpretation::Stratonovich);
+    let corrected = multiplicative("x - x^3 + s^2 x/2", Interpretation::Ito);
+    let ito = multiplicative("x - x^3", Interpretation::Ito);
+    assert_eq!(stratonovich.additive_amplitude(0), None);
+    assert_eq!(stratonovich.additive_amplitude(1), Some(0.5));
+    assert!((stratonovich.amplitude_at(0, 0.0, &[2.0]) - 1.4).abs() < 1e-15);
+    for x in [-1.5, 0.3, 2.0] {
+        let difference = stratonovich.drift_at(0.0, &[x])[0] - ito.drift_at(0.0, &[x])[0];
+        assert!((difference - 0.245 * x).abs() < 1e-14);
+    }
+    let grid = [(3.5, 400)];
+    let found = masses(&*stratonovich, &grid);
+    let distance = total_variation(&found, &masses(&*corrected, &grid));
+    assert!(distance < 1e-12, "{distance:e}");
+    // With D = s²x² + 1/4: p ∝ D^(-θ) exp(∫ 2(x - x³)/D dx), θ = 1/2 for Stratonovich and 1 for Itô, where
+    // ∫ 2(x - x³)/D dx = (1/s² + 1/(4s⁴)) ln D - x²/s².
+    for (system, theta) in [(&stratonovich, 0.5), (&ito, 1.0)] {
+        let s2 = 0.49_f64;
+        let log_density = |x: f64| {
+            let intensity = s2 * x * x + 0.25;
+            (1.0 / s2 + 0.25 / (s2 * s2) - theta) * intensity.ln() - x * x / s2
+        };
+        let width = 7.0 / 400.0;
+        let centre = |cell: usize| -3.5 + (cell as f64 + 0.5) * width;
+        // Simpson's rule in each cell; its error is far below that of the grid.
+        let exact: Vec<f64> = (0..400)
+            .map(|cell| {
+                let density = |offset: f64| log_density(centre(cell) + offset * width).exp();
+                density(-0.5) + 4.0 * density(0.0) + density(0.5)
+            })
+            .collect();
+        let total: f64 = exact.iter().sum();
+        let exact: Vec<f64> = exact.iter().map(|mass| mass / total).collect();
+        let distance = total_variation(&masses(&**system, &grid), &exact);
+        assert!(distance < 1e-5, "{theta}: {distance:e}");
+    }
+}
+
+#[test]
+fn surfaces_and_symmetry_follow_the_parameters() {
+    let model = TypedModel::new("belt", "Friction on a moving belt", ["x", "y"])
+        .with_equation("x", "y")
+        .with_equation("y", "-x - k y - sign(y - v) + tilt + max(x^2 - gap, 0)")
+        .with_noise("y", ["1"])
+        .with_parameters(
+            ["k", "v", "tilt", "gap"]
+                .map(|name| ParameterDescription::from(name).with_default(0.0)),
+        )
+        .build()
+        .unwrap();
+    let surfaces = |values: &[(&str, f64)]| -> Vec<(usize, f64)> {
+        let system = model.system_with(values).unwrap();
+        let surfaces = system.switching_surfaces();
+        surfaces
+            .iter()
+            .map(|surface| (surface.axis, surface.at))
+            .collect()
+    };
+    let mut found = surfaces(&[("v", 0.3), ("gap", 4.0)]);
+    found.sort_by(|one, other| one.1.total_cmp(&other.1));
+    assert_eq!(found, [(0, -2.0), (1, 0.3), (0, 2.0)]);
+    // No plane where x² = -1.
+    assert_eq!(surfaces(&[("gap", -1.0)]), [(1, 0.0)]);
+    let plain = TypedModel::new("tilted", "Tilted", ["x"])
+        .with_equation("x", "tilt - x^3")
+        .with_noise("x", ["1"])
+        .with_parameters(["tilt"])
+        .build()
+        .unwrap();
+    let symmetry = |tilt| plain.system_with(&[("tilt", tilt)]).unwrap().symmetry();
+    assert!(symmetry(0.0).is_some() && symmetry(0.1).is_none());
+    // A bound on one side only.
+    let half = TypedModel::new("half", "Half", ["x"])
+        .with_equation("x", "-x")
+        .with_bounds("x", "-1", "2")
+        .build()
+        .unwrap();
+    assert_eq!(half.system_with(&[]).unwrap().symmetry(), None);
+}
+
+#[test]
+fn what_is_not_smooth_off_the_grid_is_named() {
+    let model = TypedModel::new("oblique", "Oblique", ["x", "y"])
+        .with_equation("x", "-abs(x + y)")
+        .with_equation("y", "-y")
+        .build()
+        .unwrap();
+    assert!(model.notes[0].contains("x + y = 0"), "{:?}", model.notes);
+    assert_eq!(model.equations[0], "x' = -abs(x + y)");
+}
+
+#[test]
+fn a_period_is_declared_and_kept() {
+    let forced = TypedModel::new("forced", "Forced", ["x"])
+        .with_equation("x", "-x + cos(ω t)")
+        .with_noise("x", ["0.5"])
+        .with_parameters([ParameterDescription::from("omega").within(ParameterRange::Positive)]);
+    let error = forced.clone().build().unwrap_err();
+    let place = FormulaPlace::Equation { axis: "x".into() };
+    assert_eq!(error, TypedModelError::TimeWithoutPeriod { place });
+    let model = forced.with_period("2 pi/omega").build().unwrap();
+    let values = model.values(&[("omega", 2.0)]).unwrap();
+    assert_eq!(model.system(&values).period(), Some(std::f64::consts::PI));
+    contract::verify_model(&model, &values, &[(-2.0, 2.0)]).unwrap();
+    assert_eq!(model.parameters[0].symbol, "ω");
+}
+
+/// x' = y, y' = -x with the parameter k, to be spoilt.
+fn sound() -> TypedModel {
+    TypedModel::new("sound", "Sound", ["x", "y"])
+        .with_equation("x", "y")
+        .with_parameters(["k"])
+}
+
+fn refused(model: TypedModel) -> TypedModelError {
+    model.build().unwrap_err()
+}
+
+fn refused_with(equation: &str) -> TypedModelError {
+    refused(sound().with_equation("y", equation))
+}
+
+#[test]
+fn a_fault_of_a_formula_is_shown_in_the_formula() {
+    let TypedModelError::Formula { place, text, error } = refused_with("-x + kk y") else {
+        panic!("another error")
+    };
+    let equation = FormulaPlace::Equation { axis: "y".into() };
+    assert_eq!((place, text.as_str()), (equation, "-x + kk y"));
+    assert_eq!(error.span, 5..7);
+    let message = refused_with("-x + kk y").to_string();
+    assert!(
+        message.contains("the equation of `y`:\n  -x + kk y\n       ^^"),
+        "{message}"
+    );
+    for (text, expected) in [
+        ("", Fault::Empty),
+        ("(x", Fault::Unclosed),
+        ("x < y < 1", Fault::Chained),
+    ] {
+        let error = refused_with(text);
+        let matches =
+            matches!(&error, TypedModelError::Formula { error, .. } if error.fault == expected);
+        assert!(matches, "{text}: {error}");
+    }
+    let long = refused_with(&"x + ".repeat(300_000));
+    let matches = matches!(&long, TypedModelError::Formula { error, .. } if matches!(error.fault, Fault::TooLong { .. }));
+    assert!(matches && long.to_string().len() < 500, "{long}");
+    let model = sound().with_equation("y", "a").with_definition("a", "2 +");
+    assert!(
+        refused(model)
+            .to_string()
+            .starts_with("the definition of `a`:\n  2 +")
+    );
+    let model = sound()
+        .with_equation("y", "a")
+        .with_definition("a", "b")
+        .with_definition("b", "a");
+    assert!(
+        refused(model)
+            .to_string()
+            .contains("it needs itself: a → b → a")
+    );
+}
+
+#[test]
+fn names_and_equations_that_do_not_fit_are_refused() {
+    let whole = || sound().with_equation("y", "-x");
+    assert!(whole().build().is_ok());
+    let named = |name: &str| refused(whole().with_parameters([name])).to_string();
+    assert!(named("x").contains("already a state"), "{}", named("x"));
+    assert!(named("sin").contains("a function") && named("2k").contains("not a name"));
+    let none: [&str; 0] = [];
+    assert_eq!(
+        refused(TypedModel::new("m", "m", none)),
+        TypedModelError::Axes { given: 0 }
+    );
+    let many = TypedModel::new("m", "m", ["a", "b", "c", "d", "f"]);
+    assert_eq!(refused(many), TypedModelError::Axes { given: 5 });
+    assert_eq!(
+        refused(sound()),
+        TypedModelError::MissingEquation { axis: "y".into() }
+    );
+    let doubled = refused(whole().with_equation("y", "x"));
+    let place = FormulaPlace::Equation { axis: "y".into() };
+    assert_eq!(doubled, TypedModelError::Doubled { place });
+    for model in [
+        whole().with_equation("z", "1"),
+        whole().with_noise("z", ["1"]),
+        whole().with_bounds("z", "0", "1"),
+    ] {
+        let error = refused(model);
+        assert!(
+            matches!(error, TypedModelError::UnknownAxis { .. }),
+            "{error}"
+        );
+        assert!(error.to_string().contains("its axes are x, y"), "{error}");
+    }
+    let state = refused(whole().with_bounds("x", "-1", "y"));
+    assert!(state.to_string().contains("contains `y`"), "{state}");
+    let default = ParameterDescription::from("c")
+        .with_default(-1.0)
+        .within(ParameterRange::Positive);
+    let default = refused(whole().with_parameters([default]));
+    assert!(
+        matches!(default, TypedModelError::Default { value: -1.0, .. }),
+        "{default}"
+    );
+}
+
+#[test]
+fn noise_that_no_method_can_take_is_refused() {
+    let whole = || sound().with_equation("y", "-x");
+    let shared = refused(whole().with_shared_noise([("x", "k"), ("y", "1")]));
+    let axes = vec!["`x`".to_owned(), "`y`".to_owned()];
+    assert_eq!(shared, TypedModelError::SharedNoise { process: 0, axes });
+    assert!(
+        shared.to_string().contains("noise 1 drives `x` and `y`"),
+        "{shared}"
+    );
+    // Zero on all axes but one is a noise of that axis.
+    let model = whole()
+        .with_shared_noise([("x", "0"), ("y", "1")])
+        .build()
+        .unwrap();
+    let system = model.system_with(&[("k", 1.0)]).unwrap();
+    assert_eq!(
+        (system.noise_axes(), system.additive_amplitude(0)),
+        (&[1][..], Some(1.0))
+    );
+    // Both readings agree while an amplitude does not depend on its own axis.
+    assert!(whole().with_noise("y", ["x"]).build().is_ok());
+    let unread = refused(whole().with_noise("y", ["y"]));
+    assert_eq!(unread, TypedModelError::Interpretation { axis: "y".into() });
+    let jumping = whole().with_noise("y", ["1 + step(y)"]);
+    let unread = refused(jumping.clone());
+    assert!(
+        matches!(unread, TypedModelError::Interpretation { .. }),
+        "{unread}"
+    );
+    let jump = refused(
+        jumping
+            .clone()
+            .with_interpretation(Interpretation::Stratonovich),
+    );
+    assert_eq!(
+        jump,
+        TypedModelError::JumpingNoise {
+            argument: "y".into()
+        }
+    );
+    assert!(
+        jumping
+            .with_interpretation(Interpretation::Ito)
+            .build()
+            .is_ok()
+    );
+}

@@ -1,0 +1,154 @@
+//! `bifurcations.tex` of real runs is LaTeX that compiles with booktabs: environments and braces balanced, every row
+//! with as many cells as the table has columns, nothing special outside mathematics.
+
+use std::path::Path;
+
+use std::process::Command;
+
+fn table_of(file: &str, overrides: &[&str]) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pbif"));
+    command
+        .arg("sweep")
+        .arg(root.join("sweeps").join(format!("{file}.toml")))
+        .args(["--quiet", "--out"])
+        .arg(folder.path());
+    for setting in overrides {
+        command.args(["--set", setting]);
+    }
+    let output = command.output().unwrap();
+    assert!(matches!(output.status.code(), Some(0 | 1)), "{output:?}");
+    std::fs::read_to_string(folder.path().join("bifurcations.tex")).unwrap()
+}
+
+/// The parts of a text between unescaped separators.
+fn split(text: &str, separator: char) -> Vec<String> {
+    let mut parts = vec![String::new()];
+    let mut escaped = false;
+    for letter in text.chars() {
+        if letter == separator && !escaped {
+            parts.push(String::new());
+        } else {
+            parts.last_mut().unwrap().push(letter);
+        }
+        escaped = letter == '\\' && !escaped;
+    }
+    parts
+}
+
+/// What pdflatex would stop at.
+fn assert_compiles(text: &str) {
+    // Comments may only be whole lines.
+    let code: Vec<&str> = text.lines().filter(|line| !line.starts_with('%')).collect();
+    let code = code.join("\n");
+    assert!(text.contains("booktabs"));
+    assert_eq!(split(&code, '%').len(), 1, "{code}");
+    let mut depth = 0_i32;
+    for brace in code.replace("\\{", "").replace("\\}", "").chars() {
+        depth += i32::from(brace == '{') - i32::from(brace == '}');
+        assert!(depth >= 0, "{code}");
+    }
+    assert_eq!(depth, 0, "{code}");
+    let names = |command: &str| -> Vec<String> {
+        let parts = code.split(command).skip(1);
+        parts
+            .map(|part| part.split('}').next().unwrap().to_owned())
+            .collect()
+    };
+    assert_eq!(names("\\begin{"), ["tabular"]);
+    assert_eq!(names("\\end{"), ["tabular"]);
+    let columns = code
+        .split("\\begin{tabular}{")
+        .nth(1)
+        .unwrap()
+        .split('}')
+        .next()
+        .unwrap();
+    assert!(columns.chars().all(|c| "lcr".contains(c)), "{columns}");
+    let places = ["\\toprule", "\\midrule", "\\bottomrule", "\\end{tabular}"].map(|rule| {
+        assert_eq!(code.matches(rule).count(), 1, "{rule}");
+        code.find(rule).unwrap()
+    });
+    assert!(places.is_sorted());
+    let rows = code
+        .lines()
+        .filter(|line| !line.starts_with("\\") || line.ends_with("\\\\"));
+    for row in rows {
+        let row = row
+            .strip_suffix(" \\\\")
+            .unwrap_or_else(|| panic!("no end of row: {row}"));
+        let cells = split(row, '&');
+        assert_eq!(cells.len(), columns.len(), "{row}");
+        for cell in cells {
+            let parts = split(&cell, '$');
+            assert!(parts.len() % 2 == 1, "{cell}");
+            for text in parts.iter().step_by(2) {
+                assert!(
+                    split(text, '_').len() == 1 && split(text, '#').len() == 1,
+                    "{cell}"
+                );
+                assert!(
+                    !text.replace("\\textasciicircum", "").contains('^'),
+                    "{cell}"
+                );
+            }
+            let known = |c: char| c.is_ascii() && !c.is_control() || ('À'..='ž').contains(&c);
+            assert!(cell.chars().all(known), "{cell}");
+        }
+    }
+}
+
+#[test]
+fn tables_of_all_kinds_of_rows_compile() {
+    let coulomb = [
+        "cells.x.count=24",
+        "cells.y.count=24",
+        "sweep.points=5",
+        "locate.tolerance=5e-3",
+    ];
+    let eq8 = [
+        "cells.x.count=16",
+        "cells.y.count=16",
+        "cells.z.count=10",
+        "sweep.points=2",
+    ];
+    for (file, overrides, row) in [
+        ("coulomb_fc", &coulomb[..], "PB1"),
+        ("dahl_alpha_eq8", &eq8, "MX1"),
+        ("bistable", &["sweep.points=9"], "PB1"),
+        (
+            "bistable",
+            &["sweep.points=3", "sweep.to=-0.5", "figures.at=[-1.0]"],
+            "",
+        ),
+    ] {
+        let text = table_of(file, overrides);
+        assert!(text.contains(row), "{text}");
+        assert_compiles(&text);
+    }
+}
+
+#[test]
+fn what_does_not_compile_is_found() {
+    let good = "% needs \\usepackage{booktabs}\n\\begin{tabular}{ll}\n\\toprule\na & $b_{c}$ \\\\\n\\midrule\n\
+                x & 2 $\\to$ 3 \\\\\n\\bottomrule\n\\end{tabular}\n";
+    assert_compiles(good);
+    for (old, new) in [
+        ("2 $", "2 → $"),
+        ("x &", "x_1 &"),
+        ("x &", "x & y &"),
+        ("x &", "95% &"),
+        ("$\\to$", "$\\to"),
+        ("{c}", "{c"),
+        ("\\midrule\n", ""),
+        ("\\end{tabular}", ""),
+        ("3 \\\\", "3"),
+    ] {
+        let bad = good.replace(old, new);
+        assert!(
+            std::panic::catch_unwind(|| assert_compiles(&bad)).is_err(),
+            "{bad}"
+        );
+    }
+}

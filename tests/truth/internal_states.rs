@@ -1,0 +1,236 @@
+//! States without noise that relax linearly (circuits, Maxwell elements), carried by Hermite modes: against exact
+//! moments and densities, and through the sweep file.
+
+use std::sync::Arc;
+
+use crate::common::steady::solve;
+use nalgebra::{DMatrix, DVector};
+use pbif::cancellation::Cancellation;
+use pbif::density::Observable;
+use pbif::generator::{
+    AdvectiveScheme, GeneratorError, GeneratorOptions, assemble, unknown_moments,
+};
+use pbif::space::{Axis, CellSpace};
+use pbif::sweep_file::SweepFile;
+use pbif::system::{System, TypedModel, contract};
+
+/// x'' + 0.3 x' + x + 0.5 v + 0.2 w = √0.3 ξ, v' = 0.5 x' - v, w' = 0.4 x - 2 w.
+fn linear(axes: usize) -> Arc<dyn System> {
+    let names = &["x", "y", "v", "w"][..axes];
+    let force = ["-x - 0.3 y - 0.5 v", "-x - 0.3 y - 0.5 v - 0.2 w"][axes - 3];
+    let mut model = TypedModel::new("linear", "Linear oscillator", names.iter().copied())
+        .with_equation("x", "y")
+        .with_equation("y", force)
+        .with_equation("v", "0.5 y - v")
+        .with_noise("y", ["sqrt(0.3)"]);
+    if axes == 4 {
+        model = model.with_equation("w", "0.4 x - 2 w");
+    }
+    model.build().unwrap().system_with(&[]).unwrap()
+}
+
+/// Covariances C of x' = A x with noise of intensity 0.3 on y: A C + C Aᵀ + 0.3 e_y e_yᵀ = 0.
+fn covariances(system: &dyn System) -> DMatrix<f64> {
+    let n = system.dimension();
+    let unit = |axis: usize| {
+        let mut state = vec![0.0; n];
+        state[axis] = 1.0;
+        DVector::from_vec(system.drift_at(0.0, &state))
+    };
+    let columns: Vec<DVector<f64>> = (0..n).map(unit).collect();
+    let a = DMatrix::from_columns(&columns);
+    let identity = DMatrix::<f64>::identity(n, n);
+    let operator = identity.kronecker(&a) + a.kronecker(&identity);
+    let mut right = DVector::zeros(n * n);
+    right[n + 1] = -0.3;
+    let solved = operator.lu().solve(&right).unwrap();
+    DMatrix::from_column_slice(n, n, solved.as_slice())
+}
+
+/// Cells over eight standard deviations of x and y to either side, and modes for the others, `width` times as wide as
+/// they are.
+fn space(covariances: &DMatrix<f64>, cells: usize, modes: usize, width: f64) -> CellSpace {
+    let axes = (0..covariances.nrows()).map(|axis| {
+        let deviation = covariances[(axis, axis)].sqrt();
+        match axis < 2 {
+            true => Axis::uniform(-8.0 * deviation, 8.0 * deviation, cells).unwrap(),
+            false => Axis::hermite(0.0, width * deviation, modes).unwrap(),
+        }
+    });
+    CellSpace::new(axes.collect()).unwrap()
+}
+
+#[test]
+fn second_moments_of_a_linear_oscillator_with_circuits_are_exact_with_three_modes() {
+    // Three modes are closed for second moments, however wide: what is left is the cells', of fourth order.
+    let worst = |system: &dyn System, cells: usize, width: f64| {
+        let exact = covariances(system);
+        let space = space(&exact, cells, 3, width);
+        let unknowns = solve(system, &space, AdvectiveScheme::Central6);
+        let found = unknown_moments(&space, &unknowns).into_iter().enumerate();
+        let errors = found.map(|(axis, (mean, variance))| {
+            assert!(mean.abs() < 1e-9, "{axis} {mean}");
+            (variance / exact[(axis, axis)] - 1.0).abs()
+        });
+        errors.fold(0.0, f64::max)
+    };
+    for (axes, [few, more]) in [(3, [48, 64]), (4, [36, 44])] {
+        let system = linear(axes);
+        for width in [0.8, 1.6] {
+            let errors = [few, more].map(|cells| worst(&*system, cells, width));
+            let order = (few as f64 / more as f64).powi(4);
+            let words = format!("{axes} {width} {errors:?}");
+            assert!(
+                errors[0] < 3e-5 && errors[1] < 1.1 * order * errors[0],
+                "{words}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_density_of_a_linear_oscillator_with_a_circuit_converges_exponentially_in_the_modes() {
+    let system = linear(3);
+    let exact = covariances(&*system);
+    let distance = |modes: usize| {
+        let space = space(&exact, 60, modes, 1.3);
+        let unknowns = solve(&*system, &space, AdvectiveScheme::Upwind5);
+        let nodes = space.axes()[0].nodes();
+        let normal = |x: f64| (-0.5 * x * x / exact[(0, 0)]).exp();
+        let sum: f64 = nodes.iter().map(|&x| normal(x)).sum();
+        let mut found = vec![0.0; nodes.len()];
+        for (cell, unknown) in unknowns.iter().enumerate() {
+            found[space.position(cell, 0)] += unknown;
+        }
+        let differences = found.iter().zip(nodes);
+        let differences = differences.map(|(found, &x)| (found - normal(x) / sum).abs());
+        0.5 * differences.sum::<f64>()
+    };
+    let distances = [2, 3, 4, 5, 6, 8].map(distance);
+    // A mode more takes at least a half of the error away, down to what the cells leave.
+    let floor = distances[5];
+    assert!(floor < 2e-4, "{distances:?}");
+    for pair in distances.windows(2) {
+        assert!(pair[1] < 0.5 * pair[0] + 1.5 * floor, "{distances:?}");
+    }
+    assert!(distances[0] > 20.0 * floor, "{distances:?}");
+}
+
+#[test]
+fn what_relaxes_is_read_off_the_formulas() {
+    let rate = |drift: &str, noise: Option<&str>| {
+        let mut model = TypedModel::new("m", "M", ["x", "v"])
+            .with_equation("x", "-x^3 - v")
+            .with_equation("v", drift)
+            .with_parameters(["c"])
+            .with_noise("x", ["1"]);
+        if let Some(noise) = noise {
+            model = model.with_noise("v", [noise]);
+        }
+        let model = model.build().unwrap();
+        let system = model.system_with(&[("c", 0.7)]).unwrap();
+        let verified = contract::verify(&*system, &[(-2.0, 2.0); 2]);
+        assert!(verified.is_ok(), "{drift}: {verified:?}");
+        system.relaxation_rate(1)
+    };
+    assert_eq!(rate("x - c v", None), Some(0.7));
+    assert_eq!(rate("abs(x) x - 2 (c + 1) (v - x^2)", None), Some(3.4));
+    assert_eq!(rate("x - v/c", None), Some(1.0 / 0.7));
+    for other in ["x + c v", "x", "x - x^2 v", "x - v^3", "x - abs(v)"] {
+        assert_eq!(rate(other, None), None, "{other}");
+    }
+    assert_eq!(rate("x - c v", Some("0.1")), None);
+}
+
+#[test]
+fn hermite_modes_need_a_state_that_relaxes() {
+    let model = TypedModel::new("m", "M", ["x", "v"])
+        .with_equation("x", "-x - v")
+        .with_equation("v", "x - v^3")
+        .with_noise("x", ["1"]);
+    let system = model.build().unwrap().system_with(&[]).unwrap();
+    let cells = Axis::uniform(-3.0, 3.0, 20).unwrap();
+    let modes = Axis::hermite(0.0, 1.0, 4).unwrap();
+    let space = CellSpace::new(vec![cells, modes]).unwrap();
+    let refused = assemble(&*system, &space, &GeneratorOptions::default());
+    assert!(matches!(refused, Err(GeneratorError::Filter { axis: 1 })));
+}
+
+const HARVESTER: &str = r#"
+[system.equations]
+x = "y"
+y = "a x - x^3 - 0.3 y - 0.5 v"
+v = "0.5 y - v/tau"
+[system.noise]
+y = "sqrt(2 D)"
+[system.parameters]
+tau = 1
+D = 0.15
+[sweep]
+parameter = "a"
+from = -0.3
+to = 0.5
+points = 9
+[cells]
+x = { from = -2.4, to = 2.4, count = 40 }
+y = { from = -2.8, to = 2.8, count = 40 }
+"#;
+
+fn file(text: &str) -> SweepFile {
+    SweepFile::parse("harvester.toml", text)
+}
+
+#[test]
+fn a_typed_circuit_is_carried_by_modes_and_the_prepared_file_gives_the_same_sweep() {
+    let never = Cancellation::new();
+    let sweep = file(HARVESTER).validate().unwrap().prepare(&never).unwrap();
+    let axis = &sweep.problem.space().axes()[2];
+    assert!(axis.is_modes() && (3..=10).contains(&axis.count()));
+    let written = sweep.to_toml();
+    let again = file(&written).validate().unwrap().fixed().unwrap();
+    assert_eq!(again.problem.space(), sweep.problem.space());
+    // x is watched, and its peak becomes two; on cells along v the same, with more error.
+    let found = sweep.run(&never, &mut ()).unwrap();
+    let of_x = |found: &pbif::continuation::SweepResult| {
+        let mut rows = found.labels.iter();
+        let row = rows
+            .find(|row| row.observable == Some(Observable::Marginal(0)))
+            .unwrap();
+        (row.value, row.error)
+    };
+    let (value, error) = of_x(&found);
+    let cells = format!("{HARVESTER}v = {{ from = -1.6, to = 1.6, count = 32 }}\n");
+    let mut by_cells = file(&cells);
+    by_cells
+        .set("locate.grid_check", "off")
+        .set("sweep.points", "3");
+    by_cells.set("detect.joint", "[]");
+    let by_cells = by_cells.validate().unwrap().prepare(&never).unwrap();
+    assert!(!by_cells.problem.space().axes()[2].is_modes());
+    let (other, width) = of_x(&by_cells.run(&never, &mut ()).unwrap());
+    let words = format!("{value} ± {error}, {other} ± {width}");
+    assert!(
+        width < 3e-3 && (value - other).abs() <= error + width,
+        "{words}"
+    );
+}
+
+#[test]
+fn values_that_do_not_relax_and_formulas_of_the_state_keep_cells() {
+    let never = Cancellation::new();
+    let carried = |text: &str| {
+        let mut sweep = file(text);
+        sweep.set("cells.accuracy", "0.1");
+        let sweep = sweep.validate().unwrap().prepare(&never).unwrap();
+        sweep.problem.space().axes()[2].is_modes()
+    };
+    assert!(carried(HARVESTER));
+    let with_cells = format!("{HARVESTER}v = {{ from = -2.0, to = 2.0, count = 12 }}\n");
+    assert!(!carried(&with_cells));
+    let watched = format!("{HARVESTER}[watch]\npower = \"v^2\"\n");
+    assert!(!carried(&watched));
+    // v grows on its own: no modes, and the message says why.
+    let growing = HARVESTER.replace("tau = 1", "tau = -1") + "v = { modes = 4 }\n";
+    let refused = file(&growing).validate().unwrap_err().to_string();
+    assert!(refused.contains("does not relax linearly"), "{refused}");
+}

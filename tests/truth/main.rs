@@ -1,0 +1,15 @@
+//! Located values and densities against exact answers.
+
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod coloured_noise;
+mod friction_laws;
+mod gallery;
+mod hard_cases;
+mod internal_states;
+mod located;
+mod location;
+mod random_systems;
