@@ -5,7 +5,7 @@
     reason = "only the tables that are quick to compute are used here"
 )]
 #[path = "../../examples/validation.rs"]
-mod validation;
+mod example;
 
 /// Cells of a row of a Markdown table.
 fn cells(row: &str) -> Vec<&str> {
@@ -45,15 +45,12 @@ fn assert_printed(heading: &str, computed: &[String]) {
 
 #[test]
 fn the_page_holds_what_the_example_computes() {
-    assert_printed("Generator", &validation::generator_rows(40, 1).unwrap());
+    assert_printed("Generator", &example::generator_rows(40, 1).unwrap());
     let heading = "Slope law at the switching surface";
-    assert_printed(heading, &validation::slope_rows(&[0.01]).unwrap());
-    assert_printed(
-        "SGCM",
-        &validation::sgcm_rows(&[(6, 100, 2000, 0.5)]).unwrap(),
-    );
+    assert_printed(heading, &example::slope_rows(&[0.01]).unwrap());
+    assert_printed("SGCM", &example::sgcm_rows(&[(6, 100, 2000, 0.5)]).unwrap());
     assert_printed(
         "Monte Carlo",
-        &validation::monte_carlo_rows(&[4], &[0.02]).unwrap(),
+        &example::monte_carlo_rows(&[4], &[0.02]).unwrap(),
     );
 }
