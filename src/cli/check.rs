@@ -186,10 +186,10 @@ fn misplaced_faces(spec: &Sweep) -> Vec<String> {
         return Vec::new();
     };
     let mut wanted: Vec<(usize, f64, &str)> = Vec::new();
-    for surface in system.switching_surfaces() {
+    for surface in &system.facts().switching_surfaces {
         wanted.push((surface.axis, surface.at, "the switching surface"));
     }
-    if let Some(symmetry) = system.symmetry() {
+    if let Some(symmetry) = &system.facts().symmetry {
         let axes = symmetry.reflected.iter().zip(&symmetry.centre).enumerate();
         for (axis, (&reflected, &centre)) in axes {
             let known = wanted

@@ -132,7 +132,7 @@ fn write_facts(text: &mut String, model: &Model) -> std::fmt::Result {
         .collect();
     writeln!(text, "Domain")?;
     for (index, axis) in model.axes.iter().enumerate() {
-        match system.bounds(index) {
+        match system.facts().bounds(index) {
             Some((low, high)) => writeln!(
                 text,
                 "  {}  from {low} to {high} at {}; a sweep takes it from its parameters{}",
@@ -159,7 +159,7 @@ fn write_facts(text: &mut String, model: &Model) -> std::fmt::Result {
 }
 
 fn surfaces(model: &Model, system: &dyn System) -> String {
-    let surfaces = system.switching_surfaces();
+    let surfaces = &system.facts().switching_surfaces;
     let planes: Vec<String> = surfaces
         .iter()
         .filter_map(|surface| {
@@ -177,7 +177,7 @@ fn surfaces(model: &Model, system: &dyn System) -> String {
 }
 
 fn symmetry(model: &Model, system: &dyn System) -> String {
-    let Some(symmetry) = system.symmetry() else {
+    let Some(symmetry) = &system.facts().symmetry else {
         return "none declared".to_owned();
     };
     let names: Vec<&str> = model.axes.iter().map(|axis| axis.name.as_str()).collect();

@@ -208,11 +208,8 @@ const STEADY: Stroke = Stroke::solid(INK, 2.2);
 
 /// The force of steady sliding between two velocities; empty where it is not known at every one.
 fn sliding(system: &dyn System, fastest: f64) -> Vec<(f64, f64)> {
-    let surfaces = system.switching_surfaces().into_iter();
-    let mut ends: Vec<f64> = surfaces
-        .filter(|surface| surface.axis == VELOCITY && surface.at.abs() < fastest)
-        .map(|surface| surface.at)
-        .collect();
+    let surfaces = system.facts().surfaces_on(VELOCITY);
+    let mut ends: Vec<f64> = surfaces.filter(|at| at.abs() < fastest).collect();
     ends.push(-fastest);
     ends.push(fastest);
     ends.sort_by(f64::total_cmp);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::banded::null_vector;
 use super::{AdvectiveScheme, GeneratorOptions, assemble, automatic_grading, cell_masses};
 use crate::space::{Axis, CellSpace};
-use crate::system::{Lanes, System, registry};
+use crate::system::{Lanes, Noise, System, registry};
 
 fn bound(model: &str, given: &[(&str, f64)]) -> Arc<dyn System> {
     registry::find(model).unwrap().system_with(given).unwrap()
@@ -171,27 +171,17 @@ fn one_dimension_is_exact_on_both_sides_of_the_bifurcation() {
 }
 
 /// dx = -x dt + 0.5 √(1 + x²) dW: p ∝ (1 + x²)^(-1 - 4).
-struct Multiplicative;
+struct Multiplicative([Noise; 1]);
 
 impl System for Multiplicative {
     fn dimension(&self) -> usize {
         1
     }
     fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
-        for (slope, x) in drift[0].iter_mut().zip(&states[0]) {
-            *slope = -x;
-        }
+        drift[0] = states[0].map(|x| -x);
     }
-    fn noise_axes(&self) -> &[usize] {
-        &[0]
-    }
-    fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
-        None
-    }
-    fn amplitude(&self, _channel: usize, _time: f64, states: &[Lanes], amplitude: &mut Lanes) {
-        for (amplitude, x) in amplitude.iter_mut().zip(&states[0]) {
-            *amplitude = 0.5 * (1.0 + x * x).sqrt();
-        }
+    fn noises(&self) -> &[Noise] {
+        &self.0
     }
     fn exact_log_density(&self, state: &[f64]) -> Option<f64> {
         Some(-5.0 * (1.0 + state[0] * state[0]).ln())
@@ -202,8 +192,12 @@ impl System for Multiplicative {
 fn noise_that_depends_on_the_state_is_exact() {
     let axis = Axis::uniform(-8.0, 8.0, 200).unwrap();
     let space = CellSpace::new(vec![axis]).unwrap();
+    let amplitude = |_, states: &[Lanes], amplitude: &mut Lanes| {
+        *amplitude = states[0].map(|x| 0.5 * (1.0 + x * x).sqrt());
+    };
+    let system = Multiplicative([Noise::of_state(0, amplitude)]);
     for scheme in AdvectiveScheme::ALL {
-        let error = error(&Multiplicative, &space, scheme);
+        let error = error(&system, &space, scheme);
         assert!(error < 1e-5, "{}: {error:e}", scheme.name());
     }
 }

@@ -17,11 +17,11 @@ use crate::system::System;
 
 /// Assembles the generator of an autonomous system on a cell space of the same dimension.
 ///
-/// An end of the range that the system declares never to leave ([`System::bounds`]) is a wall without flux;
+/// An end of the range that the system declares never to leave (`Facts::bounds`) is a wall without flux;
 /// what flows or diffuses out through any other end is lost and counted in [`Generator::escape`]. An axis of modes
 /// ([`crate::space::Axis::modes`]) lies between two such ends, and no noise drives it; one of Hermite modes
 /// ([`crate::space::Axis::hermite`]) is white noise behind a linear filter, or a state that relaxes linearly
-/// ([`System::relaxation_rate`]), and nothing leaves along it.
+/// ([`Facts::relaxation_rates`](crate::system::Facts::relaxation_rates)), and nothing leaves along it.
 ///
 /// # Errors
 /// Any [`GeneratorError`] but [`GeneratorError::System`].
@@ -65,9 +65,9 @@ fn check(system: &dyn System, space: &CellSpace) -> Result<(), GeneratorError> {
     if axes != dimension {
         return Err(GeneratorError::Dimension { axes, dimension });
     }
-    system.autonomous()?;
-    let channels = system.noise_axes().iter().enumerate();
-    for (channel, &axis) in channels {
+    system.facts().autonomous()?;
+    for (channel, noise) in system.noises().iter().enumerate() {
+        let axis = noise.axis;
         if axis >= dimension {
             return Err(GeneratorError::NoiseAxis {
                 channel,

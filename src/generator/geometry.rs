@@ -59,14 +59,17 @@ impl AxisGeometry {
         let axis = &space.axes()[index];
         let count = axis.count();
         let damping = damping(space);
-        let noisy = system.noise_axes().contains(&index);
+        let noisy = system.is_noisy(index);
         let end = |wall: bool| if wall { End::Wall } else { End::Open };
         Self {
             nodes: axis.nodes().to_vec(),
             widths: (0..count).map(|cell| axis.node_stretch(cell)).collect(),
             edges: axis.edges().to_vec(),
             face_widths: (0..=count).map(|face| axis.edge_stretch(face)).collect(),
-            ends: system.walls(index, (axis.from(), axis.to())).map(end),
+            ends: system
+                .facts()
+                .walls(index, (axis.from(), axis.to()))
+                .map(end),
             stencils: (0..=count)
                 .map(|face| stencil(scheme, damping, face, count - face))
                 .collect(),
@@ -87,9 +90,8 @@ impl AxisGeometry {
 
 /// Inner faces of an axis on which a switching surface of the system lies.
 pub(super) fn surface_faces(system: &dyn System, index: usize, axis: &Axis) -> Vec<usize> {
-    let surfaces = system.switching_surfaces();
-    let here = surfaces.iter().filter(|surface| surface.axis == index);
-    here.filter_map(|surface| axis.face_at(surface.at))
+    let surfaces = system.facts().surfaces_on(index);
+    (surfaces.filter_map(|at| axis.face_at(at)))
         .filter(|&face| face > 0 && face < axis.count())
         .collect()
 }

@@ -45,13 +45,11 @@ pub fn automatic_grading(
     if ranges.len() != system.dimension() || count == 0 {
         return None;
     }
-    if !system.noise_axes().contains(&axis) {
+    if !system.is_noisy(axis) {
         return toward_walls(system, axis, (from, to), count);
     }
     let inside = |at: &f64| *at > from && *at < to;
-    let surfaces = system.switching_surfaces();
-    let here = surfaces.iter().filter(|surface| surface.axis == axis);
-    let mut at: Vec<f64> = here.map(|surface| surface.at).filter(inside).collect();
+    let mut at: Vec<f64> = system.facts().surfaces_on(axis).filter(inside).collect();
     at.sort_by(f64::total_cmp);
     at.dedup();
     let uniform = (to - from) / count as f64;
@@ -70,7 +68,11 @@ fn toward_walls(
     (from, to): (f64, f64),
     count: usize,
 ) -> Option<Grading> {
-    let walls = system.walls(axis, (from, to)).into_iter().zip([from, to]);
+    let walls = system
+        .facts()
+        .walls(axis, (from, to))
+        .into_iter()
+        .zip([from, to]);
     let at: Vec<f64> = walls
         .filter_map(|(wall, end)| wall.then_some(end))
         .collect();
@@ -101,11 +103,7 @@ fn layer(system: &dyn System, ranges: &[(f64, f64)], axis: usize, at: f64) -> Op
             squares += force * force;
             states += 1.0;
         }
-        for (channel, &driven) in system.noise_axes().iter().enumerate() {
-            if driven == axis {
-                diffusion += 0.5 * system.amplitude_at(channel, 0.0, &state).powi(2);
-            }
-        }
+        diffusion += 0.5 * system.intensity_at(axis, 0.0, &state);
     }
     let mean_diffusion = diffusion / PLACES.pow(others) as f64;
     let force = (squares / f64::max(states, 1.0)).sqrt();

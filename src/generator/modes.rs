@@ -47,17 +47,17 @@ impl ModeAxis {
         axis: usize,
         is_walled: bool,
     ) -> Result<(), GeneratorError> {
-        let is_noisy = system.noise_axes().contains(&axis);
+        let (is_noisy, facts) = (system.is_noisy(axis), system.facts());
         match &self.normal {
             None if is_noisy || !is_walled => Err(GeneratorError::Modes { axis }),
             // However wide the normal density is: more modes make up for it.
-            Some(_) if !is_noisy && system.relaxation_rate(axis).is_some() => Ok(()),
+            Some(_) if !is_noisy && facts.relaxation_rates.contains_key(&axis) => Ok(()),
             Some((_, mean, deviation)) => {
-                let same = |(m, d): (f64, f64)| {
+                let same = |&(m, d): &(f64, f64)| {
                     (m - mean).abs() <= ROUNDING * deviation
                         && (d / deviation - 1.0).abs() <= ROUNDING
                 };
-                let declared = system.filtered_noise(axis).is_some_and(same);
+                let declared = facts.filtered_noise.get(&axis).is_some_and(same);
                 declared
                     .then_some(())
                     .ok_or(GeneratorError::Filter { axis })

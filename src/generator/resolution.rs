@@ -40,7 +40,7 @@ pub fn resolution(system: &dyn System, space: &CellSpace, masses: &[f64]) -> Vec
     if system.dimension() != space.dimension() || masses.len() != space.n_cells() {
         return Vec::new();
     }
-    let mut axes = system.noise_axes().to_vec();
+    let mut axes: Vec<usize> = system.noises().iter().map(|noise| noise.axis).collect();
     axes.sort_unstable();
     axes.dedup();
     axes.retain(|&axis| axis < space.dimension() && !space.axes()[axis].is_modes());
@@ -76,12 +76,8 @@ fn judge(system: &dyn System, space: &CellSpace, masses: &[f64], index: usize) -
             seen.look_at(&cells, &masses);
         }
     }
-    let surfaces = system.switching_surfaces();
-    let here = surfaces.iter().filter(|surface| surface.axis == index);
-    let off_faces: Vec<f64> = here
-        .map(|surface| surface.at)
-        .filter(|&at| axis.is_inside_cell(at))
-        .collect();
+    let surfaces = system.facts().surfaces_on(index);
+    let off_faces: Vec<f64> = surfaces.filter(|&at| axis.is_inside_cell(at)).collect();
     let counting: Vec<usize> = (0..masses.len())
         .filter(|&cell| masses[cell] / space.volume(cell) > lightest)
         .collect();
@@ -174,14 +170,7 @@ impl Seen<'_> {
 
 /// D = Σ b²/2 over the processes that drive the axis.
 fn diffusion_at(system: &dyn System, space: &CellSpace, axis: usize, cell: usize) -> f64 {
-    let channels = system.noise_axes().iter().enumerate();
-    let here = channels.filter(|(_, driven)| **driven == axis);
-    here.map(|(channel, _)| {
-        0.5 * system
-            .amplitude_at(channel, 0.0, &space.centre(cell))
-            .powi(2)
-    })
-    .sum()
+    0.5 * system.intensity_at(axis, 0.0, &space.centre(cell))
 }
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ pub(super) fn quadrature_points(axis: &AxisGeometry) -> Vec<f64> {
 pub(super) struct LineSampler<'a> {
     system: &'a dyn System,
     axis: usize,
-    channels: Vec<usize>,
+    is_noisy: bool,
     /// State through which the line goes; the entry of its own axis is ignored.
     pub(super) state: [f64; MAX_DIMENSION],
     states: [Lanes; MAX_DIMENSION],
@@ -32,14 +32,10 @@ pub(super) struct LineSampler<'a> {
 
 impl<'a> LineSampler<'a> {
     pub(super) fn new(system: &'a dyn System, axis: usize) -> Self {
-        let channels = system.noise_axes().iter().enumerate();
         Self {
             system,
             axis,
-            channels: channels
-                .filter(|(_, driven)| **driven == axis)
-                .map(|(channel, _)| channel)
-                .collect(),
+            is_noisy: system.is_noisy(axis),
             state: [0.0; MAX_DIMENSION],
             states: [[0.0; LANES]; MAX_DIMENSION],
             drift: [[0.0; LANES]; MAX_DIMENSION],
@@ -55,7 +51,7 @@ impl<'a> LineSampler<'a> {
     ) -> Result<(), GeneratorError> {
         let mut line = std::mem::take(&mut self.line);
         self.evaluate(nodes, &mut line.drift, &mut line.diffusion)?;
-        if !self.channels.is_empty() {
+        if self.is_noisy {
             self.evaluate(quadrature, &mut line.inner_drift, &mut line.inner_diffusion)?;
         }
         self.line = line;
@@ -79,12 +75,10 @@ impl<'a> LineSampler<'a> {
             let states = &self.states[..dimension];
             self.system.drift(0.0, states, &mut self.drift[..dimension]);
             drift.extend_from_slice(&self.drift[self.axis][..batch.len()]);
-            if !self.channels.is_empty() {
+            if self.is_noisy {
                 let mut sum = [0.0; LANES];
-                for &channel in &self.channels {
-                    let mut amplitude = [0.0; LANES];
-                    self.system.amplitude(channel, 0.0, states, &mut amplitude);
-                    for (sum, amplitude) in sum.iter_mut().zip(amplitude) {
+                for noise in self.system.noises_on(self.axis) {
+                    for (sum, amplitude) in sum.iter_mut().zip(noise.amplitudes(0.0, states)) {
                         *sum += 0.5 * amplitude * amplitude;
                     }
                 }

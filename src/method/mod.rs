@@ -113,7 +113,7 @@ pub enum MethodError {
 /// nothing sticks to a surface.
 fn has_densities(problem: &Problem) -> Result<(), MethodError> {
     for system in problem.family().along()? {
-        system.autonomous()?;
+        system.facts().autonomous()?;
     }
     let axes = problem.space().axes().iter();
     let ranges: Vec<(f64, f64)> = axes.map(|axis| (axis.from(), axis.to())).collect();

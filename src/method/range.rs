@@ -126,7 +126,7 @@ fn widened(
     visited: &[(f64, f64)],
     known: &[Option<(f64, f64)>],
 ) -> Vec<(f64, f64)> {
-    let symmetry = system.symmetry();
+    let symmetry = &system.facts().symmetry;
     let axes = visited.iter().zip(known).enumerate();
     axes.map(|(axis, (&(from, to), known))| {
         if let Some(known) = known {

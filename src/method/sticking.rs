@@ -44,11 +44,11 @@ pub fn check_sticking(family: &Family, ranges: &[(f64, f64)]) -> Result<(), Meth
 
 /// A surface on which states stay, and one of these.
 fn stuck_state(system: &dyn System, ranges: &[(f64, f64)]) -> Option<(SwitchingSurface, Vec<f64>)> {
-    let surfaces = system.switching_surfaces().into_iter();
+    let surfaces = system.facts().switching_surfaces.iter().copied();
     let mut inside = surfaces.filter(|surface| {
         let range = ranges.get(surface.axis);
         range.is_some_and(|(from, to)| surface.at > *from && surface.at < *to)
-            && !system.noise_axes().contains(&surface.axis)
+            && !system.is_noisy(surface.axis)
     });
     inside.find_map(|surface| Some((surface, stuck_on(system, surface, ranges)?)))
 }

@@ -12,16 +12,13 @@ use crate::sampling::{Integrator, SamplingError, SamplingOptions, sample_transit
 use crate::space::{Axis, CellSpace};
 use crate::system::examples::coulomb;
 use crate::system::{
-    AxisDescription, Family, Lanes, Model, ParameterDescription, Path, PeriodicDrift, System,
+    AxisDescription, Facts, Family, Lanes, Model, Noise, ParameterDescription, Path, PeriodicDrift,
+    System,
 };
 
 /// dx = (a cos t - x) dt + dW/2.
 fn forced() -> Arc<Model> {
-    let bind = |values: &[f64]| -> Arc<dyn System> {
-        Arc::new(Forced {
-            amplitude: values[0],
-        })
-    };
+    let bind = |values: &[f64]| -> Arc<dyn System> { Arc::new(with_amplitude(values[0])) };
     let model = Model::new("forced", "Linear system under periodic forcing", bind);
     let amplitude = ParameterDescription::new("a", "a", "amplitude of the forcing");
     Arc::new(
@@ -33,6 +30,19 @@ fn forced() -> Arc<Model> {
 
 struct Forced {
     amplitude: f64,
+    noise: [Noise; 1],
+    facts: Facts,
+}
+
+fn with_amplitude(amplitude: f64) -> Forced {
+    Forced {
+        amplitude,
+        noise: [Noise::constant(0, 0.5)],
+        facts: Facts {
+            period: Some(std::f64::consts::TAU),
+            ..Facts::default()
+        },
+    }
 }
 
 impl System for Forced {
@@ -44,14 +54,11 @@ impl System for Forced {
             *slope = self.amplitude * time.cos() - x;
         }
     }
-    fn noise_axes(&self) -> &[usize] {
-        &[0]
+    fn noises(&self) -> &[Noise] {
+        &self.noise
     }
-    fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
-        Some(0.5)
-    }
-    fn period(&self) -> Option<f64> {
-        Some(std::f64::consts::TAU)
+    fn facts(&self) -> &Facts {
+        &self.facts
     }
 }
 
@@ -86,7 +93,7 @@ fn no_method_takes_a_periodic_system_for_an_autonomous_one() {
 
 #[test]
 fn nor_does_what_the_methods_are_made_of() {
-    let (system, space) = (Forced { amplitude: 1.0 }, cells());
+    let (system, space) = (with_amplitude(1.0), cells());
     let assembled = assemble(&system, &space, &GeneratorOptions::default());
     assert_eq!(assembled.err(), Some(GeneratorError::Periodic(PERIODIC)));
     let options = SamplingOptions {

@@ -93,8 +93,7 @@ pub fn step_bias(
         .map(|batch| comparison.batch(seed, batch))
         .collect();
     let lanes = batches?.concat();
-    let additive =
-        (0..system.noise_axes().len()).all(|channel| system.additive_amplitude(channel).is_some());
+    let additive = (system.noises().iter()).all(|noise| noise.additive().is_some());
     // d(h) - d(h/2) = (1 - 2^-order) × bias of h.
     let extrapolation = match order(integrator, additive) {
         1 => 2.0,
@@ -186,7 +185,7 @@ impl<'a> Comparison<'a> {
             .collect();
         quantities.push(BiasedQuantity::Energy);
         let mut surfaces = vec![0.0; quantities.len()];
-        for surface in system.switching_surfaces() {
+        for surface in &system.facts().switching_surfaces {
             if space.axes()[surface.axis].find(surface.at).is_some() {
                 quantities.push(BiasedQuantity::SurfaceShare(surface.axis));
                 surfaces.push(surface.at);
@@ -199,7 +198,7 @@ impl<'a> Comparison<'a> {
         Self {
             coarse: Stepper::new(system, integrator, time_step, cancellation),
             fine: Stepper::new(system, integrator, 0.5 * time_step, cancellation),
-            channels: system.noise_axes().len(),
+            channels: system.noises().len(),
             relaxation,
             quantities,
             surfaces,

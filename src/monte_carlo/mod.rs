@@ -62,7 +62,7 @@ pub enum MonteCarloError {
 impl MonteCarloError {
     /// Whether the long-run density of the system can be counted on the cells of the space.
     fn check(system: &dyn System, space: &CellSpace) -> Result<(), Self> {
-        system.autonomous()?;
+        system.facts().autonomous()?;
         let (system, space) = (system.dimension(), space.dimension());
         match system == space {
             true => Ok(()),

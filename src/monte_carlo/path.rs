@@ -108,7 +108,7 @@ fn rate(system: &dyn System, states: &[Vec<f64>]) -> Option<f64> {
             .min_by(f64::total_cmp)
     };
     let all = || 0..system.dimension();
-    let quiet = |axis: &usize| !system.noise_axes().contains(axis);
+    let quiet = |axis: &usize| !system.is_noisy(*axis);
     slowest(&mut all().filter(quiet)).or_else(|| slowest(&mut all()))
 }
 
@@ -133,7 +133,7 @@ pub fn sample_path(
     let integrator = Integrator::StochasticHeun;
     let stepper = Stepper::new(system, integrator, run.time_step, cancellation);
     let limits = Limits::new(space);
-    let channels = system.noise_axes().len();
+    let channels = system.noises().len();
     let mut stream = NormalStream::new(key(seed, Purpose::Path, 0));
     let mut normals = vec![[0.0; LANES]; CHUNK * channels];
     // A batch is what a stepper moves; its first lane is the path.

@@ -79,7 +79,7 @@ pub fn sample_transitions(
             space: space.dimension(),
         });
     }
-    system.autonomous()?;
+    system.facts().autonomous()?;
     let n_cells = space.n_cells();
     if let Some(&cell) = seeds.iter().find(|&&cell| cell >= n_cells) {
         return Err(SamplingError::Seed { cell, n_cells });

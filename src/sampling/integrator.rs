@@ -9,7 +9,7 @@ use multiversion::multiversion;
 use super::random::NormalStream;
 use crate::MAX_DIMENSION;
 use crate::cancellation::{Cancellation, Cancelled};
-use crate::system::{LANES, Lanes, System};
+use crate::system::{LANES, Lanes, Noise, System};
 
 /// Integrators by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,14 +41,13 @@ pub(crate) struct Stepper<'a> {
     system: &'a dyn System,
     integrator: Integrator,
     time_step: f64,
-    noise: Vec<Channel>,
+    noise: Vec<Channel<'a>>,
     cancellation: Cancellation,
 }
 
-/// A Wiener process: the axis it drives, and its amplitude times √dt where it is constant.
-#[derive(Clone, Copy)]
-struct Channel {
-    axis: usize,
+/// A noise, and its amplitude times √dt where it is constant.
+struct Channel<'a> {
+    noise: &'a Noise,
     increment: Option<f64>,
 }
 
@@ -60,22 +59,15 @@ impl<'a> Stepper<'a> {
         time_step: f64,
         cancellation: &Cancellation,
     ) -> Self {
-        let channel = |(channel, &axis): (usize, &usize)| Channel {
-            axis,
-            increment: system
-                .additive_amplitude(channel)
-                .map(|amplitude| amplitude * time_step.sqrt()),
+        let channel = |noise: &'a Noise| Channel {
+            noise,
+            increment: (noise.additive()).map(|amplitude| amplitude * time_step.sqrt()),
         };
         Self {
             system,
             integrator,
             time_step,
-            noise: system
-                .noise_axes()
-                .iter()
-                .enumerate()
-                .map(channel)
-                .collect(),
+            noise: system.noises().iter().map(channel).collect(),
             cancellation: cancellation.clone(),
         }
     }
@@ -131,15 +123,14 @@ impl<'a> Stepper<'a> {
         for sum in sums.iter_mut() {
             sum.fill(0.0);
         }
-        for (number, (channel, normal)) in self.noise.iter().zip(normals).enumerate() {
-            let sum = &mut sums[channel.axis];
+        for (channel, normal) in self.noise.iter().zip(normals) {
+            let sum = &mut sums[channel.noise.axis];
             if let Some(increment) = channel.increment {
                 for lane in 0..LANES {
                     sum[lane] += increment * normal[lane];
                 }
             } else {
-                let mut amplitude = [0.0; LANES];
-                self.system.amplitude(number, time, states, &mut amplitude);
+                let amplitude = channel.noise.amplitudes(time, states);
                 let root = self.time_step.sqrt();
                 for lane in 0..LANES {
                     sum[lane] += amplitude[lane] * root * normal[lane];

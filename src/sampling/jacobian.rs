@@ -31,7 +31,7 @@ pub(super) fn local_rates(
     let cell = space.find(state)?;
     let dimension = state.len();
     let width = |axis: usize| space.axes()[axis].width(space.position(cell, axis));
-    for surface in system.switching_surfaces() {
+    for surface in &system.facts().switching_surfaces {
         if (state[surface.axis] - surface.at).abs() <= 2.0 * SHARE * width(surface.axis) {
             return None;
         }
@@ -67,16 +67,15 @@ pub(super) fn local_rates(
 
 /// Largest 4 b'² over the noises.
 fn noise_rate(system: &dyn System, state: &[f64], width: &dyn Fn(usize) -> f64) -> f64 {
-    let axes = system.noise_axes().iter().enumerate();
-    let rates = axes.map(|(channel, &axis)| {
-        if system.additive_amplitude(channel).is_some() {
+    let rates = system.noises().iter().map(|noise| {
+        if noise.additive().is_some() {
             return 0.0;
         }
-        let step = SHARE * width(axis);
+        let step = SHARE * width(noise.axis);
         let at = |by: f64| {
             let mut state = state.to_vec();
-            state[axis] += by;
-            system.amplitude_at(channel, 0.0, &state)
+            state[noise.axis] += by;
+            noise.at(0.0, &state)
         };
         let slope = (at(step) - at(-step)) / (2.0 * step);
         KICKS * slope * slope

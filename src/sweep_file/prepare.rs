@@ -239,7 +239,7 @@ impl Settings {
             return false;
         };
         let mut axes = axes.iter();
-        axes.any(|&axis| first.bounds(axis) != last.bounds(axis))
+        axes.any(|&axis| first.facts().bounds(axis) != last.facts().bounds(axis))
     }
 
     /// Unknowns along each axis as the method has it; a few modes where their number is left to the program.

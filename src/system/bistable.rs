@@ -5,7 +5,7 @@ use std::sync::Arc;
 use multiversion::multiversion;
 
 use super::parameters::{GROWTH, SIGMA2, X};
-use super::{Lanes, Model, Symmetry, System};
+use super::{Facts, Lanes, Model, Noise, Symmetry, System};
 
 /// dx = (ax - x³) dt + σ dW.
 pub(super) fn model() -> Model {
@@ -26,15 +26,20 @@ pub(super) fn model() -> Model {
 fn bind(values: &[f64]) -> Arc<dyn System> {
     Arc::new(Bistable {
         a: values[0],
-        sigma: values[1].sqrt(),
         sigma2: values[1],
+        noise: [Noise::constant(0, values[1].sqrt())],
+        facts: Facts {
+            symmetry: Some(Symmetry::about_origin(1)),
+            ..Facts::default()
+        },
     })
 }
 
 struct Bistable {
     a: f64,
-    sigma: f64,
     sigma2: f64,
+    noise: [Noise; 1],
+    facts: Facts,
 }
 
 #[multiversion(targets = "simd")]
@@ -57,19 +62,12 @@ impl System for Bistable {
         drift(self.a, states, slopes);
     }
 
-    fn noise_axes(&self) -> &[usize] {
-        &[0]
+    fn noises(&self) -> &[Noise] {
+        &self.noise
     }
 
-    fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
-        Some(self.sigma)
-    }
-
-    fn symmetry(&self) -> Option<Symmetry> {
-        Some(Symmetry {
-            centre: vec![0.0],
-            reflected: vec![true],
-        })
+    fn facts(&self) -> &Facts {
+        &self.facts
     }
 
     /// p ∝ exp((2/σ²)(ax²/2 - x⁴/4)).
@@ -88,7 +86,7 @@ mod tests {
     fn the_drift_is_the_equation() {
         let system = bound("bistable", &[("a", 0.5), ("sigma2", 0.25)]);
         assert_eq!(system.drift_at(0.0, &[2.0]), vec![-7.0]);
-        assert_eq!(system.additive_amplitude(0), Some(0.5));
+        assert_eq!(system.noises()[0].additive(), Some(0.5));
     }
 
     #[test]

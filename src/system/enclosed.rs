@@ -3,14 +3,23 @@
 
 use std::sync::Arc;
 
-use super::{Lanes, SwitchingSurface, Symmetry, System};
+use super::{Facts, Lanes, Noise, System};
 
 /// A system whose coordinates stay within given ranges.
 pub(crate) struct Enclosed {
-    /// The system.
-    pub(crate) system: Arc<dyn System>,
-    /// Lower and upper wall of each axis.
-    pub(crate) ranges: Vec<(f64, f64)>,
+    system: Arc<dyn System>,
+    facts: Facts,
+}
+
+impl Enclosed {
+    /// The system with a lower and an upper wall on each axis.
+    pub(crate) fn new(system: Arc<dyn System>, ranges: &[(f64, f64)]) -> Self {
+        let facts = Facts {
+            bounds: ranges.iter().copied().enumerate().collect(),
+            ..system.facts().clone()
+        };
+        Self { system, facts }
+    }
 }
 
 impl System for Enclosed {
@@ -20,31 +29,10 @@ impl System for Enclosed {
     fn drift(&self, time: f64, states: &[Lanes], drift: &mut [Lanes]) {
         self.system.drift(time, states, drift);
     }
-    fn noise_axes(&self) -> &[usize] {
-        self.system.noise_axes()
+    fn noises(&self) -> &[Noise] {
+        self.system.noises()
     }
-    fn additive_amplitude(&self, channel: usize) -> Option<f64> {
-        self.system.additive_amplitude(channel)
-    }
-    fn amplitude(&self, channel: usize, time: f64, states: &[Lanes], amplitude: &mut Lanes) {
-        self.system.amplitude(channel, time, states, amplitude);
-    }
-    fn period(&self) -> Option<f64> {
-        self.system.period()
-    }
-    fn bounds(&self, axis: usize) -> Option<(f64, f64)> {
-        self.ranges.get(axis).copied()
-    }
-    fn filtered_noise(&self, axis: usize) -> Option<(f64, f64)> {
-        self.system.filtered_noise(axis)
-    }
-    fn relaxation_rate(&self, axis: usize) -> Option<f64> {
-        self.system.relaxation_rate(axis)
-    }
-    fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
-        self.system.switching_surfaces()
-    }
-    fn symmetry(&self) -> Option<Symmetry> {
-        self.system.symmetry()
+    fn facts(&self) -> &Facts {
+        &self.facts
     }
 }

@@ -1,6 +1,6 @@
 //! Families and systems that tests share.
 
-use super::{Family, Lanes, Path, SwitchingSurface, System, registry};
+use super::{Facts, Family, Lanes, Noise, Path, SwitchingSurface, System, registry};
 
 /// The paper's first example along its friction level.
 pub(crate) fn coulomb() -> Family {
@@ -23,26 +23,24 @@ pub(crate) fn bistable(from: f64, to: f64) -> Family {
 /// dx = a(x) dt + σ dW.
 pub(crate) struct OneState<D> {
     drift: D,
-    sigma: f64,
-    /// Where the drift is not smooth.
-    surface: Option<f64>,
+    noise: [Noise; 1],
+    facts: Facts,
 }
 
 impl<D: Fn(f64) -> f64 + Send + Sync> OneState<D> {
     /// With this drift a and amplitude σ.
     pub(crate) fn new(sigma: f64, drift: D) -> Self {
-        let surface = None;
         Self {
             drift,
-            sigma,
-            surface,
+            noise: [Noise::constant(0, sigma)],
+            facts: Facts::default(),
         }
     }
 
     /// The same with a place at which the drift jumps or bends.
-    pub(crate) fn with_surface(self, at: f64) -> Self {
-        let surface = Some(at);
-        Self { surface, ..self }
+    pub(crate) fn with_surface(mut self, at: f64) -> Self {
+        self.facts.switching_surfaces = vec![SwitchingSurface { axis: 0, at }];
+        self
     }
 }
 
@@ -51,18 +49,12 @@ impl<D: Fn(f64) -> f64 + Send + Sync> System for OneState<D> {
         1
     }
     fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
-        for (slope, x) in drift[0].iter_mut().zip(&states[0]) {
-            *slope = (self.drift)(*x);
-        }
+        drift[0] = states[0].map(&self.drift);
     }
-    fn noise_axes(&self) -> &[usize] {
-        &[0]
+    fn noises(&self) -> &[Noise] {
+        &self.noise
     }
-    fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
-        Some(self.sigma)
-    }
-    fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
-        let surface = |at| SwitchingSurface { axis: 0, at };
-        self.surface.map(surface).into_iter().collect()
+    fn facts(&self) -> &Facts {
+        &self.facts
     }
 }

@@ -18,6 +18,7 @@ mod facts;
 mod family;
 pub mod friction;
 mod model;
+mod noise;
 mod oscillator;
 mod parameters;
 mod path;
@@ -36,9 +37,10 @@ pub use coloured::{
 };
 pub use description::{AxisDescription, ParameterDescription, ParameterRange};
 pub(crate) use enclosed::Enclosed;
-pub use facts::{PeriodicDrift, SwitchingSurface, Symmetry};
+pub use facts::{Facts, PeriodicDrift, SwitchingSurface, Symmetry};
 pub use family::Family;
 pub use model::Model;
+pub use noise::{Amplitude, Noise};
 pub use oscillator::{
     DISPLACEMENT, Damping, Duffing, FIRST_INTERNAL_STATE, Oscillator, VELOCITY, Viscous,
 };
@@ -51,31 +53,25 @@ pub use typed::{
 
 /// An Itô equation dX = a(X, t) dt + Σ_k b_k(X, t) e_{axis(k)} dW_k with bound parameters.
 ///
-/// Each Wiener process `k` drives exactly one axis, [`System::noise_axes`]`[k]`; an axis may have none.
 /// Stratonovich equations are given with their Itô drift.
 ///
 /// # A minimal implementation
 ///
 /// ```
-/// use pbif::system::{Lanes, System, contract};
+/// use pbif::system::{Lanes, Noise, System, contract};
 ///
 /// /// dx = -x dt + 0.5 dW.
-/// struct OrnsteinUhlenbeck;
+/// struct OrnsteinUhlenbeck([Noise; 1]);
 ///
 /// impl System for OrnsteinUhlenbeck {
 ///     fn dimension(&self) -> usize {
 ///         1
 ///     }
 ///     fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
-///         for (slope, x) in drift[0].iter_mut().zip(&states[0]) {
-///             *slope = -x;
-///         }
+///         drift[0] = states[0].map(|x| -x);
 ///     }
-///     fn noise_axes(&self) -> &[usize] {
-///         &[0]
-///     }
-///     fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
-///         Some(0.5)
+///     fn noises(&self) -> &[Noise] {
+///         &self.0
 ///     }
 ///     /// Normal with variance 0.5²/2.
 ///     fn exact_log_density(&self, state: &[f64]) -> Option<f64> {
@@ -83,9 +79,10 @@ pub use typed::{
 ///     }
 /// }
 ///
-/// assert_eq!(OrnsteinUhlenbeck.drift_at(0.0, &[2.0]), vec![-2.0]);
+/// let system = OrnsteinUhlenbeck([Noise::constant(0, 0.5)]);
+/// assert_eq!(system.drift_at(0.0, &[2.0]), vec![-2.0]);
 /// // What is declared is tried at random states of Ω, the density against the Fokker-Planck equation.
-/// contract::verify(&OrnsteinUhlenbeck, &[(-2.0, 2.0)])?;
+/// contract::verify(&system, &[(-2.0, 2.0)])?;
 /// # Ok::<(), contract::ContractViolation>(())
 /// ```
 pub trait System: Send + Sync {
@@ -96,55 +93,12 @@ pub trait System: Send + Sync {
     /// length d. Must write every entry; non-finite values are allowed and mean overflow.
     fn drift(&self, time: f64, states: &[Lanes], drift: &mut [Lanes]);
 
-    /// Axis that each Wiener process drives; its length is the number of processes.
-    fn noise_axes(&self) -> &[usize];
+    /// The noises, independent of each other; an axis may have none or several.
+    fn noises(&self) -> &[Noise];
 
-    /// Amplitude b_k when it depends on neither state nor time, else `None`.
-    fn additive_amplitude(&self, channel: usize) -> Option<f64>;
-
-    /// Amplitude b_k(X, t) of a batch. Models with state-dependent noise override it; the default
-    /// copies [`System::additive_amplitude`], or zero where that is `None`.
-    fn amplitude(&self, channel: usize, time: f64, states: &[Lanes], amplitude: &mut Lanes) {
-        let _ = (time, states);
-        amplitude.fill(self.additive_amplitude(channel).unwrap_or(0.0));
-    }
-
-    /// Period of the drift in time; `None` for an autonomous system.
-    fn period(&self) -> Option<f64> {
-        None
-    }
-
-    /// Values that a coordinate can never leave (for Dahl's law |z| ≤ f_c/λ), where the model knows them.
-    fn bounds(&self, axis: usize) -> Option<(f64, f64)> {
-        let _ = axis;
-        None
-    }
-
-    /// Mean and standard deviation of a coordinate that is a state of a linear filter of white noise, such as η in
-    /// η' = -(η - mean)/τ + b ξ with constant b and τ, upon which nothing else acts. Such coordinates are independent
-    /// of one another and normal; those of one filter may turn into one another, as η' = ω ν, ν' = -ω η - γ ν + b ξ do.
-    fn filtered_noise(&self, axis: usize) -> Option<(f64, f64)> {
-        let _ = axis;
-        None
-    }
-
-    /// Rate λ > 0, per unit of time, at which a coordinate without noise and without bounds relaxes: its drift is
-    /// g - λ x, where g depends on the other coordinates only and λ on none. The voltage of a circuit that an
-    /// oscillator drives is one, and the force of a Maxwell element. Hermite modes can carry it
-    /// ([`crate::space::Axis::hermite`]).
-    fn relaxation_rate(&self, axis: usize) -> Option<f64> {
-        let _ = axis;
-        None
-    }
-
-    /// Planes where the drift is not smooth.
-    fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
-        Vec::new()
-    }
-
-    /// A reflection under which the steady state is invariant.
-    fn symmetry(&self) -> Option<Symmetry> {
-        None
+    /// What is known of the system beside its equations.
+    fn facts(&self) -> &Facts {
+        &facts::NOTHING
     }
 
     /// Friction force per unit mass at a state, its viscous part left out, of an oscillator with a friction law (axes:
@@ -167,12 +121,24 @@ pub trait System: Send + Sync {
         self.drift(time, &states, &mut drift);
         drift.iter().map(|lanes| lanes[0]).collect()
     }
+}
 
-    /// Amplitude of one Wiener process at a single state.
-    fn amplitude_at(&self, channel: usize, time: f64, state: &[f64]) -> f64 {
-        let states: Vec<Lanes> = state.iter().map(|&value| [value; LANES]).collect();
-        let mut amplitude = [0.0; LANES];
-        self.amplitude(channel, time, &states, &mut amplitude);
-        amplitude[0]
+impl dyn System + '_ {
+    /// The noises on an axis.
+    pub fn noises_on(&self, axis: usize) -> impl Iterator<Item = &Noise> {
+        self.noises().iter().filter(move |noise| noise.axis == axis)
+    }
+
+    /// Whether noise drives an axis.
+    pub fn is_noisy(&self, axis: usize) -> bool {
+        self.noises_on(axis).next().is_some()
+    }
+
+    /// Noise intensity Σ b² on an axis at a state.
+    pub fn intensity_at(&self, axis: usize, time: f64, state: &[f64]) -> f64 {
+        let squares = self
+            .noises_on(axis)
+            .map(|noise| noise.at(time, state).powi(2));
+        squares.sum()
     }
 }

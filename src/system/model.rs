@@ -13,29 +13,25 @@ type Binding = dyn Fn(&[f64]) -> Arc<dyn System> + Send + Sync;
 ///
 /// ```
 /// use std::sync::Arc;
-/// use pbif::system::{AxisDescription, Lanes, Model, ParameterDescription, ParameterRange, System};
+/// use pbif::system::{AxisDescription, Lanes, Model, Noise, ParameterDescription, ParameterRange, System};
 ///
-/// struct OrnsteinUhlenbeck { rate: f64, sigma: f64 }
+/// struct OrnsteinUhlenbeck { rate: f64, noise: [Noise; 1] }
 ///
 /// impl System for OrnsteinUhlenbeck {
 ///     fn dimension(&self) -> usize {
 ///         1
 ///     }
 ///     fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
-///         for (slope, x) in drift[0].iter_mut().zip(&states[0]) {
-///             *slope = -self.rate * x;
-///         }
+///         drift[0] = states[0].map(|x| -self.rate * x);
 ///     }
-///     fn noise_axes(&self) -> &[usize] {
-///         &[0]
-///     }
-///     fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
-///         Some(self.sigma)
+///     fn noises(&self) -> &[Noise] {
+///         &self.noise
 ///     }
 /// }
 ///
 /// let model = Model::new("linear", "Linear restoring force", |values| {
-///     Arc::new(OrnsteinUhlenbeck { rate: values[0], sigma: values[1].sqrt() })
+///     let noise = [Noise::constant(0, values[1].sqrt())];
+///     Arc::new(OrnsteinUhlenbeck { rate: values[0], noise })
 /// })
 /// .with_equations(["dx = -k x dt + σ dW"])
 /// .with_axes([AxisDescription::new("x", "x", "position")])
@@ -148,7 +144,7 @@ impl Model {
             .parameters
             .iter()
             .map(|one| one.default.unwrap_or(1.0));
-        let noises = model.bound(&values.collect::<Vec<_>>()).noise_axes().len();
+        let noises = model.bound(&values.collect::<Vec<_>>()).noises().len();
         coloured(model, kind, noises).map(Arc::new)
     }
 

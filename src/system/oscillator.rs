@@ -6,7 +6,7 @@ use multiversion::multiversion;
 
 use super::friction::{FrictionLaw, Motion};
 use super::parameters::{ALPHA, KAPPA, MU, Parameter, SIGMA2, X, Y};
-use super::{AxisDescription, LANES, Lanes, SwitchingSurface, Symmetry, System};
+use super::{AxisDescription, Facts, LANES, Lanes, Noise, Symmetry, System};
 
 /// Axis of the displacement of an oscillator.
 pub const DISPLACEMENT: usize = 0;
@@ -77,24 +77,37 @@ impl Damping for Viscous {
 ///
 /// Axes are x, y and the internal states in the law's order. The drift of a batch is one loop, compiled for every
 /// combination of damping and law, as if it had been written out; [`FrictionLaw`] has an example.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Oscillator<D, F, const N: usize> {
     spring: Duffing,
     damping: D,
     friction: F,
-    sigma: f64,
     sigma2: f64,
+    noise: [Noise; 1],
+    facts: Facts,
 }
 
 impl<D: Damping, F: FrictionLaw<N>, const N: usize> Oscillator<D, F, N> {
     /// The oscillator with noise intensity σ² (zero or more; the amplitude of the Wiener process is its root).
     pub fn new(spring: Duffing, damping: D, friction: F, sigma2: f64) -> Self {
+        let bounds = (0..N).filter_map(|state| {
+            let bounds = friction.bounds(state)?;
+            Some((FIRST_INTERNAL_STATE + state, bounds))
+        });
+        let facts = Facts {
+            bounds: bounds.collect(),
+            switching_surfaces: friction.switching_surfaces(),
+            // Everything is reflected about the origin, if the friction law is odd: spring and damping are.
+            symmetry: (friction.is_odd()).then(|| Symmetry::about_origin(FIRST_INTERNAL_STATE + N)),
+            ..Facts::default()
+        };
         Self {
             spring,
             damping,
             friction,
-            sigma: sigma2.sqrt(),
             sigma2,
+            noise: [Noise::constant(VELOCITY, sigma2.sqrt())],
+            facts,
         }
     }
 }
@@ -183,30 +196,12 @@ impl<D: Damping, F: FrictionLaw<N>, const N: usize> System for Oscillator<D, F, 
         drift(self, states, slopes);
     }
 
-    fn noise_axes(&self) -> &[usize] {
-        &[VELOCITY]
+    fn noises(&self) -> &[Noise] {
+        &self.noise
     }
 
-    fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
-        Some(self.sigma)
-    }
-
-    fn bounds(&self, axis: usize) -> Option<(f64, f64)> {
-        let state = axis.checked_sub(FIRST_INTERNAL_STATE)?;
-        (state < N).then(|| self.friction.bounds(state)).flatten()
-    }
-
-    fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
-        self.friction.switching_surfaces()
-    }
-
-    /// Everything is reflected about the origin, if the friction law is odd: spring and damping are.
-    fn symmetry(&self) -> Option<Symmetry> {
-        let dimension = self.dimension();
-        self.friction.is_odd().then(|| Symmetry {
-            centre: vec![0.0; dimension],
-            reflected: vec![true; dimension],
-        })
+    fn facts(&self) -> &Facts {
+        &self.facts
     }
 
     fn friction_force(&self, state: &[f64]) -> Option<f64> {
@@ -295,8 +290,8 @@ mod tests {
         assert_eq!((drift[0], drift[2], drift[3]), (-2.0, -3.0, -1.0));
         assert!((drift[1] + 0.175).abs() < 1e-15, "{drift:?}");
         assert_eq!(system.dimension(), 4);
-        assert_eq!(system.bounds(3), Some((-0.25, 0.25)));
-        assert_eq!((system.bounds(1), system.bounds(4)), (None, None));
+        assert_eq!(system.facts().bounds(3), Some((-0.25, 0.25)));
+        assert_eq!(system.facts().bounds.len(), 2);
         assert_eq!(contract::verify(&system, &[(-2.0, 2.0); 4]), Ok(()));
     }
 

@@ -12,7 +12,7 @@ const BATCHES: usize = 2;
 /// else one about the origin or the middle of the box that is found by trial, with the most axes reflected. Trial
 /// cannot tell a symmetry that fails only in a part of the box that no tried state lies in.
 pub fn proved_symmetry(system: &dyn System, ends: &[(f64, f64)]) -> Option<Symmetry> {
-    if let Some(declared) = system.symmetry() {
+    if let Some(declared) = system.facts().symmetry.clone() {
         return holds(system, &declared, ends).then_some(declared);
     }
     let axes = system.dimension();
@@ -46,10 +46,7 @@ fn holds(system: &dyn System, symmetry: &Symmetry, ends: &[(f64, f64)]) -> bool 
             .map(|axis| spread(batch, axis, ends[axis]))
             .collect();
         let images: Vec<Lanes> = (0..axes)
-            .map(|axis| match symmetry.reflected[axis] {
-                true => states[axis].map(|value| 2.0 * symmetry.centre[axis] - value),
-                false => states[axis],
-            })
+            .map(|axis| states[axis].map(|value| symmetry.image(axis, value)))
             .collect();
         drifts_agree(system, symmetry, &states, &images) && noise_agrees(system, &states, &images)
     })
@@ -93,12 +90,8 @@ fn drifts_agree(
 
 /// The sign of an amplitude does not matter: a Wiener process has none.
 fn noise_agrees(system: &dyn System, states: &[Lanes], images: &[Lanes]) -> bool {
-    (0..system.noise_axes().len()).all(|channel| {
-        let at = |states: &[Lanes]| {
-            let mut amplitude = [0.0; LANES];
-            system.amplitude(channel, 0.0, states, &mut amplitude);
-            amplitude.map(f64::abs)
-        };
+    system.noises().iter().all(|noise| {
+        let at = |states: &[Lanes]| noise.amplitudes(0.0, states).map(f64::abs);
         agree(&at(states), &at(images))
     })
 }
@@ -119,11 +112,13 @@ fn agree(a: &Lanes, b: &Lanes) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::system::{Facts, Noise};
 
     /// x' = y, y' = -y - x³ + lean + noise, which declares whatever it is told to.
     struct Leaning {
         lean: f64,
-        declared: Option<Symmetry>,
+        noise: [Noise; 1],
+        facts: Facts,
     }
 
     impl System for Leaning {
@@ -137,43 +132,41 @@ mod tests {
                 drift[1][lane] = -y - x.powi(3) + self.lean;
             }
         }
-        fn noise_axes(&self) -> &[usize] {
-            &[1]
+        fn noises(&self) -> &[Noise] {
+            &self.noise
         }
-        fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
-            Some(0.3)
-        }
-        fn symmetry(&self) -> Option<Symmetry> {
-            self.declared.clone()
+        fn facts(&self) -> &Facts {
+            &self.facts
         }
     }
 
-    fn whole() -> Symmetry {
-        Symmetry {
-            centre: vec![0.0; 2],
-            reflected: vec![true; 2],
+    fn leaning(lean: f64, symmetry: Option<Symmetry>) -> Leaning {
+        Leaning {
+            lean,
+            noise: [Noise::constant(1, 0.3)],
+            facts: Facts {
+                symmetry,
+                ..Facts::default()
+            },
         }
     }
 
     #[test]
     fn a_symmetry_is_found_where_nobody_declared_one() {
-        let system = Leaning {
-            lean: 0.0,
-            declared: None,
-        };
+        let system = leaning(0.0, None);
         for ends in [[(-2.0, 2.0), (-2.0, 2.0)], [(-2.0, 3.0), (-1.0, 2.0)]] {
-            assert_eq!(proved_symmetry(&system, &ends), Some(whole()));
+            assert_eq!(
+                proved_symmetry(&system, &ends),
+                Some(Symmetry::about_origin(2))
+            );
         }
     }
 
     #[test]
     fn a_declared_symmetry_that_fails_is_none() {
         let ends = [(-2.0, 2.0), (-2.0, 2.0)];
-        for declared in [None, Some(whole())] {
-            let system = Leaning {
-                lean: 1e-3,
-                declared,
-            };
+        for declared in [None, Some(Symmetry::about_origin(2))] {
+            let system = leaning(1e-3, declared);
             assert_eq!(proved_symmetry(&system, &ends), None);
         }
     }

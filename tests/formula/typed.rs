@@ -125,13 +125,14 @@ fn twins_have_the_same_drift_noise_and_declarations() {
                 assert!((expected - found).abs() < 2e-14, "{name} at {state:?}");
             }
         }
-        assert_eq!(typed.noise_axes(), built_in.noise_axes(), "{name}");
-        assert_eq!(typed.additive_amplitude(0), built_in.additive_amplitude(0));
-        assert_eq!(typed.switching_surfaces(), built_in.switching_surfaces());
-        assert_eq!(typed.symmetry(), built_in.symmetry(), "{name}");
-        for axis in 0..built_in.dimension() {
-            assert_eq!(typed.bounds(axis), built_in.bounds(axis), "{name}");
-        }
+        let noises = |system: &dyn System| {
+            let noises = system.noises().iter();
+            noises
+                .map(|noise| (noise.axis, noise.additive()))
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(noises(&*typed), noises(&*built_in), "{name}");
+        assert_eq!(typed.facts(), built_in.facts(), "{name}");
         let values = twins.typed.values(&twins.values).unwrap();
         let ranges = vec![(-2.0, 2.0); built_in.dimension()];
         assert_eq!(
@@ -174,9 +175,9 @@ fn the_readings_of_multiplicative_noise_differ_by_the_drift_correction_and_give_
     let stratonovich = multiplicative("x - x^3", Interpretation::Stratonovich);
     let corrected = multiplicative("x - x^3 + s^2 x/2", Interpretation::Ito);
     let ito = multiplicative("x - x^3", Interpretation::Ito);
-    assert_eq!(stratonovich.additive_amplitude(0), None);
-    assert_eq!(stratonovich.additive_amplitude(1), Some(0.5));
-    assert!((stratonovich.amplitude_at(0, 0.0, &[2.0]) - 1.4).abs() < 1e-15);
+    assert_eq!(stratonovich.noises()[0].additive(), None);
+    assert_eq!(stratonovich.noises()[1].additive(), Some(0.5));
+    assert!((stratonovich.noises()[0].at(0.0, &[2.0]) - 1.4).abs() < 1e-15);
     for x in [-1.5, 0.3, 2.0] {
         let difference = stratonovich.drift_at(0.0, &[x])[0] - ito.drift_at(0.0, &[x])[0];
         assert!((difference - 0.245 * x).abs() < 1e-14);
@@ -223,7 +224,7 @@ fn surfaces_and_symmetry_follow_the_parameters() {
         .unwrap();
     let surfaces = |values: &[(&str, f64)]| -> Vec<(usize, f64)> {
         let system = model.system_with(values).unwrap();
-        let surfaces = system.switching_surfaces();
+        let surfaces = &system.facts().switching_surfaces;
         surfaces
             .iter()
             .map(|surface| (surface.axis, surface.at))
@@ -240,7 +241,14 @@ fn surfaces_and_symmetry_follow_the_parameters() {
         .with_parameters(["tilt"])
         .build()
         .unwrap();
-    let symmetry = |tilt| plain.system_with(&[("tilt", tilt)]).unwrap().symmetry();
+    let symmetry = |tilt| {
+        plain
+            .system_with(&[("tilt", tilt)])
+            .unwrap()
+            .facts()
+            .symmetry
+            .clone()
+    };
     assert!(symmetry(0.0).is_some() && symmetry(0.1).is_none());
     // A bound on one side only.
     let half = TypedModel::new("half", "Half", ["x"])
@@ -248,7 +256,7 @@ fn surfaces_and_symmetry_follow_the_parameters() {
         .with_bounds("x", "-1", "2")
         .build()
         .unwrap();
-    assert_eq!(half.system_with(&[]).unwrap().symmetry(), None);
+    assert_eq!(half.system_with(&[]).unwrap().facts().symmetry, None);
 }
 
 #[test]
@@ -273,7 +281,10 @@ fn a_period_is_declared_and_kept() {
     assert_eq!(error, TypedModelError::TimeWithoutPeriod { place });
     let model = forced.with_period("2 pi/omega").build().unwrap();
     let values = model.values(&[("omega", 2.0)]).unwrap();
-    assert_eq!(model.system(&values).period(), Some(std::f64::consts::PI));
+    assert_eq!(
+        model.system(&values).facts().period,
+        Some(std::f64::consts::PI)
+    );
     contract::verify_model(&model, &values, &[(-2.0, 2.0)]).unwrap();
     assert_eq!(model.parameters[0].symbol, "ω");
 }
@@ -398,8 +409,8 @@ fn noise_that_no_method_can_take_is_refused() {
         .unwrap();
     let system = model.system_with(&[("k", 1.0)]).unwrap();
     assert_eq!(
-        (system.noise_axes(), system.additive_amplitude(0)),
-        (&[1][..], Some(1.0))
+        (system.noises()[0].axis, system.noises()[0].additive()),
+        (1, Some(1.0))
     );
     // Both readings agree while an amplitude does not depend on its own axis.
     assert!(whole().with_noise("y", ["x"]).build().is_ok());

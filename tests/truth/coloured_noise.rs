@@ -257,7 +257,7 @@ fn by_trajectories(system: &dyn System, steps: usize) -> [(f64, f64); 3] {
     let mut random = Xoshiro256Plus::seed_from_u64(7);
     let axes = system.dimension();
     let noise = axes - 1;
-    let amplitude = system.additive_amplitude(0).unwrap() * TIME_STEP.sqrt();
+    let amplitude = system.noises()[0].additive().unwrap() * TIME_STEP.sqrt();
     let mut states: Vec<Lanes> = vec![[0.1; LANES]; axes];
     let (mut start, mut end) = (states.clone(), states.clone());
     let mut sums = [[0.0; 3]; LANES];
@@ -345,7 +345,7 @@ fn friction_that_remembers_agrees_with_trajectories_under_coloured_noise() {
     ];
     let system = coloured("dahl", &given);
     let cells = Axis::uniform(-2.2, 2.2, 22).unwrap();
-    let (low, high) = system.bounds(2).unwrap();
+    let (low, high) = system.facts().bounds(2).unwrap();
     let axes = vec![
         cells.clone(),
         cells,

@@ -26,11 +26,11 @@ fn system(model: &str, own: &[(&str, f64)]) -> Arc<dyn System> {
 
 /// Axes of a grid: `cells` on ±2.4 of x and y, y graded where friction switches, `modes` on every internal state.
 fn axes(system: &dyn System, cells: usize, modes: usize) -> Vec<Axis> {
-    let bounds = |index| system.bounds(index).unwrap_or((-2.4, 2.4));
+    let bounds = |index| system.facts().bounds(index).unwrap_or((-2.4, 2.4));
     let ranges: Vec<(f64, f64)> = (0..system.dimension()).map(bounds).collect();
     let axis = |index: usize| {
         let (from, to) = ranges[index];
-        if system.bounds(index).is_some() {
+        if system.facts().bounds(index).is_some() {
             return Axis::modes(from, to, modes).unwrap();
         }
         match automatic_grading(system, &ranges, index, cells) {
@@ -77,7 +77,7 @@ fn batch<const Q: usize>(
 ) -> [f64; Q] {
     let mut random = Xoshiro256Plus::seed_from_u64(seed);
     let axes = system.dimension();
-    let amplitude = system.additive_amplitude(0).unwrap() * TIME_STEP.sqrt();
+    let amplitude = system.noises()[0].additive().unwrap() * TIME_STEP.sqrt();
     let mut states: Vec<Lanes> = vec![[0.1; LANES]; axes];
     let (mut start, mut end) = (states.clone(), states.clone());
     let (mut sums, mut looks) = ([0.0; Q], 0.0);
@@ -146,7 +146,7 @@ fn assert_agrees(system: &dyn System, cells: usize, modes: usize, of_grid: f64) 
         ]
     };
     let found = by_generator(system, self::axes(system, cells, modes), look);
-    let fed = 0.5 * system.additive_amplitude(0).unwrap().powi(2);
+    let fed = 0.5 * system.noises()[0].additive().unwrap().powi(2);
     let missed = (found[0] / fed + 1.0).abs();
     assert!(missed < of_grid, "power: {missed:e} of what noise feeds in");
     let sampled = by_trajectories(system, 25_000, look);
@@ -218,7 +218,7 @@ fn a_stiff_dahl_contact_goes_to_coulombs_law_with_the_power_two_thirds() {
             Axis::uniform(-3.2, 3.2, 32).unwrap(),
             Axis::graded(-3.2, 3.2, 72, &layer).unwrap(),
         ];
-        if let Some((from, to)) = system.bounds(2) {
+        if let Some((from, to)) = system.facts().bounds(2) {
             axes.push(Axis::modes(from, to, 6).unwrap());
         }
         by_generator(&*system, axes, |state| [state[1] * state[1]])[0]

@@ -131,7 +131,7 @@ fn what_relaxes_is_read_off_the_formulas() {
         let system = model.system_with(&[("c", 0.7)]).unwrap();
         let verified = contract::verify(&*system, &[(-2.0, 2.0); 2]);
         assert!(verified.is_ok(), "{drift}: {verified:?}");
-        system.relaxation_rate(1)
+        system.facts().relaxation_rates.get(&1).copied()
     };
     assert_eq!(rate("x - c v", None), Some(0.7));
     assert_eq!(rate("abs(x) x - 2 (c + 1) (v - x^2)", None), Some(3.4));

@@ -12,8 +12,8 @@ use pbif::density::Observable;
 use pbif::method::{GeneratorMethodOptions, GeneratorSource, Problem};
 use pbif::space::{Axis, CellSpace};
 use pbif::system::{
-    AxisDescription, Family, Interpretation, Lanes, Model, ParameterDescription, Path, System,
-    TypedModel,
+    AxisDescription, Family, Interpretation, Lanes, Model, Noise, ParameterDescription, Path,
+    System, TypedModel,
 };
 use pbif::topology::{DetectOptions, PersistenceDetector};
 
@@ -24,9 +24,8 @@ type Drift = fn(f64, &[f64], &mut [f64]);
 struct ByDrift {
     axes: usize,
     theta: f64,
-    sigma: f64,
     drift: Drift,
-    noisy: Vec<usize>,
+    noise: [Noise; 1],
 }
 
 impl System for ByDrift {
@@ -45,11 +44,8 @@ impl System for ByDrift {
             }
         }
     }
-    fn noise_axes(&self) -> &[usize] {
-        &self.noisy
-    }
-    fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
-        Some(self.sigma)
+    fn noises(&self) -> &[Noise] {
+        &self.noise
     }
 }
 
@@ -62,9 +58,8 @@ fn model(axes: usize, sigma2: f64, drift: Drift) -> Model {
         Arc::new(ByDrift {
             axes,
             theta: values[0],
-            sigma: sigma2.sqrt(),
             drift,
-            noisy: vec![axes - 1],
+            noise: [Noise::constant(axes - 1, sigma2.sqrt())],
         })
     })
     .with_axes(described)

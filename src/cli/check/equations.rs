@@ -15,8 +15,8 @@ pub(super) fn lines(spec: &Sweep) -> Vec<String> {
     let Ok(system) = family.at(family.ends().0) else {
         return lines;
     };
-    let surfaces: Vec<String> = system
-        .switching_surfaces()
+    let facts = system.facts();
+    let surfaces: Vec<String> = (facts.switching_surfaces)
         .iter()
         .map(|surface| format!("{} = {}", family.axis(surface.axis), surface.at))
         .collect();
@@ -25,7 +25,7 @@ pub(super) fn lines(spec: &Sweep) -> Vec<String> {
             .to_owned(),
         false => format!("the drift is not smooth where {}", surfaces.join(", ")),
     });
-    let reflected = system.symmetry().map(|symmetry| {
+    let reflected = facts.symmetry.as_ref().map(|symmetry| {
         let axes = symmetry.reflected.iter().enumerate();
         let axes = axes.filter(|(_, reflected)| **reflected);
         let each = axes.map(|(axis, _)| {

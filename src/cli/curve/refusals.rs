@@ -152,7 +152,7 @@ pub(super) fn check_corners(spec: &Sweep, plane: &Plane) -> Result<(), CommandEr
         let values = values.map_err(|error| refused_plane(&MethodError::from(error)))?;
         let system = model.system(&values);
         for (index, axis) in space.axes().iter().enumerate() {
-            let Some((low, high)) = system.bounds(index).filter(|_| axis.is_modes()) else {
+            let Some((low, high)) = system.facts().bounds(index).filter(|_| axis.is_modes()) else {
                 continue;
             };
             let slack = BEYOND * (axis.to() - axis.from());

@@ -178,7 +178,7 @@ impl Base {
 /// The widest range that the walls of an axis take at the ends of a path.
 fn walls(family: &Family, axis: usize) -> Option<(f64, f64)> {
     let (from, to) = family.ends();
-    let at = |value: f64| family.at(value).ok()?.bounds(axis);
+    let at = |value: f64| family.at(value).ok()?.facts().bounds(axis);
     let (one, other) = (at(from)?, at(to)?);
     Some((one.0.min(other.0), one.1.max(other.1)))
 }

@@ -37,7 +37,7 @@ pub struct OneAxis {
 /// The steady state without flux through the ends; `None` where drift and noise do not allow it: more than one axis,
 /// noise that vanishes or is not finite somewhere.
 pub fn one_axis(system: &dyn System, axis: &Axis) -> Option<OneAxis> {
-    if system.dimension() != 1 || system.period().is_some() {
+    if system.dimension() != 1 || system.facts().period.is_some() {
         return None;
     }
     let rule = Rule::new();
@@ -145,8 +145,7 @@ impl Walk<'_> {
 
 /// Where drift or noise are not smooth, ascending.
 fn surfaces(system: &dyn System) -> Vec<f64> {
-    let declared = system.switching_surfaces().into_iter();
-    let mut surfaces: Vec<f64> = declared.map(|one| one.at).collect();
+    let mut surfaces: Vec<f64> = system.facts().surfaces_on(0).collect();
     surfaces.sort_by(f64::total_cmp);
     surfaces
 }

@@ -68,10 +68,8 @@ pub(super) fn look(system: &dyn System, places: &Lanes) -> (Lanes, Lanes) {
     let mut drift = [[0.0; LANES]];
     system.drift(0.0, &states, &mut drift);
     let mut intensity = [0.0; LANES];
-    for channel in 0..system.noise_axes().len() {
-        let mut amplitude = [0.0; LANES];
-        system.amplitude(channel, 0.0, &states, &mut amplitude);
-        for (sum, b) in intensity.iter_mut().zip(amplitude) {
+    for noise in system.noises() {
+        for (sum, b) in intensity.iter_mut().zip(noise.amplitudes(0.0, &states)) {
             *sum += b * b;
         }
     }

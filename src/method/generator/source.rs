@@ -77,8 +77,8 @@ impl GeneratorSource {
             return Ok(system);
         }
         let axes = self.problem.space().axes().iter();
-        let ranges = axes.map(|axis| (axis.from(), axis.to())).collect();
-        Ok(Arc::new(Enclosed { system, ranges }))
+        let ranges: Vec<(f64, f64)> = axes.map(|axis| (axis.from(), axis.to())).collect();
+        Ok(Arc::new(Enclosed::new(system, &ranges)))
     }
 
     /// The same on finer cells.

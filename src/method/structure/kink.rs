@@ -26,9 +26,6 @@ pub(super) fn kink(
     let axis = &space.axes()[surface.axis];
     let cell = axis.find(surface.at)?;
     let step = BESIDE * axis.width(cell);
-    let noise: Vec<usize> = (0..system.noise_axes().len())
-        .filter(|&channel| system.noise_axes()[channel] == surface.axis)
-        .collect();
     let other = beside_axis(space, axes, surface.axis);
     let bins = bins(space, axes, surface.axis);
     let (mut sums, mut weights) = (vec![0.0; bins], vec![0.0; bins]);
@@ -37,8 +34,7 @@ pub(super) fn kink(
         let drop = surface.drift_jump(system, &state, step)[surface.axis];
         let mut intensity_at = |offset: f64| {
             state[surface.axis] = surface.at + offset;
-            let square = |&channel: &usize| system.amplitude_at(channel, 0.0, &state).powi(2);
-            noise.iter().map(square).sum::<f64>()
+            system.intensity_at(surface.axis, 0.0, &state)
         };
         let intensity = intensity_at(0.0);
         let slope = slope_jump(&mut intensity_at, step * FARTHER);

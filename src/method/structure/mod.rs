@@ -26,7 +26,7 @@ pub(super) fn kinked_surfaces(
         let found = kink(system.as_ref(), space, &evenly, &[surface.axis], surface);
         found.map_or(0.0, |kink| kink.jump_at(0).abs())
     };
-    let mut surfaces = first.switching_surfaces();
+    let mut surfaces = first.facts().switching_surfaces.clone();
     surfaces.retain(|&surface| {
         let width = space.axes()[surface.axis].to() - space.axes()[surface.axis].from();
         let largest = systems.iter().map(|system| jumps(system, surface));
@@ -42,8 +42,10 @@ pub(super) fn all_kinked_surfaces(
     space: &CellSpace,
 ) -> Vec<SwitchingSurface> {
     let mut surfaces = kinked_surfaces(systems, space);
-    let declared = systems.first().map(|system| system.switching_surfaces());
-    let others = declared.unwrap_or_default().into_iter();
+    let declared = systems
+        .first()
+        .map(|system| &system.facts().switching_surfaces);
+    let others = declared.into_iter().flatten().copied();
     surfaces.extend(others.filter(|&surface| {
         let along = systems.iter();
         let jumping = along.filter(|system| undriven::jumps(system.as_ref(), space, surface));
@@ -64,7 +66,9 @@ pub(super) fn closed_ends(systems: &[Arc<dyn System>], space: &CellSpace) -> Vec
             return [true; 2];
         }
         let range = (cells.from(), cells.to());
-        let walls = systems.iter().map(|system| system.walls(axis, range));
+        let walls = systems
+            .iter()
+            .map(|system| system.facts().walls(axis, range));
         walls
             .reduce(|one, other| [one[0] && other[0], one[1] && other[1]])
             .unwrap_or_default()
@@ -92,14 +96,14 @@ pub(super) fn structure(
         kinks.extend(found);
     }
     let mut centre = centre(system, space, &axes);
-    let declared = system.switching_surfaces().into_iter();
-    let others = declared
+    let declared = &system.facts().switching_surfaces;
+    let others = (declared.iter())
         .filter(|one| !known.contains(&(one.axis, one.at)))
         .filter_map(|one| {
             let axis = axes.iter().position(|&axis| axis == one.axis)?;
             let jump = match (
-                break_at(system, space, one),
-                undriven::is_driven(system, one),
+                break_at(system, space, *one),
+                undriven::is_driven(system, *one),
             ) {
                 (Break::Bend, _) | (Break::Jump, false) => Vec::new(),
                 (Break::None, _) | (Break::Jump, true) => return None,
@@ -111,13 +115,14 @@ pub(super) fn structure(
     // A slope that jumps at the centre by nobody knows how much: its curvature there says nothing, and persistence
     // judges.
     let is_torn = |centre: &Vec<f64>| {
-        let declared = system.switching_surfaces().into_iter();
-        let mut unknown = declared.filter(|one| !known.contains(&(one.axis, one.at)));
+        let mut unknown = declared
+            .iter()
+            .filter(|one| !known.contains(&(one.axis, one.at)));
         unknown.any(|one| {
             let place = axes.iter().position(|&axis| axis == one.axis);
             let on_centre = place
                 .is_some_and(|place| space.axes()[one.axis].is_same_place(one.at, centre[place]));
-            on_centre && undriven::jumps(system, space, one)
+            on_centre && undriven::jumps(system, space, *one)
         })
     };
     if centre.as_ref().is_some_and(is_torn) {

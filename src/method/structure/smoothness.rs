@@ -1,7 +1,7 @@
 //! How smooth a system is across a plane on which its drift or noise may bend.
 
 use crate::space::CellSpace;
-use crate::system::{SwitchingSurface, System};
+use crate::system::{Noise, SwitchingSurface, System};
 
 /// How smooth a system is across a surface on which the jump law asks for no kink of the density.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
@@ -31,8 +31,7 @@ pub(super) fn break_at(system: &dyn System, space: &CellSpace, surface: Switchin
     }
     let step = APART * (axis.to() - axis.from());
     // Where noise acts across the surface, what moves other axes bends a density in higher derivatives only.
-    let own = |channel: &usize| system.noise_axes()[*channel] == surface.axis;
-    let is_noisy = (0..system.noise_axes().len()).any(|channel| own(&channel));
+    let is_noisy = system.is_noisy(surface.axis);
     // On the middle of the other axes, and at two places aside.
     let worst = [0.31, 0.5, 0.73].into_iter().map(|share| {
         let ends = space.axes().iter();
@@ -42,15 +41,12 @@ pub(super) fn break_at(system: &dyn System, space: &CellSpace, surface: Switchin
         let mut across = |offset: f64| {
             state[surface.axis] = surface.at + offset;
             let mut values = system.drift_at(0.0, &state);
-            let channels = 0..system.noise_axes().len();
-            let squares = channels.map(|one| system.amplitude_at(one, 0.0, &state).powi(2));
-            let squares: Vec<f64> = squares.collect();
             if is_noisy {
                 values = vec![values[surface.axis]];
-                values.extend((0..squares.len()).filter(own).map(|one| squares[one]));
-            } else {
-                values.extend(squares);
             }
+            let counts = |noise: &&Noise| !is_noisy || noise.axis == surface.axis;
+            let noises = system.noises().iter().filter(counts);
+            values.extend(noises.map(|noise| noise.at(0.0, &state).powi(2)));
             values
         };
         let far = 0.25 / APART;

@@ -28,8 +28,7 @@ const EMPTY: f64 = 1e-10;
 
 /// Whether noise acts across a surface.
 pub(super) fn is_driven(system: &dyn System, surface: SwitchingSurface) -> bool {
-    let mut channels = system.noise_axes().iter();
-    channels.any(|&axis| axis == surface.axis)
+    system.is_noisy(surface.axis)
 }
 
 /// Whether something jumps at a surface across which no noise acts.
@@ -194,14 +193,13 @@ impl<'a> Plane<'a> {
 
     /// Whether no noise jumps there.
     fn has_even_noise(&self, system: &dyn System) -> bool {
-        let channels = 0..system.noise_axes().len();
         let step = BESIDE * (self.space.axes()[self.across].to() - self.at);
         self.cells.iter().all(|&cell| {
             let mut state = self.space.centre(cell);
-            channels.clone().all(|channel| {
+            system.noises().iter().all(|noise| {
                 let mut square = |side: f64| {
                     state[self.across] = self.at + side * step;
-                    system.amplitude_at(channel, 0.0, &state).powi(2)
+                    noise.at(0.0, &state).powi(2)
                 };
                 let (below, above) = (square(-1.0), square(1.0));
                 (above - below).abs() <= 10.0 * BESIDE * above.abs().max(below.abs())

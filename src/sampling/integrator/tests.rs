@@ -15,27 +15,26 @@ const RULE: [(f64, f64); 3] = [
 /// dX = A X dt + (additive or, in one dimension, proportional to x) noise on the last axis.
 struct Linear {
     matrix: Vec<Vec<f64>>,
-    additive: Option<f64>,
-    proportional: f64,
-    axis: [usize; 1],
+    noise: [Noise; 1],
 }
 
 impl Linear {
     fn scalar(rate: f64, additive: Option<f64>, proportional: f64) -> Self {
         Self {
             matrix: vec![vec![rate]],
-            additive,
-            proportional,
-            axis: [0],
+            noise: [match additive {
+                Some(amplitude) => Noise::constant(0, amplitude),
+                None => Noise::of_state(0, move |_, states, amplitude| {
+                    *amplitude = states[0].map(|x| proportional * x);
+                }),
+            }],
         }
     }
 
     fn oscillator(omega: f64, damping: f64, amplitude: f64) -> Self {
         Self {
             matrix: vec![vec![0.0, 1.0], vec![-omega * omega, -damping]],
-            additive: Some(amplitude),
-            proportional: 0.0,
-            axis: [1],
+            noise: [Noise::constant(1, amplitude)],
         }
     }
 }
@@ -51,16 +50,8 @@ impl System for Linear {
             }
         }
     }
-    fn noise_axes(&self) -> &[usize] {
-        &self.axis
-    }
-    fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
-        self.additive
-    }
-    fn amplitude(&self, _channel: usize, _time: f64, states: &[Lanes], amplitude: &mut Lanes) {
-        for (value, x) in amplitude.iter_mut().zip(&states[0]) {
-            *value = self.additive.unwrap_or(self.proportional * x);
-        }
+    fn noises(&self) -> &[Noise] {
+        &self.noise
     }
 }
 

@@ -72,10 +72,9 @@ impl Record {
             sums.second += off * off;
             sums.square_width += space.axes()[axis].width(space.position(cell, axis)).powi(2);
         }
-        for (channel, &axis) in system.noise_axes().iter().enumerate() {
-            let constant = system.additive_amplitude(channel);
-            let amplitude = constant.unwrap_or_else(|| system.amplitude_at(channel, 0.0, state));
-            self.axes[axis].noise += 0.5 * amplitude * amplitude;
+        for noise in system.noises() {
+            let amplitude = noise.at(0.0, state);
+            self.axes[noise.axis].noise += 0.5 * amplitude * amplitude;
         }
     }
 

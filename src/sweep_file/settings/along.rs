@@ -9,7 +9,15 @@ use crate::system::{Family, ParameterValues, System};
 /// Mean and standard deviation of an axis of coloured noise, the same all along the sweep.
 pub(super) fn filter(family: &Family, axis: usize) -> Option<(f64, f64)> {
     let (from, to) = family.ends();
-    let at = |value: f64| family.at(value).ok()?.filtered_noise(axis);
+    let at = |value: f64| {
+        family
+            .at(value)
+            .ok()?
+            .facts()
+            .filtered_noise
+            .get(&axis)
+            .copied()
+    };
     at(from).filter(|one| at(to).as_ref() == Some(one))
 }
 
@@ -32,7 +40,8 @@ impl<'a> Along<'a> {
     pub(super) fn relaxes(&self, axis: usize) -> bool {
         let mut corners = self.corners.iter();
         let relaxes = |one: &Arc<dyn System>| {
-            one.bounds(axis).is_none() && one.relaxation_rate(axis).is_some()
+            let facts = one.facts();
+            facts.bounds(axis).is_none() && facts.relaxation_rates.contains_key(&axis)
         };
         !self.corners.is_empty() && corners.all(relaxes)
     }
@@ -44,8 +53,11 @@ impl<'a> Along<'a> {
             let half = NORMAL_RANGE * deviation;
             return Some((mean - half, mean + half));
         }
-        let bounds: Option<Vec<(f64, f64)>> =
-            self.corners.iter().map(|one| one.bounds(axis)).collect();
+        let bounds: Option<Vec<(f64, f64)>> = self
+            .corners
+            .iter()
+            .map(|one| one.facts().bounds(axis))
+            .collect();
         let bounds = bounds?.into_iter();
         bounds.reduce(|one, other| (one.0.min(other.0), one.1.max(other.1)))
     }

@@ -66,7 +66,7 @@ pub(super) fn check_modes(
     let walled = |range| {
         systems
             .iter()
-            .all(|system| system.walls(index, range) == [true; 2])
+            .all(|system| system.facts().walls(index, range) == [true; 2])
     };
     let (why, remedy) = if along.relaxes(index) {
         // Its range is any that holds it.
@@ -79,12 +79,12 @@ pub(super) fn check_modes(
             "the modes of noise have a range of their own",
             format!("leave `from` and `to` out, or give `cells.{name}.count` in place of modes"),
         )
+    } else if systems.iter().any(|system| system.is_noisy(index)) {
+        ("noise drives it", format!("give `cells.{name}.count`"))
     } else if systems
         .iter()
-        .any(|system| system.noise_axes().contains(&index))
+        .any(|system| system.facts().bounds(index).is_none())
     {
-        ("noise drives it", format!("give `cells.{name}.count`"))
-    } else if systems.iter().any(|system| system.bounds(index).is_none()) {
         (
             "the model knows no bounds of it, and it does not relax linearly, as v does in v' = g - c v with a number \
              c > 0",

@@ -1,9 +1,9 @@
 //! A system whose white noises come through filters, the states of which are axes of its own.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::filter::Filter;
-use crate::system::{LANES, Lanes, SwitchingSurface, Symmetry, System};
+use crate::system::{Facts, LANES, Lanes, Noise, Symmetry, System};
 
 /// A system whose white noises come through filters, the states of which are axes after those of the system, noise by
 /// noise.
@@ -12,28 +12,56 @@ pub(super) struct Filtered {
     /// Axes of the system without its filters.
     own: usize,
     filter: Filter,
-    /// The last axis of each filter.
-    noise_axes: Vec<usize>,
+    /// On the last axis of each filter.
+    noises: Vec<Noise>,
+    facts: OnceLock<Facts>,
 }
 
 impl Filtered {
     pub(super) fn new(system: Arc<dyn System>, filter: Filter) -> Self {
         let (own, states) = (system.dimension(), filter.states());
-        let channels = 0..system.noise_axes().len();
+        let channels = 1..=system.noises().len();
+        let noises =
+            channels.map(|number| Noise::constant(own + number * states - 1, filter.amplitude));
         Self {
             own,
-            noise_axes: channels
-                .map(|channel| own + (channel + 1) * states - 1)
-                .collect(),
+            noises: noises.collect(),
+            facts: OnceLock::new(),
             filter,
             system,
         }
     }
 
+    fn find_facts(&self) -> Facts {
+        let mut facts = self.system.facts().clone();
+        facts
+            .relaxation_rates
+            .retain(|&axis, _| !self.system.is_noisy(axis));
+        let filters = self.own..self.dimension();
+        facts.filtered_noise = filters.map(|axis| (axis, (0.0, 1.0))).collect();
+        facts.symmetry = facts.symmetry.and_then(|symmetry| self.extended(symmetry));
+        facts
+    }
+
+    /// The symmetry of the system with its filters: each goes with the axis that it drives.
+    fn extended(&self, mut symmetry: Symmetry) -> Option<Symmetry> {
+        let noises = self.system.noises().iter();
+        let filters = noises.map(|noise| {
+            let odd = self.is_odd(noise, &symmetry)?;
+            Some(symmetry.reflected[noise.axis] != odd)
+        });
+        let filters = filters.collect::<Option<Vec<bool>>>()?.into_iter();
+        let states = self.filter.states();
+        let reflected = filters.flat_map(|one| std::iter::repeat_n(one, states));
+        symmetry.reflected.extend(reflected);
+        symmetry.centre.resize(self.dimension(), 0.0);
+        Some(symmetry)
+    }
+
     /// Whether an amplitude changes its sign with a reflection of the system: its noise is then reflected too, but for
     /// the axis's own sign. `None` where it does neither.
-    fn is_odd(&self, channel: usize, symmetry: &Symmetry) -> Option<bool> {
-        if self.system.additive_amplitude(channel).is_some() {
+    fn is_odd(&self, noise: &Noise, symmetry: &Symmetry) -> Option<bool> {
+        if noise.additive().is_some() {
             return Some(false);
         }
         let states: Vec<Lanes> = (0..self.own)
@@ -47,17 +75,12 @@ impl Filtered {
             })
             .collect();
         let images: Vec<Lanes> = (0..self.own)
-            .map(|axis| match symmetry.reflected[axis] {
-                true => states[axis].map(|x| 2.0 * symmetry.centre[axis] - x),
-                false => states[axis],
-            })
+            .map(|axis| states[axis].map(|x| symmetry.image(axis, x)))
             .collect();
-        let at = |states: &[Lanes]| {
-            let mut amplitude = [0.0; LANES];
-            self.system.amplitude(channel, 0.0, states, &mut amplitude);
-            amplitude
-        };
-        let (here, there) = (at(&states), at(&images));
+        let (here, there) = (
+            noise.amplitudes(0.0, &states),
+            noise.amplitudes(0.0, &images),
+        );
         let size = here.iter().map(|b| b.abs()).fold(0.0, f64::max);
         let mut signs = [1.0, -1.0].into_iter();
         let sign = signs.find(|sign| {
@@ -70,22 +93,20 @@ impl Filtered {
 
 impl System for Filtered {
     fn dimension(&self) -> usize {
-        self.own + self.noise_axes.len() * self.filter.states()
+        self.own + self.noises.len() * self.filter.states()
     }
 
     fn drift(&self, time: f64, states: &[Lanes], drift: &mut [Lanes]) {
         let (own, filters) = states.split_at(self.own);
         let (slopes, relaxations) = drift.split_at_mut(self.own);
         self.system.drift(time, own, slopes);
-        let driven = self.system.noise_axes();
         let size = self.filter.states();
-        let channels = filters
+        let filters = filters
             .chunks_exact(size)
             .zip(relaxations.chunks_exact_mut(size));
-        for (channel, (filter, rates)) in channels.enumerate() {
-            let mut amplitude = [0.0; LANES];
-            self.system.amplitude(channel, time, own, &mut amplitude);
-            let slopes = &mut slopes[driven[channel]];
+        for (noise, (filter, rates)) in self.system.noises().iter().zip(filters) {
+            let amplitude = noise.amplitudes(time, own);
+            let slopes = &mut slopes[noise.axis];
             for lane in 0..LANES {
                 slopes[lane] += self.filter.gain * amplitude[lane] * filter[0][lane];
             }
@@ -93,56 +114,11 @@ impl System for Filtered {
         }
     }
 
-    fn noise_axes(&self) -> &[usize] {
-        &self.noise_axes
+    fn noises(&self) -> &[Noise] {
+        &self.noises
     }
 
-    fn additive_amplitude(&self, channel: usize) -> Option<f64> {
-        (channel < self.noise_axes.len()).then_some(self.filter.amplitude)
-    }
-
-    fn period(&self) -> Option<f64> {
-        self.system.period()
-    }
-
-    fn bounds(&self, axis: usize) -> Option<(f64, f64)> {
-        (axis < self.own)
-            .then(|| self.system.bounds(axis))
-            .flatten()
-    }
-
-    fn filtered_noise(&self, axis: usize) -> Option<(f64, f64)> {
-        (self.own..self.dimension())
-            .contains(&axis)
-            .then_some((0.0, 1.0))
-    }
-
-    fn relaxation_rate(&self, axis: usize) -> Option<f64> {
-        let is_driven = self.system.noise_axes().contains(&axis);
-        (axis < self.own && !is_driven)
-            .then(|| self.system.relaxation_rate(axis))
-            .flatten()
-    }
-
-    fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
-        self.system.switching_surfaces()
-    }
-
-    /// That of the system; a filter goes with the axis that it drives.
-    fn symmetry(&self) -> Option<Symmetry> {
-        let mut symmetry = self.system.symmetry()?;
-        let driven = self.system.noise_axes();
-        let filters: Option<Vec<bool>> = (0..driven.len())
-            .map(|channel| {
-                let odd = self.is_odd(channel, &symmetry)?;
-                Some(symmetry.reflected[driven[channel]] != odd)
-            })
-            .collect();
-        let states = self.filter.states();
-        let filters = filters?.into_iter();
-        let reflected = filters.flat_map(|one| std::iter::repeat_n(one, states));
-        symmetry.reflected.extend(reflected);
-        symmetry.centre.resize(self.dimension(), 0.0);
-        Some(symmetry)
+    fn facts(&self) -> &Facts {
+        self.facts.get_or_init(|| self.find_facts())
     }
 }

@@ -32,7 +32,10 @@ fn every_built_in_model_keeps_its_contract_with_coloured_noise() {
             Err(violation) => panic!("{}: {violation}", model.name),
         }
         let (system, inner) = (model.system(&values), white.bound(values.as_slice()));
-        assert_eq!(system.symmetry().is_some(), inner.symmetry().is_some());
+        assert_eq!(
+            system.facts().symmetry.is_some(),
+            inner.facts().symmetry.is_some()
+        );
         assert_eq!(system.dimension(), inner.dimension() + kind.filter_states());
     }
 }
@@ -55,7 +58,12 @@ fn a_noise_is_reflected_with_its_axis_unless_its_amplitude_is_odd() {
         let values = model.values(&[("tau", 0.7)]).unwrap();
         let ranges = vec![(-2.0, 2.0); model.axes.len()];
         contract::verify_model(&model, &values, &ranges).unwrap();
-        model.system(&values).symmetry().map(|one| one.reflected)
+        model
+            .system(&values)
+            .facts()
+            .symmetry
+            .clone()
+            .map(|one| one.reflected)
     };
     assert_eq!(reflected(&["0.5"]), Some(vec![true; 3]));
     assert_eq!(reflected(&["x^2 + 1"]), Some(vec![true; 3]));
@@ -117,8 +125,8 @@ fn harmonic_noise_has_two_axes_and_two_parameters() {
         assert!((found - exact).abs() < 1e-14, "{drift:?}");
     }
     // Σ = 1 of both states: 2 · 2 ζ_n ω_n = 4 ζ_n ω_n.
-    assert_eq!(system.noise_axes(), [2]);
-    assert!((system.additive_amplitude(0).unwrap().powi(2) - 3.0).abs() < 1e-14);
+    assert_eq!(system.noises()[0].axis, 2);
+    assert!((system.noises()[0].additive().unwrap().powi(2) - 3.0).abs() < 1e-14);
     let two = typed(&["0.5", "y"]).with_coloured_noise(NoiseKind::Harmonic);
     assert!(two.build().unwrap_err().to_string().contains("two axes"));
 }

@@ -17,13 +17,14 @@ pub(super) fn check(
         let given = ranges.len();
         return Err(ContractViolation::Ranges { given, dimension });
     }
-    if let Some(period) = system.period()
+    let facts = system.facts();
+    if let Some(period) = facts.period
         && !(period.is_finite() && period > 0.0)
     {
         return Err(ContractViolation::Period { period });
     }
-    let channels = system.noise_axes().iter().enumerate();
-    for (channel, &axis) in channels {
+    for (channel, noise) in system.noises().iter().enumerate() {
+        let axis = noise.axis;
         if axis >= dimension {
             return Err(ContractViolation::NoiseAxis {
                 channel,
@@ -32,12 +33,17 @@ pub(super) fn check(
             });
         }
     }
-    for surface in system.switching_surfaces() {
+    let declared = facts.bounds.keys().chain(facts.filtered_noise.keys());
+    let mut declared = declared.chain(facts.relaxation_rates.keys());
+    if let Some(&axis) = declared.find(|&&axis| axis >= dimension) {
+        return Err(ContractViolation::Axis { axis, dimension });
+    }
+    for &surface in &facts.switching_surfaces {
         if surface.axis >= dimension || !surface.at.is_finite() {
             return Err(ContractViolation::Surface { surface, dimension });
         }
     }
-    if let Some(symmetry) = system.symmetry() {
+    if let Some(symmetry) = &facts.symmetry {
         let (centre, reflected) = (symmetry.centre.len(), symmetry.reflected.len());
         if centre != dimension || reflected != dimension {
             return Err(ContractViolation::SymmetryShape {
@@ -57,7 +63,7 @@ fn within_bounds(
     axis: usize,
     (mut from, mut to): (f64, f64),
 ) -> Result<(f64, f64), ContractViolation> {
-    if let Some((low, high)) = system.bounds(axis) {
+    if let Some((low, high)) = system.facts().bounds(axis) {
         if low.is_nan() || high.is_nan() || low >= high {
             let (from, to) = (low, high);
             return Err(ContractViolation::Bounds { axis, from, to });

@@ -21,7 +21,7 @@ struct Balance<'a> {
 /// Checks Σ_i ∂_i(a_i p) = ½ Σ_i ∂_i²(B_i p), B_i the noise intensity on axis i, at every state where p = exp(φ) is
 /// known. A system that depends on time has no such density.
 pub(super) fn check(trial: &Trial<'_>) -> Result<(), ContractViolation> {
-    if trial.system.period().is_some() {
+    if trial.system.facts().period.is_some() {
         return Ok(());
     }
     let balances: Vec<Balance<'_>> = trial
@@ -46,7 +46,7 @@ pub(super) fn check(trial: &Trial<'_>) -> Result<(), ContractViolation> {
 /// axes. `None` where the density is not known, next to a switching surface, and at a bound.
 fn balance<'a>(trial: &Trial<'_>, state: &'a [f64]) -> Option<Balance<'a>> {
     let log_density = |state: &[f64]| trial.system.exact_log_density(state);
-    let surfaces = trial.system.switching_surfaces();
+    let facts = trial.system.facts();
     let drift = trial.system.drift_at(0.0, state);
     let centre = log_density(state)?;
     let (mut residual, mut terms) = (0.0, 0.0);
@@ -54,8 +54,7 @@ fn balance<'a>(trial: &Trial<'_>, state: &'a [f64]) -> Option<Balance<'a>> {
         let (from, to) = trial.ranges[axis];
         let step = STEP * (to - from);
         let crosses = |at: f64| (state[axis] - at).abs() <= 2.0 * step;
-        let here = surfaces.iter().filter(|surface| surface.axis == axis);
-        if here.map(|surface| surface.at).any(crosses) || crosses(from) || crosses(to) {
+        if facts.surfaces_on(axis).any(crosses) || crosses(from) || crosses(to) {
             return None;
         }
         let moved = |by: f64| {
@@ -67,7 +66,7 @@ fn balance<'a>(trial: &Trial<'_>, state: &'a [f64]) -> Option<Balance<'a>> {
         let first = |up: f64, down: f64| (up - down) / (2.0 * step);
         let second = |up: f64, here: f64, down: f64| (up - 2.0 * here + down) / (step * step);
         let drift_at = |state: &[f64]| trial.system.drift_at(0.0, state)[axis];
-        let noise = |state: &[f64]| trial.intensity(0.0, state, axis);
+        let noise = |state: &[f64]| trial.system.intensity_at(axis, 0.0, state);
         let (log_up, log_down) = (log_density(&up)?, log_density(&down)?);
         let slope = first(log_up, log_down);
         let curvature = second(log_up, centre, log_down) + slope * slope;

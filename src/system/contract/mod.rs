@@ -6,15 +6,15 @@
 //!
 //! | declared | tried |
 //! | --- | --- |
-//! | dimension, noise axes, bounds, surfaces, symmetry, period | they fit each other |
-//! | drift and noise | finite; a batch gives each lane what the state gives alone; constant amplitudes are constant |
-//! | [`System::period`] | drift and noise repeat after it; without one they do not change with time |
-//! | [`System::symmetry`] | the image of a state has the image of its drift, its noise and its exact density |
-//! | [`System::bounds`] | at a bound the drift points inward or along, and noise does not act across |
-//! | [`System::filtered_noise`] | its drift and noise are those of a linear filter with this mean and deviation |
-//! | [`System::relaxation_rate`] | no noise acts on the axis, and its drift falls with the coordinate at this rate everywhere |
+//! | dimension, noises, bounds, surfaces, symmetry, period | they fit each other |
+//! | drift and noise | finite; a batch gives each lane what the state gives alone |
+//! | [`Facts::period`] | drift and noise repeat after it; without one they do not change with time |
+//! | [`Facts::symmetry`] | the image of a state has the image of its drift, its noise and its exact density |
+//! | `Facts::bounds` | at a bound the drift points inward or along, and noise does not act across |
+//! | [`Facts::filtered_noise`] | its drift and noise are those of a linear filter with this mean and deviation |
+//! | [`Facts::relaxation_rates`] | no noise acts on the axis, and its drift falls with the coordinate at this rate everywhere |
 //! | [`System::exact_log_density`] | solves the stationary Fokker-Planck equation (central differences) |
-//! | [`System::switching_surfaces`] | drift or its slope jumps there |
+//! | [`Facts::switching_surfaces`] | drift or its slope jumps there |
 //!
 //! States are the same at every call; two calls give the same answer.
 
@@ -30,6 +30,8 @@ pub use violation::{ContractViolation, Quantity};
 
 use std::collections::HashSet;
 
+#[cfg(doc)]
+use super::Facts;
 use super::{Model, ParameterValues, System};
 use trial::Trial;
 
@@ -40,32 +42,29 @@ use trial::Trial;
 /// friction level of zero too. Who allows that passes over [`ContractViolation::SmoothSurface`].
 ///
 /// ```
-/// use pbif::system::{Lanes, Symmetry, System, contract};
+/// use pbif::system::{Facts, Lanes, Noise, Symmetry, System, contract};
 ///
 /// /// dx = (0.1 + x - x³) dt + 0.5 dW, with a symmetry that it does not have.
-/// struct Tilted;
+/// struct Tilted { noise: [Noise; 1], facts: Facts }
 ///
 /// impl System for Tilted {
 ///     fn dimension(&self) -> usize {
 ///         1
 ///     }
 ///     fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
-///         for (slope, x) in drift[0].iter_mut().zip(&states[0]) {
-///             *slope = 0.1 + x * (1.0 - x * x);
-///         }
+///         drift[0] = states[0].map(|x| 0.1 + x * (1.0 - x * x));
 ///     }
-///     fn noise_axes(&self) -> &[usize] {
-///         &[0]
+///     fn noises(&self) -> &[Noise] {
+///         &self.noise
 ///     }
-///     fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
-///         Some(0.5)
-///     }
-///     fn symmetry(&self) -> Option<Symmetry> {
-///         Some(Symmetry { centre: vec![0.0], reflected: vec![true] })
+///     fn facts(&self) -> &Facts {
+///         &self.facts
 ///     }
 /// }
 ///
-/// let refused = contract::verify(&Tilted, &[(-2.0, 2.0)]);
+/// let symmetry = Some(Symmetry::about_origin(1));
+/// let facts = Facts { symmetry, ..Facts::default() };
+/// let refused = contract::verify(&Tilted { noise: [Noise::constant(0, 0.5)], facts }, &[(-2.0, 2.0)]);
 /// assert!(matches!(refused, Err(contract::ContractViolation::Asymmetric { .. })));
 /// ```
 ///

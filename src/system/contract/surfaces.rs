@@ -12,7 +12,7 @@ const NO_JUMP: f64 = 1e-9;
 
 /// A surface inside the box, across which no state shows a jump, is a violation.
 pub(super) fn check(trial: &Trial<'_>) -> Result<(), ContractViolation> {
-    for surface in trial.system.switching_surfaces() {
+    for &surface in &trial.system.facts().switching_surfaces {
         let (from, to) = trial.ranges[surface.axis];
         let inside = surface.at > from && surface.at < to;
         let jumps = |state: &Vec<f64>| jumps(trial, surface, state);

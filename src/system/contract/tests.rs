@@ -6,11 +6,11 @@ use std::sync::Arc;
 
 use super::*;
 use crate::system::{
-    AxisDescription, LANES, Lanes, ParameterDescription, ParameterRange, SwitchingSurface, registry,
+    AxisDescription, Noise, ParameterDescription, ParameterRange, SwitchingSurface, registry,
 };
 
 mod patient;
-use patient::{Patient, WELL, healthy};
+use patient::{Patient, WELL, healthy, noise};
 
 /// A built-in model with named parameter values.
 pub(in crate::system) fn bound(model: &str, values: &[(&str, f64)]) -> Arc<dyn System> {
@@ -47,7 +47,7 @@ fn every_built_in_model_keeps_the_contract() {
             let ranges = vec![(-2.0, 2.0); model.axes.len()];
             let verified = verify_model(model, &values, &ranges);
             assert_eq!(verified, Ok(()), "{} from {first}", model.name);
-            assert!(!model.system(&values).noise_axes().is_empty());
+            assert!(!model.system(&values).noises().is_empty());
         }
     }
 }
@@ -89,28 +89,29 @@ fn violation(change: impl FnOnce(&mut Patient)) -> ContractViolation {
     verify(&patient, &[(-2.0, 2.0), (-3.0, 1.0), (-2.0, 2.0)]).unwrap_err()
 }
 
+fn centre(system: &mut Patient) -> &mut Vec<f64> {
+    &mut system.facts.symmetry.as_mut().unwrap().centre
+}
+
 #[test]
 fn the_system_that_is_made_wrong_below_is_right() {
     let ranges = [(-2.0, 2.0), (-3.0, 1.0), (-2.0, 2.0)];
     assert_eq!(verify(&healthy(), &ranges), Ok(()));
     // A bound that noise comes up to, but does not cross, is one.
     let fading = Patient {
-        noise_axis: 2,
-        constant: f64::NAN,
-        amplitude: |state| 1.0 - state[2] * state[2],
+        noises: noise(2, |[_, _, z]| 1.0 - z * z),
         ..healthy()
     };
     assert_eq!(verify(&fading, &ranges), Ok(()));
     // A period that is kept.
-    let forced = Patient {
-        period: Some(2.0),
-        centre: Vec::new(),
+    let mut forced = Patient {
         drift: |time, state| {
             let [x, y, z] = WELL(time, state);
             [x, y + (PI * time).cos(), z]
         },
         ..healthy()
     };
+    (forced.facts.period, forced.facts.symmetry) = (Some(2.0), None);
     assert_eq!(verify(&forced, &ranges), Ok(()));
 }
 
@@ -131,24 +132,31 @@ fn declarations_that_do_not_fit_are_found_out() {
     let empty = verify(&healthy(), &[(-1.0, 1.0), (-1.0, 1.0), (2.0, 3.0)]);
     assert!(matches!(empty, Err(V::Range { axis: 2, .. })), "{empty:?}");
     assert!(matches!(
-        violation(|system| system.noise_axis = 3),
+        violation(|system| system.noises[0].axis = 3),
         V::NoiseAxis { axis: 3, .. }
     ));
     assert!(matches!(
-        violation(|system| system.period = Some(0.0)),
+        violation(|system| system.facts.period = Some(0.0)),
         V::Period { .. }
     ));
     assert!(matches!(
-        violation(|system| system.bounds = (1.0, f64::NAN)),
+        violation(|system| _ = system.facts.bounds.insert(2, (1.0, f64::NAN))),
         V::Bounds { axis: 2, .. }
     ));
+    assert_eq!(
+        violation(|system| _ = system.facts.relaxation_rates.insert(3, 1.0)),
+        V::Axis {
+            axis: 3,
+            dimension: 3
+        }
+    );
     let far = SwitchingSurface { axis: 7, at: 0.0 };
     assert!(matches!(
-        violation(|system| system.surfaces.push(far)),
+        violation(|system| system.facts.switching_surfaces.push(far)),
         V::Surface { .. }
     ));
     assert!(matches!(
-        violation(|system| system.centre = vec![0.0]),
+        violation(|system| centre(system).truncate(1)),
         V::SymmetryShape { centre: 1, .. }
     ));
 }
@@ -166,18 +174,6 @@ fn what_does_not_hold_is_found_out_at_a_state() {
         panic!("{infinite}");
     };
     assert!(state[0] < 0.0);
-    let amplitude = violation(|system| system.constant = 0.4);
-    assert!(
-        matches!(
-            amplitude,
-            V::Amplitude {
-                declared: 0.4,
-                found: 0.5,
-                ..
-            }
-        ),
-        "{amplitude}"
-    );
     let time = violation(|system| system.drift = |time, [x, y, z]| [y, -x - y + time.sin(), -z]);
     assert!(
         matches!(
@@ -191,7 +187,7 @@ fn what_does_not_hold_is_found_out_at_a_state() {
         "{time}"
     );
     let period = violation(|system| {
-        system.period = Some(2.0);
+        system.facts.period = Some(2.0);
         system.drift = |time, [x, y, z]| [y, -x - y + time.sin(), -z];
     });
     assert!(
@@ -217,23 +213,20 @@ fn what_does_not_hold_is_found_out_at_a_state() {
         panic!("{asymmetric}");
     };
     assert!(state.iter().zip(image).all(|(one, other)| *one == -other));
-    let elsewhere = violation(|system| system.centre = vec![0.1, 0.0, 0.0]);
+    let elsewhere = violation(|system| centre(system)[0] = 0.1);
     assert!(matches!(elsewhere, V::Asymmetric { .. }), "{elsewhere}");
-    let noise = violation(|system| {
-        system.constant = f64::NAN;
-        system.amplitude = |state| 1.0 + 0.1 * state[0];
-    });
+    let uneven = violation(|system| system.noises = noise(1, |[x, ..]| 1.0 + 0.1 * x));
     assert!(
         matches!(
-            noise,
+            uneven,
             V::Asymmetric {
                 quantity: Quantity::Noise(1),
                 ..
             }
         ),
-        "{noise}"
+        "{uneven}"
     );
-    let left = violation(|system| system.bounds = (-1.0, 0.9));
+    let left = violation(|system| _ = system.facts.bounds.insert(2, (-1.0, 0.9)));
     let V::BoundLeft {
         axis: 2,
         bound: 0.9,
@@ -244,7 +237,7 @@ fn what_does_not_hold_is_found_out_at_a_state() {
         panic!("{left}");
     };
     assert!(state[2] == 0.9 && *speed > 0.0);
-    let across = violation(|system| system.noise_axis = 2);
+    let across = violation(|system| system.noises[0].axis = 2);
     assert!(
         matches!(
             across,
@@ -258,7 +251,7 @@ fn what_does_not_hold_is_found_out_at_a_state() {
     );
     let smooth = SwitchingSurface { axis: 0, at: 0.5 };
     assert_eq!(
-        violation(|system| system.surfaces.push(smooth)),
+        violation(|system| system.facts.switching_surfaces.push(smooth)),
         V::SmoothSurface { surface: smooth }
     );
 }
@@ -268,7 +261,7 @@ fn an_exact_density_must_solve_the_fokker_planck_equation() {
     // Three uncoupled axes, noise on the second only: p is what that axis makes of it, whatever its noise.
     let linear = |system: &mut Patient| {
         system.drift = |_, [_, y, _]| [0.0, -y, 0.0];
-        system.surfaces = Vec::new();
+        system.facts.switching_surfaces = Vec::new();
         system.density = Some(|state| -4.0 * state[1] * state[1]);
     };
     let verified = |change: &dyn Fn(&mut Patient)| {
@@ -293,8 +286,7 @@ fn an_exact_density_must_solve_the_fokker_planck_equation() {
     // b² = (1 + y²)/4: (-y p) = (b² p)'/2 gives p = (1 + y²)^(-5).
     let state_dependent = |power: fn(&[f64]) -> f64| {
         verified(&|system| {
-            system.constant = f64::NAN;
-            system.amplitude = |state| 0.5 * (1.0 + state[1] * state[1]).sqrt();
+            system.noises = noise(1, |[_, y, _]| 0.5 * (1.0 + y * y).sqrt());
             system.density = Some(power);
         })
     };
@@ -309,100 +301,55 @@ fn an_exact_density_must_solve_the_fokker_planck_equation() {
     );
 }
 
-/// What is declared to be the two states of a filter with white noise on the second: drifts by both.
-struct Pair {
-    drift: fn(f64, f64) -> [f64; 2],
-}
-
-impl System for Pair {
-    fn dimension(&self) -> usize {
-        2
-    }
-
-    fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
-        for lane in 0..LANES {
-            let [first, second] = (self.drift)(states[0][lane], states[1][lane]);
-            (drift[0][lane], drift[1][lane]) = (first, second);
-        }
-    }
-
-    fn noise_axes(&self) -> &[usize] {
-        &[1]
-    }
-
-    fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
-        Some(1.0)
-    }
-
-    fn filtered_noise(&self, _axis: usize) -> Option<(f64, f64)> {
-        Some((0.0, 1.0))
+/// A patient with these noises, of which nothing is known.
+fn plain(drift: fn(f64, [f64; 3]) -> [f64; 3], noises: Vec<Noise>) -> Patient {
+    Patient {
+        noises,
+        drift,
+        facts: Facts::default(),
+        ..healthy()
     }
 }
 
+const BOX: [(f64, f64); 3] = [(-2.0, 2.0); 3];
+
+/// The first two states are declared to be those of a filter, with white noise on the second.
 #[test]
 fn states_of_a_filter_must_have_the_normal_density_that_is_declared() {
-    let verified =
-        |drift: fn(f64, f64) -> [f64; 2]| verify(&Pair { drift }, &[(-2.0, 2.0); 2]).is_ok();
+    let verified = |drift: fn(f64, [f64; 3]) -> [f64; 3]| {
+        let mut system = plain(drift, vec![Noise::constant(1, 1.0)]);
+        let facts = [0, 1].map(|axis| (axis, (0.0, 1.0)));
+        system.facts.filtered_noise = facts.into();
+        verify(&system, &BOX).is_ok()
+    };
     // The noise of intensity 1 damps at the rate 1/2 of the unit variance; both turn into one another.
-    assert!(verified(|u, v| [3.0 * v, -3.0 * u - 0.5 * v]));
-    for wrong in [
-        |u: f64, v: f64| [3.0 * v, -2.0 * u - 0.5 * v],
-        |u: f64, v: f64| [3.0 * v, -3.0 * u - 0.6 * v],
-        |u: f64, v: f64| [3.0 * v - 0.1 * u, -3.0 * u - 0.5 * v],
-        |u: f64, v: f64| [3.0 * v.sin(), -3.0 * u - 0.5 * v],
-        |u: f64, v: f64| [3.0 * v + 0.2, -3.0 * u - 0.5 * v],
-    ] {
-        assert!(!verified(wrong));
-    }
+    assert!(verified(|_, [u, v, z]| [3.0 * v, -3.0 * u - 0.5 * v, -z]));
+    let wrong: [fn(f64, [f64; 3]) -> [f64; 3]; 5] = [
+        |_, [u, v, z]| [3.0 * v, -2.0 * u - 0.5 * v, -z],
+        |_, [u, v, z]| [3.0 * v, -3.0 * u - 0.6 * v, -z],
+        |_, [u, v, z]| [3.0 * v - 0.1 * u, -3.0 * u - 0.5 * v, -z],
+        |_, [u, v, z]| [3.0 * v.sin(), -3.0 * u - 0.5 * v, -z],
+        |_, [u, v, z]| [3.0 * v + 0.2, -3.0 * u - 0.5 * v, -z],
+    ];
+    assert!(!wrong.into_iter().any(verified));
 }
 
-/// v' = drift(x, v) on the second axis, said to relax at the rate 2; noise on the first.
-struct Circuit {
-    drift: fn(f64, f64) -> f64,
-    driven: [usize; 1],
-}
-
-impl System for Circuit {
-    fn dimension(&self) -> usize {
-        2
-    }
-
-    fn drift(&self, _time: f64, states: &[Lanes], drift: &mut [Lanes]) {
-        for lane in 0..LANES {
-            drift[0][lane] = -states[0][lane];
-            drift[1][lane] = (self.drift)(states[0][lane], states[1][lane]);
-        }
-    }
-
-    fn noise_axes(&self) -> &[usize] {
-        &self.driven
-    }
-
-    fn additive_amplitude(&self, _channel: usize) -> Option<f64> {
-        Some(1.0)
-    }
-
-    fn relaxation_rate(&self, axis: usize) -> Option<f64> {
-        (axis == 1).then_some(2.0)
-    }
-}
-
+/// The second coordinate is said to relax at the rate 2.
 #[test]
 fn a_coordinate_that_relaxes_does_so_at_the_declared_rate_and_without_noise() {
-    let found = |drift: fn(f64, f64) -> f64, driven: usize| {
-        let system = Circuit {
-            drift,
-            driven: [driven],
-        };
-        verify(&system, &[(-2.0, 2.0); 2])
+    let found = |drift: fn(f64, [f64; 3]) -> [f64; 3], driven: usize| {
+        let mut system = plain(drift, vec![Noise::constant(driven, 1.0)]);
+        system.facts.relaxation_rates = [(1, 2.0)].into();
+        verify(&system, &BOX)
     };
-    assert_eq!(found(|x, v| x * x - 2.0 * v, 0), Ok(()));
-    for (wrong, driven) in [
-        ((|x, v| x - 1.9 * v) as fn(f64, f64) -> f64, 0),
-        (|x, v| x - 2.0 * v + 0.1 * v * v, 0),
-        (|x, v| x - (2.0 + 0.1 * x) * v, 0),
-        (|x, v| x - 2.0 * v, 1),
-    ] {
+    assert_eq!(found(|_, [x, v, z]| [-x, x * x - 2.0 * v, -z], 0), Ok(()));
+    let wrong: [(fn(f64, [f64; 3]) -> [f64; 3], usize); 4] = [
+        (|_, [x, v, z]| [-x, x - 1.9 * v, -z], 0),
+        (|_, [x, v, z]| [-x, x - 2.0 * v + 0.1 * v * v, -z], 0),
+        (|_, [x, v, z]| [-x, x - (2.0 + 0.1 * x) * v, -z], 0),
+        (|_, [x, v, z]| [-x, x - 2.0 * v, -z], 1),
+    ];
+    for (wrong, driven) in wrong {
         let found = found(wrong, driven);
         let is_it = matches!(found, Err(ContractViolation::Relaxation { axis: 1, .. }));
         assert!(is_it, "{found:?}");

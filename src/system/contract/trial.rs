@@ -44,12 +44,8 @@ impl<'a> Trial<'a> {
             .map(|_| ranges.iter().map(&mut place).collect())
             .collect();
         let mut times = vec![0.0];
-        times.extend(
-            system
-                .period()
-                .into_iter()
-                .flat_map(|period| SHARES.map(|share| share * period)),
-        );
+        let period = system.facts().period.into_iter();
+        times.extend(period.flat_map(|period| SHARES.map(|share| share * period)));
         let mut trial = Self {
             system,
             drift_size: vec![0.0; ranges.len()],
@@ -88,24 +84,18 @@ impl<'a> Trial<'a> {
                 time: 0.0,
             });
         }
-        let channels = self.system.noise_axes().iter().enumerate();
-        let mut here = channels.filter(|(_, driven)| **driven == axis);
-        let acts = here.any(|(channel, _)| {
-            let amplitude = |state: &Vec<f64>| self.system.amplitude_at(channel, 0.0, state);
-            self.states.iter().any(|state| amplitude(state) != 0.0)
+        let acts = self.system.noises_on(axis).any(|noise| {
+            let mut states = self.states.iter();
+            states.any(|state| noise.at(0.0, state) != 0.0)
         });
-        match acts && self.noise_size[axis] == 0.0 {
-            true => Err(ContractViolation::Vanishing { axis }),
-            false => Ok(()),
+        if acts && self.noise_size[axis] == 0.0 {
+            return Err(ContractViolation::Vanishing { axis });
         }
+        Ok(())
     }
 
-    /// Σ b² of the processes that drive an axis.
-    pub(super) fn intensity(&self, time: f64, state: &[f64], axis: usize) -> f64 {
-        let channels = self.system.noise_axes().iter().enumerate();
-        let here = channels.filter(|(_, driven)| **driven == axis);
-        here.map(|(channel, _)| self.system.amplitude_at(channel, time, state).powi(2))
-            .sum()
+    fn intensity(&self, time: f64, state: &[f64], axis: usize) -> f64 {
+        self.system.intensity_at(axis, time, state)
     }
 
     /// Drift and noise of all states as one batch are finite and those of each state alone.
@@ -125,21 +115,10 @@ impl<'a> Trial<'a> {
                 agree(Quantity::Drift(axis), state, time, alone, drift[axis][lane])?;
             }
         }
-        for (channel, &axis) in self.system.noise_axes().iter().enumerate() {
-            let mut amplitude = [f64::NAN; LANES];
-            self.system.amplitude(channel, time, &batch, &mut amplitude);
-            let declared = self.system.additive_amplitude(channel);
-            for (state, in_batch) in self.states.iter().zip(amplitude) {
-                let alone = self.system.amplitude_at(channel, time, state);
-                agree(Quantity::Noise(axis), state, time, alone, in_batch)?;
-                if let Some(declared) = declared.filter(|&declared| declared != alone) {
-                    return Err(ContractViolation::Amplitude {
-                        channel,
-                        declared,
-                        found: alone,
-                        state: state.clone(),
-                    });
-                }
+        for noise in self.system.noises() {
+            for (state, in_batch) in self.states.iter().zip(noise.amplitudes(time, &batch)) {
+                let (quantity, alone) = (Quantity::Noise(noise.axis), noise.at(time, state));
+                agree(quantity, state, time, alone, in_batch)?;
             }
         }
         Ok(())
@@ -147,7 +126,7 @@ impl<'a> Trial<'a> {
 
     /// Drift and noise repeat after the period, or do not change with time.
     pub(super) fn check_time(&self) -> Result<(), ContractViolation> {
-        let period = self.system.period();
+        let period = self.system.facts().period;
         let pairs: Vec<(f64, f64)> = match period {
             Some(period) => self.times.iter().map(|&t| (t, t + period)).collect(),
             None => TIMES.iter().map(|&time| (0.0, time)).collect(),
@@ -192,15 +171,12 @@ impl<'a> Trial<'a> {
 
     /// The image of every state has the image of its drift, its noise and its density.
     pub(super) fn check_symmetry(&self) -> Result<(), ContractViolation> {
-        let Some(symmetry) = self.system.symmetry() else {
+        let Some(symmetry) = &self.system.facts().symmetry else {
             return Ok(());
         };
         for state in &self.states {
-            let reflect = |axis: usize| match symmetry.reflected[axis] {
-                true => 2.0 * symmetry.centre[axis] - state[axis],
-                false => state[axis],
-            };
-            let image: Vec<f64> = (0..state.len()).map(reflect).collect();
+            let axes = state.iter().enumerate();
+            let image: Vec<f64> = axes.map(|(axis, &x)| symmetry.image(axis, x)).collect();
             let check = |quantity, expected: f64, found: f64, size: f64| {
                 if same(expected, found, size) {
                     return Ok(());
@@ -245,10 +221,7 @@ impl<'a> Trial<'a> {
 
     /// On a bound the drift does not point outward, and no noise acts across.
     pub(super) fn check_bounds(&self) -> Result<(), ContractViolation> {
-        for axis in 0..self.dimension() {
-            let Some((low, high)) = self.system.bounds(axis) else {
-                continue;
-            };
+        for (&axis, &(low, high)) in &self.system.facts().bounds {
             for (bound, outward) in [(low, -1.0), (high, 1.0)] {
                 if bound.is_finite() {
                     self.check_bound(axis, bound, outward)?;
@@ -263,11 +236,10 @@ impl<'a> Trial<'a> {
     /// density: Σ u c/deviation = 0, where u = (x - mean)/deviation and c, which does not depend on x, is what the
     /// drift has beside.
     pub(super) fn check_filters(&self) -> Result<(), ContractViolation> {
-        let declared = (0..self.dimension()).filter_map(|axis| {
-            let (mean, deviation) = self.system.filtered_noise(axis)?;
-            Some((axis, mean, deviation))
-        });
-        let filters: Vec<(usize, f64, f64)> = declared.collect();
+        let declared = self.system.facts().filtered_noise.iter();
+        let filters: Vec<(usize, f64, f64)> = declared
+            .map(|(&axis, &(mean, deviation))| (axis, mean, deviation))
+            .collect();
         let Some(&(first, ..)) = filters.first() else {
             return Ok(());
         };
@@ -311,10 +283,7 @@ impl<'a> Trial<'a> {
 
     /// The drift of a coordinate that relaxes falls with it at the declared rate, and no noise acts on it.
     pub(super) fn check_relaxations(&self) -> Result<(), ContractViolation> {
-        for axis in 0..self.dimension() {
-            let Some(rate) = self.system.relaxation_rate(axis) else {
-                continue;
-            };
+        for (&axis, &rate) in &self.system.facts().relaxation_rates {
             let length = self.ranges[axis].1 - self.ranges[axis].0;
             for state in &self.states {
                 let mut moved = state.clone();

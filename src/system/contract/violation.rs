@@ -84,6 +84,14 @@ pub enum ContractViolation {
         /// Dimension of the system.
         dimension: usize,
     },
+    /// Something is declared of an axis that the system does not have.
+    #[error("something is declared of axis {axis} of a system with {dimension} axes")]
+    Axis {
+        /// The axis.
+        axis: usize,
+        /// Dimension of the system.
+        dimension: usize,
+    },
     /// A period that is not a positive number.
     #[error("the period {period} is not a finite number greater than zero")]
     Period {
@@ -148,20 +156,6 @@ pub enum ContractViolation {
         alone: f64,
         /// Value among others.
         in_batch: f64,
-    },
-    /// A constant amplitude that is not the amplitude.
-    #[error(
-        "the amplitude of Wiener process {channel} is declared to be {declared}, but is {found} at {state:?}"
-    )]
-    Amplitude {
-        /// The process.
-        channel: usize,
-        /// The constant amplitude.
-        declared: f64,
-        /// The amplitude at the state.
-        found: f64,
-        /// Where.
-        state: Vec<f64>,
     },
     /// A quantity that does not repeat after the period, or changes with time without one.
     #[error(

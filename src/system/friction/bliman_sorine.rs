@@ -102,7 +102,7 @@ mod tests {
             assert!((found - expected).abs() < 1e-13, "{drift:?}");
         }
         assert_eq!(
-            (system.bounds(2), system.bounds(3)),
+            (system.facts().bounds(2), system.facts().bounds(3)),
             (Some((-0.75, 0.75)), Some((-0.25, 0.25)))
         );
     }

@@ -177,7 +177,7 @@ mod tests {
             assert!((drift[1] - 0.4).abs() < 1e-15, "{drift:?}");
             let expected = -3.0 + 2.0 * 0.4_f64.powf(n);
             assert!((drift[2] - expected).abs() < 1e-15, "{n} {drift:?}");
-            let (low, high) = system.bounds(2).unwrap();
+            let (low, high) = system.facts().bounds(2).unwrap();
             assert!((high - 1.5_f64.powf(1.0 / n)).abs() < 1e-15 && low == -high);
         }
     }
@@ -187,7 +187,7 @@ mod tests {
         for n in [0.5, 1.0, 1.5, 2.0, 3.0] {
             for gamma in [-1.0, -0.4, 0.0, 0.7] {
                 let system = with(&[("beta", 0.5), ("gamma", gamma), ("n", n)]);
-                assert_eq!(system.bounds(2).is_some(), gamma > -0.5);
+                assert_eq!(system.facts().bounds(2).is_some(), gamma > -0.5);
                 let held = contract::verify(&*system, &[(-2.0, 2.0); 3]);
                 assert_eq!(held, Ok(()), "n = {n}, gamma = {gamma}");
             }
@@ -204,6 +204,6 @@ mod tests {
             let state = [4.0 * share(0.618), 4.0 * share(0.755), share(0.57)];
             assert_eq!(bouc_wen.drift_at(0.0, &state), dahl.drift_at(0.0, &state));
         }
-        assert_eq!(bouc_wen.bounds(2), dahl.bounds(2));
+        assert_eq!(bouc_wen.facts().bounds(2), dahl.facts().bounds(2));
     }
 }

@@ -85,7 +85,7 @@ mod tests {
             assert_eq!(drift[0], state[1]);
             assert!((drift[1] - expected).abs() < 1e-14, "{drift:?}");
         }
-        assert_eq!(system.additive_amplitude(0), Some(0.2));
+        assert_eq!(system.noises()[0].additive(), Some(0.2));
     }
 
     #[test]

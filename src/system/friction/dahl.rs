@@ -138,8 +138,11 @@ mod tests {
         assert_eq!(drift[0], -2.0);
         assert!((drift[1] + 24.0).abs() < 1e-13, "{drift:?}");
         assert!((drift[2] + 3.6).abs() < 1e-14, "{drift:?}");
-        assert_eq!(system.bounds(2), Some((-0.5, 0.5)));
-        assert_eq!((system.bounds(1), system.bounds(3)), (None, None));
+        assert_eq!(system.facts().bounds(2), Some((-0.5, 0.5)));
+        assert_eq!(
+            (system.facts().bounds(1), system.facts().bounds(3)),
+            (None, None)
+        );
         // Sliding at the limit leaves z where it is.
         assert_eq!(system.drift_at(0.0, &[0.0, 2.0, 0.5])[2], 0.0);
     }
@@ -152,6 +155,6 @@ mod tests {
         assert_eq!(drift[0], -2.0);
         assert!((drift[1] + 24.0).abs() < 1e-13, "{drift:?}");
         assert!((drift[2] + 14.0).abs() < 1e-14, "{drift:?}");
-        assert_eq!(system.bounds(2), None);
+        assert_eq!(system.facts().bounds(2), None);
     }
 }

@@ -100,7 +100,7 @@ mod tests {
             ("f_t", 0.2),
         ];
         let system = bound("elasto_plastic", &values);
-        let (low, high) = system.bounds(2).unwrap();
+        let (low, high) = system.facts().bounds(2).unwrap();
         assert!((low + 0.6).abs() < 1e-15 && (high - 0.6).abs() < 1e-15);
         let drift = system.drift_at(0.0, &[0.7, y, z]);
         let force = 0.1 * y + 0.7 + 0.5 * z + 0.3 * drift[2];

@@ -103,7 +103,7 @@ mod tests {
         assert_eq!(drift[0], -2.0);
         assert!((drift[2] - rate).abs() < 1e-13, "{drift:?}");
         assert!((drift[1] - (-24.0 - 0.3 * rate)).abs() < 1e-13, "{drift:?}");
-        assert_eq!(system.bounds(2), Some((-1.0, 1.0)));
+        assert_eq!(system.facts().bounds(2), Some((-1.0, 1.0)));
     }
 
     #[test]
@@ -116,7 +116,7 @@ mod tests {
             let state = [4.0 * share(0.618), 4.0 * share(0.755), share(0.57)];
             assert_eq!(lugre.drift_at(0.0, &state), dahl.drift_at(0.0, &state));
         }
-        assert_eq!(lugre.bounds(2), dahl.bounds(2));
-        assert_eq!(lugre.symmetry(), dahl.symmetry());
+        assert_eq!(lugre.facts().bounds(2), dahl.facts().bounds(2));
+        assert_eq!(lugre.facts().symmetry, dahl.facts().symmetry);
     }
 }

@@ -77,7 +77,7 @@ pub trait FrictionLaw<const N: usize>: Send + Sync {
     /// Force per unit mass that the law takes from y'; `rates` are those of [`FrictionLaw::rates`].
     fn force(&self, motion: Motion, state: &[f64; N], rates: &[f64; N]) -> f64;
 
-    /// Values that an internal state, counted from 0, can never leave; see [`System::bounds`](super::System::bounds).
+    /// Values that an internal state, counted from 0, can never leave; see `Facts::bounds`.
     fn bounds(&self, state: usize) -> Option<(f64, f64)> {
         let _ = state;
         None

@@ -73,7 +73,7 @@ pub fn yielding_distance(system: &dyn System) -> Option<f64> {
     *moving.get_mut(1)? = 1.0;
     let rates = system.drift_at(0.0, &moving);
     let distance = |axis: usize| {
-        let (low, high) = system.bounds(axis)?;
+        let (low, high) = system.facts().bounds(axis)?;
         Some(0.5 * (high - low) / rates[axis].abs())
     };
     let distances = (FIRST_INTERNAL_STATE..system.dimension()).filter_map(distance);
@@ -165,7 +165,7 @@ fn force(system: &dyn System, motion: [f64; 2], states: &[f64]) -> Option<f64> {
 fn is_same(system: &dyn System, one: &[f64], other: &[f64], share: f64) -> bool {
     let pairs = one.iter().zip(other).enumerate();
     pairs.into_iter().all(|(index, (a, b))| {
-        let bounds = system.bounds(FIRST_INTERNAL_STATE + index);
+        let bounds = system.facts().bounds(FIRST_INTERNAL_STATE + index);
         let size = bounds.map_or(a.abs().max(b.abs()), |(low, high)| 0.5 * (high - low));
         (a - b).abs() <= share * size
     })

@@ -132,8 +132,8 @@ mod tests {
         assert!((drift[1] - expected).abs() < 1e-14, "{drift:?}");
         // Moving with the base: no friction. -0.4 - 3 - 2.
         assert!((system.drift_at(0.0, &[2.0, 2.0])[1] + 5.4).abs() < 1e-14);
-        assert_eq!(system.switching_surfaces()[0].at, 2.0);
-        assert_eq!(system.symmetry(), None);
+        assert_eq!(system.facts().switching_surfaces[0].at, 2.0);
+        assert_eq!(system.facts().symmetry, None);
     }
 
     #[test]
@@ -159,6 +159,6 @@ mod tests {
                 coulomb.drift_at(0.0, &state)
             );
         }
-        assert_eq!(stribeck.symmetry(), coulomb.symmetry());
+        assert_eq!(stribeck.facts().symmetry, coulomb.facts().symmetry);
     }
 }

@@ -70,8 +70,8 @@ impl Interpretation {
 /// let values = model.values(&[("kappa", 0.1), ("f_c", 0.2), ("sigma2", 0.04)])?;
 /// let system = model.system(&values);
 /// assert_eq!(system.drift_at(0.0, &[1.0, -2.0]), vec![-2.0, 0.2 - 1.0 + 0.2]);
-/// assert_eq!(system.additive_amplitude(0), Some(0.2));
-/// assert_eq!(system.switching_surfaces()[0].axis, 1);
+/// assert_eq!(system.noises()[0].additive(), Some(0.2));
+/// assert_eq!(system.facts().switching_surfaces[0].axis, 1);
 /// contract::verify_model(&model, &values, &[(-2.0, 2.0); 2])?;
 ///
 /// // What is wrong is shown in the formula.
@@ -187,7 +187,7 @@ impl TypedModel {
         self
     }
 
-    /// Values that an axis never leaves, as formulas of the parameters; see [`System::bounds`](super::System::bounds).
+    /// Values that an axis never leaves, as formulas of the parameters; see `Facts::bounds`.
     #[must_use]
     pub fn with_bounds(
         mut self,
