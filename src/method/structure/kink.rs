@@ -47,7 +47,7 @@ pub(super) fn kink(
         weights[bin] += weight;
     }
     let jump: Vec<f64> = sums.iter().zip(&weights).map(|(s, w)| s / w).collect();
-    let is_kink = !noise.is_empty() && jump.iter().all(|jump| jump.is_finite());
+    let is_kink = system.is_noisy(surface.axis) && jump.iter().all(|jump| jump.is_finite());
     is_kink.then_some(Kink {
         axis: place,
         at: surface.at,

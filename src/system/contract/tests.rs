@@ -6,11 +6,11 @@ use std::sync::Arc;
 
 use super::*;
 use crate::system::{
-    AxisDescription, Noise, ParameterDescription, ParameterRange, SwitchingSurface, registry,
+    AxisDescription, Facts, Noise, ParameterDescription, ParameterRange, SwitchingSurface, registry,
 };
 
 mod patient;
-use patient::{Patient, WELL, healthy, noise};
+use patient::{Drift, Patient, WELL, healthy, noise};
 
 /// A built-in model with named parameter values.
 pub(in crate::system) fn bound(model: &str, values: &[(&str, f64)]) -> Arc<dyn System> {
@@ -302,7 +302,7 @@ fn an_exact_density_must_solve_the_fokker_planck_equation() {
 }
 
 /// A patient with these noises, of which nothing is known.
-fn plain(drift: fn(f64, [f64; 3]) -> [f64; 3], noises: Vec<Noise>) -> Patient {
+fn plain(drift: Drift, noises: Vec<Noise>) -> Patient {
     Patient {
         noises,
         drift,
@@ -316,7 +316,7 @@ const BOX: [(f64, f64); 3] = [(-2.0, 2.0); 3];
 /// The first two states are declared to be those of a filter, with white noise on the second.
 #[test]
 fn states_of_a_filter_must_have_the_normal_density_that_is_declared() {
-    let verified = |drift: fn(f64, [f64; 3]) -> [f64; 3]| {
+    let verified = |drift: Drift| {
         let mut system = plain(drift, vec![Noise::constant(1, 1.0)]);
         let facts = [0, 1].map(|axis| (axis, (0.0, 1.0)));
         system.facts.filtered_noise = facts.into();
@@ -324,7 +324,7 @@ fn states_of_a_filter_must_have_the_normal_density_that_is_declared() {
     };
     // The noise of intensity 1 damps at the rate 1/2 of the unit variance; both turn into one another.
     assert!(verified(|_, [u, v, z]| [3.0 * v, -3.0 * u - 0.5 * v, -z]));
-    let wrong: [fn(f64, [f64; 3]) -> [f64; 3]; 5] = [
+    let wrong: [Drift; 5] = [
         |_, [u, v, z]| [3.0 * v, -2.0 * u - 0.5 * v, -z],
         |_, [u, v, z]| [3.0 * v, -3.0 * u - 0.6 * v, -z],
         |_, [u, v, z]| [3.0 * v - 0.1 * u, -3.0 * u - 0.5 * v, -z],
@@ -337,13 +337,13 @@ fn states_of_a_filter_must_have_the_normal_density_that_is_declared() {
 /// The second coordinate is said to relax at the rate 2.
 #[test]
 fn a_coordinate_that_relaxes_does_so_at_the_declared_rate_and_without_noise() {
-    let found = |drift: fn(f64, [f64; 3]) -> [f64; 3], driven: usize| {
+    let found = |drift: Drift, driven: usize| {
         let mut system = plain(drift, vec![Noise::constant(driven, 1.0)]);
         system.facts.relaxation_rates = [(1, 2.0)].into();
         verify(&system, &BOX)
     };
     assert_eq!(found(|_, [x, v, z]| [-x, x * x - 2.0 * v, -z], 0), Ok(()));
-    let wrong: [(fn(f64, [f64; 3]) -> [f64; 3], usize); 4] = [
+    let wrong: [(Drift, usize); 4] = [
         (|_, [x, v, z]| [-x, x - 1.9 * v, -z], 0),
         (|_, [x, v, z]| [-x, x - 2.0 * v + 0.1 * v * v, -z], 0),
         (|_, [x, v, z]| [-x, x - (2.0 + 0.1 * x) * v, -z], 0),

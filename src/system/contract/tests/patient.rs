@@ -4,6 +4,9 @@ use std::collections::BTreeMap;
 
 use crate::system::{Facts, LANES, Lanes, Noise, SwitchingSurface, Symmetry, System};
 
+/// Drift at a time and a state.
+pub(super) type Drift = fn(f64, [f64; 3]) -> [f64; 3];
+
 /// As it is, x' = y, y' = -y - x - sgn(y)/2 + ξ, z' = (y - |y| z)/2, and all that it declares holds.
 #[derive(Clone)]
 pub(super) struct Patient {
@@ -11,10 +14,10 @@ pub(super) struct Patient {
     pub(super) noises: Vec<Noise>,
     pub(super) facts: Facts,
     pub(super) density: Option<fn(&[f64]) -> f64>,
-    pub(super) drift: fn(f64, [f64; 3]) -> [f64; 3],
+    pub(super) drift: Drift,
 }
 
-pub(super) const WELL: fn(f64, [f64; 3]) -> [f64; 3] = |_, [x, y, z]| {
+pub(super) const WELL: Drift = |_, [x, y, z]| {
     let friction = if y == 0.0 { 0.0 } else { 0.5 * y.signum() };
     [y, -y - x - friction, 0.5 * (y - y.abs() * z)]
 };
