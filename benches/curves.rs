@@ -19,7 +19,7 @@ fn followed(sweep: &Sweep) -> Curve {
     let start = CurveStart {
         values: [-0.002_848_6, 0.01],
         observable: 0,
-        kind: IndicatorKind::Curvature,
+        kind: IndicatorKind::CURVATURE,
         place: vec![0.0],
     };
     let options = CurveOptions {

@@ -141,7 +141,11 @@ fn between(
         .collect();
     // Where rings open or merge at a state of rest, curvatures at the centre touch zero, and errors may turn their
     // signs for a moment.
-    let at_rest = |event: &Event| matches!(event.indicator, Some((IndicatorKind::Level { .. }, _)));
+    let levels = [false, true].map(IndicatorKind::level);
+    let at_rest = |event: &Event| {
+        let indicator = event.indicator.as_ref();
+        indicator.is_some_and(|(kind, _)| levels.contains(kind))
+    };
     if events.iter().any(at_rest) {
         centre.clear();
     } else if centre.is_empty() {

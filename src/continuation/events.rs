@@ -38,13 +38,8 @@ impl Event {
     /// The same born at an inflection beside the kink that it was seen at; `None` where no other place is known.
     pub(super) fn at_inflection(&self) -> Option<Self> {
         let (kind, place) = self.indicator.as_ref()?;
-        let IndicatorKind::BesideKink { above, is_valley } = *kind else {
-            return None;
-        };
-        // Above a valley, and below a peak, the density rises.
-        let rising = above == is_valley;
         Some(Self {
-            indicator: Some((IndicatorKind::Shoulder { rising }, place.clone())),
+            indicator: Some((kind.away_from_kink()?, place.clone())),
             ..self.clone()
         })
     }
@@ -126,7 +121,7 @@ fn rings_at_rest(
                     apart(1) > apart(0)
                 }
             };
-            events[index].indicator = Some((IndicatorKind::Level { along_second }, place));
+            events[index].indicator = Some((IndicatorKind::level(along_second), place));
             events[index].was_peak = was_peak.is_some();
         }
         if let Some(peak) = was_peak {
@@ -226,17 +221,17 @@ fn indicator(density: &EstimatedDensity, feature: &Feature) -> Option<(Indicator
             feature.position.as_slice(),
             partner.as_slice(),
         ) {
-            (FeatureKind::Ring, ..) => (IndicatorKind::Ring, partner.clone()),
+            (FeatureKind::Ring, ..) => (IndicatorKind::RING, partner.clone()),
             (FeatureKind::Peak, [peak], [valley]) => {
                 let (valley, peak) = (*valley, *peak);
                 let rising = valley < peak;
                 let at_kink = born_at_kink(density, feature, valley);
                 let steepest = steepest(density, [valley, peak]).map(|place| vec![place]);
                 let place = steepest.unwrap_or_else(between);
-                at_kink.unwrap_or((IndicatorKind::Shoulder { rising }, place))
+                at_kink.unwrap_or((IndicatorKind::shoulder(rising), place))
             }
             (FeatureKind::Peak | FeatureKind::Crater, [_, _], _) => {
-                (IndicatorKind::Fold, between())
+                (IndicatorKind::FOLD, between())
             }
             _ => return None,
         },

@@ -130,7 +130,7 @@ mod tests {
         let points = values.map(|value| point(value, of(value), 1e-7));
         let ends = [1, 2].map(|index| Indicator {
             sampling_error,
-            ..indicator(IndicatorKind::Curvature, of(values[index]))
+            ..indicator(IndicatorKind::CURVATURE, of(values[index]))
         });
         let crossing = Crossing {
             observable: 0,
@@ -168,7 +168,7 @@ mod tests {
     #[test]
     fn densities_that_are_solved_in_different_ways_are_told() {
         let points = [point(0.0, -1.0, 0.0), point(1.0, 1.0, 1e-7)];
-        let ends = [-1.0, 1.0].map(|value| indicator(IndicatorKind::Curvature, value));
+        let ends = [-1.0, 1.0].map(|value| indicator(IndicatorKind::CURVATURE, value));
         let crossing = Crossing {
             observable: 0,
             left: 0,

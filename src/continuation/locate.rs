@@ -13,7 +13,7 @@ use super::root::{Root, root};
 use super::rows::{in_order, inseparable, merge, say, without_flicker};
 use super::{CellCheck, Goal, Point, PointStatus, Subject, persistence};
 use crate::density::{EstimatedDensity, Kink, Observable};
-use crate::topology::{Detector, Indicator, IndicatorKind};
+use crate::topology::{Detector, Indicator};
 
 /// All labelled points of a sweep, in ascending parameter. `points` must be ascending.
 pub(super) fn label_points(
@@ -76,7 +76,7 @@ fn blank(observables: &[Observable], change: &Change) -> LabelledPoint {
         after: Some(change.after),
         status: None,
         change: "",
-        method: kind.map_or("persistence", IndicatorKind::name),
+        method: kind.map_or("persistence", |kind| kind.name()),
         parts: None,
         indicator: kind,
         rises,

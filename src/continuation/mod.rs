@@ -27,7 +27,6 @@ mod shard;
 mod source;
 mod span;
 mod sweep;
-mod words;
 
 pub use again::detect_again;
 #[cfg(test)]

@@ -3,8 +3,7 @@
 
 use super::change::Change;
 use super::label::{BifurcationStatus, LabelledPoint};
-use super::words;
-use crate::topology::IndicatorKind;
+use crate::topology::{IndicatorKind, Step};
 
 /// So many rows in a row that are not located are one.
 const FLICKER: usize = 3;
@@ -93,7 +92,12 @@ fn is_one_doubt(first: &LabelledPoint, second: &LabelledPoint) -> bool {
 /// Says what happens, once it is known between which signatures.
 pub(super) fn say(row: &mut LabelledPoint) {
     if let (Some(before), Some(after)) = (row.before, row.after) {
-        row.change = words::change(row.indicator, row.rises, before, after);
+        let step = Step {
+            rises: row.rises,
+            before,
+            after,
+        };
+        row.change = step.words(row.indicator.as_slice());
     }
 }
 
@@ -124,13 +128,11 @@ pub(super) fn merge(first: &mut LabelledPoint, second: &LabelledPoint) {
         first.status = second.status;
     }
     let of_flank = |row: &LabelledPoint| {
-        matches!(
-            row.indicator,
-            Some(IndicatorKind::Shoulder { .. } | IndicatorKind::Fold)
-        )
+        let is_one = |kind: IndicatorKind| kind.rising().is_some() || kind == IndicatorKind::FOLD;
+        row.indicator.is_some_and(is_one)
     };
     if first.indicator != second.indicator && !(of_flank(first) && of_flank(second)) {
-        first.indicator = Some(IndicatorKind::LowerCurvature);
+        first.indicator = Some(IndicatorKind::LOWER_CURVATURE);
         first.rises = later;
     }
 }

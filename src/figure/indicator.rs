@@ -27,18 +27,6 @@ pub(super) fn sketches<'a>(scene: &'a SweepScene<'a>) -> Vec<Sketch<'a>> {
         .collect()
 }
 
-/// What an indicator is, with its unit in symbols.
-fn title(kind: IndicatorKind) -> &'static str {
-    match kind {
-        IndicatorKind::Curvature => "$p$″ / $p$",
-        IndicatorKind::KinkSlope => "$p$′ / $p$",
-        IndicatorKind::CurvatureAlongKink => "curvature along the kink",
-        IndicatorKind::LowerCurvature => "lower curvature",
-        IndicatorKind::UpperCurvature => "upper curvature",
-        kind => kind.name(),
-    }
-}
-
 /// The figure; `None` without indicators.
 fn draw(scene: &SweepScene<'_>, number: usize) -> Result<Option<Page>, DrawError> {
     let watched = scene.result.subject.observables[number];
@@ -68,7 +56,7 @@ fn draw(scene: &SweepScene<'_>, number: usize) -> Result<Option<Page>, DrawError
                 .map(|(value, one)| ((value, one.value), error(one)))
                 .unzip();
             Track {
-                title: title(kind).to_owned(),
+                title: kind.title().to_owned(),
                 is_logarithmic: false,
                 has_zero: true,
                 least: 0.0,

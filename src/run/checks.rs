@@ -43,7 +43,7 @@ fn columns<'a>(family: &'a Family, observables: &'a [Observable]) -> Columns<'a,
             one.kind.code().to_owned()
         })
         .read(
-            |cell| cell.choice(&IndicatorKind::ALL, IndicatorKind::code),
+            |cell| cell.choice(&IndicatorKind::ALL, |kind| kind.code()),
             |one, kind| one.kind = kind,
         ),
         optional("position", coordinate(0))
@@ -93,7 +93,7 @@ pub(super) fn read_checks(
         value: f64::NAN,
         observable: observables.len(),
         by: CheckedBy::FinerCells,
-        kind: IndicatorKind::Curvature,
+        kind: IndicatorKind::CURVATURE,
         place: Vec::new(),
         indicator: None,
         failure: None,

@@ -164,11 +164,9 @@ fn change(value: &Value) -> Option<MapChange> {
     let zero = match &value["zero"] {
         Value::Null => None,
         zero => {
-            let code = zero[0].as_str()?;
-            let mut kinds = IndicatorKind::ALL.into_iter();
             let place = zero[1].as_array()?.iter().map(Value::as_f64);
             Some((
-                kinds.find(|kind| kind.code() == code)?,
+                IndicatorKind::of_code(zero[0].as_str()?)?,
                 place.collect::<Option<_>>()?,
                 pair(&zero[2])?,
             ))

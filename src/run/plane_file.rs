@@ -291,7 +291,6 @@ fn origin(value: &Value) -> Option<CurveOrigin> {
 }
 
 fn curve(value: &Value, plane: &Plane) -> Option<Curve> {
-    let kind = value["kind"].as_str()?;
     let points = list(&value["points"], point)?;
     let within = |value: &Value| count(value).filter(|&place| place < points.len());
     let end = |value: &Value| {
@@ -317,9 +316,7 @@ fn curve(value: &Value, plane: &Plane) -> Option<Curve> {
             [first, second] => Observable::Joint(*first, *second),
             _ => return None,
         },
-        kind: IndicatorKind::ALL
-            .into_iter()
-            .find(|one| one.code() == kind)?,
+        kind: IndicatorKind::of_code(value["kind"].as_str()?)?,
         start: within(&value["start"])?,
         ends: list(&value["ends"], end)?,
         degenerate: list(&value["degenerate"], split)?,

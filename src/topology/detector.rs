@@ -4,10 +4,7 @@ use std::cmp::Ordering;
 
 use super::candidate::{Candidate, judged};
 use super::exact;
-use super::indicator::{
-    Found, at_centre, beside_kink, corrected, curvature_beside, flanks_from_centre, fold, level,
-    put_right, quartic, ring_slope, shoulder, shoulders,
-};
+use super::indicator::{Counted, at_centre, corrected, flanks_from_centre, put_right, shoulders};
 use super::persistence::{Grid, components};
 use super::significance::Limits;
 use super::surroundings::{contents, rims};
@@ -105,7 +102,7 @@ impl Detector for PersistenceDetector {
         let peaks = judged(peaks, false, density, &limits);
         let craters = judged(craters, true, density, &limits);
         let rims = rims(grid, density, &craters, &limits);
-        let counted = contents(&peaks, &craters, &rims);
+        let persistent = contents(&peaks, &craters, &rims);
         let on_rim = |peak: &&Candidate| {
             let cell = peak.component.birth;
             rims.iter().any(|rim| rim.owns(cell))
@@ -130,17 +127,17 @@ impl Detector for PersistenceDetector {
         let [peaks, craters] =
             [FeatureKind::Peak, FeatureKind::Crater].map(|kind| present_places(&features, kind));
         let around_centre = rims.iter().filter(|one| one.holds_centre(density));
-        let found = Found {
-            signature: counted,
+        let counted = Counted {
+            signature: persistent,
             peaks: &peaks,
             craters: &craters,
             rings_around_centre: around_centre.filter(|one| one.is_ring).count(),
         };
-        let signature = corrected(density, &indicators, self.doubt(), &found);
+        let signature = corrected(density, &indicators, self.doubt(), &counted);
         put_right(density, &indicators, self.doubt(), &mut features);
         Detection {
             signature,
-            is_seen: signature.craters <= counted.craters,
+            is_seen: signature.craters <= persistent.craters,
             indicators,
             features,
         }
@@ -152,20 +149,7 @@ impl Detector for PersistenceDetector {
         kind: IndicatorKind,
         near: &[f64],
     ) -> Option<Indicator> {
-        match kind {
-            IndicatorKind::Shoulder { rising } => shoulder(density, *near.first()?, rising),
-            IndicatorKind::BesideKink { above, is_valley } => {
-                beside_kink(density, *near.first()?, above, is_valley)
-            }
-            IndicatorKind::CurvatureBesideKink { above } => {
-                curvature_beside(density, *near.first()?, above)
-            }
-            IndicatorKind::Fold => fold(density, near),
-            IndicatorKind::Ring => ring_slope(density, near),
-            IndicatorKind::Level { along_second } => level(density, near, along_second),
-            IndicatorKind::Quartic => quartic(density),
-            kind => at_centre(density).into_iter().find(|one| one.kind == kind),
-        }
+        kind.read(density, near)
     }
 
     fn flanks(&self, density: &EstimatedDensity) -> Vec<Flank> {

@@ -2,7 +2,7 @@
 //! lost between cells.
 
 use super::detector::{by_kind_and_height, present_places};
-use super::indicator::{Found, at_centre, corrected};
+use super::indicator::{Counted, at_centre, corrected};
 use super::significance::Limits;
 use super::{Detection, Feature, FeatureKind, Signature};
 use crate::density::{EstimatedDensity, Extremum, Profile};
@@ -24,13 +24,13 @@ pub(super) fn detection(
     let indicators = at_centre(density);
     // Where a split is nearer than rounding lets its peaks be told apart, the centre decides.
     let peaks = present_places(&features, FeatureKind::Peak);
-    let found = Found {
+    let counted = Counted {
         signature: Signature::of_peaks(peaks.len()),
         peaks: &peaks,
         craters: &[],
         rings_around_centre: 0,
     };
-    let signature = corrected(density, &indicators, doubt, &found);
+    let signature = corrected(density, &indicators, doubt, &counted);
     Detection {
         signature,
         is_seen: true,

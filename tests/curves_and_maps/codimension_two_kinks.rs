@@ -114,11 +114,12 @@ fn tree(
 }
 
 fn is_kink(row: &LabelledPoint) -> bool {
-    row.indicator == Some(IndicatorKind::KinkSlope)
+    row.indicator == Some(IndicatorKind::KINK_SLOPE)
 }
 
 fn is_beside(row: &LabelledPoint) -> bool {
-    matches!(row.indicator, Some(IndicatorKind::BesideKink { .. }))
+    let beside = |kind: IndicatorKind| kind.side_of_kink().is_some();
+    row.indicator.is_some_and(beside)
 }
 
 /// How far a place is from another, in sides of the box.
@@ -282,7 +283,10 @@ fn in_a_joint_density_the_curve_of_the_curvature_along_the_kink_crosses_and_is_f
     let kinds: Vec<IndicatorKind> = tree.curves.iter().map(|curve| curve.kind).collect();
     assert_eq!(
         kinds,
-        [IndicatorKind::KinkSlope, IndicatorKind::CurvatureAlongKink]
+        [
+            IndicatorKind::KINK_SLOPE,
+            IndicatorKind::CURVATURE_ALONG_KINK
+        ]
     );
     let points = codimension_two(&tree.curves);
     let [crossing] = points.as_slice() else {
@@ -355,7 +359,7 @@ points = 5
 [cells]
 x = { from = -2.2, to = 2.2, count = 240 }
 "#;
-    let split = |row: &LabelledPoint| row.indicator == Some(IndicatorKind::Curvature);
+    let split = |row: &LabelledPoint| row.indicator == Some(IndicatorKind::CURVATURE);
     let cusp = tree(
         cusp,
         split,
@@ -404,10 +408,10 @@ fn a_map_finds_the_degenerate_kink_and_draws_the_fold_of_both_sides_once() {
     let never = Cancellation::new();
     let map = prepared(&text, &[]).map(&never, &|_| ()).unwrap().unwrap();
     let kinds: Vec<IndicatorKind> = map.curves.iter().map(|curve| curve.kind).collect();
-    let fold = IndicatorKind::Shoulder { rising: true };
+    let fold = IndicatorKind::shoulder(true);
     assert_eq!(
         kinds,
-        [IndicatorKind::KinkSlope, fold],
+        [IndicatorKind::KINK_SLOPE, fold],
         "{:?}",
         map.untraced
     );

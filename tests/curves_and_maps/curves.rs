@@ -634,7 +634,7 @@ x = {{ from = -3, to = 3, count = {cells} }}
         let start = CurveStart {
             values: [0.0, 0.5],
             observable: 0,
-            kind: pbif::topology::IndicatorKind::Curvature,
+            kind: pbif::topology::IndicatorKind::CURVATURE,
             place: vec![0.0],
         };
         let source = sweep.source_in(&plane, &never).unwrap();

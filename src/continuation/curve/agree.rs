@@ -59,9 +59,9 @@ fn put(point: &mut CurvePoint, known: &CodimensionTwo) {
 fn begins_there(kind: IndicatorKind, known: CodimensionTwoKind) -> bool {
     match known {
         CodimensionTwoKind::DegenerateSplit => {
-            matches!(kind, IndicatorKind::Ring | IndicatorKind::Fold)
+            kind == IndicatorKind::RING || kind == IndicatorKind::FOLD
         }
-        CodimensionTwoKind::DegenerateKink => matches!(kind, IndicatorKind::Shoulder { .. }),
+        CodimensionTwoKind::DegenerateKink => kind.rising().is_some(),
         _ => false,
     }
 }

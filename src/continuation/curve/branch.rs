@@ -75,10 +75,10 @@ impl Seeker<'_> {
             .map(|(c, x)| c + STEEPEST * (x - c))
             .collect();
         let tried: Vec<(IndicatorKind, Vec<f64>)> = match centre.len() {
-            1 => vec![(IndicatorKind::Shoulder { rising: true }, steepest)],
+            1 => vec![(IndicatorKind::shoulder(true), steepest)],
             _ => vec![
-                (IndicatorKind::Ring, centre.clone()),
-                (IndicatorKind::Fold, steepest),
+                (IndicatorKind::RING, centre.clone()),
+                (IndicatorKind::FOLD, steepest),
             ],
         };
         let mut reader = self.reader(self.0.source, self.0.start.kind);
@@ -96,10 +96,7 @@ impl Seeker<'_> {
     /// the other. Of the inflections beside the kink that one tells which is nearest to a zero.
     fn fold_of_kink(&self, both: &Both, work: &mut CurveWork) -> Option<CurveStart> {
         let kink = self.0.start.place.first().copied()?;
-        let above = match self.0.start.kind {
-            IndicatorKind::BesideKink { above, .. } => above,
-            _ => true,
-        };
+        let above = self.0.start.kind.side_of_kink().unwrap_or(true);
         let side = if above { 1.0 } else { -1.0 };
         let mut reader = self.reader(self.0.source, self.0.start.kind);
         let mut nearest: Option<(f64, CurveStart)> = None;
@@ -114,7 +111,7 @@ impl Seeker<'_> {
             }
             self.0.plane.begin(at);
             for rising in [true, false] {
-                reader.kind = IndicatorKind::Shoulder { rising };
+                reader.kind = IndicatorKind::shoulder(rising);
                 let Some((gap, start)) = self.inflection(&mut reader, at, kink, side) else {
                     continue;
                 };

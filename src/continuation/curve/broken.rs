@@ -39,16 +39,14 @@ impl Seeker<'_> {
             return Vec::new();
         };
         let is_valley = companion < 0.0;
-        let (reason, kinds) = match self.0.start.kind {
-            IndicatorKind::Curvature => {
-                let kind = |rising| IndicatorKind::Shoulder { rising };
-                (EndReason::Cusp, [kind(true), kind(false)])
-            }
-            IndicatorKind::KinkSlope => {
-                let kind = |above| IndicatorKind::BesideKink { above, is_valley };
-                (EndReason::KinkCorner, [kind(true), kind(false)])
-            }
-            _ => return Vec::new(),
+        let sides = [true, false];
+        let (reason, kinds) = if self.0.start.kind == IndicatorKind::CURVATURE {
+            (EndReason::Cusp, sides.map(IndicatorKind::shoulder))
+        } else if self.0.start.kind == IndicatorKind::KINK_SLOPE {
+            let kinds = sides.map(|above| IndicatorKind::beside_kink(above, is_valley));
+            (EndReason::KinkCorner, kinds)
+        } else {
+            return Vec::new();
         };
         // Three extrema are there where the indicator and the next derivative have opposite signs.
         let side = if is_valley { 1.0 } else { -1.0 };

@@ -11,7 +11,7 @@ use crate::continuation::grid::share_of_distance;
 use crate::continuation::locate::QUIET;
 use crate::continuation::reason::{MOST_NEGATIVE, negative_share};
 use crate::continuation::{BifurcationStatus, CellCheck, DensitySource, ErrorParts, PointStatus};
-use crate::topology::{IndicatorKind, two_sided_limit};
+use crate::topology::two_sided_limit;
 
 /// A finer curve farther than this from the coarser one is not the same, in sides of the box.
 const SAME: f64 = 0.05;
@@ -89,7 +89,7 @@ impl Checks<'_> {
     /// The points that are checked. The slope at a kink follows from the equations: no grid takes part.
     fn selected(&self, walked: &Walked) -> Vec<usize> {
         let every = self.0.options.check_every;
-        if every == 0 || self.0.start.kind == IndicatorKind::KinkSlope {
+        if every == 0 || self.0.start.kind.is_exact() {
             return Vec::new();
         }
         let last = walked.points.len() - 1;
@@ -174,7 +174,7 @@ impl Checks<'_> {
             None => (0..2).for_each(|k| foot[k] += check.shift * uphill[k]),
         }
         let sides = self.0.plane.sides();
-        let depends_on_cells = self.0.start.kind != IndicatorKind::KinkSlope;
+        let depends_on_cells = !self.0.start.kind.is_exact();
         let unknown = check.grid.is_none() && depends_on_cells && reading.is_diffused;
         let is_torn = depends_on_cells && negative_share(&reading.density) > MOST_NEGATIVE;
         let is_unsound = reading.status != PointStatus::Solved || is_torn || reading.is_blurred;

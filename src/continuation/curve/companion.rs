@@ -13,38 +13,20 @@ use super::CodimensionTwoKind;
 use crate::density::EstimatedDensity;
 use crate::topology::{Detector, IndicatorKind};
 
-/// The companions of an indicator of a density with so many axes.
-pub(super) fn companions(kind: IndicatorKind, axes: usize) -> Vec<IndicatorKind> {
-    use IndicatorKind as Kind;
-    match (kind, axes) {
-        (Kind::Curvature | Kind::LowerCurvature | Kind::UpperCurvature, _) => vec![Kind::Quartic],
-        (Kind::KinkSlope, 1) => vec![Kind::CurvatureBesideKink { above: true }],
-        (Kind::KinkSlope, _) => vec![Kind::CurvatureAlongKink],
-        (Kind::CurvatureAlongKink, _) => vec![Kind::KinkSlope],
-        (Kind::BesideKink { above, is_valley }, _) => vec![
-            Kind::BesideKink {
-                above: !above,
-                is_valley,
-            },
-            Kind::CurvatureBesideKink { above },
-        ],
-        _ => Vec::new(),
-    }
-}
-
 /// What the point is where an indicator and this companion of it vanish.
 pub(super) fn meeting(companion: IndicatorKind) -> CodimensionTwoKind {
-    match companion {
-        IndicatorKind::Quartic => CodimensionTwoKind::DegenerateSplit,
-        IndicatorKind::CurvatureBesideKink { .. } => CodimensionTwoKind::DegenerateKink,
-        IndicatorKind::BesideKink { .. } => CodimensionTwoKind::KinkCorner,
-        _ => CodimensionTwoKind::Crossing,
+    let is_beside_kink = companion.side_of_kink().is_some();
+    match (companion.is_bifurcation(), is_beside_kink) {
+        (false, false) => CodimensionTwoKind::DegenerateSplit,
+        (false, true) => CodimensionTwoKind::DegenerateKink,
+        (true, true) => CodimensionTwoKind::KinkCorner,
+        (true, false) => CodimensionTwoKind::Crossing,
     }
 }
 
 /// Whether nothing happens on the line beyond the point at which a companion vanishes.
 pub(super) fn ends_there(kind: IndicatorKind) -> bool {
-    matches!(kind, IndicatorKind::BesideKink { .. })
+    kind.side_of_kink().is_some()
 }
 
 /// The values of the companions, in their order; `None` where there is no such indicator. Of a kink's, where its sign
@@ -55,12 +37,12 @@ pub(super) fn values(
     kind: IndicatorKind,
     place: &[f64],
 ) -> Vec<Option<f64>> {
-    let all = companions(kind, density.density.axes.len()).into_iter();
+    let all = kind.companions(density.density.axes.len()).into_iter();
     all.map(|companion| {
         let indicator = detector.indicator(density, companion, place)?;
         let is_sure =
             indicator.sampling_error == 0.0 && indicator.value.abs() > indicator.systematic_error;
-        (is_sure || companion == IndicatorKind::Quartic).then_some(indicator.value)
+        (is_sure || companion == IndicatorKind::QUARTIC).then_some(indicator.value)
     })
     .collect()
 }

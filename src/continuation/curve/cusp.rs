@@ -43,7 +43,7 @@ pub(super) fn cusp(tail: &Tail<'_>, rising: bool) -> Option<Beyond> {
         leaves: found.leaves,
         branch: (
             found.at(opposite),
-            IndicatorKind::Shoulder { rising: !rising },
+            IndicatorKind::shoulder(!rising),
             opposite,
         ),
     })

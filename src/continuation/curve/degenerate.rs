@@ -6,7 +6,7 @@
 //! a kink slope and curvature do, or the slopes on both of its sides, or the curvature along it. The point is found by
 //! Newton's method on both in the plane, on the given cells and on finer ones.
 
-use super::companion::{companions, meeting};
+use super::companion::meeting;
 use super::found::DegeneratePoint;
 use super::reading::{Reader, Reading};
 use super::walked::{Node, Walked, apart, within};
@@ -120,7 +120,7 @@ impl Seeker<'_> {
         judged: &[CurvePoint],
         work: &mut CurveWork,
     ) -> Vec<Found> {
-        let kinds = companions(self.0.start.kind, self.0.start.place.len());
+        let kinds = self.0.start.kind.companions(self.0.start.place.len());
         let mut found: Vec<Found> = Vec::new();
         for (index, kind) in kinds.into_iter().enumerate() {
             let nodes = walked.points.iter().enumerate();

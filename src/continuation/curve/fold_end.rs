@@ -145,7 +145,7 @@ pub(super) fn add_ends(
     folds: &Folds<'_>,
 ) -> Vec<CurveStart> {
     let mut branches = Vec::new();
-    let IndicatorKind::Shoulder { rising } = folds.kind else {
+    let Some(rising) = folds.kind.rising() else {
         return branches;
     };
     let count = reasons.len();
@@ -269,7 +269,7 @@ fn at_centre(tail: &Tail<'_>, centre: f64) -> Option<Beyond> {
         error: tail.known() + 2.0 * doubt + SCATTERS * found.scatter,
         scatter: SCATTERS * found.scatter,
         leaves: found.leaves,
-        branch: (found.at, IndicatorKind::Curvature, centre),
+        branch: (found.at, IndicatorKind::CURVATURE, centre),
     })
 }
 
@@ -289,13 +289,11 @@ fn at_kink(tail: &Tail<'_>, beside: &KinkAtEnd, is_centre: bool) -> Option<Beyon
     let farther = Meeting::new(&scaled[quarter..], &tail.values[quarter..], DEGREE);
     let doubt = apart(found.at, lower.at) + apart(found.at, farther.at);
     let above = tail.places[0] > kink;
-    let kind = match is_centre {
-        true => IndicatorKind::KinkSlope,
+    let kind = if is_centre {
+        IndicatorKind::KINK_SLOPE
+    } else {
         // The kink is what it was before the pair on this side: the peak or valley that the other side says.
-        false => IndicatorKind::BesideKink {
-            above,
-            is_valley: beside.rises_away[usize::from(!above)],
-        },
+        IndicatorKind::beside_kink(above, beside.rises_away[usize::from(!above)])
     };
     let error = tail.known() + 2.0 * doubt + SCATTERS * found.scatter;
     let is_near = apart(found.at, tail.values[0]) <= FAR_FROM_KINK;

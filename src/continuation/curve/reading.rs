@@ -157,7 +157,7 @@ impl Reader<'_> {
         let density = solution.densities.get(self.observable);
         let density = density.ok_or_else(|| Missing::Density("no density".to_owned()))?;
         let indicator = self.detector.indicator(density, self.kind, near);
-        let has_centre = density.structure.centre.is_some() || !is_at_centre(self.kind);
+        let has_centre = density.structure.centre.is_some() || !self.kind.is_at_centre();
         let indicator = indicator.ok_or(match has_centre {
             true => Missing::Indicator,
             false => Missing::Symmetry,
@@ -212,17 +212,6 @@ impl Reader<'_> {
     }
 }
 
-/// Whether an indicator is read at a centre of symmetry.
-fn is_at_centre(kind: IndicatorKind) -> bool {
-    use IndicatorKind::{
-        Curvature, CurvatureAlongKink, KinkSlope, LowerCurvature, Quartic, UpperCurvature,
-    };
-    matches!(
-        kind,
-        Curvature | CurvatureAlongKink | KinkSlope | LowerCurvature | Quartic | UpperCurvature
-    )
-}
-
 fn missing(error: SourceError) -> Missing {
     match error {
         SourceError::Interrupted => Missing::Interrupted,
@@ -238,8 +227,7 @@ fn along(
     sensitivity: &mut dyn Sensitivity,
     parameter: &str,
 ) -> Result<Option<f64>, SourceError> {
-    // The slope at a kink follows from the equations alone.
-    if indicator.kind == IndicatorKind::KinkSlope {
+    if indicator.kind.is_exact() {
         let jumps = sensitivity.jumps_to_parameter(parameter)?;
         let jumps = jumps.get(observable);
         return Ok(jumps.and_then(|jumps| by_jumps(detector, density, indicator, jumps)));

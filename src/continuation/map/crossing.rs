@@ -155,16 +155,10 @@ fn on_upper_side(
     let (Some(centre), &[x]) = (centre, place.as_slice()) else {
         return (kind, place);
     };
-    let mirrored = match kind {
-        _ if x >= centre => return (kind, place),
-        IndicatorKind::Shoulder { rising } => IndicatorKind::Shoulder { rising: !rising },
-        IndicatorKind::BesideKink { above, is_valley } => IndicatorKind::BesideKink {
-            above: !above,
-            is_valley,
-        },
-        _ => return (kind, place),
-    };
-    (mirrored, vec![2.0 * centre - x])
+    match kind.mirror().filter(|_| x < centre) {
+        Some(mirrored) => (mirrored, vec![2.0 * centre - x]),
+        None => (kind, place),
+    }
 }
 
 #[cfg(test)]
@@ -173,7 +167,7 @@ mod tests {
 
     #[test]
     fn mirror_images_have_one_indicator() {
-        let [rising, falling] = [true, false].map(|rising| IndicatorKind::Shoulder { rising });
+        let [rising, falling] = [true, false].map(IndicatorKind::shoulder);
         let of = |kind, x: f64, centre| on_upper_side(kind, vec![x], centre);
         assert_eq!(of(falling, -0.5, Some(0.25)), (rising, vec![1.0]));
         assert_eq!(of(rising, 1.0, Some(0.25)), (rising, vec![1.0]));

@@ -94,7 +94,7 @@ mod tests {
         let change = |ends, at: f64| MapChange {
             observable: 0,
             ends,
-            zero: Some((IndicatorKind::Curvature, vec![0.0], [at, 0.5])),
+            zero: Some((IndicatorKind::CURVATURE, vec![0.0], [at, 0.5])),
         };
         let row = |y: f64| [[0.2, y], [0.4, y]];
         let column = [[0.2, 0.5], [0.2, 0.75]];

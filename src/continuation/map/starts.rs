@@ -22,7 +22,7 @@ pub(super) fn starts(open: &mut Vec<Crossing>, failures: &[(Crossing, String)]) 
         }
     }
     // What follows from the equations is known best, and asks for no checks.
-    kinds.sort_by_key(|key| key.1 != IndicatorKind::KinkSlope);
+    kinds.sort_by_key(|key| !key.1.is_exact());
     let all: Vec<Vec<Crossing>> = kinds.iter().map(|&key| of_kind(open, key)).collect();
     let mut taken: Vec<usize> = Vec::new();
     for number in 0..kinds.len() {
@@ -86,30 +86,34 @@ mod tests {
 
     #[test]
     fn an_indicator_that_crosses_where_another_does_waits_for_it() {
-        use IndicatorKind::{Curvature, KinkSlope, Quartic};
+        let [wide, exact, other] = [
+            IndicatorKind::FOLD,
+            IndicatorKind::KINK_SLOPE,
+            IndicatorKind::CURVATURE,
+        ];
         let mut open: Vec<Crossing> = (0..5)
             .flat_map(|k| {
                 let y = 0.2 * f64::from(k);
                 [
-                    crossing(Quartic, 0.3 + 1e-4, y),
-                    crossing(KinkSlope, 0.3, y),
-                    crossing(Curvature, 0.6, y),
+                    crossing(wide, 0.3 + 1e-4, y),
+                    crossing(exact, 0.3, y),
+                    crossing(other, 0.6, y),
                 ]
             })
             .collect();
         let found = starts(&mut open, &[]);
         let kinds: Vec<IndicatorKind> = found.iter().map(|one| one.kind).collect();
-        assert_eq!(kinds, [KinkSlope, Curvature]);
+        assert_eq!(kinds, [exact, other]);
         assert!(found.iter().all(|one| one.at[1] == 0.4));
         assert_eq!(open.len(), 13);
         // Both neighbours lie on the curve itself: the line between them meets it nowhere, or everywhere.
         let curve = Drawn {
             observable: 0,
-            kind: KinkSlope,
+            kind: exact,
             line: vec![[0.3, 0.0], [0.3, 1.0]],
         };
         open.retain(|one| !curve.explains(one));
         assert_eq!(open.len(), 4);
-        assert!(open.iter().all(|one| one.kind == Curvature));
+        assert!(open.iter().all(|one| one.kind == other));
     }
 }

@@ -20,11 +20,9 @@ pub(super) fn write(writer: &mut Writer, check: &KeptCheck) {
 pub(super) fn read(reader: &mut Reader<'_>) -> Result<KeptCheck, NotWhatWasWritten> {
     let (by, kind) = (reader.text()?, reader.text()?);
     let by = CheckedBy::ALL.into_iter().find(|one| one.name() == by);
-    let mut kinds = IndicatorKind::ALL.into_iter();
-    let kind = kinds.find(|one| one.code() == kind);
     let seen = CheckedIndicator {
         by: by.ok_or(NotWhatWasWritten)?,
-        kind: kind.ok_or(NotWhatWasWritten)?,
+        kind: IndicatorKind::of_code(kind).ok_or(NotWhatWasWritten)?,
         value: reader.number()?,
         observable: reader.count()?,
         place: reader.numbers()?,

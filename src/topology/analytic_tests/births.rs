@@ -13,7 +13,7 @@ fn the_birth_of_a_ring_is_where_its_slope_passes_zero() {
         });
         let detector = PersistenceDetector::new(DetectOptions::default(), 60);
         let found = detector
-            .indicator(&density, IndicatorKind::Ring, &[0.0, 0.0])
+            .indicator(&density, IndicatorKind::RING, &[0.0, 0.0])
             .unwrap();
         (found.value, found.systematic_error)
     };
@@ -39,7 +39,7 @@ fn the_birth_of_a_peak_beside_another_is_where_the_slope_between_passes_zero() {
         });
         let detector = PersistenceDetector::new(DetectOptions::default(), 60);
         let found = detector
-            .indicator(&density, IndicatorKind::Fold, &[-0.5, -0.3])
+            .indicator(&density, IndicatorKind::FOLD, &[-0.5, -0.3])
             .unwrap();
         let along = cos * found.place[0] + sin * found.place[1];
         assert!((along + 0.5774).abs() < 1e-2, "{along}");

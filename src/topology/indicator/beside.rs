@@ -4,6 +4,10 @@
 //! There the slope on that side, away from the kink, changes its sign while that on the other side does not. It goes
 //! through zero linearly, and nothing else does: there is no inflection.
 
+use std::cmp::Ordering;
+
+use super::kind::Behaviour;
+use super::words::Step;
 use super::{Indicator, IndicatorKind, exact, window};
 use crate::density::EstimatedDensity;
 use crate::topology::Feature;
@@ -13,9 +17,79 @@ use crate::topology::reconstruction::Line;
 /// Distance from the kink at which its sides are told apart, as a share of the range.
 const ASIDE: f64 = 1e-9;
 
+/// The slope on one side of a kink.
+pub(super) struct BesideKink {
+    pub(super) above: bool,
+    pub(super) is_valley: bool,
+}
+
+impl Behaviour for BesideKink {
+    fn code(&self) -> &'static str {
+        match (self.above, self.is_valley) {
+            (false, false) => "slope below the kink of a peak",
+            (false, true) => "slope below the kink of a valley",
+            (true, false) => "slope above the kink of a peak",
+            (true, true) => "slope above the kink of a valley",
+        }
+    }
+    fn name(&self) -> &'static str {
+        "slope beside the kink"
+    }
+    fn read(&self, estimated: &EstimatedDensity, near: &[f64]) -> Option<Indicator> {
+        beside_kink(estimated, *near.first()?, self.above, self.is_valley)
+    }
+    fn words(&self, step: &Step) -> Option<&'static str> {
+        Some(if step.peaks() == Ordering::Greater {
+            "peak and valley are born at a kink"
+        } else {
+            "peak and valley vanish at a kink"
+        })
+    }
+    fn companions(&self, _: usize) -> Vec<IndicatorKind> {
+        vec![
+            IndicatorKind::beside_kink(!self.above, self.is_valley),
+            IndicatorKind::curvature_beside_kink(self.above),
+        ]
+    }
+    fn side_of_kink(&self) -> Option<bool> {
+        Some(self.above)
+    }
+    fn away_from_kink(&self) -> Option<IndicatorKind> {
+        // Above a valley, and below a peak, the density rises.
+        Some(IndicatorKind::shoulder(self.above == self.is_valley))
+    }
+    fn mirror(&self) -> Option<IndicatorKind> {
+        Some(IndicatorKind::beside_kink(!self.above, self.is_valley))
+    }
+}
+
+/// The curvature on one side of a kink, a test function.
+pub(super) struct CurvatureBesideKink {
+    pub(super) above: bool,
+}
+
+impl Behaviour for CurvatureBesideKink {
+    fn code(&self) -> &'static str {
+        if self.above {
+            "curvature above the kink"
+        } else {
+            "curvature below the kink"
+        }
+    }
+    fn read(&self, estimated: &EstimatedDensity, near: &[f64]) -> Option<Indicator> {
+        curvature_beside(estimated, *near.first()?, self.above)
+    }
+    fn is_bifurcation(&self) -> bool {
+        false
+    }
+    fn side_of_kink(&self) -> Option<bool> {
+        Some(self.above)
+    }
+}
+
 /// The slope beside the kink nearest to a place; `None` for joint densities, sampled ones, and kinks that a scheme has
 /// blurred because they lie on no face.
-pub(crate) fn beside_kink(
+fn beside_kink(
     estimated: &EstimatedDensity,
     near: f64,
     above: bool,
@@ -33,7 +107,7 @@ pub(crate) fn beside_kink(
     let of = |jet: Jet| sign * jet.first[0] / (field.unit(0) * jet.value);
     Indicator::derive(
         estimated,
-        IndicatorKind::BesideKink { above, is_valley },
+        IndicatorKind::beside_kink(above, is_valley),
         vec![at],
         |values| of(fine.jet(values)),
         |values| of(rough.jet(values)),
@@ -41,11 +115,7 @@ pub(crate) fn beside_kink(
 }
 
 /// (log p)'' on one side of the kink nearest to a place; `None` where [`beside_kink`] is.
-pub(crate) fn curvature_beside(
-    estimated: &EstimatedDensity,
-    near: f64,
-    above: bool,
-) -> Option<Indicator> {
+fn curvature_beside(estimated: &EstimatedDensity, near: f64, above: bool) -> Option<Indicator> {
     let at = nearest(estimated, near).filter(|_| !estimated.is_noisy())?;
     let lines = window::one_sided(&estimated.density.axes[0], at, above)?;
     let of = |lines: &[Line], values: &[f64]| {
@@ -55,7 +125,7 @@ pub(crate) fn curvature_beside(
     let [fine, rough] = lines.both();
     Indicator::derive(
         estimated,
-        IndicatorKind::CurvatureBesideKink { above },
+        IndicatorKind::curvature_beside_kink(above),
         vec![at],
         |values| of(fine, values),
         |values| of(rough, values),
@@ -98,7 +168,7 @@ pub(crate) fn born_at_kink(
             !kink.is_bend() && axis.is_same_place(kink.at, at) && is_seen(estimated, kink.at)
         })
     };
-    let kind = |above: bool, is_valley: bool| IndicatorKind::BesideKink { above, is_valley };
+    let kind = IndicatorKind::beside_kink;
     match (is_kink(valley), is_kink(peak)) {
         (true, false) => Some((kind(peak > valley, true), vec![valley])),
         (false, true) => Some((kind(valley > peak, false), vec![peak])),

@@ -1,21 +1,131 @@
-//! Indicators at a centre of symmetry, and the signature that they imply.
-//!
-//! By symmetry the centre is a critical point of the density at every parameter value, so its type is that of the
-//! signs of the indicators there: all negative, a peak; all positive, the bottom of a valley or crater; mixed, a
-//! saddle. The type is known long before peaks stand out from each other, and decides between the signatures
-//! that persistence cannot tell apart: other critical points come in pairs.
+//! Indicators at a centre of symmetry, which are read together: the curvature of a marginal, or the slope at its kink;
+//! of a joint density both principal curvatures, or the slope across a kink and the curvature along it.
+
+use std::cmp::Ordering;
 
 use super::exact;
+use super::kind::Behaviour;
 use super::smooth::Smooth;
 use super::window;
+use super::words::Step;
 use super::{Indicator, IndicatorKind, is_told};
 use crate::density::{EstimatedDensity, Kink, Variants};
 use crate::space::Axis;
-use crate::topology::Signature;
 use crate::topology::reconstruction::Line;
 
-/// Distance from the centre, in cells, within which a peak is the one at the centre.
-const NEAR: f64 = 3.0;
+/// p''/p of a marginal.
+pub(super) struct Curvature;
+
+impl Behaviour for Curvature {
+    fn code(&self) -> &'static str {
+        "curvature at the centre"
+    }
+    fn title(&self) -> &'static str {
+        "$p$″ / $p$"
+    }
+    fn read(&self, estimated: &EstimatedDensity, _: &[f64]) -> Option<Indicator> {
+        one_of(self, estimated)
+    }
+    fn words(&self, step: &Step) -> Option<&'static str> {
+        Some(step.of_centre())
+    }
+    fn companions(&self, _: usize) -> Vec<IndicatorKind> {
+        vec![IndicatorKind::QUARTIC]
+    }
+    fn is_at_centre(&self) -> bool {
+        true
+    }
+}
+
+/// One of the two principal curvatures of a joint density.
+pub(super) struct Principal {
+    pub(super) upper: bool,
+}
+
+impl Behaviour for Principal {
+    fn code(&self) -> &'static str {
+        if self.upper {
+            "upper curvature at the centre"
+        } else {
+            "lower curvature at the centre"
+        }
+    }
+    fn title(&self) -> &'static str {
+        if self.upper {
+            "upper curvature"
+        } else {
+            "lower curvature"
+        }
+    }
+    fn read(&self, estimated: &EstimatedDensity, _: &[f64]) -> Option<Indicator> {
+        one_of(self, estimated)
+    }
+    fn companions(&self, _: usize) -> Vec<IndicatorKind> {
+        vec![IndicatorKind::QUARTIC]
+    }
+    fn is_at_centre(&self) -> bool {
+        true
+    }
+}
+
+/// The slope on the upper side of a kink.
+pub(super) struct KinkSlope;
+
+impl Behaviour for KinkSlope {
+    fn code(&self) -> &'static str {
+        "slope at the kink"
+    }
+    fn title(&self) -> &'static str {
+        "$p$′ / $p$"
+    }
+    fn read(&self, estimated: &EstimatedDensity, _: &[f64]) -> Option<Indicator> {
+        one_of(self, estimated)
+    }
+    fn words(&self, step: &Step) -> Option<&'static str> {
+        let words = if step.rises {
+            "split at a kink"
+        } else {
+            "merger at a kink"
+        };
+        (step.craters() == Ordering::Equal).then_some(words)
+    }
+    fn companions(&self, axes: usize) -> Vec<IndicatorKind> {
+        vec![match axes {
+            1 => IndicatorKind::curvature_beside_kink(true),
+            _ => IndicatorKind::CURVATURE_ALONG_KINK,
+        }]
+    }
+    fn is_at_centre(&self) -> bool {
+        true
+    }
+    fn is_exact(&self) -> bool {
+        true
+    }
+}
+
+/// The curvature of a joint density along a kink.
+pub(super) struct AlongKink;
+
+impl Behaviour for AlongKink {
+    fn code(&self) -> &'static str {
+        "curvature along the kink"
+    }
+    fn read(&self, estimated: &EstimatedDensity, _: &[f64]) -> Option<Indicator> {
+        one_of(self, estimated)
+    }
+    fn companions(&self, _: usize) -> Vec<IndicatorKind> {
+        vec![IndicatorKind::KINK_SLOPE]
+    }
+    fn is_at_centre(&self) -> bool {
+        true
+    }
+}
+
+/// One of those at the centre.
+fn one_of(kind: &dyn Behaviour, estimated: &EstimatedDensity) -> Option<Indicator> {
+    let mut all = at_centre(estimated).into_iter();
+    all.find(|one| one.kind.code() == kind.code())
+}
 
 /// The indicators at the centre of symmetry: one of a marginal, two of a joint density; none where the system
 /// declares no symmetry, the cells about the centre are too few, or the density there is no more than the solver
@@ -81,7 +191,7 @@ fn curvature(estimated: &EstimatedDensity, at: f64) -> Option<Indicator> {
         let of =
             |level: usize| move |fit: &Smooth, values: &[f64]| fit.derivatives(values, level)[0];
         let (fine, rough) = (of(0), of(1));
-        let kind = IndicatorKind::Curvature;
+        let kind = IndicatorKind::CURVATURE;
         let fine = |values: &[f64]| fine(&fit, values);
         let rough = |values: &[f64]| rough(&fit, values);
         return Indicator::derive(estimated, kind, vec![at], fine, rough);
@@ -93,7 +203,7 @@ fn curvature(estimated: &EstimatedDensity, at: f64) -> Option<Indicator> {
         |values: &[f64]| of(fine, values),
         |values: &[f64]| of(rough, values),
     );
-    Indicator::derive(estimated, IndicatorKind::Curvature, vec![at], fine, rough)
+    Indicator::derive(estimated, IndicatorKind::CURVATURE, vec![at], fine, rough)
 }
 
 /// Half the jump of the slope of log p: the slope on the upper side, because the mean slope is zero by symmetry. It
@@ -110,7 +220,7 @@ fn slope(estimated: &EstimatedDensity, kink: &Kink, centre: &[f64]) -> Option<In
     let (value, rougher) = (|_: &[f64]| half, |_: &[f64]| half + rounding);
     Indicator::derive(
         estimated,
-        IndicatorKind::KinkSlope,
+        IndicatorKind::KINK_SLOPE,
         centre.to_vec(),
         value,
         rougher,
@@ -120,7 +230,7 @@ fn slope(estimated: &EstimatedDensity, kink: &Kink, centre: &[f64]) -> Option<In
 /// The slope across a kink and the curvature along it.
 fn along_kink(estimated: &EstimatedDensity, kink: &Kink, centre: &[f64]) -> Option<Vec<Indicator>> {
     let (across, along) = (kink.axis, 1 - kink.axis);
-    let kind = IndicatorKind::CurvatureAlongKink;
+    let kind = IndicatorKind::CURVATURE_ALONG_KINK;
     if is_sampled(estimated) {
         let fit = Smooth::along_kink(estimated, centre, across)?;
         let fine = |values: &[f64]| fit.derivatives(values, 0)[0];
@@ -167,8 +277,8 @@ fn principal(estimated: &EstimatedDensity, centre: &[f64]) -> Option<Vec<Indicat
             Indicator::derive(estimated, kind, centre.to_vec(), fine, rough)
         };
         Some(vec![
-            one(IndicatorKind::LowerCurvature, -1.0)?,
-            one(IndicatorKind::UpperCurvature, 1.0)?,
+            one(IndicatorKind::LOWER_CURVATURE, -1.0)?,
+            one(IndicatorKind::UPPER_CURVATURE, 1.0)?,
         ])
     };
     if is_sampled(estimated) {
@@ -191,93 +301,4 @@ fn principal(estimated: &EstimatedDensity, centre: &[f64]) -> Option<Vec<Indicat
 
 fn is_sampled(estimated: &EstimatedDensity) -> bool {
     matches!(estimated.variants, Variants::Jackknife(_))
-}
-
-/// Type of the centre.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Type {
-    Peak,
-    Saddle,
-    Bottom,
-}
-
-/// The type, if every sign is beyond doubt.
-fn type_of(indicators: &[Indicator], doubt: f64) -> Option<Type> {
-    let signs: Option<Vec<bool>> = indicators.iter().map(|one| one.sign(doubt)).collect();
-    let signs = signs?;
-    let up = signs.iter().filter(|&&up| up).count();
-    (!signs.is_empty()).then_some(match up {
-        0 => Type::Peak,
-        up if up == signs.len() => Type::Bottom,
-        _ => Type::Saddle,
-    })
-}
-
-/// What persistence found.
-pub(crate) struct Found<'a> {
-    pub(crate) signature: Signature,
-    /// Places of the peaks that are present, rings left out.
-    pub(crate) peaks: &'a [Vec<f64>],
-    /// Places of the craters that are present.
-    pub(crate) craters: &'a [Vec<f64>],
-    /// Rings that the centre lies in.
-    pub(crate) rings_around_centre: usize,
-}
-
-/// The signature that persistence found, corrected by the type of the centre where that is beyond doubt. Peaks, unlike
-/// rings, come in pairs about the centre.
-pub(crate) fn corrected(
-    estimated: &EstimatedDensity,
-    indicators: &[Indicator],
-    doubt: f64,
-    found: &Found<'_>,
-) -> Signature {
-    let mut signature = found.signature;
-    let (Some(kind), Some(centre)) = (type_of(indicators, doubt), &estimated.structure.centre)
-    else {
-        return signature;
-    };
-    let near = |place: &Vec<f64>| cells_from(estimated, centre, place) <= NEAR;
-    let is_marginal = centre.len() == 1;
-    let even = signature.peaks.is_multiple_of(2);
-    let at_centre = found.craters.iter().filter(|place| near(place)).count();
-    let encloses = found.rings_around_centre > 0;
-    match (kind, even) {
-        // A peak at the centre is one, all others are pairs: a pair that straddles the centre is this one peak.
-        (Type::Peak, true) if found.peaks.iter().any(near) => {
-            signature.peaks -= 1;
-            signature.enclosed_peaks -= usize::from(signature.enclosed_peaks > 1);
-        }
-        (Type::Peak, true) => {
-            signature.peaks += 1;
-            signature.enclosed_peaks += usize::from(encloses);
-        }
-        (Type::Saddle, false) => signature.peaks += 1,
-        (Type::Bottom, false) if is_marginal => signature.peaks += 1,
-        _ => {}
-    }
-    if !is_marginal {
-        match (kind == Type::Bottom, at_centre) {
-            (true, 0) => signature.craters += 1,
-            // Between a peak at the centre and a ring lies a moat.
-            (false, _) => {
-                let others = signature.craters - at_centre.min(signature.craters);
-                signature.craters = others.max(found.rings_around_centre.min(signature.craters));
-            }
-            _ => {}
-        }
-    }
-    signature
-}
-
-/// Distance of a place from the centre in cells, those at the centre or of mean width, whichever are wider; the larger
-/// over the axes.
-fn cells_from(estimated: &EstimatedDensity, centre: &[f64], place: &[f64]) -> f64 {
-    let axes = estimated.density.axes.iter().enumerate();
-    axes.map(|(k, axis)| {
-        let local = axis.find(centre[k]).map_or(0.0, |cell| axis.width(cell));
-        let mean = (axis.to() - axis.from()) / axis.count() as f64;
-        (place[k] - centre[k]).abs() / local.max(mean)
-    })
-    .fold(0.0, f64::max)
 }

@@ -12,7 +12,7 @@ pub(super) fn shoulder(profile: &Profile, near: f64, rising: bool) -> Option<Ind
     let turn = alike.min_by(|a, b| distance(a.place).total_cmp(&distance(b.place)))?;
     let value = if rising { turn.slope } else { -turn.slope };
     Indicator::known(
-        IndicatorKind::Shoulder { rising },
+        IndicatorKind::shoulder(rising),
         turn.place,
         value,
         turn.error,
@@ -32,7 +32,7 @@ pub(super) fn beside_kink(
     // Uphill is away from a valley.
     let sign = if above == is_valley { 1.0 } else { -1.0 };
     Indicator::known(
-        IndicatorKind::BesideKink { above, is_valley },
+        IndicatorKind::beside_kink(above, is_valley),
         jump.place,
         sign * jump.slopes[usize::from(above)],
         jump.error,
@@ -42,7 +42,7 @@ pub(super) fn beside_kink(
 /// The curvature at the centre of symmetry.
 pub(super) fn curvature(profile: &Profile, centre: f64) -> Option<Indicator> {
     let (value, error) = profile.curvature?;
-    Indicator::known(IndicatorKind::Curvature, centre, value, error)
+    Indicator::known(IndicatorKind::CURVATURE, centre, value, error)
 }
 
 /// All extrema of the slope.

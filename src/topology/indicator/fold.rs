@@ -9,6 +9,10 @@
 //! Where a force bends, at a plane, the curvature along the curve jumps there instead of passing zero, and the slope
 //! has its extremum on the plane.
 
+use std::cmp::Ordering;
+
+use super::kind::Behaviour;
+use super::words::Step;
 use super::{Indicator, IndicatorKind};
 use crate::density::EstimatedDensity;
 use crate::topology::field::{Curvature, Field, Jet, Stencil};
@@ -22,8 +26,28 @@ const FARTHEST: f64 = 25.0;
 /// A step that is a smaller share of a cell ends the search.
 const SETTLED: f64 = 1e-7;
 
+/// The slope at the shoulder.
+pub(super) struct Fold;
+
+impl Behaviour for Fold {
+    fn code(&self) -> &'static str {
+        "slope at the shoulder"
+    }
+    fn read(&self, estimated: &EstimatedDensity, near: &[f64]) -> Option<Indicator> {
+        fold(estimated, near)
+    }
+    fn words(&self, step: &Step) -> Option<&'static str> {
+        let words = if step.peaks() == Ordering::Greater {
+            "peak and saddle are born"
+        } else {
+            "peak and saddle vanish"
+        };
+        (step.craters() == Ordering::Equal).then_some(words)
+    }
+}
+
 /// The shoulder nearest to a place; `None` for marginals, for sampled densities, and where there is none.
-pub(crate) fn fold(estimated: &EstimatedDensity, near: &[f64]) -> Option<Indicator> {
+fn fold(estimated: &EstimatedDensity, near: &[f64]) -> Option<Indicator> {
     let field = Field::new(estimated).filter(|_| near.len() == 2 && !estimated.is_noisy())?;
     let smooth = settle(&field, near);
     let away = |place: &[f64]| {
@@ -45,7 +69,7 @@ pub(crate) fn fold(estimated: &EstimatedDensity, near: &[f64]) -> Option<Indicat
     let blur = blur(estimated, &field, &place);
     let mut found = Indicator::derive(
         estimated,
-        IndicatorKind::Fold,
+        IndicatorKind::FOLD,
         place,
         |values| slope(fine.jet(values)),
         |values| slope(rough.jet(values)),
@@ -123,7 +147,7 @@ impl AtBend {
         let blur = blur(estimated, field, &self.place);
         let mut found = Indicator::derive(
             estimated,
-            IndicatorKind::Fold,
+            IndicatorKind::FOLD,
             self.place,
             |values| slope(&fine, values),
             |values| slope(&rough, values),

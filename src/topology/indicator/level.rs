@@ -5,12 +5,12 @@
 //! zero at that energy. The signs of both curvatures turn there at once, so that neither the lower nor the upper one
 //! shows it at a saddle; the curvature along one axis does. It is positive at the bottom within a ring and, from ring
 //! to ring, at the saddle between two.
-
 //!
 //! Where the slope over the energy is nearly zero the density is all but flat about the state of rest, and its extremum
 //! is nowhere in particular. With log p = c (H - H₀)² third derivatives vanish at the state of rest, and fourth ones do
 //! not: there it is.
 
+use super::kind::Behaviour;
 use super::{Indicator, IndicatorKind};
 use crate::density::EstimatedDensity;
 use crate::topology::field::{Field, Jet};
@@ -22,19 +22,36 @@ const FARTHEST: f64 = 2.0;
 /// Half the distance over which fourth derivatives are taken, in cells.
 const ASIDE: f64 = 0.5;
 
+/// The curvature along one axis at such a place.
+pub(super) struct Level {
+    pub(super) along_second: bool,
+}
+
+impl Behaviour for Level {
+    fn code(&self) -> &'static str {
+        if self.along_second {
+            "curvature along the second axis at a state of rest"
+        } else {
+            "curvature along the first axis at a state of rest"
+        }
+    }
+    fn name(&self) -> &'static str {
+        "curvature at a state of rest"
+    }
+    fn read(&self, estimated: &EstimatedDensity, near: &[f64]) -> Option<Indicator> {
+        level(estimated, near, self.along_second)
+    }
+}
+
 /// The curvature along an axis at the state of rest near a place; `None` for marginals and sampled densities.
-pub(crate) fn level(
-    estimated: &EstimatedDensity,
-    near: &[f64],
-    along_second: bool,
-) -> Option<Indicator> {
+fn level(estimated: &EstimatedDensity, near: &[f64], along_second: bool) -> Option<Indicator> {
     let field = Field::new(estimated).filter(|_| near.len() == 2 && !estimated.is_noisy())?;
     let place = at_rest(&field, near)?;
     let (fine, rough) = (field.stencil(&place, 0)?, field.stencil(&place, 1)?);
     let of = |jet: Jet| jet.second[if along_second { 2 } else { 0 }] / jet.value;
     Indicator::derive(
         estimated,
-        IndicatorKind::Level { along_second },
+        IndicatorKind::level(along_second),
         place,
         |values| of(fine.jet(values)),
         |values| of(rough.jet(values)),

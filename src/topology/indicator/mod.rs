@@ -19,11 +19,14 @@
 
 mod beside;
 mod centre;
+mod corrected;
 mod exact;
 mod fold;
+mod kind;
 mod level;
 mod pair;
 mod quartic;
+mod registry;
 mod ring;
 mod section;
 mod shoulder;
@@ -31,143 +34,21 @@ mod smooth;
 #[cfg(test)]
 mod tests;
 mod window;
+mod words;
 
 pub(crate) use beside::born_at_kink;
-pub(super) use beside::{beside_kink, curvature_beside};
-pub(super) use centre::{Found, at_centre, corrected};
-pub(super) use fold::fold;
-pub(super) use level::level;
+pub(super) use centre::at_centre;
+pub(super) use corrected::{Counted, corrected};
+pub use kind::IndicatorKind;
 pub(super) use pair::put_right;
-pub(super) use quartic::quartic;
-pub(super) use ring::ring_slope;
 pub(super) use section::flanks_from_centre;
 pub use shoulder::Flank;
-pub(super) use shoulder::{shoulder, shoulders};
+pub(super) use shoulder::shoulders;
+pub(crate) use words::Step;
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use crate::density::{EstimatedDensity, Variants};
-
-/// Which derivative an indicator is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum IndicatorKind {
-    /// p''/p of a marginal at its centre of symmetry.
-    Curvature,
-    /// Slope of log p on the upper side of a kink at the centre of symmetry; in a symmetric density half its jump.
-    KinkSlope,
-    /// Curvature of a joint density along a kink through the centre of symmetry.
-    CurvatureAlongKink,
-    /// The lower of the two principal curvatures of a joint density at its centre, axes scaled to their ranges.
-    LowerCurvature,
-    /// The upper one.
-    UpperCurvature,
-    /// Slope at the inflection between a valley and a peak of a marginal, positive when both are there.
-    Shoulder {
-        /// Whether the density rises with the coordinate between the two.
-        rising: bool,
-    },
-    /// Slope of a marginal on one side of a kink, away from it; positive when the kink is an extremum and another one
-    /// lies on that side.
-    BesideKink {
-        /// Whether the side is that of larger coordinates.
-        above: bool,
-        /// Whether the kink is the valley of the two.
-        is_valley: bool,
-    },
-    /// Curvature of the logarithm of a marginal on one side of a kink. No bifurcation by itself, but a point of
-    /// codimension two where the slope there is zero too.
-    CurvatureBesideKink {
-        /// Whether the side is that of larger coordinates.
-        above: bool,
-    },
-    /// Slope along a ridge or trench of a joint density where it is nearest to level, positive when a peak and a saddle
-    /// (a saddle and a crater) are there.
-    Fold,
-    /// p''''/p at the centre, along the flattest direction of a joint density: negative where peaks are born at the
-    /// centre as it splits, positive where they are born away from it. No bifurcation by itself, but a point of
-    /// codimension two where a curvature is zero too.
-    Quartic,
-    /// Curvature of a joint density along one axis at a place that turns from a peak to the bottom within a ring, or at
-    /// the saddle between two rings: positive when the ring is there. Both principal curvatures pass zero there
-    /// together.
-    Level {
-        /// Whether the axis is the second one of the density.
-        along_second: bool,
-    },
-    /// Outward slope of a joint density between a moat and the ring around it, positive when both are there.
-    Ring,
-}
-
-impl IndicatorKind {
-    /// The words used in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Curvature => "curvature at the centre",
-            Self::KinkSlope => "slope at the kink",
-            Self::CurvatureAlongKink => "curvature along the kink",
-            Self::LowerCurvature => "lower curvature at the centre",
-            Self::UpperCurvature => "upper curvature at the centre",
-            Self::Shoulder { .. } => "slope at the inflection",
-            Self::BesideKink { .. } => "slope beside the kink",
-            Self::CurvatureBesideKink { .. } => "curvature beside the kink",
-            Self::Fold => "slope at the shoulder",
-            Self::Ring => "slope to the ring",
-            Self::Level { .. } => "curvature at a state of rest",
-            Self::Quartic => "fourth derivative at the centre",
-        }
-    }
-
-    /// All of them.
-    pub const ALL: [Self; 18] = [
-        Self::Curvature,
-        Self::KinkSlope,
-        Self::CurvatureAlongKink,
-        Self::LowerCurvature,
-        Self::UpperCurvature,
-        Self::Shoulder { rising: true },
-        Self::Shoulder { rising: false },
-        Self::beside_kink(false, false),
-        Self::beside_kink(false, true),
-        Self::beside_kink(true, false),
-        Self::beside_kink(true, true),
-        Self::CurvatureBesideKink { above: false },
-        Self::CurvatureBesideKink { above: true },
-        Self::Fold,
-        Self::Ring,
-        Self::Level {
-            along_second: false,
-        },
-        Self::Level { along_second: true },
-        Self::Quartic,
-    ];
-
-    const fn beside_kink(above: bool, is_valley: bool) -> Self {
-        Self::BesideKink { above, is_valley }
-    }
-
-    /// Words that no other indicator has, for files that are read again.
-    pub fn code(self) -> &'static str {
-        match self {
-            Self::Shoulder { rising: true } => "slope at the rising inflection",
-            Self::Shoulder { rising: false } => "slope at the falling inflection",
-            Self::BesideKink { above, is_valley } => match (above, is_valley) {
-                (false, false) => "slope below the kink of a peak",
-                (false, true) => "slope below the kink of a valley",
-                (true, false) => "slope above the kink of a peak",
-                (true, true) => "slope above the kink of a valley",
-            },
-            Self::CurvatureBesideKink { above: false } => "curvature below the kink",
-            Self::CurvatureBesideKink { above: true } => "curvature above the kink",
-            Self::Level {
-                along_second: false,
-            } => "curvature along the first axis at a state of rest",
-            Self::Level { along_second: true } => {
-                "curvature along the second axis at a state of rest"
-            }
-            kind => kind.name(),
-        }
-    }
-}
 
 /// An indicator at one parameter value.
 #[derive(Debug, Clone, PartialEq)]

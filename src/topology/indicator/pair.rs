@@ -158,10 +158,11 @@ impl<'a> Centre<'a> {
 
     /// Height of peaks at a distance from the centre above it.
     fn rise(&self, density: f64, offset: f64) -> f64 {
-        let rise = match self.indicator.kind {
-            IndicatorKind::Curvature => 0.25 * density * self.indicator.value * offset * offset,
+        let rise = if self.indicator.kind == IndicatorKind::CURVATURE {
+            0.25 * density * self.indicator.value * offset * offset
+        } else {
             // From the kink up: half the slope's rise to the top.
-            _ => 0.5 * density * self.indicator.value * offset,
+            0.5 * density * self.indicator.value * offset
         };
         rise.max(0.0)
     }

@@ -5,6 +5,7 @@
 //! by symmetry. With p'''' < 0 peaks leave the centre as it splits; with p'''' > 0 they stand away from it already, and
 //! were born in folds before. Between lies a point of codimension two in the plane of two parameters.
 
+use super::kind::Behaviour;
 use super::window::{self, Lines};
 use super::{Indicator, IndicatorKind};
 use crate::density::{EstimatedDensity, Variants};
@@ -15,10 +16,28 @@ const ORDERS: usize = 5;
 /// 4 over k.
 const BINOMIAL: [f64; 5] = [1.0, 4.0, 6.0, 4.0, 1.0];
 
+/// p''''/p at the centre, a test function.
+pub(super) struct Quartic;
+
+impl Behaviour for Quartic {
+    fn code(&self) -> &'static str {
+        "fourth derivative at the centre"
+    }
+    fn read(&self, estimated: &EstimatedDensity, _: &[f64]) -> Option<Indicator> {
+        quartic(estimated)
+    }
+    fn is_bifurcation(&self) -> bool {
+        false
+    }
+    fn is_at_centre(&self) -> bool {
+        true
+    }
+}
+
 /// p''''/p at the centre of a marginal; of a joint density along the direction in which its curvature is nearest to
 /// zero, axes scaled to their ranges. `None` without a centre, on a kink, and for sampled densities, whose noise it
 /// drowns in.
-pub(crate) fn quartic(estimated: &EstimatedDensity) -> Option<Indicator> {
+fn quartic(estimated: &EstimatedDensity) -> Option<Indicator> {
     let centre = estimated.structure.centre.as_ref()?;
     let axes = &estimated.density.axes;
     let on_kink = estimated.structure.kinks.iter().any(|kink| {
@@ -29,7 +48,7 @@ pub(crate) fn quartic(estimated: &EstimatedDensity) -> Option<Indicator> {
         return None;
     }
     let lines = |k: usize| window::derivatives(estimated, k, centre[k], ORDERS);
-    let kind = IndicatorKind::Quartic;
+    let kind = IndicatorKind::QUARTIC;
     if let [_] = centre.as_slice() {
         let lines = lines(0)?;
         let of = |lines: &[Line], values: &[f64]| lines[4].apply(values) / lines[0].apply(values);

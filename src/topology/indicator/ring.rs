@@ -5,6 +5,7 @@
 //! linearly. A ring is of one height, and born everywhere at once: the mean over several rays is the indicator, and
 //! what they differ by a part of its error.
 
+use super::kind::Behaviour;
 use super::{Indicator, IndicatorKind};
 use crate::density::EstimatedDensity;
 use crate::topology::field::{Field, Jet, Stencil};
@@ -21,6 +22,18 @@ const UNSURE: f64 = 0.1;
 /// Most steps of Newton's method.
 const MOST_STEPS: usize = 8;
 
+/// The outward slope between moat and ring.
+pub(super) struct Ring;
+
+impl Behaviour for Ring {
+    fn code(&self) -> &'static str {
+        "slope to the ring"
+    }
+    fn read(&self, estimated: &EstimatedDensity, near: &[f64]) -> Option<Indicator> {
+        ring_slope(estimated, near)
+    }
+}
+
 /// Where the outward slope on a ray is largest.
 struct Shoulder {
     direction: [f64; 2],
@@ -31,7 +44,7 @@ struct Shoulder {
 
 /// The outward slope over the density at the shoulder around a point; `None` for marginals, for sampled densities, and
 /// where some ray has no shoulder.
-pub(crate) fn ring_slope(estimated: &EstimatedDensity, inside: &[f64]) -> Option<Indicator> {
+fn ring_slope(estimated: &EstimatedDensity, inside: &[f64]) -> Option<Indicator> {
     let field = Field::new(estimated).filter(|_| inside.len() == 2 && !estimated.is_noisy())?;
     let shoulders: Option<Vec<Shoulder>> =
         (0..RAYS).map(|ray| shoulder(&field, inside, ray)).collect();
@@ -47,7 +60,7 @@ pub(crate) fn ring_slope(estimated: &EstimatedDensity, inside: &[f64]) -> Option
     let mean = |of: &dyn Fn(&Shoulder) -> f64| shoulders.iter().map(of).sum::<f64>() / RAYS as f64;
     let mut indicator = Indicator::derive(
         estimated,
-        IndicatorKind::Ring,
+        IndicatorKind::RING,
         inside.to_vec(),
         |values| mean(&|one| slope(one.fine.jet(values), one.direction)),
         |values| mean(&|one| slope(one.rough.jet(values), one.direction)),

@@ -4,8 +4,12 @@
 //! comes nearest to zero; after it, the slope between the two has an extremum of the other sign. Followed as one
 //! extremum of p', signed so that it is positive when both are there, its value passes zero linearly.
 
+use std::cmp::Ordering;
+
 use super::exact;
+use super::kind::Behaviour;
 use super::window::around;
+use super::words::Step;
 use super::{Indicator, IndicatorKind};
 use crate::density::{EstimatedDensity, Variants};
 use crate::space::Axis;
@@ -24,9 +28,45 @@ const ASIDE: f64 = 1e-9;
 /// A step that is a smaller share of a cell ends the search.
 const SETTLED: f64 = 1e-6;
 
+/// The slope at the inflection.
+pub(super) struct Shoulder {
+    pub(super) rising: bool,
+}
+
+impl Behaviour for Shoulder {
+    fn code(&self) -> &'static str {
+        if self.rising {
+            "slope at the rising inflection"
+        } else {
+            "slope at the falling inflection"
+        }
+    }
+    fn name(&self) -> &'static str {
+        "slope at the inflection"
+    }
+    fn read(&self, estimated: &EstimatedDensity, near: &[f64]) -> Option<Indicator> {
+        shoulder(estimated, *near.first()?, self.rising)
+    }
+    fn words(&self, step: &Step) -> Option<&'static str> {
+        let several = step.before.peaks.abs_diff(step.after.peaks) > 1;
+        Some(match (step.peaks(), several) {
+            (Ordering::Greater, true) => "peaks and valleys are born",
+            (_, true) => "peaks and valleys vanish",
+            (Ordering::Greater, false) => "peak and valley are born",
+            (_, false) => "peak and valley vanish",
+        })
+    }
+    fn rising(&self) -> Option<bool> {
+        Some(self.rising)
+    }
+    fn mirror(&self) -> Option<IndicatorKind> {
+        Some(IndicatorKind::shoulder(!self.rising))
+    }
+}
+
 /// The extremum of the slope of a marginal nearest to `near`: a maximum of p' where the density rises from valley to
 /// peak, else a minimum. `None` for joint densities and when there is none away from the ends and kinks.
-pub(crate) fn shoulder(estimated: &EstimatedDensity, near: f64, rising: bool) -> Option<Indicator> {
+pub(super) fn shoulder(estimated: &EstimatedDensity, near: f64, rising: bool) -> Option<Indicator> {
     let [axis] = estimated.density.axes.as_slice() else {
         return None;
     };
@@ -34,7 +74,7 @@ pub(crate) fn shoulder(estimated: &EstimatedDensity, near: f64, rising: bool) ->
         return exact::shoulder(profile, near, rising);
     }
     let sign = if rising { 1.0 } else { -1.0 };
-    let kind = IndicatorKind::Shoulder { rising };
+    let kind = IndicatorKind::shoulder(rising);
     if matches!(estimated.variants, Variants::Jackknife(_)) {
         return sampled(estimated, axis, near, sign, kind);
     }

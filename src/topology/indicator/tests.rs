@@ -1,5 +1,6 @@
 //! Indicators on densities known in closed form.
 
+use super::shoulder::shoulder;
 use super::*;
 use crate::density::{Density, Kink, Observable, Structure};
 use crate::space::Axis;
@@ -30,7 +31,7 @@ fn curvature_at_the_centre_is_exact_to_high_order() {
     for a in [-0.3, -1e-3, 1e-3, 0.3] {
         let error = |count: usize| {
             let found = at_centre(&bistable(a, count));
-            assert_eq!(found[0].kind, IndicatorKind::Curvature);
+            assert_eq!(found[0].kind, IndicatorKind::CURVATURE);
             assert!((found[0].value - 4.0 * a).abs() <= found[0].systematic_error);
             (found[0].value - 4.0 * a).abs()
         };
@@ -100,7 +101,7 @@ fn at_a_kink_the_jump_law_decides() {
         let found = at_centre(&estimated);
         assert_eq!(
             (found[0].kind, found[0].value),
-            (IndicatorKind::KinkSlope, slope)
+            (IndicatorKind::KINK_SLOPE, slope)
         );
         assert_eq!(detector.detect(&estimated).signature.peaks, peaks);
     }
@@ -119,7 +120,7 @@ fn along_a_kink_the_curvature_is_that_of_the_trace() {
     }];
     let found = at_centre(&estimated);
     assert_eq!(found[0].value, slope);
-    assert_eq!(found[1].kind, IndicatorKind::CurvatureAlongKink);
+    assert_eq!(found[1].kind, IndicatorKind::CURVATURE_ALONG_KINK);
     let error = (found[1].value - 0.6).abs();
     assert!(
         error <= found[1].systematic_error && error < 1e-3,
@@ -203,7 +204,7 @@ fn closed_forms_without_a_profile_have_extrema_of_the_slope_at_their_jumps_and_b
 #[test]
 fn noise_makes_a_sign_doubtful() {
     let indicator = |value: f64| Indicator {
-        kind: IndicatorKind::Curvature,
+        kind: IndicatorKind::CURVATURE,
         place: vec![0.0],
         value,
         sampling_error: 1.0,
