@@ -29,7 +29,7 @@ pub(super) struct Change {
 #[derive(Debug, Clone)]
 pub(super) enum Found {
     /// An indicator changes sign.
-    Crossing(Crossing),
+    Crossing(Box<Crossing>),
     /// An indicator is lost between the point with this index and the next one: values between would show more.
     Lost(usize),
     /// An indicator says that the feature is there up to the end of the sweep, beyond the point with this index and the
@@ -156,7 +156,7 @@ fn between(
         found.extend(
             centre
                 .into_iter()
-                .map(|crossing| change(Found::Crossing(crossing), None)),
+                .map(|crossing| change(Found::Crossing(Box::new(crossing)), None)),
         );
     }
     for event in events {

@@ -11,7 +11,7 @@ const ONE_PLACE: f64 = 0.1;
 /// What following an indicator shows.
 pub(super) enum Followed {
     /// It changes sign between two neighbours.
-    Crossing(Crossing),
+    Crossing(Box<Crossing>),
     /// It is lost between the point with this index and the next one, before it changes sign.
     Lost(usize),
     /// It keeps its sign up to the end of the sweep, the point with this index or the next one.
@@ -56,11 +56,11 @@ pub(super) fn follow(
             } else {
                 [last, next]
             };
-            return Some(Followed::Crossing(Crossing {
+            return Some(Followed::Crossing(Box::new(Crossing {
                 observable,
                 left: gap,
                 ends,
-            }));
+            })));
         }
         last = next;
         last_index = index;
@@ -93,11 +93,11 @@ fn deeper(
             at(index, &last.place).filter(|next| is_one_place(points, observable, &last, next))?;
         if next.value > 0.0 {
             let ends = if above { [last, next] } else { [next, last] };
-            return Some(Followed::Crossing(Crossing {
+            return Some(Followed::Crossing(Box::new(Crossing {
                 observable,
                 left: index.min(last_index),
                 ends,
-            }));
+            })));
         }
         last = next;
         last_index = index;
