@@ -107,7 +107,6 @@ mod tests {
                 findings,
                 ..SolveReport::solved("generator")
             },
-            moments: Vec::new(),
             densities: Vec::new(),
             detections: Vec::new(),
             distance: None,

@@ -161,7 +161,7 @@ impl ComparedValue {
     /// The one is conditioned on never having left, the other on being inside.
     pub fn leaves(&self) -> Option<(f64, f64)> {
         let by = |method| self.solved.iter().find(|solved| solved.method == method);
-        let rate = by(Method::Generator)?.report.escape_rate;
+        let rate = by(Method::Generator)?.report.measure("escape_rate")?;
         let outside = by(Method::MonteCarlo)?.share_outside?;
         let leaves = rate > 0.0 && outside > 0.0;
         (leaves && !self.disagreements().is_empty()).then_some((rate, outside))

@@ -26,8 +26,7 @@ pub fn detect_again(
 ) -> SweepResult {
     points.sort_by(|a, b| a.value.total_cmp(&b.value));
     points.par_iter_mut().for_each(|point| {
-        let densities = point.densities.iter();
-        point.detections = densities.map(|one| detector.detect(one)).collect();
+        point.detect(detector);
         point.distance = None;
     });
     fill_all_distances(&mut points);

@@ -115,7 +115,6 @@ mod tests {
         Point {
             value,
             report: SolveReport::solved("exact"),
-            moments: Vec::new(),
             densities: vec![density],
             detections: Vec::new(),
             distance: None,

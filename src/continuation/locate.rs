@@ -4,6 +4,7 @@ use super::change::{Change, Found, changes};
 use super::grid::{Checked, Checks, GridCheck, Leak, share_of_distance};
 use super::jump::instead_of_zero;
 use super::label::{self, BifurcationStatus, LabelledPoint, PointType};
+use super::measure::NUMERICAL_DIFFUSION;
 use super::reason::{
     MOST_NEGATIVE, change_by_modes, coarse, jump_inside_cells, leaks, negative_share, not_checked,
     said_of, torn,
@@ -215,7 +216,7 @@ fn by_indicator(
     row.parts = Some(found.error);
     row.slope = Some(found.slope);
     // The diffusion that the cells of a sampled map add moves values; without a finer grid nobody knows by how much.
-    let diffused = !a.report.own.numerical_diffusion.is_empty();
+    let diffused = a.report.all(&NUMERICAL_DIFFUSION).next().is_some();
     // What holds of a density that leaks away, or has not converged, is not what holds of the steady state.
     let unsound = [a, b]
         .into_iter()
@@ -298,5 +299,5 @@ pub(super) const QUIET: f64 = 1e-11;
 
 /// The largest mass in the outermost cells of an axis.
 fn edge_mass(point: &Point) -> f64 {
-    point.report.edge_mass.iter().copied().fold(0.0, f64::max)
+    point.report.edge_mass().unwrap_or(0.0)
 }

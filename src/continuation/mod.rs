@@ -17,8 +17,10 @@ mod label;
 mod live;
 mod locate;
 pub mod map;
+pub(crate) mod measure;
 mod observer;
 mod persistence;
+mod point;
 mod reason;
 mod report;
 mod root;
@@ -34,8 +36,10 @@ pub(crate) use finding::every_finding;
 pub use finding::{Finding, ShiftedQuantity, SteadyClass};
 pub use grid::{CheckedBy, CheckedIndicator};
 pub use label::{BifurcationStatus, LabelledPoint, PointType};
+pub use measure::{Measure, MeasureKind};
 pub use observer::{KeptCheck, Observer};
-pub use report::{MethodPart, PointStatus, SolveReport};
+pub use point::Point;
+pub use report::{PointStatus, SolveReport};
 pub use root::ErrorParts;
 pub use shard::Shard;
 pub use source::{CellCheck, DensitySource, Sensitivity, Session, Solution, SourceError, Subject};
@@ -45,9 +49,6 @@ pub use sweep::{SweepError, evenly_spaced, sweep, sweep_shard};
 mod location_tests;
 #[cfg(test)]
 mod tests;
-
-use crate::density::{EstimatedDensity, Moments};
-use crate::topology::Detection;
 
 /// Settings of location.
 #[derive(Debug, Clone, PartialEq)]
@@ -104,25 +105,6 @@ struct Goal {
     tolerance: f64,
     largest_distance: f64,
     grid_check: bool,
-}
-
-/// One parameter value of a sweep with all that was found there.
-#[derive(Debug, Clone)]
-pub struct Point {
-    /// The parameter's value.
-    pub value: f64,
-    /// How the solve went.
-    pub report: SolveReport,
-    /// Mean and standard deviation of every axis; empty when there is no density.
-    pub moments: Vec<Moments>,
-    /// The watched densities, in the order of [`Subject::observables`]; empty when there is no density.
-    pub densities: Vec<EstimatedDensity>,
-    /// What the detector says of each; same order.
-    pub detections: Vec<Detection>,
-    /// Largest Hellinger distance over the watched densities to the point below; `None` for the first.
-    pub distance: Option<f64>,
-    /// Seconds of wall-clock time spent on the point.
-    pub seconds: f64,
 }
 
 /// A finished (or interrupted) sweep.

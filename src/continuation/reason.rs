@@ -1,5 +1,6 @@
 //! Why a value is not located, in sentences that say what helps.
 
+use super::measure::{DEVIATION, EDGE_MASS, MEAN};
 use super::root::Root;
 use super::{Finding, Goal, Point, PointStatus, Subject};
 use crate::density::{Density, EstimatedDensity};
@@ -92,14 +93,21 @@ const TAILS: f64 = 7.5;
 
 /// The axis along which most of the mass leaves, and the range that would hold it.
 fn wider(point: &Point, subject: &Subject) -> Option<String> {
-    let masses = &point.report.edge_mass;
-    let axis = (0..masses.len()).max_by(|&a, &b| masses[a].total_cmp(&masses[b]))?;
-    let name = &subject.family.model().axes.get(axis)?.name;
-    let Some(moments) = point.moments.get(axis) else {
+    let report = &point.report;
+    report.edge_mass()?;
+    let names = || subject.family.model().axes.iter().map(|axis| &axis.name);
+    let masses = names().filter_map(|name| Some((name, report.of(&EDGE_MASS, name)?)));
+    let largest = masses
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|(name, _)| name);
+    // A table that is read back does not tell of which axis.
+    let name = largest.or_else(|| names().next())?;
+    let moments = (report.of(&MEAN, name), report.of(&DEVIATION, name));
+    let (Some(mean), Some(deviation)) = moments else {
         return Some(name.clone());
     };
-    let reach = TAILS * moments.standard_deviation;
-    let ends = [moments.mean - reach, moments.mean + reach];
+    let reach = TAILS * deviation;
+    let ends = [mean - reach, mean + reach];
     Some(format!("{name} (about {:.2} to {:.2})", ends[0], ends[1]))
 }
 

@@ -1,6 +1,7 @@
 //! What a solve says of itself: how it ended, numbers, findings.
 
 use super::Finding;
+use super::measure::{EDGE_MASS, Measure, MeasureKind};
 
 /// How a point ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -62,31 +63,10 @@ pub struct SolveReport {
     pub residual: f64,
     /// L1 error of the masses that the solver estimates for itself.
     pub solver_error: f64,
-    /// Mass that leaves Ω per unit time.
-    pub escape_rate: f64,
-    /// Mass in cells that touch an end of a range, walls that the model knows not counted: one value an axis.
-    pub edge_mass: Vec<f64>,
-    /// What only some methods can say.
-    pub own: MethodPart,
+    /// Its numbers, each name once: moments, rates, masses that should be zero, whatever the method knows.
+    pub measures: Vec<Measure>,
     /// What the user must know of this point.
     pub findings: Vec<Finding>,
-}
-
-/// The part of a report that only some methods have; the others leave it as it is by default.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct MethodPart {
-    /// Factorisations made for this point; zero for solvers that make none.
-    pub factorisations: usize,
-    /// Sum of the magnitudes of negative masses; zero for methods whose masses are probabilities.
-    pub negative_mass: f64,
-    /// Diffusion that the cells add, one value an axis, in units of the axis squared per unit time; empty for methods
-    /// whose cells add none.
-    pub numerical_diffusion: Vec<f64>,
-    /// Time one transition spans; `None` for methods without a map step.
-    pub map_step: Option<f64>,
-    /// Relative shift of the variances (or of the mass beside a switching surface) by the time step of trajectories,
-    /// the largest that halving the step makes certain; `None` for methods without trajectories.
-    pub time_step_bias: Option<f64>,
 }
 
 impl SolveReport {
@@ -98,10 +78,40 @@ impl SolveReport {
             iterations: 0,
             residual: 0.0,
             solver_error: 0.0,
-            escape_rate: 0.0,
-            edge_mass: Vec::new(),
-            own: MethodPart::default(),
+            measures: Vec::new(),
             findings: Vec::new(),
+        }
+    }
+
+    /// The value of the measure of this name, for example `escape_rate` or `mean_x`.
+    pub fn measure(&self, name: &str) -> Option<f64> {
+        let found = self.measures.iter().find(|one| one.name == name);
+        found.map(|one| one.value)
+    }
+
+    /// The measure of one kind that is of an axis, a quantity or a density.
+    pub(crate) fn of(&self, kind: &MeasureKind, of: &str) -> Option<f64> {
+        self.measure(&kind.name(of))
+    }
+
+    /// The measures of one kind.
+    pub(crate) fn all(&self, kind: &MeasureKind) -> impl Iterator<Item = f64> {
+        let of_kind = self.measures.iter().filter(|one| kind.has(one));
+        of_kind.map(|one| one.value)
+    }
+
+    /// The largest mass at the ends of an axis' range; `None` where it is not known.
+    pub(crate) fn edge_mass(&self) -> Option<f64> {
+        self.all(&EDGE_MASS).reduce(f64::max)
+    }
+
+    /// One more measure, in place of what was there of its name.
+    pub(crate) fn add(&mut self, kind: &MeasureKind, of: &str, value: f64) {
+        let measure = kind.measure(of, value);
+        let mut known = self.measures.iter_mut();
+        match known.find(|one| one.name == measure.name) {
+            Some(known) => *known = measure,
+            None => self.measures.push(measure),
         }
     }
 }

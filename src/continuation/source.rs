@@ -7,7 +7,7 @@
 use super::SolveReport;
 use crate::bytes::NotWhatWasWritten;
 use crate::cancellation::{Cancellation, Cancelled};
-use crate::density::{EstimatedDensity, Moments, Observable};
+use crate::density::{EstimatedDensity, Observable};
 use crate::system::Family;
 
 /// What a source gives densities of.
@@ -35,12 +35,10 @@ pub enum CellCheck {
     Needless,
 }
 
-/// What a solve gives: densities, report, and how they answer to parameters.
+/// What a solve gives: a report with measures, densities, and how they answer to parameters.
 pub struct Solution<'session> {
-    /// How it went.
+    /// How it went, and its measures.
     pub report: SolveReport,
-    /// Mean and standard deviation of every axis; empty without a density.
-    pub moments: Vec<Moments>,
     /// The watched densities, in the order of [`Subject::observables`]; empty without a density.
     pub densities: Vec<EstimatedDensity>,
     /// How the densities answer to parameters, from what the solve left in the session; `None` where the source cannot
@@ -53,7 +51,6 @@ impl Solution<'_> {
     pub fn without_density(report: SolveReport) -> Self {
         Self {
             report,
-            moments: Vec::new(),
             densities: Vec::new(),
             sensitivity: None,
         }
@@ -63,7 +60,6 @@ impl Solution<'_> {
     pub fn detached(self) -> Solution<'static> {
         Solution {
             report: self.report,
-            moments: self.moments,
             densities: self.densities,
             sensitivity: None,
         }
@@ -74,7 +70,6 @@ impl std::fmt::Debug for Solution<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Solution")
             .field("report", &self.report)
-            .field("moments", &self.moments)
             .field("densities", &self.densities.len())
             .field("has_sensitivity", &self.sensitivity.is_some())
             .finish()

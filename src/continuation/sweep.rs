@@ -1,8 +1,6 @@
 //! The sweep itself: solves the given values in order, each warm-started from its neighbour, with values between
 //! where neighbouring densities differ much; then narrows every change of signature.
 
-use std::time::Instant;
-
 use super::bracket::is_settled;
 use super::change::{Change, Found, changes, crossings_at_centre};
 use super::dips::{self, Flanks};
@@ -12,8 +10,8 @@ use super::locate::label_points;
 use super::root::{beyond_doubt, next_value, root};
 use super::span::Span;
 use super::{
-    CellCheck, DensitySource, Finding, Goal, LabelledPoint, LocateOptions, Observer, Point,
-    PointStatus, Session, Shard, Solution, SolveReport, SourceError, SweepResult,
+    CellCheck, DensitySource, Goal, LabelledPoint, LocateOptions, Observer, Point, Session, Shard,
+    SourceError, SweepResult,
 };
 use crate::cancellation::Cancellation;
 use crate::density::hellinger;
@@ -171,42 +169,27 @@ impl Run<'_> {
             self.interrupted = true;
             return Ok(());
         }
-        let clock = Instant::now();
-        let solution = match self.session.solve(value) {
-            Ok(solution) => solution.detached(),
-            Err(SourceError::Interrupted) => {
-                self.interrupted = true;
-                return Ok(());
-            }
-            // One value that fails takes nothing from the others; a first one that does is a mistake.
-            Err(SourceError::Method(error)) if self.may_fail || !self.points.is_empty() => {
-                let mut report = SolveReport::solved(self.source.method());
-                report.status = PointStatus::Failed;
-                report.findings = vec![Finding::Told(error.to_string())];
-                Solution::without_density(report)
-            }
-            Err(source) => {
-                return Err(SweepError::Source {
-                    parameter: self.source.subject().family.parameter().to_owned(),
-                    value,
-                    source,
-                });
-            }
+        let method = self.source.method();
+        let solved = Point::solve(self.session.as_mut(), method, self.detector, value);
+        let Some((point, refusal)) = solved else {
+            self.interrupted = true;
+            return Ok(());
         };
-        let densities = solution.densities;
-        let detections = densities.iter().map(|d| self.detector.detect(d)).collect();
-        let flanks = densities.iter().map(|d| self.detector.flanks(d)).collect();
+        // One value that fails takes nothing from the others; a first one that does is a mistake.
+        if let Some(error) = refusal
+            && !self.may_fail
+            && self.points.is_empty()
+        {
+            return Err(SweepError::Source {
+                parameter: self.source.subject().family.parameter().to_owned(),
+                value,
+                source: SourceError::Method(error),
+            });
+        }
+        let densities = point.densities.iter();
+        let flanks = densities.map(|d| self.detector.flanks(d)).collect();
         let place = self.points.partition_point(|point| point.value < value);
         self.flanks.insert(place, flanks);
-        let point = Point {
-            value,
-            report: solution.report,
-            moments: solution.moments,
-            detections,
-            densities,
-            distance: None,
-            seconds: clock.elapsed().as_secs_f64(),
-        };
         self.points.insert(place, point);
         fill_distances(&mut self.points, place);
         let done = self.points.len();

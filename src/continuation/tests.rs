@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::cancellation::Cancellation;
-use crate::density::{Density, EstimatedDensity, Moments, Observable};
+use crate::density::{Density, EstimatedDensity, Observable};
 use crate::space::Axis;
 use crate::system::examples::bistable;
 use crate::topology::{Detection, Detector, Feature, FeatureKind, Signature, Verdict};
@@ -35,10 +35,6 @@ impl Ramp {
             solution.report.status = PointStatus::NoSteadyState;
             return solution;
         }
-        solution.moments = vec![Moments {
-            mean: 0.0,
-            standard_deviation: 1.0,
-        }];
         solution.densities = vec![EstimatedDensity {
             observable: Observable::Marginal(0),
             density: Density {

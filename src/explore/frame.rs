@@ -3,8 +3,9 @@
 
 use serde::Serialize;
 
-use crate::continuation::{Point, SolveReport};
-use crate::density::{EstimatedDensity, Moments, Variants};
+use crate::continuation::measure::{DEVIATION, MEAN};
+use crate::continuation::{Measure, Point, SolveReport};
+use crate::density::{EstimatedDensity, Variants};
 use crate::run::finding_in_words;
 use crate::system::Family;
 use crate::topology::{Detection, Feature, FeatureKind, Verdict};
@@ -18,16 +19,15 @@ pub(super) struct Frame {
     iterations: usize,
     residual: f64,
     solver_error: f64,
-    escape_rate: f64,
-    negative_mass: f64,
-    edge_mass: f64,
     /// Hellinger distance to the value below.
     distance: Option<f64>,
     seconds: f64,
     /// What must be known of this value, in sentences.
     findings: Vec<String>,
-    /// Mean and standard deviation of every axis.
+    /// Mean and standard deviation of every axis, and of every quantity that is averaged.
     moments: Vec<(f64, f64)>,
+    /// All other measures: name, value, error, unit.
+    measures: Vec<(String, f64, Option<f64>, String)>,
     /// Of every watched density; empty where there is none.
     found: Vec<Found>,
 }
@@ -55,7 +55,10 @@ struct Mark {
 impl Frame {
     pub(super) fn new(point: &Point, family: &Family) -> Self {
         let report = &point.report;
-        let moments = |of: &Moments| (of.mean, of.standard_deviation);
+        let moments = |name: &str| Some((report.of(&MEAN, name)?, report.of(&DEVIATION, name)?));
+        let is_moment = |one: &&Measure| MEAN.has(one) || DEVIATION.has(one);
+        let others = report.measures.iter().filter(|one| !is_moment(one));
+        let numbers = |one: &Measure| (one.name.clone(), one.value, one.error, one.unit.clone());
         Self {
             value: point.value,
             status: report.status.word(),
@@ -63,13 +66,11 @@ impl Frame {
             iterations: report.iterations,
             residual: report.residual,
             solver_error: report.solver_error,
-            escape_rate: report.escape_rate,
-            negative_mass: report.own.negative_mass,
-            edge_mass: report.edge_mass.iter().sum(),
             distance: point.distance,
             seconds: point.seconds,
             findings: sentences(report, family),
-            moments: point.moments.iter().map(moments).collect(),
+            moments: family.averages().filter_map(moments).collect(),
+            measures: others.map(numbers).collect(),
             found: point.detections.iter().map(Found::new).collect(),
         }
     }

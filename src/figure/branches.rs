@@ -153,7 +153,6 @@ mod tests {
         Point {
             value,
             report: SolveReport::solved("exact"),
-            moments: Vec::new(),
             densities: Vec::new(),
             detections: peaks.into_iter().map(detection).collect(),
             distance: None,

@@ -262,9 +262,9 @@ fn health(result: &SweepResult) -> String {
             report.status.word().to_owned(),
             number(report.residual),
             number(report.solver_error),
-            number(report.escape_rate),
-            number(report.own.negative_mass),
-            number(report.edge_mass.iter().copied().fold(0.0, f64::max)),
+            number(report.measure("escape_rate").unwrap_or(0.0)),
+            number(report.measure("negative_mass").unwrap_or(0.0)),
+            number(report.edge_mass().unwrap_or(0.0)),
             point.distance.map(number).unwrap_or_default(),
         ]);
     }

@@ -22,13 +22,13 @@ const NUMBERS: [Number; 6] = [
     ("solver error", true, |point| {
         Some(point.report.solver_error)
     }),
-    ("escape rate", true, |point| Some(point.report.escape_rate)),
+    ("escape rate", true, |point| {
+        point.report.measure("escape_rate")
+    }),
     ("negative mass", true, |point| {
-        Some(point.report.own.negative_mass)
+        point.report.measure("negative_mass")
     }),
-    ("edge mass", true, |point| {
-        point.report.edge_mass.iter().copied().reduce(f64::max)
-    }),
+    ("edge mass", true, |point| point.report.edge_mass()),
     ("distance", false, |point| point.distance),
 ];
 

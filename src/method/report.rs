@@ -1,6 +1,10 @@
 //! A report in the making: numbers of a solve, and findings by limits that are the same for all methods and stand here
 //! once.
 
+use super::Problem;
+use crate::continuation::measure::{
+    DEVIATION, EDGE_MASS, ESCAPE_RATE, MEAN, NEGATIVE_MASS, NUMERICAL_DIFFUSION,
+};
 use crate::continuation::{Finding, PointStatus, ShiftedQuantity, SolveReport, SteadyClass};
 use crate::density::Moments;
 use crate::generator::Resolution;
@@ -29,16 +33,16 @@ const SHORT_BURN_IN: f64 = 5.0;
 /// A report in the making. Findings are told in the order in which they were looked for.
 #[derive(Debug)]
 pub(super) struct Reporter<'a> {
-    space: &'a CellSpace,
+    problem: &'a Problem,
     /// What is known so far.
     pub(super) report: SolveReport,
 }
 
 impl<'a> Reporter<'a> {
-    /// The report of a solve by a method of this name on these cells, of which nothing is to be said yet.
-    pub(super) fn new(method: &'static str, space: &'a CellSpace) -> Self {
+    /// The report of a solve by a method of this name, of which nothing is to be said yet.
+    pub(super) fn new(method: &'static str, problem: &'a Problem) -> Self {
         Self {
-            space,
+            problem,
             report: SolveReport::solved(method),
         }
     }
@@ -47,13 +51,29 @@ impl<'a> Reporter<'a> {
         self.report.findings.push(finding);
     }
 
+    fn space(&self) -> &'a CellSpace {
+        self.problem.space()
+    }
+
+    fn escape_rate(&self) -> f64 {
+        self.report.of(&ESCAPE_RATE, "").unwrap_or(0.0)
+    }
+
+    /// Means and standard deviations of the axes, then of the quantities that are averaged.
+    pub(super) fn moments(&mut self, moments: &[Moments]) {
+        for (name, one) in self.problem.family().averages().zip(moments) {
+            self.report.add(&MEAN, name, one.mean);
+            self.report.add(&DEVIATION, name, one.standard_deviation);
+        }
+    }
+
     /// Mass in the cells at the ends of each axis that are not walls of the system.
     pub(super) fn edge_mass(&mut self, mass: &[f64], closed: &[[bool; 2]]) {
-        let mut edges = vec![[0.0; 2]; self.space.dimension()];
+        let mut edges = vec![[0.0; 2]; self.space().dimension()];
         for (cell, &mass) in mass.iter().enumerate() {
             for (axis, ends) in edges.iter_mut().enumerate() {
-                let position = self.space.position(cell, axis);
-                let last = self.space.axes()[axis].count() - 1;
+                let position = self.space().position(cell, axis);
+                let last = self.space().axes()[axis].count() - 1;
                 if position == 0 && !closed[axis][0] {
                     ends[0] += mass;
                 }
@@ -62,11 +82,12 @@ impl<'a> Reporter<'a> {
                 }
             }
         }
-        self.report.edge_mass = edges.iter().map(|ends| ends[0] + ends[1]).collect();
-        for axis in 0..edges.len() {
-            let mass = self.report.edge_mass[axis];
+        for (axis, ends) in edges.into_iter().enumerate() {
+            let mass = ends[0] + ends[1];
+            self.report
+                .add(&EDGE_MASS, self.problem.family().axis(axis), mass);
             if mass > EDGE_MASS_LIMIT {
-                let cells = &self.space.axes()[axis];
+                let cells = &self.space().axes()[axis];
                 let range = [cells.from(), cells.to()];
                 self.tell(Finding::EdgeMass { axis, mass, range });
             }
@@ -76,7 +97,7 @@ impl<'a> Reporter<'a> {
     /// Negative mass of the cells, and the largest of the watched densities: wiggles along an axis that is summed
     /// over do not reach those.
     pub(super) fn negative_mass(&mut self, cells: f64, watched: f64) {
-        self.report.own.negative_mass = cells;
+        self.report.add(&NEGATIVE_MASS, "", cells);
         if watched > NEGATIVE_MASS_LIMIT {
             self.tell(Finding::NegativeDensity { mass: watched });
         } else if cells > NEGATIVE_MASS_LIMIT {
@@ -89,7 +110,7 @@ impl<'a> Reporter<'a> {
 
     /// Densities along axes of modes, each with what its last modes change, in total variation.
     pub(super) fn series(&mut self, changes: &[(usize, f64)]) {
-        for axis in 0..self.space.dimension() {
+        for axis in 0..self.space().dimension() {
             let own = changes.iter().filter(|(changed, _)| *changed == axis);
             let change = own.map(|(_, change)| *change).fold(0.0, f64::max);
             if change > SERIES_LIMIT {
@@ -136,7 +157,10 @@ impl<'a> Reporter<'a> {
                 .sum()
         };
         let share = in_units_of_spread(&diffusion) / in_units_of_spread(noise);
-        self.report.own.numerical_diffusion = diffusion;
+        for (axis, value) in diffusion.into_iter().enumerate() {
+            let name = self.problem.family().axis(axis);
+            self.report.add(&NUMERICAL_DIFFUSION, name, value);
+        }
         if share > NUMERICAL_DIFFUSION_LIMIT {
             self.tell(Finding::NumericalDiffusion { share });
         }
@@ -146,7 +170,7 @@ impl<'a> Reporter<'a> {
     pub(super) fn escaping(&mut self, share: f64) {
         if share > QUIET_ESCAPE {
             self.leaks();
-            let rate = self.report.escape_rate;
+            let rate = self.escape_rate();
             self.tell(Finding::Escaping { share, rate });
         }
     }
@@ -173,7 +197,7 @@ impl<'a> Reporter<'a> {
         relaxation_time: Option<f64>,
         limit: f64,
     ) -> Option<f64> {
-        let rate = self.report.escape_rate;
+        let rate = self.escape_rate();
         let Some(relaxation_time) = relaxation_time else {
             return Some(0.0);
         };
@@ -207,7 +231,7 @@ impl<'a> Reporter<'a> {
         let class = |class: &ClassShare| SteadyClass {
             cells: class.cells,
             share: class.share,
-            centre: self.space.centre(class.representative),
+            centre: self.space().centre(class.representative),
         };
         let classes = classes.iter().map(class).collect();
         self.tell(Finding::SeveralClasses { classes });

@@ -7,8 +7,14 @@ use super::cell::Cell;
 use super::columns::{Column, Columns, count, digits, number, optional, word};
 use super::findings::{findings_cell, parse_findings};
 use super::sentences::sentences;
-use crate::continuation::{Finding, Point, PointStatus, SolveReport, Subject};
-use crate::density::{Moments, Observable};
+use crate::continuation::measure::{
+    DEVIATION, EDGE_MASS, ESCAPE_RATE, FACTORISATIONS, MAP_STEP, MEAN, NEGATIVE_MASS,
+    NUMERICAL_DIFFUSION, TIME_STEP_BIAS,
+};
+use crate::continuation::{
+    Finding, MeasureKind, Point, PointStatus, Solution, SolveReport, Subject,
+};
+use crate::density::Observable;
 use crate::system::Family;
 use crate::topology::Detection;
 
@@ -21,13 +27,9 @@ pub(super) fn columns<'a>(
     observables: &[Observable],
     methods: &'a [&'static str],
 ) -> Columns<'a, Point> {
-    let axes: Vec<&str> = (0..family.model().axes.len())
-        .map(|axis| family.axis(axis))
-        .collect();
     let mut columns = Vec::from(of_solve(family, methods));
-    let averaged = family.averaged().iter().map(|quantity| quantity.name());
-    for (number, name) in axes.iter().copied().chain(averaged).enumerate() {
-        columns.extend(of_moments(number, name));
+    for name in family.averages() {
+        columns.extend([measured(&MEAN, name), measured(&DEVIATION, name)]);
     }
     columns.extend(of_detections(family, observables));
     columns.push(optional("distance", |point: &Point| point.distance));
@@ -35,28 +37,10 @@ pub(super) fn columns<'a>(
         digits("seconds", |point: &Point| format!("{:.3}", point.seconds))
             .read(|cell| cell.number(), |point, value| point.seconds = value),
     );
-    columns.push(
-        optional("map_step", |point: &Point| point.report.own.map_step).read(
-            |cell| cell.optional(),
-            |point, value| point.report.own.map_step = value,
-        ),
-    );
-    columns.push(
-        count("factorisations", |point: &Point| {
-            point.report.own.factorisations
-        })
-        .read(
-            |cell| cell.count(),
-            |point, value| point.report.own.factorisations = value,
-        ),
-    );
-    for (axis, name) in axes.iter().enumerate() {
-        let of = move |point: &Point| point.report.own.numerical_diffusion.get(axis).copied();
-        columns.push(optional(format!("numerical_diffusion_{name}"), of).read(
-            |cell| cell.optional(),
-            |point, value| point.report.own.numerical_diffusion.extend(value),
-        ));
-    }
+    columns.push(measured(&MAP_STEP, ""));
+    columns.push(or_zero(&FACTORISATIONS));
+    let axes = family.model().axes.iter();
+    columns.extend(axes.map(|axis| measured(&NUMERICAL_DIFFUSION, &axis.name)));
     columns.extend(of_doubts(family));
     columns.extend(rings(family, observables));
     Columns(columns)
@@ -64,7 +48,6 @@ pub(super) fn columns<'a>(
 
 /// What was solved, and how.
 fn of_solve<'a>(family: &'a Family, methods: &'a [&'static str]) -> [Column<'a, Point>; 8] {
-    let edge_mass = |point: &Point| point.report.edge_mass.iter().copied().reduce(f64::max);
     [
         number(family.parameter(), |point: &Point| point.value)
             .read(|cell| cell.number(), |point, value| point.value = value),
@@ -87,52 +70,40 @@ fn of_solve<'a>(family: &'a Family, methods: &'a [&'static str]) -> [Column<'a, 
             |cell| cell.number_or_nan(),
             |point, value| point.report.residual = value,
         ),
-        number("escape_rate", |point: &Point| point.report.escape_rate).read(
-            |cell| cell.number_or_nan(),
-            |point, value| point.report.escape_rate = value,
-        ),
-        number("negative_mass", |point: &Point| {
-            point.report.own.negative_mass
-        })
-        .read(
-            |cell| cell.number_or_nan(),
-            |point, value| point.report.own.negative_mass = value,
-        ),
-        optional("edge_mass", edge_mass).read(
+        or_zero(&ESCAPE_RATE),
+        or_zero(&NEGATIVE_MASS),
+        optional(EDGE_MASS.word, |point: &Point| point.report.edge_mass()).read(
             |cell| cell.optional(),
-            |point, value| point.report.edge_mass.extend(value),
+            |point, value| set(point, &EDGE_MASS, "", value),
         ),
     ]
 }
 
-/// Mean and standard deviation of an axis, or of a quantity that is averaged.
-fn of_moments<'a>(axis: usize, name: &str) -> [Column<'a, Point>; 2] {
-    let of = move |point: &Point| point.moments.get(axis).copied();
-    // An axis has both or neither.
-    let set_mean = |point: &mut Point, mean: Option<f64>| {
-        point.moments.extend(mean.map(|mean| Moments {
-            mean,
-            standard_deviation: f64::NAN,
-        }));
-    };
-    let set_deviation = move |point: &mut Point, deviation: Option<f64>| match deviation {
-        Some(deviation) => {
-            if let Some(moments) = point.moments.get_mut(axis) {
-                moments.standard_deviation = deviation;
-            }
-        }
-        None => point.moments.truncate(axis),
-    };
-    [
-        optional(format!("mean_{name}"), move |point| {
-            of(point).map(|one| one.mean)
-        })
-        .read(|cell| cell.optional(), set_mean),
-        optional(format!("sd_{name}"), move |point| {
-            of(point).map(|one| one.standard_deviation)
-        })
-        .read(|cell| cell.optional(), set_deviation),
-    ]
+/// A measure that may be missing.
+fn measured<'a>(kind: &'static MeasureKind, of: &str) -> Column<'a, Point> {
+    let (name, of) = (kind.name(of), of.to_owned());
+    optional(name.clone(), move |point: &Point| {
+        point.report.measure(&name)
+    })
+    .read(
+        |cell| cell.optional(),
+        move |point, value| set(point, kind, &of, value),
+    )
+}
+
+/// A measure that is zero where a method does not know it; an empty cell is one that is no number.
+fn or_zero<'a>(kind: &'static MeasureKind) -> Column<'a, Point> {
+    let of = |point: &Point| point.report.of(kind, "").unwrap_or(0.0);
+    number(kind.word, of).read(
+        |cell| cell.number_or_nan(),
+        |point, value| set(point, kind, "", Some(value)),
+    )
+}
+
+fn set(point: &mut Point, kind: &MeasureKind, of: &str, value: Option<f64>) {
+    if let Some(value) = value {
+        point.report.add(kind, of, value);
+    }
 }
 
 /// Counts of peaks and craters.
@@ -198,14 +169,7 @@ fn of_doubts<'a>(family: &'a Family) -> [Column<'a, Point>; 4] {
                 |point, value| point.report.solver_error = value,
             )
             .newer(),
-        optional("time_step_bias", |point: &Point| {
-            point.report.own.time_step_bias
-        })
-        .read(
-            |cell| cell.optional(),
-            |point, value| point.report.own.time_step_bias = value,
-        )
-        .newer(),
+        measured(&TIME_STEP_BIAS, "").newer(),
         word("warnings", move |point: &Point| {
             sentences(family, &point.report.findings)
         })
@@ -273,13 +237,6 @@ pub(super) fn ascending(points: &[Point]) -> Vec<&Point> {
 
 /// A point of which nothing is known.
 fn blank() -> Point {
-    Point {
-        value: f64::NAN,
-        report: SolveReport::solved(""),
-        moments: Vec::new(),
-        densities: Vec::new(),
-        detections: Vec::new(),
-        distance: None,
-        seconds: f64::NAN,
-    }
+    let solution = Solution::without_density(SolveReport::solved(""));
+    Point::undetected(f64::NAN, solution)
 }

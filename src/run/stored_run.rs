@@ -11,6 +11,7 @@ use super::manifest::Typed;
 use super::points_table::read_points;
 use super::stored_densities::StoredDensities;
 use super::{Checked, Ending, PhaseSeconds, RunError, checksums, exchange, journal};
+use crate::continuation::measure::MEAN;
 use crate::continuation::{CheckedIndicator, Point, Shard, Subject};
 use crate::space::{Axis, CellSpace};
 use crate::sweep_file::SweepText;
@@ -235,7 +236,8 @@ impl StoredRun {
             });
         }
         // Only points with a density have moments.
-        if points.iter().all(|point| point.moments.is_empty()) {
+        let has_density = |point: &Point| point.report.all(&MEAN).next().is_some();
+        if !points.iter().any(has_density) {
             return self.check_sums().map(|()| points);
         }
         let path = exchange::standing(&self.path.join("densities.zarr"), "zarr.json");
@@ -249,7 +251,7 @@ impl StoredRun {
             check_finite(&path, family, point)
         };
         let solved = points.par_iter_mut();
-        let solved = solved.filter(|point| !point.moments.is_empty());
+        let solved = solved.filter(|point| has_density(point));
         let results: Vec<Result<(), RunError>> = solved.map(read).collect();
         // Of several faults the same one is told each time: that of the first point.
         results.into_iter().collect::<Result<(), RunError>>()?;

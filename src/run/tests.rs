@@ -5,10 +5,13 @@ use std::sync::Arc;
 use zarrs::array::Array;
 
 use super::*;
-use crate::continuation::{
-    CellCheck, Finding, MethodPart, Point, PointStatus, SolveReport, Subject, SweepResult,
+use crate::continuation::measure::{
+    DEVIATION, EDGE_MASS, ESCAPE_RATE, MAP_STEP, MEAN, NUMERICAL_DIFFUSION,
 };
-use crate::density::{Density, EstimatedDensity, Moments, Observable};
+use crate::continuation::{
+    CellCheck, Finding, Measure, Point, PointStatus, SolveReport, Subject, SweepResult,
+};
+use crate::density::{Density, EstimatedDensity, Observable};
 use crate::space::Axis;
 use crate::system::examples::coulomb;
 use crate::topology::{Detection, Feature, FeatureKind, Signature, Verdict};
@@ -19,6 +22,21 @@ fn subject() -> Subject {
         observables: vec![Observable::Marginal(0), Observable::Joint(0, 1)],
         cell_check: CellCheck::Needless,
     }
+}
+
+fn measures(solved: bool) -> Vec<Measure> {
+    let mut measures = vec![
+        ESCAPE_RATE.measure("", if solved { 0.0 } else { f64::NAN }),
+        EDGE_MASS.measure("x", 0.0),
+        EDGE_MASS.measure("y", 1e-5),
+        NUMERICAL_DIFFUSION.measure("x", 1e-4),
+        NUMERICAL_DIFFUSION.measure("y", 2e-4),
+        MAP_STEP.measure("", 6.25),
+    ];
+    for axis in ["x", "y"].into_iter().filter(|_| solved) {
+        measures.extend([MEAN.measure(axis, 0.0), DEVIATION.measure(axis, 1.0)]);
+    }
+    measures
 }
 
 fn point(value: f64, solved: bool) -> Point {
@@ -65,13 +83,7 @@ fn point(value: f64, solved: bool) -> Point {
             },
             iterations: 7,
             residual: 1e-12,
-            escape_rate: if solved { 0.0 } else { f64::NAN },
-            edge_mass: vec![0.0, 1e-5],
-            own: MethodPart {
-                numerical_diffusion: vec![1e-4, 2e-4],
-                map_step: Some(6.25),
-                ..MethodPart::default()
-            },
+            measures: measures(solved),
             findings: vec![
                 Finding::Outside { share: 0.125 },
                 Finding::EdgeMass {
@@ -82,13 +94,6 @@ fn point(value: f64, solved: bool) -> Point {
             ],
             ..SolveReport::solved("sgcm")
         },
-        moments: vec![
-            Moments {
-                mean: 0.0,
-                standard_deviation: 1.0
-            };
-            kept(2)
-        ],
         densities: [
             estimate(Observable::Marginal(0), vec![x.clone()], 2),
             estimate(Observable::Joint(0, 1), vec![x, y], 6),

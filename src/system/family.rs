@@ -146,6 +146,12 @@ impl Family {
         known.or_else(quantity).unwrap_or("?")
     }
 
+    /// Names of what means are taken of: the axes of the state, then the quantities that are averaged.
+    pub fn averages(&self) -> impl Iterator<Item = &str> {
+        let axes = self.model.axes.iter().map(|axis| axis.name.as_str());
+        axes.chain(self.averaged.iter().map(|quantity| quantity.name()))
+    }
+
     /// Values of all parameters at a coordinate, which may lie beyond the ends.
     ///
     /// # Errors

@@ -52,7 +52,6 @@ fn point(value: f64, densities: Vec<EstimatedDensity>, detections: Vec<Detection
             status,
             ..SolveReport::solved("exact")
         },
-        moments: Vec::new(),
         densities,
         detections,
         distance: None,

@@ -43,7 +43,10 @@ fn work_counters_are_as_they_were() {
     let solutions = with_source(sweep);
     let reports = solutions.iter().map(|solution| &solution.report);
     let counts: Vec<String> = reports
-        .map(|report| format!("{}+{}", report.own.factorisations, report.iterations))
+        .map(|report| {
+            let factorisations = report.measure("factorisations").unwrap();
+            format!("{factorisations}+{}", report.iterations)
+        })
         .collect();
     let lines: Vec<String> = counts.chunks(10).map(|chunk| chunk.join(" ")).collect();
     insta::assert_snapshot!(lines.join("\n"), @r"

@@ -79,9 +79,9 @@ fn energy_and_amplitude_of_a_linear_oscillator_have_their_exact_densities() {
     assert_eq!(solution.densities[3].structure.centre, Some(vec![0.0; 2]));
     assert_eq!(solution.densities[0].structure.centre, None);
     // Axes have their moments first: E[y²] = 1, and its variance is 2.
-    let power = solution.moments[2];
-    assert!((power.mean - 1.0).abs() < 2e-3, "{}", power.mean);
-    assert!((power.standard_deviation - 2f64.sqrt()).abs() < 5e-3);
+    let power = |word: &str| solution.report.measure(&format!("{word}_power")).unwrap();
+    assert!((power("mean") - 1.0).abs() < 2e-3, "{}", power("mean"));
+    assert!((power("sd") - 2f64.sqrt()).abs() < 5e-3);
 }
 
 #[test]
@@ -123,8 +123,8 @@ fn free_trajectories_find_the_same_densities() {
         // Half the sum of errors is what noise makes of the distance.
         assert!(distance < noise, "{:?} {distance} {noise}", a.observable);
     }
-    let (a, b) = (computed.moments[2], sampled.moments[2]);
-    assert!((a.mean - b.mean).abs() < 0.1, "{} {}", a.mean, b.mean);
+    let [a, b] = [computed, sampled].map(|one| one.report.measure("mean_power").unwrap());
+    assert!((a - b).abs() < 0.1, "{a} {b}");
 }
 
 /// Under damping -a + bH the density of H is exp(-(2/σ²)(-aH + bH²/2)) on H > 0; a crater of rest, and a force that is
@@ -193,7 +193,7 @@ fn every_method_has_the_exact_densities_of_quantities_where_damping_depends_on_e
         let h = distance(&found.densities[0], &|h| h);
         let amplitude = distance(&found.densities[1], &|r| 0.5 * r * r);
         // Of y² the mean is that of H.
-        let power = found.moments[2].mean / mean_energy - 1.0;
+        let power = found.report.measure("mean_power").unwrap() / mean_energy - 1.0;
         let method = source.method();
         assert!(
             h < allowed && amplitude < allowed,

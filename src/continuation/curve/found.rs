@@ -1,6 +1,7 @@
 //! What following a curve gives: its points with their errors, its ends with their reasons, and the work it took.
 
 use super::{CodimensionTwoKind, CurveStart, Plane};
+use crate::continuation::measure::FACTORISATIONS;
 use crate::continuation::{BifurcationStatus, ErrorParts, LabelledPoint, SolveReport};
 use crate::density::Observable;
 use crate::topology::{IndicatorKind, Signature};
@@ -155,7 +156,7 @@ impl CurveWork {
     pub(in crate::continuation) fn count(&mut self, report: &SolveReport) {
         self.solves += 1;
         self.iterations += report.iterations;
-        self.factorisations += report.own.factorisations;
+        self.factorisations += report.of(&FACTORISATIONS, "").unwrap_or(0.0) as usize;
     }
 
     pub(in crate::continuation) fn add(&mut self, other: &Self) {

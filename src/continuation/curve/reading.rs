@@ -6,6 +6,7 @@
 
 use super::{CurveStart, CurveWork, Plane, companion};
 use crate::cancellation::Cancellation;
+use crate::continuation::measure::NUMERICAL_DIFFUSION;
 use crate::continuation::{DensitySource, Finding, PointStatus, Sensitivity, Session, SourceError};
 use crate::density::{Density, EstimatedDensity};
 use crate::topology::{Detector, Indicator, IndicatorKind};
@@ -183,10 +184,10 @@ impl Reader<'_> {
             at,
             gradient,
             solver_error: report.solver_error,
-            edge_mass: report.edge_mass.iter().copied().fold(0.0, f64::max),
+            edge_mass: report.edge_mass().unwrap_or(0.0),
             status: report.status,
             is_blurred: report.findings.iter().any(Finding::blurs),
-            is_diffused: !report.own.numerical_diffusion.is_empty(),
+            is_diffused: report.all(&NUMERICAL_DIFFUSION).next().is_some(),
             companions: companion::values(self.detector, density, self.kind, &indicator.place),
             kinks: kinks.map(|kink| kink.at).collect(),
             centre: density.structure.centre.clone(),

@@ -4,7 +4,6 @@
 use std::ops::RangeInclusive;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::Instant;
 
 use rayon::prelude::*;
 
@@ -13,10 +12,7 @@ use super::lattice::{At, Lattice, Leaf};
 use super::node::{Grid, Solved};
 use super::{MapMaker, MapProgress};
 use crate::continuation::curve::CurveWork;
-use crate::continuation::{
-    Finding, Point, PointStatus, Session, Solution, SolveReport, SourceError,
-};
-use crate::topology::Detector;
+use crate::continuation::{Point, Session, SourceError};
 
 /// Coarse rows of a strip: its first node is solved without a neighbour, and all strips can be solved side by side.
 const ROWS: usize = 2;
@@ -214,7 +210,7 @@ impl<'a> Solver<'a> {
         at: At,
         coordinate: f64,
     ) -> Option<Solved> {
-        let (point, reason) = solve_place(session, method, self.maker.detector, coordinate)?;
+        let (point, refusal) = Point::solve(session, method, self.maker.detector, coordinate)?;
         let detections = &point.detections;
         let mut work = self.work.lock().unwrap_or_else(PoisonError::into_inner);
         work.count(&point.report);
@@ -225,45 +221,11 @@ impl<'a> Solver<'a> {
             status: point.report.status,
             signatures: detections.iter().map(|one| one.signature).collect(),
             is_seen: detections.iter().all(|one| one.is_seen),
-            reason,
+            reason: refusal.map(|error| error.to_string()),
         };
         Some(Solved {
             point: Some(point),
             node,
         })
     }
-}
-
-/// Solves where a coordinate of the path leads, and detects; with the reason where that fails. `None` where the source
-/// was asked to stop.
-pub(super) fn solve_place(
-    session: &mut dyn Session,
-    method: &'static str,
-    detector: &dyn Detector,
-    coordinate: f64,
-) -> Option<(Point, Option<String>)> {
-    let clock = Instant::now();
-    let mut reason = None;
-    let solution = match session.solve(coordinate) {
-        Ok(solution) => solution.detached(),
-        Err(SourceError::Interrupted) => return None,
-        Err(SourceError::Method(error)) => {
-            let mut report = SolveReport::solved(method);
-            report.status = PointStatus::Failed;
-            report.findings = vec![Finding::Told(error.to_string())];
-            reason = Some(error.to_string());
-            Solution::without_density(report)
-        }
-    };
-    let densities = solution.densities;
-    let point = Point {
-        value: coordinate,
-        report: solution.report,
-        moments: solution.moments,
-        detections: densities.iter().map(|one| detector.detect(one)).collect(),
-        densities,
-        distance: None,
-        seconds: clock.elapsed().as_secs_f64(),
-    };
-    Some((point, reason))
 }

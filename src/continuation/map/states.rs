@@ -3,7 +3,6 @@
 use rayon::prelude::*;
 
 use super::SourceInPlane;
-use super::solve::solve_place;
 use crate::cancellation::Cancellation;
 use crate::continuation::curve::Plane;
 use crate::continuation::{Point, SourceError};
@@ -75,7 +74,7 @@ impl Row<'_> {
                 0 => plane.begin(place),
                 _ => plane.lay(place),
             };
-            let solved = solve_place(session.as_mut(), source.method(), self.detector, coordinate);
+            let solved = Point::solve(session.as_mut(), source.method(), self.detector, coordinate);
             let Some((mut point, _)) = solved.filter(|_| !self.cancellation.is_cancelled()) else {
                 return Ok(Vec::new());
             };

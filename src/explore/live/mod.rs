@@ -29,7 +29,7 @@ use crate::cancellation::Cancellation;
 use crate::continuation::{Point, PointType, SourceError};
 use crate::density::{EstimatedDensity, Observable};
 use crate::sweep_file::{SolveError, Sweep};
-use crate::topology::{Detector as _, PersistenceDetector};
+use crate::topology::PersistenceDetector;
 use ask::{AskLocate, AskSolve, AskSweepFile};
 use bound::Base;
 use lanes::Lanes;
@@ -191,19 +191,10 @@ impl Live {
         value: f64,
         clock: Instant,
     ) -> Point {
-        let densities = solution.densities;
-        Point {
-            value,
-            report: solution.report,
-            moments: solution.moments,
-            detections: densities
-                .iter()
-                .map(|one| self.detector.detect(one))
-                .collect(),
-            densities,
-            distance: None,
-            seconds: clock.elapsed().as_secs_f64(),
-        }
+        let mut point = Point::undetected(value, solution);
+        point.detect(&self.detector);
+        point.seconds = clock.elapsed().as_secs_f64();
+        point
     }
 
     /// The changes of topology between two values of the swept parameter.

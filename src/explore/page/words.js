@@ -69,12 +69,14 @@ const comparison = (source, frame, pinned, scene) => {
 };
 
 const numbersTable = (frame) => {
-  const rows = [["residual", frame.residual], ["solver's error", frame.solver_error], ["escape rate", frame.escape_rate],
-    ["negative mass", frame.negative_mass], ["mass at the edges", frame.edge_mass], ["distance to the value below", frame.distance]];
+  const measures = frame.measures.map(([name, value, error, unit]) =>
+    [name.replaceAll("_", " ") + (unit === "1" ? "" : `, ${unit}`), value, error]);
+  const rows = [["residual", frame.residual], ["solver's error", frame.solver_error], ...measures,
+    ["distance to the value below", frame.distance]];
   const shown = rows.filter(([, value]) => value !== null && value !== undefined);
   return make("details", {}, make("summary", {}, "Numbers of the solve"),
     make("table", {}, make("tbody", {}, row("method", frame.method), row("iterations", String(frame.iterations)),
-      shown.map(([name, value]) => row(name, number(value, 4))))));
+      shown.map(([name, value, error]) => row(name, error ? withError(value, error) : number(value, 4))))));
 };
 
 /** The table of located changes, ends and failures; `go` is what a click does. */

@@ -92,8 +92,8 @@ pub(super) fn solution<'session>(
     system: &dyn System,
     found: &OneAxis,
 ) -> Result<Solution<'session>, MethodError> {
-    let (space, masses) = (source.problem.space(), &found.masses);
-    let mut reporter = Reporter::new(METHOD, space);
+    let masses = &found.masses;
+    let mut reporter = Reporter::new(METHOD, &source.problem);
     reporter.report.residual = 0.0;
     reporter.report.solver_error = found.error;
     reporter.edge_mass(masses, &source.closed_ends);
@@ -113,9 +113,9 @@ pub(super) fn solution<'session>(
         standard_deviation: found.moments.1.max(0.0).sqrt(),
     }];
     moments.extend(maps.moments(masses)?);
+    reporter.moments(&moments);
     Ok(Solution {
         report: reporter.report,
-        moments,
         densities,
         sensitivity: Some(Box::new(QuadratureSensitivity { source, value })),
     })

@@ -18,15 +18,16 @@ use super::source::METHOD;
 use super::stand::Stand;
 use super::trail::{self, Trail};
 use crate::cancellation::Cancellation;
+use crate::continuation::measure::{ESCAPE_RATE, FACTORISATIONS, NEGATIVE_MASS};
 use crate::continuation::{Session, Solution, SourceError};
 use crate::density::{EstimatedDensity, Moments};
 use crate::generator::{
     AdvectiveScheme, Generator, GeneratorOptions, assemble_derivative, cell_masses, resolution,
     unknown_moments,
 };
-use crate::method::MethodError;
 use crate::method::neighbours::Neighbours;
 use crate::method::report::{QUIET_ESCAPE, Reporter};
+use crate::method::{MethodError, Problem};
 use crate::space::CellSpace;
 use crate::stationary::generator::{Along, RateError, RateInfo, RateSolver, RateSteadyState};
 use crate::system::System;
@@ -206,8 +207,9 @@ impl GeneratorSession {
     fn judge(&mut self, solved: &Solved, before: Option<&Trail>) -> Result<Judged, MethodError> {
         let info = &solved.steady.info;
         let unknowns = &solved.steady.mass;
-        let space = self.source.problem.space().clone();
-        let mut reporter = reporter(&space, info);
+        let problem = self.source.problem.clone();
+        let space = problem.space();
+        let mut reporter = reporter(&problem, info);
         let finite = unknowns.iter().all(|value| value.is_finite());
         if !info.converged || !finite {
             reporter.not_converged(info.error_estimate);
@@ -221,9 +223,9 @@ impl GeneratorSession {
             return Ok((Solution::without_density(reporter.report), None));
         };
         reporter.escaping(share);
-        let masses = cell_masses(solved.system.as_ref(), &space, unknowns);
+        let masses = cell_masses(solved.system.as_ref(), space, unknowns);
         reporter.edge_mass(&masses, &self.source.closed_ends);
-        for judged in resolution(solved.system.as_ref(), &space, &masses) {
+        for judged in resolution(solved.system.as_ref(), space, &masses) {
             reporter.resolution(&judged);
         }
         let (densities, difference) = self.densities(solved, &masses)?;
@@ -237,12 +239,10 @@ impl GeneratorSession {
         let maps = self.source.maps(solved.value)?;
         reporter.few_modes(self.source.options.change_by_modes);
         reporter.series(&maps.changes_by_last_modes(&self.source.problem, &masses)?);
-        reporter.negative_mass(negative_mass(&summed_over_modes(&space, &masses)), watched);
-        let mut moments = moments_of(&space, unknowns);
-        moments.extend(maps.moments(&masses)?);
+        reporter.negative_mass(negative_mass(&summed_over_modes(space, &masses)), watched);
+        reporter.moments(&[moments_of(space, unknowns), maps.moments(&masses)?].concat());
         let solution = Solution {
             report: reporter.report,
-            moments,
             densities,
             sensitivity: None,
         };
@@ -331,15 +331,15 @@ impl GeneratorSession {
 }
 
 /// The numbers of a solve.
-fn reporter<'a>(space: &'a CellSpace, info: &RateInfo) -> Reporter<'a> {
-    let mut reporter = Reporter::new(METHOD, space);
+fn reporter<'a>(problem: &'a Problem, info: &RateInfo) -> Reporter<'a> {
+    let mut reporter = Reporter::new(METHOD, problem);
     let report = &mut reporter.report;
     report.iterations = info.iterations;
     report.residual = info.residual;
     report.solver_error = info.error_estimate;
-    report.escape_rate = info.escape_rate.max(0.0);
-    report.own.factorisations = info.factorisations;
-    report.own.negative_mass = info.negative_mass;
+    report.add(&ESCAPE_RATE, "", info.escape_rate.max(0.0));
+    report.add(&FACTORISATIONS, "", info.factorisations as f64);
+    report.add(&NEGATIVE_MASS, "", info.negative_mass);
     reporter
 }
 

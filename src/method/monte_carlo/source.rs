@@ -3,6 +3,7 @@
 
 use super::{Estimator, MonteCarloOptions, MonteCarloPlan};
 use crate::cancellation::Cancellation;
+use crate::continuation::measure::{ESCAPE_RATE, TIME_STEP_BIAS};
 use crate::continuation::{DensitySource, Finding, Session, Solution, Subject};
 use crate::density::{EstimatedDensity, Moments};
 use crate::method::report::Reporter;
@@ -159,12 +160,16 @@ impl MonteCarloSource {
         found: &Estimate,
     ) -> Result<Solution<'static>, MethodError> {
         let plan = &self.plan;
-        let mut reporter = Reporter::new(METHOD, self.problem.space());
+        let mut reporter = Reporter::new(METHOD, &self.problem);
         // Steps of one trajectory: the iterations of the integrator.
         let steps = (plan.burn_in + plan.length) / plan.time_step;
         reporter.report.iterations = steps.ceil() as usize;
-        reporter.report.escape_rate = found.runaway_rate;
-        reporter.report.own.time_step_bias = plan.bias.map(|bias| bias.relative.abs());
+        reporter.report.add(&ESCAPE_RATE, "", found.runaway_rate);
+        if let Some(bias) = plan.bias {
+            reporter
+                .report
+                .add(&TIME_STEP_BIAS, "", bias.relative.abs());
+        }
         let limit = self.options.escape_limit;
         let escaping = found.runaway_rate * plan.relaxation_time;
         let nothing = found.looks == 0 || found.replicates.len() < 2;
@@ -188,9 +193,10 @@ impl MonteCarloSource {
             standard_deviation: variance.sqrt(),
         });
         let of_quantities = maps.moments(&found.mass)?;
+        let moments: Vec<Moments> = of_axes.chain(of_quantities).collect();
+        reporter.moments(&moments);
         Ok(Solution {
             report: reporter.report,
-            moments: of_axes.chain(of_quantities).collect(),
             densities: self.densities(&maps, system, found)?,
             sensitivity: None,
         })

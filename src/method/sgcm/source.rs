@@ -11,6 +11,7 @@ use super::steps::{Steps, choose_steps};
 use super::{Correction, SgcmOptions};
 use crate::MAX_DIMENSION;
 use crate::cancellation::{Cancellation, Cancelled};
+use crate::continuation::measure::{ESCAPE_RATE, MAP_STEP, TIME_STEP_BIAS};
 use crate::continuation::{DensitySource, Finding, Session, Solution, Subject};
 use crate::density::{EstimatedDensity, moments};
 use crate::method::report::Reporter;
@@ -226,7 +227,7 @@ impl SgcmSource {
         let mut reporter = self.reporter();
         reporter.report.iterations = info.iterations;
         reporter.report.residual = info.residual;
-        reporter.report.escape_rate = escape_rate;
+        reporter.report.add(&ESCAPE_RATE, "", escape_rate);
         reporter.report.solver_error = info.error_estimate;
         let limit = self.options.escape_limit;
         let Some(share) = reporter.escaping_share(relaxation_time, limit) else {
@@ -244,10 +245,10 @@ impl SgcmSource {
         }
         let (densities, replicates) = self.densities(point, correction, &steady, cancellation)?;
         moments.extend(self.maps(point.value)?.moments(&steady.mass)?);
+        reporter.moments(&moments);
         reporter.replicates(replicates, transitions.groups());
         let solution = Solution {
             report: reporter.report,
-            moments,
             densities,
             sensitivity: None,
         };
@@ -279,10 +280,12 @@ impl SgcmSource {
     }
 
     fn reporter(&self) -> Reporter<'_> {
-        let mut reporter = Reporter::new(METHOD, self.problem.space());
-        let own = &mut reporter.report.own;
-        own.map_step = Some(self.steps.map_step);
-        own.time_step_bias = self.steps.bias.map(|bias| bias.relative.abs());
+        let mut reporter = Reporter::new(METHOD, &self.problem);
+        let report = &mut reporter.report;
+        report.add(&MAP_STEP, "", self.steps.map_step);
+        if let Some(bias) = self.steps.bias {
+            report.add(&TIME_STEP_BIAS, "", bias.relative.abs());
+        }
         reporter
     }
 
@@ -346,7 +349,7 @@ impl SgcmSource {
             Outcome::NoneInside { escape_per_step } => {
                 let mut reporter = self.reporter();
                 let rate = escape_rate(escape_per_step, self.steps.map_step);
-                reporter.report.escape_rate = rate;
+                reporter.report.add(&ESCAPE_RATE, "", rate);
                 reporter.no_steady_state(Finding::LeavesAtOnce { rate });
                 Ok((Solution::without_density(reporter.report), None))
             }

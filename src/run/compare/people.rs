@@ -1,5 +1,6 @@
 //! Tables for people: rounded to what is known, as plain text, Markdown and LaTeX.
 
+use super::rows::factorisations;
 use super::{ComparedRun, partner};
 use crate::compare::{ComparedValue, Distance, Method, Pair, Solved};
 use crate::run::latex::escape;
@@ -63,7 +64,7 @@ fn distance(distance: &Distance) -> String {
 
 fn work(solved: &Solved) -> String {
     match solved.work.steps {
-        0 => format!("{} LU", solved.report.own.factorisations),
+        0 => format!("{} LU", factorisations(solved)),
         steps => format!("{} steps", count(steps as f64)),
     }
 }

@@ -7,10 +7,14 @@ use crate::compare::{
     Accuracy, AccuracyPoint, Agreement, ComparedValue, Distance, Distances, Method, Pair,
     Reference, Solved,
 };
+use crate::continuation::MeasureKind;
+use crate::continuation::measure::{
+    ESCAPE_RATE, FACTORISATIONS, MAP_STEP, NUMERICAL_DIFFUSION, TIME_STEP_BIAS,
+};
 use crate::density::EstimatedDensity;
 use crate::run::columns::{Column, Columns, count, digits, flag, number, optional, word};
 use crate::run::sentences::sentences;
-use crate::run::{RunError, stored_run::hash};
+use crate::run::{RunError, format_number, stored_run::hash};
 
 /// A record that belongs to a parameter value.
 type At<'r, T> = (&'r ComparedValue, &'r T);
@@ -39,13 +43,24 @@ fn unless_zero(count: u64) -> String {
     }
 }
 
+/// Factorisations that were made, as a number of a table.
+pub(super) fn factorisations(solved: &Solved) -> String {
+    let count = solved.report.of(&FACTORISATIONS, "");
+    format_number(count.unwrap_or(0.0))
+}
+
+/// A column of a measure.
+fn of_measure<'a>(kind: &'static MeasureKind, of: &str) -> Column<'a, At<'a, Solved>> {
+    let name = kind.name(of);
+    optional(name.clone(), move |(_, one): &At<'a, Solved>| {
+        one.report.measure(&name)
+    })
+}
+
 /// Work in the unit of the method.
 fn work(solved: &Solved) -> (String, &'static str) {
     match solved.work.steps {
-        0 => (
-            solved.report.own.factorisations.to_string(),
-            "factorisations",
-        ),
+        0 => (factorisations(solved), "factorisations"),
         steps => (steps.to_string(), "integrator steps"),
     }
 }
@@ -102,19 +117,16 @@ fn methods<'a>(run: &ComparedRun<'a>) -> Columns<'a, At<'a, Solved>> {
     ];
     columns.extend(costs());
     columns.extend([
-        optional("map_step", |(_, one): &Row<'a>| one.report.own.map_step),
+        of_measure(&MAP_STEP, ""),
         optional("time_step", |(_, one): &Row<'a>| one.time_step),
-        optional("time_step_bias", |(_, one): &Row<'a>| {
-            one.report.own.time_step_bias
+        of_measure(&TIME_STEP_BIAS, ""),
+        number("escape_rate", |(_, one): &Row<'a>| {
+            one.report.of(&ESCAPE_RATE, "").unwrap_or(0.0)
         }),
-        number("escape_rate", |(_, one): &Row<'a>| one.report.escape_rate),
         optional("share_outside", |(_, one): &Row<'a>| one.share_outside),
     ]);
     for axis in 0..run.comparison.common.dimension() {
-        let name = format!("numerical_diffusion_{}", run.family().axis(axis));
-        columns.push(optional(name, move |(_, one): &Row<'a>| {
-            one.report.own.numerical_diffusion.get(axis).copied()
-        }));
+        columns.push(of_measure(&NUMERICAL_DIFFUSION, run.family().axis(axis)));
     }
     for &observable in &run.comparison.subject.observables {
         let exact = move |(at, one): &Row<'a>| at.pair(one.method, None, observable).copied();

@@ -8,7 +8,8 @@ use std::path::Path;
 
 use super::RunError;
 use super::arrays;
-use crate::continuation::{Point, Subject};
+use crate::continuation::measure::{DEVIATION, MEAN};
+use crate::continuation::{MeasureKind, Point, Subject};
 use crate::density::{EstimatedDensity, Variants};
 use crate::system::Family;
 
@@ -145,30 +146,28 @@ fn data_set(subject: &Subject, points: &[&Point], title: &str) -> DataSet {
 
 /// Means and standard deviations.
 fn moments(family: &Family, points: &[&Point]) -> Vec<Array> {
-    let count = points.iter().map(|point| point.moments.len()).max();
-    let along = vec![(family.parameter().to_owned(), points.len())];
-    let of = |axis: usize, name: &str, long: &str, deviation: bool| {
-        let values = points.iter().map(|point| match point.moments.get(axis) {
-            Some(moments) if deviation => moments.standard_deviation,
-            Some(moments) => moments.mean,
-            None => f64::NAN,
-        });
-        let quantity = family.axis(axis);
+    let of = |kind: &MeasureKind, quantity: &str, long: &str| {
+        let name = kind.name(quantity);
+        let value = |point: &&Point| point.report.measure(&name);
         Array {
-            name: format!("{name}_{quantity}"),
-            dimensions: along.clone(),
-            values: values.collect(),
+            dimensions: vec![(family.parameter().to_owned(), points.len())],
+            values: points
+                .iter()
+                .map(|one| value(one).unwrap_or(f64::NAN))
+                .collect(),
             long_name: format!("{long} of {quantity}"),
+            name,
         }
     };
-    let axes = 0..count.unwrap_or(0);
-    axes.flat_map(|axis| {
-        [
-            of(axis, "mean", "mean", false),
-            of(axis, "sd", "standard deviation", true),
-        ]
-    })
-    .collect()
+    let averages = family.averages();
+    averages
+        .flat_map(|quantity| {
+            [
+                of(&MEAN, quantity, "mean"),
+                of(&DEVIATION, quantity, "standard deviation"),
+            ]
+        })
+        .collect()
 }
 
 /// A density, its error, and its second discretisation where there is one.

@@ -1,8 +1,9 @@
 //! Exports, read back by the same libraries and byte by byte.
 
 use super::*;
+use crate::continuation::measure::{DEVIATION, MEAN};
 use crate::continuation::{CellCheck, SolveReport};
-use crate::density::{Density, Moments, NEGLIGIBLE, Observable, Structure};
+use crate::density::{Density, NEGLIGIBLE, Observable, Structure};
 use crate::space::Axis;
 use crate::system::examples::coulomb;
 
@@ -38,16 +39,14 @@ fn point(value: f64, solved: bool) -> Point {
         }
     };
     let densities = subject().observables.into_iter().map(density);
+    let mut report = SolveReport::solved("generator");
+    for axis in ["x", "y"].into_iter().filter(|_| solved) {
+        report.add(&MEAN, axis, 0.5);
+        report.add(&DEVIATION, axis, 2.0);
+    }
     Point {
         value,
-        report: SolveReport::solved("generator"),
-        moments: vec![
-            Moments {
-                mean: 0.5,
-                standard_deviation: 2.0
-            };
-            if solved { 2 } else { 0 }
-        ],
+        report,
         densities: densities.filter(|_| solved).collect(),
         detections: Vec::new(),
         distance: None,

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::profile::{read_profile, write_profile};
 use crate::bytes::{NotWhatWasWritten, Reader, Writer};
-use crate::continuation::{Finding, MethodPart, PointStatus, Solution, SolveReport};
-use crate::density::{Density, EstimatedDensity, Kink, Moments, Observable, Structure, Variants};
+use crate::continuation::{Finding, Measure, PointStatus, Solution, SolveReport};
+use crate::density::{Density, EstimatedDensity, Kink, Observable, Structure, Variants};
 use crate::run::findings::{findings_cell, parse_findings};
 use crate::space::Axis;
 use crate::system::Family;
@@ -24,7 +24,6 @@ pub(super) struct Record {
 #[derive(Debug, Clone)]
 pub(super) struct Found {
     pub(super) report: SolveReport,
-    pub(super) moments: Vec<Moments>,
     pub(super) densities: Vec<EstimatedDensity>,
 }
 
@@ -33,7 +32,6 @@ impl Found {
     pub(super) fn copied(solution: &Solution<'_>) -> Self {
         Self {
             report: solution.report.clone(),
-            moments: solution.moments.clone(),
             densities: solution.densities.clone(),
         }
     }
@@ -43,7 +41,6 @@ impl From<Solution<'_>> for Found {
     fn from(solution: Solution<'_>) -> Self {
         Self {
             report: solution.report,
-            moments: solution.moments,
             densities: solution.densities,
         }
     }
@@ -53,7 +50,6 @@ impl From<Found> for Solution<'static> {
     fn from(found: Found) -> Self {
         Self {
             report: found.report,
-            moments: found.moments,
             densities: found.densities,
             sensitivity: None,
         }
@@ -96,10 +92,6 @@ impl Record {
 
 fn write_solution(writer: &mut Writer, family: &Family, solution: &Found) {
     write_report(writer, family, &solution.report);
-    writer.count(solution.moments.len());
-    for one in &solution.moments {
-        writer.number(one.mean).number(one.standard_deviation);
-    }
     writer.count(solution.densities.len());
     for density in &solution.densities {
         write_density(writer, density);
@@ -114,12 +106,6 @@ fn read_solution(
     let report = read_report(reader, family, methods)?;
     let mut solution = Found::from(Solution::without_density(report));
     for _ in 0..reader.count()? {
-        solution.moments.push(Moments {
-            mean: reader.number()?,
-            standard_deviation: reader.number()?,
-        });
-    }
-    for _ in 0..reader.count()? {
         solution.densities.push(read_density(reader)?);
     }
     Ok(solution)
@@ -128,14 +114,12 @@ fn read_solution(
 pub(in crate::run) fn write_report(writer: &mut Writer, family: &Family, report: &SolveReport) {
     writer.text(report.status.word()).text(report.method);
     writer.count(report.iterations).number(report.residual);
-    writer
-        .number(report.solver_error)
-        .number(report.escape_rate);
-    writer.numbers(&report.edge_mass);
-    let own = &report.own;
-    writer.count(own.factorisations).number(own.negative_mass);
-    writer.numbers(&own.numerical_diffusion);
-    writer.optional(own.map_step).optional(own.time_step_bias);
+    writer.number(report.solver_error);
+    writer.count(report.measures.len());
+    for one in &report.measures {
+        writer.text(&one.name).number(one.value);
+        writer.optional(one.error).text(&one.unit);
+    }
     writer.count(report.findings.len());
     for finding in &report.findings {
         let told = match finding {
@@ -165,15 +149,14 @@ pub(in crate::run) fn read_report(
     report.iterations = reader.count()?;
     report.residual = reader.number()?;
     report.solver_error = reader.number()?;
-    report.escape_rate = reader.number()?;
-    report.edge_mass = reader.numbers()?;
-    report.own = MethodPart {
-        factorisations: reader.count()?,
-        negative_mass: reader.number()?,
-        numerical_diffusion: reader.numbers()?,
-        map_step: reader.optional()?,
-        time_step_bias: reader.optional()?,
-    };
+    for _ in 0..reader.count()? {
+        report.measures.push(Measure {
+            name: reader.text()?.to_owned(),
+            value: reader.number()?,
+            error: reader.optional()?,
+            unit: reader.text()?.to_owned(),
+        });
+    }
     for _ in 0..reader.count()? {
         if reader.flag()? {
             let words = reader.text()?.to_owned();

@@ -4,13 +4,13 @@ use super::record::Found;
 use super::*;
 use crate::bytes::{Reader, Writer};
 use crate::continuation::{
-    CheckedBy, CheckedIndicator, Finding, Solution, SolveReport, every_finding,
+    CheckedBy, CheckedIndicator, Finding, Measure, Solution, SolveReport, every_finding,
 };
 use std::sync::Arc;
 
 use crate::density::{
-    Density, EstimatedDensity, Extremum, Kink, Moments, Observable, Profile, SlopeJump, Structure,
-    Turn, Variants,
+    Density, EstimatedDensity, Extremum, Kink, Observable, Profile, SlopeJump, Structure, Turn,
+    Variants,
 };
 use crate::space::{Axis, CellSpace};
 use crate::system::examples::coulomb;
@@ -77,17 +77,15 @@ fn density(observable: Observable, variants: fn(Vec<f64>) -> Variants) -> Estima
 fn record(value: f64) -> Record {
     let mut report = SolveReport::solved("sgcm");
     report.findings = every_finding();
-    (report.residual, report.edge_mass) = (f64::NAN, vec![0.1, 1e-300]);
-    report.own.map_step = Some(0.1);
+    report.residual = f64::NAN;
+    let measures = [("a", None, ""), ("b_x", Some(1e-300), "x^2/t")];
+    report.measures = Vec::from(measures.map(|(name, error, unit)| Measure {
+        name: name.to_owned(),
+        value: 0.1,
+        error,
+        unit: unit.to_owned(),
+    }));
     let mut solution = Found::from(Solution::without_density(report));
-    let (mean, standard_deviation) = (0.1, 0.2);
-    solution.moments = vec![
-        Moments {
-            mean,
-            standard_deviation
-        };
-        2
-    ];
     solution.densities = vec![
         density(Observable::Marginal(0), Variants::Scheme),
         density(Observable::Joint(0, 1), |one| {
@@ -103,12 +101,7 @@ fn record(value: f64) -> Record {
 }
 
 fn words(record: &Record) -> String {
-    let of = |solution: &Found| {
-        format!(
-            "{:?} {:?} {:?}",
-            solution.report, solution.moments, solution.densities
-        )
-    };
+    let of = |solution: &Found| format!("{:?} {:?}", solution.report, solution.densities);
     let solved = record.solved.as_ref().map(of);
     format!(
         "{} {} {solved:?} {:?}",

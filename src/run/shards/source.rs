@@ -85,7 +85,6 @@ impl Session for GatheredSession {
         };
         Ok(Solution {
             report: point.report.clone(),
-            moments: point.moments.clone(),
             densities: point.densities.clone(),
             sensitivity: None,
         })
@@ -155,7 +154,6 @@ mod tests {
         let point = Point {
             value: 0.5,
             report: SolveReport::solved("test"),
-            moments: Vec::new(),
             densities: Vec::new(),
             detections: Vec::new(),
             distance: None,

@@ -4,11 +4,13 @@ mod faults;
 mod one_axis;
 
 use super::*;
-use crate::continuation::{
-    CellCheck, Finding, MethodPart, Point, PointStatus, SolveReport, Subject,
+use crate::continuation::measure::{
+    DEVIATION, EDGE_MASS, ESCAPE_RATE, FACTORISATIONS, MAP_STEP, MEAN, NEGATIVE_MASS,
+    NUMERICAL_DIFFUSION, TIME_STEP_BIAS,
 };
+use crate::continuation::{CellCheck, Finding, Measure, Point, PointStatus, SolveReport, Subject};
 
-use crate::density::{Density, EstimatedDensity, Kink, Moments, Observable, Structure, Variants};
+use crate::density::{Density, EstimatedDensity, Kink, Observable, Structure, Variants};
 use crate::space::{Axis, CellSpace, Grading};
 use crate::system::examples::coulomb;
 
@@ -91,28 +93,13 @@ fn point(value: f64, replicates: Option<usize>, kinks: usize) -> Point {
             iterations: 7,
             residual: 1.0 / 3e13,
             solver_error: 2.0 / 3e9,
-            escape_rate: 0.1 + 0.2,
-            edge_mass: vec![1e-5 / 3.0],
-            own: MethodPart {
-                factorisations: 2,
-                negative_mass: 1e-300,
-                numerical_diffusion: vec![0.1 / 3.0, 0.2 / 3.0],
-                map_step: Some(6.25 / 3.0),
-                time_step_bias: Some(1e-3 / 7.0),
-            },
+            measures: measures(true),
             findings: vec![
                 Finding::NotConverged { error: 1e-3 / 7.0 },
                 Finding::SurfaceOffFaces { axis: 1, at: -0.1 },
             ],
             ..SolveReport::solved("sgcm")
         },
-        moments: vec![
-            Moments {
-                mean: -1.0 / 3.0,
-                standard_deviation: 2.0 / 3.0
-            };
-            2
-        ],
         densities: densities.to_vec(),
         detections: Vec::new(),
         distance: None,
@@ -120,14 +107,34 @@ fn point(value: f64, replicates: Option<usize>, kinks: usize) -> Point {
     }
 }
 
+/// Those of a table's row, in the order of its columns.
+fn measures(solved: bool) -> Vec<Measure> {
+    let mut measures = vec![
+        ESCAPE_RATE.measure("", 0.1 + 0.2),
+        NEGATIVE_MASS.measure("", 1e-300),
+    ];
+    if solved {
+        measures.push(EDGE_MASS.measure("", 1e-5 / 3.0));
+        for axis in ["x", "y"] {
+            measures.push(MEAN.measure(axis, -1.0 / 3.0));
+            measures.push(DEVIATION.measure(axis, 2.0 / 3.0));
+        }
+        measures.push(MAP_STEP.measure("", 6.25 / 3.0));
+    }
+    measures.push(FACTORISATIONS.measure("", 2.0));
+    if solved {
+        measures.push(NUMERICAL_DIFFUSION.measure("x", 0.1 / 3.0));
+        measures.push(NUMERICAL_DIFFUSION.measure("y", 0.2 / 3.0));
+    }
+    measures.push(TIME_STEP_BIAS.measure("", 1e-3 / 7.0));
+    measures
+}
+
 /// A point without a steady state.
 fn without_density(value: f64) -> Point {
     let mut point = point(value, Some(0), 0);
     point.report.status = PointStatus::NoSteadyState;
-    point.report.own.map_step = None;
-    point.report.edge_mass = Vec::new();
-    point.report.own.numerical_diffusion = Vec::new();
-    point.moments = Vec::new();
+    point.report.measures = measures(false);
     point.densities = Vec::new();
     point
 }
@@ -157,7 +164,7 @@ fn read(folder: &std::path::Path) -> Result<Vec<Point>, RunError> {
 fn bits(point: &Point) -> String {
     let numbers =
         |values: &[f64]| -> Vec<u64> { values.iter().map(|value| value.to_bits()).collect() };
-    let mut text = format!("{:?} {:?} {:?}\n", point.value, point.report, point.moments);
+    let mut text = format!("{:?} {:?}\n", point.value, point.report);
     for one in &point.densities {
         let variants = match &one.variants {
             Variants::None => Vec::new(),

@@ -25,18 +25,7 @@ fn source(space: &CellSpace) -> GeneratorSource {
 
 fn solved(source: &GeneratorSource, values: &[f64]) -> Vec<Point> {
     let mut session = source.open(&Cancellation::default());
-    let solve = |&value: &f64| {
-        let solution = session.solve(value).unwrap();
-        Point {
-            value,
-            report: solution.report,
-            moments: solution.moments,
-            densities: solution.densities,
-            detections: Vec::new(),
-            distance: None,
-            seconds: 0.0,
-        }
-    };
+    let solve = |&value: &f64| Point::undetected(value, session.solve(value).unwrap());
     values.iter().map(solve).collect()
 }
 

@@ -1,0 +1,88 @@
+//! Numbers of a solved value: their names in tables, their units, and how well they are known.
+
+/// A number of a solved value: a moment, a rate, a mass that should be zero.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measure {
+    /// Its column in tables: the word of its kind, and after `_` what it is of, for example `sd_x`.
+    pub name: String,
+    /// The number.
+    pub value: f64,
+    /// Its error; `None` where none is known.
+    pub error: Option<f64>,
+    /// Its unit, made of `t` (the time of the equations) and the names of axes and quantities.
+    pub unit: String,
+}
+
+/// What measures of one kind have in common.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MeasureKind {
+    /// The word in tables.
+    pub word: &'static str,
+    /// The unit; `{}` is the name of what the number is of.
+    pub unit: &'static str,
+    /// The column of `points.csv`, in words.
+    pub meaning: &'static str,
+}
+
+impl MeasureKind {
+    /// Name of the number that is of an axis, a quantity or a density; of all of them where `of` is empty.
+    pub fn name(&self, of: &str) -> String {
+        match of {
+            "" => self.word.to_owned(),
+            of => format!("{}_{of}", self.word),
+        }
+    }
+
+    /// A number of this kind without a known error.
+    pub fn measure(&self, of: &str, value: f64) -> Measure {
+        Measure {
+            name: self.name(of),
+            value,
+            error: None,
+            unit: self.unit.replace("{}", of),
+        }
+    }
+
+    /// Whether a measure is of this kind.
+    pub fn has(&self, measure: &Measure) -> bool {
+        let of = measure.name.strip_prefix(self.word);
+        of.is_some_and(|of| of.is_empty() || of.starts_with('_'))
+    }
+}
+
+const fn kind(word: &'static str, unit: &'static str, meaning: &'static str) -> MeasureKind {
+    MeasureKind {
+        word,
+        unit,
+        meaning,
+    }
+}
+
+pub(crate) const ESCAPE_RATE: MeasureKind =
+    kind("escape_rate", "1/t", "mass that leaves Ω per unit time");
+pub(crate) const NEGATIVE_MASS: MeasureKind = kind(
+    "negative_mass",
+    "1",
+    "sum of the magnitudes of negative masses",
+);
+pub(crate) const EDGE_MASS: MeasureKind = kind(
+    "edge_mass",
+    "1",
+    "mass in cells that touch an end of a range, walls that the model knows not counted: the largest over the axes",
+);
+pub(crate) const MEAN: MeasureKind = kind("mean", "{}", "mean of an axis or a quantity");
+pub(crate) const DEVIATION: MeasureKind =
+    kind("sd", "{}", "standard deviation of an axis or a quantity");
+pub(crate) const MAP_STEP: MeasureKind = kind("map_step", "t", "time one transition spans");
+pub(crate) const FACTORISATIONS: MeasureKind =
+    kind("factorisations", "1", "factorisations made for this value");
+pub(crate) const NUMERICAL_DIFFUSION: MeasureKind = kind(
+    "numerical_diffusion",
+    "{}^2/t",
+    "diffusion that the cells add",
+);
+pub(crate) const TIME_STEP_BIAS: MeasureKind = kind(
+    "time_step_bias",
+    "1",
+    "relative shift of the variances (or of the mass beside a switching surface) by the time step of trajectories",
+);

@@ -1,0 +1,73 @@
+//! One value with all that was found there.
+
+use std::time::Instant;
+
+use super::{Finding, PointStatus, Session, Solution, SolveReport, SourceError};
+use crate::density::EstimatedDensity;
+use crate::topology::{Detection, Detector};
+
+/// One parameter value of a sweep with all that was found there.
+#[derive(Debug, Clone)]
+pub struct Point {
+    /// The parameter's value.
+    pub value: f64,
+    /// How the solve went, and its measures.
+    pub report: SolveReport,
+    /// The watched densities, in the order of [`Subject::observables`](super::Subject::observables); empty when there
+    /// is no density.
+    pub densities: Vec<EstimatedDensity>,
+    /// What the detector says of each; same order.
+    pub detections: Vec<Detection>,
+    /// Largest Hellinger distance over the watched densities to the point below; `None` for the first.
+    pub distance: Option<f64>,
+    /// Seconds of wall-clock time spent on the point.
+    pub seconds: f64,
+}
+
+/// Why a source refused a value.
+pub(super) type Refusal = Box<dyn std::error::Error + Send + Sync>;
+
+impl Point {
+    /// A solution without detections yet.
+    pub fn undetected(value: f64, solution: Solution<'_>) -> Self {
+        Self {
+            value,
+            report: solution.report,
+            densities: solution.densities,
+            detections: Vec::new(),
+            distance: None,
+            seconds: 0.0,
+        }
+    }
+
+    /// Solves a value and detects. A refused value is a failed point, and why it was refused stands beside it; `None`
+    /// where the source was asked to stop.
+    pub(super) fn solve(
+        session: &mut dyn Session,
+        method: &'static str,
+        detector: &dyn Detector,
+        value: f64,
+    ) -> Option<(Self, Option<Refusal>)> {
+        let clock = Instant::now();
+        let (solution, refusal) = match session.solve(value) {
+            Ok(solution) => (solution.detached(), None),
+            Err(SourceError::Interrupted) => return None,
+            Err(SourceError::Method(error)) => {
+                let mut report = SolveReport::solved(method);
+                report.status = PointStatus::Failed;
+                report.findings = vec![Finding::Told(error.to_string())];
+                (Solution::without_density(report), Some(error))
+            }
+        };
+        let mut point = Self::undetected(value, solution);
+        point.detect(detector);
+        point.seconds = clock.elapsed().as_secs_f64();
+        Some((point, refusal))
+    }
+
+    /// Detects in its densities.
+    pub fn detect(&mut self, detector: &dyn Detector) {
+        let densities = self.densities.iter();
+        self.detections = densities.map(|one| detector.detect(one)).collect();
+    }
+}
