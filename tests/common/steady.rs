@@ -1,9 +1,15 @@
-//! The steady state of a system on cells and modes, for tests that hold it against exact moments.
+//! The steady state of a system on cells and modes, and trajectories beside it, which share only the drift with it.
+
+use std::ops::Range;
 
 use pbif::generator::{AdvectiveScheme, GeneratorOptions, assemble};
 use pbif::space::CellSpace;
 use pbif::stationary::generator::{RateOptions, RateSolver};
-use pbif::system::System;
+use pbif::system::{LANES, Lanes, System};
+use rand_distr::{Distribution, StandardNormal};
+use rand_xoshiro::Xoshiro256Plus;
+use rand_xoshiro::rand_core::SeedableRng;
+use rayon::prelude::*;
 
 /// Unknowns at the nodes, Σ = 1.
 pub(crate) fn solve(system: &dyn System, space: &CellSpace, scheme: AdvectiveScheme) -> Vec<f64> {
@@ -19,4 +25,85 @@ pub(crate) fn solve(system: &dyn System, space: &CellSpace, scheme: AdvectiveSch
     assert!(steady.info.converged);
     let total: f64 = steady.mass.iter().sum();
     steady.mass.iter().map(|unknown| unknown / total).collect()
+}
+
+/// Means of functions of the state.
+pub(crate) fn means<const Q: usize>(
+    space: &CellSpace,
+    unknowns: &[f64],
+    look: impl Fn(&[f64]) -> [f64; Q],
+) -> [f64; Q] {
+    let mut sums = [0.0; Q];
+    for (cell, unknown) in unknowns.iter().enumerate() {
+        let node = |axis: usize| space.axes()[axis].nodes()[space.position(cell, axis)];
+        let state: Vec<f64> = (0..space.dimension()).map(node).collect();
+        for (sum, value) in sums.iter_mut().zip(look(&state)) {
+            *sum += unknown * value;
+        }
+    }
+    sums
+}
+
+const TIME_STEP: f64 = 0.01;
+
+/// Time averages of the lanes of one batch of trajectories by stochastic Heun, without the first tenth.
+fn batch<const Q: usize>(
+    system: &dyn System,
+    steps: usize,
+    seed: u64,
+    look: impl Fn(&[f64]) -> [f64; Q],
+) -> Vec<[f64; Q]> {
+    let mut random = Xoshiro256Plus::seed_from_u64(seed);
+    let (axes, noise) = (system.dimension(), &system.noises()[0]);
+    let amplitude = noise.additive().unwrap() * TIME_STEP.sqrt();
+    let mut states: Vec<Lanes> = vec![[0.1; LANES]; axes];
+    let (mut start, mut end) = (states.clone(), states.clone());
+    let (mut sums, mut looks) = (vec![[0.0; Q]; LANES], 0.0);
+    for number in 0..steps {
+        system.drift(0.0, &states, &mut start);
+        let mut ahead = states.clone();
+        for lane in 0..LANES {
+            let normal: f64 = StandardNormal.sample(&mut random);
+            for axis in 0..axes {
+                ahead[axis][lane] += TIME_STEP * start[axis][lane];
+            }
+            ahead[noise.axis][lane] += amplitude * normal;
+            states[noise.axis][lane] += amplitude * normal;
+        }
+        system.drift(0.0, &ahead, &mut end);
+        for axis in 0..axes {
+            for lane in 0..LANES {
+                states[axis][lane] += 0.5 * TIME_STEP * (start[axis][lane] + end[axis][lane]);
+            }
+        }
+        if number > steps / 10 && number % 8 == 0 {
+            looks += 1.0;
+            for (lane, sums) in sums.iter_mut().enumerate() {
+                let state: Vec<f64> = states.iter().map(|axis| axis[lane]).collect();
+                for (sum, value) in sums.iter_mut().zip(look(&state)) {
+                    *sum += value;
+                }
+            }
+        }
+    }
+    let averages = sums.into_iter().map(|sums| sums.map(|sum| sum / looks));
+    averages.collect()
+}
+
+/// Means and standard errors from independent lanes of batches, by their seeds.
+pub(crate) fn by_trajectories<const Q: usize>(
+    system: &dyn System,
+    steps: usize,
+    seeds: Range<u64>,
+    look: impl Fn(&[f64]) -> [f64; Q] + Sync,
+) -> [(f64, f64); Q] {
+    let batches = seeds.into_par_iter();
+    let rows = batches.flat_map_iter(|seed| batch(system, steps, seed, &look));
+    let rows: Vec<[f64; Q]> = rows.collect();
+    let n = rows.len() as f64;
+    std::array::from_fn(|index| {
+        let mean = rows.iter().map(|row| row[index]).sum::<f64>() / n;
+        let squares: f64 = rows.iter().map(|row| (row[index] - mean).powi(2)).sum();
+        (mean, (squares / (n * (n - 1.0))).sqrt())
+    })
 }

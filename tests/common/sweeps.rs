@@ -1,11 +1,34 @@
-//! Sweep files as text, made ready to run.
+//! Sweep files as text, made ready to run, and what their sweeps find.
 
 use pbif::cancellation::Cancellation;
-use pbif::sweep_file::{Sweep, SweepFile};
+use pbif::continuation::{LabelledPoint, SweepResult};
+use pbif::sweep_file::{Settings, Sweep, SweepFile};
 
-/// The sweep of a file with this text, with some keys set.
-pub(crate) fn prepared(text: &str, settings: &[&str]) -> Sweep {
+/// The settings of a file with this text, with keys set by words `key=value`.
+pub(crate) fn settings(text: &str, words: &str) -> Settings {
+    let words: Vec<&str> = words.split_whitespace().collect();
     let mut file = SweepFile::parse("sweep.toml", text);
-    let settings = file.set_all("--set", settings).validate().unwrap();
-    settings.prepare(&Cancellation::new()).unwrap()
+    file.set_all("--set", &words).validate().unwrap()
+}
+
+/// The same as a sweep.
+pub(crate) fn prepared(text: &str, words: &str) -> Sweep {
+    settings(text, words).prepare(&Cancellation::new()).unwrap()
+}
+
+/// The same run.
+pub(crate) fn swept(text: &str, words: &str) -> (Sweep, SweepResult) {
+    let sweep = prepared(text, words);
+    let result = sweep.run(&Cancellation::new(), &mut ()).unwrap();
+    (sweep, result)
+}
+
+/// The rows of an observable.
+pub(crate) fn rows<'a>(result: &'a SweepResult, observable: &str) -> Vec<&'a LabelledPoint> {
+    let family = &result.subject.family;
+    let is_it = |row: &&LabelledPoint| {
+        let name = row.observable.map(|one| one.name(family));
+        name.as_deref() == Some(observable)
+    };
+    result.labels.iter().filter(is_it).collect()
 }

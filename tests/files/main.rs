@@ -10,6 +10,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod killing;
 mod resume;
 mod resume_others;
 mod runs;

@@ -2,63 +2,25 @@
 //! run has. Whatever is read of them is read or refused with a file's name, without a panic, a hang, or memory that
 //! grows.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
-use crate::common::pbif;
 use pbif::run::{RunError, RunSummary, StoredRun, check_folder};
 use pbif::sweep_file::Report;
+
+use crate::common::numbers::Numbers;
+use crate::common::room::Room;
 
 /// No reading of such a small run takes as long, on however busy a machine.
 const LONGEST: Duration = Duration::from_secs(20);
 
-/// A small generator of numbers (splitmix64), so that a case is the same every time.
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        (self.next() % end.max(1) as u64) as usize
-    }
-}
-
-/// Every file below a folder, sorted, without pictures.
-fn files(folder: &Path) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            found.extend(files(&path));
-        } else {
-            found.push(path);
-        }
-    }
-    found.retain(|path| !path.components().any(|part| part.as_os_str() == "figures"));
-    found.sort();
-    found
-}
+/// What is read of a run, by its checksums.
+const SUMMED: [&str; 4] = ["run.json", "points.csv", "checks.csv", "densities.zarr"];
 
 /// What stands in tables for numbers, and in JSON for values, that no run writes.
+#[rustfmt::skip]
 const STRANGE: [&str; 12] = [
-    "1e999",
-    "-1e308",
-    "NaN",
-    "inf",
-    "",
-    "99999999999999999999",
-    "-1",
-    "null",
-    "[[[[",
-    "\"",
-    "π",
-    "0x1p3",
+    "1e999", "-1e308", "NaN", "inf", "", "99999999999999999999", "-1", "null", "[[[[", "\"", "π", "0x1p3",
 ];
 
 fn damaged(whole: &[u8], numbers: &mut Numbers) -> Vec<u8> {
@@ -121,12 +83,14 @@ fn read_all(run: &Path) -> bool {
     match StoredRun::open(run) {
         Err(error) => refused(Some(error)),
         Ok(stored) => {
-            let spec = stored.sweep_file().validate();
-            let spec = spec.and_then(|settings| settings.fixed());
-            match spec {
-                Err(report) => assert!(Report::render(&report, false).len() < 60_000),
-                Ok(spec) => {
-                    refused(stored.detect(&spec).err());
+            let settings = stored.sweep_file().validate();
+            match settings.and_then(|settings| settings.fixed()) {
+                Err(report) => {
+                    assert!(Report::render(&report, false).len() < 60_000);
+                    whole = false;
+                }
+                Ok(sweep) => {
+                    refused(stored.detect(&sweep).err());
                     refused(stored.damage().err());
                 }
             }
@@ -154,68 +118,61 @@ fn five_thousand_damaged_runs_are_read_or_refused() {
 
 /// So many damaged files, each read and mended again: how many runs could be read, and how many were refused.
 fn damaged_runs(cases: usize) -> (usize, usize) {
-    let folder = tempfile::tempdir().unwrap();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let room = Room::new();
     let mut numbers = Numbers(14);
     let (mut read, mut refused) = (0, 0);
     // One axis with checks; two axes with a quantity. Small, since each is read thousands of times.
-    let sweeps: [(&str, &[&str]); 2] = [
-        ("bistable", &["sweep.points=3", "cells.x.count=20"]),
+    let sweeps = [
+        ("bistable", "sweep.points=3 cells.x.count=20"),
         (
             "rayleigh_energy",
-            &[
-                "sweep.points=3",
-                "cells.x.count=12",
-                "cells.y.count=12",
-                "locate.grid_check=\"off\"",
-            ],
+            "sweep.points=3 cells.x.count=12 cells.y.count=12 locate.grid_check=\"off\"",
         ),
     ];
     for (name, settings) in sweeps {
-        let run = folder.path().join(name);
-        let file = root.join("sweeps").join(format!("{name}.toml"));
-        let mut arguments = vec!["sweep", file.to_str().unwrap(), "--quiet", "--out"];
-        arguments.push(run.to_str().unwrap());
-        for setting in settings.iter().chain(&["figures.formats=[\"svg\"]"]) {
-            arguments.extend(["--set", setting]);
-        }
-        let made = pbif(&arguments);
-        assert!(matches!(made.status.code(), Some(0 | 1)), "{made:?}");
+        let format = "figures.formats=[\"svg\"]";
+        room.solved(&format!(
+            "sweep sweeps/{name}.toml --quiet --out {name} {settings} {format}"
+        ));
+        let run = room.path(name);
         assert!(read_all(&run));
-        let files = files(&run);
+        let files: Vec<(String, Vec<u8>)> = room.files(name, &["figures"]).into_iter().collect();
+        // Tables and manifest are small and say most: every other case is one of them.
+        let tables: Vec<_> = files.iter().filter(|file| !file.0.contains('/')).collect();
         let sums = run.join("checksums.sha256");
         let signed = std::fs::read(&sums).unwrap();
         for case in 0..cases / sweeps.len() {
-            // Tables and manifest are small and say most: every other case is one of them.
-            let tables: Vec<&PathBuf> = files
-                .iter()
-                .filter(|path| path.parent() == Some(&run))
-                .collect();
-            let path = match case % 2 {
+            let (file, whole) = match case % 2 {
                 0 => tables[numbers.below(tables.len())],
                 _ => &files[numbers.below(files.len())],
             };
-            let whole = std::fs::read(path).unwrap();
+            let path = run.join(file);
             // Without checksums, as in unfinished runs, damage is found by what is read.
             let is_signed = case % 3 == 0;
             if !is_signed {
                 let _ = std::fs::remove_file(&sums);
             }
-            match numbers.below(40) {
-                0 => std::fs::remove_file(path).or_else(|error| match path == &sums {
-                    true => Ok(()),
-                    false => Err(error),
-                }),
-                _ => std::fs::write(path, damaged(&whole, &mut numbers)),
+            let changed = damaged(whole, &mut numbers);
+            let is_removed = numbers.below(40) == 0;
+            if is_removed {
+                let removed = std::fs::remove_file(&path);
+                assert!(removed.is_ok() || path == sums, "{removed:?}");
+            } else {
+                std::fs::write(&path, &changed).unwrap();
             }
-            .unwrap();
             let clock = Instant::now();
-            match read_all(&run) {
+            let is_read = read_all(&run);
+            assert!(clock.elapsed() < LONGEST, "{name}, case {case}: {file}");
+            // With its checksums no damage of what is read goes unnoticed.
+            let is_summed = SUMMED.iter().any(|entry| file.starts_with(entry));
+            let is_changed = changed != *whole && !is_removed;
+            let is_hidden = is_read && is_signed && is_summed && is_changed;
+            assert!(!is_hidden, "{name}, case {case}: {file}");
+            match is_read {
                 true => read += 1,
                 false => refused += 1,
             }
-            assert!(clock.elapsed() < LONGEST, "{name}, case {case}: {path:?}");
-            std::fs::write(path, whole).unwrap();
+            std::fs::write(&path, whole).unwrap();
             std::fs::write(&sums, &signed).unwrap();
         }
     }

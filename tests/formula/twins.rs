@@ -15,11 +15,8 @@ struct Twins {
 }
 
 const OSCILLATOR: &str = r#"
-[system.equations]
-x = "y"
-y = "-kappa y - x (alpha + mu x^2) - f_c sign(y)"
-[system.noise]
-y = "sqrt(sigma2)"
+system.equations = { x = "y", y = "-kappa y - x (alpha + mu x^2) - f_c sign(y)" }
+system.noise = { y = "sqrt(sigma2)" }
 "#;
 
 const TWINS: [Twins; 11] = [
@@ -27,316 +24,182 @@ const TWINS: [Twins; 11] = [
         name: "coulomb",
         typed: OSCILLATOR,
         common: r#"
-            [system.parameters]
-            alpha = 1
-            kappa = 0.2
-            mu = 0.1
-            sigma2 = 0.2
-            [sweep]
-            parameter = "f_c"
-            from = -0.1
-            to = 0.05
-            points = 4
-            [cells]
-            x = { from = -4, to = 4, count = 30 }
-            y = { from = -4, to = 4, count = 30, grade = "auto" }
+            system.parameters = { alpha = 1, kappa = 0.2, mu = 0.1, sigma2 = 0.2 }
+            sweep = { parameter = "f_c", from = -0.1, to = 0.05, points = 4 }
+            cells.x = { from = -4, to = 4, count = 30 }
+            cells.y = { from = -4, to = 4, count = 30, grade = "auto" }
         "#,
     },
     Twins {
         name: "dahl",
         typed: r#"
-            [system.equations]
-            x = "y"
-            y = "-kappa y - x (alpha + mu x^2) - lambda z"
-            z = "y - lambda/f_c*abs(y)*z"
-            [system.noise]
-            y = "sqrt(sigma2)"
-            [system.bounds]
-            z = ["-f_c/lambda", "f_c/lambda"]
+            system.equations.x = "y"
+            system.equations.y = "-kappa y - x (alpha + mu x^2) - lambda z"
+            system.equations.z = "y - lambda/f_c*abs(y)*z"
+            system.noise = { y = "sqrt(sigma2)" }
+            system.bounds = { z = ["-f_c/lambda", "f_c/lambda"] }
         "#,
         common: r#"
-            [system.parameters]
-            kappa = 0.3
-            mu = 0.3
-            lambda = 0.5
-            f_c = 0.25
-            sigma2 = 0.2
-            [sweep]
-            parameter = "alpha"
-            from = -0.5
-            to = 0.5
-            points = 2
-            [cells]
-            x = { from = -2.5, to = 2.5, count = 14 }
-            y = { from = -2.5, to = 2.5, count = 14 }
-            z = { count = 8 }
-            [detect]
-            marginals = ["x", "y"]
+            system.parameters = { kappa = 0.3, mu = 0.3, lambda = 0.5, f_c = 0.25, sigma2 = 0.2 }
+            sweep = { parameter = "alpha", from = -0.5, to = 0.5, points = 2 }
+            cells.x = { from = -2.5, to = 2.5, count = 14 }
+            cells.y = { from = -2.5, to = 2.5, count = 14 }
+            cells.z = { count = 8 }
+            detect = { marginals = ["x", "y"] }
         "#,
     },
     Twins {
         name: "dahl_eq8",
         typed: r#"
-            [system.equations]
-            x = "y"
-            y = "-kappa y - x (alpha + mu x^2) - lambda z"
-            z = "y - lambda/f_c*abs(y)*x"
-            [system.noise]
-            y = "sqrt(sigma2)"
+            system.equations.x = "y"
+            system.equations.y = "-kappa y - x (alpha + mu x^2) - lambda z"
+            system.equations.z = "y - lambda/f_c*abs(y)*x"
+            system.noise = { y = "sqrt(sigma2)" }
         "#,
         common: r#"
-            [system.parameters]
-            kappa = 0.3
-            mu = 0.3
-            lambda = 0.5
-            f_c = 0.25
-            sigma2 = 0.2
-            [sweep]
-            parameter = "alpha"
-            from = -0.5
-            to = 0.5
-            points = 2
-            [cells]
-            x = { from = -2.5, to = 2.5, count = 10 }
-            y = { from = -2.5, to = 2.5, count = 10 }
-            z = { from = -2, to = 2, count = 6 }
+            system.parameters = { kappa = 0.3, mu = 0.3, lambda = 0.5, f_c = 0.25, sigma2 = 0.2 }
+            sweep = { parameter = "alpha", from = -0.5, to = 0.5, points = 2 }
+            cells.x = { from = -2.5, to = 2.5, count = 10 }
+            cells.y = { from = -2.5, to = 2.5, count = 10 }
+            cells.z = { from = -2, to = 2, count = 6 }
         "#,
     },
     Twins {
         name: "stribeck",
         typed: r#"
-            [system.equations]
-            x = "y"
-            y = "-kappa y - x (alpha + mu x^2) - (f_c + (f_s - f_c)*exp(-((y - v_b)/v_s)^2))*sign(y - v_b)"
-            [system.noise]
-            y = "sqrt(sigma2)"
+            system.equations.x = "y"
+            system.equations.y = "-kappa y - x (alpha + mu x^2) - (f_c + (f_s - f_c)*exp(-((y - v_b)/v_s)^2))*sign(y - v_b)"
+            system.noise = { y = "sqrt(sigma2)" }
         "#,
         common: r#"
-            [system.parameters]
-            kappa = 0.2
-            mu = 1
-            sigma2 = 0.2
-            f_c = 0.1
-            f_s = 0.2
-            v_s = 0.5
-            v_b = 0.4
-            [sweep]
-            parameter = "alpha"
-            from = 0.5
-            to = 1
-            points = 2
-            [cells]
-            x = { from = -3, to = 3, count = 30 }
-            y = { from = -3, to = 3, count = 30, grade = "auto" }
+            system.parameters = { kappa = 0.2, mu = 1, sigma2 = 0.2, f_c = 0.1, f_s = 0.2, v_s = 0.5, v_b = 0.4 }
+            sweep = { parameter = "alpha", from = 0.5, to = 1, points = 2 }
+            cells.x = { from = -3, to = 3, count = 30 }
+            cells.y = { from = -3, to = 3, count = 30, grade = "auto" }
         "#,
     },
     Twins {
         name: "stribeck_cubic",
         typed: r#"
-            [system.equations]
-            x = "y"
-            y = "-kappa y - x (alpha + mu x^2) - f_s*sign(y - v_b) + 1.5*(f_s - f_m)*((y - v_b)/v_m)*(1 - ((y - v_b)/v_m)^2/3)"
-            [system.noise]
-            y = "sqrt(sigma2)"
+            system.equations.x = "y"
+            system.equations.y = "-kappa y - x (alpha + mu x^2) - f_s*sign(y - v_b) + 1.5*(f_s - f_m)*((y - v_b)/v_m)*(1 - ((y - v_b)/v_m)^2/3)"
+            system.noise = { y = "sqrt(sigma2)" }
         "#,
         common: r#"
-            [system.parameters]
-            kappa = 0.2
-            mu = 1
-            sigma2 = 0.2
-            f_s = 0.2
-            f_m = 0.1
-            v_m = 0.8
-            v_b = 0
-            [sweep]
-            parameter = "alpha"
-            from = 0.5
-            to = 1
-            points = 2
-            [cells]
-            x = { from = -3, to = 3, count = 30 }
-            y = { from = -3, to = 3, count = 30, grade = "auto" }
+            system.parameters = { kappa = 0.2, mu = 1, sigma2 = 0.2, f_s = 0.2, f_m = 0.1, v_m = 0.8, v_b = 0 }
+            sweep = { parameter = "alpha", from = 0.5, to = 1, points = 2 }
+            cells.x = { from = -3, to = 3, count = 30 }
+            cells.y = { from = -3, to = 3, count = 30, grade = "auto" }
         "#,
     },
     Twins {
         name: "lugre",
         typed: r#"
-            [system.equations]
-            x = "y"
-            y = "-kappa y - x (alpha + mu x^2) - lambda z - eta*(y - lambda/(f_c + (f_s - f_c)*exp(-(y/v_s)^2))*abs(y)*z)"
-            z = "y - lambda/(f_c + (f_s - f_c)*exp(-(y/v_s)^2))*abs(y)*z"
-            [system.noise]
-            y = "sqrt(sigma2)"
-            [system.bounds]
-            z = ["-f_s/lambda", "f_s/lambda"]
+            system.equations.x = "y"
+            system.equations.y = "-kappa y - x (alpha + mu x^2) - lambda z - eta*(y - lambda/(f_c + (f_s - f_c)*exp(-(y/v_s)^2))*abs(y)*z)"
+            system.equations.z = "y - lambda/(f_c + (f_s - f_c)*exp(-(y/v_s)^2))*abs(y)*z"
+            system.noise = { y = "sqrt(sigma2)" }
+            system.bounds = { z = ["-f_s/lambda", "f_s/lambda"] }
         "#,
         common: r#"
-            [system.parameters]
-            kappa = 0.2
-            mu = 1
-            sigma2 = 0.2
-            lambda = 0.5
-            eta = 0.1
-            f_c = 0.25
-            f_s = 0.5
-            v_s = 0.8
-            [sweep]
-            parameter = "alpha"
-            from = -0.5
-            to = 0.5
-            points = 2
-            [cells]
-            x = { from = -2.5, to = 2.5, count = 10 }
-            y = { from = -2.5, to = 2.5, count = 10 }
-            z = { count = 6 }
+            system.parameters.kappa = 0.2
+            system.parameters.mu = 1
+            system.parameters.sigma2 = 0.2
+            system.parameters.lambda = 0.5
+            system.parameters.eta = 0.1
+            system.parameters.f_c = 0.25
+            system.parameters.f_s = 0.5
+            system.parameters.v_s = 0.8
+            sweep = { parameter = "alpha", from = -0.5, to = 0.5, points = 2 }
+            cells.x = { from = -2.5, to = 2.5, count = 10 }
+            cells.y = { from = -2.5, to = 2.5, count = 10 }
+            cells.z = { count = 6 }
         "#,
     },
     Twins {
         name: "elasto_plastic",
         typed: r#"
-            [system.equations]
-            x = "y"
-            y = "-kappa y - x (alpha + mu x^2) - lambda z - eta rate"
-            z = "rate"
-            [system.define]
-            w = "lambda z*sign(y)"
-            way = "min(max((w - f_b)/f_t, 0), 1)"
-            rate = "y (1 - (1 - cos(pi way))/2*w/(f_b + f_t))"
-            [system.noise]
-            y = "sqrt(sigma2)"
-            [system.bounds]
-            z = ["-(f_b + f_t)/lambda", "(f_b + f_t)/lambda"]
+            system.equations = { x = "y", y = "-kappa y - x (alpha + mu x^2) - lambda z - eta rate", z = "rate" }
+            system.define.w = "lambda z*sign(y)"
+            system.define.way = "min(max((w - f_b)/f_t, 0), 1)"
+            system.define.rate = "y (1 - (1 - cos(pi way))/2*w/(f_b + f_t))"
+            system.noise = { y = "sqrt(sigma2)" }
+            system.bounds = { z = ["-(f_b + f_t)/lambda", "(f_b + f_t)/lambda"] }
         "#,
         common: r#"
-            [system.parameters]
-            kappa = 0.2
-            mu = 1
-            sigma2 = 0.2
-            lambda = 0.5
-            eta = 0.1
-            f_b = 0.1
-            f_t = 0.15
-            [sweep]
-            parameter = "alpha"
-            from = -0.5
-            to = 0.5
-            points = 2
-            [cells]
-            x = { from = -2.5, to = 2.5, count = 10 }
-            y = { from = -2.5, to = 2.5, count = 10 }
-            z = { count = 6 }
+            system.parameters.kappa = 0.2
+            system.parameters.mu = 1
+            system.parameters.sigma2 = 0.2
+            system.parameters.lambda = 0.5
+            system.parameters.eta = 0.1
+            system.parameters.f_b = 0.1
+            system.parameters.f_t = 0.15
+            sweep = { parameter = "alpha", from = -0.5, to = 0.5, points = 2 }
+            cells.x = { from = -2.5, to = 2.5, count = 10 }
+            cells.y = { from = -2.5, to = 2.5, count = 10 }
+            cells.z = { count = 6 }
         "#,
     },
     Twins {
         name: "bouc_wen",
         typed: r#"
-            [system.equations]
-            x = "y"
-            y = "-kappa y - x (alpha + mu x^2) - lambda z"
-            z = "A y - beta*abs(y)*z - gamma*y*abs(z)"
-            [system.noise]
-            y = "sqrt(sigma2)"
-            [system.bounds]
-            z = ["-A/(beta + gamma)", "A/(beta + gamma)"]
+            system.equations.x = "y"
+            system.equations.y = "-kappa y - x (alpha + mu x^2) - lambda z"
+            system.equations.z = "A y - beta*abs(y)*z - gamma*y*abs(z)"
+            system.noise = { y = "sqrt(sigma2)" }
+            system.bounds = { z = ["-A/(beta + gamma)", "A/(beta + gamma)"] }
         "#,
         common: r#"
-            [system.parameters]
-            kappa = 0.2
-            mu = 1
-            sigma2 = 0.2
-            lambda = 0.3
-            A = 1
-            beta = 0.7
-            gamma = 0.3
-            [sweep]
-            parameter = "alpha"
-            from = -0.5
-            to = 0.5
-            points = 2
-            [cells]
-            x = { from = -2.5, to = 2.5, count = 10 }
-            y = { from = -2.5, to = 2.5, count = 10 }
-            z = { count = 6 }
+            system.parameters = { kappa = 0.2, mu = 1, sigma2 = 0.2, lambda = 0.3, A = 1, beta = 0.7, gamma = 0.3 }
+            sweep = { parameter = "alpha", from = -0.5, to = 0.5, points = 2 }
+            cells.x = { from = -2.5, to = 2.5, count = 10 }
+            cells.y = { from = -2.5, to = 2.5, count = 10 }
+            cells.z = { count = 6 }
         "#,
     },
     Twins {
         name: "bliman_sorine",
         typed: r#"
-            [system.equations]
-            x = "y"
-            y = "-kappa y - x (alpha + mu x^2) - u + v"
-            u = "(f_1 y - abs(y)*u)/(rho epsilon)"
-            v = "(f_2 y - abs(y)*v)/epsilon"
-            [system.noise]
-            y = "sqrt(sigma2)"
-            [system.bounds]
-            u = ["-f_1", "f_1"]
-            v = ["-f_2", "f_2"]
+            system.equations.x = "y"
+            system.equations.y = "-kappa y - x (alpha + mu x^2) - u + v"
+            system.equations.u = "(f_1 y - abs(y)*u)/(rho epsilon)"
+            system.equations.v = "(f_2 y - abs(y)*v)/epsilon"
+            system.noise = { y = "sqrt(sigma2)" }
+            system.bounds = { u = ["-f_1", "f_1"], v = ["-f_2", "f_2"] }
         "#,
         common: r#"
-            [system.parameters]
-            kappa = 0.2
-            mu = 1
-            sigma2 = 0.2
-            f_1 = 0.4
-            f_2 = 0.2
-            epsilon = 1
-            rho = 0.5
-            [sweep]
-            parameter = "alpha"
-            from = -0.5
-            to = 0.5
-            points = 2
-            [cells]
-            x = { from = -2.5, to = 2.5, count = 8 }
-            y = { from = -2.5, to = 2.5, count = 8 }
-            u = { count = 4 }
-            v = { count = 4 }
+            system.parameters = { kappa = 0.2, mu = 1, sigma2 = 0.2, f_1 = 0.4, f_2 = 0.2, epsilon = 1, rho = 0.5 }
+            sweep = { parameter = "alpha", from = -0.5, to = 0.5, points = 2 }
+            cells.x = { from = -2.5, to = 2.5, count = 8 }
+            cells.y = { from = -2.5, to = 2.5, count = 8 }
+            cells.u = { count = 4 }
+            cells.v = { count = 4 }
         "#,
     },
     Twins {
         name: "rayleigh",
         typed: r#"
-            [system.equations]
-            x = "y"
-            y = "-(b H - a) y - x"
-            [system.noise]
-            y = "sqrt(sigma2)"
-            [system.define]
-            H = "(x^2 + y^2)/2"
+            system.equations = { x = "y", y = "-(b H - a) y - x" }
+            system.noise = { y = "sqrt(sigma2)" }
+            system.define = { H = "(x^2 + y^2)/2" }
         "#,
         common: r#"
-            [system.parameters]
-            b = 1
-            sigma2 = 0.2
-            [sweep]
-            parameter = "a"
-            from = -0.2
-            to = 0.4
-            points = 4
-            [cells]
-            x = { from = -3, to = 3, count = 30 }
-            y = { from = -3, to = 3, count = 30 }
+            system.parameters = { b = 1, sigma2 = 0.2 }
+            sweep = { parameter = "a", from = -0.2, to = 0.4, points = 4 }
+            cells.x = { from = -3, to = 3, count = 30 }
+            cells.y = { from = -3, to = 3, count = 30 }
         "#,
     },
     Twins {
         name: "bistable",
         typed: r#"
-            [system.equations]
-            x = "a x - x³"
-            [system.noise]
-            x = "sqrt(sigma2)"
+            system.equations = { x = "a x - x³" }
+            system.noise = { x = "sqrt(sigma2)" }
         "#,
         common: r#"
-            [system.parameters]
-            sigma2 = 0.25
-            [sweep]
-            parameter = "a"
-            from = -1
-            to = 1
-            points = 5
-            [cells]
-            x = { from = -2.5, to = 2.5, count = 100 }
+            system.parameters = { sigma2 = 0.25 }
+            sweep = { parameter = "a", from = -1, to = 1, points = 5 }
+            cells.x = { from = -2.5, to = 2.5, count = 100 }
         "#,
     },
 ];
@@ -349,7 +212,7 @@ fn settings(text: &str) -> Settings {
 
 impl Twins {
     fn both(&self) -> [Settings; 2] {
-        let model = format!("[system]\nmodel = \"{}\"\n", self.name);
+        let model = format!("system.model = \"{}\"", self.name);
         [model.as_str(), self.typed].map(|system| settings(&format!("{system}\n{}", self.common)))
     }
 }

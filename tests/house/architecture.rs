@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// The modules that each module may use. The order is the one of the table in `src/lib.rs`.
+#[rustfmt::skip]
 const ALLOWED: &[(&str, &[&str])] = &[
     ("cancellation", &[]),
     ("bytes", &[]),
@@ -12,135 +13,36 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("system", &["formula"]),
     ("space", &["bytes"]),
     ("sampling", &["cancellation", "system", "space"]),
-    (
-        "monte_carlo",
-        &["cancellation", "system", "space", "sampling"],
-    ),
+    ("monte_carlo", &["cancellation", "system", "space", "sampling"]),
     ("density", &["system", "space"]),
     ("generator", &["system", "space", "density"]),
-    (
-        "stationary",
-        &["cancellation", "space", "sampling", "bytes"],
-    ),
+    ("stationary", &["cancellation", "space", "sampling", "bytes"]),
     ("topology", &["space", "density"]),
-    (
-        "continuation",
-        &[
-            "cancellation",
-            "system",
-            "space",
-            "density",
-            "topology",
-            "bytes",
-        ],
-    ),
-    (
-        "method",
-        &[
-            "cancellation",
-            "system",
-            "space",
-            "sampling",
-            "monte_carlo",
-            "generator",
-            "stationary",
-            "density",
-            "continuation",
-            "bytes",
-        ],
-    ),
-    (
-        "compare",
-        &[
-            "cancellation",
-            "system",
-            "space",
-            "sampling",
-            "monte_carlo",
-            "density",
-            "continuation",
-            "method",
-        ],
-    ),
-    (
-        "figure",
-        &[
-            "system",
-            "space",
-            "density",
-            "topology",
-            "continuation",
-            "compare",
-        ],
-    ),
-    (
-        "sweep_file",
-        &[
-            "formula",
-            "cancellation",
-            "system",
-            "space",
-            "sampling",
-            "generator",
-            "stationary",
-            "density",
-            "topology",
-            "continuation",
-            "method",
-            "figure",
-        ],
-    ),
-    (
-        "run",
-        &[
-            "system",
-            "space",
-            "density",
-            "topology",
-            "continuation",
-            "compare",
-            "sweep_file",
-            "bytes",
-            "cancellation",
-            "method",
-        ],
-    ),
-    (
-        "explore",
-        &[
-            "cancellation",
-            "formula",
-            "system",
-            "space",
-            "monte_carlo",
-            "density",
-            "topology",
-            "continuation",
-            "sweep_file",
-            "run",
-        ],
-    ),
-    (
-        "cli",
-        &[
-            "cancellation",
-            "system",
-            "space",
-            "sampling",
-            "monte_carlo",
-            "generator",
-            "stationary",
-            "density",
-            "topology",
-            "continuation",
-            "method",
-            "compare",
-            "run",
-            "figure",
-            "sweep_file",
-            "explore",
-        ],
-    ),
+    ("continuation", &["cancellation", "system", "space", "density", "topology", "bytes"]),
+    ("method", &[
+        "cancellation", "system", "space", "sampling", "monte_carlo", "generator", "stationary", "density",
+        "continuation", "bytes"
+    ]),
+    ("compare", &[
+        "cancellation", "system", "space", "sampling", "monte_carlo", "density", "continuation", "method"
+    ]),
+    ("figure", &["system", "space", "density", "topology", "continuation", "compare"]),
+    ("sweep_file", &[
+        "formula", "cancellation", "system", "space", "sampling", "generator", "stationary", "density",
+        "topology", "continuation", "method", "figure"
+    ]),
+    ("run", &[
+        "system", "space", "density", "topology", "continuation", "compare", "sweep_file", "bytes",
+        "cancellation", "method"
+    ]),
+    ("explore", &[
+        "cancellation", "formula", "system", "space", "monte_carlo", "density", "topology", "continuation",
+        "sweep_file", "run"
+    ]),
+    ("cli", &[
+        "cancellation", "system", "space", "sampling", "monte_carlo", "generator", "stationary", "density",
+        "topology", "continuation", "method", "compare", "run", "figure", "sweep_file", "explore"
+    ]),
 ];
 
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {

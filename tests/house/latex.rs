@@ -1,25 +1,12 @@
 //! `bifurcations.tex` of real runs is LaTeX that compiles with booktabs: environments and braces balanced, every row
 //! with as many cells as the table has columns, nothing special outside mathematics.
 
-use std::path::Path;
+use crate::common::room::Room;
 
-use std::process::Command;
-
-fn table_of(file: &str, overrides: &[&str]) -> String {
-    let folder = tempfile::tempdir().unwrap();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut command = Command::new(env!("CARGO_BIN_EXE_pbif"));
-    command
-        .arg("sweep")
-        .arg(root.join("sweeps").join(format!("{file}.toml")))
-        .args(["--quiet", "--out"])
-        .arg(folder.path());
-    for setting in overrides {
-        command.args(["--set", setting]);
-    }
-    let output = command.output().unwrap();
-    assert!(matches!(output.status.code(), Some(0 | 1)), "{output:?}");
-    std::fs::read_to_string(folder.path().join("bifurcations.tex")).unwrap()
+fn table_of(sweep: &str) -> String {
+    let room = Room::new();
+    room.solved(&format!("sweep sweeps/{sweep} --quiet --out run"));
+    room.read("run/bifurcations.tex")
 }
 
 /// The parts of a text between unescaped separators.
@@ -101,29 +88,18 @@ fn assert_compiles(text: &str) {
 
 #[test]
 fn tables_of_all_kinds_of_rows_compile() {
-    let coulomb = [
-        "cells.x.count=24",
-        "cells.y.count=24",
-        "sweep.points=5",
-        "locate.tolerance=5e-3",
-    ];
-    let eq8 = [
-        "cells.x.count=16",
-        "cells.y.count=16",
-        "cells.z.count=10",
-        "sweep.points=2",
-    ];
-    for (file, overrides, row) in [
-        ("coulomb_fc", &coulomb[..], "PB1"),
-        ("dahl_alpha_eq8", &eq8, "MX1"),
-        ("bistable", &["sweep.points=9"], "PB1"),
+    let coulomb = "cells.x.count=24 cells.y.count=24 sweep.points=5 locate.tolerance=5e-3";
+    let eq8 = "cells.x.count=16 cells.y.count=16 cells.z.count=10 sweep.points=2";
+    for (sweep, row) in [
+        (format!("coulomb_fc.toml {coulomb}"), "PB1"),
+        (format!("dahl_alpha_eq8.toml {eq8}"), "MX1"),
+        ("bistable.toml sweep.points=9".to_owned(), "PB1"),
         (
-            "bistable",
-            &["sweep.points=3", "sweep.to=-0.5", "figures.at=[-1.0]"],
+            "bistable.toml sweep.points=3 sweep.to=-0.5 figures.at=[-1.0]".to_owned(),
             "",
         ),
     ] {
-        let text = table_of(file, overrides);
+        let text = table_of(&sweep);
         assert!(text.contains(row), "{text}");
         assert_compiles(&text);
     }

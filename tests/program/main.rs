@@ -7,14 +7,20 @@
     clippy::print_stderr
 )]
 
+#[path = "../common/mod.rs"]
+mod common;
+
 mod bad_input;
+mod changed_files;
 mod check;
 mod compare;
 mod composition;
 mod detect;
 mod explorer;
+mod live;
 mod monte_carlo;
 mod paper;
+mod paths;
 mod quantities;
 mod sweep;
 mod systems;

@@ -2,18 +2,14 @@
 
 use std::sync::Arc;
 
-use crate::common::steady::solve;
+use crate::common::steady::{by_trajectories, means, solve};
+use crate::common::sweeps::swept;
 use nalgebra::{DMatrix, DVector};
-use pbif::cancellation::Cancellation;
 use pbif::continuation::{BifurcationStatus, Finding};
 use pbif::density::{Density, Observable, Projection, total_variation};
 use pbif::generator::{AdvectiveScheme, GeneratorOptions, assemble, cell_masses};
 use pbif::space::{Axis, CellSpace};
-use pbif::sweep_file::SweepFile;
-use pbif::system::{LANES, Lanes, Model, NoiseKind, System, TypedModel, registry};
-use rand_distr::{Distribution, StandardNormal};
-use rand_xoshiro::Xoshiro256Plus;
-use rand_xoshiro::rand_core::SeedableRng;
+use pbif::system::{Model, NoiseKind, System, TypedModel, registry};
 
 const OU: NoiseKind = NoiseKind::OrnsteinUhlenbeck;
 
@@ -24,13 +20,7 @@ fn coloured(name: &str, given: &[(&str, f64)]) -> Arc<dyn System> {
 
 /// Mean of a function of the state.
 fn mean(space: &CellSpace, unknowns: &[f64], look: impl Fn(&[f64]) -> f64) -> f64 {
-    let cells = unknowns.iter().enumerate();
-    let terms = cells.map(|(cell, unknown)| {
-        let node = |axis: usize| space.axes()[axis].nodes()[space.position(cell, axis)];
-        let state: Vec<f64> = (0..space.dimension()).map(node).collect();
-        unknown * look(&state)
-    });
-    terms.sum()
+    means(space, unknowns, |state| [look(state)])[0]
 }
 
 const ALPHA: f64 = 1.3;
@@ -237,10 +227,7 @@ fn the_colour_of_noise_moves_a_pitchfork_by_six_times_its_memory_and_strength() 
              [cells]\nx = {{ from = -2.2, to = 2.2, count = 120 }}\nnoise = {{ modes = 8 }}\n\
              [locate]\ngrid_check = \"off\"\n"
         );
-        let file = SweepFile::parse("coloured.toml", &text);
-        let never = Cancellation::new();
-        let sweep = file.validate().unwrap().prepare(&never).unwrap();
-        let found = sweep.run(&never, &mut ()).unwrap();
+        let (_, found) = swept(&text, "");
         let mut rows = found.labels.iter().filter(|row| row.observable.is_some());
         rows.next().unwrap().value
     };
@@ -250,63 +237,15 @@ fn the_colour_of_noise_moves_a_pitchfork_by_six_times_its_memory_and_strength() 
     assert!((2.0 * short - long + 0.6).abs() < 5e-3, "{long} {short}");
 }
 
-/// Time averages of x², y² and the mean product of y and the first noise, with standard errors from the lanes of a
-/// batch.
-fn by_trajectories(system: &dyn System, steps: usize) -> [(f64, f64); 3] {
-    const TIME_STEP: f64 = 0.01;
-    let mut random = Xoshiro256Plus::seed_from_u64(7);
-    let axes = system.dimension();
-    let noise = axes - 1;
-    let amplitude = system.noises()[0].additive().unwrap() * TIME_STEP.sqrt();
-    let mut states: Vec<Lanes> = vec![[0.1; LANES]; axes];
-    let (mut start, mut end) = (states.clone(), states.clone());
-    let mut sums = [[0.0; 3]; LANES];
-    let mut looks = 0.0;
-    for number in 0..steps {
-        system.drift(0.0, &states, &mut start);
-        let mut ahead = states.clone();
-        for lane in 0..LANES {
-            let normal: f64 = StandardNormal.sample(&mut random);
-            for axis in 0..axes {
-                ahead[axis][lane] += TIME_STEP * start[axis][lane];
-            }
-            ahead[noise][lane] += amplitude * normal;
-            states[noise][lane] += amplitude * normal;
-        }
-        system.drift(0.0, &ahead, &mut end);
-        for axis in 0..axes {
-            for lane in 0..LANES {
-                states[axis][lane] += 0.5 * TIME_STEP * (start[axis][lane] + end[axis][lane]);
-            }
-        }
-        if number > steps / 10 && number % 4 == 0 {
-            looks += 1.0;
-            for (lane, sums) in sums.iter_mut().enumerate() {
-                let [x, y, eta] = [0, 1, noise].map(|axis| states[axis][lane]);
-                for (sum, value) in sums.iter_mut().zip([x * x, y * y, y * eta]) {
-                    *sum += value;
-                }
-            }
-        }
-    }
-    let n = LANES as f64;
-    std::array::from_fn(|index| {
-        let mean = sums.iter().map(|one| one[index] / looks).sum::<f64>() / n;
-        let squares = sums.iter().map(|one| (one[index] / looks - mean).powi(2));
-        (mean, (squares.sum::<f64>() / (n * (n - 1.0))).sqrt())
-    })
-}
-
+/// Means of x², y² and the product of y and the first noise agree with trajectories to four standard errors and what
+/// the grid leaves.
 fn assert_agrees(system: &dyn System, axes: Vec<Axis>) {
     let space = CellSpace::new(axes).unwrap();
     let unknowns = solve(system, &space, AdvectiveScheme::Upwind5);
     let noise = space.dimension() - 1;
-    let found = [
-        mean(&space, &unknowns, |s| s[0] * s[0]),
-        mean(&space, &unknowns, |s| s[1] * s[1]),
-        mean(&space, &unknowns, |s| s[1] * s[noise]),
-    ];
-    let trajectories = by_trajectories(system, 60_000);
+    let look = |s: &[f64]| [s[0] * s[0], s[1] * s[1], s[1] * s[noise]];
+    let found = means(&space, &unknowns, look);
+    let trajectories = by_trajectories(system, 60_000, 7..8, look);
     for (found, (sampled, error)) in found.into_iter().zip(trajectories) {
         let off = (found - sampled).abs();
         assert!(
@@ -428,10 +367,7 @@ fn where_no_affordable_number_of_modes_is_enough_no_change_is_located() {
          [system.parameters]\na = 0.3\nsigma2 = 0.3\nnoise_damping = 0.3\n\
          [sweep]\nparameter = \"noise_frequency\"\nfrom = 2\nto = 4\npoints = 3\n\
          [cells]\nx = { from = -2.4, to = 2.4, count = 48 }\n";
-    let file = SweepFile::parse("long_memory.toml", text);
-    let never = Cancellation::new();
-    let sweep = file.validate().unwrap().prepare(&never).unwrap();
-    let found = sweep.run(&never, &mut ()).unwrap();
+    let (_, found) = swept(text, "");
     for point in &found.points {
         let mut findings = point.report.findings.iter();
         let few = findings.find_map(|finding| match finding {
@@ -457,10 +393,7 @@ fn too_few_modes_are_told_when_they_were_given() {
              [locate]\nlargest_distance = 0.9\n",
             tau[0], tau[1]
         );
-        let never = Cancellation::new();
-        let settings = SweepFile::parse("modes.toml", &text).validate().unwrap();
-        let sweep = settings.prepare(&never).unwrap();
-        sweep.run(&never, &mut ()).unwrap()
+        swept(&text, "").1
     };
     let is_told =
         |finding: &Finding| matches!(finding, Finding::FewModes { change } if *change > 0.1);
@@ -490,29 +423,14 @@ fn what_modes_of_noise_are_not_for_is_refused() {
         let space = CellSpace::new(axes).unwrap();
         assemble(&*system, &space, &GeneratorOptions::default()).is_err()
     };
-    assert!(!refused(vec![
-        cells(),
-        cells(),
-        Axis::hermite(0.0, 1.0, 3).unwrap()
-    ]));
-    assert!(refused(vec![
-        cells(),
-        cells(),
-        Axis::hermite(0.1, 1.0, 3).unwrap()
-    ]));
-    assert!(refused(vec![
-        cells(),
-        cells(),
-        Axis::hermite(0.0, 1.1, 3).unwrap()
-    ]));
-    assert!(refused(vec![
-        cells(),
-        Axis::hermite(0.0, 1.0, 3).unwrap(),
-        cells()
-    ]));
-    assert!(refused(vec![
-        cells(),
-        cells(),
-        Axis::modes(-3.0, 3.0, 3).unwrap()
-    ]));
+    let noise = |centre: f64, width: f64| Axis::hermite(centre, width, 3).unwrap();
+    assert!(!refused(vec![cells(), cells(), noise(0.0, 1.0)]));
+    for axes in [
+        vec![cells(), cells(), noise(0.1, 1.0)],
+        vec![cells(), cells(), noise(0.0, 1.1)],
+        vec![cells(), noise(0.0, 1.0), cells()],
+        vec![cells(), cells(), Axis::modes(-3.0, 3.0, 3).unwrap()],
+    ] {
+        assert!(refused(axes));
+    }
 }

@@ -3,14 +3,10 @@
 
 use std::sync::Arc;
 
-use pbif::generator::{GeneratorOptions, assemble, automatic_grading};
+use crate::common::steady::{by_trajectories, means, solve};
+use pbif::generator::{GeneratorOptions, automatic_grading};
 use pbif::space::{Axis, CellSpace, Grading};
-use pbif::stationary::generator::{RateOptions, RateSolver};
-use pbif::system::{LANES, Lanes, System, VELOCITY, registry};
-use rand_distr::{Distribution, StandardNormal};
-use rand_xoshiro::Xoshiro256Plus;
-use rand_xoshiro::rand_core::SeedableRng;
-use rayon::prelude::*;
+use pbif::system::{System, VELOCITY, registry};
 
 const COMMON: [(&str, f64); 4] = [
     ("alpha", -0.3),
@@ -48,86 +44,8 @@ fn by_generator<const Q: usize>(
     look: impl Fn(&[f64]) -> [f64; Q],
 ) -> [f64; Q] {
     let space = CellSpace::new(axes).unwrap();
-    let generator = assemble(system, &space, &GeneratorOptions::default()).unwrap();
-    let mut solver = RateSolver::new(space.clone(), RateOptions::default());
-    let steady = solver
-        .solve(&generator.matrix, &generator.escape, None)
-        .unwrap();
-    assert!(steady.info.converged);
-    let (mut sums, mut total) = ([0.0; Q], 0.0);
-    for (cell, unknown) in steady.mass.iter().enumerate() {
-        let node = |axis: usize| space.axes()[axis].nodes()[space.position(cell, axis)];
-        let state: Vec<f64> = (0..space.axes().len()).map(node).collect();
-        total += unknown;
-        for (sum, value) in sums.iter_mut().zip(look(&state)) {
-            *sum += unknown * value;
-        }
-    }
-    sums.map(|sum| sum / total)
-}
-
-const TIME_STEP: f64 = 0.01;
-
-/// Time averages of one batch of trajectories by stochastic Heun, without the first tenth.
-fn batch<const Q: usize>(
-    system: &dyn System,
-    steps: usize,
-    seed: u64,
-    look: impl Fn(&[f64]) -> [f64; Q],
-) -> [f64; Q] {
-    let mut random = Xoshiro256Plus::seed_from_u64(seed);
-    let axes = system.dimension();
-    let amplitude = system.noises()[0].additive().unwrap() * TIME_STEP.sqrt();
-    let mut states: Vec<Lanes> = vec![[0.1; LANES]; axes];
-    let (mut start, mut end) = (states.clone(), states.clone());
-    let (mut sums, mut looks) = ([0.0; Q], 0.0);
-    for number in 0..steps {
-        system.drift(0.0, &states, &mut start);
-        let mut ahead = states.clone();
-        for lane in 0..LANES {
-            let normal: f64 = StandardNormal.sample(&mut random);
-            for axis in 0..axes {
-                ahead[axis][lane] += TIME_STEP * start[axis][lane];
-            }
-            ahead[VELOCITY][lane] += amplitude * normal;
-            states[VELOCITY][lane] += amplitude * normal;
-        }
-        system.drift(0.0, &ahead, &mut end);
-        for axis in 0..axes {
-            for lane in 0..LANES {
-                states[axis][lane] += 0.5 * TIME_STEP * (start[axis][lane] + end[axis][lane]);
-            }
-        }
-        if number > steps / 10 && number % 8 == 0 {
-            looks += LANES as f64;
-            for lane in 0..LANES {
-                let state: Vec<f64> = states.iter().map(|axis| axis[lane]).collect();
-                for (sum, value) in sums.iter_mut().zip(look(&state)) {
-                    *sum += value;
-                }
-            }
-        }
-    }
-    sums.map(|sum| sum / looks)
-}
-
-/// Means and standard errors from independent batches.
-fn by_trajectories<const Q: usize>(
-    system: &dyn System,
-    steps: usize,
-    look: impl Fn(&[f64]) -> [f64; Q] + Sync,
-) -> [(f64, f64); Q] {
-    let groups = 16_u64;
-    let rows: Vec<[f64; Q]> = (0..groups)
-        .into_par_iter()
-        .map(|seed| batch(system, steps, seed, &look))
-        .collect();
-    let n = rows.len() as f64;
-    std::array::from_fn(|index| {
-        let mean = rows.iter().map(|row| row[index]).sum::<f64>() / n;
-        let squares: f64 = rows.iter().map(|row| (row[index] - mean).powi(2)).sum();
-        (mean, (squares / (n * (n - 1.0))).sqrt())
-    })
+    let scheme = GeneratorOptions::default().scheme;
+    means(&space, &solve(system, &space, scheme), look)
 }
 
 /// Noise feeds σ²/2 into the kinetic energy, force and friction take it out: E[y a_y] = -σ²/2 to the share `of_grid`.
@@ -149,7 +67,7 @@ fn assert_agrees(system: &dyn System, cells: usize, modes: usize, of_grid: f64) 
     let fed = 0.5 * system.noises()[0].additive().unwrap().powi(2);
     let missed = (found[0] / fed + 1.0).abs();
     assert!(missed < of_grid, "power: {missed:e} of what noise feeds in");
-    let sampled = by_trajectories(system, 25_000, look);
+    let sampled = by_trajectories(system, 25_000, 0..16, look);
     for (index, (found, (mean, error))) in found.iter().zip(sampled).enumerate().skip(1) {
         let allowed = 4.0 * error + of_grid * mean.abs();
         let gap = (found - mean).abs();

@@ -1,26 +1,20 @@
 //! The systems of the gallery against what is known: exact values of their changes, exact densities, free trajectories.
 
-use pbif::cancellation::Cancellation;
 use pbif::continuation::SweepResult;
 use pbif::density::{EstimatedDensity, total_variation};
-use pbif::sweep_file::{SweepFile, starting_files};
+use pbif::sweep_file::starting_files;
 
-fn run(name: &str, settings: &[&str]) -> SweepResult {
+use crate::common::sweeps::{rows, swept};
+
+fn run(name: &str, settings: &str) -> SweepResult {
     let mut files = starting_files().iter();
     let file = files.find(|file| file.name == name).unwrap();
-    let mut file = SweepFile::parse(name, file.text);
-    file.set_all("--set", settings);
-    let never = Cancellation::new();
-    let sweep = file.validate().unwrap().prepare(&never).unwrap();
-    sweep.run(&never, &mut ()).unwrap()
+    swept(file.text, settings).1
 }
 
 /// A change of an observable is located at this value, within its own error, which is at most `error`.
 fn assert_located(found: &SweepResult, observable: &str, exact: f64, error: f64) {
-    let rows = found.labels.iter().filter(|row| {
-        let named = row.observable.map(|one| one.name(&found.subject.family));
-        named.as_deref() == Some(observable)
-    });
+    let rows = rows(found, observable).into_iter();
     let nearest = rows.min_by(|a, b| {
         let distance = |value: f64| (value - exact).abs();
         distance(a.value).total_cmp(&distance(b.value))
@@ -44,7 +38,7 @@ fn assert_located(found: &SweepResult, observable: &str, exact: f64, error: f64)
 
 #[test]
 fn noise_splits_the_peak_of_two_alleles_at_intensity_four() {
-    let found = run("genetic", &[]);
+    let found = run("genetic", "");
     assert_located(&found, "x", 2.0, 1e-3);
 }
 
@@ -52,45 +46,30 @@ fn noise_splits_the_peak_of_two_alleles_at_intensity_four() {
 fn peaks_of_the_schloegl_reaction_are_born_at_folds() {
     // 27 (2 - b + g)² = 4 (3 - b)³ with b = 2.4.
     let half = (4.0 * 0.6_f64.powi(3) / 27.0).sqrt();
-    let found = run("schloegl", &[]);
+    let found = run("schloegl", "");
     assert_located(&found, "x", 0.4 - half, 1e-3);
     assert_located(&found, "x", 0.4 + half, 1e-3);
 }
 
 #[test]
 fn the_ring_of_the_laser_opens_at_threshold() {
-    let coarse = [
-        "sweep.points=5",
-        "cells.x.count=40",
-        "cells.y.count=40",
-        "locate.grid_check=off",
-    ];
-    let found = run("laser", &coarse);
+    let coarse = "sweep.points=5 cells.x.count=40 cells.y.count=40 locate.grid_check=off";
+    let found = run("laser", coarse);
     assert_located(&found, "xy", 0.0, 5e-3);
 }
 
 #[test]
 fn a_ring_about_a_peak_is_born_where_the_damping_has_a_double_zero() {
     // c + b H + H² with b = -2.
-    let settings = [
-        "sweep.points=7",
-        "locate.grid_check=off",
-        "sweep.from=0.7",
-        "detect.marginals=[]",
-    ];
-    let found = run("peak_and_ring", &settings);
+    let settings = "sweep.points=7 locate.grid_check=off sweep.from=0.7 detect.marginals=[]";
+    let found = run("peak_and_ring", settings);
     assert_located(&found, "xy", 1.0, 1e-2);
 }
 
 #[test]
 fn a_ship_in_wind_has_its_peaks_where_the_moment_is_zero() {
-    let settings = [
-        "sweep.points=6",
-        "locate.grid_check=off",
-        "detect.joint=[]",
-        "detect.marginals=[\"x\"]",
-    ];
-    let found = run("ship_roll", &settings);
+    let settings = "sweep.points=6 locate.grid_check=off detect.joint=[] detect.marginals=[\"x\"]";
+    let found = run("ship_roll", settings);
     // 1 - 3 k s + 5 q s² = 0 for s = x², with k = 2.2 and q = 1.1; the moment there is the heeling moment.
     let (k, q) = (2.2_f64, 1.1);
     let root = ((3.0 * k).powi(2) - 20.0 * q).sqrt();
@@ -106,7 +85,7 @@ fn a_ship_in_wind_has_its_peaks_where_the_moment_is_zero() {
 fn verhulst_growth_has_its_exact_density() {
     let found = run(
         "verhulst",
-        &["sweep.points=2", "sweep.from=0.8", "locate.grid_check=off"],
+        "sweep.points=2 sweep.from=0.8 locate.grid_check=off",
     );
     for (point, a) in [(&found.points[0], 0.8), (found.points.last().unwrap(), 1.0)] {
         // x^(a/D - 1) exp(-x/D), integrated over each cell by its middle.
@@ -130,19 +109,11 @@ fn verhulst_growth_has_its_exact_density() {
 }
 
 /// Generator and free trajectories have the same marginals to what the trajectories' own errors allow.
-fn assert_as_trajectories(name: &str, settings: &[&str]) {
-    let ends = [
-        "sweep.points=2",
-        "locate.grid_check=off",
-        "locate.largest_distance=0.99",
-    ];
-    let solved = run(name, &[&ends, settings].concat());
-    let sampled = [
-        "method.kind=monte-carlo",
-        "method.error=0.02",
-        "detect.joint=[]",
-    ];
-    let sampled = run(name, &[&ends, settings, &sampled[..]].concat());
+fn assert_as_trajectories(name: &str, settings: &str) {
+    let ends = "sweep.points=2 locate.grid_check=off locate.largest_distance=0.99";
+    let solved = run(name, &format!("{ends} {settings}"));
+    let sampled = "method.kind=monte-carlo method.error=0.02 detect.joint=[]";
+    let sampled = run(name, &format!("{ends} {settings} {sampled}"));
     let last = |result: &SweepResult| -> Vec<EstimatedDensity> {
         result.points.last().unwrap().densities.clone()
     };
@@ -175,33 +146,27 @@ fn densities_agree_with_free_trajectories() {
         "duffing_vanderpol_parametric",
         "galloping",
     ] {
-        assert_as_trajectories(name, &["cells.x.count=50", "cells.y.count=50"]);
+        assert_as_trajectories(name, "cells.x.count=50 cells.y.count=50");
     }
-    assert_as_trajectories(
-        "toggle",
-        &["cells.u.count=50", "cells.v.count=50", "sweep.to=1.6"],
-    );
+    assert_as_trajectories("toggle", "cells.u.count=50 cells.v.count=50 sweep.to=1.6");
 }
 
 #[test]
 fn a_neuron_agrees_with_free_trajectories() {
     // The fast pulse is narrow: coarser cells are 1 % off.
-    assert_as_trajectories(
-        "fitzhugh_nagumo",
-        &["cells.v.count=110", "cells.w.count=110"],
-    );
+    assert_as_trajectories("fitzhugh_nagumo", "cells.v.count=110 cells.w.count=110");
 }
 
 #[test]
 fn a_harvester_agrees_with_free_trajectories() {
     // Modes carry v, cells of trajectories do not.
-    assert_as_trajectories("harvester", &["detect.marginals=[\"x\", \"y\"]"]);
+    assert_as_trajectories("harvester", "detect.marginals=[\"x\",\"y\"]");
 }
 
 #[test]
 fn the_split_of_a_harvester_does_not_depend_on_cells_and_modes() {
     // 100 × 100 cells and 9 modes: 0.057674 ± 1e-6 and 0.08775 ± 2e-5.
-    let found = run("harvester", &["sweep.points=4"]);
+    let found = run("harvester", "sweep.points=4");
     assert_located(&found, "x", 0.057_674, 2e-4);
     assert_located(&found, "xy", 0.087_75, 4e-4);
 }
@@ -210,11 +175,7 @@ fn the_split_of_a_harvester_does_not_depend_on_cells_and_modes() {
 fn the_colour_of_noise_alone_splits_a_peak() {
     // Independent of the cells: twice as many of them and of the modes find the same to 1e-6. White noise never splits
     // it.
-    let settings = [
-        "sweep.points=4",
-        "cells.x.count=120",
-        "cells.noise.modes=10",
-    ];
-    let found = run("coloured_bistable", &settings);
+    let settings = "sweep.points=4 cells.x.count=120 cells.noise.modes=10";
+    let found = run("coloured_bistable", settings);
     assert_located(&found, "x", 0.191_369, 1e-4);
 }

@@ -1,0 +1,201 @@
+//! Maps through the program: made, killed and gone on with, cut into shards, drawn, refused in words.
+
+use std::sync::Mutex;
+
+use pbif::cancellation::Cancellation;
+use pbif::continuation::map::MapProgress;
+use pbif::run::MapCheckpoint;
+
+use super::maps::{CUSP, RAYLEIGH};
+use super::support::off_the_fold;
+use crate::common::room::Room;
+use crate::common::sweeps::prepared;
+
+#[test]
+fn the_program_goes_on_with_a_map_that_was_killed() {
+    let room = Room::new();
+    room.write("cusp.toml", CUSP);
+    let sweep = prepared(CUSP, "");
+    let nodes = Mutex::new(Vec::new());
+    let observer = |told: &MapProgress<'_>| {
+        if let MapProgress::Solved { node, .. } = told {
+            nodes.lock().unwrap().push((*node).clone());
+        }
+    };
+    sweep.map(&Cancellation::new(), &observer).unwrap();
+    let nodes = nodes.into_inner().unwrap();
+    // What a kill leaves: the nodes so far, and nothing else.
+    std::fs::create_dir(room.path("out")).unwrap();
+    let checkpoint = MapCheckpoint::new(&room.path("out"), &sweep.to_toml());
+    checkpoint.write(&nodes[..60]).unwrap();
+    // On these cells the cusp itself is not known well enough to be located.
+    let printed = room.solved("sweep cusp.toml --out out --resume");
+    printed.says(&["going on after 60 nodes"]);
+    assert!(checkpoint.read().unwrap().is_empty());
+    assert!(room.holds("out/map.csv"));
+}
+
+#[test]
+fn a_map_in_shards_is_the_map_in_one_piece() {
+    let room = Room::new();
+    room.write("plane.toml", RAYLEIGH);
+    room.solved("sweep plane.toml --quiet --out one");
+    let shard = |number: &str| {
+        let line = format!("sweep plane.toml --quiet --out out --shard {number} --resume");
+        room.done(&line)
+    };
+    shard("3/3").says(&["shard 3 of 3 of a map"]);
+    // What is missing is named.
+    room.refused("merge out", &["1/3 (not begun)", "--shard 1/3"]);
+    room.refused("merge out --partial", &["for the shards of a sweep"]);
+    shard("1/3");
+    shard("2/3");
+    shard("2/3").says(&["the shard is complete"]);
+    room.solved("merge out --quiet");
+
+    // The nodes are the same, and so are the curves, to the tolerance of the solver.
+    assert_eq!(room.read("out/map.csv"), room.read("one/map.csv"));
+    let [whole, merged] = ["one", "out"].map(|name| room.table(&format!("{name}/curves.csv")).0);
+    assert_eq!(whole.len(), merged.len());
+    for (one, other) in whole.iter().zip(&merged) {
+        let [a, b] = [one, other].map(|row| row.numbers(["a", "sigma2"]));
+        let off = ((a[0] - b[0]) / 0.08).hypot((a[1] - b[1]) / 0.02);
+        let names = ["curve", "label"];
+        assert_eq!(one.texts(names), other.texts(names));
+        assert!(off < 1e-7, "{one:?} {other:?}: {off:.1e}");
+    }
+    // Shards of another sweep do not fit.
+    room.done("sweep plane.toml --quiet --out out --shard 2/3 sweep.points=6");
+    room.refused("merge out --quiet", &["sweep.points"]);
+}
+
+#[test]
+fn the_program_makes_maps_and_says_what_is_wrong_with_them() {
+    let room = Room::new();
+    room.write("cusp.toml", CUSP);
+    let sweep = "sweep cusp.toml --quiet --out out";
+    room.run(sweep).says(&["map of h and a", "C2 "]);
+    room.holds_all(
+        "out",
+        "map.json map.csv curves.csv codimension_two.csv codimension_two.tex",
+    );
+    room.holds_all("out", "densities/x.csv figures/map_x.svg figures/map_x.png");
+    let table = room.read("out/map.csv");
+    assert!(
+        table.starts_with("h,a,signature_x,status,level,reason\n"),
+        "{table}"
+    );
+    assert!(table.lines().any(|line| line.contains(",2 peaks,")));
+    let curves = room.read("out/curves.csv");
+    assert!(curves.starts_with("curve,label,h,a,error,"));
+    assert!(curves.lines().any(|line| line.starts_with("C2,start,")));
+
+    // Drawn again from what is stored, to the same picture.
+    let pictures = || ["again/map_x.svg", "out/figures/map_x.svg"].map(|name| room.read(name));
+    room.done("plot out --quiet --out again --format svg,csv --only map_x");
+    let [again, first] = pictures();
+    assert_eq!(again, first);
+    assert!(room.read("again/map_x.csv").contains("curve 2,"));
+    room.done("plot out --quiet --style single,dark");
+    let [again, other] = pictures();
+    assert_ne!(again, other);
+    for (more, words) in [
+        ("--at 0.1", "`--at` is for the run of a sweep"),
+        ("--only map_y", "no figure `map_y`, only map_x"),
+        ("cells.x.count=9", "cannot be set for a stored run"),
+    ] {
+        room.refused(&format!("plot out --quiet {more}"), &[words]);
+    }
+    // Complete, there is nothing to go on with; of another sweep it is refused.
+    room.done(&format!("{sweep} --resume"))
+        .says(&["the map is complete"]);
+    for (more, words) in [
+        (
+            "--resume map.points=6",
+            ["is of another sweep", "map.points"],
+        ),
+        (
+            "--shard 1/20",
+            ["from 1 to 10", "along its second parameter"],
+        ),
+        ("map.parameter=h", ["is the swept one, `h`", "`sigma2`"]),
+        ("map.parameter=b", ["no parameter `b`", ""]),
+        ("map.to=-0.4", ["from -0.4 to -0.4 along `a`", ""]),
+        ("map.depth=9", ["`map.depth` cannot be `9`", "from 0 to 8"]),
+    ] {
+        room.refused(&format!("{sweep} {more}"), &words);
+    }
+    room.change("cusp.toml", "to = 1.0, ", "");
+    room.refused(sweep, &["missing key `map.to`"]);
+}
+
+#[test]
+fn what_sweeps_locate_is_marked_in_the_plane_that_they_lie_in() {
+    let room = Room::new();
+    room.write("map.toml", CUSP);
+    let lines = CUSP.lines().filter(|line| !line.starts_with("map = "));
+    room.write("line.toml", lines.collect::<Vec<_>>().join("\n"));
+    room.solved("sweep map.toml --quiet --out plane");
+    let line = |out: &str, settings: &str| {
+        room.solved(&format!("sweep line.toml --quiet --out {out} {settings}"))
+    };
+    line("over_h", "system.parameters.a=0.6");
+    let along_a = "sweep.parameter=a sweep.from=0.3 sweep.to=0.9";
+    line("over_a", &format!("{along_a} system.parameters.h=0.2"));
+    let draw = "plot plane --quiet --out pictures --format svg,csv,txt";
+    let said = room
+        .done(&format!("{draw} --with over_h --with over_a"))
+        .text();
+    // Both branches are crossed at a = 0.6, one at h = 0.2; the sweeps end where the curves pass.
+    assert_eq!(
+        said.matches("within the errors of both").count(),
+        3,
+        "{said}"
+    );
+    let read = |name: &str| room.read(&format!("pictures/{name}"));
+    let table = read("map_x.csv");
+    let rows: Vec<&str> = table
+        .lines()
+        .filter_map(|line| line.strip_prefix("row PB"))
+        .collect();
+    assert_eq!(rows.len(), 3, "{table}");
+    for row in rows {
+        let cells: Vec<&str> = row.split(',').collect();
+        let values = [1, 2].map(|k| cells[k].parse().unwrap());
+        assert!(off_the_fold(values, [1.0, 1.4]).abs() < 1e-4, "{row}");
+    }
+    let caption = read("map_x.txt");
+    assert!(
+        caption.contains("sweeps over h at a = 0.6, over a at h = 0.2"),
+        "{caption}"
+    );
+    let marked = read("map_x.svg");
+    room.done(draw);
+    assert_ne!(read("map_x.svg"), marked);
+
+    // What does not lie in the plane is refused.
+    for (settings, words) in [
+        (
+            "system.parameters.sigma2=0.2",
+            "it has sigma2 = 0.2, and the plane has sigma2 = 0.1",
+        ),
+        (
+            "system.parameters.a=1.5",
+            "it holds a = 1.5, and the box goes from -0.4 to 1",
+        ),
+        ("sweep.from=0.6 sweep.to=0.7", "its h goes from 0.6 to 0.7"),
+        (
+            "sweep.parameter=sigma2 sweep.from=0.1 sweep.to=0.2",
+            "it sweeps sigma2",
+        ),
+        (
+            "'system.equations.x=\"h + a x - x^5\"'",
+            "its equations are not those of the plane",
+        ),
+    ] {
+        line("other", &format!("{settings} sweep.points=3"));
+        room.refused(&format!("{draw} --with other"), &[words]);
+    }
+    let of_a_run = room.run("plot over_h --with over_a");
+    of_a_run.says(&["`--with` marks sweeps in the figure of a plane"]);
+}
