@@ -5,7 +5,6 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::balance::Jacobian;
 use super::passes::Seat;
 use crate::cancellation::{Cancellation, Cancelled};
 
@@ -56,10 +55,13 @@ fn add_scaled(y: &mut [f64], factor: f64, x: &[f64]) {
     }
 }
 
-/// Solves M⁻¹ F' x = start, M⁻¹ by the passes at `seat`.
+/// A linear operator A.
+pub(super) type Operator<'a> = dyn Fn(&[f64]) -> Vec<f64> + Sync + 'a;
+
+/// Solves M⁻¹ A x = start, M⁻¹ by the passes at `seat`.
 pub(super) async fn gmres(
     seat: &Seat,
-    jacobian: &Jacobian<'_>,
+    operator: &Operator<'_>,
     start: Vec<f64>,
     limits: Limits,
     cancellation: &Cancellation,
@@ -79,7 +81,7 @@ pub(super) async fn gmres(
     let mut triangle = Triangle::new(size);
     while !outcome.reached && outcome.iterations < limits.iterations {
         cancellation.check()?;
-        let mut next = seat.pass(jacobian.apply(&basis[outcome.iterations])).await;
+        let mut next = seat.pass(operator(&basis[outcome.iterations])).await;
         outcome.iterations += 1;
         let mut column = vec![0.0; basis.len()];
         // Twice is enough (Kahan): classical trouble with nearly dependent vectors.

@@ -18,6 +18,7 @@
 //! | `passes` | passes through the factors, which two iterations may share |
 //! | `krylov`, `newton` | GMRES, and Newton's method by it |
 //! | `response` | how a steady state answers to a change |
+//! | `transposed` | functions of the state: Qᵀ x = b by the same factors |
 //! | `solver` | when to iterate, when to factorise |
 //! | `memory` | where the solver stands, to go on from there later |
 //! | `symmetric` | symmetric generators on half of the cells |
@@ -39,12 +40,14 @@ mod symbolic;
 mod symmetric;
 #[cfg(test)]
 mod tests;
+mod transposed;
 mod triangular;
 mod updates;
 
 pub use memory::SolverMemory;
 pub use preconditioner::{Estimate, RateMethod, estimate};
 pub use symmetric::{Along, RateSolver};
+pub use transposed::TransposedSolution;
 
 /// Settings of [`RateSolver`].
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -18,7 +18,7 @@ use sprs::CsMat;
 use super::dissection::Dissection;
 use super::fronts::{Factors, allocate, factorise};
 use super::symbolic::Symbolic;
-use super::triangular;
+use super::triangular::{self, transposed::solve_transposed};
 use crate::cancellation::{Cancellation, Cancelled};
 use layout::blocks;
 pub(super) use layout::{Layout, others};
@@ -148,6 +148,49 @@ impl ModeFactors {
             vector[cell] = 0.0;
         }
         solved
+    }
+
+    /// M⁻ᵀ r, zero at the held cell: every step of [`ModeFactors::apply`] transposed, in the opposite order.
+    pub(super) fn apply_transposed(&self, residual: &[f64]) -> Vec<f64> {
+        let cell = self.held;
+        let pairs = residual.iter().zip(&self.null).enumerate();
+        let others = pairs.filter(|(index, _)| *index != cell);
+        let shared: f64 = others.map(|(_, (value, null))| value * null).sum();
+        let given = -shared / self.null[cell];
+        let moments = self.layout.moments_by_weights(residual, (cell, given));
+        let moments = self.substitute_transposed(moments);
+        let mut solved = self.layout.values_of(&moments);
+        let lacking = solved[cell];
+        solved.iter_mut().for_each(|value| *value -= lacking);
+        solved
+    }
+
+    /// Backward substitution from the highest mode down, with the transposed factors; the lowest mode of the held place
+    /// is zero.
+    fn substitute_transposed(&self, mut moments: Vec<f64>) -> Vec<f64> {
+        let (places, count) = (self.layout.places(), self.layout.modes());
+        let triangle = count * (count - 1) / 2;
+        let order = &self.symbolic.order;
+        for (number, mode) in self.modes.iter().enumerate().rev() {
+            let right = |&place: &u32| moments[place as usize * count + number];
+            let mut values: Vec<f64> = order.iter().map(right).collect();
+            solve_transposed(&self.symbolic, &mode.factors.fronts, &mut values);
+            for (&place, value) in order.iter().zip(&values) {
+                moments[place as usize * count + number] = value / mode.scale;
+            }
+            if number == 0 {
+                moments[self.layout.place(self.held) * count] = 0.0;
+            }
+            let row = number * number.saturating_sub(1) / 2;
+            for place in 0..places {
+                let rates = &self.below[place * triangle + row..][..number];
+                let (lower, own) = moments[place * count..][..=number].split_at_mut(number);
+                for (moment, rate) in lower.iter_mut().zip(rates) {
+                    *moment -= f64::from(*rate) * own[0];
+                }
+            }
+        }
+        moments
     }
 
     /// Forward substitution from the lowest mode up: from moments of the right sides, place by place, to masses of the

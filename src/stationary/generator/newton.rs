@@ -4,7 +4,7 @@
 //! a residual would not, because slow modes hide in it.
 
 use super::balance::Balance;
-use super::krylov::{Limits, gmres};
+use super::krylov::{Limits, Operator, gmres};
 use super::passes::Seat;
 use crate::cancellation::{Cancellation, Cancelled};
 
@@ -84,7 +84,8 @@ impl Newton<'_> {
             }
             let limits = self.limits(progress.error, rounds, self.limit - used);
             let jacobian = self.balance.jacobian(mass);
-            let outcome = gmres(self.seat, &jacobian, step, limits, self.cancellation).await?;
+            let derivative = |vector: &[f64]| jacobian.apply(vector);
+            let outcome = gmres(self.seat, &derivative, step, limits, self.cancellation).await?;
             used += outcome.iterations;
             // Newton's first steps may pass by a singular matrix that says nothing of the solution.
             let early = self.balance.leaks() && rounds <= 2;
@@ -110,27 +111,24 @@ impl Newton<'_> {
     }
 }
 
-/// Solves F'(mass) x = source from a start that is zero at the held cell, restarted until the correction is small
-/// against x; gives x and the iterations used, `None` when it is not after `limit` of them.
+/// Solves A x = source from a start that is zero at the held cell, restarted until the correction is small against x; gives x and the iterations used, `None` when it is not after `limit` of them.
 ///
 /// # Errors
 /// [`Cancelled`].
 pub(super) async fn linear(
     seat: &Seat,
-    balance: &Balance<'_>,
-    mass: &[f64],
+    operator: &Operator<'_>,
     (source, start): (&[f64], Option<Vec<f64>>),
     (tolerance, limit): (f64, usize),
     cancellation: &Cancellation,
 ) -> Result<Option<(Vec<f64>, usize)>, Cancelled> {
-    let jacobian = balance.jacobian(mass);
     let mut solution = start.unwrap_or_else(|| vec![0.0; source.len()]);
     let mut used = 0;
     while used < limit {
         cancellation.check()?;
         let mut rest = source.to_vec();
         if norm(&solution) > 0.0 {
-            let product = jacobian.apply(&solution);
+            let product = operator(&solution);
             rest.iter_mut().zip(product).for_each(|(a, b)| *a -= b);
         }
         let correction = seat.pass(rest).await;
@@ -147,7 +145,7 @@ pub(super) async fn linear(
             iterations: (limit - used).min(BASIS),
             give_up_early: false,
         };
-        let outcome = gmres(seat, &jacobian, correction, limits, cancellation).await?;
+        let outcome = gmres(seat, operator, correction, limits, cancellation).await?;
         used += outcome.iterations;
         add(&mut solution, &outcome.solution);
         // GMRES knows its residual, which a look at it confirms; two digits need no look.

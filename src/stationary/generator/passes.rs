@@ -35,8 +35,12 @@ impl Seat {
     }
 }
 
-/// Runs one iteration.
-pub(super) fn alone<T>(kept: &Preconditioner, seat: &Seat, work: impl Future<Output = T>) -> T {
+/// Runs one iteration; `apply` is M⁻¹.
+pub(super) fn alone<T>(
+    apply: impl Fn(&[f64]) -> Vec<f64>,
+    seat: &Seat,
+    work: impl Future<Output = T>,
+) -> T {
     let mut work = pin!(work);
     let mut context = Context::from_waker(Waker::noop());
     loop {
@@ -44,8 +48,7 @@ pub(super) fn alone<T>(kept: &Preconditioner, seat: &Seat, work: impl Future<Out
             return done;
         }
         if let Some(residual) = take(&seat.left) {
-            let [vector] = kept.apply([&residual]);
-            put(&seat.given, vector);
+            put(&seat.given, apply(&residual));
         }
     }
 }

@@ -9,7 +9,7 @@ use super::modewise::{Layout, ModeFactors, others};
 use super::narrowing::narrow;
 use super::prediction::{Prediction, predict};
 use super::symbolic::Symbolic;
-use super::triangular;
+use super::triangular::{self, transposed::solve_transposed};
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::space::CellSpace;
 
@@ -302,6 +302,20 @@ impl Preconditioner {
         }
     }
 
+    /// M⁻¹ r, zero at the held cell.
+    pub(super) fn apply_one(&self, residual: &[f64]) -> Vec<f64> {
+        let [vector] = self.apply([residual]);
+        vector
+    }
+
+    /// M⁻ᵀ r, zero at the held cell.
+    pub(super) fn apply_transposed(&self, residual: &[f64]) -> Vec<f64> {
+        match &self.factors {
+            Kept::Whole(factors) => factors.apply_transposed(residual, self.held),
+            Kept::Modes(factors) => factors.apply_transposed(residual),
+        }
+    }
+
     /// Bytes of the factors.
     pub(super) fn factor_bytes(&self) -> u64 {
         match &self.factors {
@@ -389,13 +403,30 @@ impl WholeFactors {
             Numbers::Double(factors) => triangular::solve(&self.symbolic, &factors.fronts, vectors),
             Numbers::Single(factors) => triangular::solve(&self.symbolic, &factors.fronts, vectors),
         }
-        x.map(|x| {
-            let mut out = vec![0.0; x.len()];
-            for (&cell, value) in order.iter().zip(x) {
-                out[cell as usize] = value / self.scale;
+        x.map(|x| self.in_place(&x, held))
+    }
+
+    fn apply_transposed(&self, residual: &[f64], held: usize) -> Vec<f64> {
+        let order = self.symbolic.order.iter();
+        let mut x: Vec<f64> = order.map(|&cell| residual[cell as usize]).collect();
+        match &self.numbers {
+            Numbers::Double(factors) => {
+                solve_transposed(&self.symbolic, &factors.fronts, &mut x);
             }
-            out[held] = 0.0;
-            out
-        })
+            Numbers::Single(factors) => {
+                solve_transposed(&self.symbolic, &factors.fronts, &mut x);
+            }
+        }
+        self.in_place(&x, held)
+    }
+
+    /// What stands in the elimination order, cell by cell.
+    fn in_place(&self, x: &[f64], held: usize) -> Vec<f64> {
+        let mut out = vec![0.0; x.len()];
+        for (&cell, value) in self.symbolic.order.iter().zip(x) {
+            out[cell as usize] = value / self.scale;
+        }
+        out[held] = 0.0;
+        out
     }
 }

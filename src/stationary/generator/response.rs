@@ -82,14 +82,20 @@ impl DirectSolver {
         };
         let (seat, limit) = (Seat::default(), self.options.max_iterations);
         let asked = answer(&seat, &balance, mass, question, limit, &self.cancellation);
-        let (response, used) = alone(kept, &seat, asked)?.ok_or(RateError::Sensitivity)?;
+        let found = alone(|rest| kept.apply_one(rest), &seat, asked)?;
+        let (response, used) = found.ok_or(RateError::Sensitivity)?;
+        self.count_response(used);
+        Ok(response)
+    }
+
+    /// Counts the iterations of an answer beyond those that new factors would take.
+    pub(super) fn count_response(&mut self, used: usize) {
         // With a stand-in new factors would save no more than they do in a solve.
         let fresh = match &self.plan {
             Some((_, plan)) if !plan.method.is_exact() => self.baseline.max(FRESH_RESPONSE),
             _ => FRESH_RESPONSE,
         };
         self.excess += used.saturating_sub(fresh);
-        Ok(response)
     }
 }
 
@@ -120,7 +126,9 @@ pub(super) async fn answer(
     });
     let start = start.filter(|start| start.iter().all(|value| value.is_finite()));
     let effort = (question.tolerance, limit);
-    let found = linear(seat, balance, mass, (&source, start), effort, cancellation).await?;
+    let jacobian = balance.jacobian(mass);
+    let derivative = |vector: &[f64]| jacobian.apply(vector);
+    let found = linear(seat, &derivative, (&source, start), effort, cancellation).await?;
     Ok(found.map(|(mut response, used)| {
         let excess: f64 = response.iter().sum::<f64>() / total;
         for (slot, value) in response.iter_mut().zip(mass) {

@@ -215,7 +215,8 @@ impl DirectSolver {
         };
         let (used, passes, given) = match question {
             None => {
-                let used = alone(kept, &seat, newton.run(mass, progress))?;
+                let run = newton.run(mass, progress);
+                let used = alone(|rest| kept.apply_one(rest), &seat, run)?;
                 (used, used, None)
             }
             Some(question) => {

@@ -3,6 +3,8 @@
 //! A subtree's unknowns are contiguous, so halves are solved in parallel. Sums always run in the same order, whether a
 //! vector is solved alone or with others: a pass is bound by reading the factors, which several vectors then share.
 
+pub(super) mod transposed;
+
 use std::array::from_fn;
 
 use multiversion::multiversion;

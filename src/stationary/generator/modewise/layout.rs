@@ -117,12 +117,22 @@ impl Layout {
     }
 
     /// Moments of masses of cells, with another number in place of one of them.
-    pub(super) fn moments(&self, masses: &[f64], (cell, given): (usize, f64)) -> Vec<f64> {
+    pub(super) fn moments(&self, masses: &[f64], given: (usize, f64)) -> Vec<f64> {
+        self.summed(&self.values, masses, given)
+    }
+
+    /// The transpose of [`Layout::masses`], with another number in place of one of the cells'.
+    pub(super) fn moments_by_weights(&self, values: &[f64], given: (usize, f64)) -> Vec<f64> {
+        self.summed(&self.weighted, values, given)
+    }
+
+    /// Sums over the nodes of a place, a column of `by` a mode.
+    fn summed(&self, by: &[f64], masses: &[f64], (cell, given): (usize, f64)) -> Vec<f64> {
         let mut moments = vec![0.0; masses.len()];
         let places = moments.par_chunks_exact_mut(self.modes).with_min_len(64);
         let cells = self.cells.par_chunks_exact(self.modes);
         places.zip(cells).for_each(|(moments, cells)| {
-            for (&at, values) in cells.iter().zip(self.values.chunks_exact(self.modes)) {
+            for (&at, values) in cells.iter().zip(by.chunks_exact(self.modes)) {
                 let at = at as usize;
                 let mass = if at == cell { given } else { masses[at] };
                 for (moment, value) in moments.iter_mut().zip(values) {
@@ -135,11 +145,21 @@ impl Layout {
 
     /// Masses of cells with these moments.
     pub(super) fn masses(&self, moments: &[f64]) -> Vec<f64> {
+        self.at_nodes(&self.weighted, moments)
+    }
+
+    /// The transpose of [`Layout::moments`].
+    pub(super) fn values_of(&self, moments: &[f64]) -> Vec<f64> {
+        self.at_nodes(&self.values, moments)
+    }
+
+    /// Sums over the modes of a place, a row of `by` a node.
+    fn at_nodes(&self, by: &[f64], moments: &[f64]) -> Vec<f64> {
         let mut at_nodes = vec![0.0; moments.len()];
         let places = at_nodes.par_chunks_exact_mut(self.modes).with_min_len(64);
         let given = moments.par_chunks_exact(self.modes);
         places.zip(given).for_each(|(masses, moments)| {
-            let nodes = self.weighted.chunks_exact(self.modes);
+            let nodes = by.chunks_exact(self.modes);
             for (mass, values) in masses.iter_mut().zip(nodes) {
                 *mass = values.iter().zip(moments).map(|(a, b)| a * b).sum();
             }

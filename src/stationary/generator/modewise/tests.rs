@@ -174,3 +174,36 @@ fn many_modes_are_taken_one_by_one_and_few_together() {
     assert_eq!(method(96), RateMethod::Modewise);
     assert_eq!(method(2), RateMethod::LuSingle);
 }
+
+#[test]
+fn the_transposed_solve_is_the_adjoint_of_the_answer_mode_by_mode_too() {
+    let space = space([14, 12], 8);
+    let generator = dahl(&space, 0.1, 0.5);
+    let mut found = Vec::new();
+    for method in [RateMethod::Modewise, RateMethod::Lu] {
+        let mut solver = solver(&space, method);
+        let steady = solver.solve(&generator.matrix, &generator.escape, None);
+        let steady = steady.unwrap();
+        let function: Vec<f64> = (0..space.n_cells())
+            .map(|cell| space.centre(cell).iter().product::<f64>() + space.centre(cell)[1].powi(2))
+            .collect();
+        let solved = solver
+            .transposed(&function, &steady.mass, None, 1e-9)
+            .unwrap();
+        assert!(solved.residual < 1e-8, "{method:?} {:e}", solved.residual);
+        let iterations = if method == RateMethod::Lu {
+            1..=4
+        } else {
+            5..=60
+        };
+        assert!(
+            iterations.contains(&solved.iterations),
+            "{method:?} {}",
+            solved.iterations
+        );
+        found.push(solved.values);
+    }
+    let size: f64 = found[1].iter().map(|value| value.abs()).sum();
+    let apart = distance(&found[0], &found[1]) / size;
+    assert!(apart < 1e-6, "{apart:e}");
+}
