@@ -4,7 +4,7 @@ use super::grid::{
     Checked, CheckedBy, CheckedIndicator, Checks, GridCheck, Leak, Seen, check, known, leak, solve,
 };
 use super::span::Span;
-use super::{DensitySource, KeptCheck, Observer, Session, SourceError};
+use super::{DensitySource, KeptCheck, Observer, Session, SourceError, Want};
 use crate::cancellation::Cancellation;
 use crate::topology::Detector;
 
@@ -85,9 +85,11 @@ impl<'a> Live<'a> {
         let Some(source) = self.source else {
             return Opened::None;
         };
+        // One session checks what is found in all of them.
+        let want = Want::densities(&source.subject().observables);
         let found = match by {
-            CheckedBy::FinerCells => source.finer(),
-            CheckedBy::ClosedEnds => Ok(source.enclosed()),
+            CheckedBy::FinerCells => source.finer(&want),
+            CheckedBy::ClosedEnds => Ok(source.enclosed(&want)),
         };
         match found {
             Ok(Some(source)) => Opened::Open(source.open(self.cancellation)),

@@ -24,6 +24,15 @@ pub struct MeasureKind {
     pub meaning: &'static str,
 }
 
+/// A derived measure that is asked for, as tables have it before there is a value.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MeasureColumn {
+    /// Its kind.
+    pub kind: MeasureKind,
+    /// What it is of: an axis, a quantity or a density; empty where it is of all of them.
+    pub of: String,
+}
+
 impl MeasureKind {
     /// Name of the number that is of an axis, a quantity or a density; of all of them where `of` is empty.
     pub fn name(&self, of: &str) -> String {

@@ -36,13 +36,15 @@ pub(crate) use finding::every_finding;
 pub use finding::{Finding, ShiftedQuantity, SteadyClass};
 pub use grid::{CheckedBy, CheckedIndicator};
 pub use label::{BifurcationStatus, LabelledPoint, PointType};
-pub use measure::{Measure, MeasureKind};
+pub use measure::{Measure, MeasureColumn, MeasureKind};
 pub use observer::{KeptCheck, Observer};
 pub use point::Point;
 pub use report::{PointStatus, SolveReport};
 pub use root::ErrorParts;
 pub use shard::Shard;
-pub use source::{CellCheck, DensitySource, Sensitivity, Session, Solution, SourceError, Subject};
+pub use source::{
+    CellCheck, DensitySource, Sensitivity, Session, Solution, SourceError, Subject, Want,
+};
 pub use sweep::{SweepError, evenly_spaced, sweep, sweep_shard};
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 //! it remembers what it solved, starts each solve from there, and owns everything that takes memory. Sessions of one
 //! source know nothing of each other and may run side by side.
 
-use super::SolveReport;
+use super::{MeasureColumn, SolveReport};
 use crate::bytes::NotWhatWasWritten;
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::density::{EstimatedDensity, Observable};
@@ -17,8 +17,32 @@ pub struct Subject {
     pub family: Family,
     /// The densities that are watched, in the order in which a source gives them.
     pub observables: Vec<Observable>,
+    /// The derived measures that are asked for; those that every solve has are not among them.
+    pub measures: Vec<MeasureColumn>,
     /// Whether what cells do to these densities can be checked.
     pub cell_check: CellCheck,
+}
+
+/// What is asked of a source that checks what another one found, of what that one gives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Want {
+    /// The densities that are given; nothing is worked out for others.
+    pub observables: Vec<Observable>,
+    /// The derived measures that are given.
+    pub measures: Vec<MeasureColumn>,
+    /// Whether densities state the errors of their cells.
+    pub errors: bool,
+}
+
+impl Want {
+    /// Densities alone, which are compared with others and need state no error of their own.
+    pub fn densities(observables: &[Observable]) -> Self {
+        Self {
+            observables: observables.to_vec(),
+            measures: Vec::new(),
+            errors: false,
+        }
+    }
 }
 
 /// Whether it can be checked what cells do to densities, beyond the errors that these state.
@@ -182,7 +206,7 @@ impl From<Cancelled> for SourceError {
 /// let path = Path::parameter("a", -1.0, 1.0);
 /// let family = Family::new(registry::find("bistable").unwrap(), &[("sigma2", 0.5)], path).unwrap();
 /// let observables = vec![Observable::Marginal(0)];
-/// let source = Quartic { subject: Subject { family, observables, cell_check: CellCheck::Needless } };
+/// let source = Quartic { subject: Subject { family, observables, measures: Vec::new(), cell_check: CellCheck::Needless } };
 /// let mut session = source.open(&Cancellation::new());
 /// let solution = session.solve(0.3).unwrap();
 /// assert!((solution.densities[0].density.masses().iter().sum::<f64>() - 1.0).abs() < 1e-12);
@@ -198,18 +222,19 @@ pub trait DensitySource: Send + Sync {
     fn open(&self, cancellation: &Cancellation) -> Box<dyn Session>;
 
     /// The same source on finer cells, to check what was found; `None` where there is none, or it would say nothing
-    /// (sampling errors differ from grid to grid). Its densities are compared, so that they need state no error of
-    /// their own.
+    /// (sampling errors differ from grid to grid). Its sessions solve only what is wanted.
     ///
     /// # Errors
     /// [`SourceError::Method`] when it cannot be made.
-    fn finer(&self) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
+    fn finer(&self, want: &Want) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
+        let _ = want;
         Ok(None)
     }
 
     /// The same source with ends of Ω that let nothing out, to tell what the mass that leaves does; `None` where there
-    /// is none. Its densities need state no error of their own.
-    fn enclosed(&self) -> Option<Box<dyn DensitySource>> {
+    /// is none. Its sessions solve only what is wanted.
+    fn enclosed(&self, want: &Want) -> Option<Box<dyn DensitySource>> {
+        let _ = want;
         None
     }
 }

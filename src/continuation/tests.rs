@@ -20,6 +20,7 @@ impl Ramp {
         let subject = Subject {
             family: bistable(from, to),
             observables: vec![Observable::Marginal(0)],
+            measures: Vec::new(),
             cell_check: CellCheck::Needless,
         };
         Self {

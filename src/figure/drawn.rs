@@ -67,6 +67,7 @@ pub fn sweep_figures(family: &Family, observables: &[Observable]) -> Vec<String>
         subject: Subject {
             family: family.clone(),
             observables: observables.to_vec(),
+            measures: Vec::new(),
             cell_check: CellCheck::Needless,
         },
         points: Vec::new(),

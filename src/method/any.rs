@@ -2,7 +2,7 @@
 
 use super::{GeneratorSource, MethodError, MethodOptions, MonteCarloSource, Problem, SgcmSource};
 use crate::cancellation::Cancellation;
-use crate::continuation::{DensitySource, Session, SourceError, Subject};
+use crate::continuation::{DensitySource, Session, SourceError, Subject, Want};
 
 /// A source of densities by one of the methods.
 pub enum MethodSource {
@@ -72,11 +72,11 @@ impl DensitySource for MethodSource {
         self.source().open(cancellation)
     }
 
-    fn finer(&self) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
-        self.source().finer()
+    fn finer(&self, want: &Want) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
+        self.source().finer(want)
     }
 
-    fn enclosed(&self) -> Option<Box<dyn DensitySource>> {
-        self.source().enclosed()
+    fn enclosed(&self, want: &Want) -> Option<Box<dyn DensitySource>> {
+        self.source().enclosed(want)
     }
 }

@@ -4,6 +4,7 @@ mod any;
 mod bins;
 mod cost;
 mod generator;
+mod measures;
 mod monte_carlo;
 mod neighbours;
 mod options;
@@ -23,6 +24,7 @@ pub use generator::{
     GeneratorCost, GeneratorMethodOptions, GeneratorSource, ModesFound, OneAxisFamily,
     automatic_modes, change_by_more_modes,
 };
+pub use measures::DerivedMeasure;
 pub use monte_carlo::{
     Estimator, MonteCarloCost, MonteCarloOptions, MonteCarloPlan, MonteCarloSource,
 };

@@ -1,8 +1,9 @@
 //! What a source of densities is made for.
 
 use super::MethodError;
+use super::measures::DerivedMeasure;
 use super::watched::Fixed;
-use crate::continuation::{CellCheck, Subject};
+use crate::continuation::{CellCheck, Subject, Want};
 use crate::density::{DensityError, Observable, Projection, laid_out};
 use crate::space::{Axis, CellSpace};
 use crate::system::Family;
@@ -66,6 +67,7 @@ impl Problem {
         let subject = Subject {
             family,
             observables,
+            measures: Vec::new(),
             cell_check: CellCheck::Needless,
         };
         Ok(Self {
@@ -106,6 +108,33 @@ impl Problem {
         problem
     }
 
+    /// The same with derived measures.
+    #[must_use]
+    pub fn measuring(mut self, measures: &[DerivedMeasure]) -> Self {
+        let Subject {
+            family,
+            observables,
+            ..
+        } = &self.subject;
+        let columns = measures
+            .iter()
+            .flat_map(|measure| measure.columns(family, observables));
+        self.subject.measures = columns.collect();
+        self
+    }
+
+    /// The same with only what is wanted of it.
+    #[must_use]
+    pub(super) fn wanting(&self, want: &Want) -> Self {
+        let mut problem = self.clone();
+        if want.observables != self.subject.observables {
+            problem.subject.observables.clone_from(&want.observables);
+            problem.fixed = Fixed::default();
+        }
+        problem.subject.measures.clone_from(&want.measures);
+        problem
+    }
+
     /// The bins of the family's quantities, in their order.
     pub fn bins(&self) -> &[Axis] {
         &self.bins
@@ -131,9 +160,12 @@ impl Problem {
         let Subject {
             family,
             observables,
+            measures,
             ..
         } = self.subject.clone();
-        Self::watching(family, space, observables, self.bins.clone())
+        let mut problem = Self::watching(family, space, observables, self.bins.clone())?;
+        problem.subject.measures = measures;
+        Ok(problem)
     }
 
     /// The same with so many times as many bins.

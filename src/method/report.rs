@@ -2,11 +2,14 @@
 //! once.
 
 use super::Problem;
+use super::measures::derived;
 use crate::continuation::measure::{
     DEVIATION, EDGE_MASS, ESCAPE_RATE, MEAN, NEGATIVE_MASS, NUMERICAL_DIFFUSION,
 };
-use crate::continuation::{Finding, PointStatus, ShiftedQuantity, SolveReport, SteadyClass};
-use crate::density::Moments;
+use crate::continuation::{
+    Finding, PointStatus, ShiftedQuantity, Solution, SolveReport, SteadyClass,
+};
+use crate::density::{EstimatedDensity, Moments};
 use crate::generator::Resolution;
 use crate::monte_carlo::{BiasedQuantity, StepBias, TOLERATED_BIAS};
 use crate::space::CellSpace;
@@ -64,6 +67,16 @@ impl<'a> Reporter<'a> {
         for (name, one) in self.problem.family().averages().zip(moments) {
             self.report.add(&MEAN, name, one.mean);
             self.report.add(&DEVIATION, name, one.standard_deviation);
+        }
+    }
+
+    /// The solution with these densities, and with the measures that are derived from them.
+    pub(super) fn solution(mut self, densities: Vec<EstimatedDensity>) -> Solution<'static> {
+        let measures = derived(self.problem.subject(), &densities);
+        self.report.measures.extend(measures);
+        Solution {
+            densities,
+            ..Solution::without_density(self.report)
         }
     }
 

@@ -177,7 +177,7 @@ impl RunFolder {
         let columns = features_table::columns(family);
         self.features
             .add(|| columns.header(), &columns.lines(&rows)?)?;
-        let columns = points_table::columns(family, observables, &[]);
+        let columns = points_table::of_subject(subject);
         self.points
             .add(|| columns.header(), &columns.lines([point])?)?;
         self.added += 1;
@@ -200,7 +200,7 @@ impl RunFolder {
         let columns = features_table::columns(family);
         self.features
             .add(|| columns.header(), &columns.lines(&rows)?)?;
-        let columns = points_table::columns(family, observables, &[]);
+        let columns = points_table::of_subject(subject);
         self.points
             .add(|| columns.header(), &columns.lines(points)?)?;
         self.added += points.len();

@@ -12,7 +12,7 @@ use crate::continuation::measure::{
     NUMERICAL_DIFFUSION, TIME_STEP_BIAS,
 };
 use crate::continuation::{
-    Finding, MeasureKind, Point, PointStatus, Solution, SolveReport, Subject,
+    Finding, MeasureColumn, MeasureKind, Point, PointStatus, Solution, SolveReport, Subject,
 };
 use crate::density::Observable;
 use crate::system::Family;
@@ -25,6 +25,7 @@ use crate::topology::Detection;
 pub(super) fn columns<'a>(
     family: &'a Family,
     observables: &[Observable],
+    measures: &[MeasureColumn],
     methods: &'a [&'static str],
 ) -> Columns<'a, Point> {
     let mut columns = Vec::from(of_solve(family, methods));
@@ -43,6 +44,9 @@ pub(super) fn columns<'a>(
     columns.extend(axes.map(|axis| measured(&NUMERICAL_DIFFUSION, &axis.name)));
     columns.extend(of_doubts(family));
     columns.extend(rings(family, observables));
+    for column in measures {
+        columns.extend(derived(column));
+    }
     Columns(columns)
 }
 
@@ -89,6 +93,38 @@ fn measured<'a>(kind: &'static MeasureKind, of: &str) -> Column<'a, Point> {
         |cell| cell.optional(),
         move |point, value| set(point, kind, &of, value),
     )
+}
+
+/// A derived measure and its error.
+fn derived<'a>(column: &MeasureColumn) -> [Column<'a, Point>; 2] {
+    let name = column.kind.name(&column.of);
+    let (own, of) = (name.clone(), column.clone());
+    let find = move |point: &Point| {
+        let mut measures = point.report.measures.iter();
+        measures.find(|one| one.name == own).cloned()
+    };
+    let find_error = find.clone();
+    let (known, error_name) = (name.clone(), format!("{name}_error"));
+    let columns = [
+        optional(name, move |point: &Point| Some(find(point)?.value)).read(
+            |cell| cell.optional(),
+            move |point, value| {
+                let value = value.map(|value| of.kind.measure(&of.of, value));
+                point.report.measures.extend(value);
+            },
+        ),
+        optional(error_name, move |point: &Point| find_error(point)?.error).read(
+            |cell| cell.optional(),
+            move |point, error| {
+                let mut measures = point.report.measures.iter_mut();
+                if let Some(measure) = measures.find(|one| one.name == known) {
+                    measure.error = error;
+                }
+            },
+        ),
+    ];
+    // A run may have been made without.
+    columns.map(Column::newer)
 }
 
 /// A measure that is zero where a method does not know it; an empty cell is one that is no number.
@@ -193,12 +229,22 @@ fn findings(family: &Family, cell: &Cell<'_>) -> Result<Vec<Finding>, RunError> 
     })
 }
 
+/// The columns of a subject's table, to be written.
+pub(super) fn of_subject(subject: &Subject) -> Columns<'_, Point> {
+    columns(
+        &subject.family,
+        &subject.observables,
+        &subject.measures,
+        &[],
+    )
+}
+
 /// The table, ascending in the parameter.
 ///
 /// # Errors
 /// [`RunError::Table`].
 pub fn points_csv(subject: &Subject, points: &[Point]) -> Result<String, RunError> {
-    columns(&subject.family, &subject.observables, &[]).csv(ascending(points))
+    of_subject(subject).csv(ascending(points))
 }
 
 /// Reads the table back: everything of its points but densities and what follows from them, in the order of the table.
@@ -208,11 +254,12 @@ pub fn points_csv(subject: &Subject, points: &[Point]) -> Result<String, RunErro
 /// [`RunError::Read`]; [`RunError::Column`] and [`RunError::Row`] when the table is not one of this sweep.
 pub(super) fn read_points(
     path: &Path,
-    family: &Family,
+    subject: &Subject,
     methods: &[&'static str],
     complete: bool,
 ) -> Result<Vec<Point>, RunError> {
-    let points = columns(family, &[], methods).read(path, complete, blank)?;
+    let family = &subject.family;
+    let points = columns(family, &[], &subject.measures, methods).read(path, complete, blank)?;
     for (row, point) in points.iter().enumerate() {
         let same = |other: &Point| other.value == point.value;
         if let Some(first) = points[..row].iter().position(same) {

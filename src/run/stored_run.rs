@@ -224,7 +224,7 @@ impl StoredRun {
         let table = self.path.join("points.csv");
         let family = &subject.family;
         let complete = self.ending() == Ending::Complete;
-        let mut points = read_points(&table, family, methods, complete)?;
+        let mut points = read_points(&table, subject, methods, complete)?;
         if let Some(wanted) = self.manifest.points.filter(|_| complete)
             && wanted != points.len()
         {

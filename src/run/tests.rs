@@ -4,14 +4,18 @@ use std::sync::Arc;
 
 use zarrs::array::Array;
 
+use super::points_table::read_points;
 use super::*;
 use crate::continuation::measure::{
-    DEVIATION, EDGE_MASS, ESCAPE_RATE, MAP_STEP, MEAN, NUMERICAL_DIFFUSION,
+    DEVIATION, EDGE_MASS, ESCAPE_RATE, FACTORISATIONS, MAP_STEP, MEAN, NEGATIVE_MASS,
+    NUMERICAL_DIFFUSION, TIME_STEP_BIAS,
 };
 use crate::continuation::{
-    CellCheck, Finding, Measure, Point, PointStatus, SolveReport, Subject, SweepResult,
+    CellCheck, Finding, Measure, MeasureColumn, MeasureKind, Point, PointStatus, SolveReport,
+    Subject, SweepResult,
 };
 use crate::density::{Density, EstimatedDensity, Observable};
+use crate::method::DerivedMeasure;
 use crate::space::Axis;
 use crate::system::examples::coulomb;
 use crate::topology::{Detection, Feature, FeatureKind, Signature, Verdict};
@@ -20,6 +24,7 @@ fn subject() -> Subject {
     Subject {
         family: coulomb(),
         observables: vec![Observable::Marginal(0), Observable::Joint(0, 1)],
+        measures: Vec::new(),
         cell_check: CellCheck::Needless,
     }
 }
@@ -303,4 +308,61 @@ fn tables_for_people_round_to_the_error() {
         serde_json::from_str(&bifurcations_json(&coulomb(), &rows).unwrap()).unwrap();
     assert_eq!(json[1]["value"], -0.012345678);
     assert!(json[0]["observable"].is_null());
+}
+
+#[test]
+fn derived_measures_are_the_last_columns_with_their_errors_and_are_read_back() {
+    let kind = MeasureKind {
+        word: "spread",
+        unit: "1",
+        meaning: "",
+    };
+    let of = "xy".to_owned();
+    let subject = Subject {
+        measures: vec![MeasureColumn { kind, of }],
+        ..subject()
+    };
+    let mut known = point(0.01, true);
+    let measure = Measure {
+        error: Some(0.25),
+        ..kind.measure("xy", 1.5)
+    };
+    known.report.measures.push(measure.clone());
+    let text = points_csv(&subject, &[known, point(0.02, false)]).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    let name = &measure.name;
+    assert!(lines[0].ends_with(&format!(",rings_xy,{name},{name}_error")));
+    assert!(lines[1].ends_with(",1.5,0.25") && lines[2].ends_with(",,"));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("points.csv");
+    std::fs::write(&path, &text).unwrap();
+    let read = read_points(&path, &subject, &["sgcm"], true).unwrap();
+    assert!(read[0].report.measures.contains(&measure));
+    assert_eq!(read[1].report.measure(name), None);
+}
+
+#[test]
+fn every_measure_has_its_row_in_the_documents() {
+    let page = include_str!("../../docs/run-folder.md");
+    let derived = DerivedMeasure::ALL.map(|one| one.kind);
+    let known = [
+        ESCAPE_RATE,
+        NEGATIVE_MASS,
+        EDGE_MASS,
+        MEAN,
+        DEVIATION,
+        MAP_STEP,
+        FACTORISATIONS,
+        NUMERICAL_DIFFUSION,
+        TIME_STEP_BIAS,
+    ];
+    for kind in known.into_iter().chain(derived) {
+        let is_row = |line: &&str| line.starts_with(&format!("| `{}", kind.word));
+        let row = page.lines().find(is_row).unwrap_or(kind.word);
+        let unit = kind.unit.replace("{}", "x");
+        assert!(
+            row.ends_with(&format!("` | {unit} | {} |", kind.meaning)),
+            "{row}"
+        );
+    }
 }

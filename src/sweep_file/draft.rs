@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use crate::continuation::LocateOptions;
 use crate::figure::{FigureStyle, Format, USUAL_KINDS};
-use crate::method::{GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions};
+use crate::method::{
+    DerivedMeasure, GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions,
+};
 use crate::system::{Interpretation, Model, NoiseKind};
 use crate::topology::DetectOptions;
 
@@ -179,6 +181,8 @@ pub(super) struct Draft {
     pub(super) method: MethodSettings,
     pub(super) marginals: Option<Vec<String>>,
     pub(super) joint: Option<Vec<[String; 2]>>,
+    /// Derived measures that are asked for.
+    pub(super) measures: Option<Vec<DerivedMeasure>>,
     /// Values of quantities, in the order given.
     pub(super) bins: Vec<BinsDraft>,
     /// Names and formulas of quantities of which moments are wanted.
@@ -210,6 +214,7 @@ impl Default for Draft {
             method: MethodSettings::default(),
             marginals: None,
             joint: None,
+            measures: None,
             bins: Vec::new(),
             averaged: Vec::new(),
             detect: DetectOptions::default(),

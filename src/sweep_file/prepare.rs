@@ -54,7 +54,8 @@ impl Settings {
         let problem = Problem::watching(self.family.clone(), space, self.observables.clone(), bins)
             .map(|problem| {
                 let check = self.method.chosen().cell_check(problem.space());
-                problem.checked_by(check)
+                let measures = self.measures.as_deref().unwrap_or_default();
+                problem.measuring(measures).checked_by(check)
             })
             .map_err(|error| self.refuse(Diagnostic::new(error.to_string())))?;
         Ok(Sweep {

@@ -149,6 +149,7 @@ pub(crate) fn bistable() -> SweepResult {
         subject: Subject {
             family: along("bistable", "a", (-1.0, 1.0)),
             observables: vec![Observable::Marginal(0)],
+            measures: Vec::new(),
             cell_check: CellCheck::Needless,
         },
         points: values.into_iter().map(at).collect(),
@@ -224,6 +225,7 @@ pub(crate) fn rayleigh((model, parameter): (&str, &str), scale: f64, y: &Axis) -
         subject: Subject {
             family: along(model, parameter, (-scale, scale)),
             observables,
+            measures: Vec::new(),
             cell_check: CellCheck::Needless,
         },
         points,

@@ -10,7 +10,9 @@ use super::{CurvePoint, CurveWork, Task};
 use crate::continuation::grid::share_of_distance;
 use crate::continuation::locate::QUIET;
 use crate::continuation::reason::{MOST_NEGATIVE, negative_share};
-use crate::continuation::{BifurcationStatus, CellCheck, DensitySource, ErrorParts, PointStatus};
+use crate::continuation::{
+    BifurcationStatus, CellCheck, DensitySource, ErrorParts, PointStatus, Want,
+};
 use crate::topology::two_sided_limit;
 
 /// A finer curve farther than this from the coarser one is not the same, in sides of the box.
@@ -54,7 +56,8 @@ impl Checks<'_> {
             .collect();
         let mut work = CurveWork::default();
         if !checks.is_empty() {
-            let finer = self.0.source.finer();
+            let want = Want::densities(&self.0.source.subject().observables);
+            let finer = self.0.source.finer(&want);
             match finer {
                 Ok(Some(source)) => {
                     let shown = self.ask(source.as_ref(), walked, &selected, &mut work);
@@ -70,7 +73,7 @@ impl Checks<'_> {
                 .points
                 .iter()
                 .any(|node| node.reading.edge_mass > QUIET);
-            if let Some(source) = self.0.source.enclosed().filter(|_| leaks) {
+            if let Some(source) = self.0.source.enclosed(&want).filter(|_| leaks) {
                 let shown = self.ask(source.as_ref(), walked, &selected, &mut work);
                 let pairs = checks.iter_mut().zip(shown);
                 pairs.for_each(|(check, shown)| check.enclosed = shown);

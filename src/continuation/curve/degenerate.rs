@@ -14,7 +14,7 @@ use super::{CodimensionTwoKind, CurvePoint, CurveStart, CurveWork, EndReason, Ta
 use crate::continuation::grid::share_of_distance;
 use crate::continuation::locate::QUIET;
 use crate::continuation::reason::{MOST_NEGATIVE, negative_share};
-use crate::continuation::{BifurcationStatus, DensitySource, ErrorParts, PointStatus};
+use crate::continuation::{BifurcationStatus, DensitySource, ErrorParts, PointStatus, Want};
 use crate::topology::{Indicator, IndicatorKind};
 
 /// Most steps of Newton's method.
@@ -178,15 +178,16 @@ impl Seeker<'_> {
         work: &mut CurveWork,
     ) -> Option<(CurvePoint, Both)> {
         let coarse = self.newton(self.0.source, kind, near, work)?;
+        let want = Want::densities(&self.0.source.subject().observables);
         let finer = match self.0.options.check_every {
             0 => None,
-            _ => self.0.source.finer().ok().flatten(),
+            _ => self.0.source.finer(&want).ok().flatten(),
         };
         let fine = finer
             .as_ref()
             .map(|source| self.newton(source.as_ref(), kind, coarse.at, work));
         let leaks = coarse.companion_reading.edge_mass > QUIET;
-        let enclosed = self.0.source.enclosed().filter(|_| leaks);
+        let enclosed = self.0.source.enclosed(&want).filter(|_| leaks);
         let enclosed =
             enclosed.and_then(|source| self.newton(source.as_ref(), kind, coarse.at, work));
         let leak = enclosed.map_or(0.0, |enclosed| apart(enclosed.at, coarse.at));

@@ -39,6 +39,7 @@ impl<F: Formula> Exact<F> {
                 1 => Observable::Marginal(0),
                 _ => Observable::Joint(0, 1),
             }],
+            measures: Vec::new(),
             cell_check: CellCheck::OnFinerCells { ratio: 1.25 },
         };
         Self {
@@ -111,7 +112,7 @@ impl<F: Formula> DensitySource for Exact<F> {
         Box::new(move |value: f64| Ok(source.solve(value)))
     }
 
-    fn finer(&self) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
+    fn finer(&self, _: &Want) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
         let axes = self.axes.iter().map(|axis| axis.refined(1.5)).collect();
         Ok(Some(Box::new(Self {
             axes,

@@ -115,9 +115,8 @@ pub(super) fn solution<'session>(
     moments.extend(maps.moments(masses)?);
     reporter.moments(&moments);
     Ok(Solution {
-        report: reporter.report,
-        densities,
         sensitivity: Some(Box::new(QuadratureSensitivity { source, value })),
+        ..reporter.solution(densities)
     })
 }
 

@@ -241,13 +241,8 @@ impl GeneratorSession {
         reporter.series(&maps.changes_by_last_modes(&self.source.problem, &masses)?);
         reporter.negative_mass(negative_mass(&summed_over_modes(space, &masses)), watched);
         reporter.moments(&[moments_of(space, unknowns), maps.moments(&masses)?].concat());
-        let solution = Solution {
-            report: reporter.report,
-            densities,
-            sensitivity: None,
-        };
         Ok((
-            solution,
+            reporter.solution(densities),
             Some(trail_after(solved, difference, relaxation, before)),
         ))
     }

@@ -6,7 +6,7 @@ use super::GeneratorMethodOptions;
 use super::options::{finer_axes, finer_factor};
 use super::session::GeneratorSession;
 use crate::cancellation::Cancellation;
-use crate::continuation::{DensitySource, Session, SourceError, Subject};
+use crate::continuation::{DensitySource, Session, SourceError, Subject, Want};
 use crate::generator::{AdvectiveScheme, Generator, GeneratorError, GeneratorOptions, assemble};
 use crate::method::structure::{all_kinked_surfaces, closed_ends};
 use crate::method::watched::{Maps, Masses};
@@ -82,13 +82,13 @@ impl GeneratorSource {
     }
 
     /// The same on finer cells.
-    fn refined(&self) -> Result<Self, MethodError> {
+    fn refined(&self, want: &Want) -> Result<Self, MethodError> {
         let space = self.problem.space();
         let finer = CellSpace::new(finer_axes(space))?;
-        let problem = self.problem.on(finer)?;
+        let problem = self.problem.wanting(want).on(finer)?;
         let problem = problem.with_finer_bins(finer_factor(space));
         Ok(Self {
-            checks: true,
+            checks: !want.errors,
             ..Self::new(&problem, &self.options)?
         })
     }
@@ -155,16 +155,17 @@ impl DensitySource for GeneratorSource {
         Box::new(GeneratorSession::new(self, cancellation))
     }
 
-    fn finer(&self) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
-        Ok(Some(Box::new(self.refined()?)))
+    fn finer(&self, want: &Want) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
+        Ok(Some(Box::new(self.refined(want)?)))
     }
 
-    fn enclosed(&self) -> Option<Box<dyn DensitySource>> {
+    fn enclosed(&self, want: &Want) -> Option<Box<dyn DensitySource>> {
         let closed_ends = vec![[true; 2]; self.closed_ends.len()];
         Some(Box::new(Self {
             enclosed: true,
-            checks: true,
+            checks: !want.errors,
             closed_ends,
+            problem: self.problem.wanting(want),
             ..self.clone()
         }))
     }

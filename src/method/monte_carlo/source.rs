@@ -195,11 +195,7 @@ impl MonteCarloSource {
         let of_quantities = maps.moments(&found.mass)?;
         let moments: Vec<Moments> = of_axes.chain(of_quantities).collect();
         reporter.moments(&moments);
-        Ok(Solution {
-            report: reporter.report,
-            densities: self.densities(&maps, system, found)?,
-            sensitivity: None,
-        })
+        Ok(reporter.solution(self.densities(&maps, system, found)?))
     }
 }
 

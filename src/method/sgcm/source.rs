@@ -247,12 +247,7 @@ impl SgcmSource {
         moments.extend(self.maps(point.value)?.moments(&steady.mass)?);
         reporter.moments(&moments);
         reporter.replicates(replicates, transitions.groups());
-        let solution = Solution {
-            report: reporter.report,
-            densities,
-            sensitivity: None,
-        };
-        Ok((solution, Some(steady.mass)))
+        Ok((reporter.solution(densities), Some(steady.mass)))
     }
 
     /// What turns masses into what is watched at a value of the path.

@@ -11,6 +11,7 @@ fn subject() -> Subject {
     Subject {
         family: coulomb(),
         observables: vec![Observable::Marginal(0), Observable::Joint(0, 1)],
+        measures: Vec::new(),
         cell_check: CellCheck::Needless,
     }
 }

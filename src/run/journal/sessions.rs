@@ -14,7 +14,9 @@ use super::log::Log;
 use super::record::{Found, Record};
 use super::replay::{Keeper, Replay, in_words};
 use crate::cancellation::Cancellation;
-use crate::continuation::{DensitySource, Sensitivity, Session, Solution, SourceError, Subject};
+use crate::continuation::{
+    DensitySource, Sensitivity, Session, Solution, SourceError, Subject, Want,
+};
 use crate::run::RunError;
 use crate::system::Family;
 
@@ -149,12 +151,12 @@ impl DensitySource for RecordedSource {
         })
     }
 
-    fn finer(&self) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
-        Ok(self.source.finer()?.map(|source| self.beside(source)))
+    fn finer(&self, want: &Want) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
+        Ok(self.source.finer(want)?.map(|source| self.beside(source)))
     }
 
-    fn enclosed(&self) -> Option<Box<dyn DensitySource>> {
-        self.source.enclosed().map(|source| self.beside(source))
+    fn enclosed(&self, want: &Want) -> Option<Box<dyn DensitySource>> {
+        self.source.enclosed(want).map(|source| self.beside(source))
     }
 }
 

@@ -8,7 +8,9 @@ use super::Journal;
 use super::record::{Found, Record};
 use super::replay::{Keeper, Replay, in_words};
 use crate::cancellation::Cancellation;
-use crate::continuation::{DensitySource, KeptCheck, Session, Solution, SourceError, Subject};
+use crate::continuation::{
+    DensitySource, KeptCheck, Session, Solution, SourceError, Subject, Want,
+};
 use crate::run::RunError;
 
 /// A source whose first session goes on where the journal ends: solves that are in it are given from it, in its order,
@@ -124,12 +126,12 @@ impl DensitySource for JournalledSource {
         })
     }
 
-    fn finer(&self) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
-        self.source.finer()
+    fn finer(&self, want: &Want) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
+        self.source.finer(want)
     }
 
-    fn enclosed(&self) -> Option<Box<dyn DensitySource>> {
-        self.source.enclosed()
+    fn enclosed(&self, want: &Want) -> Option<Box<dyn DensitySource>> {
+        self.source.enclosed(want)
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::cancellation::Cancellation;
-use crate::continuation::{DensitySource, Point, Session, Solution, SourceError, Subject};
+use crate::continuation::{DensitySource, Point, Session, Solution, SourceError, Subject, Want};
 
 /// A source whose solutions at some values are known.
 pub struct GatheredSource {
@@ -58,12 +58,12 @@ impl DensitySource for GatheredSource {
         })
     }
 
-    fn finer(&self) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
-        self.source.finer()
+    fn finer(&self, want: &Want) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
+        self.source.finer(want)
     }
 
-    fn enclosed(&self) -> Option<Box<dyn DensitySource>> {
-        self.source.enclosed()
+    fn enclosed(&self, want: &Want) -> Option<Box<dyn DensitySource>> {
+        self.source.enclosed(want)
     }
 }
 
@@ -147,6 +147,7 @@ mod tests {
             subject: Subject {
                 family: coulomb(),
                 observables: Vec::new(),
+                measures: Vec::new(),
                 cell_check: CellCheck::Needless,
             },
             values: Arc::clone(&values),

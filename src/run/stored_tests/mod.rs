@@ -20,6 +20,7 @@ fn subject(observables: &[Observable]) -> Subject {
     Subject {
         family: coulomb(),
         observables: observables.to_vec(),
+        measures: Vec::new(),
         cell_check: CellCheck::Needless,
     }
 }

@@ -6,7 +6,7 @@ use super::super::draft::{Auto, Draft, MethodKind, Modes};
 use super::super::value::Plain;
 use crate::figure::{ColourMap, FigureWidth, Format, Ground, Typeface};
 use crate::generator::AdvectiveScheme;
-use crate::method::{Correction, Estimator, StepChoice};
+use crate::method::{Correction, DerivedMeasure, Estimator, StepChoice};
 use crate::sampling::Integrator;
 use crate::stationary::Solver;
 use crate::system::{Interpretation, Model, NoiseKind, registry};
@@ -273,6 +273,7 @@ named!(
     AdvectiveScheme,
     ColourMap,
     Correction,
+    DerivedMeasure,
     Estimator,
     Format,
     Ground,

@@ -9,7 +9,7 @@ use crate::continuation::curve::CurveOptions;
 use crate::continuation::map::MapOptions;
 use crate::figure::{ColourMap, Format, Ground, Typeface};
 use crate::generator::AdvectiveScheme;
-use crate::method::{Correction, Estimator};
+use crate::method::{Correction, DerivedMeasure, Estimator};
 use crate::sampling::Integrator;
 use crate::space::MOST_MODES;
 use crate::stationary::Solver;
@@ -161,6 +161,8 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
         "Axes whose marginal densities are watched for changes, and quantities, each with its name: `amplitude = sqrt(x^2 + y^2)`."),
     key("detect.joint", Kind::List(&Kind::Pair), Rule("the first two axes"), optional!(joint),
         "Pairs of axes or quantities whose joint densities are watched for changes."),
+    key("detect.measures", Kind::List(&Kind::Choice(DerivedMeasure::words)), Rule("none"), optional!(measures),
+        "Measures that are derived from the densities that are watched: columns of `points.csv`, each with its error (docs/run-folder.md)."),
     key("detect.bins.<quantity>.from", Kind::Number(ANY), Rule("found by rough solves"), of_bins!(from),
         "First value over which a quantity is watched; what lies beyond is not drawn or counted."),
     key("detect.bins.<quantity>.to", Kind::Number(ANY), Rule("found by rough solves"), of_bins!(to),

@@ -43,6 +43,7 @@ impl Settings {
             method: self.method.clone(),
             marginals: Some(self.marginals()),
             joint: Some(self.joint()),
+            measures: self.measures.clone(),
             bins: self.bins_draft(),
             averaged: self.averaged(),
             detect: self.detect.clone(),

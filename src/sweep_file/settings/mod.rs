@@ -19,6 +19,7 @@ mod watched;
 use crate::continuation::LocateOptions;
 use crate::density::Observable;
 use crate::figure::{FigureStyle, Format};
+use crate::method::DerivedMeasure;
 use crate::system::Family;
 use crate::topology::DetectOptions;
 
@@ -66,6 +67,8 @@ pub struct Settings {
     pub detect: DetectOptions,
     /// What is watched, marginals first.
     pub observables: Vec<Observable>,
+    /// Derived measures that are asked for; `None` where the file does not say.
+    pub measures: Option<Vec<DerivedMeasure>>,
     /// Bins of the family's quantities, in their order.
     pub bins: Vec<BinSettings>,
     /// Settings of location.
@@ -142,6 +145,7 @@ impl Settings {
             method: draft.method,
             detect: draft.detect,
             observables: watched.observables,
+            measures: draft.measures,
             bins,
             locate: draft.locate,
             figures_at,
