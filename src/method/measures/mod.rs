@@ -1,5 +1,7 @@
 //! Measures that are derived where they are asked for, from what a session has solved. A file each.
 
+mod entropy;
+
 use crate::continuation::{Measure, MeasureColumn, MeasureKind, Subject};
 use crate::density::{EstimatedDensity, Observable};
 use crate::system::Family;
@@ -23,7 +25,7 @@ struct Solved<'a> {
 
 impl DerivedMeasure {
     /// All of them.
-    pub const ALL: [Self; 0] = [];
+    pub const ALL: [Self; 1] = [entropy::ENTROPY];
 
     /// Its word in files.
     pub fn name(self) -> &'static str {
