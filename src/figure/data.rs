@@ -264,7 +264,7 @@ fn health(result: &SweepResult) -> String {
             number(report.solver_error),
             number(report.measure("escape_rate").unwrap_or(0.0)),
             number(report.measure("negative_mass").unwrap_or(0.0)),
-            number(report.edge_mass().unwrap_or(0.0)),
+            number(report.edge_mass().unwrap_or(0.0).max(0.0)),
             point.distance.map(number).unwrap_or_default(),
         ]);
     }

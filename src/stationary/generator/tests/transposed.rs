@@ -16,7 +16,7 @@ fn random_generator(shape: &[usize], leak: f64, drift: f64) -> (CsMat<f64>, Vec<
     let n = space.n_cells();
     let mut triplets = TriMat::new((n, n));
     let mut escape = vec![0.0; n];
-    for from in 0..n {
+    for (from, leaves) in escape.iter_mut().enumerate() {
         let mut sent = 0.0;
         for to in 0..n {
             let apart = |axis| {
@@ -32,8 +32,8 @@ fn random_generator(shape: &[usize], leak: f64, drift: f64) -> (CsMat<f64>, Vec<
                 sent += rate;
             }
         }
-        escape[from] = leak * random.random_range(0.0..1.0);
-        triplets.add_triplet(from, from, -sent - escape[from]);
+        *leaves = leak * random.random_range(0.0..1.0);
+        triplets.add_triplet(from, from, -sent - *leaves);
     }
     (triplets.to_csc(), escape)
 }
@@ -49,8 +49,8 @@ fn by_dense(matrix: &CsMat<f64>, right: &[f64], mass: &[f64], leaks: bool) -> Ve
     let mut given = DVector::zeros(size);
     given.rows_mut(0, n).copy_from_slice(right);
     if !leaks {
-        for cell in 0..n {
-            (bordered[(cell, n)], bordered[(n, cell)]) = (1.0, mass[cell]);
+        for (cell, &mass) in mass.iter().enumerate() {
+            (bordered[(cell, n)], bordered[(n, cell)]) = (1.0, mass);
         }
     }
     bordered.lu().solve(&given).unwrap().as_slice()[..n].to_vec()
@@ -72,7 +72,6 @@ fn solver(shape: &[usize], method: RateMethod) -> RateSolver {
 
 #[test]
 fn it_is_that_of_dense_algebra_with_own_and_with_a_neighbours_factors() {
-    let mut counts = Vec::new();
     for shape in [&[40][..], &[9, 8], &[5, 4, 6]] {
         for (method, leak) in [
             (RateMethod::Lu, 0.0),
@@ -82,11 +81,12 @@ fn it_is_that_of_dense_algebra_with_own_and_with_a_neighbours_factors() {
         ] {
             let mut solver = solver(shape, method);
             let mut guess = None;
-            let mut used = Vec::new();
             for drift in [0.0, 0.02] {
                 let (matrix, escape) = random_generator(shape, leak, drift);
                 let steady = solver.solve(&matrix, &escape, guess.as_deref()).unwrap();
-                assert_eq!(steady.info.factorisations, usize::from(guess.is_none()));
+                // Factors of a stand-in may be made anew.
+                let is_warm = guess.is_some() && method != RateMethod::NarrowLu;
+                assert!(!is_warm || steady.info.factorisations == 0);
                 let right = right_side(steady.mass.len());
                 let found = solver
                     .transposed(&right, &steady.mass, None, TOLERANCE)
@@ -103,13 +103,14 @@ fn it_is_that_of_dense_algebra_with_own_and_with_a_neighbours_factors() {
                     "{shape:?} {method:?} {leak} {drift}: {apart:e} {most:e}"
                 );
                 assert!(found.residual < 10.0 * TOLERANCE, "{:e}", found.residual);
-                used.push(found.iterations.to_string());
+                // Own factors need a pass, one of GMRES and a look; a neighbour's, and those of a stand-in, some more.
+                let is_own = guess.is_none() && method == RateMethod::Lu;
+                let most_iterations = if is_own { 4 } else { 150 };
+                assert!(found.iterations <= most_iterations, "{}", found.iterations);
                 guess = Some(steady.mass);
             }
-            counts.push(used.join("+"));
         }
     }
-    insta::assert_snapshot!(counts.join(" "), @"");
 }
 
 #[test]
