@@ -13,9 +13,7 @@ use super::{CommandError, Outcome, warnings};
 use crate::cancellation::Cancellation;
 use crate::compare::{self, CompareError, CompareObserver, Solved, Task};
 use crate::figure::{Figures, write_figures};
-use crate::run::{
-    CompareFolder, CompareJournal, ComparedRun, RunError, compare_tables, format_number,
-};
+use crate::run::{CompareFolder, ComparedRun, Journal, RunError, compare_tables, format_number};
 use crate::sweep_file::{Diagnostic, MethodKind, Sweep};
 
 /// Compares, writes, draws and prints.
@@ -46,10 +44,9 @@ pub(super) fn run(
     }
     // What would be refused is refused before hours of work, and another process is kept away.
     let folder = CompareFolder::new(output.path())?;
-    let family = spec.problem.family();
     let journal = match going_on {
-        true => folder.go_on(&of, family, &MethodKind::ALL.map(MethodKind::name))?,
-        false => folder.begin(&of, family)?,
+        true => folder.go_on(&of)?,
+        false => folder.begin(&of)?,
     };
     let (threads, cancellation) = super::interruptible(arguments.work.threads)?;
     let progress = Progress::new(2 + 3 * spec.settings.figures_at.len(), arguments.work.quiet);
@@ -82,9 +79,9 @@ fn described(spec: &Sweep) -> Result<String, RunError> {
 
 /// Shows how far a comparison is, and keeps what is solved.
 struct Keeper<'a> {
-    journal: CompareJournal,
+    journal: Journal,
     progress: &'a Progress,
-    /// Solves that are in the journal.
+    /// Solves that were taken from the journal or added to it.
     done: usize,
     /// Whether there was a journal before.
     goes_on: bool,
@@ -94,19 +91,21 @@ struct Keeper<'a> {
 /// What took less, and has no value by all methods yet, is not worth a file that somebody has to remove.
 const WORTH_KEEPING: Duration = Duration::from_secs(10);
 
+type Failure = Box<dyn std::error::Error + Send + Sync>;
+
 impl CompareObserver for Keeper<'_> {
     fn step(&mut self, step: &compare::Progress) {
         self.progress.step(&step.next, step.done, step.total);
     }
 
-    fn known(&mut self) -> Option<Vec<Solved>> {
-        let known = self.journal.take();
+    fn known(&mut self) -> Result<Option<Vec<Solved>>, Failure> {
+        let known = self.journal.known(&self.done.to_string())?;
         self.done += usize::from(known.is_some());
-        known
+        Ok(known)
     }
 
-    fn keep(&mut self, solved: &[Solved]) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-        self.journal.keep(solved)?;
+    fn keep(&mut self, solved: &[Solved]) -> Result<(), Failure> {
+        self.journal.keep(&self.done.to_string(), &solved)?;
         self.done += 1;
         Ok(())
     }
@@ -115,14 +114,14 @@ impl CompareObserver for Keeper<'_> {
 impl Keeper<'_> {
     /// Whether nothing is lost that somebody would miss.
     fn has_hardly_begun(&self) -> bool {
-        let solves = self.done + self.journal.waiting();
+        let solves = self.done.max(self.journal.solves());
         !self.goes_on && (solves == 0 || self.began.elapsed() < WORTH_KEEPING)
     }
 
     /// What there is of a comparison that did not come to its end.
     fn kept(&self, folder: &Path) -> String {
         let folder = folder.display();
-        match self.done + self.journal.waiting() {
+        match self.done.max(self.journal.solves()) {
             0 => format!("nothing was solved; {folder} holds no results of it"),
             1 => format!(
                 "1 solve that was done is kept in {folder}, and `--resume` goes on from there"

@@ -17,7 +17,7 @@ use crate::cancellation::Cancellation;
 use crate::continuation::{LabelledPoint, SweepResult};
 use crate::method::MethodError;
 use crate::run::{CURVES, CurveFolder, RunError};
-use crate::sweep_file::{MethodKind, SolveError, Sweep, list};
+use crate::sweep_file::{SolveError, Sweep, list};
 use asked::Asked;
 use job::Job;
 use refusals::check_corners;
@@ -181,9 +181,7 @@ impl Following<'_> {
         let folder = CurveFolder::new(home)?;
         let mut journal = None;
         if goes_on && has_journal {
-            let methods = MethodKind::ALL.map(MethodKind::name);
-            let there = folder.go_on(&of, self.spec.problem.family(), &methods);
-            journal = self.or_other(there.map(Some), home)?;
+            journal = self.or_other(folder.go_on(&of).map(Some), home)?;
         }
         let journal = match journal {
             Some(journal) => journal,

@@ -2,10 +2,8 @@
 
 pub(super) mod shards;
 
-use std::io::Write as _;
 use std::path::Path;
-use std::sync::{Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use super::args::SweepArguments;
 use super::curve::codimension_line;
@@ -14,14 +12,12 @@ use super::sweep::progress::Progress;
 use super::{CommandError, Outcome};
 use crate::cancellation::Cancellation;
 use crate::continuation::curve::Curve;
-use crate::continuation::map::{MapNode, MapObserver, MapProgress, RegimeMap};
-use crate::continuation::{BifurcationStatus, LocateOptions, SourceError};
+use crate::continuation::map::{MapMaker, MapProgress, RegimeMap};
+use crate::continuation::{BifurcationStatus, DensitySource, LocateOptions, SourceError};
 use crate::figure::{map_figures, write_figures};
-use crate::run::{MapCheckpoint, MapFolder, format_with_error};
+use crate::run::{Journal, JournalledSource, MapFolder, RunError, format_with_error};
 use crate::sweep_file::{Diagnostic, Sweep};
 
-/// How often what is solved is written.
-const EVERY: Duration = Duration::from_secs(2);
 /// Columns and rows of the picture that shares of regions are counted in.
 const PICTURE: [usize; 2] = [300, 300];
 /// Regions smaller than this share of the box are not listed.
@@ -41,33 +37,40 @@ pub(super) fn run(
     }
     let output = OutputFolder::prepare(folder)?;
     let home = MapFolder::new(output.path())?;
-    let checkpoint = MapCheckpoint::new(output.path(), &spec.to_toml());
-    let known = match arguments.resume {
-        true => checkpoint.read()?,
-        false => {
-            home.keep_unfinished()?;
-            Vec::new()
-        }
-    };
-    if arguments.resume && known.is_empty() && is_complete(spec, output.path())? {
+    let Some(journal) = journal(&home, output.path(), &spec.to_toml(), arguments.resume)? else {
         super::print("the map is complete: there is nothing to go on with\n")?;
         return Ok(Outcome::Complete);
-    }
+    };
     let (threads, cancellation) = super::interruptible(arguments.work.threads)?;
     threads.install(|| {
         let clock = Instant::now();
         let job = Job {
             spec,
-            checkpoint: Some(&checkpoint),
+            journal: &journal,
             quiet: arguments.work.quiet,
         };
-        let solve = |observer: &MapObserver<'_>| spec.map_from(&known, &cancellation, observer);
-        let map = job.made(&known, &cancellation, &solve)?;
+        let map = job.made(&cancellation, &|maker| maker.whole().map(Some))?;
         let Some(map) = map.filter(|map| !map.nodes.is_empty()) else {
             return interrupted();
         };
         conclude(spec, &map, home, (output.path(), clock))
     })
+}
+
+/// The journal of a map that begins, or goes on where there is one; `None` where the map is complete.
+fn journal(
+    home: &MapFolder,
+    path: &Path,
+    sweep: &str,
+    resume: bool,
+) -> Result<Option<Journal>, RunError> {
+    if resume && MapFolder::has_journal(path) {
+        return home.go_on(sweep).map(Some);
+    }
+    if resume && MapFolder::ending(path, sweep)?.is_some_and(|ending| ending == "complete") {
+        return Ok(None);
+    }
+    home.begin(sweep).map(Some)
 }
 
 /// What is said where there is nothing to write.
@@ -88,72 +91,58 @@ fn conclude(
     let figures = map_figures(map, &[], &settings.title, &settings.figure_style)?;
     write_figures(&figures, &settings.figure_formats, &home.figures())?;
     let mut text = summary(map);
-    if !map.interrupted {
-        MapCheckpoint::new(path, &spec.to_toml()).remove();
-    }
     text += "\nfiles\n";
-    for file in home.take_place()? {
+    for file in home.take_place(map.interrupted)? {
         text += &format!("  {}\n", file.display());
     }
     super::conclude(&text, outcome(map, &settings.locate), path)
-}
-
-/// Whether the folder holds this very map, complete.
-fn is_complete(spec: &Sweep, folder: &Path) -> Result<bool, CommandError> {
-    Ok(MapFolder::ending(folder, &spec.to_toml())?.is_some_and(|ending| ending == "complete"))
 }
 
 /// A map in the making.
 struct Job<'a> {
     spec: &'a Sweep,
     /// Where what is solved is kept while the map is made.
-    checkpoint: Option<&'a MapCheckpoint>,
+    journal: &'a Journal,
     quiet: bool,
 }
 
 impl Job<'_> {
-    /// The map, or what is wanted of it, that is solved with the nodes that are known; `None` where it was interrupted
-    /// before there was anything. What is solved is written now and then, so that a map that is killed can be gone on
-    /// with.
+    /// The map, or what is wanted of it; `None` where it was interrupted before there was anything. What is in the
+    /// journal is not solved again.
     fn made<T>(
         &self,
-        known: &[MapNode],
         cancellation: &Cancellation,
-        solve: &dyn Fn(&MapObserver<'_>) -> Result<Option<T>, SourceError>,
+        wanted: &dyn Fn(&MapMaker<'_>) -> Result<Option<T>, SourceError>,
     ) -> Result<Option<T>, CommandError> {
         let sides = self.spec.settings.map.as_ref();
         let rows = sides.map_or(1, |map| map.points);
         let progress = Progress::new(self.spec.settings.points * rows, self.quiet);
-        if !known.is_empty() {
-            progress.say(&format!("going on after {} nodes", known.len()));
+        let solves = self.journal.solves();
+        if solves > 0 {
+            progress.say(&format!("going on after {solves} solves"));
         }
         let second = sides.map_or("", |map| map.parameter.as_str());
         let first = self.spec.problem.family().parameter();
         let at =
             |values: [f64; 2]| format!("{first} = {:.6}  {second} = {:.6}", values[0], values[1]);
-        let solved = Mutex::new((known.to_vec(), Instant::now()));
         let observer = |told: &MapProgress<'_>| match *told {
             MapProgress::Solved { node, done, wanted } => {
                 let words: Vec<String> = node.signatures.iter().map(ToString::to_string).collect();
                 let text = format!("{}  {}", at(node.values), words.join(", "));
                 progress.count(&text, done, wanted);
-                // A poisoned lock holds nodes as whole as any other.
-                let mut solved = solved.lock().unwrap_or_else(PoisonError::into_inner);
-                solved.0.push(node.clone());
-                if solved.1.elapsed() >= EVERY {
-                    self.keep(&solved.0);
-                    solved.1 = Instant::now();
-                }
             }
             MapProgress::Met { values, done } => {
                 progress.say(&format!("curves: {done} points, {}", at(values)));
             }
         };
-        let found = solve(&observer);
+        let wrap = |source| {
+            let source = JournalledSource::new(source, self.journal);
+            Box::new(source) as Box<dyn DensitySource>
+        };
+        let found = self.spec.make_map(&wrap, cancellation, &observer, wanted);
         progress.finish();
-        if cancellation.is_cancelled() {
-            let solved = solved.lock().unwrap_or_else(PoisonError::into_inner);
-            self.keep(&solved.0);
+        if let Some(error) = self.journal.failure() {
+            return Err(error.into());
         }
         match found {
             Ok(found) => Ok(found),
@@ -164,16 +153,6 @@ impl Job<'_> {
                     .remedy("narrow it with `sweep.from`, `sweep.to`, `map.from` and `map.to`");
                 Err(CommandError::Input(report.into()))
             }
-        }
-    }
-
-    /// Writes what is solved. Where that fails the map goes on: it can be made without.
-    fn keep(&self, nodes: &[MapNode]) {
-        let kept = self.checkpoint.map(|checkpoint| checkpoint.write(nodes));
-        if let Some(Err(error)) = kept {
-            let text = format!("what is solved cannot be kept: {error}\n");
-            // Without a reader of stderr there is nobody to tell.
-            let _ = std::io::stderr().lock().write_all(text.as_bytes());
         }
     }
 }

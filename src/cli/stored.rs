@@ -96,7 +96,7 @@ pub(super) fn diagnostic(error: &RunError) -> Diagnostic {
             finding.remedy("wait until it has ended, or give another folder with `--out DIR`")
         }
         RunError::NotOurs { .. } => finding.remedy("give another folder with `--out DIR`"),
-        RunError::NoJournal { .. } | RunError::Journal { .. } | RunError::JournalOrder { .. } => {
+        RunError::NoJournal { .. } | RunError::Journal { .. } => {
             finding.remedy("leave `--resume` out: the run begins anew, and what is there is kept in its folder previous/")
         }
         RunError::OtherSweep { .. } => finding

@@ -7,8 +7,6 @@ mod shards;
 pub(super) mod summary;
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use super::args::SweepArguments;
@@ -16,12 +14,13 @@ use super::output::OutputFolder;
 use super::{CommandError, Outcome, curve, warnings};
 use crate::cancellation::Cancellation;
 use crate::continuation::{
-    BifurcationStatus, LocateOptions, Shard, SweepError, SweepResult, sweep_shard,
+    BifurcationStatus, CheckedIndicator, LocateOptions, Shard, SweepError, SweepResult, sweep_shard,
 };
 use crate::figure::{Figures, write_figures};
 use crate::method::MethodError;
 use crate::run::{
-    Ending, Gathered, Journal, JournalledSource, Manifest, RunError, RunFolder, shard_folder,
+    Ending, Gathered, Journal, JournalledSource, Manifest, RunError, RunFolder, StoredRun,
+    shard_folder,
 };
 use crate::sweep_file::Sweep;
 use progress::Progress;
@@ -128,8 +127,9 @@ struct Run<'a> {
     /// `None` of a whole sweep.
     shard: Option<(Shard, PathBuf)>,
     source: JournalledSource,
-    /// How many values were solved that no shard has; `None` where none were put together.
-    solves: Option<Arc<AtomicUsize>>,
+    journal: Journal,
+    /// What shards saw in their checks; `None` where none are put together.
+    merged: Option<Vec<CheckedIndicator>>,
     folder: RunFolder,
     manifest: Manifest,
     progress: Progress,
@@ -173,35 +173,32 @@ impl<'a> Run<'a> {
             false => RunFolder::create(path)?,
         };
         let journal = match goes_on {
-            true => resume::journal(spec, path)?,
+            true => Journal::open(&folder.journal(), &resolved)?,
             false => folder
                 .write_manifest(&manifest)
-                .and_then(|()| Journal::create(path, &resolved))
+                .and_then(|()| Journal::create(&folder.journal(), &resolved))
                 .map_err(|error| CommandError::from(error).after(written(path, 0)))?,
         };
         if goes_on {
-            progress.say(&format!("{} points are done already", journal.solves()));
+            let points = StoredRun::open(path)?.points_done().unwrap_or(0);
+            progress.say(&format!("{points} points are done already"));
         }
-        let mut solves = None;
-        let mut shard = None;
-        let source = match kind {
-            Kind::Merged(_, gathered) => {
-                let (source, count) = shards::join(source, gathered, journal);
-                solves = Some(count);
-                source
-            }
-            kind => {
-                if let Kind::Shard(number, home) = kind {
-                    shard = Some((number, home));
-                }
-                JournalledSource::new(Box::new(source), journal)
-            }
+        let (shard, merged) = match kind {
+            Kind::Whole => (None, None),
+            Kind::Shard(number, home) => (Some((number, home)), None),
+            Kind::Merged(_, gathered) => (None, Some(gathered)),
         };
+        let (points, merged) = match merged {
+            Some(Gathered { points, checks }) => (points, Some(checks.unwrap_or_default())),
+            None => (Vec::new(), None),
+        };
+        let source = JournalledSource::of_sweep(Box::new(source), &journal, points);
         Ok(Self {
             spec,
             shard,
             source,
-            solves,
+            journal,
+            merged,
             folder,
             manifest,
             progress,
@@ -216,7 +213,7 @@ impl<'a> Run<'a> {
         let result = self.solve_and_write();
         self.progress.finish();
         let path = self.folder.path();
-        let points = self.folder.points().max(self.source.waiting());
+        let points = self.folder.points().max(self.journal.solves());
         let Some(result) = result.map_err(|error| error.after(written(path, points)))? else {
             super::print("interrupted: everything is as it was\n")?;
             return Ok(Outcome::Interrupted);
@@ -238,13 +235,9 @@ impl<'a> Run<'a> {
     /// `None` where an interrupt came before what is stored was read.
     fn solve_and_write(&mut self) -> Result<Option<SweepResult>, CommandError> {
         let clock = Instant::now();
-        let result = self.sweep()?;
-        if let Some(error) = self.source.failure() {
-            return Err(error.into());
-        }
-        if result.interrupted && self.source.waiting() > 0 {
+        let Some(result) = self.sweep()? else {
             return Ok(None);
-        }
+        };
         self.manifest.seconds.sweep = clock.elapsed().as_secs_f64();
         let clock = Instant::now();
         self.folder.finish(&result)?;
@@ -281,14 +274,15 @@ impl<'a> Run<'a> {
         }
     }
 
-    fn sweep(&mut self) -> Result<SweepResult, CommandError> {
+    /// `None` as in [`Run::solve_and_write`].
+    fn sweep(&mut self) -> Result<Option<SweepResult>, CommandError> {
         let detector = self.spec.detector();
         let mut recorder = Recorder {
             subject: self.spec.problem.subject(),
             folder: &mut self.folder,
             manifest: &mut self.manifest,
             progress: &self.progress,
-            stored: self.source.waiting(),
+            checks: self.merged.clone().unwrap_or_default(),
             given: Vec::new(),
             source: &self.source,
         };
@@ -296,7 +290,7 @@ impl<'a> Run<'a> {
             .shard
             .as_ref()
             .map_or(Shard::WHOLE, |(shard, _)| *shard);
-        let mut result = sweep_shard(
+        let result = sweep_shard(
             &self.source,
             &detector,
             (self.spec.settings.points, shard),
@@ -311,15 +305,19 @@ impl<'a> Run<'a> {
             },
             error => CommandError::Sweep(error),
         })?;
-        if let Some(solves) = &self.solves {
-            let solves = solves.load(Ordering::Relaxed);
+        if let Some(error) = self.journal.failure() {
+            return Err(error.into());
+        }
+        if result.interrupted && !recorder.given.is_empty() {
+            return Ok(None);
+        }
+        recorder.write_given()?;
+        if self.merged.is_some() {
+            let solves = self.source.solves();
             self.progress
                 .say(&format!("{solves} values were solved that no shard has"));
         }
-        for point in &mut result.points {
-            point.seconds = self.source.seconds(point.value).unwrap_or(point.seconds);
-        }
-        Ok(result)
+        Ok(Some(result))
     }
 }
 

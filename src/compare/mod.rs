@@ -40,6 +40,7 @@ pub const PAPER_MAP_STEP: f64 = 1.0;
 
 /// One of the methods that are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Method {
     /// The generator, on the cells of the file.
     Generator,
@@ -67,6 +68,14 @@ impl Method {
             Self::Sgcm => "sgcm",
             Self::SgcmSlope => "sgcm-slope",
             Self::MonteCarlo => "monte-carlo",
+        }
+    }
+
+    /// Name of the source of its densities.
+    pub(crate) fn source(self) -> &'static str {
+        match self {
+            Self::SgcmSlope => Self::Sgcm.name(),
+            other => other.name(),
         }
     }
 

@@ -14,8 +14,11 @@ pub trait CompareObserver {
 
     /// What the next solve gave before, in the order in which solves were [kept](CompareObserver::keep); `None` where
     /// it is still to be made.
-    fn known(&mut self) -> Option<Vec<Solved>> {
-        None
+    ///
+    /// # Errors
+    /// What keeps the comparison from going on.
+    fn known(&mut self) -> Result<Option<Vec<Solved>>, Failure> {
+        Ok(None)
     }
 
     /// A solve is done, by one method or by those that share samples.
@@ -71,7 +74,11 @@ impl<'a> Steps<'a> {
         &mut self,
         solve: &mut dyn FnMut() -> Result<Vec<Solved>, CompareError>,
     ) -> Result<Vec<Solved>, CompareError> {
-        if let Some(known) = self.observer.known() {
+        let known = self.observer.known();
+        if let Some(mut known) = known.map_err(CompareError::Observer)? {
+            for solved in &mut known {
+                solved.report.method = solved.method.source();
+            }
             return Ok(known);
         }
         let solved = solve()?;

@@ -15,6 +15,7 @@ use crate::space::CellSpace;
 
 /// What a solve took.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Work {
     /// Seconds before the first value, shared by all: choosing steps and lengths.
     pub preparation_seconds: f64,
@@ -42,6 +43,7 @@ impl Work {
 
 /// A method's result at one parameter value.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Solved {
     /// The method.
     pub method: Method,

@@ -5,6 +5,7 @@
 
 /// Something that a user must know of a point. Shares are of the whole mass or of the whole time.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Finding {
     /// Mass leaves Ω: the densities are quasi-stationary, conditioned on staying.
     Escaping {
@@ -157,6 +158,7 @@ pub enum Finding {
 
 /// A class of cells with a steady state of its own, beside others.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SteadyClass {
     /// Number of its cells.
     pub cells: usize,
@@ -168,6 +170,7 @@ pub struct SteadyClass {
 
 /// A number of the steady state that a time step may shift.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ShiftedQuantity {
     /// Variance of an axis.
     Variance(usize),

@@ -4,19 +4,11 @@ use super::grid::{
     Checked, CheckedBy, CheckedIndicator, Checks, GridCheck, Leak, Seen, check, known, leak, solve,
 };
 use super::span::Span;
-use super::{DensitySource, KeptCheck, Observer, Session, SourceError, Want};
+use super::{DensitySource, Session, SourceError, Want};
 use crate::cancellation::Cancellation;
 use crate::topology::Detector;
 
-/// A check: its source, and what is known of its session.
-#[derive(Default)]
-struct Check {
-    session: Opened,
-    /// What solves that are not repeated have left for it.
-    left: Vec<(f64, Vec<u8>)>,
-}
-
-/// A session that is opened when it is first asked.
+/// The session of a check, opened when it is first asked.
 #[derive(Default)]
 enum Opened {
     #[default]
@@ -27,58 +19,45 @@ enum Opened {
     Failed(String),
 }
 
-type Failure = Box<dyn std::error::Error + Send + Sync>;
-
 /// The checks of a sweep.
 pub(super) struct Live<'a> {
     /// `None` where no check is wanted.
     source: Option<&'a dyn DensitySource>,
     detector: &'a dyn Detector,
     cancellation: &'a Cancellation,
-    observer: &'a mut dyn Observer,
+    /// What was seen before.
+    known: Vec<CheckedIndicator>,
     span: Span,
     tolerance: f64,
-    finer: Check,
-    enclosed: Check,
-    /// What was seen before this sweep went on; `None` before it was asked for.
-    kept: Option<Vec<KeptCheck>>,
+    finer: Opened,
+    enclosed: Opened,
     seen: Vec<CheckedIndicator>,
-    /// Why nothing more can be seen.
-    failure: Option<Failure>,
 }
 
 impl<'a> Live<'a> {
     pub(super) fn new(
         source: Option<&'a dyn DensitySource>,
         detector: &'a dyn Detector,
-        (cancellation, observer): (&'a Cancellation, &'a mut dyn Observer),
+        (cancellation, known): (&'a Cancellation, Vec<CheckedIndicator>),
         (span, tolerance): (Span, f64),
     ) -> Self {
         Self {
             source,
             detector,
             cancellation,
-            observer,
+            known,
             span,
             tolerance,
-            finer: Check::default(),
-            enclosed: Check::default(),
-            kept: None,
+            finer: Opened::default(),
+            enclosed: Opened::default(),
             seen: Vec::new(),
-            failure: None,
         }
     }
 
     /// What was seen; `None` where there was nothing to check with.
-    ///
-    /// # Errors
-    /// Why the checks could not go on.
-    pub(super) fn seen(self) -> Result<Option<Vec<CheckedIndicator>>, Failure> {
-        if let Some(failure) = self.failure {
-            return Err(failure);
-        }
-        let wanted = self.source.is_some() && !matches!(self.finer.session, Opened::None);
-        Ok(wanted.then_some(self.seen))
+    pub(super) fn seen(self) -> Option<Vec<CheckedIndicator>> {
+        let wanted = self.source.is_some() && !matches!(self.finer, Opened::None);
+        wanted.then_some(self.seen)
     }
 
     fn open(&self, by: CheckedBy) -> Opened {
@@ -98,7 +77,7 @@ impl<'a> Live<'a> {
         }
     }
 
-    fn check(&mut self, by: CheckedBy) -> &mut Check {
+    fn check(&mut self, by: CheckedBy) -> &mut Opened {
         match by {
             CheckedBy::FinerCells => &mut self.finer,
             CheckedBy::ClosedEnds => &mut self.enclosed,
@@ -113,62 +92,21 @@ impl<'a> Live<'a> {
         if before != Seen::Unknown {
             return Some(before);
         }
-        if let Some(seen) = self.kept(by, checked, value) {
-            return Some(seen);
-        }
-        if self.failure.is_some() {
-            return Some(Seen::Unknown);
-        }
-        if matches!(self.check(by).session, Opened::NotYet) {
-            self.check(by).session = self.open(by);
-        }
-        let detector = self.detector;
-        let Check { session, left } = self.check(by);
-        let (found, left) = match session {
-            Opened::NotYet | Opened::None => return None,
-            Opened::Failed(reason) => (Seen::Failed(reason.clone()), None),
-            Opened::Open(session) => {
-                if let Err(error) = recall(session.as_mut(), std::mem::take(left)) {
-                    if let SourceError::Method(error) = error {
-                        self.failure = Some(error);
-                    }
-                    return Some(Seen::Unknown);
-                }
-                let seen = solve(session.as_mut(), detector, checked, value);
-                (seen, Some(session.memory()))
+        let mut found = known(&self.known, by, checked, value);
+        if found == Seen::Unknown {
+            if matches!(self.check(by), Opened::NotYet) {
+                *self.check(by) = self.open(by);
             }
-        };
-        if let Some(seen) = found.record(by, checked, value) {
-            let check = KeptCheck { seen, left };
-            self.failure = self.observer.checked(&check).err();
-            self.seen.push(check.seen);
+            let detector = self.detector;
+            found = match self.check(by) {
+                Opened::NotYet | Opened::None => return None,
+                Opened::Failed(reason) => Seen::Failed(reason.clone()),
+                Opened::Open(session) => solve(session.as_mut(), detector, checked, value),
+            };
         }
+        self.seen.extend(found.record(by, checked, value));
         Some(found)
     }
-
-    /// What was seen of it before this sweep went on, which is then seen again.
-    fn kept(&mut self, by: CheckedBy, checked: &Checked<'_>, value: f64) -> Option<Seen> {
-        let observer = &mut self.observer;
-        let kept = self.kept.get_or_insert_with(|| observer.kept_checks());
-        let seen = |one: &KeptCheck| known(std::slice::from_ref(&one.seen), by, checked, value);
-        let place = kept.iter().position(|one| seen(one) != Seen::Unknown)?;
-        let check = kept.remove(place);
-        let found = seen(&check);
-        if let Some(left) = check.left {
-            self.check(by).left.push((value, left));
-        }
-        self.seen.push(check.seen);
-        Some(found)
-    }
-}
-
-/// Brings a session to where an earlier one was.
-fn recall(session: &mut dyn Session, left: Vec<(f64, Vec<u8>)>) -> Result<(), SourceError> {
-    if left.is_empty() {
-        return Ok(());
-    }
-    let left: Vec<(f64, &[u8])> = left.iter().map(|(at, bytes)| (*at, &bytes[..])).collect();
-    session.recall(&left)
 }
 
 impl Checks for Live<'_> {

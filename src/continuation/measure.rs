@@ -2,6 +2,7 @@
 
 /// A number of a solved value: a moment, a rate, a mass that should be zero.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Measure {
     /// Its column in tables: the word of its kind, and after `_` what it is of, for example `sd_x`.
     pub name: String,

@@ -37,7 +37,7 @@ pub use finding::{Finding, ShiftedQuantity, SteadyClass};
 pub use grid::{CheckedBy, CheckedIndicator};
 pub use label::{BifurcationStatus, LabelledPoint, PointType};
 pub use measure::{Measure, MeasureColumn, MeasureKind};
-pub use observer::{KeptCheck, Observer};
+pub use observer::Observer;
 pub use point::Point;
 pub use report::{PointStatus, SolveReport};
 pub use root::ErrorParts;

@@ -61,7 +61,7 @@ impl Point {
         };
         let mut point = Self::undetected(value, solution);
         point.detect(detector);
-        point.seconds = clock.elapsed().as_secs_f64();
+        point.seconds = (session.seconds()).unwrap_or_else(|| clock.elapsed().as_secs_f64());
         Some((point, refusal))
     }
 

@@ -5,6 +5,8 @@ use super::measure::{EDGE_MASS, Measure, MeasureKind};
 
 /// How a point ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum PointStatus {
     /// Solved.
     Solved,
@@ -51,10 +53,12 @@ impl PointStatus {
 
 /// What a solve says of itself; a row of `points.csv`.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SolveReport {
     /// How it ended.
     pub status: PointStatus,
     /// Name of the method, for example `sgcm`.
+    #[cfg_attr(feature = "serde", serde(skip))] // whoever reads a report knows its source
     pub method: &'static str,
     /// Solver iterations (cycles).
     pub iterations: usize,

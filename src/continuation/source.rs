@@ -251,6 +251,11 @@ pub trait Session: Send {
     /// used on.
     fn solve(&mut self, value: f64) -> Result<Solution<'_>, SourceError>;
 
+    /// Seconds that the last solution took when it was solved; `None` where that was just now.
+    fn seconds(&self) -> Option<f64> {
+        None
+    }
+
     /// What the last solve has left in the session for later ones, so that [`Session::recall`] can bring another one
     /// there; nothing for sessions that remember nothing.
     fn memory(&self) -> Vec<u8> {

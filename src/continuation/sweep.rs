@@ -127,7 +127,7 @@ pub fn sweep_shard(
         previous = Some(value);
     }
     run.narrow()?;
-    let (labels, checks) = run.labels()?;
+    let (labels, checks) = run.labels();
     Ok(SweepResult {
         subject: subject.clone(),
         points: run.points,
@@ -311,15 +311,12 @@ impl Run<'_> {
     }
 
     /// The rows, each checked where the source can be, and what was seen in the checks.
-    ///
-    /// # Errors
-    /// [`SweepError::Observer`].
-    fn labels(&mut self) -> Result<Labelled, SweepError> {
+    fn labels(&mut self) -> Labelled {
         let wanted = self.options.grid_check && !self.interrupted;
         let mut checks = Live::new(
             wanted.then_some(self.source),
             self.detector,
-            (self.cancellation, self.observer),
+            (self.cancellation, self.observer.known_checks()),
             (self.span, self.options.tolerance),
         );
         let labels = label_points(
@@ -333,10 +330,10 @@ impl Run<'_> {
             self.source.subject().cell_check,
             CellCheck::OnFinerCells { .. }
         );
-        let seen = checks.seen().map_err(SweepError::Observer)?;
+        let seen = checks.seen();
         // What is not checked yet is checked by a run that goes on.
         self.interrupted |= wanted && self.cancellation.is_cancelled();
-        Ok((labels, seen.filter(|_| can_check)))
+        (labels, seen.filter(|_| can_check))
     }
 }
 

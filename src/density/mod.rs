@@ -29,6 +29,7 @@ use crate::system::Family;
 
 /// A density that is watched. Numbers beyond the axes of the state are those of the family's quantities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Observable {
     /// Marginal of one axis.
     Marginal(usize),
@@ -65,6 +66,7 @@ impl Observable {
 
 /// A probability density that is constant on the cells of one or two axes, ∫ = 1.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Density {
     /// One axis for a marginal, two for a joint density.
     pub axes: Vec<Axis>,
@@ -102,6 +104,7 @@ fn cell_volumes(axes: &[Axis]) -> Vec<f64> {
 
 /// A density with the uncertainty of its values.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct EstimatedDensity {
     /// What it is the density of.
     pub observable: Observable,
@@ -126,6 +129,25 @@ pub const NEGLIGIBLE: f64 = 1e-7;
 pub const NEGLIGIBLE_OF_QUANTITIES: f64 = 1e-5;
 
 impl EstimatedDensity {
+    /// Whether there is one value a cell of every estimate: what was read from a file may not have it.
+    #[cfg(feature = "serde")]
+    pub(crate) fn is_sound(&self) -> bool {
+        let axes = &self.density.axes;
+        let cells: usize = axes.iter().map(Axis::count).product();
+        let fits = |values: &Vec<f64>| values.len() == cells;
+        let variants = match &self.variants {
+            Variants::None => &[],
+            Variants::Scheme(second) => std::slice::from_ref(second),
+            Variants::Jackknife(replicates) => replicates.as_slice(),
+        };
+        axes.len() == self.observable.axes().len()
+            && axes.iter().all(Axis::is_sound)
+            && [&self.density.values, &self.standard_error]
+                .into_iter()
+                .all(fits)
+            && variants.iter().all(fits)
+    }
+
     /// Whether its values carry noise, as those of sampled methods do; else its errors are those of a grid.
     pub fn is_noisy(&self) -> bool {
         match self.variants {
@@ -138,6 +160,7 @@ impl EstimatedDensity {
 
 /// Mean and standard deviation of one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Moments {
     /// Mean.
     pub mean: f64,

@@ -9,6 +9,7 @@
 /// no cells. Places are coordinates of the axis, in its unit; densities have the inverse of that unit, and their
 /// integral over the range of the axis is one.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Profile {
     /// Peaks and valleys by turns, in ascending place. An end of the range may be a peak.
     pub extrema: Vec<Extremum>,
@@ -23,6 +24,7 @@ pub struct Profile {
 
 /// A peak or a valley of a density over one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Extremum {
     /// Its coordinate, in the axis's unit: a zero of (log p)', or where that slope jumps from one sign to the other.
     pub place: f64,
@@ -37,6 +39,7 @@ pub struct Extremum {
 
 /// An extremum of the slope of the logarithm of a density.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Turn {
     /// Its coordinate, in the axis's unit.
     pub place: f64,
@@ -50,6 +53,7 @@ pub struct Turn {
 
 /// A jump of the slope of the logarithm of a density, where the drift or the slope of the noise jumps.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SlopeJump {
     /// Its coordinate, in the axis's unit.
     pub place: f64,

@@ -6,18 +6,41 @@ use super::Profile;
 
 /// What a system's equations say of a density.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Structure {
     /// Point of symmetry, one coordinate an axis: p(c + u) = p(c - u). `None` where the system declares none.
     pub centre: Option<Vec<f64>>,
     /// Planes on which a derivative of the density jumps.
     pub kinks: Vec<Kink>,
     /// Of the density of a system with one axis that is known by quadrature: its extrema, free of the cells.
+    #[cfg_attr(feature = "serde", serde(with = "shared"))]
     pub profile: Option<Arc<Profile>>,
+}
+
+/// A profile that is shared, by its content.
+#[cfg(feature = "serde")]
+mod shared {
+    use super::{Arc, Profile};
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(
+        profile: &Option<Arc<Profile>>,
+        to: S,
+    ) -> Result<S::Ok, S::Error> {
+        profile.as_deref().serialize(to)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        from: D,
+    ) -> Result<Option<Arc<Profile>>, D::Error> {
+        Ok(Option::deserialize(from)?.map(Arc::new))
+    }
 }
 
 /// A plane on which the derivative of the density jumps, or bends: drift or noise across it does, or a force along it
 /// where states cross it without noise.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Kink {
     /// Axis of the density (0 or 1) on which the plane stands.
     pub axis: usize,
@@ -49,6 +72,7 @@ impl Kink {
 
 /// Other estimates of the same density: what is derived from a density has the error that it shows among them.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Variants {
     /// None: the density is exact, or nothing is known.
     #[default]

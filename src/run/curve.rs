@@ -9,7 +9,7 @@ use super::atomic::{sync_all, write_atomically};
 use super::checksums;
 use super::codimension::{codimension_two_csv, codimension_two_tex, curve_name, several_csv};
 use super::columns::{Column, flag, number, word};
-use super::journal::{SessionJournal, came_to_its_end};
+use super::journal::{Journal, came_to_its_end};
 use super::plane_file;
 use super::staging::Staging;
 use crate::continuation::curve::{Curve, CurveOrigin, CurvePoint, CurveTree, CurveWork, Plane};
@@ -225,22 +225,17 @@ impl CurveFolder {
     ///
     /// # Errors
     /// [`RunError::Read`] or [`RunError::Write`].
-    pub fn begin(&self, of: &str) -> Result<SessionJournal, RunError> {
+    pub fn begin(&self, of: &str) -> Result<Journal, RunError> {
         self.staging.keep_aside(&[PART])?;
-        SessionJournal::create(self.staging.home().join(PART), of)
+        Journal::create(&self.staging.home().join(PART), of)
     }
 
     /// The journal of the unfinished curves in the folder.
     ///
     /// # Errors
     /// [`RunError::NoJournal`], [`RunError::OtherSweep`], [`RunError::Journal`], [`RunError::Read`].
-    pub fn go_on(
-        &self,
-        of: &str,
-        family: &Family,
-        methods: &[&'static str],
-    ) -> Result<SessionJournal, RunError> {
-        SessionJournal::open(self.staging.home().join(PART), of, family, methods)
+    pub fn go_on(&self, of: &str) -> Result<Journal, RunError> {
+        Journal::open(&self.staging.home().join(PART), of)
     }
 
     /// Where figures are drawn to.

@@ -118,6 +118,11 @@ impl RunFolder {
         &self.path
     }
 
+    /// The journal, until the run is complete.
+    pub fn journal(&self) -> PathBuf {
+        self.path.join(journal::NAME)
+    }
+
     /// Folder of the figures; made by whoever draws the first one.
     pub fn figures(&self) -> PathBuf {
         self.path.join("figures")
@@ -222,7 +227,7 @@ impl RunFolder {
     /// # Errors
     /// [`RunError::Write`].
     pub fn close_journal(&self) -> Result<(), RunError> {
-        let path = self.path.join(journal::NAME);
+        let path = self.journal();
         match std::fs::remove_file(&path) {
             Err(source) if path.exists() => Err(RunError::Write { path, source }),
             _ => Ok(()),

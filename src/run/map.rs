@@ -10,7 +10,7 @@ use super::checksums;
 use super::codimension::{codimension_two_csv, codimension_two_tex, several_csv};
 use super::columns::{Columns, count, number, word};
 use super::curve::{one_json, work_json};
-use super::map_checkpoint::{self, differences};
+use super::journal::{Journal, differences};
 use super::number::format_number;
 use super::plane_file;
 use super::staging::Staging;
@@ -29,6 +29,10 @@ pub(super) const ENTRIES: [&str; 9] = [
     "densities",
     "figures",
 ];
+
+/// What an unfinished map, or a shard of one, has solved.
+pub(super) const PART: &str = "map.part.bin";
+
 /// Columns and rows of the picture that regions are measured in.
 const PICTURE: [usize; 2] = [300, 300];
 
@@ -180,12 +184,33 @@ impl MapFolder {
         }
     }
 
-    /// Keeps what an unfinished map had solved below `previous/`: another one begins.
+    /// Whether the folder holds solves of a map that did not come to its end.
+    pub fn has_journal(home: &Path) -> bool {
+        home.join(PART).is_file()
+    }
+
+    /// A new journal for what a map of a resolved sweep asks to be solved; that of an unfinished one is kept below
+    /// `previous/`.
     ///
     /// # Errors
     /// [`RunError::Read`] or [`RunError::Write`].
-    pub fn keep_unfinished(&self) -> Result<(), RunError> {
-        self.staging.keep_aside(&[map_checkpoint::FILE])
+    pub fn begin(&self, sweep: &str) -> Result<Journal, RunError> {
+        self.staging.keep_aside(&[PART])?;
+        Journal::create(&self.staging.home().join(PART), sweep)
+    }
+
+    /// The journal of the unfinished map in the folder.
+    ///
+    /// # Errors
+    /// [`RunError::NoJournal`], [`RunError::OtherSweep`], [`RunError::Journal`], [`RunError::Read`].
+    pub fn go_on(&self, sweep: &str) -> Result<Journal, RunError> {
+        Journal::open(&self.staging.home().join(PART), sweep)
+    }
+
+    /// Removes the journal: what it has is written elsewhere, or nothing is in it.
+    pub fn close_journal(&self) {
+        // One that stays is of a map that is complete, which is looked at first.
+        let _ = std::fs::remove_file(self.staging.home().join(PART));
     }
 
     /// Where figures are drawn to.
@@ -226,14 +251,21 @@ impl MapFolder {
         Ok(())
     }
 
-    /// Puts the map in its place and returns its files; what an earlier one left goes below `previous/`.
+    /// Puts the map in its place and returns its files; what an earlier one left goes below `previous/`. The journal
+    /// goes, unless the map was interrupted.
     ///
     /// # Errors
     /// [`RunError::Read`] or [`RunError::Write`].
-    pub fn take_place(self) -> Result<Vec<PathBuf>, RunError> {
+    pub fn take_place(self, interrupted: bool) -> Result<Vec<PathBuf>, RunError> {
         let fresh = self.staging.fresh();
         checksums::write_listed(&fresh, &ENTRIES)?;
         sync_all(&[fresh])?;
-        Ok(self.staging.take_place(&[])?.files)
+        let part = self.staging.home().join(PART);
+        let placed = self.staging.take_place(&[])?;
+        if !interrupted {
+            // One that stays is of a map that is complete, which is looked at first.
+            let _ = std::fs::remove_file(part);
+        }
+        Ok(placed.files)
     }
 }

@@ -2,18 +2,27 @@
 
 use std::path::{Path, PathBuf};
 
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
 
-use super::RunError;
 use super::atomic::write_atomically;
-use super::map_checkpoint::{self, differences, node, node_json};
+use super::journal::differences;
 use super::shards::{count, shard_folder};
+use super::{RunError, map};
 use crate::continuation::Shard;
-use crate::continuation::map::{MapChange, MapShard};
-use crate::topology::IndicatorKind;
+use crate::continuation::map::{MapChange, MapNode, MapShard};
 
 /// The file of a shard that is complete.
 const FILE: &str = "map.shard.json";
+
+/// What is in it.
+#[derive(Serialize, Deserialize)]
+struct Content {
+    program: String,
+    version: String,
+    sweep_file: String,
+    nodes: Vec<MapNode>,
+    changes: Vec<MapChange>,
+}
 
 /// The shards of a map, all complete.
 #[derive(Debug, Clone)]
@@ -28,16 +37,17 @@ impl MapShards {
     /// Writes what a shard has found to its `folder`, whole or not at all; `sweep` is the resolved sweep file.
     ///
     /// # Errors
-    /// [`RunError::Write`].
+    /// [`RunError::Json`], [`RunError::Write`].
     pub fn write(folder: &Path, sweep: &str, found: &MapShard) -> Result<(), RunError> {
-        let text = json!({
-            "program": env!("CARGO_PKG_NAME"),
-            "version": env!("CARGO_PKG_VERSION"),
-            "sweep_file": sweep,
-            "nodes": found.nodes.iter().map(node_json).collect::<Vec<_>>(),
-            "changes": found.changes.iter().map(change_json).collect::<Vec<_>>(),
-        });
-        write_atomically(&folder.join(FILE), text.to_string().as_bytes())
+        let content = Content {
+            program: env!("CARGO_PKG_NAME").to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            sweep_file: sweep.to_owned(),
+            nodes: found.nodes.clone(),
+            changes: found.changes.clone(),
+        };
+        let text = serde_json::to_string(&content)?;
+        write_atomically(&folder.join(FILE), text.as_bytes())
     }
 
     /// Whether a shard's folder holds it, complete, of this sweep.
@@ -77,15 +87,14 @@ impl MapShards {
                 missing.push((shard, words.to_owned()));
                 continue;
             };
-            let sweep = found["sweep_file"].as_str().unwrap_or_default();
-            check(
-                &folder,
-                &found,
-                sweep_file.get_or_insert_with(|| sweep.to_owned()),
-            )?;
-            let understood = of_json(shard, &found);
-            shards
-                .push(understood.ok_or_else(|| broken(&folder, "its nodes cannot be understood"))?);
+            let wanted = sweep_file.get_or_insert_with(|| found.sweep_file.clone());
+            check(&folder, &found, wanted)?;
+            shards.push(MapShard {
+                shard,
+                nodes: found.nodes,
+                changes: found.changes,
+                interrupted: false,
+            });
         }
         match sweep_file.filter(|_| missing.is_empty()) {
             Some(sweep_file) => Ok(Self { sweep_file, shards }),
@@ -106,75 +115,31 @@ fn folders(path: &Path, of: usize) -> impl Iterator<Item = (Shard, PathBuf)> {
 
 /// Whether a shard's folder is of a map, complete or not.
 fn is_of_map(folder: &Path) -> bool {
-    let files = [FILE, map_checkpoint::FILE];
+    let files = [FILE, map::PART];
     files.iter().any(|file| folder.join(file).is_file())
 }
 
 /// The file of a shard; `None` where it is not there.
-fn read(folder: &Path) -> Result<Option<Value>, RunError> {
-    let Ok(text) = std::fs::read_to_string(folder.join(FILE)) else {
+fn read(folder: &Path) -> Result<Option<Content>, RunError> {
+    let path = folder.join(FILE);
+    let Ok(text) = std::fs::read_to_string(&path) else {
         return Ok(None);
     };
-    let all = serde_json::from_str(&text).map_err(|error| broken(folder, &error.to_string()))?;
-    Ok(Some(all))
-}
-
-fn broken(folder: &Path, message: &str) -> RunError {
-    RunError::Plane {
-        path: folder.join(FILE),
-        message: message.to_owned(),
-    }
+    let content = serde_json::from_str(&text).map_err(|error| RunError::Plane {
+        path,
+        message: error.to_string(),
+    })?;
+    Ok(Some(content))
 }
 
 /// Refuses a shard of another sweep or version.
-fn check(folder: &Path, found: &Value, sweep: &str) -> Result<(), RunError> {
-    let word = |key: &str| found[key].as_str().unwrap_or_default();
-    let differences = differences(word("version"), word("sweep_file"), sweep);
-    match differences.is_empty() {
-        true => Ok(()),
-        false => Err(RunError::OtherSweep {
-            path: folder.to_owned(),
-            differences,
-        }),
+fn check(folder: &Path, found: &Content, sweep: &str) -> Result<(), RunError> {
+    let differences = differences(&found.version, &found.sweep_file, sweep);
+    if differences.is_empty() {
+        return Ok(());
     }
-}
-
-fn change_json(change: &MapChange) -> Value {
-    let zero = change.zero.as_ref();
-    json!({
-        "observable": change.observable,
-        "ends": change.ends,
-        "zero": zero.map(|(kind, place, at)| json!([kind.code(), place, at])),
-    })
-}
-
-fn of_json(shard: Shard, value: &Value) -> Option<MapShard> {
-    let nodes = value["nodes"].as_array()?.iter().map(node);
-    let changes = value["changes"].as_array()?.iter().map(change);
-    Some(MapShard {
-        shard,
-        nodes: nodes.collect::<Option<_>>()?,
-        changes: changes.collect::<Option<_>>()?,
-        interrupted: false,
-    })
-}
-
-fn change(value: &Value) -> Option<MapChange> {
-    let pair = |value: &Value| Some([value[0].as_f64()?, value[1].as_f64()?]);
-    let zero = match &value["zero"] {
-        Value::Null => None,
-        zero => {
-            let place = zero[1].as_array()?.iter().map(Value::as_f64);
-            Some((
-                IndicatorKind::of_code(zero[0].as_str()?)?,
-                place.collect::<Option<_>>()?,
-                pair(&zero[2])?,
-            ))
-        }
-    };
-    Some(MapChange {
-        observable: usize::try_from(value["observable"].as_u64()?).ok()?,
-        ends: [pair(&value["ends"][0])?, pair(&value["ends"][1])?],
-        zero,
+    Err(RunError::OtherSweep {
+        path: folder.to_owned(),
+        differences,
     })
 }

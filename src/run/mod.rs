@@ -25,7 +25,6 @@ mod latex;
 mod lock;
 mod manifest;
 mod map;
-mod map_checkpoint;
 mod map_shards;
 mod map_tables;
 mod number;
@@ -35,6 +34,7 @@ mod provenance;
 mod recompute;
 mod reopen;
 mod research_object;
+mod sealing;
 mod sentences;
 mod settling;
 mod shards;
@@ -56,16 +56,15 @@ pub use bifurcations::{
 };
 pub use checksums::{Checked, Damage, check_folder};
 pub use clean::{Removable, removable_runs, remove_run};
-pub use compare::{CompareFolder, CompareJournal, CompareTable, ComparedRun, compare_tables};
+pub use compare::{CompareFolder, CompareTable, ComparedRun, compare_tables};
 pub use curve::{CurveFolder, FOLDER as CURVES, curves_csv};
 pub use date::date_in_utc;
 pub use export::{ExportFormat, export};
 pub use features_table::features_csv;
 pub use folder::RunFolder;
-pub use journal::{Journal, JournalledSource, RecordedSource, SessionJournal};
+pub use journal::{Journal, JournalledSource};
 pub use manifest::{Ending, Manifest, PhaseSeconds};
 pub use map::{MapFolder, map_csv};
-pub use map_checkpoint::MapCheckpoint;
 pub use map_shards::MapShards;
 pub use map_tables::{MapTables, Rows};
 pub use number::{format_number, format_with_error};
@@ -74,7 +73,7 @@ pub use points_table::points_csv;
 pub use provenance::Provenance;
 pub use recompute::Recomputed;
 pub use sentences::finding_in_words;
-pub use shards::{Gathered, GatheredSource, Shards, shard_folder};
+pub use shards::{Gathered, Shards, shard_folder};
 pub use staged::StagedRun;
 pub use store::DensityStore;
 pub use stored_run::StoredRun;
@@ -180,16 +179,6 @@ pub enum RunError {
         /// The file.
         path: PathBuf,
     },
-    /// A journal whose values are not those that the sweep asks for.
-    #[error("{} has {stored} where the sweep asks for {wanted}", path.display())]
-    JournalOrder {
-        /// The file.
-        path: PathBuf,
-        /// The value in the journal.
-        stored: f64,
-        /// The value that the sweep asks for.
-        wanted: f64,
-    },
     /// An unfinished run of another sweep.
     #[error("the run in {} is of another sweep: {}", path.display(), differences.join("; "))]
     OtherSweep {
@@ -262,14 +251,6 @@ pub enum RunError {
     /// What figures of curves and maps are drawn from again cannot be understood.
     #[error("{} does not hold the curves of a plane: {message}", path.display())]
     Plane {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        message: String,
-    },
-    /// What an unfinished map has solved cannot be understood.
-    #[error("{} does not hold the nodes of a map: {message}", path.display())]
-    Checkpoint {
         /// The file.
         path: PathBuf,
         /// What is wrong with it.

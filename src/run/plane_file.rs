@@ -7,7 +7,6 @@ use serde_json::{Value, json};
 
 use super::RunError;
 use super::checksums;
-use super::map_checkpoint::{node, node_json, signature, signature_json};
 use crate::continuation::curve::{
     CodimensionTwoKind, Curve, CurveEnd, CurveOrigin, CurvePoint, CurveWork, DegeneratePoint,
     EndReason, Plane,
@@ -35,7 +34,7 @@ pub(super) fn of_map(map: &RegimeMap, sweep: &str) -> String {
         })
     });
     let map_json = json!({
-        "nodes": map.nodes.iter().map(node_json).collect::<Vec<_>>(),
+        "nodes": map.nodes,
         "cells": map.cells,
         "samples": samples.collect::<Vec<_>>(),
         "not_followed": untraced.collect::<Vec<_>>(),
@@ -54,8 +53,8 @@ pub(super) fn of_curves(
     let row = json!({
         "label": origin.label,
         "value": origin.value,
-        "before": origin.before.as_ref().map(signature_json),
-        "after": origin.after.as_ref().map(signature_json),
+        "before": origin.before,
+        "after": origin.after,
     });
     written(plane, curves, sweep, ("row", row))
 }
@@ -267,7 +266,7 @@ fn map(value: &Value, problem: &Problem, plane: Plane, curves: Vec<Curve>) -> Op
         })
     };
     Some(RegimeMap {
-        nodes: list(&value["nodes"], node)?,
+        nodes: read(&value["nodes"])?,
         cells: list(&value["cells"], |cell| {
             Some([pair(&cell[0])?, pair(&cell[1])?])
         })?,
@@ -285,8 +284,8 @@ fn origin(value: &Value) -> Option<CurveOrigin> {
     Some(CurveOrigin {
         label: value["label"].as_str()?.to_owned(),
         value: number(&value["value"]),
-        before: signature(&value["before"]),
-        after: signature(&value["after"]),
+        before: read(&value["before"])?,
+        after: read(&value["after"])?,
     })
 }
 
@@ -350,6 +349,11 @@ fn point(value: &Value) -> Option<CurvePoint> {
             .into_iter()
             .find(|one| one.word() == status)?,
     })
+}
+
+/// What was written of something.
+fn read<T: serde::de::DeserializeOwned>(value: &Value) -> Option<T> {
+    T::deserialize(value).ok()
 }
 
 fn list<T>(value: &Value, of: impl Fn(&Value) -> Option<T>) -> Option<Vec<T>> {

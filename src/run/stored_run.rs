@@ -9,6 +9,7 @@ use sha2::{Digest, Sha256};
 use super::checks::read_checks;
 use super::manifest::Typed;
 use super::points_table::read_points;
+use super::sealing::seal_after_kill;
 use super::stored_densities::StoredDensities;
 use super::{Checked, Ending, PhaseSeconds, RunError, checksums, exchange, journal};
 use crate::continuation::measure::MEAN;
@@ -93,6 +94,9 @@ impl StoredRun {
             }
             None => toml::to_string(&manifest.sweep).map_err(|error| broken(error.to_string()))?,
         };
+        if manifest.ending == Ending::Complete {
+            seal_after_kill(path);
+        }
         Ok(Self {
             path: path.to_owned(),
             resolved,

@@ -8,9 +8,6 @@
 //! An *axis of modes* carries a series in place of cells (`series.rs`, `hermite.rs`): its nodes are those of a Gauss
 //! rule, and its "cells" hold the weights, so that sums over cells are the rule.
 
-#[cfg(feature = "store")] // a run's journal keeps axes
-mod bytes;
-
 use super::SpaceError;
 use super::grading::{BULK_SHARE, Grading, Piece, grading_terms};
 use super::hermite::{
@@ -25,6 +22,7 @@ const SAME_PLACE: f64 = 1e-6;
 
 /// The cells of one axis. Cell `i` is `[edges[i], edges[i + 1])`; the last one includes its upper edge.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Axis {
     edges: Vec<f64>,
     /// Where the cell coordinate is half-way between a cell's edges, one a cell.
@@ -42,6 +40,20 @@ const MODES_A_FINER_MODE: usize = 4;
 const DEVIATIONS_OF_A_RANGE: f64 = 5.0;
 
 impl Axis {
+    /// Whether every cell has its edges, its node and, but for modes, its piece: what was read from a file may not.
+    #[cfg(feature = "serde")]
+    pub(crate) fn is_sound(&self) -> bool {
+        let ascending = self.edges.windows(2).all(|pair| pair[0] < pair[1]);
+        let mut cells = 0;
+        let joined = self.pieces.iter().all(|piece| {
+            let follows = piece.first_cell == cells && piece.cells > 0;
+            cells = cells.saturating_add(piece.cells);
+            follows
+        });
+        let held = if self.is_modes() { 0 } else { self.nodes.len() };
+        ascending && self.edges.len() == self.nodes.len() + 1 && joined && cells == held
+    }
+
     /// Cells of equal width.
     ///
     /// # Errors

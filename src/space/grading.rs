@@ -14,6 +14,7 @@ pub struct Grading {
 
 /// A stretch between two graded points (or ends) that holds a whole number of cells.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Piece {
     pub(super) from: f64,
     pub(super) to: f64,

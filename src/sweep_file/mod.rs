@@ -63,5 +63,5 @@ pub use report::Report;
 pub use settings::{
     AxisSettings, BinSettings, CurveSettings, Grade, MapSettings, Modes, ModesOf, Settings,
 };
-pub use sweep::{SolveError, Sweep};
+pub use sweep::{SolveError, Sweep, WrapSource};
 pub use text::SweepText;

@@ -3,12 +3,8 @@
 use super::settings::Settings;
 use crate::cancellation::Cancellation;
 use crate::continuation::curve::{CurveOptions, Plane};
-use crate::continuation::map::{
-    MapMaker, MapNode, MapObserver, MapShard, PlaneState, RegimeMap, plane_states,
-};
-use crate::continuation::{
-    DensitySource, Observer, Shard, SourceError, SweepError, SweepResult, sweep,
-};
+use crate::continuation::map::{MapMaker, MapObserver, PlaneState, RegimeMap, plane_states};
+use crate::continuation::{DensitySource, Observer, SourceError, SweepError, SweepResult, sweep};
 use crate::method::{MethodError, MethodSource, Problem};
 use crate::system::Family;
 use crate::topology::PersistenceDetector;
@@ -21,6 +17,9 @@ pub struct Sweep {
     /// What is solved: the systems, the cells that the axes of the settings make, and what is watched.
     pub problem: Problem,
 }
+
+/// What is made of a source before it is opened.
+pub type WrapSource<'a> = dyn Fn(Box<dyn DensitySource>) -> Box<dyn DensitySource> + Sync + 'a;
 
 /// Why a sweep gave no result.
 #[derive(Debug, thiserror::Error)]
@@ -120,55 +119,19 @@ impl Sweep {
         cancellation: &Cancellation,
         observer: &MapObserver<'_>,
     ) -> Result<Option<RegimeMap>, SourceError> {
-        self.map_from(&[], cancellation, observer)
-    }
-
-    /// Goes on with the map of which these nodes are known
-    /// ([`regime_map_from`](crate::continuation::map::regime_map_from)); `None` without `[map]`.
-    ///
-    /// # Errors
-    /// [`SourceError`] where the box has a corner that is not allowed.
-    pub fn map_from(
-        &self,
-        known: &[MapNode],
-        cancellation: &Cancellation,
-        observer: &MapObserver<'_>,
-    ) -> Result<Option<RegimeMap>, SourceError> {
-        self.with_maker(cancellation, observer, |maker| maker.whole(known).map(Some))
-    }
-
-    /// A shard of the map, of which these nodes are known ([`MapMaker::shard`]); `None` without `[map]`, and where
-    /// there are more shards than steps between values of the second parameter.
-    ///
-    /// # Errors
-    /// [`SourceError`] where the box has a corner that is not allowed.
-    pub fn map_shard(
-        &self,
-        shard: Shard,
-        known: &[MapNode],
-        cancellation: &Cancellation,
-        observer: &MapObserver<'_>,
-    ) -> Result<Option<MapShard>, SourceError> {
-        self.with_maker(cancellation, observer, |maker| maker.shard(shard, known))
-    }
-
-    /// The map that its shards make ([`MapMaker::merged`]); `None` without `[map]`.
-    ///
-    /// # Errors
-    /// [`SourceError`] where the box has a corner that is not allowed.
-    pub fn map_of_shards(
-        &self,
-        shards: &[MapShard],
-        cancellation: &Cancellation,
-        observer: &MapObserver<'_>,
-    ) -> Result<Option<RegimeMap>, SourceError> {
-        self.with_maker(cancellation, observer, |maker| {
-            maker.merged(shards).map(Some)
+        self.make_map(&|source| source, cancellation, observer, |maker| {
+            maker.whole().map(Some)
         })
     }
 
-    fn with_maker<T>(
+    /// The same of whatever is wanted of the map: all of it, a shard, or the map that shards make ([`MapMaker`]). Each
+    /// of its sources is given to `wrap` first, which may write down what they solve.
+    ///
+    /// # Errors
+    /// As [`Sweep::map`].
+    pub fn make_map<T>(
         &self,
+        wrap: &WrapSource<'_>,
         cancellation: &Cancellation,
         observer: &MapObserver<'_>,
         task: impl FnOnce(&MapMaker<'_>) -> Result<Option<T>, SourceError>,
@@ -184,7 +147,7 @@ impl Sweep {
             self.curve_options(plane.sides()[0].length()),
         );
         task(&MapMaker {
-            source: &|plane: &Plane| self.boxed_source_in(plane, cancellation),
+            source: &|plane: &Plane| Ok(wrap(self.boxed_source_in(plane, cancellation)?)),
             plane: &plane,
             detector: &self.detector(),
             options: &options,

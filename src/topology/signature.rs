@@ -5,6 +5,8 @@ use std::fmt::{self, Display, Formatter};
 /// What is compared along a sweep: numbers of significant peaks, rings and craters. Of a marginal only peaks are
 /// counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "[usize; 5]", into = "[usize; 5]"))]
 pub struct Signature {
     /// Number of significant peaks: maxima at a point, those on the rims of craters included.
     pub peaks: usize,
@@ -16,6 +18,31 @@ pub struct Signature {
     pub enclosed_peaks: usize,
     /// How many of the rings lie within another.
     pub enclosed_rings: usize,
+}
+
+impl From<[usize; 5]> for Signature {
+    fn from([peaks, craters, rings, enclosed_peaks, enclosed_rings]: [usize; 5]) -> Self {
+        Self {
+            peaks,
+            craters,
+            rings,
+            enclosed_peaks,
+            enclosed_rings,
+        }
+    }
+}
+
+/// Its counts, in the order of its fields.
+impl From<Signature> for [usize; 5] {
+    fn from(of: Signature) -> Self {
+        [
+            of.peaks,
+            of.craters,
+            of.rings,
+            of.enclosed_peaks,
+            of.enclosed_rings,
+        ]
+    }
 }
 
 impl Signature {

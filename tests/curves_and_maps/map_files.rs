@@ -1,39 +1,8 @@
-//! Maps through the program: made, killed and gone on with, cut into shards, drawn, refused in words.
-
-use std::sync::Mutex;
-
-use pbif::cancellation::Cancellation;
-use pbif::continuation::map::MapProgress;
-use pbif::run::MapCheckpoint;
+//! Maps through the program: made, cut into shards, drawn, refused in words.
 
 use super::maps::{CUSP, RAYLEIGH};
 use super::support::off_the_fold;
 use crate::common::room::Room;
-use crate::common::sweeps::prepared;
-
-#[test]
-fn the_program_goes_on_with_a_map_that_was_killed() {
-    let room = Room::new();
-    room.write("cusp.toml", CUSP);
-    let sweep = prepared(CUSP, "");
-    let nodes = Mutex::new(Vec::new());
-    let observer = |told: &MapProgress<'_>| {
-        if let MapProgress::Solved { node, .. } = told {
-            nodes.lock().unwrap().push((*node).clone());
-        }
-    };
-    sweep.map(&Cancellation::new(), &observer).unwrap();
-    let nodes = nodes.into_inner().unwrap();
-    // What a kill leaves: the nodes so far, and nothing else.
-    std::fs::create_dir(room.path("out")).unwrap();
-    let checkpoint = MapCheckpoint::new(&room.path("out"), &sweep.to_toml());
-    checkpoint.write(&nodes[..60]).unwrap();
-    // On these cells the cusp itself is not known well enough to be located.
-    let printed = room.solved("sweep cusp.toml --out out --resume");
-    printed.says(&["going on after 60 nodes"]);
-    assert!(checkpoint.read().unwrap().is_empty());
-    assert!(room.holds("out/map.csv"));
-}
 
 #[test]
 fn a_map_in_shards_is_the_map_in_one_piece() {

@@ -4,11 +4,14 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use pbif::cancellation::Cancellation;
 use pbif::continuation::BifurcationStatus;
+use pbif::continuation::DensitySource;
 use pbif::continuation::curve::CurvePoint;
-use pbif::continuation::map::{MapNode, MapProgress, RegimeMap};
+use pbif::continuation::map::{MapProgress, RegimeMap};
+use pbif::run::{Journal, JournalledSource};
 use pbif::topology::Signature;
 
 use super::support::{assert_on, mapped, off_the_fold};
+use crate::common::room::Room;
 use crate::common::sweeps::{prepared, settings};
 
 /// Additive noise: peaks of the density are zeros of the drift, and there are two where 27 h² < 4 a³.
@@ -249,40 +252,53 @@ fn a_cancelled_map_keeps_what_was_done_and_says_so() {
 }
 
 #[test]
-fn a_map_goes_on_from_what_was_solved_and_solves_only_what_it_must() {
-    let cancellation = Cancellation::new();
+fn a_map_that_was_stopped_is_in_the_end_the_same_to_the_bit() {
     let sweep = prepared(CUSP, "");
-    let solved = AtomicUsize::new(0);
-    let count = |told: &MapProgress<'_>| {
-        if let MapProgress::Solved { .. } = told {
-            solved.fetch_add(1, Ordering::Relaxed);
+    let told = |map: &RegimeMap| {
+        let (nodes, samples) = (&map.nodes, &map.samples);
+        let (curves, untraced) = (&map.curves, &map.untraced);
+        format!(
+            "{nodes:?} {curves:?} {untraced:?} {samples:?} {:?}",
+            map.work
+        )
+    };
+    let never = Cancellation::new();
+    let whole = sweep.map(&never, &|_| ()).unwrap().unwrap();
+    let room = Room::new();
+    let path = room.path("map.part.bin");
+    let journal = |goes_on: bool| {
+        if goes_on {
+            Journal::open(&path, "").unwrap()
+        } else {
+            Journal::create(&path, "").unwrap()
         }
     };
-    let whole = sweep.map(&cancellation, &count).unwrap().unwrap();
-    assert_eq!(solved.swap(0, Ordering::Relaxed), whole.nodes.len());
-    // As after an interrupt: of the coarse grid the lower seven rows, and a node that is of no lattice.
-    let mut known: Vec<MapNode> = whole.nodes.iter().take(77).cloned().collect();
-    known.retain(|node| node.level == 0);
-    known.push(MapNode {
-        values: [0.0123, 0.0456],
-        ..known[0].clone()
-    });
-    let again = sweep
-        .map_from(&known, &cancellation, &count)
-        .unwrap()
-        .unwrap();
-    let anew = solved.load(Ordering::Relaxed);
-    // Those that are far from a change are taken as they are.
-    assert!(anew < whole.nodes.len(), "{anew} of {}", whole.nodes.len());
-    let told = |map: &RegimeMap| -> Vec<([f64; 2], usize, Vec<Signature>)> {
-        let nodes = map.nodes.iter();
-        nodes
-            .map(|node| (node.values, node.level, node.signatures.clone()))
-            .collect()
-    };
-    assert_eq!(told(&again), told(&whole));
-    assert_eq!(again.curves.len(), whole.curves.len());
-    assert!(again.untraced.is_empty(), "{:?}", again.untraced);
+    // Among its nodes, twice, and on its curves.
+    let mut solves = 0;
+    for (turn, most) in [40, 160, whole.nodes.len() + 30].into_iter().enumerate() {
+        let journal = journal(turn > 0);
+        assert!(journal.solves() >= solves);
+        solves = journal.solves();
+        let cancellation = Cancellation::new();
+        let seen = AtomicUsize::new(0);
+        let observer = |_: &MapProgress<'_>| {
+            if seen.fetch_add(1, Ordering::Relaxed) == most {
+                cancellation.cancel();
+            }
+        };
+        let wrap =
+            |source| Box::new(JournalledSource::new(source, &journal)) as Box<dyn DensitySource>;
+        let map = sweep.make_map(&wrap, &cancellation, &observer, |maker| {
+            maker.whole().map(Some)
+        });
+        assert!(map.unwrap().unwrap().interrupted && journal.failure().is_none());
+    }
+    let journal = journal(true);
+    assert!(journal.solves() > whole.nodes.len());
+    let wrap = |source| Box::new(JournalledSource::new(source, &journal)) as Box<dyn DensitySource>;
+    let map = sweep.make_map(&wrap, &never, &|_| (), |maker| maker.whole().map(Some));
+    let map = map.unwrap().unwrap();
+    assert!(told(&map) == told(&whole), "{map:?}\n{whole:?}");
 }
 
 #[test]

@@ -142,6 +142,24 @@ fn a_run_that_was_killed_before_its_journal_was_there_begins() {
 }
 
 #[test]
+fn a_run_that_was_killed_before_its_checksums_gets_them_from_whoever_opens_it() {
+    let (room, sweep) = (Room::new(), SWEEPS[4]);
+    run(&room, sweep, "run", "");
+    let sums = room.bytes("run/checksums.sha256");
+    let resumed = line(sweep, "run", "--resume --quiet");
+    for reader in [&resumed, "show run", "verify run", "list ."] {
+        // What a kill leaves: all is there, and the journal with it.
+        for name in ["checksums.sha256", "ro-crate-metadata.json"] {
+            std::fs::remove_file(room.path("run").join(name)).unwrap();
+        }
+        std::fs::write(room.path("run/journal.bin"), "solves").unwrap();
+        room.done(reader);
+        assert!(room.bytes("run/checksums.sha256") == sums, "{reader}");
+        assert!(!room.holds("run/journal.bin"), "{reader}");
+    }
+}
+
+#[test]
 fn an_unfinished_run_is_kept_when_another_one_begins() {
     let (room, sweep) = (Room::new(), SWEEPS[0]);
     run(&room, sweep, "whole", "");

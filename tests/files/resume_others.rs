@@ -23,6 +23,7 @@ const COMPARISON: &str = "compare sweeps/coulomb_fc.toml figures.at=[0.005,-0.01
                           method.error=0.05 method.samples=40 cells.x.count=24 cells.y.count=24";
 const SWEEP: &str = "sweep sweeps/coulomb_fc.toml cells.x.count=24 cells.y.count=24 sweep.points=9 \
                      locate.tolerance=1e-3 figures.formats=[\"svg\"]";
+const MAP: &str = "sweep cusp.toml map.parameter=a map.from=0.7 map.to=1.3 map.points=5 map.depth=1 sweep.points=7";
 const CURVE: &str = "curve run --row PB1 --second a --from 0.7 --to 1.3";
 
 const CUSP: &str = r#"
@@ -146,6 +147,7 @@ fn an_interrupted_comparison_leaves_what_is_done() {
 /// on with: the tables are those of an uninterrupted one every time, and the earlier one in the folder is whole.
 fn kills(count: u32, line: &str) -> u32 {
     let room = Room::new();
+    room.write("cusp.toml", CUSP);
     let clock = std::time::Instant::now();
     room.solved(&format!("{line} --out whole --quiet"));
     let time = clock.elapsed();
@@ -184,6 +186,7 @@ fn kills(count: u32, line: &str) -> u32 {
         room.solved(&format!("{line} --out run --quiet --resume"));
         assert_eq!(tables(&room, "run"), wanted, "kill {number}");
         assert_earlier(number);
+        assert!(room.holds("run/checksums.sha256"), "kill {number}");
         room.solved("verify run");
     }
     killed
@@ -192,6 +195,7 @@ fn kills(count: u32, line: &str) -> u32 {
 #[test]
 fn kills_at_any_moment_lose_nothing() {
     assert!(kills(2, SWEEP) > 0);
+    assert!(kills(2, MAP) > 0);
 }
 
 /// A few minutes each: `cargo test --release --test files resume_others:: -- --ignored`.
@@ -207,6 +211,34 @@ fn forty_kills_of_a_sweep_at_any_moment_lose_nothing() {
 fn forty_kills_of_a_comparison_at_any_moment_lose_nothing() {
     let killed = kills(40, COMPARISON);
     assert!(killed >= 30, "{killed}");
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn forty_kills_of_a_map_at_any_moment_lose_nothing() {
+    let killed = kills(40, MAP);
+    assert!(killed >= 30, "{killed}");
+}
+
+#[test]
+fn a_killed_merge_of_a_map_goes_on_by_itself() {
+    let room = Room::new();
+    room.write("cusp.toml", CUSP);
+    for shard in ["1/2", "2/2"] {
+        room.done(&format!("{MAP} --out shards --quiet --shard {shard}"));
+    }
+    room.solved("merge shards --out whole --quiet");
+    let journal = room.path("run/map.part.bin");
+    for length in [1, 200_000, 400_000] {
+        let child = started(&room, "merge shards --out run --quiet");
+        assert!(killed_at(child, &journal, length), "{length}");
+    }
+    room.solved("merge shards --out run --quiet");
+    for name in ["map.csv", "curves.csv", "codimension_two.csv", "plane.json"] {
+        let [found, wanted] = ["run", "whole"].map(|of| room.bytes(&format!("{of}/{name}")));
+        assert!(found == wanted, "{name}");
+    }
+    assert_tidy(&room, "run");
 }
 
 #[test]

@@ -11,7 +11,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("bytes", &[]),
     ("formula", &[]),
     ("system", &["formula"]),
-    ("space", &["bytes"]),
+    ("space", &[]),
     ("sampling", &["cancellation", "system", "space"]),
     ("monte_carlo", &["cancellation", "system", "space", "sampling"]),
     ("density", &["system", "space"]),

@@ -13,7 +13,7 @@ use crate::continuation::curve::{
 use crate::continuation::{LabelledPoint, LocateOptions, SourceError, SweepResult};
 use crate::figure::{curve_figure, write_figures};
 use crate::method::MethodError;
-use crate::run::{CurveFolder, RecordedSource, SessionJournal, format_number};
+use crate::run::{CurveFolder, Journal, JournalledSource, format_number};
 use crate::sweep_file::{Diagnostic, Sweep};
 
 /// A curve to be followed.
@@ -103,7 +103,7 @@ impl<'a> Job<'a> {
     /// journal is not solved again.
     pub(super) fn follow(
         &self,
-        journal: &SessionJournal,
+        journal: &Journal,
         cancellation: &Cancellation,
     ) -> Result<Option<CurveTree>, CommandError> {
         let options = CurveOptions {
@@ -112,7 +112,7 @@ impl<'a> Job<'a> {
             ..self.spec.curve_options(self.plane.sides()[0].length())
         };
         let source = match self.spec.source_in(&self.plane, cancellation) {
-            Ok(source) => RecordedSource::new(Box::new(source), journal.clone()),
+            Ok(source) => JournalledSource::new(Box::new(source), journal),
             Err(MethodError::Cancelled(_)) => return Ok(None),
             Err(error) => return Err(refused_plane(&error)),
         };
@@ -123,10 +123,10 @@ impl<'a> Job<'a> {
             .map(|side| side.parameter.as_str());
         let mut met = 0;
         let quiet = self.quiet;
-        if journal.waiting() > 0 {
+        if journal.solves() > 0 {
             tell(
                 quiet,
-                &format!("going on after {} solves\n", journal.waiting()),
+                &format!("going on after {} solves\n", journal.solves()),
             );
         }
         let mut observer = |values: [f64; 2]| {

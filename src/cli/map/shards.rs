@@ -8,9 +8,8 @@ use super::super::args::{MergeArguments, SweepArguments};
 use super::super::output::OutputFolder;
 use super::super::{CommandError, Outcome, interruptible, print};
 use super::{Job, conclude, interrupted};
-use crate::continuation::map::MapObserver;
 use crate::continuation::{Shard, SweepError};
-use crate::run::{MapCheckpoint, MapFolder, MapShards, RunError, shard_folder};
+use crate::run::{MapFolder, MapShards, RunError, shard_folder};
 use crate::sweep_file::{Diagnostic, Sweep, SweepFile};
 
 /// Solves a shard of a map whose folder is `home`.
@@ -26,28 +25,24 @@ pub(super) fn run(
     check(spec, shard)?;
     let folder = shard_folder(home, shard);
     let output = OutputFolder::prepare(&folder)?;
-    // Keeps other writers away.
-    let _lock = MapFolder::new(output.path())?;
+    let home_of_shard = MapFolder::new(output.path())?;
     let sweep = spec.to_toml();
     if arguments.resume && MapShards::is_complete(output.path(), &sweep)? {
         print("the shard is complete: there is nothing to go on with\n")?;
         return Ok(Outcome::Complete);
     }
-    let checkpoint = MapCheckpoint::new(output.path(), &sweep);
-    let known = match arguments.resume {
-        true => checkpoint.read()?,
-        false => Vec::new(),
+    let journal = match arguments.resume && MapFolder::has_journal(output.path()) {
+        true => home_of_shard.go_on(&sweep)?,
+        false => home_of_shard.begin(&sweep)?,
     };
     let (threads, cancellation) = interruptible(arguments.work.threads)?;
     threads.install(|| {
         let job = Job {
             spec,
-            checkpoint: Some(&checkpoint),
+            journal: &journal,
             quiet: arguments.work.quiet,
         };
-        let solve =
-            |observer: &MapObserver<'_>| spec.map_shard(shard, &known, &cancellation, observer);
-        let Some(found) = job.made(&known, &cancellation, &solve)? else {
+        let Some(found) = job.made(&cancellation, &|maker| maker.shard(shard))? else {
             return interrupted();
         };
         let mut text = format!(
@@ -62,7 +57,7 @@ pub(super) fn run(
             return super::super::conclude(&text, Outcome::Interrupted, output.path());
         }
         MapShards::write(output.path(), &sweep, &found)?;
-        checkpoint.remove();
+        home_of_shard.close_journal();
         text += &format!(
             "`pbif merge {}` puts all {} together when they are done\n",
             home.display(),
@@ -116,18 +111,22 @@ pub(in crate::cli) fn merge(arguments: &MergeArguments) -> Result<Outcome, Comma
     let spec = file.validate()?.fixed()?;
     let output = OutputFolder::prepare(arguments.out.as_deref().unwrap_or(&arguments.run))?;
     let home = MapFolder::new(output.path())?;
+    let sweep = spec.to_toml();
+    let journal = match MapFolder::has_journal(output.path()) {
+        true => home.go_on(&sweep).or_else(|_| home.begin(&sweep))?,
+        false => home.begin(&sweep)?,
+    };
     let (threads, cancellation) = interruptible(arguments.work.threads)?;
     threads.install(|| {
         let clock = Instant::now();
         let job = Job {
             spec: &spec,
-            checkpoint: None,
+            journal: &journal,
             quiet: arguments.work.quiet,
         };
-        let solve = |observer: &MapObserver<'_>| {
-            spec.map_of_shards(&shards.shards, &cancellation, observer)
-        };
-        match job.made(&[], &cancellation, &solve)? {
+        match job.made(&cancellation, &|maker| {
+            maker.merged(&shards.shards).map(Some)
+        })? {
             Some(map) => conclude(&spec, &map, home, (output.path(), clock)),
             None => interrupted(),
         }

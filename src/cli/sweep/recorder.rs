@@ -1,10 +1,8 @@
 //! Writes every point as soon as it is done, and shows how far the sweep is.
 
-use std::borrow::Cow;
-
 use super::progress::Progress;
-use crate::continuation::{KeptCheck, Observer, Point, Subject};
-use crate::run::{JournalledSource, Manifest, RunFolder};
+use crate::continuation::{CheckedIndicator, Observer, Point, Subject};
+use crate::run::{JournalledSource, Manifest, RunError, RunFolder};
 
 /// What a sweep tells its points.
 pub(super) struct Recorder<'a> {
@@ -13,10 +11,24 @@ pub(super) struct Recorder<'a> {
     pub(super) manifest: &'a mut Manifest,
     pub(super) progress: &'a Progress,
     pub(super) source: &'a JournalledSource,
-    /// How many points come from the journal.
-    pub(super) stored: usize,
-    /// Those that have come. The tables that are there are replaced when all have.
+    /// What shards saw in their checks.
+    pub(super) checks: Vec<CheckedIndicator>,
+    /// Points that came from the journal. The tables that are there are replaced when all have come.
     pub(super) given: Vec<Point>,
+}
+
+impl Recorder<'_> {
+    /// Writes what came from the journal, in the place of what is there.
+    ///
+    /// # Errors
+    /// As [`RunFolder::add_points`].
+    pub(super) fn write_given(&mut self) -> Result<(), RunError> {
+        let given = std::mem::take(&mut self.given);
+        if given.is_empty() {
+            return Ok(());
+        }
+        self.folder.add_points(self.subject, &given)
+    }
 }
 
 impl Observer for Recorder<'_> {
@@ -26,36 +38,18 @@ impl Observer for Recorder<'_> {
         done: usize,
         remaining: usize,
     ) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-        let point = match self.source.seconds(point.value) {
-            Some(seconds) => Cow::Owned(Point {
-                seconds,
-                ..point.clone()
-            }),
-            None => Cow::Borrowed(point),
-        };
-        if done > self.stored {
-            self.folder.add_point(self.subject, &point)?;
-            self.progress.point(self.subject, &point, done, remaining);
-            self.manifest.points = done;
-            self.folder.write_progress(self.manifest)?;
+        if self.source.is_stored() {
+            self.given.push(point.clone());
             return Ok(());
         }
-        self.given.push(point.into_owned());
-        if done == self.stored {
-            let given = std::mem::take(&mut self.given);
-            self.folder.add_points(self.subject, &given)?;
-        }
-        Ok(())
+        self.write_given()?;
+        self.folder.add_point(self.subject, point)?;
+        self.progress.point(self.subject, point, done, remaining);
+        self.manifest.points = done;
+        Ok(self.folder.write_progress(self.manifest)?)
     }
 
-    fn checked(
-        &mut self,
-        check: &KeptCheck,
-    ) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-        Ok(self.source.keep_check(check)?)
-    }
-
-    fn kept_checks(&mut self) -> Vec<KeptCheck> {
-        self.source.kept_checks()
+    fn known_checks(&mut self) -> Vec<CheckedIndicator> {
+        std::mem::take(&mut self.checks)
     }
 }

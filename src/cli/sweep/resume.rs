@@ -6,8 +6,8 @@ use super::{Kind, outcome, shards, summary};
 use crate::cli::stored::Stored;
 use crate::cli::{CommandError, Outcome};
 use crate::continuation::Shard;
-use crate::run::{Ending, Journal, RunError, StoredRun};
-use crate::sweep_file::{MethodKind, Sweep};
+use crate::run::{Ending, RunError, StoredRun};
+use crate::sweep_file::Sweep;
 
 /// How a run begins.
 pub(in crate::cli) enum Begin {
@@ -45,20 +45,6 @@ pub(super) fn begin(
         return Ok(Begin::GoOn);
     }
     Ok(Begin::Done(Box::new(Stored::read(path, &[], &[], true)?)))
-}
-
-/// The journal to go on from.
-///
-/// # Errors
-/// [`CommandError::Run`].
-pub(super) fn journal(spec: &Sweep, path: &Path) -> Result<Journal, CommandError> {
-    let methods = MethodKind::ALL.map(MethodKind::name);
-    Ok(Journal::open(
-        path,
-        &spec.to_toml(),
-        spec.problem.family(),
-        &methods,
-    )?)
 }
 
 /// Prints what a complete run has found.

@@ -1,13 +1,10 @@
 //! Shards of a sweep: what each of them says, and the source that has what all of them solved.
 
 use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::AtomicUsize;
 
 use crate::cli::{CommandError, Outcome};
 use crate::continuation::{Shard, SweepError, SweepResult};
-use crate::method::MethodSource;
-use crate::run::{Gathered, GatheredSource, Journal, JournalledSource, format_number};
+use crate::run::format_number;
 use crate::sweep_file::{Diagnostic, Sweep};
 
 /// Refuses a shard of a sweep that has not so many steps.
@@ -56,20 +53,4 @@ pub(super) fn told(
         shard.of()
     );
     (text, Outcome::Complete)
-}
-
-/// A source that knows what shards have solved and seen, with a count of the values that none of them has.
-pub(super) fn join(
-    source: MethodSource,
-    gathered: Gathered,
-    journal: Journal,
-) -> (JournalledSource, Arc<AtomicUsize>) {
-    let checks = gathered.kept_checks();
-    let points = gathered.points;
-    let seconds = points.iter().map(|point| (point.value, point.seconds));
-    let seconds = seconds.collect();
-    let source = GatheredSource::new(Box::new(source), points);
-    let solves = source.solves();
-    let source = JournalledSource::new(Box::new(source), journal);
-    (source.knowing(seconds, checks), solves)
 }

@@ -224,49 +224,35 @@ fn scale_and_direction_change_no_row() {
 }
 
 #[test]
-fn checks_that_were_seen_are_not_solved_again() {
-    #[derive(Default)]
-    struct Keeper {
-        kept: Vec<KeptCheck>,
-        checked: Vec<KeptCheck>,
-    }
+fn checks_that_are_known_are_not_solved_again() {
+    struct Keeper(Vec<CheckedIndicator>);
     impl Observer for Keeper {
-        fn checked(
-            &mut self,
-            check: &KeptCheck,
-        ) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-            self.checked.push(check.clone());
-            Ok(())
-        }
-
-        fn kept_checks(&mut self) -> Vec<KeptCheck> {
-            std::mem::take(&mut self.kept)
+        fn known_checks(&mut self) -> Vec<CheckedIndicator> {
+            std::mem::take(&mut self.0)
         }
     }
     let mut source = split();
     source.subject.family = bistable(-0.5, 0.5);
     let detector = PersistenceDetector::new(DetectOptions::default(), 11);
     let (options, never) = (LocateOptions::default(), Cancellation::new());
-    let swept = |kept: &[KeptCheck]| {
-        let mut keeper = Keeper {
-            kept: kept.to_vec(),
-            ..Keeper::default()
-        };
+    let swept = |known: &[CheckedIndicator]| {
+        let mut keeper = Keeper(known.to_vec());
         let result = sweep(&source, &detector, 11, &options, &never, &mut keeper).unwrap();
         assert_eq!(rows(&result).len(), 1);
-        (rows(&result)[0].clone(), result.checks, keeper.checked)
+        (rows(&result)[0].clone(), result.checks.unwrap())
     };
-    let (row, checks, seen) = swept(&[]);
+    let (row, seen) = swept(&[]);
     assert!(!seen.is_empty());
-    for kept in 0..=seen.len() {
-        let again = swept(&seen[..kept]);
-        assert_eq!((&again.0, &again.1), (&row, &checks));
-        assert_eq!(again.2, seen[kept..]);
+    for known in 0..=seen.len() {
+        assert_eq!(swept(&seen[..known]), (row.clone(), seen.clone()));
     }
-    // A check that was kept of something else is of no use, and does no harm.
+    // What is known is believed.
     let mut other = seen[0].clone();
-    other.seen.value += 1e-9;
-    assert_eq!(swept(&[other]).2, seen);
+    other.indicator = other.indicator.map(|value| -value);
+    assert_ne!(swept(&[other.clone()]).1, seen);
+    // A check of something else is of no use, and does no harm.
+    other.value += 1e-9;
+    assert_eq!(swept(&[other]).1, seen);
 }
 
 /// As [`split`], with tails of which a depth is taken away.

@@ -7,6 +7,7 @@ use crate::topology::Signature;
 
 /// A solved place of a map.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MapNode {
     /// Values of both parameters.
     pub values: [f64; 2],

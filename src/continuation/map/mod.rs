@@ -119,32 +119,6 @@ pub fn regime_map(
     cancellation: &Cancellation,
     observer: &MapObserver<'_>,
 ) -> Result<RegimeMap, SourceError> {
-    regime_map_from(
-        source,
-        plane,
-        detector,
-        options,
-        &[],
-        cancellation,
-        observer,
-    )
-}
-
-/// Goes on with a map of which some nodes are known already, from [`RegimeMap::nodes`] or as they were told, with the
-/// same options. Of those, the ones beside changes are solved again, since their densities are needed; all others are
-/// taken as they are, and curves are followed anew.
-///
-/// # Errors
-/// [`SourceError`] where no source can be made in this plane.
-pub fn regime_map_from(
-    source: &SourceInPlane<'_>,
-    plane: &Plane,
-    detector: &dyn Detector,
-    options: &MapOptions,
-    known: &[MapNode],
-    cancellation: &Cancellation,
-    observer: &MapObserver<'_>,
-) -> Result<RegimeMap, SourceError> {
     let maker = MapMaker {
         source,
         plane,
@@ -153,7 +127,7 @@ pub fn regime_map_from(
         cancellation,
         observer,
     };
-    maker.whole(known)
+    maker.whole()
 }
 
 /// What makes a map, whole or in shards.
@@ -174,33 +148,30 @@ pub struct MapMaker<'a> {
 }
 
 impl MapMaker<'_> {
-    /// The map in one piece; see [`regime_map_from`].
+    /// The map in one piece; see [`regime_map`].
     ///
     /// # Errors
     /// [`SourceError`] where no source can be made in this plane.
-    pub fn whole(&self, known: &[MapNode]) -> Result<RegimeMap, SourceError> {
+    pub fn whole(&self) -> Result<RegimeMap, SourceError> {
         let lattice = Lattice::new(self.options.counts, self.options.depth);
         let solver = Solver::new(self, &lattice);
-        solver.recall(known);
-        let leaves = solver.solve_all(&lattice.rows(), &|_| true)?;
+        let leaves = solver.solve_all(&lattice.rows(), &|_| false)?;
         let found = crossing::crossings(&solver.grid(), &lattice, self.detector);
         self.finished(&lattice, solver, leaves, found)
     }
 
     /// A shard of the map: its share of the coarse rows with what refinement asks for between them, and the changes
-    /// that are found there. Of `known` nodes, those beside changes are solved again. `None` where there are more
-    /// shards than steps between rows.
+    /// that are found there. `None` where there are more shards than steps between rows.
     ///
     /// # Errors
     /// [`SourceError`] where no source can be made in this plane.
-    pub fn shard(&self, shard: Shard, known: &[MapNode]) -> Result<Option<MapShard>, SourceError> {
+    pub fn shard(&self, shard: Shard) -> Result<Option<MapShard>, SourceError> {
         let lattice = Lattice::new(self.options.counts, self.options.depth);
         let Some(rows) = shard.places(self.options.counts[1]) else {
             return Ok(None);
         };
         let solver = Solver::new(self, &lattice);
-        solver.recall(known);
-        solver.solve_all(&rows, &|_| true)?;
+        solver.solve_all(&rows, &|_| false)?;
         let found = crossing::crossings(&solver.grid(), &lattice, self.detector);
         Ok(Some(MapShard {
             shard,

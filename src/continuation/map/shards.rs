@@ -8,6 +8,7 @@ use crate::topology::IndicatorKind;
 
 /// A change of signature between two neighbouring nodes. Places are shares of the sides of the box.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MapChange {
     /// The observable, by its place in [`Subject::observables`](crate::continuation::Subject::observables).
     pub observable: usize,

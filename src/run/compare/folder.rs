@@ -4,15 +4,14 @@
 use std::path::{Path, PathBuf};
 
 use super::{
-    CompareJournal, ComparedRun, PART, accuracy_csv, agreement_csv, compare_csv, compare_json,
-    compare_markdown, compare_tex, densities_csv, distances_csv,
+    ComparedRun, PART, accuracy_csv, agreement_csv, compare_csv, compare_json, compare_markdown,
+    compare_tex, densities_csv, distances_csv,
 };
 use crate::run::RunError;
 use crate::run::atomic::{sync_all, write_atomically};
 use crate::run::checksums;
-use crate::run::journal::came_to_its_end;
+use crate::run::journal::{Journal, came_to_its_end};
 use crate::run::staging::Staging;
-use crate::system::Family;
 
 /// Everything a comparison leaves in its folder, the file that marks it as one first.
 pub(in crate::run) const ENTRIES: [&str; 10] = [
@@ -62,22 +61,17 @@ impl CompareFolder {
     ///
     /// # Errors
     /// [`RunError::Read`] or [`RunError::Write`].
-    pub fn begin(&self, of: &str, family: &Family) -> Result<CompareJournal, RunError> {
+    pub fn begin(&self, of: &str) -> Result<Journal, RunError> {
         self.staging.keep_aside(&[PART])?;
-        CompareJournal::create(self.staging.home(), of, family)
+        Journal::create(&self.staging.home().join(PART), of)
     }
 
     /// The journal of the unfinished comparison in the folder.
     ///
     /// # Errors
     /// [`RunError::NoJournal`], [`RunError::OtherSweep`], [`RunError::Journal`], [`RunError::Read`].
-    pub fn go_on(
-        &self,
-        of: &str,
-        family: &Family,
-        methods: &[&'static str],
-    ) -> Result<CompareJournal, RunError> {
-        CompareJournal::open(self.staging.home(), of, family, methods)
+    pub fn go_on(&self, of: &str) -> Result<Journal, RunError> {
+        Journal::open(&self.staging.home().join(PART), of)
     }
 
     /// Removes the journal of a comparison that has hardly begun: nothing is left of it.

@@ -1,13 +1,11 @@
 //! The tables of a comparison of methods, for programs in full and for people rounded, and the folder they go to.
 
 mod folder;
-mod journal;
 mod people;
 mod rows;
 
 pub use folder::CompareFolder;
 pub(super) use folder::ENTRIES;
-pub use journal::CompareJournal;
 pub use people::{CompareTable, compare_tables};
 
 use people::{compare_markdown, compare_tex};

@@ -3,15 +3,15 @@
 
 use std::fs::File;
 use std::io::{BufReader, Read as _, Seek as _, SeekFrom, Write as _};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use sha2::{Digest as _, Sha256};
 
-use super::different_keys;
+use super::differences;
 use crate::UNFINISHED;
-use crate::bytes::{NotWhatWasWritten, Reader, Writer};
 use crate::run::RunError;
 use crate::run::atomic::begin_durably;
 
@@ -29,8 +29,6 @@ const BETWEEN_WAITS: Duration = Duration::from_secs(1);
 pub(in crate::run) struct Log {
     path: PathBuf,
     file: File,
-    /// Where records are put together.
-    room: Vec<u8>,
     /// When the disk was last asked to take all.
     asked: Instant,
     /// The thread that waits for the disk meanwhile.
@@ -44,14 +42,13 @@ impl Log {
     /// # Errors
     /// [`RunError::Write`].
     pub(in crate::run) fn create(path: PathBuf, of: &str) -> Result<Self, RunError> {
-        let first = frame(Vec::new(), |first| {
-            first.text(env!("CARGO_PKG_VERSION")).text(of);
-        });
-        let file = begin_durably(&path, &[MAGIC, &first[..]].concat())?;
+        let first = postcard::to_stdvec(&(env!("CARGO_PKG_VERSION"), of));
+        let first = first.map_err(|_| RunError::Journal { path: path.clone() })?;
+        let file = begin_durably(&path, &[MAGIC, &frame(&first)[..]].concat())?;
         Ok(Self::at(path, file))
     }
 
-    /// Opens a file to go on with it; `each` is given all whole records but the first.
+    /// Opens a file to go on with it; `each` is given all whole records but the first, with their places.
     ///
     /// # Errors
     /// [`RunError::NoJournal`]; [`RunError::OtherSweep`], with every difference, when it is of other work or of another
@@ -59,7 +56,7 @@ impl Log {
     pub(in crate::run) fn open(
         path: PathBuf,
         of: &str,
-        each: &mut dyn FnMut(&mut Reader<'_>) -> Result<(), NotWhatWasWritten>,
+        each: &mut dyn FnMut(&[u8], Range<u64>) -> Result<(), postcard::Error>,
     ) -> Result<Self, RunError> {
         let unreadable = |source| RunError::Read {
             path: path.clone(),
@@ -80,7 +77,8 @@ impl Log {
         let first = frames.next().map_err(unreadable)?.ok_or_else(broken)?;
         check_sweep(&path, &first, of)?;
         while let Some(frame) = frames.next().map_err(unreadable)? {
-            each(&mut Reader::new(&frame)).map_err(|NotWhatWasWritten| broken())?;
+            let place = frames.whole - frame.len() as u64..frames.whole;
+            each(&frame, place).map_err(|_| broken())?;
         }
         let whole = frames.whole;
         file.set_len(whole).map_err(unreadable)?;
@@ -92,7 +90,6 @@ impl Log {
         Self {
             path,
             file,
-            room: Vec::new(),
             asked: Instant::now(),
             waiting: None,
         }
@@ -102,19 +99,28 @@ impl Log {
         &self.path
     }
 
+    /// Reads a record where it stands.
+    ///
+    /// # Errors
+    /// [`RunError::Read`].
+    pub(in crate::run) fn read(&self, place: &Range<u64>) -> Result<Vec<u8>, RunError> {
+        let mut content = vec![0; (place.end - place.start) as usize];
+        let read = File::open(&self.path).and_then(|mut file| {
+            file.seek(SeekFrom::Start(place.start))?;
+            file.read_exact(&mut content)
+        });
+        let path = self.path.clone();
+        read.map_err(|source| RunError::Read { path, source })?;
+        Ok(content)
+    }
+
     /// Adds a record; once a second the disk is asked to take all there are, and waited for beside.
     ///
     /// # Errors
     /// [`RunError::Write`], also where the disk did not take those before.
-    pub(in crate::run) fn append(
-        &mut self,
-        compose: impl FnOnce(&mut Writer),
-    ) -> Result<(), RunError> {
-        // The room is used again and again: a new one would cost as much as the writing.
-        let frame = frame(std::mem::take(&mut self.room), compose);
-        let written = self.write(&frame);
-        self.room = frame;
-        written?;
+    pub(in crate::run) fn append(&mut self, content: &[u8]) -> Result<(), RunError> {
+        let written = self.file.write_all(&frame(content));
+        written.map_err(|source| self.failed(source))?;
         let is_free = self.waiting.as_ref().is_none_or(JoinHandle::is_finished);
         if is_free && self.asked.elapsed() >= BETWEEN_WAITS {
             self.ask().map_err(|source| self.failed(source))?;
@@ -140,11 +146,6 @@ impl Log {
         Ok(())
     }
 
-    fn write(&mut self, bytes: &[u8]) -> Result<(), RunError> {
-        let written = self.file.write_all(bytes);
-        written.map_err(|source| self.failed(source))
-    }
-
     fn failed(&self, source: std::io::Error) -> RunError {
         RunError::Write {
             path: self.path.clone(),
@@ -153,16 +154,10 @@ impl Log {
     }
 }
 
-/// A record with its length and checksum, put together in `room`.
-fn frame(room: Vec<u8>, compose: impl FnOnce(&mut Writer)) -> Vec<u8> {
-    let mut writer = Writer::after(room);
-    writer.count(0).count(0);
-    compose(&mut writer);
-    let mut frame = writer.finish();
-    let (head, content) = frame.split_at_mut(2 * WORD);
-    head[..WORD].copy_from_slice(&(content.len() as u64).to_le_bytes());
-    head[WORD..].copy_from_slice(&checksum(content));
-    frame
+/// A record with its length and checksum.
+fn frame(content: &[u8]) -> Vec<u8> {
+    let length = (content.len() as u64).to_le_bytes();
+    [&length[..], &checksum(content), content].concat()
 }
 
 /// Gives a file that is linked elsewhere, in an earlier version of the run, a copy of its own, to which records can be
@@ -242,18 +237,11 @@ fn checksum(content: &[u8]) -> [u8; WORD] {
 
 /// Refuses the journal of another version or sweep.
 fn check_sweep(path: &Path, first: &[u8], resolved: &str) -> Result<(), RunError> {
-    let mut reader = Reader::new(first);
-    let (Ok(version), Ok(sweep)) = (reader.text(), reader.text()) else {
-        return Err(RunError::Journal {
-            path: path.to_owned(),
-        });
-    };
-    let mut differences = Vec::new();
-    if version != env!("CARGO_PKG_VERSION") {
-        let this = env!("CARGO_PKG_VERSION");
-        differences.push(format!("pbif {version} there, {this} here"));
-    }
-    differences.extend(different_keys(sweep, resolved));
+    let first = postcard::from_bytes::<(&str, &str)>(first);
+    let (version, sweep) = first.map_err(|_| RunError::Journal {
+        path: path.to_owned(),
+    })?;
+    let differences = differences(version, sweep, resolved);
     if differences.is_empty() {
         return Ok(());
     }

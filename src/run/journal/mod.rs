@@ -1,106 +1,176 @@
-//! The journal of a run: every solve in full, written before it is reported, from which an interrupted run goes on.
+//! The journal of a job: every solve in full, from which a job that was stopped goes on.
 //!
-//! One file, `journal.bin`, to which records are added at the end. A kill leaves at most the last record incomplete,
-//! which is then cut off; a machine that loses its power may lose those of the last second. The first record says of
-//! which sweep the others are. It is written for the program that reads it, with every bit of a solution and of what
-//! its session remembers; tables and arrays are made from it again. What checks of located values saw is written as the
-//! numbers that were seen, with what their sessions remember.
+//! One file, to which records are added at the end. A kill leaves at most the last record incomplete, which is then cut
+//! off; a machine that loses its power may lose those of the last second. The first record says of which job the others
+//! are. It is written for the program that reads it, with every bit of a solution and of what its session remembers;
+//! tables and arrays are made from it again. What is read of it is read when it is asked for, so that a journal may be
+//! larger than the memory.
 
-mod asked;
-mod check;
+mod kept;
 mod log;
-mod profile;
-mod record;
-mod replay;
-mod sessions;
+mod session;
 mod source;
 
-pub use sessions::{RecordedSource, SessionJournal};
 pub use source::JournalledSource;
 
-pub(super) use log::Log;
-pub(super) use record::{read_density, read_report, write_density, write_report};
+use std::collections::HashMap;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use std::path::Path;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest as _, Sha256};
 
 use super::RunError;
-use crate::continuation::KeptCheck;
+use crate::continuation::SourceError;
 use crate::system::Family;
-use record::Record;
+use kept::{Answer, Question};
+use log::Log;
 
-/// Name of the file.
+/// Name of the file of a sweep.
 pub(super) const NAME: &str = "journal.bin";
 
-/// The journal of a run, open for more.
+/// A journal, open for more. Clones are the same journal.
+#[derive(Debug, Clone)]
+pub struct Journal(Arc<Mutex<Shared>>);
+
 #[derive(Debug)]
-pub struct Journal {
+struct Shared {
     log: Log,
-    /// What earlier processes have written, in this order.
-    stored: Vec<Record>,
-    /// What they have seen in checks.
-    checks: Vec<KeptCheck>,
+    /// Where records of earlier processes stand in the file.
+    places: HashMap<Key, Range<u64>>,
+    failure: Option<RunError>,
 }
 
 impl Journal {
-    /// A new journal in a run's folder, of a resolved sweep file.
+    /// A new file, of a job that `of` describes as TOML.
     ///
     /// # Errors
     /// [`RunError::Write`].
-    pub fn create(folder: &Path, resolved: &str) -> Result<Self, RunError> {
-        Ok(Self {
-            log: Log::create(folder.join(NAME), resolved)?,
-            stored: Vec::new(),
-            checks: Vec::new(),
-        })
+    pub fn create(path: &Path, of: &str) -> Result<Self, RunError> {
+        let log = Log::create(path.to_owned(), of)?;
+        Ok(Self::new(log, HashMap::new()))
     }
 
-    /// Opens the journal of an unfinished run to go on with it, and begins one where the run was stopped before that.
-    /// `resolved` is the sweep that is to be run, `family` what it runs through.
+    /// Opens the file of an unfinished job to go on with it, and begins one where a run was stopped before that.
     ///
     /// # Errors
-    /// [`RunError::NoJournal`]; [`RunError::OtherSweep`], with every difference, when the run is of another sweep or
-    /// version; [`RunError::Journal`]; [`RunError::Read`]; [`RunError::Write`].
-    pub fn open(
-        folder: &Path,
-        resolved: &str,
-        family: &Family,
-        methods: &[&'static str],
-    ) -> Result<Self, RunError> {
-        if not_begun(folder) {
-            return Self::create(folder, resolved);
+    /// [`RunError::NoJournal`]; [`RunError::OtherSweep`], with every difference, when it is of another job or version;
+    /// [`RunError::Journal`]; [`RunError::Read`]; [`RunError::Write`].
+    pub fn open(path: &Path, of: &str) -> Result<Self, RunError> {
+        if path.parent().is_some_and(not_begun) {
+            return Self::create(path, of);
         }
-        let (mut stored, mut checks) = (Vec::new(), Vec::new());
-        let log = Log::open(folder.join(NAME), resolved, &mut |reader| {
-            let is_check = reader.flag()?;
-            if is_check {
-                checks.push(check::read(reader)?);
-            } else {
-                stored.push(Record::read(reader, family, methods)?);
-            }
+        let mut places = HashMap::new();
+        let log = Log::open(path.to_owned(), of, &mut |content, place| {
+            let (key, _) = postcard::take_from_bytes(content)?;
+            places.insert(key, place);
             Ok(())
         })?;
-        Ok(Self {
+        Ok(Self::new(log, places))
+    }
+
+    fn new(log: Log, places: HashMap<Key, Range<u64>>) -> Self {
+        Self(Arc::new(Mutex::new(Shared {
             log,
-            stored,
-            checks,
-        })
+            places,
+            failure: None,
+        })))
     }
 
-    /// Solves that are stored.
+    /// Solves that earlier processes have left.
     pub fn solves(&self) -> usize {
-        self.stored.len()
+        self.lock().places.len()
     }
 
-    /// Adds a solve.
-    fn add(&mut self, record: &Record, family: &Family) -> Result<(), RunError> {
-        self.log
-            .append(|writer| record.write(writer.flag(false), family))
+    /// Why a session ended, where it was not interrupted. It is told once.
+    pub fn failure(&self) -> Option<RunError> {
+        self.lock().failure.take()
     }
 
-    /// Adds what was seen in a check.
-    fn add_check(&mut self, check: &KeptCheck) -> Result<(), RunError> {
-        self.log
-            .append(|writer| check::write(writer.flag(true), check))
+    /// What an earlier process has [kept](Journal::keep) by this name.
+    ///
+    /// # Errors
+    /// [`RunError::Read`], [`RunError::Journal`].
+    pub fn known<T: DeserializeOwned>(&self, name: &str) -> Result<Option<T>, RunError> {
+        self.get(Key::of(name))
+    }
+
+    /// Keeps something by a name.
+    ///
+    /// # Errors
+    /// [`RunError::Write`].
+    pub fn keep<T: Serialize>(&self, name: &str, what: &T) -> Result<(), RunError> {
+        self.put(Key::of(name), what)
+    }
+
+    fn get<T: DeserializeOwned>(&self, key: Key) -> Result<Option<T>, RunError> {
+        let shared = self.lock();
+        let Some(place) = shared.places.get(&key) else {
+            return Ok(None);
+        };
+        let content = shared.log.read(place)?;
+        drop(shared);
+        let read = postcard::from_bytes::<(Key, T)>(&content);
+        let read = read.map_err(|_| RunError::Journal { path: self.path() })?;
+        Ok(Some(read.1))
+    }
+
+    fn put<T: Serialize>(&self, key: Key, what: &T) -> Result<(), RunError> {
+        let content = postcard::to_stdvec(&(key, what));
+        let content = content.map_err(|_| RunError::Journal { path: self.path() })?;
+        self.lock().log.append(&content)
+    }
+
+    fn path(&self) -> PathBuf {
+        self.lock().log.path().to_owned()
+    }
+
+    /// Ends a session with an error that is not the method's.
+    fn end(&self, error: RunError) -> SourceError {
+        self.lock().failure.get_or_insert(error);
+        SourceError::Interrupted
+    }
+
+    /// What is shared holds no promises that a panic elsewhere could break.
+    fn lock(&self) -> MutexGuard<'_, Shared> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// What a record is of: the hash of all that was asked for until then.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+struct Key([u8; 16]);
+
+impl Key {
+    fn of(name: &str) -> Self {
+        Self([0; 16]).then(name)
+    }
+
+    fn then(self, next: impl AsRef<[u8]>) -> Self {
+        let digest = Sha256::new_with_prefix(self.0).chain_update(next);
+        let mut key = [0; 16];
+        key.copy_from_slice(&digest.finalize()[..16]);
+        Self(key)
+    }
+
+    /// A solve at a value of a family's coordinate, with the parameters there: a path may have been laid in between.
+    fn of_value(self, family: &Family, value: f64) -> Self {
+        let parameters = family.values_at(value);
+        let parameters = parameters.iter().flat_map(|values| values.as_slice());
+        let numbers = std::iter::once(&value).chain(parameters);
+        self.then(
+            numbers
+                .flat_map(|number| number.to_le_bytes())
+                .collect::<Vec<u8>>(),
+        )
+    }
+
+    /// The same where its solution was asked something.
+    fn of_questions(self, answers: &[(Question, Answer)]) -> Self {
+        let questions = answers.iter().map(|(question, _)| format!("{question:?}"));
+        questions.fold(self, Self::then)
     }
 }
 
@@ -132,6 +202,16 @@ pub(super) fn came_to_its_end(home: &Path, manifest: &str, of: &str) -> Result<b
         });
     }
     Ok(there["ending"] == "complete")
+}
+
+/// In what unfinished or complete work that is there differs from what is wanted.
+pub(super) fn differences(version: &str, there: &str, here: &str) -> Vec<String> {
+    let own = env!("CARGO_PKG_VERSION");
+    let mut differences = different_keys(there, here);
+    if version != own {
+        differences.push(format!("pbif {version} there, {own} here"));
+    }
+    differences
 }
 
 /// Keys with other values, but for those that only name and draw, or say what is done with a run once it is there.

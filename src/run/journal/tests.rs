@@ -1,20 +1,19 @@
-//! Journals that are cut, damaged and of other sweeps.
+//! Journals that are cut, damaged and of other sweeps; sessions that go on from them.
 
-use super::record::Found;
+use super::kept::Found;
 use super::*;
-use crate::bytes::{Reader, Writer};
+use crate::cancellation::Cancellation;
 use crate::continuation::{
-    CheckedBy, CheckedIndicator, Finding, Measure, Solution, SolveReport, every_finding,
+    CellCheck, DensitySource, Measure, Point, Sensitivity, Session, Solution, SolveReport, Subject,
+    every_finding,
 };
-use std::sync::Arc;
-
 use crate::density::{
     Density, EstimatedDensity, Extremum, Kink, Observable, Profile, SlopeJump, Structure, Turn,
     Variants,
 };
 use crate::space::{Axis, CellSpace};
 use crate::system::examples::coulomb;
-use crate::topology::IndicatorKind;
+use kept::Kept;
 
 const SWEEP: &str = "title = \"t\"\n[sweep]\npoints = 3\n[figures]\nat = [0.0]\n";
 
@@ -74,96 +73,82 @@ fn density(observable: Observable, variants: fn(Vec<f64>) -> Variants) -> Estima
     }
 }
 
-fn record(value: f64) -> Record {
+fn kept() -> Kept {
     let mut report = SolveReport::solved("sgcm");
     report.findings = every_finding();
-    report.residual = f64::NAN;
+    report.residual = f64::from_bits(0x7ff8_0000_0000_0001);
     let measures = [("a", None, ""), ("b_x", Some(1e-300), "x^2/t")];
     report.measures = Vec::from(measures.map(|(name, error, unit)| Measure {
         name: name.to_owned(),
-        value: 0.1,
+        value: -0.0,
         error,
         unit: unit.to_owned(),
     }));
-    let mut solution = Found::from(Solution::without_density(report));
-    solution.densities = vec![
-        density(Observable::Marginal(0), Variants::Scheme),
-        density(Observable::Joint(0, 1), |one| {
-            Variants::Jackknife(vec![one; 3])
-        }),
-    ];
-    Record {
-        value,
+    let solution = Solution {
+        report,
+        densities: vec![
+            density(Observable::Marginal(0), Variants::Scheme),
+            density(Observable::Joint(0, 1), |one| {
+                Variants::Jackknife(vec![one; 3])
+            }),
+        ],
+        sensitivity: None,
+    };
+    Kept {
         seconds: 0.5,
-        solved: Ok(solution),
-        memory: vec![1, 2, 3],
+        solved: Ok(Found::of(&solution)),
+        is_sensitive: true,
+        answers: vec![(Question::AlongPath, Ok(vec![vec![f64::NEG_INFINITY]]))],
+        memory: vec![1, 2, 255],
     }
 }
 
-fn words(record: &Record) -> String {
-    let of = |solution: &Found| format!("{:?} {:?}", solution.report, solution.densities);
-    let solved = record.solved.as_ref().map(of);
-    format!(
-        "{} {} {solved:?} {:?}",
-        record.value, record.seconds, record.memory
-    )
-}
-
 fn open(folder: &Path, sweep: &str) -> Result<Journal, RunError> {
-    Journal::open(folder, sweep, &coulomb(), &["sgcm"])
+    Journal::open(&folder.join(NAME), sweep)
 }
 
 /// A journal of so many solves.
 fn written(folder: &Path, solves: usize) {
-    let mut journal = Journal::create(folder, SWEEP).unwrap();
+    let journal = Journal::create(&folder.join(NAME), SWEEP).unwrap();
     for solve in 0..solves {
-        journal.add(&record(solve as f64), &coulomb()).unwrap();
+        journal.keep(&solve.to_string(), &kept()).unwrap();
     }
 }
 
 #[test]
-fn solves_come_back_bit_for_bit_and_go_on() {
+fn solves_come_back_bit_for_bit() {
     let folder = tempfile::tempdir().unwrap();
     written(folder.path(), 2);
-    let mut journal = open(folder.path(), SWEEP).unwrap();
-    for (index, stored) in journal.stored.iter().enumerate() {
-        assert_eq!(words(stored), words(&record(index as f64)));
-    }
-    let failed = Record {
-        solved: Err("no".to_owned()),
-        ..record(2.0)
-    };
-    journal.add(&failed, &coulomb()).unwrap();
-    let checks = checks();
-    for check in &checks {
-        journal.add_check(check).unwrap();
-    }
     let journal = open(folder.path(), SWEEP).unwrap();
-    assert_eq!(journal.solves(), 3);
-    assert_eq!(words(&journal.stored[2]), words(&failed));
-    assert_eq!(journal.checks, checks);
+    assert_eq!(journal.solves(), 2);
+    let back: Kept = journal.known("1").unwrap().unwrap();
+    assert!(back.is_sound());
+    let bytes = |kept: &Kept| postcard::to_stdvec(kept).unwrap();
+    assert_eq!(bytes(&back), bytes(&kept()));
+    let solution = back.solved.unwrap().solution("sgcm");
+    let bits = solution.report.residual.to_bits();
+    assert_eq!(
+        (bits, solution.report.method),
+        (0x7ff8_0000_0000_0001, "sgcm")
+    );
+    assert_eq!(solution.report.findings, every_finding());
+    let wanted = density(Observable::Marginal(0), Variants::Scheme);
+    assert_eq!(solution.densities[0], wanted);
+    assert!(journal.known::<Kept>("2").unwrap().is_none());
+    // What one process has written another one finds; what is no solve is refused.
+    journal.keep("2", &"no solve").unwrap();
+    let journal = open(folder.path(), SWEEP).unwrap();
+    let error = journal.known::<Kept>("2").unwrap_err();
+    assert!(matches!(error, RunError::Journal { .. }), "{error}");
 }
 
-/// What checks may have seen: a value, nothing, a failure.
-fn checks() -> [KeptCheck; 3] {
-    let check = |by, indicator: Option<f64>, failure: Option<&str>, left| KeptCheck {
-        seen: CheckedIndicator {
-            by,
-            value: -0.0,
-            observable: 1,
-            kind: IndicatorKind::ALL[1],
-            place: vec![0.1, f64::MIN_POSITIVE],
-            indicator,
-            failure: failure.map(str::to_owned),
-        },
-        left,
-    };
-    let (finer, closed) = (CheckedBy::FinerCells, CheckedBy::ClosedEnds);
-    [
-        check(finer, Some(0.1 + 0.2), None, Some(vec![1, 0, 255])),
-        check(closed, None, None, Some(Vec::new())),
-        check(finer, None, Some("no, \"never\""), None),
-    ]
+#[test]
+fn a_density_that_does_not_fit_its_cells_is_refused() {
+    let mut kept = kept();
+    let mut solution = kept.solved.unwrap().solution("sgcm");
+    solution.densities[1].standard_error.pop();
+    kept.solved = Ok(Found::of(&solution));
+    assert!(!kept.is_sound());
 }
 
 #[test]
@@ -189,11 +174,11 @@ fn a_journal_that_is_cut_anywhere_keeps_its_whole_records() {
     }
     // What is behind a cut is written over.
     std::fs::write(&path, &whole[..whole.len() - 1]).unwrap();
-    let mut journal = open(folder.path(), SWEEP).unwrap();
-    journal.add(&record(5.0), &coulomb()).unwrap();
     let journal = open(folder.path(), SWEEP).unwrap();
-    let values: Vec<f64> = journal.stored.iter().map(|record| record.value).collect();
-    assert_eq!(values, [0.0, 5.0]);
+    journal.keep("5", &kept()).unwrap();
+    let journal = open(folder.path(), SWEEP).unwrap();
+    let is_there = ["0", "1", "5"].map(|name| journal.known::<Kept>(name).unwrap().is_some());
+    assert_eq!(is_there, [true, false, true]);
 }
 
 #[test]
@@ -230,16 +215,206 @@ fn another_sweep_is_refused_with_every_difference() {
     assert!(matches!(error, RunError::NoJournal { .. }));
 }
 
-#[test]
-fn a_finding_without_numbers_is_kept_in_words() {
-    let told = vec![Finding::Told("as it was; told:1".to_owned())];
-    let mut one = record(0.0);
-    if let Ok(solution) = &mut one.solved {
-        solution.report.findings = told.clone();
+/// A source whose solutions tell all that its session was asked before, and what it recalls.
+struct Diary {
+    subject: Subject,
+    count: Arc<Mutex<usize>>,
+}
+
+#[derive(Default)]
+struct DiarySession {
+    pages: Vec<u8>,
+    count: Arc<Mutex<usize>>,
+}
+
+impl DensitySource for Diary {
+    fn method(&self) -> &'static str {
+        "diary"
     }
-    let mut writer = Writer::new();
-    one.write(&mut writer, &coulomb());
-    let content = writer.finish();
-    let back = Record::read(&mut Reader::new(&content), &coulomb(), &["sgcm"]).unwrap();
-    assert_eq!(back.solved.unwrap().report.findings, told);
+
+    fn subject(&self) -> &Subject {
+        &self.subject
+    }
+
+    fn open(&self, _: &Cancellation) -> Box<dyn Session> {
+        Box::new(DiarySession {
+            count: self.count.clone(),
+            ..DiarySession::default()
+        })
+    }
+}
+
+impl Session for DiarySession {
+    fn solve(&mut self, value: f64) -> Result<Solution<'_>, SourceError> {
+        *self.count.lock().unwrap() += 1;
+        self.pages.push(value as u8);
+        if value < 0.0 {
+            return Err(SourceError::Method("negative".into()));
+        }
+        let mut report = SolveReport::solved("diary");
+        report.iterations = self
+            .pages
+            .iter()
+            .fold(7, |sum, &page| 31 * sum % 65_521 + page as usize);
+        let mut solution = Solution::without_density(report);
+        solution.sensitivity = Some(Box::new(DiaryAnswers(&mut self.pages)));
+        Ok(solution)
+    }
+
+    fn memory(&self) -> Vec<u8> {
+        self.pages.clone()
+    }
+
+    fn recall(&mut self, left: &[(f64, &[u8])]) -> Result<(), SourceError> {
+        self.pages = left
+            .last()
+            .map(|(_, pages)| pages.to_vec())
+            .unwrap_or_default();
+        Ok(())
+    }
+}
+
+struct DiaryAnswers<'s>(&'s mut Vec<u8>);
+
+impl Sensitivity for DiaryAnswers<'_> {
+    fn to_parameter(&mut self, name: &str) -> Result<Vec<Vec<f64>>, SourceError> {
+        self.0.extend(name.bytes());
+        let sum = self.0.iter().map(|&page| f64::from(page)).sum();
+        Ok(vec![vec![sum]])
+    }
+
+    fn along_path(&mut self) -> Result<Vec<Vec<f64>>, SourceError> {
+        Err(SourceError::Method("nobody knows".into()))
+    }
+}
+
+fn diary(count: &Arc<Mutex<usize>>) -> Box<dyn DensitySource> {
+    Box::new(Diary {
+        subject: Subject {
+            family: coulomb(),
+            observables: Vec::new(),
+            measures: Vec::new(),
+            cell_check: CellCheck::Needless,
+        },
+        count: count.clone(),
+    })
+}
+
+/// What a session gives at values, each followed by questions.
+fn told(session: &mut dyn Session, steps: &[(f64, &[&str])]) -> Vec<String> {
+    let mut told = Vec::new();
+    for (value, questions) in steps {
+        match session.solve(*value) {
+            Ok(mut solution) => {
+                told.push(solution.report.iterations.to_string());
+                for question in *questions {
+                    let sensitivity = solution.sensitivity.as_mut().unwrap();
+                    let answer = match *question {
+                        "" => sensitivity.along_path(),
+                        name => sensitivity.to_parameter(name),
+                    };
+                    told.push(format!("{answer:?}"));
+                }
+            }
+            Err(error) => told.push(error.to_string()),
+        }
+    }
+    told
+}
+
+const FIRST: [(f64, &[&str]); 5] = [
+    (3.0, &["a"]),
+    (1.0, &[]),
+    (-1.0, &[]),
+    (1.0, &["a", "", "bc"]),
+    (2.0, &[]),
+];
+const SECOND: [(f64, &[&str]); 3] = [(3.0, &["a"]), (4.0, &[]), (1.0, &["c"])];
+
+#[test]
+fn sessions_that_were_stopped_anywhere_go_on_as_they_would_have() {
+    let never = Cancellation::new();
+    let count = Arc::default();
+    let whole = [&FIRST[..], &SECOND].map(|steps| told(diary(&count).open(&never).as_mut(), steps));
+    for stop in 0..=FIRST.len() {
+        let folder = tempfile::tempdir().unwrap();
+        let journal = Journal::create(&folder.path().join(NAME), SWEEP).unwrap();
+        let source = JournalledSource::new(diary(&count), &journal);
+        let part = told(source.open(&never).as_mut(), &FIRST[..stop]);
+        assert_eq!(part, whole[0][..part.len()]);
+        let journal = open(folder.path(), SWEEP).unwrap();
+        assert_eq!(journal.solves(), stop);
+        *count.lock().unwrap() = 0;
+        let source = JournalledSource::new(diary(&count), &journal);
+        // In another order of sessions, of which the second begins as the first.
+        let second = told(source.open(&never).as_mut(), &SECOND);
+        let first = told(source.open(&never).as_mut(), &FIRST);
+        assert_eq!([first, second], whole);
+        let solved = FIRST.len() - stop + if stop == 0 { 3 } else { 2 };
+        assert_eq!((*count.lock().unwrap(), source.solves()), (solved, solved));
+    }
+}
+
+#[test]
+fn a_session_that_is_asked_something_else_than_before_answers_as_it_would_have() {
+    let never = Cancellation::new();
+    let count = Arc::default();
+    let folder = tempfile::tempdir().unwrap();
+    let journal = Journal::create(&folder.path().join(NAME), SWEEP).unwrap();
+    told(
+        JournalledSource::new(diary(&count), &journal)
+            .open(&never)
+            .as_mut(),
+        &FIRST,
+    );
+    let others: [&[(f64, &[&str])]; 3] = [
+        &[(3.0, &["b"]), (1.0, &[])],
+        &[(3.0, &[]), (1.0, &["a"])],
+        &[(3.0, &["a", "d", "e"]), (1.0, &[]), (-1.0, &[])],
+    ];
+    for other in others {
+        let whole = told(diary(&count).open(&never).as_mut(), other);
+        // The second time from what the first has added.
+        for _ in 0..2 {
+            let journal = open(folder.path(), SWEEP).unwrap();
+            let source = JournalledSource::new(diary(&count), &journal);
+            assert_eq!(told(source.open(&never).as_mut(), other), whole);
+        }
+    }
+}
+
+#[test]
+fn what_shards_have_solved_is_not_solved_and_a_sweep_is_written_at_once() {
+    let never = Cancellation::new();
+    let count = Arc::default();
+    let folder = tempfile::tempdir().unwrap();
+    let journal = Journal::create(&folder.path().join(NAME), SWEEP).unwrap();
+    let point = Point {
+        value: 3.0,
+        report: SolveReport::solved("diary"),
+        densities: Vec::new(),
+        detections: Vec::new(),
+        distance: None,
+        seconds: 1.5,
+    };
+    let source = JournalledSource::of_sweep(diary(&count), &journal, vec![point]);
+    let mut session = source.open(&never);
+    for (value, iterations, seconds) in [(3.0, 0, Some(1.5)), (1.0, 218, None), (3.0, 0, Some(1.5))]
+    {
+        let solution = session.solve(value).unwrap();
+        assert_eq!(solution.report.iterations, iterations);
+        assert!(solution.sensitivity.is_none());
+        drop(solution);
+        assert_eq!(session.seconds(), seconds);
+    }
+    assert_eq!((*count.lock().unwrap(), source.solves()), (1, 1));
+    // While the session goes on.
+    let journal = open(folder.path(), SWEEP).unwrap();
+    assert_eq!(journal.solves(), 1);
+    let source = JournalledSource::of_sweep(diary(&count), &journal, Vec::new());
+    let mut session = source.open(&never);
+    assert_eq!(session.solve(1.0).unwrap().report.iterations, 218);
+    assert!(source.is_stored() && session.seconds().is_some());
+    session.solve(2.0).unwrap();
+    assert!(!source.is_stored() && session.seconds().is_none());
 }

@@ -1,14 +1,10 @@
 //! The shards of a sweep: runs of their own in `shards/1-of-4`, `shards/2-of-4`, … of a run's folder, each with its own
 //! lock, and read together.
 
-mod source;
-
-pub use source::GatheredSource;
-
 use std::path::{Path, PathBuf};
 
 use super::{Ending, RunError, StoredRun};
-use crate::continuation::{CheckedIndicator, KeptCheck, Point, Shard, Subject};
+use crate::continuation::{CheckedIndicator, Point, Shard, Subject};
 use crate::space::{Axis, CellSpace};
 
 /// The folder of all shards in that of a run.
@@ -38,14 +34,6 @@ pub struct Gathered {
     pub points: Vec<Point>,
     /// What was seen in their checks; `None` where there were none.
     pub checks: Option<Vec<CheckedIndicator>>,
-}
-
-impl Gathered {
-    /// The checks for a sweep that goes on with them.
-    pub fn kept_checks(&self) -> Vec<KeptCheck> {
-        let seen = self.checks.iter().flatten().cloned();
-        seen.map(|seen| KeptCheck { seen, left: None }).collect()
-    }
 }
 
 impl Shards {

@@ -35,6 +35,8 @@ mod smooth;
 mod tests;
 mod window;
 mod words;
+#[cfg(feature = "serde")]
+mod written;
 
 pub(crate) use beside::born_at_kink;
 pub(super) use centre::at_centre;
