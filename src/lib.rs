@@ -6,7 +6,6 @@
 //! | read formulas, differentiate and analyse them, run them on many states at a time | [`formula`] |
 //! | state a model, look up the built-in ones | [`system`] |
 //! | ask long work to stop | [`cancellation`] |
-//! | keep numbers as bytes, the same to the bit | [`bytes`] |
 //! | lay a grid of cells over the domain | [`space`] |
 //! | turn masses into densities, marginals, moments, distances | [`density`] |
 //! | sample a transition matrix by trajectories (SGCM) | [`sampling`] |
@@ -25,7 +24,8 @@
 //!
 //! Modules depend on those above them in this table, never the other way.
 
-pub mod bytes;
+#[cfg(feature = "serde")]
+mod bytes;
 pub mod cancellation;
 #[cfg(feature = "cli")]
 pub mod cli;

@@ -5,6 +5,7 @@
 //! source know nothing of each other and may run side by side.
 
 use super::{MeasureColumn, SolveReport};
+#[cfg(feature = "serde")]
 use crate::bytes::NotWhatWasWritten;
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::density::{EstimatedDensity, Observable};
@@ -142,6 +143,7 @@ pub enum SourceError {
     Method(#[from] Box<dyn std::error::Error + Send + Sync>),
 }
 
+#[cfg(feature = "serde")]
 impl From<NotWhatWasWritten> for SourceError {
     fn from(error: NotWhatWasWritten) -> Self {
         Self::Method(Box::new(error))
@@ -257,7 +259,7 @@ pub trait Session: Send {
     }
 
     /// What the last solve has left in the session for later ones, so that [`Session::recall`] can bring another one
-    /// there; nothing for sessions that remember nothing.
+    /// there; nothing for sessions that remember nothing. Those of the methods tell with the feature `serde`.
     fn memory(&self) -> Vec<u8> {
         Vec::new()
     }

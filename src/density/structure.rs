@@ -13,28 +13,8 @@ pub struct Structure {
     /// Planes on which a derivative of the density jumps.
     pub kinks: Vec<Kink>,
     /// Of the density of a system with one axis that is known by quadrature: its extrema, free of the cells.
-    #[cfg_attr(feature = "serde", serde(with = "shared"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::bytes"))]
     pub profile: Option<Arc<Profile>>,
-}
-
-/// A profile that is shared, by its content.
-#[cfg(feature = "serde")]
-mod shared {
-    use super::{Arc, Profile};
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-    pub(super) fn serialize<S: Serializer>(
-        profile: &Option<Arc<Profile>>,
-        to: S,
-    ) -> Result<S::Ok, S::Error> {
-        profile.as_deref().serialize(to)
-    }
-
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
-        from: D,
-    ) -> Result<Option<Arc<Profile>>, D::Error> {
-        Ok(Option::deserialize(from)?.map(Arc::new))
-    }
 }
 
 /// A plane on which the derivative of the density jumps, or bends: drift or noise across it does, or a force along it

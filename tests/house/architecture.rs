@@ -14,9 +14,9 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("space", &[]),
     ("sampling", &["cancellation", "system", "space"]),
     ("monte_carlo", &["cancellation", "system", "space", "sampling"]),
-    ("density", &["system", "space"]),
+    ("density", &["bytes", "system", "space"]),
     ("generator", &["system", "space", "density"]),
-    ("stationary", &["cancellation", "space", "sampling", "bytes"]),
+    ("stationary", &["cancellation", "space", "sampling"]),
     ("topology", &["space", "density"]),
     ("continuation", &["cancellation", "system", "space", "density", "topology", "bytes"]),
     ("method", &[

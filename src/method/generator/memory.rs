@@ -4,25 +4,33 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
+use super::relaxation::Relaxation;
 use super::session::GeneratorSession;
 use super::stand::Stand;
-use super::trail::{Solved, Trail};
-use crate::bytes::{NotWhatWasWritten, Reader, Writer};
+use super::trail::{News, Solved, Trail};
+use crate::bytes::{NotWhatWasWritten, from_bytes, to_bytes};
 use crate::continuation::SourceError;
 use crate::generator::Generator;
 use crate::method::MethodError;
 use crate::stationary::generator::{RateSolver, SolverMemory};
 
+/// What a solve leaves in its session.
+#[derive(Serialize, Deserialize)]
+struct Left<Trail> {
+    stand: Stand,
+    solver: SolverMemory,
+    trail: Option<Trail>,
+}
+
 /// The solver as it is now, and the trail that the last solve has left.
 pub(super) fn write(solver: &RateSolver, stand: Stand, left: Option<&Trail>) -> Vec<u8> {
-    let mut writer = Writer::new();
-    writer.optional(stand.factorised).optional(stand.solved);
-    solver.memory().write(&mut writer);
-    writer.flag(left.is_some());
-    if let Some(trail) = left {
-        trail.write(&mut writer);
-    }
-    writer.finish()
+    to_bytes(&Left {
+        stand,
+        solver: solver.memory(),
+        trail: left.map(Trail::news),
+    })
 }
 
 /// Brings a fresh session to where another one was.
@@ -32,22 +40,15 @@ pub(super) fn recall(
 ) -> Result<(), SourceError> {
     let mut known: Vec<Arc<Solved>> = Vec::new();
     let mut last = None;
-    for (value, bytes) in left {
-        let mut reader = Reader::new(bytes);
-        if reader.is_at_end() {
-            continue;
-        }
-        let stand = Stand {
-            factorised: reader.optional()?,
-            solved: reader.optional()?,
-        };
-        last = Some((stand, SolverMemory::read(&mut reader)?));
-        if reader.flag()? {
-            let trail = Trail::read(&mut reader, &known)?;
+    for (value, bytes) in left.iter().filter(|(_, bytes)| !bytes.is_empty()) {
+        let left: Left<News<Solved, Vec<f64>, Relaxation>> = from_bytes(bytes)?;
+        if let Some(news) = left.trail {
+            let trail = Trail::of_news(news, &known).ok_or(NotWhatWasWritten)?;
             check(session, &trail)?;
             known.extend(trail.newest().cloned());
             session.keep(*value, trail);
         }
+        last = Some((left.stand, left.solver));
     }
     if let Some((stand, solver)) = last {
         session.stand = stand;

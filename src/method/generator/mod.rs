@@ -4,6 +4,7 @@
 mod coarse;
 mod cost;
 mod jumps;
+#[cfg(feature = "serde")]
 mod memory;
 mod modes;
 mod one_axis;

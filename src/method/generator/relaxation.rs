@@ -4,9 +4,6 @@
 //! The time is compared with the time in which mass escapes, to say whether there is a steady state. Far from such a
 //! limit a neighbour's time will do, and close to it the iteration starts from the neighbour's mode.
 
-use std::sync::Arc;
-
-use crate::bytes::{NotWhatWasWritten, Reader, Writer};
 use crate::stationary::generator::RateSolver;
 
 /// Most inverse iterations.
@@ -32,11 +29,12 @@ const ROUGHNESS: f64 = 1.5;
 
 /// How fast deviations from a steady state die out.
 #[derive(Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Relaxation {
     /// Time in which they shrink by e.
     pub(super) time: f64,
     /// The deviation that lives longest, Σ = 0.
-    mode: Arc<Vec<f64>>,
+    mode: Vec<f64>,
     /// Factor by which the time may change from point to point.
     change: f64,
     /// Points of the sweep since it was computed.
@@ -66,7 +64,7 @@ impl Relaxation {
         let change = neighbour.map_or(UNKNOWN_CHANGE, |known| LEAST_CHANGE * known.change_to(time));
         Self {
             time,
-            mode: Arc::new(uneven(mass)),
+            mode: uneven(mass),
             change,
             age: 0,
             rough: true,
@@ -91,26 +89,9 @@ impl Relaxation {
     }
 
     /// Number of cells that it is on.
+    #[cfg(feature = "serde")]
     pub(super) fn cells(&self) -> usize {
         self.mode.len()
-    }
-
-    /// All of it as bytes.
-    pub(super) fn write(&self, writer: &mut Writer) {
-        let age = usize::try_from(self.age).unwrap_or(0);
-        writer.number(self.time).numbers(&self.mode);
-        writer.number(self.change).count(age).flag(self.rough);
-    }
-
-    /// What was written.
-    pub(super) fn read(reader: &mut Reader<'_>) -> Result<Self, NotWhatWasWritten> {
-        Ok(Self {
-            time: reader.number()?,
-            mode: Arc::new(reader.numbers()?),
-            change: reader.number()?,
-            age: i32::try_from(reader.count()?).map_err(|_| NotWhatWasWritten)?,
-            rough: reader.flag()?,
-        })
     }
 
     /// From x ← Q⁻¹ x on vectors of sum zero: the mean growth over the last iterations is 1/|λ₂|. Rough (a few per
@@ -121,7 +102,7 @@ impl Relaxation {
         mass: &[f64],
         neighbour: Option<&Self>,
     ) -> Option<Self> {
-        let mut mode = neighbour.map_or_else(|| uneven(mass), |known| known.mode.to_vec());
+        let mut mode = neighbour.map_or_else(|| uneven(mass), |known| known.mode.clone());
         let mut growth: Vec<f64> = Vec::with_capacity(ITERATIONS);
         while growth.len() < ITERATIONS && !settled(&growth) {
             let size: f64 = mode.iter().map(|value| value.abs()).sum();
@@ -136,7 +117,7 @@ impl Relaxation {
         let change = neighbour.map_or(UNKNOWN_CHANGE, |known| LEAST_CHANGE * known.change_to(time));
         (time > 0.0 && time.is_finite()).then(|| Self {
             time,
-            mode: Arc::new(mode),
+            mode,
             change,
             age: 0,
             rough: false,

@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use super::GeneratorSource;
 use super::coarse::rough_relaxation;
+#[cfg(feature = "serde")]
 use super::memory;
 use super::one_axis;
 use super::relaxation::Relaxation;
@@ -51,6 +52,7 @@ pub(super) struct GeneratorSession {
     /// Where the solver stands.
     pub(super) stand: Stand,
     /// Whether the last solve has left a trail.
+    #[cfg_attr(not(feature = "serde"), expect(dead_code))]
     has_left: bool,
     cancellation: Cancellation,
 }
@@ -75,11 +77,13 @@ impl Session for GeneratorSession {
         Ok(self.solve_from_nearest(value)?)
     }
 
+    #[cfg(feature = "serde")]
     fn memory(&self) -> Vec<u8> {
         let left = self.trails.newest().filter(|_| self.has_left);
         memory::write(&self.solver, self.stand, left.map(|(_, trail)| trail))
     }
 
+    #[cfg(feature = "serde")]
     fn recall(&mut self, left: &[(f64, &[u8])]) -> Result<(), SourceError> {
         memory::recall(self, left)
     }
@@ -347,7 +351,7 @@ fn trail_after(
 ) -> Trail {
     let point = trail::Solved {
         value: solved.value,
-        mass: Arc::new(solved.steady.mass.clone()),
+        mass: solved.steady.mass.clone(),
         difference,
     };
     // What has not converged is no start for an extrapolation.

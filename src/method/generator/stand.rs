@@ -2,6 +2,7 @@
 
 /// Values whose generators the solver holds on to.
 #[derive(Debug, Clone, Copy, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Stand {
     /// The factorised one.
     pub(super) factorised: Option<f64>,

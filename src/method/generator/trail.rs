@@ -6,7 +6,6 @@
 use std::sync::Arc;
 
 use super::relaxation::Relaxation;
-use crate::bytes::{NotWhatWasWritten, Reader, Writer};
 
 /// Points that are remembered: one more than the highest degree of the polynomial.
 const POINTS: usize = 6;
@@ -20,11 +19,12 @@ const FALLING: f64 = 0.5;
 
 /// A solved point.
 #[derive(Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Solved {
     /// The parameter's value.
     pub(super) value: f64,
     /// The generator's unknowns, Σ = 1.
-    pub(super) mass: Arc<Vec<f64>>,
+    pub(super) mass: Vec<f64>,
     /// By how much the second scheme's unknowns differ, Σ = 0.
     pub(super) difference: Vec<f64>,
 }
@@ -37,6 +37,16 @@ pub(in crate::method) struct Trail {
     pub(super) slope: Option<Arc<Vec<f64>>>,
     /// How fast deviations die out, where it was needed.
     pub(super) relaxation: Option<Arc<Relaxation>>,
+}
+
+/// What a trail has that those before it do not have, lent or owned.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+pub(super) struct News<Point, Unknowns, Time> {
+    newest: Option<Point>,
+    older: Vec<f64>,
+    slope: Option<Unknowns>,
+    relaxation: Option<Time>,
 }
 
 impl Trail {
@@ -54,54 +64,42 @@ impl Trail {
         }
     }
 
-    /// The newest point and what else is new as bytes; the older points by their values alone.
-    pub(super) fn write(&self, writer: &mut Writer) {
-        writer.count(self.points.len());
-        for (index, point) in self.points.iter().enumerate() {
-            writer.number(point.value);
-            if index == 0 {
-                writer.numbers(&point.mass).numbers(&point.difference);
-            }
-        }
-        writer.flag(self.slope.is_some());
-        if let Some(slope) = &self.slope {
-            writer.numbers(slope);
-        }
-        writer.flag(self.relaxation.is_some());
-        if let Some(relaxation) = &self.relaxation {
-            relaxation.write(writer);
+    /// What is new in it, and the values of the older points.
+    #[cfg(feature = "serde")]
+    pub(super) fn news(&self) -> News<&Solved, &Vec<f64>, &Relaxation> {
+        News {
+            newest: self.newest().map(AsRef::as_ref),
+            older: self
+                .points
+                .iter()
+                .skip(1)
+                .map(|point| point.value)
+                .collect(),
+            slope: self.slope.as_deref(),
+            relaxation: self.relaxation.as_deref(),
         }
     }
 
-    /// What was written, with the older points of the trails in `known`.
-    pub(super) fn read(
-        reader: &mut Reader<'_>,
+    /// The trail with this news, its older points among those that are `known`; `None` where one is not.
+    #[cfg(feature = "serde")]
+    pub(super) fn of_news(
+        news: News<Solved, Vec<f64>, Relaxation>,
         known: &[Arc<Solved>],
-    ) -> Result<Self, NotWhatWasWritten> {
-        let mut trail = Self::default();
-        for index in 0..reader.count()?.min(POINTS) {
-            let value = reader.number()?;
-            if index == 0 {
-                trail.points.push(Arc::new(Solved {
-                    value,
-                    mass: Arc::new(reader.numbers()?),
-                    difference: reader.numbers()?,
-                }));
-            } else {
-                let older = known.iter().rev().find(|point| point.value == value);
-                trail.points.push(older.ok_or(NotWhatWasWritten)?.clone());
-            }
-        }
-        if reader.flag()? {
-            trail.slope = Some(Arc::new(reader.numbers()?));
-        }
-        if reader.flag()? {
-            trail.relaxation = Some(Arc::new(Relaxation::read(reader)?));
-        }
-        Ok(trail)
+    ) -> Option<Self> {
+        let find = |value| known.iter().rev().find(|point| point.value == value);
+        let older = news.older.into_iter().take(POINTS - 1);
+        let older: Option<Vec<_>> = older.map(|value| find(value).cloned()).collect();
+        let mut points: Vec<_> = news.newest.map(Arc::new).into_iter().collect();
+        points.extend(older?);
+        Some(Self {
+            points,
+            slope: news.slope.map(Arc::new),
+            relaxation: news.relaxation.map(Arc::new),
+        })
     }
 
     /// Lengths of all that has one value a cell.
+    #[cfg(feature = "serde")]
     pub(super) fn lengths(&self) -> Vec<usize> {
         let points = self.points.iter();
         let mut lengths: Vec<usize> = points
@@ -113,6 +111,7 @@ impl Trail {
     }
 
     /// The newest point.
+    #[cfg(feature = "serde")]
     pub(super) fn newest(&self) -> Option<&Arc<Solved>> {
         self.points.first()
     }
@@ -130,7 +129,7 @@ impl Trail {
         let Some(only) = self.only() else {
             return self.extrapolated(value, POINTS, |point| &point.mass);
         };
-        let mut mass = only.mass.to_vec();
+        let mut mass = only.mass.clone();
         if let Some(slope) = &self.slope {
             add_scaled(&mut mass, value - only.value, slope);
         }
@@ -201,7 +200,7 @@ mod tests {
 
     fn trail(values: &[f64], curve: impl Fn(f64) -> Vec<f64>) -> Trail {
         values.iter().fold(Trail::default(), |trail, &value| {
-            let mass = Arc::new(curve(value));
+            let mass = curve(value);
             let difference = curve(2.0 * value);
             let point = Solved {
                 value,

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use super::SgcmSource;
-use crate::bytes::{NotWhatWasWritten, Reader, Writer};
+#[cfg(feature = "serde")]
+use crate::bytes::{NotWhatWasWritten, from_bytes, to_bytes};
 use crate::cancellation::Cancellation;
 use crate::continuation::{Session, Solution, SourceError};
 use crate::method::MethodError;
@@ -14,6 +15,7 @@ pub(super) struct SgcmSession {
     source: SgcmSource,
     masses: Neighbours<Arc<Vec<f64>>>,
     /// Whether the last solve has left some.
+    #[cfg_attr(not(feature = "serde"), expect(dead_code))]
     has_left: bool,
     cancellation: Cancellation,
 }
@@ -54,18 +56,17 @@ impl Session for SgcmSession {
         Ok(self.solve_from_nearest(value)?)
     }
 
+    #[cfg(feature = "serde")]
     fn memory(&self) -> Vec<u8> {
-        let mut writer = Writer::new();
-        if let Some((_, mass)) = self.masses.newest().filter(|_| self.has_left) {
-            writer.numbers(mass);
-        }
-        writer.finish()
+        let left = self.masses.newest().filter(|_| self.has_left);
+        left.map_or_else(Vec::new, |(_, mass)| to_bytes(mass.as_slice()))
     }
 
+    #[cfg(feature = "serde")]
     fn recall(&mut self, left: &[(f64, &[u8])]) -> Result<(), SourceError> {
         let cells = self.source.cells();
         for (value, bytes) in left.iter().filter(|(_, bytes)| !bytes.is_empty()) {
-            let mass = Reader::new(bytes).numbers()?;
+            let mass: Vec<f64> = from_bytes(bytes)?;
             if mass.len() != cells {
                 return Err(NotWhatWasWritten.into());
             }

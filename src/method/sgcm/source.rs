@@ -82,6 +82,7 @@ impl SgcmSource {
     }
 
     /// Number of cells of the space.
+    #[cfg(feature = "serde")]
     pub(super) fn cells(&self) -> usize {
         self.problem.space().n_cells()
     }

@@ -12,6 +12,7 @@ use sha2::{Digest as _, Sha256};
 
 use super::differences;
 use crate::UNFINISHED;
+use crate::bytes::{NotWhatWasWritten, from_bytes, to_bytes};
 use crate::run::RunError;
 use crate::run::atomic::begin_durably;
 
@@ -42,8 +43,7 @@ impl Log {
     /// # Errors
     /// [`RunError::Write`].
     pub(in crate::run) fn create(path: PathBuf, of: &str) -> Result<Self, RunError> {
-        let first = postcard::to_stdvec(&(env!("CARGO_PKG_VERSION"), of));
-        let first = first.map_err(|_| RunError::Journal { path: path.clone() })?;
+        let first = to_bytes(&(env!("CARGO_PKG_VERSION"), of));
         let file = begin_durably(&path, &[MAGIC, &frame(&first)[..]].concat())?;
         Ok(Self::at(path, file))
     }
@@ -56,7 +56,7 @@ impl Log {
     pub(in crate::run) fn open(
         path: PathBuf,
         of: &str,
-        each: &mut dyn FnMut(&[u8], Range<u64>) -> Result<(), postcard::Error>,
+        each: &mut dyn FnMut(&[u8], Range<u64>) -> Result<(), NotWhatWasWritten>,
     ) -> Result<Self, RunError> {
         let unreadable = |source| RunError::Read {
             path: path.clone(),
@@ -78,7 +78,7 @@ impl Log {
         check_sweep(&path, &first, of)?;
         while let Some(frame) = frames.next().map_err(unreadable)? {
             let place = frames.whole - frame.len() as u64..frames.whole;
-            each(&frame, place).map_err(|_| broken())?;
+            each(&frame, place).map_err(|NotWhatWasWritten| broken())?;
         }
         let whole = frames.whole;
         file.set_len(whole).map_err(unreadable)?;
@@ -237,11 +237,11 @@ fn checksum(content: &[u8]) -> [u8; WORD] {
 
 /// Refuses the journal of another version or sweep.
 fn check_sweep(path: &Path, first: &[u8], resolved: &str) -> Result<(), RunError> {
-    let first = postcard::from_bytes::<(&str, &str)>(first);
+    let first = from_bytes::<(String, String)>(first);
     let (version, sweep) = first.map_err(|_| RunError::Journal {
         path: path.to_owned(),
     })?;
-    let differences = differences(version, sweep, resolved);
+    let differences = differences(&version, &sweep, resolved);
     if differences.is_empty() {
         return Ok(());
     }

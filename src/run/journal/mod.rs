@@ -23,6 +23,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 
 use super::RunError;
+use crate::bytes::{from_bytes, to_bytes};
 use crate::continuation::SourceError;
 use crate::system::Family;
 use kept::{Answer, Question};
@@ -64,8 +65,7 @@ impl Journal {
         }
         let mut places = HashMap::new();
         let log = Log::open(path.to_owned(), of, &mut |content, place| {
-            let (key, _) = postcard::take_from_bytes(content)?;
-            places.insert(key, place);
+            places.insert(from_bytes(content)?, place);
             Ok(())
         })?;
         Ok(Self::new(log, places))
@@ -112,14 +112,13 @@ impl Journal {
         };
         let content = shared.log.read(place)?;
         drop(shared);
-        let read = postcard::from_bytes::<(Key, T)>(&content);
+        let read = from_bytes::<(Key, T)>(&content);
         let read = read.map_err(|_| RunError::Journal { path: self.path() })?;
         Ok(Some(read.1))
     }
 
     fn put<T: Serialize>(&self, key: Key, what: &T) -> Result<(), RunError> {
-        let content = postcard::to_stdvec(&(key, what));
-        let content = content.map_err(|_| RunError::Journal { path: self.path() })?;
+        let content = to_bytes(&(key, what));
         self.lock().log.append(&content)
     }
 

@@ -123,7 +123,7 @@ fn solves_come_back_bit_for_bit() {
     assert_eq!(journal.solves(), 2);
     let back: Kept = journal.known("1").unwrap().unwrap();
     assert!(back.is_sound());
-    let bytes = |kept: &Kept| postcard::to_stdvec(kept).unwrap();
+    let bytes = |kept: &Kept| to_bytes(kept);
     assert_eq!(bytes(&back), bytes(&kept()));
     let solution = back.solved.unwrap().solution("sgcm");
     let bits = solution.report.residual.to_bits();

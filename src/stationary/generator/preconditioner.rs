@@ -26,6 +26,7 @@ const MUCH_MORE: f64 = 4.0;
 
 /// The factorisation that solves or preconditions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum RateMethod {
     /// LU of Q.
     Lu,
@@ -61,12 +62,6 @@ impl RateMethod {
 
     pub(super) fn is_narrow(self) -> bool {
         matches!(self, Self::NarrowLu | Self::NarrowLuSingle)
-    }
-
-    /// The method of this name, see [`RateMethod::name`].
-    pub(super) fn named(name: &str) -> Option<Self> {
-        let mut all = Self::ALL.into_iter().chain([Self::Modewise]);
-        all.find(|method| method.name() == name)
     }
 
     /// Whether its factors are those of the matrix itself, to rounding.
