@@ -9,7 +9,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 /// Bytes that are not what was written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("the bytes are not what was written")]
-pub struct NotWhatWasWritten;
+pub(crate) struct NotWhatWasWritten;
 
 /// A value as bytes. Lists know their lengths, so that nothing keeps them from being written.
 pub(crate) fn to_bytes<T: Serialize + ?Sized>(value: &T) -> Vec<u8> {
