@@ -160,7 +160,6 @@ impl EstimatedDensity {
 
 /// Mean and standard deviation of one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Moments {
     /// Mean.
     pub mean: f64,
