@@ -115,7 +115,7 @@ impl Relaxation {
         }
         let time = mean(growth.rchunks(AVERAGED).next()?).exp();
         let change = neighbour.map_or(UNKNOWN_CHANGE, |known| LEAST_CHANGE * known.change_to(time));
-        (time > 0.0 && time.is_finite()).then(|| Self {
+        (time > 0.0 && time.is_finite()).then_some(Self {
             time,
             mode,
             change,

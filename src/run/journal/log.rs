@@ -25,6 +25,9 @@ const WORD: usize = 8;
 /// Time between two times that the disk is waited for: many fast solves share one.
 const BETWEEN_WAITS: Duration = Duration::from_secs(1);
 
+/// What is given a record with its place in the file.
+type Each<'e> = dyn FnMut(&[u8], Range<u64>) -> Result<(), NotWhatWasWritten> + 'e;
+
 /// The file, open for more.
 #[derive(Debug)]
 pub(in crate::run) struct Log {
@@ -56,7 +59,7 @@ impl Log {
     pub(in crate::run) fn open(
         path: PathBuf,
         of: &str,
-        each: &mut dyn FnMut(&[u8], Range<u64>) -> Result<(), NotWhatWasWritten>,
+        each: &mut Each<'_>,
     ) -> Result<Self, RunError> {
         let unreadable = |source| RunError::Read {
             path: path.clone(),
