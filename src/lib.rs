@@ -34,7 +34,7 @@ pub mod continuation;
 pub mod density;
 #[cfg(feature = "cli")]
 pub mod explore;
-#[cfg(feature = "figures")]
+#[cfg(any(feature = "figures", feature = "store"))]
 pub mod figure;
 pub mod formula;
 pub mod generator;
@@ -54,5 +54,5 @@ pub mod topology;
 pub const MAX_DIMENSION: usize = 4;
 
 /// Beginning of the names of files and folders that are in the making, or taken out of the way.
-#[cfg(feature = "figures")]
+#[cfg(any(feature = "figures", feature = "store"))]
 pub(crate) const UNFINISHED: &str = ".pbif-";

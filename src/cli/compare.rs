@@ -25,7 +25,7 @@ pub(super) fn run(
     name: &str,
     arguments: &CompareArguments,
 ) -> Result<Outcome, CommandError> {
-    if spec.settings.figures_at.is_empty() {
+    if spec.settings.figures.at.is_empty() {
         let diagnostic = Diagnostic::new("`figures.at` is empty: there is no value to compare at")
             .remedy("leave `figures.at` out, or give values of the swept parameter");
         return Err(CommandError::Input(diagnostic.into()));
@@ -49,7 +49,7 @@ pub(super) fn run(
         false => folder.begin(&of)?,
     };
     let (threads, cancellation) = super::interruptible(arguments.work.threads)?;
-    let progress = Progress::new(2 + 3 * spec.settings.figures_at.len(), arguments.work.quiet);
+    let progress = Progress::new(2 + 3 * spec.settings.figures.at.len(), arguments.work.quiet);
     let keeper = Keeper {
         journal,
         progress: &progress,
@@ -140,7 +140,7 @@ fn carry_out(
     cancellation: &Cancellation,
 ) -> Result<Outcome, CommandError> {
     let mut at: Vec<f64> = Vec::new();
-    for &value in &spec.settings.figures_at {
+    for &value in &spec.settings.figures.at {
         if !at.contains(&value) {
             at.push(value);
         }
@@ -203,9 +203,9 @@ fn write(
     folder.write(run)?;
     progress.say("drawing");
     let figures = Figures::of_comparison(run.comparison, &spec.settings.title)
-        .with_style(&spec.settings.figure_style)
+        .with_style(&spec.settings.figures.style)
         .draw_all()?;
-    write_figures(&figures, &spec.settings.figure_formats, &folder.figures())?;
+    write_figures(&figures, &spec.settings.figures.formats, &folder.figures())?;
     Ok(folder.take_place(run.comparison.interrupted)?)
 }
 

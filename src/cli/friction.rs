@@ -6,7 +6,7 @@ use super::args::FrictionPlotArguments;
 use super::output::OutputFolder;
 use super::plot::style_key;
 use super::{CommandError, Outcome};
-use crate::figure::{FigureError, FigureStyle, Format, friction_figure, write_figures};
+use crate::figure::{FigureStyle, Figures, Format, write_figures};
 use crate::sweep_file::{Diagnostic, Report, SweepFile, list, starting_files};
 use crate::system::friction::pulled::{has_friction, shown_values};
 use crate::system::{Model, SystemError, registry};
@@ -35,17 +35,17 @@ pub(super) fn run(
         .map(|(name, value)| (&name[..], *value))
         .collect();
     let values = shown_values(model, &given).map_err(|error| refused(model, &error))?;
-    let figure = friction_figure(model, &values, &model.title, &style);
-    let figure = match figure {
-        Err(FigureError::NoFriction { .. }) => return Err(without_friction(model).into()),
-        figure => figure?,
-    };
+    let figures = Figures::of_friction(model, &values, &model.title).with_style(&style);
+    let figures = figures.draw_all()?;
+    if figures.is_empty() {
+        return Err(without_friction(model).into());
+    }
     if formats.is_empty() {
         return super::print("`figures.formats` is an empty list: nothing to draw\n");
     }
     let folder = arguments.out.as_deref().unwrap_or(Path::new(FOLDER));
     let output = OutputFolder::prepare(folder)?;
-    let files = write_figures(&[figure], &formats, output.path())?;
+    let files = write_figures(&figures, &formats, output.path())?;
     let lines = files.iter().map(|file| format!("  {}\n", file.display()));
     let text = format!("files\n{}", lines.collect::<String>());
     super::conclude(&text, Outcome::Complete, output.path())
@@ -74,7 +74,7 @@ fn style(
     let settings = SweepFile::parse("a sweep", text)
         .set_all("--set", &overrides)
         .validate()?;
-    Ok((settings.figure_style, settings.figure_formats))
+    Ok((settings.figures.style, settings.figures.formats))
 }
 
 /// `lambda=2` as a name and a number.

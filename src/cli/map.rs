@@ -14,7 +14,7 @@ use crate::cancellation::Cancellation;
 use crate::continuation::curve::Curve;
 use crate::continuation::map::{MapMaker, MapProgress, RegimeMap};
 use crate::continuation::{BifurcationStatus, DensitySource, LocateOptions, SourceError};
-use crate::figure::{map_figures, write_figures};
+use crate::figure::{Figures, write_figures};
 use crate::run::{Journal, JournalledSource, MapFolder, RunError, format_with_error};
 use crate::sweep_file::{Diagnostic, Sweep};
 
@@ -88,8 +88,9 @@ fn conclude(
 ) -> Result<Outcome, CommandError> {
     home.write(map, &spec.to_toml(), clock.elapsed().as_secs_f64())?;
     let settings = &spec.settings;
-    let figures = map_figures(map, &[], &settings.title, &settings.figure_style)?;
-    write_figures(&figures, &settings.figure_formats, &home.figures())?;
+    let figures = Figures::of_map(map, &[], &settings.title).with_style(&settings.figures.style);
+    let figures = figures.draw_all()?;
+    write_figures(&figures, &settings.figures.formats, &home.figures())?;
     let mut text = summary(map);
     text += "\nfiles\n";
     for file in home.take_place(map.interrupted)? {

@@ -8,7 +8,7 @@ use super::stored::{Override, Stored, set};
 use super::sweep::draw;
 use super::{CommandError, Outcome};
 use crate::continuation::{Point, SweepResult};
-use crate::figure::{ColourMap, FigureError, FigureWidth, Figures, Ground, Typeface};
+use crate::figure::{ColourMap, FigureWidth, Figures, Ground, Typeface};
 use crate::run::{StoredPlane, format_number};
 use crate::sweep_file::{Diagnostic, list};
 
@@ -36,7 +36,7 @@ pub(super) fn run(arguments: &PlotArguments) -> Result<Outcome, CommandError> {
     }
     let stored = Stored::read(&arguments.run, &overrides, &["figures"], arguments.quiet)?;
     if !arguments.at.is_empty() {
-        check_values(&stored.result, &stored.spec.settings.figures_at)?;
+        check_values(&stored.result, &stored.spec.settings.figures.at)?;
     }
     check_names(&stored)?;
     let figures = arguments.run.join("figures");
@@ -56,10 +56,10 @@ pub(super) fn run(arguments: &PlotArguments) -> Result<Outcome, CommandError> {
 /// Why there is no figure.
 fn nothing_drawn(stored: &Stored) -> &'static str {
     let settings = &stored.spec.settings;
-    if settings.figures_drawn.is_empty() {
+    if settings.figures.names().is_empty() {
         return "`figures.draw` is an empty list: nothing to draw\n";
     }
-    if settings.figure_formats.is_empty() {
+    if settings.figures.formats.is_empty() {
         return "`figures.formats` is an empty list: nothing to draw\n";
     }
     let has_density = |point: &Point| !point.densities.is_empty();
@@ -72,15 +72,8 @@ fn nothing_drawn(stored: &Stored) -> &'static str {
 /// Refuses names that no figure of this run has, such as one at a value that was not computed.
 fn check_names(stored: &Stored) -> Result<(), CommandError> {
     let settings = &stored.spec.settings;
-    let figures = Figures::of_sweep(&stored.result, &settings.title, &settings.figures_at);
-    match figures.unknown(&settings.figures_drawn) {
-        None => Ok(()),
-        Some(name) => Err(FigureError::Unknown {
-            name: name.to_owned(),
-            known: figures.names(),
-        }
-        .into()),
-    }
+    let figures = Figures::of_sweep(&stored.result, &settings.title, &settings.figures.at);
+    Ok(figures.check(settings.figures.names())?)
 }
 
 /// The short options as keys.

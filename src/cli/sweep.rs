@@ -342,10 +342,10 @@ pub(super) fn draw(
     folder: &Path,
 ) -> Result<Vec<PathBuf>, CommandError> {
     let settings = &spec.settings;
-    let figures = Figures::of_sweep(result, &settings.title, &settings.figures_at)
-        .with_style(&settings.figure_style);
-    let drawn = figures.draw_named(&settings.figures_drawn)?;
-    Ok(write_figures(&drawn, &settings.figure_formats, folder)?)
+    let figures = Figures::of_sweep(result, &settings.title, &settings.figures.at)
+        .with_style(&settings.figures.style);
+    let drawn = figures.draw_named(settings.figures.names())?;
+    Ok(write_figures(&drawn, &settings.figures.formats, folder)?)
 }
 
 /// How a command ends that gives this result.

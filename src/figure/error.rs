@@ -2,23 +2,26 @@
 
 use std::path::PathBuf;
 
-use super::canvas::DrawError;
-
 /// Why a figure could not be made or written.
 #[derive(Debug, thiserror::Error)]
 pub enum FigureError {
-    /// It could not be drawn.
-    #[error(transparent)]
-    Draw(#[from] DrawError),
-    /// Nothing was given to draw.
-    #[error("there is nothing to draw")]
-    Nothing,
-    /// The model has no friction law, or one that exerts no force with the values it has.
-    #[error("`{model}` has no friction force to draw")]
-    NoFriction {
-        /// Name of the model.
-        model: String,
+    /// The SVG could not be read back to measure or render it.
+    #[error("cannot render a figure: {0}")]
+    Svg(#[from] resvg::usvg::Error),
+    /// A picture of that size cannot be made.
+    #[error("cannot make a picture of {width} × {height} pixels")]
+    Raster {
+        /// Width in pixels.
+        width: u32,
+        /// Height in pixels.
+        height: u32,
     },
+    /// A PNG could not be encoded.
+    #[error("cannot encode a PNG: {0}")]
+    Png(#[from] png::EncodingError),
+    /// A PDF could not be written.
+    #[error("cannot write a PDF: {0}")]
+    Pdf(String),
     /// There is no figure of that name.
     #[error("there is no figure `{name}`, only {}", known.join(", "))]
     Unknown {

@@ -3,53 +3,16 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::drawn::Figure;
 use super::error::FigureError;
+use super::figures::Figure;
+use super::settings::Format;
 use crate::UNFINISHED;
-
-/// File formats of figures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Format {
-    /// Scalable vector graphics; heat maps are embedded pictures.
-    Svg,
-    /// Pixels, as many to the inch as the style says.
-    Png,
-    /// A page of the figure's size, with fonts embedded and text kept as text.
-    Pdf,
-    /// The numbers it was drawn from, as a table.
-    Csv,
-    /// Its caption, as plain text.
-    Txt,
-}
-
-impl Format {
-    /// All formats.
-    pub const ALL: [Self; 5] = [Self::Svg, Self::Png, Self::Pdf, Self::Csv, Self::Txt];
-    /// Those that are written where none is named.
-    pub const USUAL: [Self; 2] = [Self::Svg, Self::Png];
-
-    /// Name used in sweep files, and extension of the files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Svg => "svg",
-            Self::Png => "png",
-            Self::Pdf => "pdf",
-            Self::Csv => "csv",
-            Self::Txt => "txt",
-        }
-    }
-
-    /// The format of that name.
-    pub fn parse(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|format| format.name() == name)
-    }
-}
 
 /// Writes figures in every format into a folder, which is made if need be; returns the files in the order in which they
 /// were made. Files of the same names are replaced.
 ///
 /// # Errors
-/// [`FigureError::Draw`] for a PNG or a PDF, [`FigureError::Write`]; files made before stay.
+/// [`FigureError`]; files made before stay.
 pub fn write_figures(
     figures: &[Figure],
     formats: &[Format],

@@ -16,51 +16,34 @@
 //! # }
 //! ```
 //!
-//! `canvas` is what draws. A new kind of figure is one file like `diagram`, which lists what it can draw of a sweep or
-//! a comparison, and one line in `drawn`.
+//! A kind of figure is one file of `kinds`: what it draws, its caption, its table, its names; `kinds/mod.rs` lists them.
+//! `parts` is what several share, and `canvas` what draws. `settings` and `style`, which sweep files hold, need neither.
 
-mod along;
-mod bifurcations;
-mod branches;
-mod canvas;
-mod caption;
-mod compared_joint;
-mod compared_marginals;
-mod compared_told;
-mod crossed;
-mod data;
-mod diagram;
-mod drawn;
-mod error;
-mod files;
-mod friction;
-mod health;
-mod homology;
-mod indicator;
-mod inset;
-mod joint;
-mod joint_sheet;
-mod map;
-mod marginals;
-mod names;
-mod pairs;
-mod peaks;
-mod plane;
-mod region_room;
-mod section;
-mod select;
-mod shown;
-mod sketch;
+mod settings;
 mod style;
-mod surface;
-mod time_to_accuracy;
-mod told;
 
-pub use canvas::DrawError;
-pub use drawn::{Figure, Figures, KINDS, USUAL_KINDS, matches_figure, sweep_figures};
+#[cfg(feature = "figures")]
+mod canvas;
+#[cfg(feature = "figures")]
+mod error;
+#[cfg(feature = "figures")]
+mod figures;
+#[cfg(feature = "figures")]
+mod files;
+#[cfg(feature = "figures")]
+mod kinds;
+#[cfg(feature = "figures")]
+mod parts;
+
+#[cfg(feature = "figures")]
 pub use error::FigureError;
-pub use files::{Format, write_figures};
-pub use friction::friction_figure;
-pub use map::map_figures;
-pub use plane::curve_figure;
+#[cfg(feature = "figures")]
+pub(crate) use figures::sweep_figures;
+#[cfg(feature = "figures")]
+pub use figures::{Figure, Figures};
+#[cfg(feature = "figures")]
+pub use files::write_figures;
+#[cfg(feature = "figures")]
+pub(crate) use parts::names::matches as matches_figure;
+pub use settings::{FigureSettings, Format};
 pub use style::{ColourMap, FigureStyle, FigureWidth, Ground, Typeface};

@@ -1,20 +1,17 @@
 //! The style of figures: the size a journal asks for, lettering, lines, colours.
 
-pub use super::canvas::look::{ColourMap, Typeface};
-
-use super::canvas::look::{Look, POINTS_A_MILLIMETRE};
-use super::canvas::style::CURVE_LINE;
-
+/// Points in a millimetre.
+pub(super) const POINTS_A_MILLIMETRE: f64 = 72.0 / 25.4;
 /// Size of axis titles where a figure has its own width, in points.
-const TEXT_OF_OWN_WIDTH: f64 = 10.5;
+pub(super) const TEXT_OF_OWN_WIDTH: f64 = 10.5;
 /// The same where a width is given: what journals ask for.
 const TEXT_OF_JOURNALS: f64 = 8.0;
 /// The same on slides.
 const TEXT_OF_SLIDES: f64 = 18.0;
 /// The narrowest page that every figure can be laid out on, in sizes of its text.
-const LEAST_WIDTH: f64 = 22.0;
+pub(super) const LEAST_WIDTH: f64 = 22.0;
 /// The widest, in the same unit.
-const MOST_WIDTH: f64 = 200.0;
+pub(super) const MOST_WIDTH: f64 = 200.0;
 
 /// How wide figures are.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -45,7 +42,7 @@ impl FigureWidth {
     ];
 
     /// Name used in sweep files; `None` for millimetres.
-    pub fn name(self) -> Option<&'static str> {
+    pub(crate) fn name(self) -> Option<&'static str> {
         match self {
             Self::Own => Some("own"),
             Self::Single => Some("single"),
@@ -57,7 +54,7 @@ impl FigureWidth {
     }
 
     /// The width of that name.
-    pub fn parse(name: &str) -> Option<Self> {
+    pub(crate) fn parse(name: &str) -> Option<Self> {
         Self::NAMED
             .into_iter()
             .find(|width| width.name() == Some(name))
@@ -91,10 +88,62 @@ impl Ground {
     pub const ALL: [Self; 2] = [Self::Light, Self::Dark];
 
     /// Name used in sweep files.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Light => "light",
             Self::Dark => "dark",
+        }
+    }
+}
+
+/// Colours for shares of a largest value: perceptually uniform, safe for colour-blind readers, and monotone in grey.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum ColourMap {
+    /// Dark blue over green to yellow.
+    #[default]
+    Viridis,
+    /// Blue over grey to yellow: nearly the same to all colour vision.
+    Cividis,
+    /// Black over purple and orange to pale yellow.
+    Magma,
+    /// White to black, for print without colour.
+    Grey,
+}
+
+impl ColourMap {
+    /// All colour maps.
+    pub const ALL: [Self; 4] = [Self::Viridis, Self::Cividis, Self::Magma, Self::Grey];
+
+    /// Name used in sweep files.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Viridis => "viridis",
+            Self::Cividis => "cividis",
+            Self::Magma => "magma",
+            Self::Grey => "grey",
+        }
+    }
+}
+
+/// The typeface: one family each, which comes with the program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Typeface {
+    /// DejaVu Sans.
+    #[default]
+    Sans,
+    /// DejaVu Serif.
+    Serif,
+}
+
+impl Typeface {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Sans, Self::Serif];
+
+    /// Name used in sweep files.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Sans => "sans",
+            Self::Serif => "serif",
         }
     }
 }
@@ -133,17 +182,16 @@ pub struct FigureStyle {
 
 impl Default for FigureStyle {
     fn default() -> Self {
-        let look = Look::default();
         Self {
             width: FigureWidth::default(),
             text: None,
             line: None,
-            dpi: look.dpi,
-            font: look.typeface,
-            colours: look.colours,
+            dpi: 288.0,
+            font: Typeface::default(),
+            colours: ColourMap::default(),
             ground: Ground::default(),
-            title: look.has_title,
-            letters: look.has_letters,
+            title: true,
+            letters: true,
         }
     }
 }
@@ -171,69 +219,5 @@ impl FigureStyle {
         self.width
             .millimetres()
             .is_none_or(|width| (least..=most).contains(&width))
-    }
-
-    pub(super) fn look(&self) -> Look {
-        let usable = |value: f64, usual: f64, (least, most): (f64, f64)| match value.is_nan() {
-            true => usual,
-            false => value.clamp(least, most),
-        };
-        let text = usable(self.text_points(), TEXT_OF_OWN_WIDTH, (1.0, 1000.0));
-        let points = Look::points_for(text);
-        let bounds = (LEAST_WIDTH * text, MOST_WIDTH * text);
-        let page = self.width.millimetres().map(|width| {
-            let width = usable(width * POINTS_A_MILLIMETRE, bounds.0, bounds);
-            width / points
-        });
-        let line = self
-            .line
-            .map(|line| usable(line, 1.0, (0.01, 100.0)) / (CURVE_LINE * points));
-        Look {
-            page,
-            points,
-            lines: line.unwrap_or(1.0),
-            dpi: usable(self.dpi, Look::default().dpi, (20.0, 2400.0)),
-            typeface: self.font,
-            colours: self.colours,
-            is_dark: self.ground == Ground::Dark,
-            has_title: self.title,
-            has_letters: self.letters,
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_default_is_the_usual_look() {
-        assert_eq!(FigureStyle::default().look(), Look::default());
-    }
-
-    #[test]
-    fn pages_are_as_wide_as_asked_for() {
-        for width in FigureWidth::NAMED {
-            let style = FigureStyle {
-                width,
-                ..FigureStyle::default()
-            };
-            assert!(style.has_room());
-            let look = style.look();
-            let given = look
-                .page
-                .map(|page| page * look.points / POINTS_A_MILLIMETRE);
-            match (given, width.millimetres()) {
-                (Some(page), Some(wanted)) => assert!((page - wanted).abs() < 1e-9),
-                (page, wanted) => assert_eq!(page, wanted),
-            }
-            assert_eq!(width.name().and_then(FigureWidth::parse), Some(width));
-        }
-        let style = FigureStyle {
-            width: FigureWidth::Millimetres(f64::INFINITY),
-            text: Some(f64::NAN),
-            ..FigureStyle::default()
-        };
-        assert!(!style.has_room() && style.look().page.is_some_and(f64::is_finite));
     }
 }

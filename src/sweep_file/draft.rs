@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use crate::continuation::LocateOptions;
-use crate::figure::{FigureStyle, Format, USUAL_KINDS};
+use crate::figure::FigureSettings;
 use crate::method::{
     DerivedMeasure, GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions,
 };
@@ -190,9 +190,7 @@ pub(super) struct Draft {
     pub(super) detect: DetectOptions,
     pub(super) locate: LocateOptions,
     pub(super) figures_at: Option<Vec<f64>>,
-    pub(super) figure_formats: Vec<Format>,
-    pub(super) figures_drawn: Vec<String>,
-    pub(super) figure_style: FigureStyle,
+    pub(super) figures: FigureSettings,
 }
 
 impl Default for Draft {
@@ -220,9 +218,7 @@ impl Default for Draft {
             detect: DetectOptions::default(),
             locate: LocateOptions::default(),
             figures_at: None,
-            figure_formats: Format::USUAL.to_vec(),
-            figures_drawn: USUAL_KINDS.map(str::to_owned).to_vec(),
-            figure_style: FigureStyle::default(),
+            figures: FigureSettings::default(),
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use pbif::continuation::SweepResult;
-use pbif::figure::{FigureError, Figures, Format, USUAL_KINDS, write_figures};
+use pbif::figure::{FigureError, FigureSettings, Figures, Format, write_figures};
 use pbif::space::Axis;
 
 use crate::common::closed_forms::{bistable, rayleigh, uniform};
@@ -29,7 +29,9 @@ fn draw_all(
     folder: &Path,
 ) -> Vec<PathBuf> {
     let figures = Figures::of_sweep(result, title, at);
-    write_figures(&figures.draw_named(&USUAL_KINDS).unwrap(), formats, folder).unwrap()
+    let usual = FigureSettings::default();
+    let figures = figures.draw_named(usual.names()).unwrap();
+    write_figures(&figures, formats, folder).unwrap()
 }
 
 fn names(files: &[PathBuf]) -> Vec<String> {
@@ -267,10 +269,10 @@ fn a_figure_is_drawn_by_its_name() {
     );
     assert_eq!(of(&["surface_xy"]).len(), 3);
     assert_eq!(of(&["all"]).len(), all.len());
-    assert_eq!(
-        figures.unknown(&["all", "joint", "joint_xy_0.7"]),
-        Some("joint_xy_0.7")
-    );
+    let unknown = figures
+        .check(&["all", "joint", "joint_xy_0.7"])
+        .unwrap_err();
+    assert!(matches!(unknown, FigureError::Unknown { name, .. } if name == "joint_xy_0.7"));
     let error = figures.draw("diagram_z").unwrap_err();
     assert!(
         matches!(&error, FigureError::Unknown { known, .. } if *known == names),

@@ -51,7 +51,7 @@ impl Example {
             parameter: family.parameter().to_owned(),
             space: sweep.problem.space().clone(),
             scheme: sweep.settings.method.generator.scheme,
-            at: sweep.settings.figures_at.clone(),
+            at: sweep.settings.figures.at.clone(),
         }
     }
 

@@ -50,7 +50,7 @@ fn from_a_text_to_a_figure_without_a_disk() {
     assert!(found.points.iter().all(has_density));
 
     let settings = &sweep.settings;
-    let figures = Figures::of_sweep(&found, &settings.title, &settings.figures_at);
+    let figures = Figures::of_sweep(&found, &settings.title, &settings.figures.at);
     let diagram = figures.draw("diagram_x").unwrap().unwrap();
     assert!(diagram.svg().starts_with("<svg") && diagram.svg().contains("two wells"));
 }

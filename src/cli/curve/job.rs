@@ -11,7 +11,7 @@ use crate::continuation::curve::{
     Curve, CurveError, CurveOptions, CurveOrigin, CurveStart, CurveTree, Plane, follow_all,
 };
 use crate::continuation::{LabelledPoint, LocateOptions, SourceError, SweepResult};
-use crate::figure::{curve_figure, write_figures};
+use crate::figure::{Figures, write_figures};
 use crate::method::MethodError;
 use crate::run::{CurveFolder, Journal, JournalledSource, format_number};
 use crate::sweep_file::{Diagnostic, Sweep};
@@ -165,9 +165,9 @@ impl<'a> Job<'a> {
         let (family, settings) = (self.spec.problem.family(), &self.spec.settings);
         let (origin, sweep) = (CurveOrigin::from(self.row), self.spec.to_toml());
         folder.write(family, &self.plane, tree, (&origin, &sweep, of))?;
-        let style = &settings.figure_style;
-        let figure = curve_figure(&tree.curves, (&origin, &[]), family, &settings.title, style)?;
-        write_figures(&[figure], &settings.figure_formats, &folder.figures())?;
+        let figures = Figures::of_curves(&tree.curves, (&origin, &[]), family, &settings.title);
+        let figures = figures.with_style(&settings.figures.style).draw_all()?;
+        write_figures(&figures, &settings.figures.formats, &folder.figures())?;
         let outcome = outcome(tree, &settings.locate);
         let interrupted = outcome == Outcome::Interrupted;
         let files = folder.take_place(interrupted)?;

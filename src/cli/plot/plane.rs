@@ -7,9 +7,7 @@ use super::super::output::OutputFolder;
 use super::super::stored::{Override, Stored, check_overrides};
 use super::super::{CommandError, Outcome};
 use crate::continuation::curve::{Curve, Plane, RowInPlane, SweepInPlane};
-use crate::figure::{
-    Figure, FigureError, curve_figure, map_figures, matches_figure, write_figures,
-};
+use crate::figure::{Figures, write_figures};
 use crate::run::{StoredPlane, StoredPlaneContent, format_with_error};
 use crate::sweep_file::{Diagnostic, Report, SweepFile};
 use crate::system::Family;
@@ -37,7 +35,7 @@ pub(super) fn run(
     }
     let spec = file.validate()?.fixed()?;
     let (settings, family) = (&spec.settings, spec.problem.family());
-    let (title, style) = (&settings.title, &settings.figure_style);
+    let (title, style) = (&settings.title, &settings.figures.style);
     let content = stored.content(&spec.problem)?;
     let (plane, curves) = match &content {
         StoredPlaneContent::Map(map) => (Some(&map.plane), map.curves.as_slice()),
@@ -51,21 +49,21 @@ pub(super) fn run(
     };
     let sweeps: Vec<SweepInPlane> = crossed.iter().map(|one| one.sweep.clone()).collect();
     let figures = match &content {
-        StoredPlaneContent::Map(map) => map_figures(map, &sweeps, title, style)?,
+        StoredPlaneContent::Map(map) => Figures::of_map(map, &sweeps, title),
         StoredPlaneContent::Curves(curves, origin) => {
-            vec![curve_figure(
-                curves,
-                (origin, &sweeps),
-                family,
-                title,
-                style,
-            )?]
+            Figures::of_curves(curves, (origin, &sweeps), family, title)
         }
     };
-    let figures = chosen(figures, &arguments.only)?;
+    let figures = figures.with_style(style);
+    let words: Vec<&str> = arguments.only.iter().map(|word| word.trim()).collect();
+    figures.check(&words)?;
+    let figures = match words.as_slice() {
+        [] => figures.draw_all()?,
+        words => figures.draw_named(words)?,
+    };
     let beside = arguments.run.join("figures");
     let output = OutputFolder::prepare(arguments.out.as_deref().unwrap_or(&beside))?;
-    let files = write_figures(&figures, &settings.figure_formats, output.path())?;
+    let files = write_figures(&figures, &settings.figures.formats, output.path())?;
     if files.is_empty() {
         return super::super::print("`figures.formats` is an empty list: nothing to draw\n");
     }
@@ -169,21 +167,4 @@ impl Crossed {
             gap.error
         )
     }
-}
-
-/// The figures that some words name; all without any.
-fn chosen(figures: Vec<Figure>, words: &[String]) -> Result<Vec<Figure>, FigureError> {
-    let words: Vec<&str> = words.iter().map(|word| word.trim()).collect();
-    let names = |figure: &Figure, word: &str| word == "all" || matches_figure(word, &figure.name);
-    for &word in &words {
-        if !figures.iter().any(|figure| names(figure, word)) {
-            return Err(FigureError::Unknown {
-                name: word.to_owned(),
-                known: figures.into_iter().map(|figure| figure.name).collect(),
-            });
-        }
-    }
-    let is_chosen =
-        |figure: &Figure| words.is_empty() || words.iter().any(|word| names(figure, word));
-    Ok(figures.into_iter().filter(is_chosen).collect())
 }

@@ -1,38 +1,51 @@
-//! The canvas: a drawing backend of plotters that writes SVG.
+//! The canvas: it writes SVG.
 //!
-//! plotters places everything on whole pixels, which makes curves stair-stepped. Here its pixel is 1/20 of
-//! a figure pixel, and the SVG's `viewBox` scales back.
+//! The coordinates of plotters are whole pixels, which would make curves stair-stepped. Here such a pixel is 1/20 of a
+//! figure pixel, and the SVG's `viewBox` scales back.
 
 use std::cell::RefCell;
-use std::convert::Infallible;
 use std::rc::Rc;
 
 use base64::Engine;
+use plotters_backend::BackendCoord;
 use plotters_backend::text_anchor::HPos;
-use plotters_backend::{BackendCoord, DrawingErrorKind};
 
 use super::look::Look;
 use super::style::{Colour, PAPER, Stroke, UNITS};
 use super::symbols::{self, Script};
 
-/// Result of a drawing operation on a [`Canvas`].
-pub(super) type Drawn = Result<(), DrawingErrorKind<Infallible>>;
-
 /// Lettering: markup with size and place.
 #[derive(Clone)]
-pub(in crate::figure) struct Lettering {
+pub(crate) struct Lettering {
     /// The text, as markup of [`symbols`].
-    pub(in crate::figure) markup: String,
+    pub(crate) markup: String,
     /// Height of the letters' body, in pixels.
-    pub(in crate::figure) size: f64,
+    pub(crate) size: f64,
     /// Colour.
-    pub(in crate::figure) colour: Colour,
+    pub(crate) colour: Colour,
     /// Which end stands at the given point.
-    pub(in crate::figure) anchor: HPos,
+    pub(crate) anchor: HPos,
     /// Whether the text runs upward.
-    pub(in crate::figure) upward: bool,
+    pub(crate) upward: bool,
     /// Whether it is bold.
-    pub(in crate::figure) bold: bool,
+    pub(crate) bold: bool,
+}
+
+/// What is drawn at one or several points.
+#[derive(Clone)]
+pub(crate) enum Shape {
+    /// A polyline through the points.
+    Line(Stroke),
+    /// The polygon of the points.
+    Area(Colour),
+    /// A disc about the first point: radius in pixels, inside, rim.
+    Dot(f64, Colour, Stroke),
+    /// A `+` about the first point: half its length in pixels, line.
+    Plus(f64, Stroke),
+    /// A PNG over the rectangle between two opposite corners.
+    Image(Vec<u8>),
+    /// Lettering at the first point.
+    Text(Lettering),
 }
 
 /// A page that collects SVG elements. Clones share the page.
@@ -123,8 +136,31 @@ impl Canvas {
         elements.push('\n');
     }
 
+    /// A shape at its points; nothing without a point.
+    pub(super) fn draw(&self, points: &[BackendCoord], shape: &Shape) {
+        let [first @ (x, y), ..] = *points else {
+            return;
+        };
+        match shape {
+            Shape::Line(stroke) => self.line(points, stroke),
+            Shape::Area(fill) => self.area(points, *fill),
+            Shape::Dot(radius, fill, rim) => self.dot(first, *radius, *fill, rim),
+            Shape::Plus(half, stroke) => {
+                let half = (half * UNITS).round() as i32;
+                self.line(&[(x - half, y), (x + half, y)], stroke);
+                self.line(&[(x, y - half), (x, y + half)], stroke);
+            }
+            Shape::Image(png) => {
+                if let [one, other] = *points {
+                    self.image(one, other, png);
+                }
+            }
+            Shape::Text(lettering) => self.text(first, lettering),
+        }
+    }
+
     /// A polyline.
-    pub(super) fn line(&self, points: &[BackendCoord], stroke: &Stroke) {
+    fn line(&self, points: &[BackendCoord], stroke: &Stroke) {
         let dash: Vec<String> = stroke
             .dash
             .iter()
@@ -143,7 +179,7 @@ impl Canvas {
     }
 
     /// A filled polygon.
-    pub(super) fn area(&self, points: &[BackendCoord], fill: Colour) {
+    fn area(&self, points: &[BackendCoord], fill: Colour) {
         let points = points_attribute(points);
         self.push(&format!("<polygon{points}{}/>", self.paint("fill", fill)));
     }
@@ -177,7 +213,7 @@ impl Canvas {
     }
 
     /// A disc with a rim; radius and rim in pixels.
-    pub(super) fn dot(&self, (x, y): BackendCoord, radius: f64, fill: Colour, rim: &Stroke) {
+    fn dot(&self, (x, y): BackendCoord, radius: f64, fill: Colour, rim: &Stroke) {
         self.push(&format!(
             "<circle cx=\"{x}\" cy=\"{y}\" r=\"{}\"{}{} stroke-width=\"{}\"/>",
             units(radius),
@@ -188,7 +224,7 @@ impl Canvas {
     }
 
     /// A PNG stretched over the rectangle between two corners, its pixels kept as crisp cells.
-    pub(super) fn image(&self, one: BackendCoord, other: BackendCoord, png: &[u8]) {
+    fn image(&self, one: BackendCoord, other: BackendCoord, png: &[u8]) {
         let data = base64::engine::general_purpose::STANDARD.encode(png);
         self.push(&format!(
             "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" \

@@ -2,13 +2,13 @@
 
 use plotters_backend::text_anchor::HPos;
 
-use super::DrawError;
 use super::frame::{self, Scale};
 use super::heat::Picture;
 use super::look::Look;
 use super::page::{Page, Rectangle, Shape, lettering};
 use super::render;
 use super::style::{self, Stroke, TEXT};
+use crate::figure::FigureError;
 
 /// Width of the bar, in pixels.
 const WIDTH: f64 = 13.0;
@@ -16,7 +16,7 @@ const WIDTH: f64 = 13.0;
 const GAP: f64 = 14.0;
 
 /// A colour bar from zero to a largest value, laid out.
-pub(in crate::figure) struct ColourBar {
+pub(crate) struct ColourBar {
     scale: Scale,
     title_width: f64,
 }
@@ -25,38 +25,38 @@ impl ColourBar {
     /// Lays out a bar of the given height; the title (markup) stands above it.
     ///
     /// # Errors
-    /// [`DrawError::Svg`].
-    pub(in crate::figure) fn new(
+    /// [`FigureError::Svg`].
+    pub(crate) fn new(
         look: &Look,
         largest: f64,
         height: f64,
         title: &str,
-    ) -> Result<Self, DrawError> {
+    ) -> Result<Self, FigureError> {
         let scale = Scale::vertical(look, (0.0, largest), height, title)?;
         let title_width = render::text_width(look, scale.title(), TEXT, false)?;
         Ok(Self { scale, title_width })
     }
 
     /// Room it takes to the right of a map.
-    pub(in crate::figure) fn width(&self) -> f64 {
+    pub(crate) fn width(&self) -> f64 {
         GAP + (WIDTH + self.scale.label_width()).max(self.title_width)
     }
 
     /// Room it takes above the map.
-    pub(in crate::figure) fn above() -> f64 {
+    pub(crate) fn above() -> f64 {
         2.0 * TEXT
     }
 
     /// Draws it right of `map`, with marks at some shares (0 to 1) of the largest value.
     ///
     /// # Errors
-    /// [`DrawError::Layout`] or [`DrawError::Png`].
-    pub(in crate::figure) fn draw(
+    /// [`FigureError::Png`].
+    pub(crate) fn draw(
         &self,
         page: &Page,
         map: Rectangle,
         marks: &[f64],
-    ) -> Result<(), DrawError> {
+    ) -> Result<(), FigureError> {
         let bar = Rectangle {
             left: map.right() + GAP,
             width: WIDTH,
@@ -64,15 +64,16 @@ impl ColourBar {
         };
         let ramp = Picture::new((1, 255), |_, row| Some(row as f64 / 254.0)).png(page.look())?;
         let corners = [(bar.left, bar.top), (bar.right(), bar.bottom())];
-        page.draw(&corners, Shape::Image(ramp))?;
+        page.draw(&corners, Shape::Image(ramp));
         for &share in marks {
             let y = bar.bottom() - share * bar.height;
             let stroke = Stroke::solid(style::on_heat(page.look(), share), 1.0);
-            page.draw(&[(bar.left, y), (bar.right(), y)], Shape::Line(stroke))?;
+            page.draw(&[(bar.left, y), (bar.right(), y)], Shape::Line(stroke));
         }
-        frame::border(page, bar)?;
-        self.scale.draw_right(page, bar)?;
+        frame::border(page, bar);
+        self.scale.draw_right(page, bar);
         let above = (bar.left, bar.top - 1.15 * TEXT);
-        page.text(above, lettering(self.scale.title(), HPos::Left))
+        page.text(above, lettering(self.scale.title(), HPos::Left));
+        Ok(())
     }
 }

@@ -5,13 +5,13 @@
 
 /// Values at the points of a rectilinear grid.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::figure) struct Grid<'a> {
+pub(crate) struct Grid<'a> {
     /// Abscissas, ascending; length `n`.
-    pub(in crate::figure) x: &'a [f64],
+    pub(crate) x: &'a [f64],
     /// Ordinates, ascending; length `m`.
-    pub(in crate::figure) y: &'a [f64],
+    pub(crate) y: &'a [f64],
     /// `n × m` values, the ordinate fastest.
-    pub(in crate::figure) values: &'a [f64],
+    pub(crate) values: &'a [f64],
 }
 
 /// Most points between two that are kept when a line is thinned.
@@ -77,7 +77,7 @@ impl Grid<'_> {
     }
 
     /// The contour of a level: polylines, closed ones with the first point repeated at the end.
-    pub(in crate::figure) fn contour(&self, level: f64) -> Vec<Vec<(f64, f64)>> {
+    pub(crate) fn contour(&self, level: f64) -> Vec<Vec<(f64, f64)>> {
         let (n, m) = (self.x.len(), self.y.len());
         // Each crossed edge joins at most two pieces, one of either square beside it.
         let mut neighbours = vec![[NONE; 2]; 2 * n * m];
@@ -139,7 +139,7 @@ fn follow(start: usize, neighbours: &[[usize; 2]], visited: &mut [bool]) -> Vec<
 
 /// A line without the points that lie within `alike` pixels of the chord between those that are kept; `place` gives
 /// the pixels of a point.
-pub(in crate::figure) fn thinned(
+pub(crate) fn thinned(
     line: &[(f64, f64)],
     alike: f64,
     place: impl Fn(&(f64, f64)) -> (f64, f64),

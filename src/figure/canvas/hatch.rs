@@ -1,6 +1,5 @@
 //! Hatching, for where there is no density to show.
 
-use super::DrawError;
 use super::page::{Page, Shape};
 use super::style::{BLANK, HATCH, Stroke};
 
@@ -8,20 +7,12 @@ use super::style::{BLANK, HATCH, Stroke};
 const SPACING: f64 = 7.0;
 
 /// Hatches the rectangle between two abscissas and two ordinates (upper first), in pixels.
-///
-/// # Errors
-/// [`DrawError::Layout`].
-pub(in crate::figure) fn draw(
-    page: &Page,
-    (left, right): (f64, f64),
-    (top, bottom): (f64, f64),
-) -> Result<(), DrawError> {
+pub(crate) fn draw(page: &Page, (left, right): (f64, f64), (top, bottom): (f64, f64)) {
     let corners = [(left, top), (right, top), (right, bottom), (left, bottom)];
-    page.draw(&corners, Shape::Area(BLANK))?;
+    page.draw(&corners, Shape::Area(BLANK));
     for stroke in strokes((left, right), (top, bottom)) {
-        page.draw(&stroke, Shape::Line(Stroke::solid(HATCH, 0.7)))?;
+        page.draw(&stroke, Shape::Line(Stroke::solid(HATCH, 0.7)));
     }
-    Ok(())
 }
 
 /// The parts inside the rectangle of the lines x + y = k · spacing.

@@ -1,8 +1,8 @@
 //! Heat maps as small indexed PNGs: one embedded picture instead of a rectangle a cell, so that a figure of
 //! 500² cells stays small. Resampled by nearest cell where cells differ in width.
 
-use super::DrawError;
 use super::look::Look;
+use crate::figure::FigureError;
 
 /// Palette entry of places without a value; it is transparent.
 const NOTHING: u8 = 255;
@@ -11,7 +11,7 @@ const COLOURS: usize = 255;
 
 /// A picture of values: `width × height`, from the upper left, rows downward.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::figure) struct Picture {
+pub(crate) struct Picture {
     width: usize,
     height: usize,
     indices: Vec<u8>,
@@ -20,7 +20,7 @@ pub(in crate::figure) struct Picture {
 impl Picture {
     /// A picture whose pixel `(column, row)`, counted from the **lower** left, has the share (0 to 1) of the
     /// largest value that `share` gives; `None` and NaN are left transparent.
-    pub(in crate::figure) fn new(
+    pub(crate) fn new(
         (width, height): (usize, usize),
         share: impl Fn(usize, usize) -> Option<f64>,
     ) -> Self {
@@ -42,8 +42,8 @@ impl Picture {
     /// The picture as an indexed PNG.
     ///
     /// # Errors
-    /// [`DrawError::Png`].
-    pub(in crate::figure) fn png(&self, look: &Look) -> Result<Vec<u8>, DrawError> {
+    /// [`FigureError::Png`].
+    pub(crate) fn png(&self, look: &Look) -> Result<Vec<u8>, FigureError> {
         let mut palette = Vec::with_capacity(3 * COLOURS + 3);
         for colour in 0..COLOURS {
             let (r, g, b) = look.colours.colour(colour as f64 / (COLOURS - 1) as f64);
@@ -60,12 +60,12 @@ impl Picture {
 /// left, has the colour with the number that `number` gives, of at most 256.
 ///
 /// # Errors
-/// [`DrawError::Png`].
-pub(in crate::figure) fn patches(
+/// [`FigureError::Png`].
+pub(crate) fn patches(
     (width, height): (usize, usize),
     colours: &[(u8, u8, u8)],
     number: impl Fn(usize, usize) -> usize,
-) -> Result<Vec<u8>, DrawError> {
+) -> Result<Vec<u8>, FigureError> {
     let palette = colours.iter().flat_map(|&(r, g, b)| [r, g, b]).collect();
     let rows = (0..height).rev();
     let pixels = rows.flat_map(|row| (0..width).map(move |column| (column, row)));
@@ -82,7 +82,7 @@ fn encoded(
     palette: Vec<u8>,
     opacity: Vec<u8>,
     indices: &[u8],
-) -> Result<Vec<u8>, DrawError> {
+) -> Result<Vec<u8>, FigureError> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
     encoder.set_color(png::ColorType::Indexed);
@@ -99,11 +99,7 @@ fn encoded(
 }
 
 /// For each of `count` pixels over `from..to`, the interval of `edges` (ascending) that holds its middle.
-pub(in crate::figure) fn nearest(
-    edges: &[f64],
-    (from, to): (f64, f64),
-    count: usize,
-) -> Vec<usize> {
+pub(crate) fn nearest(edges: &[f64], (from, to): (f64, f64), count: usize) -> Vec<usize> {
     let last = edges.len().saturating_sub(2);
     (0..count)
         .map(|pixel| {

@@ -3,41 +3,73 @@
 
 use plotters::style::colors::colormaps::{ColorMap as _, ViridisRGB};
 
-use super::style::{Colour, TEXT};
+use super::style::{CURVE_LINE, Colour, PAPER, Stroke, TEXT};
+use crate::figure::style::{
+    ColourMap, FigureStyle, Ground, LEAST_WIDTH, MOST_WIDTH, POINTS_A_MILLIMETRE,
+    TEXT_OF_OWN_WIDTH, Typeface,
+};
 
-/// Points in a millimetre.
-pub(in crate::figure) const POINTS_A_MILLIMETRE: f64 = 72.0 / 25.4;
-/// Points of a figure pixel that nobody asked for otherwise: 96 to the inch.
-const USUAL_POINTS: f64 = 0.75;
+/// How a drawing looks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Look {
+    /// Width of every page, in figure pixels; `None` for each figure's own.
+    pub(crate) page: Option<f64>,
+    /// Points of a figure pixel.
+    pub(crate) points: f64,
+    /// Weight of lines, as a multiple of the usual one.
+    pub(crate) lines: f64,
+    /// Pixels of a PNG to the inch.
+    pub(crate) dpi: f64,
+    /// Typeface.
+    pub(crate) typeface: Typeface,
+    /// Colours of maps.
+    pub(crate) colours: ColourMap,
+    /// Whether the ground is dark.
+    pub(crate) is_dark: bool,
+    /// Whether the title of the run stands above.
+    pub(crate) has_title: bool,
+    /// Whether panels have letters.
+    pub(crate) has_letters: bool,
+}
 
-/// Colours for shares of a largest value: perceptually uniform, safe for colour-blind readers, and monotone in grey.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum ColourMap {
-    /// Dark blue over green to yellow.
-    #[default]
-    Viridis,
-    /// Blue over grey to yellow: nearly the same to all colour vision.
-    Cividis,
-    /// Black over purple and orange to pale yellow.
-    Magma,
-    /// White to black, for print without colour.
-    Grey,
+impl Default for Look {
+    fn default() -> Self {
+        FigureStyle::default().look()
+    }
+}
+
+impl FigureStyle {
+    /// How a drawing in this style looks; what cannot be drawn is taken to what can.
+    pub(crate) fn look(&self) -> Look {
+        let usable = |value: f64, usual: f64, (least, most): (f64, f64)| {
+            let value = if value.is_nan() { usual } else { value };
+            value.clamp(least, most)
+        };
+        let text = usable(self.text_points(), TEXT_OF_OWN_WIDTH, (1.0, 1000.0));
+        let points = text / TEXT;
+        let bounds = (LEAST_WIDTH * text, MOST_WIDTH * text);
+        let page = self.width.millimetres().map(|width| {
+            let width = usable(width * POINTS_A_MILLIMETRE, bounds.0, bounds);
+            width / points
+        });
+        let line = self
+            .line
+            .map(|line| usable(line, 1.0, (0.01, 100.0)) / (CURVE_LINE * points));
+        Look {
+            page,
+            points,
+            lines: line.unwrap_or(1.0),
+            dpi: usable(self.dpi, Self::default().dpi, (20.0, 2400.0)),
+            typeface: self.font,
+            colours: self.colours,
+            is_dark: self.ground == Ground::Dark,
+            has_title: self.title,
+            has_letters: self.letters,
+        }
+    }
 }
 
 impl ColourMap {
-    /// All colour maps.
-    pub const ALL: [Self; 4] = [Self::Viridis, Self::Cividis, Self::Magma, Self::Grey];
-
-    /// Name used in sweep files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Viridis => "viridis",
-            Self::Cividis => "cividis",
-            Self::Magma => "magma",
-            Self::Grey => "grey",
-        }
-    }
-
     /// Red, green and blue of a share, clamped to 0 to 1.
     pub fn colour(self, share: f64) -> (u8, u8, u8) {
         let share = share.clamp(0.0, 1.0);
@@ -60,28 +92,7 @@ impl ColourMap {
     }
 }
 
-/// The typeface: one family each, which comes with the program.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Typeface {
-    /// DejaVu Sans.
-    #[default]
-    Sans,
-    /// DejaVu Serif.
-    Serif,
-}
-
 impl Typeface {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Sans, Self::Serif];
-
-    /// Name used in sweep files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Sans => "sans",
-            Self::Serif => "serif",
-        }
-    }
-
     /// The families of an SVG, in the order in which they are looked for.
     pub(super) fn families(self) -> &'static str {
         match self {
@@ -91,54 +102,10 @@ impl Typeface {
     }
 }
 
-/// How a drawing looks.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::figure) struct Look {
-    /// Width of every page, in figure pixels; `None` for each figure's own.
-    pub(in crate::figure) page: Option<f64>,
-    /// Points of a figure pixel.
-    pub(in crate::figure) points: f64,
-    /// Weight of lines, as a multiple of the usual one.
-    pub(in crate::figure) lines: f64,
-    /// Pixels of a PNG to the inch.
-    pub(in crate::figure) dpi: f64,
-    /// Typeface.
-    pub(in crate::figure) typeface: Typeface,
-    /// Colours of maps.
-    pub(in crate::figure) colours: ColourMap,
-    /// Whether the ground is dark.
-    pub(in crate::figure) is_dark: bool,
-    /// Whether the title of the run stands above.
-    pub(in crate::figure) has_title: bool,
-    /// Whether panels have letters.
-    pub(in crate::figure) has_letters: bool,
-}
-
-impl Default for Look {
-    fn default() -> Self {
-        Self {
-            page: None,
-            points: USUAL_POINTS,
-            lines: 1.0,
-            dpi: 288.0,
-            typeface: Typeface::default(),
-            colours: ColourMap::default(),
-            is_dark: false,
-            has_title: true,
-            has_letters: true,
-        }
-    }
-}
-
 impl Look {
-    /// Points of a figure pixel that make the lettering of axis titles that many points high.
-    pub(in crate::figure) fn points_for(text: f64) -> f64 {
-        text / TEXT
-    }
-
-    /// Whether figure pixels are the usual ones, 96 to the inch.
+    /// Whether figure pixels are the usual ones, 96 to the inch: three quarters of a point.
     pub(super) fn is_usual_size(&self) -> bool {
-        self.points == USUAL_POINTS
+        self.points == 0.75
     }
 
     /// Millimetres of a length in figure pixels.
@@ -147,18 +114,30 @@ impl Look {
     }
 
     /// A panel's width where everything beside it takes `beside`: what the page leaves, or its own.
-    pub(in crate::figure) fn fill(&self, own: f64, beside: f64) -> f64 {
+    pub(crate) fn fill(&self, own: f64, beside: f64) -> f64 {
         self.page.map_or(own, |page| (page - beside).max(40.0))
     }
 
     /// A panel's height on a page of this width: `own` belongs to a page that is `usual` wide.
-    pub(in crate::figure) fn height(&self, own: f64, usual: f64) -> f64 {
+    pub(crate) fn height(&self, own: f64, usual: f64) -> f64 {
         self.page
             .map_or(own, |page| own * (page / usual).clamp(0.62, 1.3))
     }
 
+    /// An opaque colour of areas with lines over them: so much of the colour of a curve, the rest paper. The colours of
+    /// the first curves come last.
+    pub(crate) fn tint(&self, share: f64, number: usize) -> (u8, u8, u8) {
+        const ORDER: [usize; 6] = [5, 6, 2, 3, 1, 0];
+        let own = Stroke::curve(ORDER[number % ORDER.len()]).colour;
+        let ((r, g, b), paper) = (self.resolve(own).0, self.resolve(PAPER).0);
+        let mix = |own: u8, paper: u8| {
+            (share * f64::from(own) + (1.0 - share) * f64::from(paper)).round() as u8
+        };
+        (mix(r, paper.0), mix(g, paper.1), mix(b, paper.2))
+    }
+
     /// A colour on this ground, and its opacity.
-    pub(in crate::figure) fn resolve(&self, colour: Colour) -> ((u8, u8, u8), f64) {
+    pub(crate) fn resolve(&self, colour: Colour) -> ((u8, u8, u8), f64) {
         let rgb = if self.is_dark {
             colour.dark
         } else {
@@ -172,6 +151,7 @@ impl Look {
 mod tests {
     use super::super::style::luminance;
     use super::*;
+    use crate::figure::style::FigureWidth;
 
     #[test]
     fn maps_grow_lighter_or_darker_all_along() {
@@ -185,5 +165,31 @@ mod tests {
             assert_eq!(map.colour(-1.0), map.colour(0.0));
             assert_eq!(map.colour(2.0), map.colour(1.0));
         }
+    }
+
+    #[test]
+    fn pages_are_as_wide_as_asked_for() {
+        for width in FigureWidth::NAMED {
+            let style = FigureStyle {
+                width,
+                ..FigureStyle::default()
+            };
+            assert!(style.has_room());
+            let look = style.look();
+            let given = look
+                .page
+                .map(|page| page * look.points / POINTS_A_MILLIMETRE);
+            match (given, width.millimetres()) {
+                (Some(page), Some(wanted)) => assert!((page - wanted).abs() < 1e-9),
+                (page, wanted) => assert_eq!(page, wanted),
+            }
+            assert_eq!(width.name().and_then(FigureWidth::parse), Some(width));
+        }
+        let style = FigureStyle {
+            width: FigureWidth::Millimetres(f64::INFINITY),
+            text: Some(f64::NAN),
+            ..FigureStyle::default()
+        };
+        assert!(!style.has_room() && style.look().page.is_some_and(f64::is_finite));
     }
 }

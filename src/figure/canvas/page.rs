@@ -1,152 +1,110 @@
-//! A page and the panels on it: plotters' drawing areas over the [`Canvas`], in figure pixels and in the
-//! units of the data.
+//! A page and the panels on it, in figure pixels and in the units of the data; plotters' coordinates lead from these to
+//! the [`Canvas`].
 
-use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
-use plotters::element::{Drawable, PointCollection};
-use plotters::prelude::{Cartesian2d, CoordTranslate, DrawingArea, IntoDrawingArea};
+use plotters::prelude::{Cartesian2d, CoordTranslate};
 use plotters_backend::BackendCoord;
 use plotters_backend::text_anchor::HPos;
 
-use super::DrawError;
-use super::backend::{Canvas, Drawn, Lettering};
+use super::backend::Canvas;
+pub(crate) use super::backend::{Lettering, Shape};
 use super::facets::grown;
 use super::look::Look;
 use super::render;
-use super::style::{Colour, GREY, INK, MARGIN, Stroke, TEXT, TITLE_TEXT, UNITS};
+use super::style::{Colour, GREY, INK, MARGIN, TEXT, TICK_TEXT, TITLE_TEXT, UNITS};
 use super::symbols;
+use crate::figure::FigureError;
 
 /// A rectangle on the page, in pixels from the upper left.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::figure) struct Rectangle {
-    pub(in crate::figure) left: f64,
-    pub(in crate::figure) top: f64,
-    pub(in crate::figure) width: f64,
-    pub(in crate::figure) height: f64,
+pub(crate) struct Rectangle {
+    pub(crate) left: f64,
+    pub(crate) top: f64,
+    pub(crate) width: f64,
+    pub(crate) height: f64,
 }
 
 impl Rectangle {
-    pub(in crate::figure) fn right(&self) -> f64 {
+    pub(crate) fn new((left, top): (f64, f64), (width, height): (f64, f64)) -> Self {
+        Self {
+            left,
+            top,
+            width,
+            height,
+        }
+    }
+
+    /// Upper left, upper right, lower right and lower left corner.
+    pub(crate) fn corners(&self) -> [(f64, f64); 4] {
+        let (left, right, top, bottom) = (self.left, self.right(), self.top, self.bottom());
+        [(left, top), (right, top), (right, bottom), (left, bottom)]
+    }
+
+    /// Its border, from the upper left corner round to it again.
+    pub(crate) fn rim(&self) -> [(f64, f64); 5] {
+        let [a, b, c, d] = self.corners();
+        [a, b, c, d, a]
+    }
+
+    pub(crate) fn right(&self) -> f64 {
         self.left + self.width
     }
 
-    pub(in crate::figure) fn bottom(&self) -> f64 {
+    pub(crate) fn bottom(&self) -> f64 {
         self.top + self.height
     }
 }
 
-/// What is drawn at one or several points.
-#[derive(Clone)]
-pub(in crate::figure) enum Shape {
-    /// A polyline through the points.
-    Line(Stroke),
-    /// The polygon of the points.
-    Area(Colour),
-    /// A disc about the first point: radius in pixels, inside, rim.
-    Dot(f64, Colour, Stroke),
-    /// A `+` about the first point: half its length in pixels, line.
-    Plus(f64, Stroke),
-    /// A PNG over the rectangle between two opposite corners.
-    Image(Vec<u8>),
-    /// Lettering at the first point.
-    Text(Lettering),
-}
-
-/// A shape with its points, in whatever coordinates: an element of plotters.
-struct Mark<Coord> {
-    points: Vec<Coord>,
-    shape: Shape,
-}
-
-impl<'a, Coord: 'a> PointCollection<'a, Coord> for &'a Mark<Coord> {
-    type Point = &'a Coord;
-    type IntoIter = std::slice::Iter<'a, Coord>;
-
-    fn point_iter(self) -> Self::IntoIter {
-        self.points.iter()
-    }
-}
-
-impl<Coord> Drawable<Canvas> for Mark<Coord> {
-    fn draw<I: Iterator<Item = BackendCoord>>(
-        &self,
-        points: I,
-        canvas: &mut Canvas,
-        _parent: (u32, u32),
-    ) -> Drawn {
-        let points: Vec<BackendCoord> = points.collect();
-        let Some(&first) = points.first() else {
-            return Ok(());
-        };
-        match &self.shape {
-            Shape::Line(stroke) => canvas.line(&points, stroke),
-            Shape::Area(fill) => canvas.area(&points, *fill),
-            Shape::Dot(radius, fill, rim) => canvas.dot(first, *radius, *fill, rim),
-            Shape::Plus(half, stroke) => {
-                let half = (half * UNITS).round() as i32;
-                let (x, y) = first;
-                canvas.line(&[(x - half, y), (x + half, y)], stroke);
-                canvas.line(&[(x, y - half), (x, y + half)], stroke);
-            }
-            Shape::Image(png) => {
-                if let [one, other] = points[..] {
-                    canvas.image(one, other, png);
-                }
-            }
-            Shape::Text(lettering) => canvas.text(first, lettering),
-        }
-        Ok(())
-    }
-}
-
 /// A page in figure pixels.
-pub(in crate::figure) struct Page {
+pub(crate) struct Page {
     canvas: Canvas,
-    area: DrawingArea<Canvas, Shift>,
 }
 
 /// A rectangle of a page in the units of the data.
-pub(in crate::figure) struct Panel {
-    area: DrawingArea<Canvas, Cartesian2d<RangedCoordf64, RangedCoordf64>>,
+pub(crate) struct Panel {
+    canvas: Canvas,
+    coordinates: Cartesian2d<RangedCoordf64, RangedCoordf64>,
+}
+
+/// A place in pixels as the canvas counts.
+fn on_canvas((x, y): (f64, f64)) -> BackendCoord {
+    ((x * UNITS).round() as i32, (y * UNITS).round() as i32)
 }
 
 impl Page {
     /// An empty page; size in pixels.
-    pub(in crate::figure) fn new(look: &Look, width: f64, height: f64) -> Self {
-        let canvas = Canvas::new(*look, width, height);
+    pub(crate) fn new(look: &Look, width: f64, height: f64) -> Self {
         Self {
-            area: canvas.clone().into_drawing_area(),
-            canvas,
+            canvas: Canvas::new(*look, width, height),
         }
     }
 
     /// How everything on it looks.
-    pub(in crate::figure) fn look(&self) -> &Look {
+    pub(crate) fn look(&self) -> &Look {
         self.canvas.look()
     }
 
     /// Its width in pixels.
-    pub(in crate::figure) fn width(&self) -> f64 {
+    pub(crate) fn width(&self) -> f64 {
         f64::from(self.canvas.size().0) / UNITS
     }
 
     /// Draws at points given in pixels.
-    pub(in crate::figure) fn draw(
-        &self,
-        points: &[(f64, f64)],
-        shape: Shape,
-    ) -> Result<(), DrawError> {
-        let on_canvas =
-            |&(x, y): &(f64, f64)| ((x * UNITS).round() as i32, (y * UNITS).round() as i32);
-        let points = points.iter().map(on_canvas).collect();
-        Ok(self.area.draw(&Mark { points, shape })?)
+    pub(crate) fn draw(&self, points: &[(f64, f64)], shape: Shape) {
+        let points: Vec<BackendCoord> = points.iter().map(|&place| on_canvas(place)).collect();
+        self.canvas.draw(&points, &shape);
+    }
+
+    /// Draws shapes over each other.
+    pub(crate) fn mark(&self, points: &[(f64, f64)], shapes: impl IntoIterator<Item = Shape>) {
+        shapes
+            .into_iter()
+            .for_each(|shape| self.draw(points, shape));
     }
 
     /// Fills neighbouring facets, in this order; corners in pixels. They overlap a little, so that no seams are between
     /// them.
-    pub(in crate::figure) fn facets(&self, facets: &[([(f64, f64); 4], Colour)]) {
-        let on_canvas =
-            |(x, y): (f64, f64)| ((x * UNITS).round() as i32, (y * UNITS).round() as i32);
+    pub(crate) fn facets(&self, facets: &[([(f64, f64); 4], Colour)]) {
         for run in facets.chunk_by(|a, b| a.1 == b.1) {
             let corners: Vec<Vec<BackendCoord>> = run
                 .iter()
@@ -159,48 +117,51 @@ impl Page {
     }
 
     /// Writes a text whose end `anchor` stands at a point, centred on it in height.
-    pub(in crate::figure) fn text(&self, at: (f64, f64), text: Lettering) -> Result<(), DrawError> {
-        self.draw(&[at], Shape::Text(text))
+    pub(crate) fn text(&self, at: (f64, f64), text: Lettering) {
+        self.draw(&[at], Shape::Text(text));
     }
 
     /// A panel over a rectangle; `x` grows to the right, `y` upward.
-    pub(in crate::figure) fn panel(&self, rect: Rectangle, x: (f64, f64), y: (f64, f64)) -> Panel {
-        let whole = |pixels: f64| (pixels * UNITS).round() as i32;
-        let across = whole(rect.left)..whole(rect.right());
-        let down = whole(rect.top)..whole(rect.bottom());
+    pub(crate) fn panel(&self, rect: Rectangle, x: (f64, f64), y: (f64, f64)) -> Panel {
+        let (left, top) = on_canvas((rect.left, rect.top));
+        let (right, bottom) = on_canvas((rect.right(), rect.bottom()));
         // plotters counts the ordinate from the upper end of the range of pixels.
-        let coordinates = Cartesian2d::new(x.0..x.1, y.0..y.1, (across, down.end..down.start));
+        let pixels = (left..right, bottom..top);
         Panel {
-            area: self.area.apply_coord_spec(coordinates),
+            canvas: self.canvas.clone(),
+            coordinates: Cartesian2d::new(x.0..x.1, y.0..y.1, pixels),
         }
     }
 
     /// The page as SVG.
-    pub(in crate::figure) fn svg(&self) -> String {
+    pub(crate) fn svg(&self) -> String {
         self.canvas.document()
     }
 }
 
 impl Panel {
     /// Draws at points given in the units of the data.
-    pub(in crate::figure) fn draw(
-        &self,
-        points: &[(f64, f64)],
-        shape: Shape,
-    ) -> Result<(), DrawError> {
-        let points = points.to_vec();
-        Ok(self.area.draw(&Mark { points, shape })?)
+    pub(crate) fn draw(&self, points: &[(f64, f64)], shape: Shape) {
+        let points = points.iter().map(|place| self.coordinates.translate(place));
+        self.canvas.draw(&points.collect::<Vec<_>>(), &shape);
+    }
+
+    /// Draws shapes over each other.
+    pub(crate) fn mark(&self, points: &[(f64, f64)], shapes: impl IntoIterator<Item = Shape>) {
+        shapes
+            .into_iter()
+            .for_each(|shape| self.draw(points, shape));
     }
 
     /// Place of a point on the page, in pixels.
-    pub(in crate::figure) fn place(&self, point: (f64, f64)) -> (f64, f64) {
-        let (x, y) = self.area.as_coord_spec().translate(&point);
+    pub(crate) fn place(&self, point: (f64, f64)) -> (f64, f64) {
+        let (x, y) = self.coordinates.translate(&point);
         (f64::from(x) / UNITS, f64::from(y) / UNITS)
     }
 }
 
 /// Lettering of the usual size.
-pub(in crate::figure) fn lettering(markup: impl Into<String>, anchor: HPos) -> Lettering {
+pub(crate) fn lettering(markup: impl Into<String>, anchor: HPos) -> Lettering {
     Lettering {
         markup: markup.into(),
         size: TEXT,
@@ -211,8 +172,17 @@ pub(in crate::figure) fn lettering(markup: impl Into<String>, anchor: HPos) -> L
     }
 }
 
+/// Lettering of the size of tick labels.
+pub(crate) fn small(markup: impl Into<String>, anchor: HPos, colour: Colour) -> Lettering {
+    Lettering {
+        size: TICK_TEXT,
+        colour,
+        ..lettering(markup, anchor)
+    }
+}
+
 /// The title of a run, cut into lines, above everything else on a page.
-pub(in crate::figure) struct Heading {
+pub(crate) struct Heading {
     lines: Vec<String>,
 }
 
@@ -220,8 +190,8 @@ impl Heading {
     /// Cuts a title (plain text, may be empty) for a page of the given width.
     ///
     /// # Errors
-    /// [`DrawError::Svg`].
-    pub(in crate::figure) fn new(look: &Look, title: &str, width: f64) -> Result<Self, DrawError> {
+    /// [`FigureError::Svg`].
+    pub(crate) fn new(look: &Look, title: &str, width: f64) -> Result<Self, FigureError> {
         let title = if look.has_title { title } else { "" };
         let lines = render::wrap(
             look,
@@ -233,15 +203,12 @@ impl Heading {
     }
 
     /// Height it takes, the upper margin included.
-    pub(in crate::figure) fn height(&self) -> f64 {
+    pub(crate) fn height(&self) -> f64 {
         MARGIN + 1.5 * TITLE_TEXT * self.lines.len() as f64
     }
 
     /// Draws it.
-    ///
-    /// # Errors
-    /// [`DrawError::Layout`].
-    pub(in crate::figure) fn draw(&self, page: &Page) -> Result<(), DrawError> {
+    pub(crate) fn draw(&self, page: &Page) {
         for (number, line) in self.lines.iter().enumerate() {
             let y = MARGIN + 1.5 * TITLE_TEXT * (number as f64 + 0.45);
             let text = Lettering {
@@ -249,9 +216,8 @@ impl Heading {
                 colour: GREY,
                 ..lettering(line.as_str(), HPos::Left)
             };
-            page.text((MARGIN, y), text)?;
+            page.text((MARGIN, y), text);
         }
-        Ok(())
     }
 }
 
@@ -262,12 +228,7 @@ mod tests {
     #[test]
     fn panels_put_the_data_where_they_belong() {
         let page = Page::new(&Look::default(), 100.0, 50.0);
-        let rect = Rectangle {
-            left: 10.0,
-            top: 5.0,
-            width: 80.0,
-            height: 40.0,
-        };
+        let rect = Rectangle::new((10.0, 5.0), (80.0, 40.0));
         let panel = page.panel(rect, (-1.0, 1.0), (0.0, 2.0));
         let near = |place: (f64, f64), x: f64, y: f64| {
             // plotters loses up to two of its units at the end of a range.

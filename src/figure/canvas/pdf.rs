@@ -16,8 +16,8 @@ use krilla::{Document, SerializeSettings};
 use resvg::tiny_skia::PathSegment;
 use resvg::usvg::{self, fontdb};
 
-use super::DrawError;
 use super::render;
+use crate::figure::FigureError;
 
 /// Points of a length of 1/96 inch, which is the unit of a tree.
 const POINTS: f32 = 0.75;
@@ -26,8 +26,8 @@ const POINTS: f32 = 0.75;
 /// drawings give equal bytes.
 ///
 /// # Errors
-/// [`DrawError::Svg`], [`DrawError::Pdf`].
-pub(in crate::figure) fn pdf(svg: &str, title: &str) -> Result<Vec<u8>, DrawError> {
+/// [`FigureError::Svg`], [`FigureError::Pdf`].
+pub(crate) fn pdf(svg: &str, title: &str) -> Result<Vec<u8>, FigureError> {
     let tree = render::tree(svg)?;
     let (width, height) = (tree.size().width(), tree.size().height());
     let mut document = Document::new_with(SerializeSettings {
@@ -35,7 +35,7 @@ pub(in crate::figure) fn pdf(svg: &str, title: &str) -> Result<Vec<u8>, DrawErro
         ..SerializeSettings::default()
     });
     let size = PageSettings::from_wh(width * POINTS, height * POINTS);
-    let mut page = document.start_page_with(size.ok_or(DrawError::Pdf("no size".to_owned()))?);
+    let mut page = document.start_page_with(size.ok_or(FigureError::Pdf("no size".to_owned()))?);
     let mut surface = page.surface();
     surface.push_transform(&Transform::from_scale(POINTS, POINTS));
     let mut writer = Writer {
@@ -51,7 +51,7 @@ pub(in crate::figure) fn pdf(svg: &str, title: &str) -> Result<Vec<u8>, DrawErro
     document.set_metadata(metadata);
     document
         .finish()
-        .map_err(|error| DrawError::Pdf(format!("{error:?}")))
+        .map_err(|error| FigureError::Pdf(format!("{error:?}")))
 }
 
 /// Writes the nodes of a tree.
@@ -61,7 +61,7 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    fn group(&mut self, surface: &mut Surface<'_>, group: &usvg::Group) -> Result<(), DrawError> {
+    fn group(&mut self, surface: &mut Surface<'_>, group: &usvg::Group) -> Result<(), FigureError> {
         surface.push_transform(&transform(group.transform()));
         for node in group.children() {
             match node {
@@ -77,7 +77,7 @@ impl Writer<'_> {
 
     /// Draws a text: glyphs of a font that follow each other on a line are one run, so that words are found and copied
     /// whole.
-    fn text(&mut self, surface: &mut Surface<'_>, text: &usvg::Text) -> Result<(), DrawError> {
+    fn text(&mut self, surface: &mut Surface<'_>, text: &usvg::Text) -> Result<(), FigureError> {
         for span in text.layouted() {
             let size = span.font_size.get();
             surface.set_stroke(None);
@@ -99,7 +99,7 @@ impl Writer<'_> {
         Ok(())
     }
 
-    fn font(&mut self, id: fontdb::ID) -> Result<Font, DrawError> {
+    fn font(&mut self, id: fontdb::ID) -> Result<Font, FigureError> {
         if let Some(font) = self.fonts.get(&id) {
             return Ok(font.clone());
         }
@@ -108,7 +108,7 @@ impl Writer<'_> {
             .fontdb()
             .with_face_data(id, |data, index| Font::new(data.to_vec().into(), index));
         let font = font.flatten();
-        let font = font.ok_or_else(|| DrawError::Pdf("a font cannot be read".to_owned()))?;
+        let font = font.ok_or_else(|| FigureError::Pdf("a font cannot be read".to_owned()))?;
         self.fonts.insert(id, font.clone());
         Ok(font)
     }
@@ -168,11 +168,11 @@ fn draw_path(surface: &mut Surface<'_>, path: &usvg::Path) {
 }
 
 /// An embedded PNG, its pixels left crisp.
-fn draw_image(surface: &mut Surface<'_>, image: &usvg::Image) -> Result<(), DrawError> {
+fn draw_image(surface: &mut Surface<'_>, image: &usvg::Image) -> Result<(), FigureError> {
     let usvg::ImageKind::PNG(bytes) = image.kind() else {
         return Ok(());
     };
-    let unreadable = |error: png::DecodingError| DrawError::Pdf(error.to_string());
+    let unreadable = |error: png::DecodingError| FigureError::Pdf(error.to_string());
     let mut decoder = png::Decoder::new(std::io::Cursor::new(bytes.as_slice()));
     decoder.set_transformations(png::Transformations::EXPAND | png::Transformations::ALPHA);
     let mut reader = decoder.read_info().map_err(unreadable)?;

@@ -6,10 +6,10 @@ use plotters_backend::text_anchor::HPos;
 use resvg::tiny_skia::{Color, Pixmap, Transform};
 use resvg::usvg::{self, fontdb};
 
-use super::DrawError;
 use super::backend::{Canvas, Lettering};
 use super::look::Look;
 use super::style::BLACK;
+use crate::figure::FigureError;
 
 /// DejaVu alone: no font of the machine, so that figures are the same everywhere.
 fn options() -> usvg::Options<'static> {
@@ -43,22 +43,22 @@ fn options() -> usvg::Options<'static> {
 /// An SVG read back, its text laid out.
 ///
 /// # Errors
-/// [`DrawError::Svg`].
-pub(super) fn tree(svg: &str) -> Result<usvg::Tree, DrawError> {
+/// [`FigureError::Svg`].
+pub(super) fn tree(svg: &str) -> Result<usvg::Tree, FigureError> {
     Ok(usvg::Tree::from_str(svg, &options())?)
 }
 
 /// An SVG as a PNG of 8-bit RGB, with that many pixels to the inch, which is written into it.
 ///
 /// # Errors
-/// [`DrawError::Svg`], [`DrawError::Raster`] or [`DrawError::Png`].
-pub(in crate::figure) fn png(svg: &str, dpi: f64) -> Result<Vec<u8>, DrawError> {
+/// [`FigureError::Svg`], [`FigureError::Raster`] or [`FigureError::Png`].
+pub(crate) fn png(svg: &str, dpi: f64) -> Result<Vec<u8>, FigureError> {
     let tree = tree(svg)?;
     // Lengths of the tree are 1/96 inch.
     let scale = (dpi / 96.0) as f32;
     let width = (tree.size().width() * scale).round() as u32;
     let height = (tree.size().height() * scale).round() as u32;
-    let mut pixels = Pixmap::new(width, height).ok_or(DrawError::Raster { width, height })?;
+    let mut pixels = Pixmap::new(width, height).ok_or(FigureError::Raster { width, height })?;
     pixels.fill(Color::WHITE);
     resvg::render(
         &tree,
@@ -91,13 +91,13 @@ pub(in crate::figure) fn png(svg: &str, dpi: f64) -> Result<Vec<u8>, DrawError> 
 /// Width of a text, in pixels, as it will be drawn.
 ///
 /// # Errors
-/// [`DrawError::Svg`].
-pub(in crate::figure) fn text_width(
+/// [`FigureError::Svg`].
+pub(crate) fn text_width(
     look: &Look,
     markup: &str,
     size: f64,
     bold: bool,
-) -> Result<f64, DrawError> {
+) -> Result<f64, FigureError> {
     if markup.is_empty() {
         return Ok(0.0);
     }
@@ -139,13 +139,13 @@ fn text_right(node: &usvg::Node) -> f64 {
 /// The text cut into lines that fit a width, at spaces.
 ///
 /// # Errors
-/// [`DrawError::Svg`].
-pub(in crate::figure) fn wrap(
+/// [`FigureError::Svg`].
+pub(crate) fn wrap(
     look: &Look,
     markup: &str,
     size: f64,
     width: f64,
-) -> Result<Vec<String>, DrawError> {
+) -> Result<Vec<String>, FigureError> {
     let mut lines: Vec<String> = Vec::new();
     for word in markup.split_whitespace() {
         let longer = match lines.last() {
@@ -163,8 +163,8 @@ pub(in crate::figure) fn wrap(
 
 #[cfg(test)]
 mod tests {
-    use super::super::look::Typeface;
     use super::*;
+    use crate::figure::style::Typeface;
 
     #[test]
     fn widths_are_those_of_the_font() {

@@ -1,10 +1,10 @@
 //! Axes laid out on a given length: which ticks have labels, and the room that these take. The frame draws them.
 
-use super::DrawError;
 use super::look::Look;
 use super::render;
 use super::style::{TEXT, TICK, TICK_TEXT};
 use super::ticks::{Ticks, decades, ticks};
+use crate::figure::FigureError;
 
 /// Gap between ticks, labels and titles, in pixels.
 pub(super) const GAP: f64 = 4.0;
@@ -14,9 +14,9 @@ const FEW: usize = 3;
 
 /// An axis laid out on a given length.
 #[derive(Debug, Clone)]
-pub(in crate::figure) struct Scale {
+pub(crate) struct Scale {
     /// The range.
-    pub(in crate::figure) range: (f64, f64),
+    pub(crate) range: (f64, f64),
     pub(super) ticks: Ticks,
     title: String,
     widest: f64,
@@ -26,13 +26,13 @@ impl Scale {
     /// Lays out a horizontal axis: as many labels as stand apart.
     ///
     /// # Errors
-    /// [`DrawError::Svg`].
-    pub(in crate::figure) fn horizontal(
+    /// [`FigureError::Svg`].
+    pub(crate) fn horizontal(
         look: &Look,
         range: (f64, f64),
         length: f64,
         title: &str,
-    ) -> Result<Self, DrawError> {
+    ) -> Result<Self, FigureError> {
         let wide = Self::spaced(look, range, length, title, 14.0)?;
         if wide.ticks.major.len() >= FEW {
             return Ok(wide);
@@ -49,13 +49,13 @@ impl Scale {
     /// Lays out an axis that runs aslant, so far across and so far down: labels stand beside or below each other.
     ///
     /// # Errors
-    /// [`DrawError::Svg`].
+    /// [`FigureError::Svg`].
     pub(super) fn slanted(
         look: &Look,
         range: (f64, f64),
         (across, down): (f64, f64),
         title: &str,
-    ) -> Result<Self, DrawError> {
+    ) -> Result<Self, FigureError> {
         let mut most = 7;
         loop {
             let scale = Self::with(look, range, most, title)?;
@@ -78,7 +78,7 @@ impl Scale {
         length: f64,
         title: &str,
         gap: f64,
-    ) -> Result<Self, DrawError> {
+    ) -> Result<Self, FigureError> {
         let mut most = 7;
         loop {
             let scale = Self::with(look, range, most, title)?;
@@ -99,13 +99,13 @@ impl Scale {
     /// Lays out a vertical axis.
     ///
     /// # Errors
-    /// [`DrawError::Svg`].
-    pub(in crate::figure) fn vertical(
+    /// [`FigureError::Svg`].
+    pub(crate) fn vertical(
         look: &Look,
         range: (f64, f64),
         length: f64,
         title: &str,
-    ) -> Result<Self, DrawError> {
+    ) -> Result<Self, FigureError> {
         let most = |apart: f64| ((length / (apart * TICK_TEXT)) as usize).clamp(2, 7);
         let scale = Self::with(look, range, most(2.6), title)?;
         if scale.ticks.major.len() >= FEW {
@@ -120,22 +120,22 @@ impl Scale {
     /// `range` and what is drawn are exponents.
     ///
     /// # Errors
-    /// [`DrawError::Svg`].
-    pub(in crate::figure) fn logarithmic(
+    /// [`FigureError::Svg`].
+    pub(crate) fn logarithmic(
         look: &Look,
         range: (f64, f64),
         length: f64,
         title: &str,
-    ) -> Result<Self, DrawError> {
+    ) -> Result<Self, FigureError> {
         let most = ((length / (2.2 * TICK_TEXT)) as usize).clamp(2, 9);
         Self::of(look, range, decades(range.0, range.1, most), title)
     }
 
-    fn with(look: &Look, range: (f64, f64), most: usize, title: &str) -> Result<Self, DrawError> {
+    fn with(look: &Look, range: (f64, f64), most: usize, title: &str) -> Result<Self, FigureError> {
         Self::of(look, range, ticks(range.0, range.1, most), title)
     }
 
-    fn of(look: &Look, range: (f64, f64), ticks: Ticks, title: &str) -> Result<Self, DrawError> {
+    fn of(look: &Look, range: (f64, f64), ticks: Ticks, title: &str) -> Result<Self, FigureError> {
         let mut widest: f64 = 0.0;
         for tick in &ticks.major {
             widest = widest.max(render::text_width(look, &tick.label, TICK_TEXT, false)?);
@@ -158,12 +158,12 @@ impl Scale {
     }
 
     /// The title, with the power of ten that the labels leave out.
-    pub(in crate::figure) fn title(&self) -> &str {
+    pub(crate) fn title(&self) -> &str {
         &self.title
     }
 
     /// How far the labels of a horizontal axis of this length reach beyond its two ends together, in pixels.
-    pub(in crate::figure) fn beyond(&self, length: f64) -> f64 {
+    pub(crate) fn beyond(&self, length: f64) -> f64 {
         let ticks = &self.ticks.major;
         let ends = ticks.first().zip(ticks.last());
         let half = 0.5 * self.widest;
@@ -186,17 +186,17 @@ impl Scale {
     }
 
     /// Width of ticks and labels beside a vertical axis.
-    pub(in crate::figure) fn label_width(&self) -> f64 {
+    pub(crate) fn label_width(&self) -> f64 {
         TICK + GAP + self.widest
     }
 
     /// Room to the left of a vertical axis with title.
-    pub(in crate::figure) fn left(&self) -> f64 {
+    pub(crate) fn left(&self) -> f64 {
         self.label_width() + GAP + 1.45 * TEXT
     }
 
     /// Room below a horizontal axis with title.
-    pub(in crate::figure) fn below() -> f64 {
+    pub(crate) fn below() -> f64 {
         TICK + GAP + TICK_TEXT + GAP + 1.5 * TEXT
     }
 

@@ -3,7 +3,6 @@
 
 use plotters_backend::text_anchor::HPos;
 
-use super::DrawError;
 use super::backend::Lettering;
 use super::facets::{HEIGHT, brightness, parts, shaded};
 use super::frame::Scale;
@@ -11,6 +10,7 @@ use super::look::Look;
 use super::page::{Page, Rectangle, Shape, lettering};
 use super::render;
 use super::style::{Colour, FRAME_LINE, GREY, INK, Stroke, TEXT, TICK, TICK_TEXT};
+use crate::figure::FigureError;
 
 /// Angle between the abscissa and the picture plane, in degrees: MATLAB's habit.
 const AZIMUTH: f64 = 37.5;
@@ -27,13 +27,13 @@ const MESH: f64 = 0.35;
 
 /// Heights over a rectilinear grid, all in shares of the box: abscissas and ordinates ascending from 0 to 1, heights
 /// the ordinate fastest.
-pub(in crate::figure) struct Heights {
+pub(crate) struct Heights {
     /// Abscissas.
-    pub(in crate::figure) x: Vec<f64>,
+    pub(crate) x: Vec<f64>,
     /// Ordinates.
-    pub(in crate::figure) y: Vec<f64>,
+    pub(crate) y: Vec<f64>,
     /// Heights.
-    pub(in crate::figure) z: Vec<f64>,
+    pub(crate) z: Vec<f64>,
 }
 
 impl Heights {
@@ -46,7 +46,7 @@ impl Heights {
 type Axis<'a> = (&'a Scale, fn(f64) -> [f64; 3], (f64, f64), HPos);
 
 /// A box laid out, with its three axes.
-pub(in crate::figure) struct Space {
+pub(crate) struct Space {
     /// Pixels from the upper left of the page to the middle of the floor.
     middle: (f64, f64),
     /// Pixels of a side of the box.
@@ -73,11 +73,7 @@ fn project([x, y, z]: [f64; 3]) -> (f64, f64) {
 
 impl Space {
     /// Height of what a box with its labels takes on `width` pixels, when its axes have these labels' widths beside it.
-    pub(in crate::figure) fn height(
-        look: &Look,
-        width: f64,
-        ranges: Ranges<'_>,
-    ) -> Result<f64, DrawError> {
+    pub(crate) fn height(look: &Look, width: f64, ranges: Ranges<'_>) -> Result<f64, FigureError> {
         let (side, _) = Self::lay_out(look, width, ranges)?;
         Ok(Self::above(side) + side * project([1.0, 0.0, 0.0]).1 + Self::below())
     }
@@ -93,7 +89,7 @@ impl Space {
     }
 
     /// Room left of the box: labels of the heights, and their title, which ends above the axis.
-    fn left(look: &Look, axes: &[Scale; 3]) -> Result<f64, DrawError> {
+    fn left(look: &Look, axes: &[Scale; 3]) -> Result<f64, FigureError> {
         let title = render::text_width(look, axes[2].title(), TEXT, false)?;
         Ok((axes[2].label_width() + GAP).max(title - TITLE_BEYOND))
     }
@@ -103,7 +99,7 @@ impl Space {
         look: &Look,
         width: f64,
         ranges: Ranges<'_>,
-    ) -> Result<(f64, [Scale; 3]), DrawError> {
+    ) -> Result<(f64, [Scale; 3]), FigureError> {
         let wide = project([1.0, 1.0, 0.0]).0 - project([0.0, 0.0, 0.0]).0;
         // Labels take about a fifth.
         let rough = 0.8 * width / wide;
@@ -126,12 +122,12 @@ impl Space {
     /// Lays a box out in a rectangle that is [`Space::height`] high.
     ///
     /// # Errors
-    /// [`DrawError::Svg`].
-    pub(in crate::figure) fn new(
+    /// [`FigureError::Svg`].
+    pub(crate) fn new(
         look: &Look,
         rect: Rectangle,
         ranges: Ranges<'_>,
-    ) -> Result<Self, DrawError> {
+    ) -> Result<Self, FigureError> {
         let (side, axes) = Self::lay_out(look, rect.width, ranges)?;
         let left = Self::left(look, &axes)?;
         let middle = rect.left + left - side * project([0.0, 0.0, 0.0]).0;
@@ -149,50 +145,47 @@ impl Space {
     }
 
     /// Draws floor and far walls with faint lines at the ticks, the surface, and the axes.
-    ///
-    /// # Errors
-    /// [`DrawError::Layout`].
-    pub(in crate::figure) fn draw(&self, page: &Page, heights: &Heights) -> Result<(), DrawError> {
-        self.draw_walls(page)?;
-        self.draw_surface(page, heights)?;
-        self.draw_axes(page)
+    pub(crate) fn draw(&self, page: &Page, heights: &Heights) {
+        self.draw_walls(page);
+        self.draw_surface(page, heights);
+        self.draw_axes(page);
     }
 
-    fn line(&self, page: &Page, points: &[[f64; 3]], stroke: Stroke) -> Result<(), DrawError> {
+    fn line(&self, page: &Page, points: &[[f64; 3]], stroke: Stroke) {
         let places: Vec<(f64, f64)> = points.iter().map(|&point| self.place(point)).collect();
-        page.draw(&places, Shape::Line(stroke))
+        page.draw(&places, Shape::Line(stroke));
     }
 
-    fn draw_walls(&self, page: &Page) -> Result<(), DrawError> {
+    fn draw_walls(&self, page: &Page) {
         let faint = Stroke::solid(GREY.at(0.3), 0.6);
         for share in self.axes[0].labelled() {
             self.line(
                 page,
                 &[[share, 0.0, 0.0], [share, 1.0, 0.0], [share, 1.0, 1.0]],
                 faint,
-            )?;
+            );
         }
         for share in self.axes[1].labelled() {
             self.line(
                 page,
                 &[[1.0, share, 0.0], [0.0, share, 0.0], [0.0, share, 1.0]],
                 faint,
-            )?;
+            );
         }
         for share in self.axes[2].labelled() {
             self.line(
                 page,
                 &[[0.0, 0.0, share], [0.0, 1.0, share], [1.0, 1.0, share]],
                 faint,
-            )?;
+            );
         }
         let edge = Stroke::solid(GREY.at(0.6), 0.8);
-        self.line(page, &[[0.0, 1.0, 0.0], [0.0, 1.0, 1.0]], edge)?;
+        self.line(page, &[[0.0, 1.0, 0.0], [0.0, 1.0, 1.0]], edge);
         self.line(
             page,
             &[[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]],
             edge,
-        )?;
+        );
         self.line(
             page,
             &[
@@ -202,11 +195,11 @@ impl Space {
                 [1.0, 1.0, 0.0],
             ],
             edge,
-        )
+        );
     }
 
     /// Strips of facets from the far end to the near one, each from left to right, which is toward the viewer too.
-    fn draw_surface(&self, page: &Page, heights: &Heights) -> Result<(), DrawError> {
+    fn draw_surface(&self, page: &Page, heights: &Heights) {
         let (n, m) = (heights.x.len(), heights.y.len());
         let colours = page.look().colours;
         for j in (0..m.saturating_sub(1)).rev() {
@@ -237,27 +230,25 @@ impl Space {
                 from = to;
             }
             page.facets(&facets);
-            self.draw_mesh(page, heights, j)?;
+            self.draw_mesh(page, heights, j);
         }
-        Ok(())
     }
 
     /// The lines of the mesh in the strip with that number.
-    fn draw_mesh(&self, page: &Page, heights: &Heights, j: usize) -> Result<(), DrawError> {
+    fn draw_mesh(&self, page: &Page, heights: &Heights, j: usize) {
         let stroke = Stroke::solid(super::style::BLACK.at(0.4), MESH);
         let every = |count: usize| count.div_ceil(26).max(1);
         let (n, m) = (heights.x.len(), heights.y.len());
         for i in (0..n).step_by(every(n)) {
-            self.line(page, &[heights.at(i, j), heights.at(i, j + 1)], stroke)?;
+            self.line(page, &[heights.at(i, j), heights.at(i, j + 1)], stroke);
         }
         if j.is_multiple_of(every(m)) {
             let along: Vec<[f64; 3]> = (0..n).map(|i| heights.at(i, j)).collect();
-            self.line(page, &along, stroke)?;
+            self.line(page, &along, stroke);
         }
-        Ok(())
     }
 
-    fn draw_axes(&self, page: &Page) -> Result<(), DrawError> {
+    fn draw_axes(&self, page: &Page) {
         let ink = Stroke::solid(INK, FRAME_LINE);
         self.line(
             page,
@@ -268,7 +259,7 @@ impl Space {
                 [1.0, 1.0, 0.0],
             ],
             ink,
-        )?;
+        );
         let [across, along, up] = &self.axes;
         // Ticks continue the lines of the floor; that of the ordinate points left.
         let ((sin_a, cos_a), (sin_e, _)) = angles();
@@ -294,7 +285,7 @@ impl Space {
             let (dx, dy) = (dx / length, dy / length);
             for (share, label) in scale.labels() {
                 let (x, y) = self.place(point(share));
-                page.draw(&[(x, y), (x + TICK * dx, y + TICK * dy)], Shape::Line(ink))?;
+                page.draw(&[(x, y), (x + TICK * dx, y + TICK * dy)], Shape::Line(ink));
                 // The first label of the abscissa leaves no room for the one of the floor.
                 if dy == 0.0
                     && first_below > y - 1.1 * TICK_TEXT
@@ -307,38 +298,38 @@ impl Space {
                     ..lettering(label, anchor)
                 };
                 let down = if dy > 0.0 { 0.35 * TICK_TEXT } else { 0.0 };
-                page.text((x + (TICK + GAP) * dx, y + TICK * dy + down), text)?;
+                page.text((x + (TICK + GAP) * dx, y + TICK * dy + down), text);
             }
         }
-        self.write_titles(page)
+        self.write_titles(page);
     }
 
     /// Titles beside the middle of their axes, beyond the labels; that of the heights above its axis.
-    fn write_titles(&self, page: &Page) -> Result<(), DrawError> {
+    fn write_titles(&self, page: &Page) {
         let [across, along, up] = &self.axes;
         let (x, y) = self.place([0.5, 0.0, 0.0]);
         let place = (x - across.label_width() - 0.6 * TEXT, y + 1.7 * TEXT);
-        page.text(place, lettering(across.title(), HPos::Right))?;
+        page.text(place, lettering(across.title(), HPos::Right));
         let (x, y) = self.place([1.0, 0.5, 0.0]);
         let place = (x + along.label_width() + 0.6 * TEXT, y + 1.7 * TEXT);
-        page.text(place, lettering(along.title(), HPos::Left))?;
+        page.text(place, lettering(along.title(), HPos::Left));
         let (x, y) = self.place([0.0, 0.0, 1.0]);
         page.text(
             (x + TITLE_BEYOND, y - 1.15 * TEXT),
             lettering(up.title(), HPos::Right),
-        )
+        );
     }
 }
 
 /// Ranges of the three axes with their titles.
 #[derive(Clone, Copy)]
-pub(in crate::figure) struct Ranges<'a> {
+pub(crate) struct Ranges<'a> {
     /// Abscissa.
-    pub(in crate::figure) x: ((f64, f64), &'a str),
+    pub(crate) x: ((f64, f64), &'a str),
     /// Ordinate.
-    pub(in crate::figure) y: ((f64, f64), &'a str),
+    pub(crate) y: ((f64, f64), &'a str),
     /// Height.
-    pub(in crate::figure) z: ((f64, f64), &'a str),
+    pub(crate) z: ((f64, f64), &'a str),
 }
 
 #[cfg(test)]

@@ -8,44 +8,44 @@
 use super::look::Look;
 
 /// Sub-pixel units in a figure pixel: plotters places everything on whole units.
-pub(in crate::figure) const UNITS: f64 = 20.0;
+pub(crate) const UNITS: f64 = 20.0;
 /// Pixels of an embedded heat map to a figure pixel, where cells are not pixels themselves.
-pub(in crate::figure) const PNG_SCALE: f64 = 3.0;
+pub(crate) const PNG_SCALE: f64 = 3.0;
 
 /// Lettering of axis titles and legends.
-pub(in crate::figure) const TEXT: f64 = 14.0;
+pub(crate) const TEXT: f64 = 14.0;
 /// Lettering of tick labels.
-pub(in crate::figure) const TICK_TEXT: f64 = 12.5;
+pub(crate) const TICK_TEXT: f64 = 12.5;
 /// Lettering of the line with the title of the run.
-pub(in crate::figure) const TITLE_TEXT: f64 = 12.0;
+pub(crate) const TITLE_TEXT: f64 = 12.0;
 /// White border of a page.
-pub(in crate::figure) const MARGIN: f64 = 8.0;
+pub(crate) const MARGIN: f64 = 8.0;
 /// Length of a tick, outward.
-pub(in crate::figure) const TICK: f64 = 5.0;
+pub(crate) const TICK: f64 = 5.0;
 /// Length of a tick without label.
-pub(in crate::figure) const MINOR_TICK: f64 = 3.0;
+pub(crate) const MINOR_TICK: f64 = 3.0;
 /// Width of frames and ticks.
-pub(in crate::figure) const FRAME_LINE: f64 = 1.0;
+pub(crate) const FRAME_LINE: f64 = 1.0;
 /// Width of curves.
-pub(in crate::figure) const CURVE_LINE: f64 = 1.7;
+pub(crate) const CURVE_LINE: f64 = 1.7;
 
 /// Width of error bars.
-pub(in crate::figure) const ERROR_LINE: f64 = 0.9;
+pub(crate) const ERROR_LINE: f64 = 0.9;
 
 /// A colour, on light and on dark ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::figure) struct Colour {
+pub(crate) struct Colour {
     /// Red, green, blue on light ground.
-    pub(in crate::figure) light: (u8, u8, u8),
+    pub(crate) light: (u8, u8, u8),
     /// The same on dark ground.
-    pub(in crate::figure) dark: (u8, u8, u8),
+    pub(crate) dark: (u8, u8, u8),
     /// Opacity.
-    pub(in crate::figure) alpha: f64,
+    pub(crate) alpha: f64,
 }
 
 impl Colour {
     /// A colour that does not depend on the ground.
-    pub(in crate::figure) const fn fixed(rgb: (u8, u8, u8)) -> Self {
+    pub(crate) const fn fixed(rgb: (u8, u8, u8)) -> Self {
         Self::new(rgb, rgb)
     }
 
@@ -58,27 +58,27 @@ impl Colour {
     }
 
     /// The same colour, let through.
-    pub(in crate::figure) const fn at(self, alpha: f64) -> Self {
+    pub(crate) const fn at(self, alpha: f64) -> Self {
         Self { alpha, ..self }
     }
 }
 
 /// Lettering, frames, and whatever stands on the page.
-pub(in crate::figure) const INK: Colour = Colour::new((0, 0, 0), (236, 236, 236));
+pub(crate) const INK: Colour = Colour::new((0, 0, 0), (236, 236, 236));
 /// The page.
-pub(in crate::figure) const PAPER: Colour = Colour::new((255, 255, 255), (20, 22, 26));
+pub(crate) const PAPER: Colour = Colour::new((255, 255, 255), (20, 22, 26));
 /// Black on any ground: marks on maps.
-pub(in crate::figure) const BLACK: Colour = Colour::fixed((0, 0, 0));
+pub(crate) const BLACK: Colour = Colour::fixed((0, 0, 0));
 /// White on any ground: marks on maps.
-pub(in crate::figure) const WHITE: Colour = Colour::fixed((255, 255, 255));
+pub(crate) const WHITE: Colour = Colour::fixed((255, 255, 255));
 /// Lettering that stands back.
-pub(in crate::figure) const GREY: Colour = Colour::new((95, 95, 95), (165, 165, 165));
+pub(crate) const GREY: Colour = Colour::new((95, 95, 95), (165, 165, 165));
 /// Ground where there is no density.
-pub(in crate::figure) const BLANK: Colour = Colour::new((240, 240, 240), (44, 46, 50));
+pub(crate) const BLANK: Colour = Colour::new((240, 240, 240), (44, 46, 50));
 /// Hatching of that ground.
-pub(in crate::figure) const HATCH: Colour = Colour::new((150, 150, 150), (110, 110, 110));
+pub(crate) const HATCH: Colour = Colour::new((150, 150, 150), (110, 110, 110));
 /// Located bifurcations: a red that no colour of the map comes near.
-pub(in crate::figure) const BIFURCATION: Colour = Colour::new((214, 20, 20), (255, 90, 80));
+pub(crate) const BIFURCATION: Colour = Colour::new((214, 20, 20), (255, 90, 80));
 
 /// Colours of curves, after Okabe and Ito (told apart with any colour vision), without their yellow.
 const CURVES: [Colour; 7] = [
@@ -102,18 +102,18 @@ const DASHES: [&[f64]; 5] = [
 
 /// How a line is drawn.
 #[derive(Clone, Copy)]
-pub(in crate::figure) struct Stroke {
+pub(crate) struct Stroke {
     /// Its colour.
-    pub(in crate::figure) colour: Colour,
+    pub(crate) colour: Colour,
     /// Its width, in pixels.
-    pub(in crate::figure) width: f64,
+    pub(crate) width: f64,
     /// Lengths of dashes and gaps, in pixels; empty for a solid line.
-    pub(in crate::figure) dash: &'static [f64],
+    pub(crate) dash: &'static [f64],
 }
 
 impl Stroke {
     /// A solid line.
-    pub(in crate::figure) const fn solid(colour: Colour, width: f64) -> Self {
+    pub(crate) const fn solid(colour: Colour, width: f64) -> Self {
         Self {
             colour,
             width,
@@ -121,8 +121,13 @@ impl Stroke {
         }
     }
 
+    /// The same line with these lengths of dashes and gaps.
+    pub(crate) const fn dashed(self, dash: &'static [f64]) -> Self {
+        Self { dash, ..self }
+    }
+
     /// The line of the curve with the given number.
-    pub(in crate::figure) fn curve(number: usize) -> Self {
+    pub(crate) fn curve(number: usize) -> Self {
         Self {
             colour: CURVES[number % CURVES.len()],
             width: CURVE_LINE,
@@ -132,7 +137,7 @@ impl Stroke {
 }
 
 /// Black or white, whichever is seen better on the colour of a share (0 to 1) of the largest value.
-pub(in crate::figure) fn on_heat(look: &Look, share: f64) -> Colour {
+pub(crate) fn on_heat(look: &Look, share: f64) -> Colour {
     let ground = luminance(look.colours.colour(share));
     // Against white the contrast is 3.3 to one here; thin white lines are seen better than thin black ones.
     if ground > 0.27 { BLACK } else { WHITE }
@@ -146,8 +151,8 @@ pub(super) fn luminance((r, g, b): (u8, u8, u8)) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::look::ColourMap;
     use super::*;
+    use crate::figure::style::ColourMap;
 
     #[test]
     fn marks_on_heat_keep_a_contrast_of_three() {

@@ -5,7 +5,7 @@
 
 /// Where a run of letters stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::figure) enum Script {
+pub(crate) enum Script {
     /// On the line.
     Base,
     /// Lowered and smaller.
@@ -16,17 +16,17 @@ pub(in crate::figure) enum Script {
 
 /// Letters that share a style.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(in crate::figure) struct Run {
+pub(crate) struct Run {
     /// The letters.
-    pub(in crate::figure) text: String,
+    pub(crate) text: String,
     /// Where they stand.
-    pub(in crate::figure) script: Script,
+    pub(crate) script: Script,
     /// Whether they are slanted.
-    pub(in crate::figure) slanted: bool,
+    pub(crate) slanted: bool,
 }
 
 /// Takes markup apart; braces that do not match end with the text.
-pub(in crate::figure) fn runs(markup: &str) -> Vec<Run> {
+pub(crate) fn runs(markup: &str) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     let (mut script, mut variable) = (Script::Base, false);
     let mut letters = markup.chars().peekable();
@@ -70,7 +70,7 @@ fn push(runs: &mut Vec<Run>, letter: char, script: Script, slanted: bool) {
 }
 
 /// Text that markup must leave alone.
-pub(in crate::figure) fn plain(text: &str) -> String {
+pub(crate) fn plain(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {
         if matches!(letter, '\\' | '$' | '_' | '^' | '}') {
@@ -91,7 +91,7 @@ fn with_minus(digits: &str) -> String {
 }
 
 /// A number with a fixed count of decimals; zero is `0`.
-pub(in crate::figure) fn fixed(value: f64, decimals: usize) -> String {
+pub(crate) fn fixed(value: f64, decimals: usize) -> String {
     let digits = with_minus(&format!("{value:.decimals$}"));
     if digits.chars().all(|c| matches!(c, '0' | '.')) {
         return "0".to_owned();
@@ -100,19 +100,19 @@ pub(in crate::figure) fn fixed(value: f64, decimals: usize) -> String {
 }
 
 /// A value rounded to six significant digits, which drops what binary fractions add to `0.1 + 0.2`.
-pub(in crate::figure) fn rounded(value: f64) -> f64 {
+pub(crate) fn rounded(value: f64) -> f64 {
     rounded_to(value, 6)
 }
 
 /// The value with so many significant digits, without a negative zero.
-pub(in crate::figure) fn rounded_to(value: f64, digits: usize) -> f64 {
+pub(crate) fn rounded_to(value: f64, digits: usize) -> f64 {
     let decimals = digits.saturating_sub(1);
     let value = format!("{value:.decimals$e}").parse().unwrap_or(value);
     if value == 0.0 { 0.0 } else { value }
 }
 
 /// A single value, shortest form of six significant digits, as markup: `−0.02`, `1.5×10^{−7}`.
-pub(in crate::figure) fn value(number: f64) -> String {
+pub(crate) fn value(number: f64) -> String {
     let number = rounded(number);
     if number == 0.0 || (1e-4..1e6).contains(&number.abs()) {
         return with_minus(&format!("{number}"));
@@ -127,12 +127,12 @@ pub(in crate::figure) fn value(number: f64) -> String {
 }
 
 /// A symbol with its slanted letters, as markup.
-pub(in crate::figure) fn variable(symbol: &str) -> String {
+pub(crate) fn variable(symbol: &str) -> String {
     format!("${symbol}$")
 }
 
 /// `p(x)` or `p(x, ẋ)`, as markup.
-pub(in crate::figure) fn density_of(symbols: &[String]) -> String {
+pub(crate) fn density_of(symbols: &[String]) -> String {
     format!("$p$({})", symbols.join(", "))
 }
 

@@ -48,10 +48,8 @@ impl Settings {
             averaged: self.averaged(),
             detect: self.detect.clone(),
             locate: self.locate.clone(),
-            figures_at: Some(self.figures_at.clone()),
-            figure_formats: self.figure_formats.clone(),
-            figures_drawn: self.figures_drawn.clone(),
-            figure_style: self.figure_style,
+            figures_at: Some(self.figures.at.clone()),
+            figures: self.figures.clone(),
         }
     }
 

@@ -2,13 +2,19 @@
 
 use super::system::Swept;
 use crate::continuation::evenly_spaced;
+#[cfg(feature = "figures")]
 use crate::density::Observable;
-use crate::figure::{FigureStyle, Format, matches_figure, sweep_figures};
+use crate::figure::{FigureStyle, Format};
+#[cfg(feature = "figures")]
+use crate::figure::{matches_figure, sweep_figures};
 use crate::sweep_file::diagnostic::{Diagnostic, Place};
 use crate::sweep_file::draft::Draft;
-use crate::sweep_file::names::{list, quotable};
+use crate::sweep_file::names::list;
+#[cfg(feature = "figures")]
+use crate::sweep_file::names::quotable;
 use crate::sweep_file::reader::Reader;
 use crate::sweep_file::value::Node;
+#[cfg(feature = "figures")]
 use crate::system::Family;
 
 /// Checks `figures.at`; left out, it is both ends and two of the sweep's values between.
@@ -78,20 +84,20 @@ pub(super) fn each_once(listed: &[Format]) -> Vec<Format> {
 }
 
 /// Refuses names in `figures.draw` that no figure of this sweep can have.
+#[cfg(feature = "figures")]
 pub(super) fn check_drawn(
     reader: &mut Reader<'_>,
     draft: &Draft,
     family: &Family,
     observables: &[Observable],
 ) {
-    let known = sweep_figures(family, observables);
+    let (known, kinds) = sweep_figures(family, observables);
     let items = reader.items(&["figures", "draw"]);
-    for (name, item) in draft.figures_drawn.iter().zip(items) {
+    for (name, item) in draft.figures.names().iter().zip(items) {
         // A figure at one value is named after one that there is: `joint_xy_0.5`.
         let is_known =
             |figure: &String| matches_figure(name, figure) || matches_figure(figure, name);
         // A kind that this sweep has nothing of draws nothing; the defaults name three of them.
-        let kinds: Vec<&str> = crate::figure::KINDS.to_vec();
         if known.iter().any(is_known) || kinds.contains(&name.as_str()) {
             continue;
         }
@@ -120,9 +126,10 @@ pub(super) fn check_style(reader: &mut Reader<'_>, style: &FigureStyle) {
     };
     let (least, most) = style.widths();
     let text = style.text_points();
-    let shown = match width < 1e6 {
-        true => width.to_string(),
-        false => format!("{width:e}"),
+    let shown = if width < 1e6 {
+        width.to_string()
+    } else {
+        format!("{width:e}")
     };
     let title = format!("figures {shown} mm wide have no room for text of {text} points");
     let key = |name| reader.place(&["figures", "style", name]);

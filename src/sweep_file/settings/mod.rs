@@ -18,7 +18,7 @@ mod watched;
 
 use crate::continuation::LocateOptions;
 use crate::density::Observable;
-use crate::figure::{FigureStyle, Format};
+use crate::figure::FigureSettings;
 use crate::method::DerivedMeasure;
 use crate::system::Family;
 use crate::topology::DetectOptions;
@@ -73,14 +73,8 @@ pub struct Settings {
     pub bins: Vec<BinSettings>,
     /// Settings of location.
     pub locate: LocateOptions,
-    /// Parameter values at which densities are drawn.
-    pub figures_at: Vec<f64>,
-    /// Formats of the figures.
-    pub figure_formats: Vec<Format>,
-    /// The figures that are drawn: names, or the beginnings that several share.
-    pub figures_drawn: Vec<String>,
-    /// How figures look.
-    pub figure_style: FigureStyle,
+    /// The figures that are drawn.
+    pub figures: FigureSettings,
     /// What a user should know.
     pub warnings: Report,
     /// Where it was read: findings of later stages point there.
@@ -112,11 +106,12 @@ impl Settings {
         let figures_at = swept
             .as_ref()
             .map(|swept| figures::read_at(&mut reader, &draft, swept));
+        #[cfg(feature = "figures")] // the names of figures are known to who draws them
         if let (Some(family), Some(watched)) = (family, &watched) {
             let family = family.clone().with_quantities(watched.quantities.clone());
             figures::check_drawn(&mut reader, &draft, &family, &watched.observables);
         }
-        figures::check_style(&mut reader, &draft.figure_style);
+        figures::check_style(&mut reader, &draft.figures.style);
         let (Some(mut swept), Some(axes), Some(watched), Some(figures_at), true) =
             (swept, axes, watched, figures_at, reader.is_clean())
         else {
@@ -148,10 +143,11 @@ impl Settings {
             measures: draft.measures,
             bins,
             locate: draft.locate,
-            figures_at,
-            figure_formats: figures::each_once(&draft.figure_formats),
-            figures_drawn: draft.figures_drawn,
-            figure_style: draft.figure_style,
+            figures: FigureSettings {
+                at: figures_at,
+                formats: figures::each_once(&draft.figures.formats),
+                ..draft.figures
+            },
             warnings: reader.into_warnings(),
             document: document.clone(),
         })

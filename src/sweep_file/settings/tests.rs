@@ -73,7 +73,7 @@ fn defaults_are_those_of_the_options() {
     let values = spec.family.values_at(spec.family.ends().0).unwrap();
     assert_eq!(values.as_slice(), [1.0, 0.01, 0.0, -0.02, 0.01]);
     assert!(spec.warnings.is_empty());
-    assert_eq!(spec.figures_at, [-0.02, -0.01, 0.0, 0.01]);
+    assert_eq!(spec.figures.at, [-0.02, -0.01, 0.0, 0.01]);
     let sweep = spec.fixed().unwrap();
     assert!(sweep.problem.space().axes()[1].has_face_at(0.0));
 }
@@ -281,7 +281,7 @@ fn conditions_between_keys_hold() {
 fn figures_of_the_file_outside_a_sweep_that_was_set_are_left_out() {
     let text = format!("{FILE}[figures]\nat = [-0.02, -0.01, 0.0, 0.01]\n");
     let settings = parse(&text, &["sweep.from=-0.005"]).unwrap();
-    assert_eq!(settings.figures_at, [0.0, 0.01]);
+    assert_eq!(settings.figures.at, [0.0, 0.01]);
     let said = settings.warnings.to_string();
     for words in [
         "warning",
@@ -293,7 +293,7 @@ fn figures_of_the_file_outside_a_sweep_that_was_set_are_left_out() {
     }
     // Nothing is left: the default holds.
     let settings = parse(&text, &["sweep.from=1", "sweep.to=2"]).unwrap();
-    assert_eq!(settings.figures_at.len(), 4);
+    assert_eq!(settings.figures.at.len(), 4);
     assert!(settings.warnings.to_string().contains("drawn instead"));
     // What was set in the same breath, and what the file says of itself, is refused.
     let both = ["sweep.from=-0.005", "figures.at=[-0.01]"];

@@ -1,0 +1,342 @@
+//! Curves of P-bifurcations in their plane of two parameters: the lines, their bands of error, their ends, points of
+//! codimension two, and the row that the first was begun at.
+
+use plotters_backend::text_anchor::HPos;
+
+use super::Sketch;
+use crate::continuation::BifurcationStatus;
+use crate::continuation::curve::{
+    Curve, CurveOrigin, CurvePoint, EndReason, SweepInPlane, codimension_two,
+};
+use crate::density::Observable;
+use crate::figure::FigureError;
+use crate::figure::canvas::frame::{self, Scale};
+use crate::figure::canvas::legend::{Legend, Sample};
+use crate::figure::canvas::page::{Heading, Lettering, Page, Panel, Rectangle, Shape, small};
+use crate::figure::canvas::style::{BIFURCATION, Colour, GREY, INK, MARGIN, PAPER, Stroke};
+use crate::figure::canvas::symbols;
+use crate::figure::figures::{Figure, Print};
+use crate::figure::parts::crossed::Crossed;
+use crate::figure::parts::names;
+use crate::figure::parts::names::symbol_of;
+use crate::system::Family;
+use crate::topology::IndicatorKind;
+
+/// Size of the panel on a page of its own width, in pixels, and that width.
+const PANEL: (f64, f64) = (390.0, 300.0);
+const USUAL: f64 = 480.0;
+/// Room right of the panel, for half a label.
+const BESIDE: f64 = 14.0;
+/// Opacity of the band.
+const BAND: f64 = 0.25;
+/// A band narrower than this, in pixels, is not seen beside the line.
+const SEEN: f64 = 2.0;
+/// Radius of the dots at the ends and at the start, in pixels.
+const DOT: f64 = 3.4;
+/// Where the line is not located.
+const DASHES: &[f64] = &[5.0, 4.0];
+/// Distance of letters from what they name, in pixels.
+const AWAY: f64 = 9.0;
+
+/// The figure of curves in one plane; none without a curve.
+pub(in crate::figure) fn sketches<'a>(
+    curves: &'a [Curve],
+    (row, sweeps): (&'a CurveOrigin, &'a [SweepInPlane]),
+    family: &'a Family,
+) -> Vec<Sketch<'a>> {
+    let Some(curve) = curves.first() else {
+        return Vec::new();
+    };
+    let draw = move |print: &Print<'_>| {
+        let watched: Vec<Observable> = curves.iter().map(|curve| curve.observable).collect();
+        let crossed = Crossed {
+            plane: &curve.plane,
+            family,
+            sweeps,
+            observables: &watched,
+        };
+        let scene = Scene {
+            curve,
+            curves,
+            row,
+            crossed,
+            family,
+        };
+        let page = scene.draw(print)?;
+        Ok(Some(Figure::new(&page, scene.caption(), scene.data())))
+    };
+    vec![Sketch::new("curve", draw)]
+}
+
+struct Scene<'a> {
+    /// The first curve.
+    curve: &'a Curve,
+    /// All of them.
+    curves: &'a [Curve],
+    row: &'a CurveOrigin,
+    crossed: Crossed<'a>,
+    family: &'a Family,
+}
+
+impl Scene<'_> {
+    /// Symbol of a side's parameter.
+    fn symbol(&self, side: usize) -> String {
+        symbol_of(self.family, &self.curve.plane.sides()[side].parameter)
+    }
+
+    fn draw(&self, print: &Print<'_>) -> Result<Page, FigureError> {
+        let look = &print.look;
+        let [x, y] = self.curve.plane.sides();
+        let (x, y) = ((x.from, x.to), (y.from, y.to));
+        let high = look.height(PANEL.1, USUAL);
+        let up = Scale::vertical(look, y, high, &self.symbol(1))?;
+        let left = MARGIN + up.left();
+        let wide = look.fill(PANEL.0, left + BESIDE + MARGIN);
+        let width = left + wide + BESIDE + MARGIN;
+        let across = Scale::horizontal(look, x, wide, &self.symbol(0))?;
+        let heading = Heading::new(look, print.title, width)?;
+        let top = heading.height() + 6.0;
+        let rect = Rectangle::new((left, top), (wide, high));
+        let below = rect.bottom() + Scale::below();
+        let legend = Legend::new(look, self.entries(rect), width - 2.0 * MARGIN)?;
+        let page = Page::new(look, width, below + legend.height() + MARGIN);
+        heading.draw(&page);
+        let panel = page.panel(rect, x, y);
+        for curve in self.curves {
+            draw_line(&panel, curve, stroke_of(self.curves, curve.kind));
+        }
+        self.crossed.draw(&panel);
+        frame::border(&page, rect);
+        across.draw_below(&page, rect, true);
+        up.draw_left(&page, rect, true);
+        self.draw_marks(&page, &panel, rect);
+        legend.draw(&page, left + 0.5 * wide, below);
+        Ok(page)
+    }
+
+    fn entries(&self, rect: Rectangle) -> Vec<(Sample, String)> {
+        let mut entries: Vec<(Sample, String)> = Vec::new();
+        for curve in self.curves {
+            let stroke = stroke_of(self.curves, curve.kind);
+            let density = names::density(self.family, curve.observable);
+            let line = format!("{} of {density} is 0", curve.kind.name());
+            let line = [(Sample::Curve(stroke), line)].into_iter();
+            for entry in line.chain(remarks(curve, stroke, rect)) {
+                if !entries.iter().any(|known| known.1 == entry.1) {
+                    entries.push(entry);
+                }
+            }
+        }
+        entries.extend(self.crossed.entries());
+        entries
+    }
+
+    /// The start with its label and the signatures on both sides, and the ends with theirs.
+    fn draw_marks(&self, page: &Page, panel: &Panel, rect: Rectangle) {
+        let place = |point: &CurvePoint| kept(self.curve, point.values[0], point.values[1]);
+        let rim = || Stroke::solid(INK, 1.2);
+        for (number, curve) in self.curves.iter().enumerate() {
+            let told = |reason: &EndReason| {
+                matches!(
+                    reason,
+                    EndReason::Cusp
+                        | EndReason::DegenerateSplit
+                        | EndReason::DegenerateKink
+                        | EndReason::KinkCorner
+                )
+            };
+            for end in curve.ends.iter().filter(|end| !told(&end.reason)) {
+                let Some(point) = curve.points.get(end.point) else {
+                    continue;
+                };
+                panel.draw(&[place(point)], Shape::Dot(DOT, PAPER, rim()));
+                let at = panel.place(place(point));
+                if number == 0 {
+                    write(page, rect, at, &end.label, GREY, false);
+                }
+            }
+        }
+        for point in codimension_two(self.curves) {
+            let [x, y] = point.values;
+            let at = kept(self.curve, x, y);
+            panel.draw(&[at], Shape::Dot(DOT, PAPER, rim()));
+            let at = panel.place(at);
+            write(page, rect, at, &point.label, INK, true);
+        }
+        let Some(start) = self.curve.points.get(self.curve.start) else {
+            return;
+        };
+        let rim = Stroke::solid(BIFURCATION, 1.2);
+        panel.draw(&[place(start)], Shape::Dot(DOT, BIFURCATION, rim));
+        let at = panel.place(place(start));
+        write(page, rect, at, &self.row.label, BIFURCATION, true);
+        let words = [(self.row.before, -1.0), (self.row.after, 1.0)];
+        for (signature, side) in words {
+            let Some(signature) = signature else {
+                continue;
+            };
+            let anchor = if side < 0.0 { HPos::Right } else { HPos::Left };
+            let text = small(symbols::plain(&signature.to_string()), anchor, GREY);
+            page.text((at.0 + side * 2.5 * AWAY, at.1 + AWAY), text);
+        }
+    }
+
+    fn caption(&self) -> String {
+        let curve = self.curve;
+        let [first, second] = curve.plane.sides();
+        let largest = curve
+            .points
+            .iter()
+            .map(|point| point.error)
+            .fold(0.0, f64::max);
+        let mut text = format!(
+            "Where the {} of the density of {} is zero, in the plane of {} and {}, followed from {} at {} = {}.",
+            curve.kind.name(),
+            curve.observable.name(self.family),
+            first.parameter,
+            second.parameter,
+            self.row.label,
+            first.parameter,
+            symbols::rounded(self.row.value),
+        );
+        for end in &curve.ends {
+            text += &format!(" {}: {}.", end.label, end.reason.words(&curve.plane));
+        }
+        for point in codimension_two(self.curves) {
+            let [x, y] = point.values.map(symbols::rounded);
+            text += &format!(
+                " {}: {}, at {} = {x}, {} = {y}.",
+                point.label,
+                point.kind.name(),
+                first.parameter,
+                second.parameter
+            );
+        }
+        text += &self.crossed.caption();
+        text += &format!(
+            " The error across the curve is at most {largest:.1e} of the sides of the box.\n"
+        );
+        text
+    }
+
+    fn data(&self) -> String {
+        let [first, second] = self.curve.plane.sides();
+        let mut text = format!(
+            "curve,{},{},edge_{},edge_{},status\n",
+            first.parameter, second.parameter, first.parameter, second.parameter
+        );
+        for (number, curve) in self.curves.iter().enumerate() {
+            for point in &curve.points {
+                let ([x, y], [dx, dy]) = (point.values, point.to_edge);
+                let status = point.status.word();
+                text += &format!("C{},{x},{y},{dx},{dy},{status}\n", number + 1);
+            }
+        }
+        for (row, [dx, dy], status) in self.crossed.data() {
+            let ([x, y], label) = (row.values, &row.label);
+            text += &format!("{label},{x},{y},{dx},{dy},{status}\n");
+        }
+        text
+    }
+}
+
+/// The line of an indicator among those of several curves: a colour each.
+pub(super) fn stroke_of<'c>(
+    curves: impl IntoIterator<Item = &'c Curve>,
+    kind: IndicatorKind,
+) -> Stroke {
+    let mut kinds: Vec<&str> = Vec::new();
+    for curve in curves {
+        if !kinds.contains(&curve.kind.name()) {
+            kinds.push(curve.kind.name());
+        }
+    }
+    let number = kinds.iter().position(|name| *name == kind.name());
+    Stroke::curve(number.unwrap_or(0)).dashed(&[])
+}
+
+/// What a legend says beside the meaning of a curve's line: its band, where it is wider than the line, and what dashes
+/// mean.
+pub(super) fn remarks(curve: &Curve, stroke: Stroke, rect: Rectangle) -> Vec<(Sample, String)> {
+    let mut entries = Vec::new();
+    let shorter = rect.width.min(rect.height);
+    let is_seen = |point: &CurvePoint| 2.0 * point.error * shorter > SEEN;
+    if curve.points.iter().any(is_seen) {
+        let band = Stroke::solid(stroke.colour.at(BAND), 8.0);
+        entries.push((Sample::Curve(band), "its error".to_owned()));
+    }
+    let doubtful = |point: &CurvePoint| point.status != BifurcationStatus::Located;
+    if curve.points.iter().any(doubtful) {
+        entries.push((
+            Sample::Curve(stroke.dashed(DASHES)),
+            "not located".to_owned(),
+        ));
+    }
+    entries
+}
+
+/// Draws a curve with its band, in dashes where it is not located.
+pub(super) fn draw_line(panel: &Panel, curve: &Curve, stroke: Stroke) {
+    let edge = |sign: f64| {
+        let points = curve.points.iter();
+        points.map(move |point| {
+            let [x, y] = [0, 1].map(|k| point.values[k] + sign * point.to_edge[k]);
+            kept(curve, x, y)
+        })
+    };
+    let mut outline: Vec<(f64, f64)> = edge(1.0).collect();
+    outline.extend(edge(-1.0).collect::<Vec<_>>().into_iter().rev());
+    panel.draw(&outline, Shape::Area(stroke.colour.at(BAND)));
+    for (places, located) in pieces(curve) {
+        let stroke = if located {
+            stroke
+        } else {
+            stroke.dashed(DASHES)
+        };
+        panel.draw(&places, Shape::Line(stroke));
+    }
+}
+
+/// Pieces of the line of which both ends are located, or not.
+fn pieces(curve: &Curve) -> Vec<(Vec<(f64, f64)>, bool)> {
+    let mut pieces: Vec<(Vec<(f64, f64)>, bool)> = Vec::new();
+    for pair in curve.points.windows(2) {
+        let mut both = pair.iter();
+        let located = both.all(|point| point.status == BifurcationStatus::Located);
+        let [a, b] = [0, 1].map(|k| kept(curve, pair[k].values[0], pair[k].values[1]));
+        match pieces.last_mut().filter(|piece| piece.1 == located) {
+            Some((places, _)) => places.push(b),
+            None => pieces.push((vec![a, b], located)),
+        }
+    }
+    pieces
+}
+
+/// A place moved into the box.
+fn kept(curve: &Curve, x: f64, y: f64) -> (f64, f64) {
+    let [first, second] = curve.plane.sides();
+    (
+        x.clamp(first.from, first.to),
+        y.clamp(second.from, second.to),
+    )
+}
+
+/// Writes beside a point, above it and toward the middle of the panel, where that is free.
+fn write(page: &Page, rect: Rectangle, at: (f64, f64), words: &str, colour: Colour, bold: bool) {
+    let is_left = at.0 < rect.left + 0.5 * rect.width;
+    let (anchor, side) = if is_left {
+        (HPos::Left, 1.0)
+    } else {
+        (HPos::Right, -1.0)
+    };
+    let down = if at.1 < rect.top + 2.0 * AWAY {
+        AWAY
+    } else {
+        -AWAY
+    };
+    let text = Lettering {
+        bold,
+        ..small(symbols::plain(words), anchor, colour)
+    };
+    page.text((at.0 + side * AWAY, at.1 + down), text);
+}

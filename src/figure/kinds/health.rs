@@ -1,0 +1,107 @@
+//! The health of a sweep: what is left of the equation, what leaves the domain, negative masses, and how far
+//! neighbouring densities are apart, over the parameter. What is zero all along is left out.
+
+use crate::continuation::{Point, PointStatus, SweepResult};
+
+use super::{Drawn, Kind, Sketch};
+use crate::figure::canvas::style::Stroke;
+use crate::figure::figures::Print;
+use crate::figure::parts::along::{self, Curve, Track};
+use crate::figure::parts::table::{self, number as number_of};
+
+/// Height of a panel, in pixels.
+const HEIGHT: f64 = 92.0;
+
+/// A number of a point: title, whether decades matter, and how it is got.
+type Number = (&'static str, bool, fn(&Point) -> Option<f64>);
+
+/// The numbers of a point that tell how well it was solved.
+const NUMBERS: [Number; 6] = [
+    ("residual", true, |point| Some(point.report.residual)),
+    ("solver error", true, |point| {
+        Some(point.report.solver_error)
+    }),
+    ("escape rate", true, |point| {
+        point.report.measure("escape_rate")
+    }),
+    ("negative mass", true, |point| {
+    ("escape rate", true, |point| {
+        point.report.measure("escape_rate").or(Some(0.0))
+    }),
+    ("negative mass", true, |point| {
+        point.report.measure("negative_mass").or(Some(0.0))
+    }),
+    ("edge mass", true, |point| {
+        point.report.edge_mass().or(Some(0.0))
+    }),
+    }),
+    ("edge mass", true, |point| point.report.edge_mass()),
+    ("distance", false, |point| point.distance),
+];
+
+/// The figure of a sweep.
+pub(super) const KIND: Kind = Kind {
+    names: &["health"],
+    is_usual: false,
+    sketches: |sweep| {
+        let result = sweep.result;
+        vec![Sketch::new("health", move |print| draw(result, print))]
+    },
+};
+
+/// Whether a point has a density to speak of.
+fn is_solved(point: &Point) -> bool {
+    !matches!(
+        point.report.status,
+        PointStatus::NoSteadyState | PointStatus::SeveralClasses
+    )
+}
+
+/// The figure; `None` where there is nothing to tell.
+fn draw(result: &SweepResult, print: &Print<'_>) -> Drawn {
+    let track = |(title, is_logarithmic, number): &Number| {
+        let points = result.points.iter().filter(|point| is_solved(point));
+        let places: Vec<(f64, f64)> = points
+            .filter_map(|point| Some((point.value, number(point)?)))
+            // Zero has no place on a logarithmic axis.
+            .filter(|(_, value)| value.is_finite() && !(*is_logarithmic && *value == 0.0))
+            .collect();
+        let is_told = places.iter().any(|(_, value)| *value != 0.0);
+        is_told.then(|| Track {
+            title: (*title).to_owned(),
+            is_logarithmic: *is_logarithmic,
+            has_zero: !is_logarithmic,
+            least: 0.0,
+            share: 1.0,
+            curves: vec![Curve {
+                name: String::new(),
+                stroke: Stroke::curve(0),
+                places,
+                errors: Vec::new(),
+            }],
+        })
+    };
+    let tracks: Vec<Track> = NUMBERS.iter().filter_map(track).collect();
+    let parameter = result.subject.family.parameter();
+    let seen = format!(
+        "How well each value of {parameter} was solved: what is left of the equation, what leaves the domain, and the Hellinger \
+         distance between neighbouring densities."
+    );
+    let columns = NUMBERS.map(|(title, ..)| title.replace(' ', "_"));
+    let columns: Vec<&str> = [parameter, "status"]
+        .into_iter()
+        .chain(columns.iter().map(String::as_str))
+        .collect();
+    let rows = result.points.iter().map(|point| {
+        let named = [
+            number_of(point.value),
+            point.report.status.word().to_owned(),
+        ];
+        let numbers = NUMBERS.map(|(_, _, number)| number(point).map(number_of));
+        let numbers = numbers.into_iter().map(Option::unwrap_or_default);
+        named.into_iter().chain(numbers).collect()
+    });
+    let table = table::table(&columns, rows);
+    let texts = (seen, table);
+    along::draw((result, print), None, (&tracks, HEIGHT), texts)
+}

@@ -1,0 +1,152 @@
+//! Joint densities of two axes as heat maps with contours: one figure a parameter value, a sheet of all, and small
+//! multiples of the whole sweep.
+
+use super::{Kind, Sketch, Sweep};
+use crate::continuation::{Point, SweepResult, evenly_spaced};
+use crate::density::Observable;
+use crate::figure::FigureError;
+use crate::figure::canvas::colour_bar::ColourBar;
+use crate::figure::canvas::frame::Scale;
+use crate::figure::canvas::page::Page;
+use crate::figure::canvas::style::MARGIN;
+use crate::figure::figures::{Figure, Print};
+use crate::figure::parts::joint_map::{Found, LEVELS, draw_map, open_page, windows, write_above};
+use crate::figure::parts::{caption, joint_sheet, names, table, view};
+
+/// What a map is, for captions.
+const WAY: &str = "as a map with contours at 10, 30, 50, 70 and 90 % of its maximum";
+/// Small multiples of a sweep: one to so many values of the parameter.
+const MULTIPLES: usize = 12;
+/// Side of the map of a single figure, in pixels.
+const SINGLE: f64 = 290.0;
+/// Highest map of a single figure.
+const TALLEST: f64 = 420.0;
+
+pub(super) const KIND: Kind = Kind {
+    names: &["joint", "multiples"],
+    is_usual: true,
+    sketches,
+};
+
+/// A sheet an observed pair of axes, small multiples, then the maps of the sheet one by one.
+fn sketches<'a>(sweep: &Sweep<'a>) -> Vec<Sketch<'a>> {
+    let mut sketches = Vec::new();
+    for (number, pair) in sweep.pairs() {
+        let (name, way) = (format!("joint_{pair}"), (number, WAY));
+        let several = several(sweep.result, number);
+        sketches.push(sweep.joint(&name, way, &sweep.chosen, joint_sheet::draw));
+        sketches.push(sweep.joint(
+            format!("multiples_{pair}"),
+            way,
+            &several,
+            joint_sheet::draw,
+        ));
+        sketches.extend(sweep.each_joint(&name, way, draw_single));
+    }
+    sketches
+}
+
+/// Draws a page of a joint density, by its number among the observables, at some points.
+pub(super) type DrawJoint =
+    fn(&SweepResult, usize, &[&Point], &Print<'_>) -> Result<Option<Page>, FigureError>;
+
+impl<'a> Sweep<'a> {
+    /// A figure of a joint density, by its number, at some points, in the way that the words of its caption say.
+    pub(super) fn joint(
+        &self,
+        name: impl Into<String>,
+        (number, way): (usize, &'static str),
+        points: &[&'a Point],
+        draw: DrawJoint,
+    ) -> Sketch<'a> {
+        let (result, points) = (self.result, points.to_vec());
+        Sketch::new(name, move |print| {
+            let page = draw(result, number, &points, print)?;
+            Ok(page.map(|page| figure(result, (number, way), &points, &page)))
+        })
+    }
+
+    /// The same at every chosen point by itself, named after its value.
+    pub(super) fn each_joint(
+        &self,
+        name: &str,
+        way: (usize, &'static str),
+        draw: DrawJoint,
+    ) -> Vec<Sketch<'a>> {
+        let points = self.chosen.iter();
+        let single = |point: &&'a Point| {
+            let name = names::at_value(name, point.value);
+            self.joint(name, way, &[point], draw)
+        };
+        points.map(single).collect()
+    }
+}
+
+/// A page that shows a joint density at some points, in the way that the words say.
+fn figure(
+    result: &SweepResult,
+    (number, way): (usize, &str),
+    points: &[&Point],
+    page: &Page,
+) -> Figure {
+    let (family, watched) = (&result.subject.family, result.subject.observables[number]);
+    let seen = format!(
+        "Steady-state joint density {}{}, {way}.",
+        caption::density(family, watched),
+        caption::at(family, points.iter().map(|point| point.value))
+    );
+    let between = caption::between_cells(result, |one| one == watched);
+    let is_map = way.contains("map");
+    let marks = is_map.then(|| "Marked are peaks (+) and craters (o).".to_owned());
+    let marked = [between, marks.unwrap_or_default()];
+    let table = table::of_joint(result, number, points);
+    Figure::new(page, caption::of_sweep(result, seen, &marked), table)
+}
+
+/// Points spread evenly over a sweep that have a density of an observable, for small multiples.
+fn several(result: &SweepResult, observable: usize) -> Vec<&Point> {
+    let ends = [result.points.first(), result.points.last()];
+    let [Some(first), Some(last)] = ends.map(|end| end.map(|point| point.value)) else {
+        return Vec::new();
+    };
+    let wanted = evenly_spaced((first, last), MULTIPLES);
+    let points = view::nearest(result, &wanted).into_iter();
+    points
+        .filter(|point| view::density(point, observable).is_some())
+        .collect()
+}
+
+/// One map at one point; `None` without a density.
+fn draw_single(
+    result: &SweepResult,
+    observable: usize,
+    points: &[&Point],
+    print: &Print<'_>,
+) -> Result<Option<Page>, FigureError> {
+    let (family, look) = (&result.subject.family, &print.look);
+    let watched = result.subject.observables[observable];
+    let found: Vec<Found<'_>> = Found::all(points, observable);
+    let Observable::Joint(first, second) = watched else {
+        return Ok(None);
+    };
+    let Some((x, y)) = windows(&found) else {
+        return Ok(None);
+    };
+    let largest = found[0].shown.largest;
+    let high = look
+        .page
+        .map_or(SINGLE, |page| (0.68 * page).clamp(170.0, TALLEST));
+    let up = Scale::vertical(look, y, high, &names::axis(family, second))?;
+    let bar = ColourBar::new(look, largest, high, &names::density(family, watched))?;
+    let left = MARGIN + up.left();
+    let wide = look.fill(SINGLE, left + bar.width() + MARGIN);
+    let across = Scale::horizontal(look, x, wide, &names::axis(family, first))?;
+    let width = left + wide + bar.width() + MARGIN;
+    let (page, map) = open_page(print, &found, (left, width), (wide, high))?;
+    write_above(&page, map, names::at(family, found[0].value));
+    draw_map(&page, map, &found[0], (x, y), largest)?;
+    across.draw_below(&page, map, true);
+    up.draw_left(&page, map, true);
+    bar.draw(&page, map, &LEVELS)?;
+    Ok(Some(page))
+}

@@ -1,0 +1,361 @@
+//! A map of regimes: regions of one signature in pale colours with their words, and the curves between them with their
+//! bands.
+
+use plotters_backend::text_anchor::HPos;
+
+use super::Sketch;
+use super::curve::{draw_line, remarks, stroke_of};
+use crate::continuation::curve::{Curve, EndReason, SweepInPlane};
+use crate::continuation::map::{RegimeMap, RegionPicture, RegionSample};
+use crate::density::Observable;
+use crate::figure::FigureError;
+use crate::figure::canvas::frame::{self, Scale};
+use crate::figure::canvas::heat::patches;
+use crate::figure::canvas::legend::{Legend, Sample};
+use crate::figure::canvas::look::Look;
+use crate::figure::canvas::page::{Heading, Page, Panel, Rectangle, Shape, small};
+use crate::figure::canvas::render;
+use crate::figure::canvas::style::{BLANK, Colour, INK, MARGIN, PAPER, Stroke, TICK_TEXT};
+use crate::figure::canvas::symbols;
+use crate::figure::figures::{Figure, Print};
+use crate::figure::parts::crossed::Crossed;
+use crate::figure::parts::inset;
+use crate::figure::parts::names::{self, symbol_of};
+use crate::figure::parts::region_room::Room;
+use crate::system::Family;
+use crate::topology::{IndicatorKind, Signature};
+
+/// Size of the panel on a page of its own width, in pixels, and that width.
+const PANEL: (f64, f64) = (390.0, 300.0);
+const USUAL: f64 = 480.0;
+/// Room right of the panel, for half a label.
+const BESIDE: f64 = 14.0;
+/// Pixels of the picture of the regions to a figure pixel.
+const FINE: f64 = 2.0;
+/// How much of a curve's colour is in the ground of a region.
+const TINT: f64 = 0.26;
+/// Between the words of a region and its density, in pixels.
+const GAP: f64 = 3.0;
+/// Radius of the dots where curves end inside the box, in pixels.
+const DOT: f64 = 3.0;
+
+/// One figure an observable.
+pub(in crate::figure) fn sketches<'a>(
+    map: &'a RegimeMap,
+    sweeps: &'a [SweepInPlane],
+) -> Vec<Sketch<'a>> {
+    let family = &map.subject.family;
+    let observables = map.subject.observables.iter().enumerate();
+    let sketch = |(index, observable): (usize, &'a Observable)| {
+        let draw = move |print: &Print<'_>| {
+            let curves = map.curves.iter();
+            let scene = Scene {
+                map,
+                index,
+                curves: curves
+                    .filter(|curve| curve.observable == *observable)
+                    .collect(),
+                crossed: Crossed {
+                    plane: &map.plane,
+                    family,
+                    sweeps,
+                    observables: std::slice::from_ref(observable),
+                },
+                family,
+                look: &print.look,
+            };
+            let (page, words) = scene.draw(print.title)?;
+            Ok(Some(Figure::new(
+                &page,
+                scene.caption(&words),
+                scene.data(),
+            )))
+        };
+        Sketch::new(format!("map_{}", names::file(family, *observable)), draw)
+    };
+    observables.map(sketch).collect()
+}
+
+struct Scene<'a> {
+    map: &'a RegimeMap,
+    /// The observable among those that are watched.
+    index: usize,
+    curves: Vec<&'a Curve>,
+    crossed: Crossed<'a>,
+    family: &'a Family,
+    look: &'a Look,
+}
+
+/// The regions as they are drawn: their picture, and the number of the colour of each.
+struct Ground {
+    picture: RegionPicture,
+    /// The different signatures, those of larger regions first.
+    kinds: Vec<Option<Signature>>,
+}
+
+impl Ground {
+    fn kind_of(&self, region: usize) -> usize {
+        let signature = self.picture.regions[region].signature;
+        let mut kinds = self.kinds.iter();
+        kinds.position(|one| *one == signature).unwrap_or(0)
+    }
+}
+
+fn words(signature: Option<Signature>) -> String {
+    signature.map_or_else(|| "no steady state".to_owned(), |one| one.to_string())
+}
+
+impl Scene<'_> {
+    fn draw(&self, title: &str) -> Result<(Page, Vec<String>), FigureError> {
+        let look = self.look;
+        let [first, second] = self.map.plane.sides();
+        let (x, y) = ((first.from, first.to), (second.from, second.to));
+        let high = look.height(PANEL.1, USUAL);
+        let up = Scale::vertical(look, y, high, &symbol_of(self.family, &second.parameter))?;
+        let left = MARGIN + up.left();
+        let wide = look.fill(PANEL.0, left + BESIDE + MARGIN);
+        let width = left + wide + BESIDE + MARGIN;
+        let across = Scale::horizontal(look, x, wide, &symbol_of(self.family, &first.parameter))?;
+        let heading = Heading::new(look, title, width)?;
+        let rect = Rectangle::new((left, heading.height() + 6.0), (wide, high));
+        let ground = self.ground(rect);
+        let places = match &ground {
+            Some(ground) => self.word_places(ground, rect)?,
+            None => Vec::new(),
+        };
+        let legend = self.legend(ground.as_ref(), &places, rect)?;
+        let below = rect.bottom() + Scale::below();
+        let page = Page::new(look, width, below + legend.height() + MARGIN);
+        heading.draw(&page);
+        let panel = page.panel(rect, x, y);
+        if let Some(ground) = &ground {
+            let png = self.picture(ground)?;
+            panel.draw(&[(x.0, y.1), (x.1, y.0)], Shape::Image(png));
+        }
+        for curve in &self.curves {
+            draw_line(&panel, curve, self.stroke(curve.kind));
+        }
+        self.crossed.draw(&panel);
+        self.draw_ends(&page, &panel);
+        frame::border(&page, rect);
+        across.draw_below(&page, rect, true);
+        up.draw_left(&page, rect, true);
+        for placed in places.iter().flatten() {
+            placed.draw(&page, look)?;
+        }
+        legend.draw(&page, left + 0.5 * wide, below);
+        let kinds = ground.map(|ground| ground.kinds).unwrap_or_default();
+        Ok((page, kinds.into_iter().map(words).collect()))
+    }
+
+    fn ground(&self, rect: Rectangle) -> Option<Ground> {
+        let size = [rect.width, rect.height].map(|length| (FINE * length).round() as usize);
+        let picture = self.map.regions(self.index, size)?;
+        let mut kinds: Vec<Option<Signature>> = Vec::new();
+        for region in &picture.regions {
+            if !kinds.contains(&region.signature) {
+                kinds.push(region.signature);
+            }
+        }
+        Some(Ground { picture, kinds })
+    }
+
+    /// The colour of a region's ground.
+    fn tint(&self, ground: &Ground, kind: usize) -> (u8, u8, u8) {
+        if ground.kinds.get(kind).copied().flatten().is_none() {
+            return self.look.resolve(BLANK).0;
+        }
+        self.look.tint(TINT, kind)
+    }
+
+    fn picture(&self, ground: &Ground) -> Result<Vec<u8>, FigureError> {
+        let colours: Vec<(u8, u8, u8)> = (0..ground.kinds.len())
+            .map(|kind| self.tint(ground, kind))
+            .collect();
+        let [width, height] = ground.picture.size;
+        patches((width, height), &colours, |column, row| {
+            ground.kind_of(ground.picture.pixels[row * width + column])
+        })
+    }
+
+    /// Where each region's words stand, on the page, with the words; `None` where they have no room.
+    fn word_places(
+        &self,
+        ground: &Ground,
+        rect: Rectangle,
+    ) -> Result<Vec<Option<Placed<'_>>>, FigureError> {
+        let room = Room::new(&ground.picture);
+        let mut places: Vec<Option<Placed<'_>>> = Vec::new();
+        for (number, region) in ground.picture.regions.iter().enumerate() {
+            let text = words(region.signature);
+            let wide = render::text_width(self.look, &symbols::plain(&text), TICK_TEXT, false)?;
+            let half = [0.5 * wide + 6.0, 0.5 * TICK_TEXT + 5.0];
+            let (across, high) = inset::SIZE;
+            let both = [
+                half[0].max(0.5 * across + 6.0),
+                half[1] + 0.5 * (high + GAP),
+            ];
+            let find = |half: [f64; 2]| room.best(number, half.map(|length| FINE * length));
+            let with = self
+                .sample(ground, number)
+                .and_then(|sample| Some((find(both)?, Some(sample))));
+            let best = with.or_else(|| Some((find(half)?, None)));
+            places.push(best.map(|([column, row], sample)| Placed {
+                at: (
+                    rect.left + (column as f64 + 0.5) / FINE,
+                    rect.bottom() - (row as f64 + 0.5) / FINE,
+                ),
+                words: text,
+                sample,
+            }));
+        }
+        Ok(places)
+    }
+
+    /// A density in a region of the picture.
+    fn sample(&self, ground: &Ground, region: usize) -> Option<&RegionSample> {
+        let [width, height] = ground.picture.size;
+        let mut samples = self.map.samples.iter();
+        samples.find(|sample| {
+            let place = self.map.plane.shares(sample.values);
+            let [column, row] = [(place[0], width), (place[1], height)]
+                .map(|(share, count)| ((share * count as f64) as usize).min(count - 1));
+            sample.observable == self.index && ground.picture.pixels[row * width + column] == region
+        })
+    }
+
+    /// The line of an indicator: a colour each.
+    fn stroke(&self, kind: IndicatorKind) -> Stroke {
+        stroke_of(self.curves.iter().copied(), kind)
+    }
+
+    fn legend(
+        &self,
+        ground: Option<&Ground>,
+        places: &[Option<Placed<'_>>],
+        rect: Rectangle,
+    ) -> Result<Legend, FigureError> {
+        let mut entries: Vec<(Sample, String)> = Vec::new();
+        let density = names::density(self.family, self.map.subject.observables[self.index]);
+        for curve in &self.curves {
+            let stroke = self.stroke(curve.kind);
+            let line = format!("{} of {density} is 0", curve.kind.name());
+            for entry in [(Sample::Curve(stroke), line)]
+                .into_iter()
+                .chain(remarks(curve, stroke, rect))
+            {
+                if !entries.iter().any(|known| known.1 == entry.1) {
+                    entries.push(entry);
+                }
+            }
+        }
+        entries.extend(self.crossed.entries());
+        for (kind, signature) in ground
+            .iter()
+            .flat_map(|ground| ground.kinds.iter().enumerate())
+        {
+            let text = words(*signature);
+            let is_written = places.iter().flatten().any(|placed| placed.words == text);
+            if let (false, Some(ground)) = (is_written, ground) {
+                let colour = Colour::fixed(self.tint(ground, kind));
+                entries.push((Sample::Box(colour), symbols::plain(&text)));
+            }
+        }
+        Legend::new(self.look, entries, rect.right() - MARGIN)
+    }
+
+    /// Where curves end inside the box, and the labels of points of codimension two.
+    fn draw_ends(&self, page: &Page, panel: &Panel) {
+        for curve in &self.curves {
+            let inside = curve
+                .ends
+                .iter()
+                .filter(|end| !matches!(end.reason, EndReason::Border(_) | EndReason::Closed));
+            for point in inside.filter_map(|end| curve.points.get(end.point)) {
+                let at = (point.values[0], point.values[1]);
+                let rim = Stroke::solid(INK, 1.2);
+                panel.draw(&[at], Shape::Dot(DOT, PAPER, rim));
+            }
+        }
+        let points = self.map.codimension_two().into_iter();
+        let watched = self.map.subject.observables[self.index];
+        for point in points.filter(|point| point.observables == [watched]) {
+            let (x, y) = panel.place((point.values[0], point.values[1]));
+            let text = small(symbols::plain(&point.label), HPos::Left, INK);
+            page.text((x + 2.5 * DOT, y + 2.5 * DOT), text);
+        }
+    }
+
+    fn caption(&self, words: &[String]) -> String {
+        let [first, second] = self.map.plane.sides();
+        let mut text = format!(
+            "Regimes of the density of {} in the plane of {} and {}: {}.",
+            self.map.subject.observables[self.index].name(self.family),
+            first.parameter,
+            second.parameter,
+            words.join(", "),
+        );
+        for curve in &self.curves {
+            let ends = curve.ends.iter().map(|end| end.reason.words(&curve.plane));
+            let ends: Vec<String> = ends.collect();
+            text += &format!(
+                " On a line the {} is zero ({} points; {}).",
+                curve.kind.name(),
+                curve.points.len(),
+                ends.join("; "),
+            );
+        }
+        text += &self.crossed.caption();
+        if self.map.interrupted {
+            text += " The map was interrupted before it was complete.";
+        }
+        text + "\n"
+    }
+
+    /// The curves, and the words of the regions.
+    fn data(&self) -> String {
+        let [first, second] = self.map.plane.sides();
+        let mut text = format!("kind,{},{},words\n", first.parameter, second.parameter);
+        for (number, curve) in self.curves.iter().enumerate() {
+            for point in &curve.points {
+                let [x, y] = point.values;
+                text += &format!("curve {},{x},{y},{}\n", number + 1, curve.kind.name());
+            }
+        }
+        for node in &self.map.nodes {
+            let [x, y] = node.values;
+            let signature = node.signatures.get(self.index).copied();
+            text += &format!("node,{x},{y},{}\n", words(signature));
+        }
+        for (row, to_edge, status) in self.crossed.data() {
+            let ([x, y], error) = (row.values, to_edge[0] + to_edge[1]);
+            text += &format!("row {},{x},{y},{status} to {error:e}\n", row.label);
+        }
+        text
+    }
+}
+
+/// Words in a region, with the density of one of its states where there is room.
+struct Placed<'m> {
+    /// The middle of both, on the page.
+    at: (f64, f64),
+    words: String,
+    sample: Option<&'m RegionSample>,
+}
+
+impl Placed<'_> {
+    /// The words above, the density below, both together in the middle.
+    fn draw(&self, page: &Page, look: &Look) -> Result<(), FigureError> {
+        let (x, y) = self.at;
+        let text = small(symbols::plain(&self.words), HPos::Center, INK);
+        let Some(sample) = self.sample else {
+            page.text((x, y), text);
+            return Ok(());
+        };
+        let (width, height) = inset::SIZE;
+        let top = y - 0.5 * (height + TICK_TEXT + GAP);
+        page.text((x, top + 0.5 * TICK_TEXT), text);
+        let rect = Rectangle::new((x - 0.5 * width, top + TICK_TEXT + GAP), (width, height));
+        inset::draw(page, look, rect, &sample.density)
+    }
+}

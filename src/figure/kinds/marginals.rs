@@ -1,0 +1,274 @@
+//! Marginal densities at several parameter values, overlaid: a panel an axis, side by side.
+
+use std::borrow::Cow;
+
+use crate::continuation::{Point, SweepResult};
+use crate::density::{Density, EstimatedDensity, Observable};
+
+use super::{Drawn, Kind, Sketch};
+use crate::figure::FigureError;
+use crate::figure::canvas::frame::{self, Scale};
+use crate::figure::canvas::legend::{Legend, Sample};
+use crate::figure::canvas::look::Look;
+use crate::figure::canvas::page::{Heading, Page, Rectangle, Shape};
+use crate::figure::canvas::style::{MARGIN, Stroke};
+use crate::figure::figures::{Figure, Print};
+use crate::figure::parts::view::View;
+use crate::figure::parts::{caption, names, table, view};
+
+/// Height of a panel on a page of its own width, in pixels, and that width.
+const HEIGHT: f64 = 210.0;
+const USUAL: f64 = 620.0;
+/// Gap between panels.
+const BETWEEN: f64 = 18.0;
+/// Opacity of the band of two standard errors.
+const BAND: f64 = 0.18;
+
+/// Narrowest panel beside another where the page is given.
+const NARROWEST: f64 = 165.0;
+/// Room right of the last panel, for half a label of its axis.
+const BESIDE: f64 = 10.0;
+
+/// Densities of one axis, overlaid in a panel.
+pub(super) struct Overlaid<'a> {
+    axis: usize,
+    densities: Vec<(usize, Cow<'a, EstimatedDensity>)>,
+    window: (f64, f64),
+    up: Scale,
+}
+
+pub(super) const KIND: Kind = Kind {
+    names: &["marginals"],
+    is_usual: true,
+    sketches: |sweep| {
+        let (result, chosen) = (sweep.result, sweep.chosen.clone());
+        let draw = move |print: &Print<'_>| draw(result, &chosen, print);
+        vec![Sketch::new("marginals", draw)]
+    },
+};
+
+/// How panels are arranged: columns, and the width of a panel.
+fn arrangement(look: &Look, panels: usize, room: f64) -> (usize, f64) {
+    let own = match panels {
+        0 | 1 => 380.0,
+        2 => 235.0,
+        _ => 215.0,
+    };
+    if look.page.is_none() {
+        return (panels, own);
+    }
+    let width = |columns: usize| {
+        let gaps = BETWEEN * (columns - 1) as f64 + BESIDE + 2.0 * MARGIN;
+        look.fill(own, columns as f64 * room + gaps) / columns as f64
+    };
+    let fitting = (1..=panels.max(1))
+        .rev()
+        .find(|&columns| width(columns) >= NARROWEST);
+    let columns = fitting.unwrap_or(1);
+    (columns, width(columns))
+}
+
+/// The figure of all observed marginals at the chosen points; `None` if there is nothing to draw.
+fn draw(result: &SweepResult, chosen: &[&Point], print: &Print<'_>) -> Drawn {
+    let mut all = Vec::new();
+    for number in 0..result.subject.observables.len() {
+        all.extend(marginal(result, chosen, number, print)?);
+    }
+    let Some(page) = draw_overlaid(result, chosen, &all, print)? else {
+        return Ok(None);
+    };
+    let values = chosen.iter().map(|point| point.value);
+    let at = caption::at(&result.subject.family, values);
+    let seen = format!("Steady-state marginal densities{at}.");
+    let is_marginal = |one| matches!(one, Observable::Marginal(_));
+    let between = caption::between_cells(result, is_marginal);
+    let observables: Vec<usize> = (0..result.subject.observables.len()).collect();
+    let rows = |estimated: &EstimatedDensity, number: usize| {
+        let all = chosen
+            .iter()
+            .filter_map(|point| view::density(point, number));
+        let all: Vec<&Density> = all.map(|one| &one.density).collect();
+        as_drawn(estimated, view::window(&all, 0))
+    };
+    Ok(Some(Figure::new(
+        &page,
+        caption::of_sweep(result, seen, &[between]),
+        table::of_marginals(result, (&observables, chosen), rows),
+    )))
+}
+
+/// The points of a marginal's curve; with sampling noise its cells.
+fn as_drawn(estimated: &EstimatedDensity, window: Option<(f64, f64)>) -> Vec<(f64, f64, String)> {
+    let Some(window) = window else {
+        return Vec::new();
+    };
+    let view = View::new(estimated);
+    if view.between.is_none() {
+        return table::cells(estimated);
+    }
+    let curve = view.curve(window).into_iter();
+    curve
+        .map(|(place, value)| (place, value, String::new()))
+        .collect()
+}
+
+/// Draws a panel for each of some axes, in a legend the chosen points; `None` without a panel.
+pub(super) fn draw_overlaid(
+    result: &SweepResult,
+    chosen: &[&Point],
+    all: &[Overlaid<'_>],
+    print: &Print<'_>,
+) -> Result<Option<Page>, FigureError> {
+    let (family, look) = (&result.subject.family, &print.look);
+    let high = look.height(HEIGHT, USUAL);
+    if all.is_empty() {
+        return Ok(None);
+    }
+    let room = all.iter().map(|one| one.up.left()).fold(0.0, f64::max);
+    let (columns, wide) = arrangement(look, all.len(), room);
+    let rows = all.len().div_ceil(columns);
+    // Panels of one row need only their own room each.
+    let lefts: Vec<f64> = match rows {
+        1 => all.iter().map(|one| one.up.left()).collect(),
+        _ => vec![room; columns],
+    };
+    let together = lefts.iter().sum::<f64>() + columns as f64 * wide;
+    let gaps = BETWEEN * (columns - 1) as f64 + BESIDE + 2.0 * MARGIN;
+    let page_width = look.page.unwrap_or(together + gaps);
+    // What rooms of their own leave over goes to the panels.
+    let wide = (page_width - gaps - lefts.iter().sum::<f64>()) / columns as f64;
+    let heading = Heading::new(look, print.title, page_width)?;
+    let entry = |(number, point): (usize, &&Point)| {
+        (
+            Sample::Curve(Stroke::curve(number)),
+            names::at(family, point.value),
+        )
+    };
+    let legend = Legend::new(
+        look,
+        chosen.iter().enumerate().map(entry).collect(),
+        page_width - 2.0 * MARGIN,
+    )?;
+    let top = heading.height() + legend.height() + 6.0;
+    let step = high + Scale::below() + MARGIN;
+    let page = Page::new(look, page_width, top + rows as f64 * step);
+    heading.draw(&page);
+    legend.draw(&page, 0.5 * page_width, heading.height());
+    for (number, one) in all.iter().enumerate() {
+        let (row, column) = (number / columns, number % columns);
+        let before: f64 = lefts[..=column].iter().sum();
+        let rect = Rectangle::new(
+            (
+                MARGIN + before + column as f64 * (wide + BETWEEN),
+                top + row as f64 * step,
+            ),
+            (wide, high),
+        );
+        let title = names::axis(family, one.axis);
+        let across = Scale::horizontal(look, one.window, wide, &title)?;
+        draw_panel(&page, (one, &across), rect);
+    }
+    Ok(Some(page))
+}
+
+/// The densities of one marginal at the chosen points.
+fn marginal<'a>(
+    result: &SweepResult,
+    chosen: &[&'a Point],
+    number: usize,
+    print: &Print<'_>,
+) -> Result<Option<Overlaid<'a>>, FigureError> {
+    let observable = result.subject.observables[number];
+    let Observable::Marginal(axis) = observable else {
+        return Ok(None);
+    };
+    let drawable = |(place, point): (usize, &&'a Point)| {
+        Some((place, Cow::Borrowed(view::density(point, number)?)))
+    };
+    let densities = chosen.iter().enumerate().filter_map(drawable);
+    let title = names::density(&result.subject.family, observable);
+    Overlaid::new(print, axis, densities.collect(), &title)
+}
+
+impl<'a> Overlaid<'a> {
+    /// Densities along an axis, with the numbers of their points among the chosen; `None` where there is nothing to
+    /// see. The title is that of the ordinate.
+    pub(super) fn new(
+        print: &Print<'_>,
+        axis: usize,
+        densities: Vec<(usize, Cow<'a, EstimatedDensity>)>,
+        title: &str,
+    ) -> Result<Option<Self>, FigureError> {
+        let bare: Vec<&Density> = densities
+            .iter()
+            .map(|(_, estimated)| &estimated.density)
+            .collect();
+        let Some(window) = view::window(&bare, 0) else {
+            return Ok(None);
+        };
+        let shown = densities
+            .iter()
+            .map(|(_, estimated)| View::new(estimated).largest);
+        let highest = shown.fold(0.0, f64::max);
+        let high = print.look.height(HEIGHT, USUAL);
+        let up = Scale::vertical(&print.look, (0.0, 1.06 * highest), high, title)?;
+        Ok(Some(Self {
+            axis,
+            densities,
+            window,
+            up,
+        }))
+    }
+}
+
+fn draw_panel(page: &Page, (one, across): (&Overlaid<'_>, &Scale), rect: Rectangle) {
+    let panel = page.panel(rect, across.range, one.up.range);
+    for (number, estimated) in &one.densities {
+        let stroke = Stroke::curve(*number);
+        let band = band(estimated, across.range, one.up.range);
+        if !band.is_empty() {
+            let fill = stroke.colour.at(BAND);
+            panel.draw(&band, Shape::Area(fill));
+        }
+    }
+    for (number, estimated) in &one.densities {
+        let curve = View::new(estimated).curve(across.range);
+        let curve = within(curve, one.up.range);
+        panel.draw(&curve, Shape::Line(Stroke::curve(*number)));
+    }
+    frame::border(page, rect);
+    across.draw_below(page, rect, true);
+    one.up.draw_left(page, rect, true);
+}
+
+/// Numbers and centres of the cells inside a window.
+pub(super) fn cells(density: &Density, window: (f64, f64)) -> impl Iterator<Item = (usize, f64)> {
+    let centres = density.axes[0].centres().into_iter().enumerate();
+    centres.filter(move |(_, centre)| *centre >= window.0 && *centre <= window.1)
+}
+
+/// Points of a curve, kept in the range of the ordinate.
+pub(super) fn within(curve: Vec<(f64, f64)>, range: (f64, f64)) -> Vec<(f64, f64)> {
+    let kept = |(place, value): (f64, f64)| (place, value.clamp(range.0, range.1));
+    curve.into_iter().map(kept).collect()
+}
+
+/// The outline of ± 2 standard errors; empty for a method without sampling.
+fn band(estimated: &EstimatedDensity, window: (f64, f64), range: (f64, f64)) -> Vec<(f64, f64)> {
+    let errors = &estimated.standard_error;
+    let values = &estimated.density.values;
+    if errors.len() != values.len() || !errors.iter().any(|&error| error > 0.0) {
+        return Vec::new();
+    }
+    let at = |factor: f64| {
+        let edge = move |(cell, centre): (usize, f64)| {
+            let value = values[cell] + factor * errors[cell];
+            (centre, value.clamp(range.0, range.1))
+        };
+        cells(&estimated.density, window).map(edge)
+    };
+    let mut outline: Vec<(f64, f64)> = at(2.0).collect();
+    let lower: Vec<(f64, f64)> = at(-2.0).collect();
+    outline.extend(lower.into_iter().rev());
+    outline
+}

@@ -1,0 +1,167 @@
+//! The kinds of figures, one file each: what it draws, its caption, its table, its names. A new kind is one file like
+//! `diagram`, and its line in a list here.
+
+mod compared_joint;
+mod compared_marginals;
+pub(super) mod curve;
+mod diagram;
+pub(super) mod friction;
+mod health;
+mod homology;
+mod indicator;
+mod joint;
+pub(super) mod map;
+mod marginals;
+mod pairs;
+mod peaks;
+mod section;
+mod surface;
+mod time_to_accuracy;
+
+use super::FigureError;
+use super::figures::{Figure, Print};
+use super::parts::{names, view};
+use crate::compare::Comparison;
+use crate::continuation::{Point, SweepResult};
+use crate::density::Observable;
+use crate::system::Family;
+
+/// The kinds of figures of a sweep, in the order in which they are drawn: a new kind is one line here.
+pub(super) const OF_SWEEPS: [Kind; 10] = [
+    diagram::KIND,
+    marginals::KIND,
+    joint::KIND,
+    surface::KIND,
+    pairs::KIND,
+    section::KIND,
+    peaks::KIND,
+    indicator::KIND,
+    homology::KIND,
+    health::KIND,
+];
+
+/// The kinds of figures of a comparison.
+pub(super) const OF_COMPARISONS: [for<'a> fn(&'a Comparison) -> Vec<Sketch<'a>>; 3] = [
+    compared_marginals::sketches,
+    compared_joint::sketches,
+    time_to_accuracy::sketches,
+];
+
+/// A kind of figures of a sweep.
+pub(super) struct Kind {
+    /// What the names of its figures begin with.
+    pub(super) names: &'static [&'static str],
+    /// Whether those of its first name are drawn where none is named.
+    pub(super) is_usual: bool,
+    /// The figures that it has of a sweep.
+    pub(super) sketches: for<'a> fn(&Sweep<'a>) -> Vec<Sketch<'a>>,
+}
+
+/// The kinds that are drawn where none is named.
+pub(super) fn usual() -> Vec<String> {
+    let kinds = OF_SWEEPS.iter().filter(|kind| kind.is_usual);
+    let names = kinds.filter_map(|kind| kind.names.first());
+    names.map(|&name| name.to_owned()).collect()
+}
+
+/// A sweep with the points that figures are drawn at.
+pub(super) struct Sweep<'a> {
+    /// The points with what was found in them.
+    pub(super) result: &'a SweepResult,
+    /// The points at which marginals and joint densities are drawn.
+    pub(super) chosen: Vec<&'a Point>,
+}
+
+impl<'a> Sweep<'a> {
+    /// For each value in `at` the nearest computed point is chosen.
+    pub(super) fn new(result: &'a SweepResult, at: &[f64]) -> Self {
+        let chosen = view::nearest(result, at);
+        Self { result, chosen }
+    }
+
+    /// The systems that were swept.
+    pub(super) fn family(&self) -> &'a Family {
+        &self.result.subject.family
+    }
+
+    /// Numbers and names in files of the observables.
+    pub(super) fn observables(&self) -> impl Iterator<Item = (usize, Observable, String)> + 'a {
+        let (result, family) = (self.result, self.family());
+        let observables = result.subject.observables.iter().enumerate();
+        observables.map(|(number, &one)| (number, one, names::file(family, one)))
+    }
+
+    /// Numbers and names in files of the observed pairs of axes.
+    pub(super) fn pairs(&self) -> impl Iterator<Item = (usize, String)> + 'a {
+        let joint = |(number, observable, file)| match observable {
+            Observable::Joint(..) => Some((number, file)),
+            Observable::Marginal(_) => None,
+        };
+        self.observables().filter_map(joint)
+    }
+
+    /// A figure of each marginal, `NAME_x`, drawn from its number among the observables and that of its axis.
+    pub(super) fn of_marginals(
+        &self,
+        name: &str,
+        draw: for<'r> fn(&'r SweepResult, (usize, usize), &Print<'_>) -> Drawn,
+    ) -> Vec<Sketch<'a>> {
+        let result = self.result;
+        let sketch = |(number, observable, file)| match observable {
+            Observable::Marginal(axis) => {
+                Some(Sketch::new(format!("{name}_{file}"), move |print| {
+                    draw(result, (number, axis), print)
+                }))
+            }
+            Observable::Joint(..) => None,
+        };
+        self.observables().filter_map(sketch).collect()
+    }
+
+    /// A figure of each observable, `NAME_xy`, drawn from its number.
+    pub(super) fn of_observables(
+        &self,
+        name: &str,
+        draw: for<'r> fn(&'r SweepResult, usize, &Print<'_>) -> Drawn,
+    ) -> Vec<Sketch<'a>> {
+        let result = self.result;
+        let sketch = |(number, _, file)| {
+            Sketch::new(format!("{name}_{file}"), move |print| {
+                draw(result, number, print)
+            })
+        };
+        self.observables().map(sketch).collect()
+    }
+}
+
+/// A figure; `None` where there is nothing to see.
+pub(super) type Drawn = Result<Option<Figure>, FigureError>;
+
+/// A figure that is not drawn yet.
+pub(super) struct Sketch<'a> {
+    /// Its name: that of its file without the extension.
+    pub(super) name: String,
+    draw: Box<dyn Fn(&Print<'_>) -> Drawn + 'a>,
+}
+
+impl<'a> Sketch<'a> {
+    /// A figure of that name, which `draw` draws.
+    pub(super) fn new(name: impl Into<String>, draw: impl Fn(&Print<'_>) -> Drawn + 'a) -> Self {
+        Self {
+            name: name.into(),
+            draw: Box::new(draw),
+        }
+    }
+
+    /// Draws it; `None` where there is nothing to see.
+    ///
+    /// # Errors
+    /// [`FigureError`].
+    pub(super) fn draw(&self, print: &Print<'_>) -> Drawn {
+        let mut figure = (self.draw)(print)?;
+        if let Some(figure) = &mut figure {
+            figure.name.clone_from(&self.name);
+        }
+        Ok(figure)
+    }
+}

@@ -1,0 +1,144 @@
+//! A joint density twice, as a surface and as a map beside it: a row a parameter value, as papers of this field print
+//! them.
+
+use crate::density::Observable;
+
+use super::Kind;
+use super::surface::{COARSE, Frame};
+use crate::continuation::{Point, SweepResult};
+use crate::figure::FigureError;
+use crate::figure::canvas::colour_bar::ColourBar;
+use crate::figure::canvas::frame::Scale;
+use crate::figure::canvas::look::Look;
+use crate::figure::canvas::page::{Heading, Page, Rectangle};
+use crate::figure::canvas::space::Space;
+use crate::figure::canvas::style::{MARGIN, TEXT};
+use crate::figure::figures::Print;
+use crate::figure::parts::joint_map::{Found, draw_map, lettered, windows, write_above};
+use crate::figure::parts::names;
+
+/// Width of a surface with its axes on a page of its own width, in pixels.
+const SURFACE: f64 = 330.0;
+/// Side of the map beside it.
+const MAP: f64 = 190.0;
+/// Room of the line above a row.
+const ABOVE: f64 = 2.0 * TEXT;
+/// Gap between surface and map.
+const BETWEEN: f64 = 16.0;
+/// On a page narrower than this there is no colour bar: the surface has the same colours, and an axis.
+const NARROW: f64 = 540.0;
+
+pub(super) const KIND: Kind = Kind {
+    names: &["pairs"],
+    is_usual: false,
+    sketches: |sweep| {
+        let way = "as a surface and as a map";
+        let pairs = sweep.pairs();
+        pairs
+            .map(|(number, pair)| {
+                sweep.joint(format!("pairs_{pair}"), (number, way), &sweep.chosen, draw)
+            })
+            .collect()
+    },
+};
+
+/// Where surface and map of a row stand, in pixels.
+struct Row {
+    page: f64,
+    surface: f64,
+    map: (f64, f64),
+}
+
+impl Row {
+    /// `left` and `right` are what stands beside the map.
+    fn new(look: &Look, left: f64, right: f64) -> Self {
+        let Some(page) = look.page else {
+            return Self {
+                page: 2.0 * MARGIN + SURFACE + BETWEEN + left + MAP + right,
+                surface: SURFACE,
+                map: (MAP, MAP),
+            };
+        };
+        let room = page - 2.0 * MARGIN;
+        let surface = 0.56 * room;
+        let map = room - surface - BETWEEN - left - right;
+        Self {
+            page,
+            surface,
+            map: (map, map.min(0.62 * surface)),
+        }
+    }
+}
+
+/// The figure; `None` if there is nothing to draw.
+fn draw(
+    result: &SweepResult,
+    observable: usize,
+    chosen: &[&Point],
+    print: &Print<'_>,
+) -> Result<Option<Page>, FigureError> {
+    let (family, look) = (&result.subject.family, &print.look);
+    let watched = result.subject.observables[observable];
+    let found = Found::all(chosen, observable);
+    let (Observable::Joint(first, second), Some(window)) = (watched, windows(&found)) else {
+        return Ok(None);
+    };
+    let Some(frame) = Frame::new(family, watched, &found) else {
+        return Ok(None);
+    };
+    let tops: Vec<f64> = found.iter().map(|found| found.shown.largest).collect();
+    let title = names::density(family, watched);
+    let bars = |high: f64| {
+        let bar = |&top: &f64| ColourBar::new(look, top, high, &title);
+        tops.iter().map(bar).collect::<Result<Vec<_>, _>>()
+    };
+    let vertical = |high: f64| Scale::vertical(look, window.1, high, &names::axis(family, second));
+    let has_bars = look.page.is_none_or(|page| page >= NARROW);
+    let widest = |bars: &[ColourBar]| {
+        if has_bars {
+            bars.iter().map(ColourBar::width).fold(0.0, f64::max)
+        } else {
+            // Half a label of the abscissa stands out.
+            6.0
+        }
+    };
+    // What stands beside the map hardly depends on its height: a first round measures it.
+    let row = Row::new(look, vertical(MAP)?.left(), widest(&bars(MAP)?));
+    let (up, bars) = (vertical(row.map.1)?, bars(row.map.1)?);
+    let row = Row {
+        map: (Row::new(look, up.left(), widest(&bars)).map.0, row.map.1),
+        ..row
+    };
+    let across = Scale::horizontal(look, window.0, row.map.0, &names::axis(family, first))?;
+    let mut surface_high: f64 = 0.0;
+    for &top in &tops {
+        surface_high = surface_high.max(Space::height(look, row.surface, frame.ranges(top))?);
+    }
+    let map_high = row.map.1 + Scale::below();
+    let step = ABOVE + surface_high.max(map_high);
+    let heading = Heading::new(look, print.title, row.page)?;
+    let height = heading.height() + found.len() as f64 * (step + MARGIN);
+    let page = Page::new(look, row.page, height);
+    heading.draw(&page);
+    for (number, (found, &top)) in found.iter().zip(&tops).enumerate() {
+        let from = heading.height() + ABOVE + number as f64 * (step + MARGIN);
+        let surface = Rectangle::new((MARGIN, from), (row.surface, surface_high));
+        let line = lettered(look, number, names::at(family, found.value));
+        write_above(&page, surface, line);
+        frame.draw(&page, surface, (found, top, COARSE))?;
+        let map = Rectangle::new(
+            (
+                row.page - MARGIN - widest(&bars) - row.map.0,
+                from + 0.5 * (surface_high.max(map_high) - map_high),
+            ),
+            (row.map.0, row.map.1),
+        );
+        draw_map(&page, map, found, window, top)?;
+        across.draw_below(&page, map, true);
+        up.draw_left(&page, map, true);
+        if has_bars {
+            bars[number].draw(&page, map, &[])?;
+        }
+    }
+    Ok(Some(page))
+}

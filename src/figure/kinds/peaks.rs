@@ -1,0 +1,137 @@
+//! The peak diagram of a marginal: where its peaks and valleys lie, and how high they are, over the parameter.
+
+use crate::continuation::SweepResult;
+use crate::topology::{Feature, FeatureKind, Verdict};
+
+use super::{Drawn, Kind};
+use crate::figure::canvas::style::Stroke;
+use crate::figure::figures::Print;
+use crate::figure::parts::along::{self, Curve, Track};
+use crate::figure::parts::branches::{Branch, branches};
+use crate::figure::parts::table::{self, number as number_of};
+use crate::figure::parts::{caption, names, view};
+
+/// Height of a panel, in pixels.
+const HEIGHT: f64 = 170.0;
+/// Heights that differ by more than this factor are drawn on a logarithmic axis.
+const LOGARITHMIC: f64 = 30.0;
+
+/// The range of places as a share of where the density is, at least: a peak that stays where it is moves by rounding
+/// alone.
+const LEAST: f64 = 0.02;
+
+/// A peak diagram an observed marginal.
+pub(super) const KIND: Kind = Kind {
+    names: &["peaks"],
+    is_usual: false,
+    sketches: |sweep| sweep.of_marginals("peaks", draw),
+};
+
+/// The figure; `None` without a peak.
+fn draw(result: &SweepResult, (number, axis): (usize, usize), print: &Print<'_>) -> Drawn {
+    let (family, watched) = (&result.subject.family, result.subject.observables[number]);
+    let densities = result.points.iter();
+    let densities: Vec<_> = densities
+        .filter_map(|point| Some(&view::density(point, number)?.density))
+        .collect();
+    let Some(window) = view::window(&densities, 0) else {
+        return Ok(None);
+    };
+    let kinds = [
+        (FeatureKind::Peak, "peak", 0),
+        (FeatureKind::Valley, "valley", 1),
+    ];
+    let (mut places, mut heights) = (Vec::new(), Vec::new());
+    for (kind, name, colour) in kinds {
+        for branch in branches(&result.points, number, kind, window) {
+            let curve = |places: Vec<(f64, f64)>| Curve {
+                name: name.to_owned(),
+                stroke: Stroke::curve(colour),
+                places,
+                errors: Vec::new(),
+            };
+            heights.push(curve(heights_of(result, number, &branch)));
+            places.push(curve(branch.places));
+        }
+    }
+    let values = heights
+        .iter()
+        .flat_map(|curve| &curve.places)
+        .map(|place| place.1);
+    let (low, high) = values.fold((f64::INFINITY, 0.0), |(low, high), value: f64| {
+        (f64::min(low, value), f64::max(high, value))
+    });
+    let track = |title: String, curves: Vec<Curve>, is_logarithmic: bool, least: f64| Track {
+        title,
+        is_logarithmic,
+        has_zero: false,
+        least,
+        share: 1.0,
+        curves,
+    };
+    let is_logarithmic = low > 0.0 && high > LOGARITHMIC * low;
+    let tracks = [
+        track(
+            names::axis(family, axis),
+            places,
+            false,
+            LEAST * (window.1 - window.0),
+        ),
+        track(
+            names::density(family, watched),
+            heights,
+            is_logarithmic,
+            0.0,
+        ),
+    ];
+    let seen = format!(
+        "Places and heights of the peaks (solid) and valleys (dashed) of the steady-state marginal density {} over {}.",
+        caption::density(family, watched),
+        family.parameter()
+    );
+    let texts = (seen, rows(result, number));
+    along::draw((result, print), Some(watched), (&tracks, HEIGHT), texts)
+}
+
+/// The table: what is there at each value.
+fn rows(result: &SweepResult, number: usize) -> String {
+    let parameter = result.subject.family.parameter();
+    let columns = [
+        parameter,
+        "kind",
+        "position",
+        "density",
+        "persistence",
+        "significance",
+    ];
+    let features = along::detections(result, number).flat_map(|(value, detection)| {
+        let features = detection.features.iter();
+        features.map(move |feature| (value, feature))
+    });
+    let rows = features.filter(|(_, feature)| feature.verdict == Verdict::Present);
+    let row = |(value, feature): (f64, &Feature)| {
+        let position = feature.position.first().copied();
+        vec![
+            number_of(value),
+            format!("{:?}", feature.kind).to_lowercase(),
+            position.map(number_of).unwrap_or_default(),
+            number_of(feature.density),
+            number_of(feature.persistence),
+            number_of(feature.significance),
+        ]
+    };
+    table::table(&columns, rows.map(row))
+}
+
+/// The densities at the places of a branch.
+fn heights_of(result: &SweepResult, number: usize, branch: &Branch) -> Vec<(f64, f64)> {
+    let height = |&(value, position): &(f64, f64)| {
+        let mut points = along::detections(result, number);
+        let (_, detection) = points.find(|(at, _)| *at == value)?;
+        let features = detection.features.iter();
+        let mut own = features.filter(|one| one.kind == branch.kind);
+        let feature = own.find(|one| one.position.first() == Some(&position))?;
+        Some((value, feature.density))
+    };
+    branch.places.iter().filter_map(height).collect()
+}

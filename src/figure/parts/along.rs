@@ -1,0 +1,240 @@
+//! Numbers over the parameter, in panels below each other that share the abscissa, with the labelled bifurcations
+//! through all of them.
+
+use plotters_backend::text_anchor::HPos;
+
+use crate::continuation::{Point, SweepResult};
+use crate::density::Observable;
+use crate::topology::Detection;
+
+use super::bifurcations::Labels;
+use super::caption;
+use super::names;
+use crate::figure::FigureError;
+use crate::figure::canvas::frame::{self, Scale};
+use crate::figure::canvas::legend::{self, Legend, Sample};
+use crate::figure::canvas::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
+use crate::figure::canvas::render;
+use crate::figure::canvas::style::{GREY, MARGIN, Stroke, TEXT};
+use crate::figure::figures::{Figure, Print};
+
+/// Width of the panels on a page of its own width, in pixels, and that width.
+const WIDTH: f64 = 400.0;
+const USUAL: f64 = 480.0;
+/// Gap between panels.
+const BETWEEN: f64 = 16.0;
+/// Room left of labels without a title beside them.
+const BETWEEN_LABELS: f64 = 4.0;
+/// Room right of the panels, for half a label.
+const BESIDE: f64 = 14.0;
+/// Share of a linear range that is left free above and below the data.
+const BORDER: f64 = 0.06;
+/// Opacity of bands of errors.
+const BAND: f64 = 0.2;
+/// What is smaller than this is drawn there on logarithmic axes: rounding, not a number.
+const SMALLEST: f64 = 1e-300;
+
+/// One curve of a panel.
+pub(crate) struct Curve {
+    /// What the legend says; empty for a curve that has its entry already.
+    pub(crate) name: String,
+    pub(crate) stroke: Stroke,
+    /// Parameter and value, ascending in the parameter; neighbours are joined.
+    pub(crate) places: Vec<(f64, f64)>,
+    /// Half-width of the band about each place; empty without errors.
+    pub(crate) errors: Vec<f64>,
+}
+
+/// One panel.
+pub(crate) struct Track {
+    /// Title of the ordinate, as markup.
+    pub(crate) title: String,
+    pub(crate) is_logarithmic: bool,
+    /// Whether the line of zero belongs to it.
+    pub(crate) has_zero: bool,
+    /// A linear range is no shorter: what differs by less is the same.
+    pub(crate) least: f64,
+    /// Height, as a share of the usual one.
+    pub(crate) share: f64,
+    pub(crate) curves: Vec<Curve>,
+}
+
+impl Track {
+    /// A value as it is drawn.
+    fn drawn(&self, value: f64) -> f64 {
+        if self.is_logarithmic {
+            value.abs().max(SMALLEST).log10()
+        } else {
+            value
+        }
+    }
+
+    /// The range of the ordinate.
+    fn range(&self) -> Option<(f64, f64)> {
+        let values = self.curves.iter().flat_map(|curve| &curve.places);
+        let values = values
+            .map(|place| self.drawn(place.1))
+            .filter(|value| value.is_finite());
+        let zero = self.has_zero.then_some(0.0);
+        let join = |range: Option<(f64, f64)>, value: f64| {
+            let (low, high) = range.unwrap_or((value, value));
+            Some((low.min(value), high.max(value)))
+        };
+        let (low, high) = values.chain(zero).fold(None, join)?;
+        // Two decades hold two labels; a constant is drawn in the middle.
+        let least = if self.is_logarithmic {
+            2.0
+        } else {
+            let rounding = 1e-9 * low.abs().max(high.abs());
+            rounding.max(1e-12).max(self.least)
+        };
+        let missing = (0.5 * (least - (high - low))).max(0.0);
+        let border = BORDER * (high - low + 2.0 * missing);
+        Some((low - missing - border, high + missing + border))
+    }
+}
+
+/// What was detected of an observable, by its number, at the values of a sweep.
+pub(crate) fn detections(
+    result: &SweepResult,
+    observable: usize,
+) -> impl Iterator<Item = (f64, &Detection)> {
+    let points = result.points.iter();
+    points.filter_map(move |point| Some((point.value, point.detections.get(observable)?)))
+}
+
+/// Draws panels of `height` pixels below each other, from the upper one downward; those without a curve are left out,
+/// `None` where none is left. The caption says what is seen.
+///
+/// `own` is the observable whose bifurcations stand out; with `None` all stand back alike.
+pub(crate) fn draw(
+    (result, print): (&SweepResult, &Print<'_>),
+    own: Option<Observable>,
+    (tracks, height): (&[Track], f64),
+    (seen, table): (String, String),
+) -> Result<Option<Figure>, FigureError> {
+    let look = &print.look;
+    let mut panels = Vec::new();
+    for track in tracks {
+        let high = look.height(height * track.share, USUAL);
+        if let Some(range) = track.range() {
+            let scale = if track.is_logarithmic {
+                Scale::logarithmic
+            } else {
+                Scale::vertical
+            };
+            panels.push((track, scale(look, range, high, &track.title)?, high));
+        }
+    }
+    if panels.is_empty() {
+        return Ok(None);
+    }
+    let range = parameter_range(&result.points);
+    // Titles that are longer than their panels are high stand above them all, and not beside.
+    let mut is_above = false;
+    for (_, up, high) in &panels {
+        let long = render::text_width(look, up.title(), TEXT, false)?;
+        is_above |= long > high + BETWEEN;
+    }
+    let above = if is_above { 1.3 * TEXT } else { 0.0 };
+    let left_of = |up: &Scale| {
+        if is_above {
+            up.label_width() + BETWEEN_LABELS
+        } else {
+            up.left()
+        }
+    };
+    let room = panels.iter().map(|(_, up, _)| left_of(up));
+    let room = room.fold(0.0, f64::max);
+    let left = MARGIN + room;
+    let wide = look.fill(WIDTH, left + BESIDE + MARGIN);
+    let width = left + wide + BESIDE + MARGIN;
+    let across = Scale::horizontal(look, range, wide, &names::parameter(&result.subject.family))?;
+    let heading = Heading::new(look, print.title, width)?;
+    let labels = Labels::new(look, result, own, range, (left, wide))?;
+    let mut entries: Vec<(Sample, String)> = Vec::new();
+    for curve in tracks.iter().flat_map(|track| &track.curves) {
+        let is_new = entries.iter().all(|(_, known)| *known != curve.name);
+        if is_new && !curve.name.is_empty() && !curve.places.is_empty() {
+            entries.push((Sample::Curve(curve.stroke), curve.name.clone()));
+        }
+    }
+    entries.extend(labels.entries());
+    let legend = Legend::new(look, entries, width - 2.0 * MARGIN)?;
+    let top = heading.height() + labels.height() + above;
+    let step = |high: &f64| high + BETWEEN + above;
+    let high = panels.iter().map(|(_, _, high)| step(high));
+    let high = high.sum::<f64>() - BETWEEN - above;
+    let below = top + high + Scale::below();
+    let page = Page::new(look, width, below + legend.height() + MARGIN);
+    heading.draw(&page);
+    let mut from = top;
+    for (number, (track, up, high)) in panels.iter().enumerate() {
+        let rect = Rectangle::new((left, from), (wide, *high));
+        from += step(high);
+        let panel = page.panel(rect, range, up.range);
+        labels.draw_plain(&panel, up.range);
+        draw_track(&panel, track, range, up.range);
+        frame::border(&page, rect);
+        across.draw_below(&page, rect, number + 1 == panels.len());
+        if is_above {
+            up.draw_labels_left(&page, rect);
+            let place = (rect.left, rect.top - 0.65 * TEXT);
+            page.text(place, lettering(up.title(), HPos::Left));
+        } else {
+            up.draw_left(&page, rect, true);
+        }
+        if number == 0 {
+            let above_title = Rectangle {
+                top: rect.top - above,
+                ..rect
+            };
+            labels.draw_texts(&page, above_title);
+        }
+    }
+    legend.draw(&page, left + 0.5 * wide, below);
+    let marked = [caption::bifurcations(result)];
+    let caption = caption::of_sweep(result, seen, &marked);
+    Ok(Some(Figure::new(&page, caption, table)))
+}
+
+fn draw_track(panel: &Panel, track: &Track, range: (f64, f64), (low, high): (f64, f64)) {
+    if track.has_zero {
+        let zero = Stroke::solid(GREY, 0.8);
+        panel.draw(&[(range.0, 0.0), (range.1, 0.0)], Shape::Line(zero));
+    }
+    for curve in &track.curves {
+        let on_axis = |value: f64| track.drawn(value).clamp(low, high);
+        let band = |sign: f64| {
+            let pairs = curve.places.iter().zip(&curve.errors);
+            pairs.map(move |(place, error)| (place.0, on_axis(place.1 + sign * error)))
+        };
+        let mut outline: Vec<(f64, f64)> = band(1.0).collect();
+        outline.extend(band(-1.0).collect::<Vec<_>>().into_iter().rev());
+        if curve.errors.iter().any(|&error| error > 0.0) {
+            panel.draw(&outline, Shape::Area(curve.stroke.colour.at(BAND)));
+        }
+        let places: Vec<(f64, f64)> = curve
+            .places
+            .iter()
+            .map(|place| (place.0, on_axis(place.1)))
+            .collect();
+        match places[..] {
+            [_] => panel.mark(&places, legend::symbol(0, curve.stroke.colour)),
+            _ => panel.draw(&places, Shape::Line(curve.stroke)),
+        }
+    }
+}
+
+/// First and last parameter value; widened if they are the same.
+pub(crate) fn parameter_range(points: &[Point]) -> (f64, f64) {
+    let values = points.iter().map(|point| point.value);
+    let (from, to) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(from, to), value| {
+        (from.min(value), to.max(value))
+    });
+    if from < to {
+        return (from, to);
+    }
+    let half = if from == 0.0 { 0.5 } else { 0.1 * from.abs() };
+    (from - half, from + half)
+}

@@ -1,0 +1,175 @@
+//! Parts of captions, ready to be pasted: of which system a figure is, by which method, what is marked.
+
+use crate::continuation::{BifurcationStatus, LabelledPoint, PointType, SweepResult};
+use crate::density::Observable;
+use crate::figure::canvas::symbols;
+use crate::space::Axis;
+use crate::system::Family;
+use crate::topology::Between;
+
+/// The caption of a figure of a sweep, from what is seen in it and what is marked in it; empty parts are left out.
+pub(crate) fn of_sweep(result: &SweepResult, seen: String, marked: &[String]) -> String {
+    let subject = [seen, system_of(&result.subject.family), method(result)];
+    let parts = subject.iter().chain(marked);
+    let parts: Vec<&str> = parts
+        .filter(|part| !part.is_empty())
+        .map(String::as_str)
+        .collect();
+    format!("{} {}\n", parts.join(" "), version())
+}
+
+/// What computed it.
+pub(crate) fn version() -> String {
+    format!("Computed with pbif {}.", env!("CARGO_PKG_VERSION"))
+}
+
+/// `p(x, y)`.
+pub(crate) fn density(family: &Family, observable: Observable) -> String {
+    format!("p({})", observable.symbols(family).join(", "))
+}
+
+/// A number as captions have it.
+pub(crate) fn number(value: f64) -> String {
+    let value = symbols::rounded(value);
+    if value == 0.0 || (1e-4..1e6).contains(&value.abs()) {
+        format!("{value}")
+    } else {
+        format!("{value:e}")
+    }
+}
+
+/// ` at f_c = -0.02, 0 and 0.01`.
+pub(crate) fn at(family: &Family, values: impl Iterator<Item = f64>) -> String {
+    let values: Vec<String> = values.map(number).collect();
+    let values = match values.as_slice() {
+        [] => return String::new(),
+        [rest @ .., last] if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
+        all => all.join(", "),
+    };
+    format!(" at {} = {values}", family.parameter())
+}
+
+/// A value to the second digit of its error.
+fn located(value: f64, error: f64) -> String {
+    if !(error > 0.0 && error.is_finite()) {
+        return number(value);
+    }
+    let decimals = (1.0 - error.log10().floor()).clamp(0.0, 15.0) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.chars().all(|c| matches!(c, '-' | '0' | '.')) {
+        "0".to_owned()
+    } else {
+        text
+    }
+}
+
+/// The system with its parameters.
+pub(crate) fn system_of(family: &Family) -> String {
+    let model = family.model();
+    let equations = model.equations.join("; ");
+    let fixed: Vec<String> = family
+        .fixed()
+        .map(|(name, value)| format!("{name} = {}", number(value)))
+        .collect();
+    let fixed = if fixed.is_empty() {
+        String::new()
+    } else {
+        format!(", with {}", fixed.join(", "))
+    };
+    format!("System: {} ({equations}){fixed}.", model.title)
+}
+
+/// The method and the cells.
+fn method(result: &SweepResult) -> String {
+    let Some(solved) = result
+        .points
+        .iter()
+        .find(|point| !point.densities.is_empty())
+    else {
+        return String::new();
+    };
+    let family = &result.subject.family;
+    let mut axes: Vec<(usize, &Axis)> = Vec::new();
+    for estimated in &solved.densities {
+        let numbers = match estimated.observable {
+            Observable::Marginal(axis) => vec![axis],
+            Observable::Joint(first, second) => vec![first, second],
+        };
+        for (number, axis) in numbers.into_iter().zip(&estimated.density.axes) {
+            if axes.iter().all(|(known, _)| *known != number) {
+                axes.push((number, axis));
+            }
+        }
+    }
+    axes.sort_by_key(|(number, _)| *number);
+    let cells = axes.iter().map(|(number, axis)| {
+        let (from, to) = (self::number(axis.from()), self::number(axis.to()));
+        format!(
+            "{} of {} in [{from}, {to}]",
+            axis.count(),
+            family.axis(*number)
+        )
+    });
+    let cells: Vec<String> = cells.collect();
+    format!(
+        "Method: {}; cells: {}.",
+        solved.report.method,
+        cells.join(", ")
+    )
+}
+
+/// What is drawn between the cells of some observables.
+pub(crate) fn between_cells(result: &SweepResult, is_shown: impl Fn(Observable) -> bool) -> String {
+    let densities = result.points.iter().flat_map(|point| &point.densities);
+    let mut shown = densities.filter(|one| is_shown(one.observable));
+    if shown.any(|one| Between::new(one).is_some()) {
+        "Between the cells the density is followed by parabolas with the averages of the cells."
+            .to_owned()
+    } else {
+        String::new()
+    }
+}
+
+/// The P-bifurcations of a sweep, where they are marked.
+pub(crate) fn bifurcations(result: &SweepResult) -> String {
+    let family = &result.subject.family;
+    let words = |row: &LabelledPoint| {
+        let status = match row.status {
+            Some(BifurcationStatus::Located) | None => String::new(),
+            Some(status) => format!(", {}", status.word()),
+        };
+        let observable = row
+            .observable
+            .map(|one| one.name(family))
+            .unwrap_or_default();
+        let error = format!("{:.1e}", row.error);
+        format!(
+            "{} at {} ± {error} ({observable}{status})",
+            row.label,
+            located(row.value, row.error)
+        )
+    };
+    let rows = result
+        .labels
+        .iter()
+        .filter(|row| row.kind == PointType::Bifurcation);
+    let rows: Vec<String> = rows.map(words).collect();
+    if rows.is_empty() {
+        String::new()
+    } else {
+        format!("P-bifurcations: {}.", rows.join("; "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_have_the_digits_of_their_errors() {
+        assert_eq!(located(-0.00284863, 2.7e-6), "-0.0028486");
+        assert_eq!(located(2.3e-17, 4.5e-11), "0");
+        assert_eq!(located(0.25, 0.0), "0.25");
+        assert_eq!(located(12.34, 30.0), "12");
+    }
+}

@@ -1,0 +1,198 @@
+//! Joint densities of two axes as heat maps with contours, and what stands around such maps.
+
+use plotters_backend::text_anchor::HPos;
+
+use super::view::{self, View, middles};
+use crate::continuation::Point;
+use crate::density::{Density, EstimatedDensity};
+use crate::figure::FigureError;
+use crate::figure::canvas::colour_bar::ColourBar;
+use crate::figure::canvas::contour::{Grid, thinned};
+use crate::figure::canvas::frame::{self, Scale};
+use crate::figure::canvas::heat::Picture;
+use crate::figure::canvas::legend::{self, Legend, Sample};
+use crate::figure::canvas::look::Look;
+use crate::figure::canvas::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
+use crate::figure::canvas::style::{self, MARGIN, Stroke, TEXT};
+use crate::figure::figures::Print;
+use crate::topology::{Feature, FeatureKind, Verdict};
+
+/// Contours are drawn at these shares of the largest density.
+pub(crate) const LEVELS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
+/// Contours are followed on squares of so many pixels, and lose points that lie so near to their neighbours' chord.
+const CONTOUR: f64 = 1.5;
+const ALIKE: f64 = 0.05;
+
+/// A joint density with what was found in it.
+pub(crate) struct Found<'a> {
+    pub(crate) value: f64,
+    pub(crate) estimated: &'a EstimatedDensity,
+    pub(crate) shown: View<'a>,
+    pub(crate) features: &'a [Feature],
+}
+
+impl<'a> Found<'a> {
+    /// The joint densities with that number among the observables at those of some points that have one.
+    pub(crate) fn all(points: &[&'a Point], observable: usize) -> Vec<Self> {
+        let points = points.iter();
+        points
+            .filter_map(|point| Self::new(point, observable))
+            .collect()
+    }
+
+    fn new(point: &'a Point, observable: usize) -> Option<Self> {
+        let estimated = view::density(point, observable)?;
+        let detection = point.detections.get(observable);
+        Some(Self {
+            value: point.value,
+            estimated,
+            shown: View::new(estimated),
+            features: detection.map_or(&[], |detection| &detection.features),
+        })
+    }
+
+    pub(crate) fn density(&self) -> &'a Density {
+        &self.estimated.density
+    }
+
+    fn present(&self, kind: FeatureKind) -> impl Iterator<Item = (f64, f64)> {
+        let wanted =
+            move |feature: &&Feature| feature.kind == kind && feature.verdict == Verdict::Present;
+        let place = |feature: &Feature| match feature.position[..] {
+            [x, y] => Some((x, y)),
+            _ => None,
+        };
+        self.features.iter().filter(wanted).filter_map(place)
+    }
+}
+
+/// The windows of both axes.
+pub(crate) fn windows(found: &[Found<'_>]) -> Option<((f64, f64), (f64, f64))> {
+    let densities: Vec<&Density> = found.iter().map(Found::density).collect();
+    Some((view::window(&densities, 0)?, view::window(&densities, 1)?))
+}
+
+/// Opens a page with heading and legend, and room for maps of the given size that begins `left`
+/// pixels from the left; returns the rectangle of the maps.
+pub(crate) fn open_page(
+    print: &Print<'_>,
+    found: &[Found<'_>],
+    (left, page_width): (f64, f64),
+    (width, height): (f64, f64),
+) -> Result<(Page, Rectangle), FigureError> {
+    let look = &print.look;
+    let heading = Heading::new(look, print.title, page_width)?;
+    let legend = Legend::new(look, entries(found), page_width - 2.0 * MARGIN)?;
+    let maps = Rectangle::new(
+        (left, heading.height() + ColourBar::above()),
+        (width, height),
+    );
+    let below = maps.bottom() + Scale::below();
+    let page = Page::new(look, page_width, below + legend.height() + MARGIN);
+    heading.draw(&page);
+    legend.draw(&page, left + 0.5 * width, below);
+    Ok((page, maps))
+}
+
+/// A line above a panel, with the panel's letter where panels have letters.
+pub(crate) fn lettered(look: &Look, number: usize, line: String) -> String {
+    let letter = char::from(b'a' + (number % 26) as u8);
+    if look.has_letters {
+        format!("({letter})  {line}")
+    } else {
+        line
+    }
+}
+
+/// Writes a line above a map.
+pub(crate) fn write_above(page: &Page, map: Rectangle, markup: String) {
+    let place = (map.left, map.top - 0.75 * TEXT);
+    page.text(place, lettering(markup, HPos::Left));
+}
+
+/// Legend of the marks that are drawn.
+fn entries(found: &[Found<'_>]) -> Vec<(Sample, String)> {
+    let any = |kind| {
+        found
+            .iter()
+            .any(|found| found.present(kind).next().is_some())
+    };
+    let all = [
+        (any(FeatureKind::Peak), Sample::Plus, "peak"),
+        (any(FeatureKind::Crater), Sample::Ring, "crater"),
+    ];
+    let shown = all.into_iter().filter(|(shown, _, _)| *shown);
+    shown
+        .map(|(_, sample, text)| (sample, text.to_owned()))
+        .collect()
+}
+
+/// Draws heat map, contours and marks into a rectangle; colours run from zero to `largest`.
+pub(crate) fn draw_map(
+    page: &Page,
+    map: Rectangle,
+    found: &Found<'_>,
+    (x, y): ((f64, f64), (f64, f64)),
+    largest: f64,
+) -> Result<(), FigureError> {
+    let panel = page.panel(map, x, y);
+    if found.density().axes.len() != 2 {
+        return Ok(());
+    }
+    let size = (
+        found.shown.resolution(0, x, map.width),
+        found.shown.resolution(1, y, map.height),
+    );
+    let values = found.shown.sheet(&middles(x, size.0), &middles(y, size.1));
+    let picture = Picture::new(size, |column, row| {
+        Some(values[column * size.1 + row] / largest)
+    });
+    panel.draw(
+        &[(x.0, y.0), (x.1, y.1)],
+        Shape::Image(picture.png(page.look())?),
+    );
+    draw_contours(page.look(), (&panel, map), found, (x, y), largest);
+    let inside = |&(px, py): &(f64, f64)| px >= x.0 && px <= x.1 && py >= y.0 && py <= y.1;
+    for place in found.present(FeatureKind::Peak).filter(inside) {
+        panel.mark(&[place], legend::plus());
+    }
+    for place in found.present(FeatureKind::Crater).filter(inside) {
+        panel.mark(&[place], legend::ring());
+    }
+    frame::border(page, map);
+    Ok(())
+}
+
+/// Draws the contours at [`LEVELS`] of the density's own maximum: through the centres of cells in the window, or
+/// between the cells where that is known.
+fn draw_contours(
+    look: &Look,
+    (panel, map): (&Panel, Rectangle),
+    found: &Found<'_>,
+    (x, y): ((f64, f64), (f64, f64)),
+    largest: f64,
+) {
+    let lines = |k: usize, window: (f64, f64), length: f64| match &found.shown.between {
+        Some(between) => between.places(k, window, (length / CONTOUR).ceil() as usize),
+        None => {
+            let mut centres = found.density().axes[k].centres();
+            centres.retain(|centre| *centre > window.0 && *centre < window.1);
+            centres
+        }
+    };
+    let (across, up) = (lines(0, x, map.width), lines(1, y, map.height));
+    let grid = Grid {
+        x: &across,
+        y: &up,
+        values: &found.shown.sheet(&across, &up),
+    };
+    let own = found.shown.largest;
+    let place = |&point: &(f64, f64)| panel.place(point);
+    for share in LEVELS {
+        let colour = style::on_heat(look, share * own / largest);
+        for line in grid.contour(share * own) {
+            let line = thinned(&line, ALIKE, place);
+            panel.draw(&line, Shape::Line(Stroke::solid(colour, 0.8)));
+        }
+    }
+}

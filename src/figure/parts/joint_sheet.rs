@@ -1,0 +1,207 @@
+//! Joint densities on one sheet: as many columns as there is room for, the same windows, one colour bar.
+
+use crate::continuation::{Point, SweepResult};
+use crate::density::Observable;
+use crate::figure::figures::Print;
+use crate::system::Family;
+
+use super::joint_map::{Found, LEVELS, draw_map, lettered, open_page, windows, write_above};
+use super::names;
+use crate::figure::FigureError;
+use crate::figure::canvas::colour_bar::ColourBar;
+use crate::figure::canvas::frame::Scale;
+use crate::figure::canvas::look::Look;
+use crate::figure::canvas::page::{Page, Rectangle};
+use crate::figure::canvas::render;
+use crate::figure::canvas::style::{MARGIN, TEXT};
+use crate::figure::canvas::symbols;
+
+/// Side of a map on a sheet.
+const SMALL: f64 = 190.0;
+/// Narrowest map on a sheet, where the page is given, and the highest one.
+const SMALLEST: f64 = 104.0;
+/// Gap between maps on a sheet, and that between the labels of their ticks.
+const BETWEEN: f64 = 14.0;
+const BETWEEN_LABELS: f64 = 8.0;
+/// The densities of a sheet share their scale unless the largest values differ by more than this factor.
+const COMPARABLE: f64 = 3.0;
+const TALLEST_SMALL: f64 = 230.0;
+/// Maps of a sheet of one column at most, where letters cost the second one.
+const MOST_IN_A_TOWER: usize = 3;
+/// Digits of values where there is little room.
+const FEW: usize = 2;
+
+/// How the maps of a sheet are arranged and coloured.
+struct Sheet {
+    columns: usize,
+    /// Width and height of a map, in pixels.
+    side: (f64, f64),
+    /// Distance between neighbouring maps, in pixels.
+    step: (f64, f64),
+    /// Size of all maps together, in pixels.
+    whole: (f64, f64),
+    /// The density at the upper end of the colours, one a map.
+    tops: Vec<f64>,
+    /// That density where all maps share it.
+    common: Option<f64>,
+}
+
+impl Sheet {
+    /// Arranges maps in as many columns as there is room for between what stands left and right of them all, `beside`
+    /// pixels; on a given page none is narrower than `least`. Columns are `between` pixels apart.
+    fn new(look: &Look, found: &[Found<'_>], (beside, between): (f64, f64), least: f64) -> Self {
+        let own_columns = match found.len() {
+            2 | 4 => 2,
+            10.. => 4,
+            _ => 3,
+        };
+        let width = |columns: usize| {
+            let gaps = (columns - 1) as f64 * between;
+            look.fill(SMALL * columns as f64, beside + gaps) / columns as f64
+        };
+        let columns = match look.page {
+            None => own_columns,
+            Some(_) => {
+                let most = if found.len() == 9 || found.len() < 4 {
+                    3
+                } else {
+                    4
+                };
+                let fits = |columns: &usize| width(*columns) >= least.max(SMALLEST);
+                (1..=most.min(found.len())).rev().find(fits).unwrap_or(1)
+            }
+        };
+        let side = (width(columns), width(columns).min(TALLEST_SMALL));
+        let rows = found.len().div_ceil(columns);
+        let step = (side.0 + between, side.1 + BETWEEN + 1.4 * TEXT);
+        let own: Vec<f64> = found.iter().map(|found| found.shown.largest).collect();
+        let largest = own.iter().copied().fold(0.0, f64::max);
+        let comparable = own.iter().all(|&own| own * COMPARABLE >= largest);
+        Self {
+            columns,
+            side,
+            step,
+            whole: (
+                (columns - 1) as f64 * step.0 + side.0,
+                (rows - 1) as f64 * step.1 + side.1,
+            ),
+            tops: if comparable {
+                vec![largest; own.len()]
+            } else {
+                own
+            },
+            common: comparable.then_some(largest),
+        }
+    }
+
+    /// The rectangle of a map.
+    fn map(&self, all: Rectangle, number: usize) -> Rectangle {
+        let (row, column) = (number / self.columns, number % self.columns);
+        Rectangle::new(
+            (
+                all.left + column as f64 * self.step.0,
+                all.top + row as f64 * self.step.1,
+            ),
+            (self.side.0, self.side.1),
+        )
+    }
+
+    /// The colour bar of all maps.
+    fn bar(&self, look: &Look, density: &str) -> Result<ColourBar, FigureError> {
+        match self.common {
+            Some(largest) => ColourBar::new(look, largest, self.whole.1, density),
+            None => ColourBar::new(look, 1.0, self.whole.1, &format!("{density} / max")),
+        }
+    }
+}
+
+/// Narrowest map whose line does not touch that of its neighbour.
+fn widest(look: &Look, lines: &[String]) -> Result<f64, FigureError> {
+    let mut least: f64 = 0.0;
+    for line in lines {
+        least = least.max(render::text_width(look, line, TEXT, false)? + 4.0 - BETWEEN / 2.0);
+    }
+    Ok(least)
+}
+
+/// The sheet with the lines above its maps; `arranged` gives the sheet whose maps are so wide at least. Many maps below
+/// each other fill no page of a journal: without letters, or with values in fewer digits, there may be room for a
+/// second column.
+fn with_lines(
+    family: &Family,
+    (look, found): (&Look, &[Found<'_>]),
+    arranged: &dyn Fn(f64) -> Result<Sheet, FigureError>,
+) -> Result<(Sheet, Vec<String>), FigureError> {
+    let at = |found: &Found<'_>| names::at(family, found.value);
+    let short = |found: &Found<'_>| names::at(family, symbols::rounded_to(found.value, FEW));
+    let numbered = found.iter().enumerate();
+    let lettered = numbered.map(|(number, found)| lettered(look, number, at(found)));
+    let lines: Vec<String> = lettered.collect();
+    let sheet = arranged(widest(look, &lines)?)?;
+    if sheet.columns > 1 || found.len() <= MOST_IN_A_TOWER {
+        return Ok((sheet, lines));
+    }
+    let barer: [Vec<String>; 2] = [
+        found.iter().map(at).collect(),
+        found.iter().map(short).collect(),
+    ];
+    for words in barer {
+        let is_told_apart = words.windows(2).all(|pair| pair[0] != pair[1]);
+        let wider = arranged(widest(look, &words)?)?;
+        if wider.columns > 1 && is_told_apart {
+            return Ok((wider, words));
+        }
+    }
+    Ok((sheet, lines))
+}
+
+/// All maps of a pair on one sheet, with the same windows; `None` for fewer than two densities.
+pub(crate) fn draw(
+    result: &SweepResult,
+    observable: usize,
+    points: &[&Point],
+    print: &Print<'_>,
+) -> Result<Option<Page>, FigureError> {
+    let (family, look) = (&result.subject.family, &print.look);
+    let watched = result.subject.observables[observable];
+    let found = Found::all(points, observable);
+    let (Observable::Joint(first, second), Some((x, y))) = (watched, windows(&found)) else {
+        return Ok(None);
+    };
+    if found.len() < 2 {
+        return Ok(None);
+    }
+    let density = names::density(family, watched);
+    let vertical = |high: f64| Scale::vertical(look, y, high, &names::axis(family, second));
+    let horizontal = |long: f64| Scale::horizontal(look, x, long, &names::axis(family, first));
+    let arranged = |least: f64| -> Result<Sheet, FigureError> {
+        // The bar and the labels of the ordinate hardly depend on how high the maps are: a first sheet measures them.
+        let first_sheet = Sheet::new(look, &found, (140.0, BETWEEN), least);
+        let bar_width = first_sheet.bar(look, &density)?.width();
+        let left = MARGIN + vertical(first_sheet.side.1)?.left();
+        let beyond = horizontal(first_sheet.side.0)?.beyond(first_sheet.side.0);
+        let between = BETWEEN.max(beyond + BETWEEN_LABELS);
+        let beside = left + bar_width + MARGIN;
+        Ok(Sheet::new(look, &found, (beside, between), least))
+    };
+    let (sheet, lines) = with_lines(family, (look, &found), &arranged)?;
+    let bar = sheet.bar(look, &density)?;
+    let across = horizontal(sheet.side.0)?;
+    let up = vertical(sheet.side.1)?;
+    let left = MARGIN + up.left();
+    let width = look
+        .page
+        .unwrap_or(left + sheet.whole.0 + bar.width() + MARGIN);
+    let (page, all) = open_page(print, &found, (left, width), sheet.whole)?;
+    for (number, (found, &top)) in found.iter().zip(&sheet.tops).enumerate() {
+        let map = sheet.map(all, number);
+        write_above(&page, map, lines[number].clone());
+        draw_map(&page, map, found, (x, y), top)?;
+        // A map with none below it carries the labels of its column.
+        across.draw_below(&page, map, number + sheet.columns >= sheet.tops.len());
+        up.draw_left(&page, map, number % sheet.columns == 0);
+    }
+    let marks: &[f64] = if sheet.common.is_some() { &[] } else { &LEVELS };
+    bar.draw(&page, all, marks)?;
+    Ok(Some(page))
+}

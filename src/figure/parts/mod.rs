@@ -1,0 +1,14 @@
+//! What several kinds of figures share: densities as they are shown, panels along a parameter, marks, words, tables.
+
+pub(super) mod along;
+pub(super) mod bifurcations;
+pub(super) mod branches;
+pub(super) mod caption;
+pub(super) mod crossed;
+pub(super) mod inset;
+pub(super) mod joint_map;
+pub(super) mod joint_sheet;
+pub(super) mod names;
+pub(super) mod region_room;
+pub(super) mod table;
+pub(super) mod view;

@@ -1,0 +1,70 @@
+//! Names and symbols of a family of systems, as markup for lettering and for file names.
+
+use crate::density::Observable;
+use crate::figure::canvas::symbols;
+use crate::system::Family;
+
+/// Symbol of the swept parameter.
+pub(crate) fn parameter(family: &Family) -> String {
+    symbols::variable(family.symbol())
+}
+
+/// Symbol of an axis.
+pub(crate) fn axis(family: &Family, axis: usize) -> String {
+    symbols::variable(family.axis_symbol(axis))
+}
+
+/// `p(x)` or `p(x, ẋ)`.
+pub(crate) fn density(family: &Family, observable: Observable) -> String {
+    let symbols = observable.symbols(family).into_iter();
+    let symbols: Vec<String> = symbols.map(symbols::variable).collect();
+    symbols::density_of(&symbols)
+}
+
+/// `α = −0.5`.
+pub(crate) fn at(family: &Family, value: f64) -> String {
+    format!("{} = {}", parameter(family), symbols::value(value))
+}
+
+/// Name of an observable in file names: `x`, `xy`.
+pub(crate) fn file(family: &Family, observable: Observable) -> String {
+    safe(&observable.name(family))
+}
+
+/// Name of the figure of one of several values: `joint_xy_-0.5`.
+pub(crate) fn at_value(name: &str, value: f64) -> String {
+    format!("{name}_{}", safe(&symbols::rounded(value).to_string()))
+}
+
+/// Symbol of a parameter, swept or not.
+pub(crate) fn symbol_of(family: &Family, name: &str) -> String {
+    let mut parameters = family.model().parameters.iter();
+    let known = parameters.find(|parameter| parameter.name == name);
+    symbols::variable(known.map_or(name, |parameter| parameter.symbol.as_str()))
+}
+
+/// Whether a word names a figure: its whole name, the beginning of it up to a `_` (`joint` names `joint_xy_0.5`), or
+/// `all`.
+pub(crate) fn matches(word: &str, figure: &str) -> bool {
+    let rest = figure.strip_prefix(word);
+    word == "all" || rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
+}
+
+/// Letters, digits, `.`, `-` and `_`; everything else becomes `_`.
+fn safe(name: &str) -> String {
+    let letter = |c: char| match c {
+        c if c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_') => c,
+        _ => '_',
+    };
+    name.chars().map(letter).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn file_names_are_safe() {
+        assert_eq!(safe("f_c/../ẋ"), "f_c_..__");
+    }
+}
