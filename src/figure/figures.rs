@@ -7,34 +7,12 @@ use super::kinds::{self, Sketch, Sweep};
 use super::parts::names;
 use super::style::FigureStyle;
 use crate::compare::Comparison;
+use crate::continuation::SweepResult;
 use crate::continuation::curve::{Curve, CurveOrigin, SweepInPlane};
 use crate::continuation::map::RegimeMap;
-use crate::continuation::{CellCheck, Subject, SweepResult};
-use crate::density::Observable;
 use crate::figure::canvas::look::Look;
 use crate::figure::canvas::page::Page;
 use crate::system::{Family, Model, ParameterValues};
-
-/// Names of the figures that a sweep can have at no value in particular, and the kinds of which these are.
-pub(crate) fn sweep_figures(
-    family: &Family,
-    observables: &[Observable],
-) -> (Vec<String>, Vec<&'static str>) {
-    let nothing = SweepResult {
-        subject: Subject {
-            family: family.clone(),
-            observables: observables.to_vec(),
-            cell_check: CellCheck::Needless,
-            measures: Vec::new(),
-        },
-        points: Vec::new(),
-        labels: Vec::new(),
-        checks: Default::default(),
-        interrupted: false,
-    };
-    let figures = Figures::of_sweep(&nothing, "", &[]);
-    (figures.names(), figures.kinds)
-}
 
 /// A figure: an SVG document with a name.
 #[derive(Debug, Clone, PartialEq)]
@@ -169,6 +147,11 @@ impl<'a> Figures<'a> {
     pub fn names(&self) -> Vec<String> {
         let sketches = self.sketches.iter();
         sketches.map(|sketch| sketch.name.clone()).collect()
+    }
+
+    /// The kinds of figures of a sweep, whether it has such a figure or not: what names begin with.
+    pub fn kinds(&self) -> &[&'static str] {
+        &self.kinds
     }
 
     /// Draws the figure of that name and no other; `None` where no density is there to draw.

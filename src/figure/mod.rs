@@ -38,12 +38,8 @@ mod parts;
 #[cfg(feature = "figures")]
 pub use error::FigureError;
 #[cfg(feature = "figures")]
-pub(crate) use figures::sweep_figures;
-#[cfg(feature = "figures")]
 pub use figures::{Figure, Figures};
 #[cfg(feature = "figures")]
 pub use files::write_figures;
-#[cfg(feature = "figures")]
-pub(crate) use parts::names::matches as matches_figure;
 pub use settings::{FigureSettings, Format};
 pub use style::{ColourMap, FigureStyle, FigureWidth, Ground, Typeface};

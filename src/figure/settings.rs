@@ -59,7 +59,7 @@ impl Format {
     pub const USUAL: [Self; 2] = [Self::Svg, Self::Png];
 
     /// Name used in sweep files, and extension of the files.
-    pub(crate) fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Svg => "svg",
             Self::Png => "png",

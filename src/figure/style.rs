@@ -42,7 +42,7 @@ impl FigureWidth {
     ];
 
     /// Name used in sweep files; `None` for millimetres.
-    pub(crate) fn name(self) -> Option<&'static str> {
+    pub fn name(self) -> Option<&'static str> {
         match self {
             Self::Own => Some("own"),
             Self::Single => Some("single"),
@@ -54,7 +54,7 @@ impl FigureWidth {
     }
 
     /// The width of that name.
-    pub(crate) fn parse(name: &str) -> Option<Self> {
+    pub fn parse(name: &str) -> Option<Self> {
         Self::NAMED
             .into_iter()
             .find(|width| width.name() == Some(name))
@@ -88,7 +88,7 @@ impl Ground {
     pub const ALL: [Self; 2] = [Self::Light, Self::Dark];
 
     /// Name used in sweep files.
-    pub(crate) fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Light => "light",
             Self::Dark => "dark",
@@ -115,7 +115,7 @@ impl ColourMap {
     pub const ALL: [Self; 4] = [Self::Viridis, Self::Cividis, Self::Magma, Self::Grey];
 
     /// Name used in sweep files.
-    pub(crate) fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Viridis => "viridis",
             Self::Cividis => "cividis",
@@ -140,7 +140,7 @@ impl Typeface {
     pub const ALL: [Self; 2] = [Self::Sans, Self::Serif];
 
     /// Name used in sweep files.
-    pub(crate) fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Sans => "sans",
             Self::Serif => "serif",

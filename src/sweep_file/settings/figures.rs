@@ -1,21 +1,13 @@
-//! Which figures are drawn, where, in which formats and in what style.
+//! Where figures are drawn, in which formats and in what style.
 
 use super::system::Swept;
 use crate::continuation::evenly_spaced;
-#[cfg(feature = "figures")]
-use crate::density::Observable;
 use crate::figure::{FigureStyle, Format};
-#[cfg(feature = "figures")]
-use crate::figure::{matches_figure, sweep_figures};
 use crate::sweep_file::diagnostic::{Diagnostic, Place};
 use crate::sweep_file::draft::Draft;
 use crate::sweep_file::names::list;
-#[cfg(feature = "figures")]
-use crate::sweep_file::names::quotable;
 use crate::sweep_file::reader::Reader;
 use crate::sweep_file::value::Node;
-#[cfg(feature = "figures")]
-use crate::system::Family;
 
 /// Checks `figures.at`; left out, it is both ends and two of the sweep's values between.
 ///
@@ -81,42 +73,6 @@ pub(super) fn each_once(listed: &[Format]) -> Vec<Format> {
     let mut formats = Format::ALL.to_vec();
     formats.retain(|format| listed.contains(format));
     formats
-}
-
-/// Refuses names in `figures.draw` that no figure of this sweep can have.
-#[cfg(feature = "figures")]
-pub(super) fn check_drawn(
-    reader: &mut Reader<'_>,
-    draft: &Draft,
-    family: &Family,
-    observables: &[Observable],
-) {
-    let (known, kinds) = sweep_figures(family, observables);
-    let items = reader.items(&["figures", "draw"]);
-    for (name, item) in draft.figures.names().iter().zip(items) {
-        // A figure at one value is named after one that there is: `joint_xy_0.5`.
-        let is_known =
-            |figure: &String| matches_figure(name, figure) || matches_figure(figure, name);
-        // A kind that this sweep has nothing of draws nothing; the defaults name three of them.
-        if known.iter().any(is_known) || kinds.contains(&name.as_str()) {
-            continue;
-        }
-        let diagnostic = Diagnostic::new(format!("there is no figure `{}`", quotable(name)))
-            .at(&item.place, "unknown figure")
-            .nearest(
-                name,
-                known
-                    .iter()
-                    .map(String::as_str)
-                    .chain(kinds.iter().copied()),
-            )
-            .allowed(format!(
-                "kinds of figures ({}), or one figure of a kind: {}",
-                list(&kinds),
-                list(&known)
-            ));
-        reader.report(diagnostic);
-    }
 }
 
 /// Refuses a width that has no room for the text.

@@ -6,6 +6,8 @@ mod axis_checks;
 mod curve;
 mod draft_of;
 mod equations;
+#[cfg(feature = "figures")]
+mod figure_names;
 mod figures;
 mod map;
 mod method;
@@ -106,10 +108,10 @@ impl Settings {
         let figures_at = swept
             .as_ref()
             .map(|swept| figures::read_at(&mut reader, &draft, swept));
-        #[cfg(feature = "figures")] // the names of figures are known to who draws them
+        #[cfg(feature = "figures")]
         if let (Some(family), Some(watched)) = (family, &watched) {
             let family = family.clone().with_quantities(watched.quantities.clone());
-            figures::check_drawn(&mut reader, &draft, &family, &watched.observables);
+            figure_names::check(&mut reader, &draft, &family, &watched.observables);
         }
         figures::check_style(&mut reader, &draft.figures.style);
         let (Some(mut swept), Some(axes), Some(watched), Some(figures_at), true) =
