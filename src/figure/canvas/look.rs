@@ -113,6 +113,12 @@ impl Look {
         pixels * self.points / POINTS_A_MILLIMETRE
     }
 
+    /// As many columns as fit, at most so many, at least one.
+    pub(crate) fn columns(most: usize, fits: impl Fn(usize) -> bool) -> usize {
+        let fitting = (1..=most).rev().find(|&columns| fits(columns));
+        fitting.unwrap_or(1)
+    }
+
     /// A panel's width where everything beside it takes `beside`: what the page leaves, or its own.
     pub(crate) fn fill(&self, own: f64, beside: f64) -> f64 {
         self.page.map_or(own, |page| (page - beside).max(40.0))

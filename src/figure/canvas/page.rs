@@ -34,6 +34,17 @@ impl Rectangle {
         }
     }
 
+    /// The rectangle with that number in rows of so many columns, of which this is the first; `step` leads to the next
+    /// column and row.
+    pub(crate) fn tile(&self, number: usize, columns: usize, step: (f64, f64)) -> Self {
+        let (row, column) = ((number / columns) as f64, (number % columns) as f64);
+        Self {
+            left: self.left + column * step.0,
+            top: self.top + row * step.1,
+            ..*self
+        }
+    }
+
     /// Upper left, upper right, lower right and lower left corner.
     pub(crate) fn corners(&self) -> [(f64, f64); 4] {
         let (left, right, top, bottom) = (self.left, self.right(), self.top, self.bottom());

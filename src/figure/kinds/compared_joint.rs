@@ -66,18 +66,17 @@ fn draw(comparison: &Comparison, observable: Observable, print: &Print<'_>) -> D
         return Ok(None);
     };
     let mut window: Option<((f64, f64), (f64, f64))> = None;
-    for row in &rows {
-        for (_, found) in row {
-            if let Some((x, y)) = windows(std::slice::from_ref(found)) {
-                let join = |a: (f64, f64), b: (f64, f64)| (a.0.min(b.0), a.1.max(b.1));
-                window = Some(window.map_or((x, y), |(a, b)| (join(a, x), join(b, y))));
-            }
+    for (_, found) in rows.iter().flatten() {
+        if let Some((x, y)) = windows(std::slice::from_ref(found)) {
+            let join = |a: (f64, f64), b: (f64, f64)| (a.0.min(b.0), a.1.max(b.1));
+            window = Some(window.map_or((x, y), |(a, b)| (join(a, x), join(b, y))));
         }
     }
     let Some((x, y)) = window else {
         return Ok(None);
     };
-    let rough = ColourBar::new(look, 1.0, SIDE, &names::density(family, observable))?;
+    let density = names::density(family, observable);
+    let rough = ColourBar::new(look, 1.0, SIDE, &density)?;
     let left = MARGIN + Scale::vertical(look, y, SIDE, &names::axis(family, second))?.left();
     let most = rows.iter().map(Vec::len).max().unwrap_or(1);
     let (columns, side) = arrangement(look, most, left + rough.width() + 12.0 + MARGIN);
@@ -87,8 +86,7 @@ fn draw(comparison: &Comparison, observable: Observable, print: &Print<'_>) -> D
     for row in &rows {
         let largest = row.iter().map(|(_, found)| found.shown.largest);
         let largest = largest.fold(0.0, f64::max);
-        let title = names::density(family, observable);
-        bars.push((largest, ColourBar::new(look, largest, side, &title)?));
+        bars.push((largest, ColourBar::new(look, largest, side, &density)?));
     }
     let widest = bars.iter().map(|(_, bar)| bar.width()).fold(0.0, f64::max);
     // On a narrow page the value has a line of its own.
@@ -109,13 +107,8 @@ fn draw(comparison: &Comparison, observable: Observable, print: &Print<'_>) -> D
     for (row, (largest, bar)) in rows.iter().zip(&bars) {
         for (part, maps) in row.chunks(columns).enumerate() {
             for (column, (method, found)) in maps.iter().enumerate() {
-                let map = Rectangle::new(
-                    (
-                        left + column as f64 * step.0,
-                        heading.height() + above + line as f64 * step.1,
-                    ),
-                    (side, side),
-                );
+                let top = heading.height() + above + line as f64 * step.1;
+                let map = Rectangle::new((left + column as f64 * step.0, top), (side, side));
                 let is_first = column == 0 && part == 0;
                 write_lines(&page, map, (*method, is_first), found.value, family);
                 draw_map(&page, map, found, (x, y), *largest)?;
@@ -128,17 +121,12 @@ fn draw(comparison: &Comparison, observable: Observable, print: &Print<'_>) -> D
             line += 1;
         }
     }
-    let what = format!(
-        "Steady-state joint density {}",
-        caption::density(family, observable)
-    );
+    let density = caption::density(family, observable);
+    let what = format!("Steady-state joint density {density}");
     let how = "of the generator followed between the cells by parabolas with their averages.";
     let table = table(comparison, |one| *one == observable);
-    Ok(Some(Figure::new(
-        &page,
-        caption_of(comparison, &what, how),
-        table,
-    )))
+    let caption = caption_of(comparison, &what, how);
+    Ok(Some(Figure::new(&page, caption, table)))
 }
 
 /// Columns, and the side of a map: all methods side by side, as far as they fit on a given page.
@@ -150,10 +138,7 @@ fn arrangement(look: &Look, methods: usize, beside: f64) -> (usize, f64) {
         let gaps = (columns - 1) as f64 * BETWEEN.0;
         look.fill(SIDE, beside + gaps) / columns as f64
     };
-    let fitting = (1..=methods)
-        .rev()
-        .find(|&columns| side(columns) >= SMALLEST);
-    let columns = fitting.unwrap_or(1);
+    let columns = Look::columns(methods, |columns| side(columns) >= SMALLEST);
     (columns, side(columns).min(TALLEST))
 }
 

@@ -13,6 +13,7 @@ use crate::compare::Comparison;
 use crate::figure::FigureError;
 use crate::figure::canvas::frame::{self, Scale};
 use crate::figure::canvas::legend::{self, Legend, Sample};
+use crate::figure::canvas::look::Look;
 use crate::figure::canvas::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
 use crate::figure::canvas::style::{ERROR_LINE, INK, MARGIN, Stroke, TEXT};
 use crate::figure::figures::{Figure, Print};
@@ -148,10 +149,7 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
         let beside = 2.0 * MARGIN + BESIDE + columns as f64 * (room + BETWEEN.0) - BETWEEN.0;
         look.fill(PANEL.0 * columns as f64, beside) / columns as f64
     };
-    let fitting = (1..=watched.len())
-        .rev()
-        .find(|&columns| width(columns) >= NARROWEST);
-    let columns = fitting.unwrap_or(1);
+    let columns = Look::columns(watched.len(), |columns| width(columns) >= NARROWEST);
     let wide = width(columns);
     let rows = all.len().div_ceil(columns);
     let step = (room + wide + BETWEEN.0, ABOVE + PANEL.1 + BETWEEN.1);
@@ -170,14 +168,9 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
     let page = Page::new(look, page_width, height);
     heading.draw(&page);
     legend.draw(&page, 0.5 * page_width, heading.height());
+    let first = Rectangle::new((MARGIN + room, top + ABOVE), (wide, PANEL.1));
     for (number, laid) in all.iter().enumerate() {
-        let rect = Rectangle::new(
-            (
-                MARGIN + room + (number % columns) as f64 * step.0,
-                top + ABOVE + (number / columns) as f64 * step.1,
-            ),
-            (wide, PANEL.1),
-        );
+        let rect = first.tile(number, columns, step);
         let above = lettered(look, number, names::at(family, laid.value.value));
         let place = (rect.left, rect.top - 0.7 * TEXT);
         page.text(place, lettering(above, HPos::Left));

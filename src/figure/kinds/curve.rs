@@ -98,7 +98,9 @@ impl Scene<'_> {
         let top = heading.height() + 6.0;
         let rect = Rectangle::new((left, top), (wide, high));
         let below = rect.bottom() + Scale::below();
-        let legend = Legend::new(look, self.entries(rect), width - 2.0 * MARGIN)?;
+        let mut entries = entries(self.curves, self.family, rect);
+        entries.extend(self.crossed.entries());
+        let legend = Legend::new(look, entries, width - 2.0 * MARGIN)?;
         let page = Page::new(look, width, below + legend.height() + MARGIN);
         heading.draw(&page);
         let panel = page.panel(rect, x, y);
@@ -112,23 +114,6 @@ impl Scene<'_> {
         self.draw_marks(&page, &panel, rect);
         legend.draw(&page, left + 0.5 * wide, below);
         Ok(page)
-    }
-
-    fn entries(&self, rect: Rectangle) -> Vec<(Sample, String)> {
-        let mut entries: Vec<(Sample, String)> = Vec::new();
-        for curve in self.curves {
-            let stroke = stroke_of(self.curves, curve.kind);
-            let density = names::density(self.family, curve.observable);
-            let line = format!("{} of {density} is 0", curve.kind.name());
-            let line = [(Sample::Curve(stroke), line)].into_iter();
-            for entry in line.chain(remarks(curve, stroke, rect)) {
-                if !entries.iter().any(|known| known.1 == entry.1) {
-                    entries.push(entry);
-                }
-            }
-        }
-        entries.extend(self.crossed.entries());
-        entries
     }
 
     /// The start with its label and the signatures on both sides, and the ends with theirs.
@@ -170,11 +155,10 @@ impl Scene<'_> {
         panel.draw(&[place(start)], Shape::Dot(DOT, BIFURCATION, rim));
         let at = panel.place(place(start));
         write(page, rect, at, &self.row.label, BIFURCATION, true);
-        let words = [(self.row.before, -1.0), (self.row.after, 1.0)];
-        for (signature, side) in words {
-            let Some(signature) = signature else {
-                continue;
-            };
+        let sides = [self.row.before, self.row.after]
+            .into_iter()
+            .zip([-1.0, 1.0]);
+        for (signature, side) in sides.filter_map(|(one, side)| Some((one?, side))) {
             let anchor = if side < 0.0 { HPos::Right } else { HPos::Left };
             let text = small(symbols::plain(&signature.to_string()), anchor, GREY);
             page.text((at.0 + side * 2.5 * AWAY, at.1 + AWAY), text);
@@ -255,22 +239,38 @@ pub(super) fn stroke_of<'c>(
     Stroke::curve(number.unwrap_or(0)).dashed(&[])
 }
 
-/// What a legend says beside the meaning of a curve's line: its band, where it is wider than the line, and what dashes
+/// What a legend says of curves: the meaning of each line, its band, where it is wider than the line, and what dashes
 /// mean.
-pub(super) fn remarks(curve: &Curve, stroke: Stroke, rect: Rectangle) -> Vec<(Sample, String)> {
-    let mut entries = Vec::new();
+pub(super) fn entries<'c>(
+    curves: impl IntoIterator<Item = &'c Curve> + Clone,
+    family: &Family,
+    rect: Rectangle,
+) -> Vec<(Sample, String)> {
+    let mut entries: Vec<(Sample, String)> = Vec::new();
+    let mut add = |is_shown: bool, stroke: Stroke, words: String| {
+        if is_shown && entries.iter().all(|known| known.1 != words) {
+            entries.push((Sample::Curve(stroke), words));
+        }
+    };
     let shorter = rect.width.min(rect.height);
-    let is_seen = |point: &CurvePoint| 2.0 * point.error * shorter > SEEN;
-    if curve.points.iter().any(is_seen) {
+    for curve in curves.clone() {
+        let stroke = stroke_of(curves.clone(), curve.kind);
+        let density = names::density(family, curve.observable);
+        add(
+            true,
+            stroke,
+            format!("{} of {density} is 0", curve.kind.name()),
+        );
+        let is_seen = |point: &CurvePoint| 2.0 * point.error * shorter > SEEN;
         let band = Stroke::solid(stroke.colour.at(BAND), 8.0);
-        entries.push((Sample::Curve(band), "its error".to_owned()));
-    }
-    let doubtful = |point: &CurvePoint| point.status != BifurcationStatus::Located;
-    if curve.points.iter().any(doubtful) {
-        entries.push((
-            Sample::Curve(stroke.dashed(DASHES)),
-            "not located".to_owned(),
-        ));
+        add(
+            curve.points.iter().any(is_seen),
+            band,
+            "its error".to_owned(),
+        );
+        let doubtful = |point: &CurvePoint| point.status != BifurcationStatus::Located;
+        let is_doubtful = curve.points.iter().any(doubtful);
+        add(is_doubtful, stroke.dashed(DASHES), "not located".to_owned());
     }
     entries
 }

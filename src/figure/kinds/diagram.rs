@@ -40,18 +40,14 @@ pub(super) const KIND: Kind = Kind {
 /// The diagram of a marginal; `None` without any density.
 fn draw(result: &SweepResult, (observable, axis): (usize, usize), print: &Print<'_>) -> Drawn {
     let (family, look) = (&result.subject.family, &print.look);
-    let watched = result.subject.observables[observable];
-    let densities: Vec<&Density> = densities(result, observable)
-        .into_iter()
-        .flatten()
-        .collect();
-    let Some(window) = view::window(&densities, 0) else {
+    let (watched, points) = (result.subject.observables[observable], &result.points);
+    let columns = Columns::new(points, observable);
+    let Some(window) = view::window(&columns.densities(), 0) else {
         return Ok(None);
     };
-    let all = Columns::new(result, observable);
-    let largest = all.shown.iter().flatten().map(|shown| shown.largest);
+    let largest = columns.shown.iter().flatten().map(|shown| shown.largest);
     let largest = largest.fold(0.0, f64::max);
-    let range = parameter_range(&result.points);
+    let range = parameter_range(points);
     let high = look.height(MAP.1, USUAL);
     let up = Scale::vertical(look, window, high, &names::axis(family, axis))?;
     let bar = ColourBar::new(look, largest, high, &names::density(family, watched))?;
@@ -61,31 +57,17 @@ fn draw(result: &SweepResult, (observable, axis): (usize, usize), print: &Print<
     let width = left + wide + bar.width() + MARGIN;
     let heading = Heading::new(look, print.title, width)?;
     let labels = Labels::new(look, result, Some(watched), range, (left, wide))?;
-    let map = Rectangle::new(
-        (
-            left,
-            heading.height() + labels.height().max(ColourBar::above()),
-        ),
-        (wide, high),
-    );
-    let followed = [FeatureKind::Peak, FeatureKind::Valley]
-        .map(|kind| branches(&result.points, observable, kind, window));
-    let legend = Legend::new(
-        look,
-        entries(result, observable, &followed, &labels),
-        width - 2.0 * MARGIN,
-    )?;
+    let above = labels.height().max(ColourBar::above());
+    let map = Rectangle::new((left, heading.height() + above), (wide, high));
+    let kinds = [FeatureKind::Peak, FeatureKind::Valley];
+    let followed = kinds.map(|kind| branches(points, observable, kind, window));
+    let entries = entries(points, observable, &followed, &labels);
+    let legend = Legend::new(look, entries, width - 2.0 * MARGIN)?;
     let below = map.bottom() + Scale::below();
     let page = Page::new(look, width, below + legend.height() + MARGIN);
     heading.draw(&page);
     let panel = page.panel(map, range, window);
-    draw_map(
-        &page,
-        (&panel, map),
-        result,
-        observable,
-        (range, window, largest),
-    )?;
+    columns.draw(&page, (&panel, map), (range, window, largest))?;
     labels.draw_lines(look, &panel, window);
     draw_branches(&panel, &followed, window);
     frame::border(&page, map);
@@ -101,29 +83,18 @@ fn draw(result: &SweepResult, (observable, axis): (usize, usize), print: &Print<
     );
     let between = caption::between_cells(result, |one| one == watched);
     let caption = caption::of_sweep(result, seen, &[between, caption::bifurcations(result)]);
-    let points: Vec<&Point> = result.points.iter().collect();
+    let points: Vec<&Point> = points.iter().collect();
     let table = table::of_marginals(result, (&[observable], &points), |one, _| table::cells(one));
     Ok(Some(Figure::new(&page, caption, table)))
 }
 
-/// The density of each point, where it has one.
-fn densities(result: &SweepResult, observable: usize) -> Vec<Option<&Density>> {
-    let points = result.points.iter();
-    points
-        .map(|point| view::density(point, observable).map(|estimated| &estimated.density))
-        .collect()
-}
-
 /// Ends of the columns: half-way between neighbouring values, and the ends of the range.
 pub(super) fn column_edges(points: &[Point], range: (f64, f64)) -> Vec<f64> {
-    let mut edges = vec![range.0];
-    edges.extend(
-        points
-            .windows(2)
-            .map(|pair| 0.5 * (pair[0].value + pair[1].value)),
-    );
-    edges.push(range.1);
-    edges
+    let middles = points
+        .windows(2)
+        .map(|pair| 0.5 * (pair[0].value + pair[1].value));
+    let edges = std::iter::once(range.0).chain(middles);
+    edges.chain(std::iter::once(range.1)).collect()
 }
 
 /// Hatches the column between the first two of some edges.
@@ -135,47 +106,6 @@ pub(super) fn hatch_column(page: &Page, panel: &Panel, edges: &[f64], window: (f
     }
 }
 
-/// Hatches the ground of columns without density and draws the others' heat map.
-fn draw_map(
-    page: &Page,
-    (panel, map): (&Panel, Rectangle),
-    result: &SweepResult,
-    observable: usize,
-    (range, window, largest): ((f64, f64), (f64, f64), f64),
-) -> Result<(), FigureError> {
-    let densities = densities(result, observable);
-    let edges = column_edges(&result.points, range);
-    for (column, _) in densities
-        .iter()
-        .enumerate()
-        .filter(|(_, density)| density.is_none())
-    {
-        hatch_column(page, panel, &edges[column..], window);
-    }
-    let axes: Vec<&Axis> = densities
-        .iter()
-        .flatten()
-        .map(|density| &density.axes[0])
-        .collect();
-    let all = Columns::new(result, observable);
-    let mut shown = all.shown.iter().flatten();
-    let size = if shown.any(|shown| shown.between.is_some()) {
-        (view::resolution(map.width), view::resolution(map.height))
-    } else {
-        (
-            (map.width * PNG_SCALE).round() as usize,
-            view::cell_resolution(&axes, window, map.height),
-        )
-    };
-    let values = all.values(&edges, (range, window), size);
-    let picture = Picture::new(size, |column, row| {
-        Some(values[column].as_ref()?[row] / largest)
-    });
-    let corners = [(range.0, window.0), (range.1, window.1)];
-    panel.draw(&corners, Shape::Image(picture.png(page.look())?));
-    Ok(())
-}
-
 /// The densities of the points of a sweep.
 struct Columns<'a> {
     points: &'a [Point],
@@ -183,13 +113,49 @@ struct Columns<'a> {
 }
 
 impl<'a> Columns<'a> {
-    fn new(result: &'a SweepResult, observable: usize) -> Self {
-        let points = result.points.iter();
-        let shown = points.map(|point| Some(View::new(view::density(point, observable)?)));
+    fn new(points: &'a [Point], observable: usize) -> Self {
+        let shown = points.iter();
+        let shown = shown.map(|point| Some(View::new(view::density(point, observable)?)));
         Self {
-            points: &result.points,
+            points,
             shown: shown.collect(),
         }
+    }
+
+    fn densities(&self) -> Vec<&'a Density> {
+        let shown = self.shown.iter().flatten();
+        shown.map(View::density).collect()
+    }
+
+    /// Hatches the ground of columns without density and draws the others' heat map.
+    fn draw(
+        &self,
+        page: &Page,
+        (panel, map): (&Panel, Rectangle),
+        (range, window, largest): ((f64, f64), (f64, f64), f64),
+    ) -> Result<(), FigureError> {
+        let edges = column_edges(self.points, range);
+        for (column, shown) in self.shown.iter().enumerate() {
+            if shown.is_none() {
+                hatch_column(page, panel, &edges[column..], window);
+            }
+        }
+        let mut shown = self.shown.iter().flatten();
+        let size = if shown.any(|shown| shown.between.is_some()) {
+            (view::resolution(map.width), view::resolution(map.height))
+        } else {
+            let densities = self.densities();
+            let axes: Vec<&Axis> = densities.iter().map(|density| &density.axes[0]).collect();
+            let pixels = view::cell_resolution(&axes, window, map.height);
+            ((map.width * PNG_SCALE).round() as usize, pixels)
+        };
+        let values = self.values(&edges, (range, window), size);
+        let picture = Picture::new(size, |column, row| {
+            Some(values[column].as_ref()?[row] / largest)
+        });
+        let corners = [(range.0, window.0), (range.1, window.1)];
+        panel.draw(&corners, Shape::Image(picture.png(page.look())?));
+        Ok(())
     }
 
     /// The values in each column of pixels, from the lowest one up: those of the point whose column it is, and linear
@@ -223,16 +189,8 @@ impl<'a> Columns<'a> {
     /// How far a value lies between the points before and at a number, where the density may be followed between them.
     fn share(&self, above: usize, place: f64) -> Option<f64> {
         let below = above.checked_sub(1)?;
-        let is_smooth = |number: usize| {
-            self.shown
-                .get(number)?
-                .as_ref()?
-                .between
-                .as_ref()
-                .map(|_| ())
-        };
-        is_smooth(below)?;
-        is_smooth(above)?;
+        let view = |number: usize| self.shown.get(number)?.as_ref()?.between.as_ref();
+        (view(below)?, view(above)?);
         let (from, to) = (self.points.get(below)?, self.points.get(above)?);
         let is_near = to.distance.is_some_and(|distance| distance <= ALIKE);
         is_near.then(|| (place - from.value) / (to.value - from.value))
@@ -253,7 +211,7 @@ fn draw_branches(panel: &Panel, followed: &[Vec<Branch>; 2], window: (f64, f64))
 
 /// Entries of the legend, only for what the figure shows.
 fn entries(
-    result: &SweepResult,
+    points: &[Point],
     observable: usize,
     followed: &[Vec<Branch>; 2],
     labels: &Labels<'_>,
@@ -267,7 +225,7 @@ fn entries(
     add(!followed[0].is_empty(), Sample::Peaks, "peak");
     add(!followed[1].is_empty(), Sample::Valleys, "valley");
     let missing = |point: &&Point| view::density(point, observable).is_none();
-    let blank = || result.points.iter().filter(missing);
+    let blank = || points.iter().filter(missing);
     let several = blank().any(|point| point.report.status == PointStatus::SeveralClasses);
     let words = if several {
         "no unique steady state"

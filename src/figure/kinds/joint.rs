@@ -3,14 +3,13 @@
 
 use super::{Kind, Sketch, Sweep};
 use crate::continuation::{Point, SweepResult, evenly_spaced};
-use crate::density::Observable;
 use crate::figure::FigureError;
 use crate::figure::canvas::colour_bar::ColourBar;
 use crate::figure::canvas::frame::Scale;
 use crate::figure::canvas::page::Page;
 use crate::figure::canvas::style::MARGIN;
 use crate::figure::figures::{Figure, Print};
-use crate::figure::parts::joint_map::{Found, LEVELS, draw_map, open_page, windows, write_above};
+use crate::figure::parts::joint_map::{Joint, LEVELS, draw_map, open_page, write_above};
 use crate::figure::parts::{caption, joint_sheet, names, table, view};
 
 /// What a map is, for captions.
@@ -46,9 +45,8 @@ fn sketches<'a>(sweep: &Sweep<'a>) -> Vec<Sketch<'a>> {
     sketches
 }
 
-/// Draws a page of a joint density, by its number among the observables, at some points.
-pub(super) type DrawJoint =
-    fn(&SweepResult, usize, &[&Point], &Print<'_>) -> Result<Option<Page>, FigureError>;
+/// Draws a page of joint densities.
+pub(super) type DrawJoint = fn(&Joint<'_>, &Print<'_>) -> Result<Option<Page>, FigureError>;
 
 impl<'a> Sweep<'a> {
     /// A figure of a joint density, by its number, at some points, in the way that the words of its caption say.
@@ -61,8 +59,11 @@ impl<'a> Sweep<'a> {
     ) -> Sketch<'a> {
         let (result, points) = (self.result, points.to_vec());
         Sketch::new(name, move |print| {
-            let page = draw(result, number, &points, print)?;
-            Ok(page.map(|page| figure(result, (number, way), &points, &page)))
+            let Some(joint) = Joint::new(result, number, &points) else {
+                return Ok(None);
+            };
+            let page = draw(&joint, print)?;
+            Ok(page.map(|page| figure(&joint, way, &page)))
         })
     }
 
@@ -82,14 +83,13 @@ impl<'a> Sweep<'a> {
     }
 }
 
-/// A page that shows a joint density at some points, in the way that the words say.
-fn figure(
-    result: &SweepResult,
-    (number, way): (usize, &str),
-    points: &[&Point],
-    page: &Page,
-) -> Figure {
-    let (family, watched) = (&result.subject.family, result.subject.observables[number]);
+/// A page that shows joint densities, in the way that the words say.
+fn figure(joint: &Joint<'_>, way: &str, page: &Page) -> Figure {
+    let (result, points) = (joint.result, joint.points);
+    let (family, watched) = (
+        &result.subject.family,
+        result.subject.observables[joint.number],
+    );
     let seen = format!(
         "Steady-state joint density {}{}, {way}.",
         caption::density(family, watched),
@@ -99,7 +99,7 @@ fn figure(
     let is_map = way.contains("map");
     let marks = is_map.then(|| "Marked are peaks (+) and craters (o).".to_owned());
     let marked = [between, marks.unwrap_or_default()];
-    let table = table::of_joint(result, number, points);
+    let table = table::of_joint(result, joint.number, points);
     Figure::new(page, caption::of_sweep(result, seen, &marked), table)
 }
 
@@ -116,35 +116,22 @@ fn several(result: &SweepResult, observable: usize) -> Vec<&Point> {
         .collect()
 }
 
-/// One map at one point; `None` without a density.
-fn draw_single(
-    result: &SweepResult,
-    observable: usize,
-    points: &[&Point],
-    print: &Print<'_>,
-) -> Result<Option<Page>, FigureError> {
-    let (family, look) = (&result.subject.family, &print.look);
-    let watched = result.subject.observables[observable];
-    let found: Vec<Found<'_>> = Found::all(points, observable);
-    let Observable::Joint(first, second) = watched else {
-        return Ok(None);
-    };
-    let Some((x, y)) = windows(&found) else {
-        return Ok(None);
-    };
-    let largest = found[0].shown.largest;
-    let high = look
-        .page
-        .map_or(SINGLE, |page| (0.68 * page).clamp(170.0, TALLEST));
-    let up = Scale::vertical(look, y, high, &names::axis(family, second))?;
-    let bar = ColourBar::new(look, largest, high, &names::density(family, watched))?;
+/// One map at one point.
+fn draw_single(joint: &Joint<'_>, print: &Print<'_>) -> Result<Option<Page>, FigureError> {
+    let (look, found, (x, y)) = (&print.look, &joint.found[0], joint.window);
+    let [first, second, density] = &joint.titles;
+    let largest = found.shown.largest;
+    let own = |page: f64| (0.68 * page).clamp(170.0, TALLEST);
+    let high = look.page.map_or(SINGLE, own);
+    let up = Scale::vertical(look, y, high, second)?;
+    let bar = ColourBar::new(look, largest, high, density)?;
     let left = MARGIN + up.left();
     let wide = look.fill(SINGLE, left + bar.width() + MARGIN);
-    let across = Scale::horizontal(look, x, wide, &names::axis(family, first))?;
+    let across = Scale::horizontal(look, x, wide, first)?;
     let width = left + wide + bar.width() + MARGIN;
-    let (page, map) = open_page(print, &found, (left, width), (wide, high))?;
-    write_above(&page, map, names::at(family, found[0].value));
-    draw_map(&page, map, &found[0], (x, y), largest)?;
+    let (page, map) = open_page(print, &joint.found, (left, width), (wide, high))?;
+    write_above(&page, map, joint.at(found));
+    draw_map(&page, map, found, (x, y), largest)?;
     across.draw_below(&page, map, true);
     up.draw_left(&page, map, true);
     bar.draw(&page, map, &LEVELS)?;

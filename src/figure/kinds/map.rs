@@ -4,7 +4,7 @@
 use plotters_backend::text_anchor::HPos;
 
 use super::Sketch;
-use super::curve::{draw_line, remarks, stroke_of};
+use super::curve::{draw_line, entries, stroke_of};
 use crate::continuation::curve::{Curve, EndReason, SweepInPlane};
 use crate::continuation::map::{RegimeMap, RegionPicture, RegionSample};
 use crate::density::Observable;
@@ -23,7 +23,7 @@ use crate::figure::parts::inset;
 use crate::figure::parts::names::{self, symbol_of};
 use crate::figure::parts::region_room::Room;
 use crate::system::Family;
-use crate::topology::{IndicatorKind, Signature};
+use crate::topology::Signature;
 
 /// Size of the panel on a page of its own width, in pixels, and that width.
 const PANEL: (f64, f64) = (390.0, 300.0);
@@ -133,14 +133,15 @@ impl Scene<'_> {
             panel.draw(&[(x.0, y.1), (x.1, y.0)], Shape::Image(png));
         }
         for curve in &self.curves {
-            draw_line(&panel, curve, self.stroke(curve.kind));
+            let stroke = stroke_of(self.curves.iter().copied(), curve.kind);
+            draw_line(&panel, curve, stroke);
         }
         self.crossed.draw(&panel);
         self.draw_ends(&page, &panel);
         frame::border(&page, rect);
         across.draw_below(&page, rect, true);
         up.draw_left(&page, rect, true);
-        for placed in places.iter().flatten() {
+        for placed in &places {
             placed.draw(&page, look)?;
         }
         legend.draw(&page, left + 0.5 * wide, below);
@@ -183,9 +184,9 @@ impl Scene<'_> {
         &self,
         ground: &Ground,
         rect: Rectangle,
-    ) -> Result<Vec<Option<Placed<'_>>>, FigureError> {
+    ) -> Result<Vec<Placed<'_>>, FigureError> {
         let room = Room::new(&ground.picture);
-        let mut places: Vec<Option<Placed<'_>>> = Vec::new();
+        let mut places: Vec<Placed<'_>> = Vec::new();
         for (number, region) in ground.picture.regions.iter().enumerate() {
             let text = words(region.signature);
             let wide = render::text_width(self.look, &symbols::plain(&text), TICK_TEXT, false)?;
@@ -200,7 +201,7 @@ impl Scene<'_> {
                 .sample(ground, number)
                 .and_then(|sample| Some((find(both)?, Some(sample))));
             let best = with.or_else(|| Some((find(half)?, None)));
-            places.push(best.map(|([column, row], sample)| Placed {
+            places.extend(best.map(|([column, row], sample)| Placed {
                 at: (
                     rect.left + (column as f64 + 0.5) / FINE,
                     rect.bottom() - (row as f64 + 0.5) / FINE,
@@ -224,41 +225,21 @@ impl Scene<'_> {
         })
     }
 
-    /// The line of an indicator: a colour each.
-    fn stroke(&self, kind: IndicatorKind) -> Stroke {
-        stroke_of(self.curves.iter().copied(), kind)
-    }
-
     fn legend(
         &self,
         ground: Option<&Ground>,
-        places: &[Option<Placed<'_>>],
+        places: &[Placed<'_>],
         rect: Rectangle,
     ) -> Result<Legend, FigureError> {
-        let mut entries: Vec<(Sample, String)> = Vec::new();
-        let density = names::density(self.family, self.map.subject.observables[self.index]);
-        for curve in &self.curves {
-            let stroke = self.stroke(curve.kind);
-            let line = format!("{} of {density} is 0", curve.kind.name());
-            for entry in [(Sample::Curve(stroke), line)]
-                .into_iter()
-                .chain(remarks(curve, stroke, rect))
-            {
-                if !entries.iter().any(|known| known.1 == entry.1) {
-                    entries.push(entry);
-                }
-            }
-        }
+        let mut entries = entries(self.curves.iter().copied(), self.family, rect);
         entries.extend(self.crossed.entries());
-        for (kind, signature) in ground
-            .iter()
-            .flat_map(|ground| ground.kinds.iter().enumerate())
-        {
-            let text = words(*signature);
-            let is_written = places.iter().flatten().any(|placed| placed.words == text);
-            if let (false, Some(ground)) = (is_written, ground) {
-                let colour = Colour::fixed(self.tint(ground, kind));
-                entries.push((Sample::Box(colour), symbols::plain(&text)));
+        for ground in ground {
+            for (kind, signature) in ground.kinds.iter().enumerate() {
+                let text = words(*signature);
+                if places.iter().all(|placed| placed.words != text) {
+                    let colour = Colour::fixed(self.tint(ground, kind));
+                    entries.push((Sample::Box(colour), symbols::plain(&text)));
+                }
             }
         }
         Legend::new(self.look, entries, rect.right() - MARGIN)

@@ -15,6 +15,7 @@ use crate::figure::canvas::style::{MARGIN, Stroke};
 use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::view::View;
 use crate::figure::parts::{caption, names, table, view};
+use crate::system::Family;
 
 /// Height of a panel on a page of its own width, in pixels, and that width.
 const HEIGHT: f64 = 210.0;
@@ -31,7 +32,8 @@ const BESIDE: f64 = 10.0;
 
 /// Densities of one axis, overlaid in a panel.
 pub(super) struct Overlaid<'a> {
-    axis: usize,
+    /// Title of the abscissa.
+    axis: String,
     densities: Vec<(usize, Cow<'a, EstimatedDensity>)>,
     window: (f64, f64),
     up: Scale,
@@ -61,10 +63,7 @@ fn arrangement(look: &Look, panels: usize, room: f64) -> (usize, f64) {
         let gaps = BETWEEN * (columns - 1) as f64 + BESIDE + 2.0 * MARGIN;
         look.fill(own, columns as f64 * room + gaps) / columns as f64
     };
-    let fitting = (1..=panels.max(1))
-        .rev()
-        .find(|&columns| width(columns) >= NARROWEST);
-    let columns = fitting.unwrap_or(1);
+    let columns = Look::columns(panels, |columns| width(columns) >= NARROWEST);
     (columns, width(columns))
 }
 
@@ -74,7 +73,7 @@ fn draw(result: &SweepResult, chosen: &[&Point], print: &Print<'_>) -> Drawn {
     for number in 0..result.subject.observables.len() {
         all.extend(marginal(result, chosen, number, print)?);
     }
-    let Some(page) = draw_overlaid(result, chosen, &all, print)? else {
+    let Some(page) = draw_overlaid(&result.subject.family, chosen, &all, print)? else {
         return Ok(None);
     };
     let values = chosen.iter().map(|point| point.value);
@@ -114,12 +113,12 @@ fn as_drawn(estimated: &EstimatedDensity, window: Option<(f64, f64)>) -> Vec<(f6
 
 /// Draws a panel for each of some axes, in a legend the chosen points; `None` without a panel.
 pub(super) fn draw_overlaid(
-    result: &SweepResult,
+    family: &Family,
     chosen: &[&Point],
     all: &[Overlaid<'_>],
     print: &Print<'_>,
 ) -> Result<Option<Page>, FigureError> {
-    let (family, look) = (&result.subject.family, &print.look);
+    let look = &print.look;
     let high = look.height(HEIGHT, USUAL);
     if all.is_empty() {
         return Ok(None);
@@ -138,17 +137,11 @@ pub(super) fn draw_overlaid(
     // What rooms of their own leave over goes to the panels.
     let wide = (page_width - gaps - lefts.iter().sum::<f64>()) / columns as f64;
     let heading = Heading::new(look, print.title, page_width)?;
-    let entry = |(number, point): (usize, &&Point)| {
-        (
-            Sample::Curve(Stroke::curve(number)),
-            names::at(family, point.value),
-        )
-    };
-    let legend = Legend::new(
-        look,
-        chosen.iter().enumerate().map(entry).collect(),
-        page_width - 2.0 * MARGIN,
-    )?;
+    let entries = chosen.iter().enumerate().map(|(number, point)| {
+        let sample = Sample::Curve(Stroke::curve(number));
+        (sample, names::at(family, point.value))
+    });
+    let legend = Legend::new(look, entries.collect(), page_width - 2.0 * MARGIN)?;
     let top = heading.height() + legend.height() + 6.0;
     let step = high + Scale::below() + MARGIN;
     let page = Page::new(look, page_width, top + rows as f64 * step);
@@ -157,15 +150,9 @@ pub(super) fn draw_overlaid(
     for (number, one) in all.iter().enumerate() {
         let (row, column) = (number / columns, number % columns);
         let before: f64 = lefts[..=column].iter().sum();
-        let rect = Rectangle::new(
-            (
-                MARGIN + before + column as f64 * (wide + BETWEEN),
-                top + row as f64 * step,
-            ),
-            (wide, high),
-        );
-        let title = names::axis(family, one.axis);
-        let across = Scale::horizontal(look, one.window, wide, &title)?;
+        let left = MARGIN + before + column as f64 * (wide + BETWEEN);
+        let rect = Rectangle::new((left, top + row as f64 * step), (wide, high));
+        let across = Scale::horizontal(look, one.window, wide, &one.axis)?;
         draw_panel(&page, (one, &across), rect);
     }
     Ok(Some(page))
@@ -186,34 +173,33 @@ fn marginal<'a>(
         Some((place, Cow::Borrowed(view::density(point, number)?)))
     };
     let densities = chosen.iter().enumerate().filter_map(drawable);
-    let title = names::density(&result.subject.family, observable);
-    Overlaid::new(print, axis, densities.collect(), &title)
+    let family = &result.subject.family;
+    let (axis, title) = (
+        names::axis(family, axis),
+        names::density(family, observable),
+    );
+    Overlaid::new(print, &axis, densities.collect(), &title)
 }
 
 impl<'a> Overlaid<'a> {
     /// Densities along an axis, with the numbers of their points among the chosen; `None` where there is nothing to
-    /// see. The title is that of the ordinate.
+    /// see. The titles are those of the abscissa and of the ordinate.
     pub(super) fn new(
         print: &Print<'_>,
-        axis: usize,
+        axis: &str,
         densities: Vec<(usize, Cow<'a, EstimatedDensity>)>,
         title: &str,
     ) -> Result<Option<Self>, FigureError> {
-        let bare: Vec<&Density> = densities
-            .iter()
-            .map(|(_, estimated)| &estimated.density)
-            .collect();
+        let all = densities.iter().map(|(_, estimated)| estimated);
+        let bare: Vec<&Density> = all.clone().map(|one| &one.density).collect();
         let Some(window) = view::window(&bare, 0) else {
             return Ok(None);
         };
-        let shown = densities
-            .iter()
-            .map(|(_, estimated)| View::new(estimated).largest);
-        let highest = shown.fold(0.0, f64::max);
+        let highest = all.map(|one| View::new(one).largest).fold(0.0, f64::max);
         let high = print.look.height(HEIGHT, USUAL);
         let up = Scale::vertical(&print.look, (0.0, 1.06 * highest), high, title)?;
         Ok(Some(Self {
-            axis,
+            axis: axis.to_owned(),
             densities,
             window,
             up,

@@ -1,11 +1,8 @@
 //! A joint density twice, as a surface and as a map beside it: a row a parameter value, as papers of this field print
 //! them.
 
-use crate::density::Observable;
-
 use super::Kind;
-use super::surface::{COARSE, Frame};
-use crate::continuation::{Point, SweepResult};
+use super::surface::{COARSE, draw_surface, ranges};
 use crate::figure::FigureError;
 use crate::figure::canvas::colour_bar::ColourBar;
 use crate::figure::canvas::frame::Scale;
@@ -14,8 +11,7 @@ use crate::figure::canvas::page::{Heading, Page, Rectangle};
 use crate::figure::canvas::space::Space;
 use crate::figure::canvas::style::{MARGIN, TEXT};
 use crate::figure::figures::Print;
-use crate::figure::parts::joint_map::{Found, draw_map, lettered, windows, write_above};
-use crate::figure::parts::names;
+use crate::figure::parts::joint_map::{Found, Joint, draw_map, lettered, write_above};
 
 /// Width of a surface with its axes on a page of its own width, in pixels.
 const SURFACE: f64 = 330.0;
@@ -70,29 +66,15 @@ impl Row {
     }
 }
 
-/// The figure; `None` if there is nothing to draw.
-fn draw(
-    result: &SweepResult,
-    observable: usize,
-    chosen: &[&Point],
-    print: &Print<'_>,
-) -> Result<Option<Page>, FigureError> {
-    let (family, look) = (&result.subject.family, &print.look);
-    let watched = result.subject.observables[observable];
-    let found = Found::all(chosen, observable);
-    let (Observable::Joint(first, second), Some(window)) = (watched, windows(&found)) else {
-        return Ok(None);
-    };
-    let Some(frame) = Frame::new(family, watched, &found) else {
-        return Ok(None);
-    };
-    let tops: Vec<f64> = found.iter().map(|found| found.shown.largest).collect();
-    let title = names::density(family, watched);
+/// The figure.
+fn draw(joint: &Joint<'_>, print: &Print<'_>) -> Result<Option<Page>, FigureError> {
+    let (look, found, (x, y)) = (&print.look, &joint.found, joint.window);
+    let [first, second, density] = &joint.titles;
     let bars = |high: f64| {
-        let bar = |&top: &f64| ColourBar::new(look, top, high, &title);
-        tops.iter().map(bar).collect::<Result<Vec<_>, _>>()
+        let bar = |found: &Found<'_>| ColourBar::new(look, found.shown.largest, high, density);
+        found.iter().map(bar).collect::<Result<Vec<_>, _>>()
     };
-    let vertical = |high: f64| Scale::vertical(look, window.1, high, &names::axis(family, second));
+    let vertical = |high: f64| Scale::vertical(look, y, high, second);
     let has_bars = look.page.is_none_or(|page| page >= NARROW);
     let widest = |bars: &[ColourBar]| {
         if has_bars {
@@ -109,10 +91,11 @@ fn draw(
         map: (Row::new(look, up.left(), widest(&bars)).map.0, row.map.1),
         ..row
     };
-    let across = Scale::horizontal(look, window.0, row.map.0, &names::axis(family, first))?;
+    let across = Scale::horizontal(look, x, row.map.0, first)?;
     let mut surface_high: f64 = 0.0;
-    for &top in &tops {
-        surface_high = surface_high.max(Space::height(look, row.surface, frame.ranges(top))?);
+    for one in found {
+        let ranges = ranges(joint, one.shown.largest);
+        surface_high = surface_high.max(Space::height(look, row.surface, ranges)?);
     }
     let map_high = row.map.1 + Scale::below();
     let step = ABOVE + surface_high.max(map_high);
@@ -120,24 +103,19 @@ fn draw(
     let height = heading.height() + found.len() as f64 * (step + MARGIN);
     let page = Page::new(look, row.page, height);
     heading.draw(&page);
-    for (number, (found, &top)) in found.iter().zip(&tops).enumerate() {
+    for (number, (found, bar)) in found.iter().zip(&bars).enumerate() {
         let from = heading.height() + ABOVE + number as f64 * (step + MARGIN);
         let surface = Rectangle::new((MARGIN, from), (row.surface, surface_high));
-        let line = lettered(look, number, names::at(family, found.value));
-        write_above(&page, surface, line);
-        frame.draw(&page, surface, (found, top, COARSE))?;
-        let map = Rectangle::new(
-            (
-                row.page - MARGIN - widest(&bars) - row.map.0,
-                from + 0.5 * (surface_high.max(map_high) - map_high),
-            ),
-            (row.map.0, row.map.1),
-        );
-        draw_map(&page, map, found, window, top)?;
+        write_above(&page, surface, lettered(look, number, joint.at(found)));
+        draw_surface(&page, surface, joint, (found, COARSE))?;
+        let left = row.page - MARGIN - widest(&bars) - row.map.0;
+        let top = from + 0.5 * (surface_high.max(map_high) - map_high);
+        let map = Rectangle::new((left, top), row.map);
+        draw_map(&page, map, found, (x, y), found.shown.largest)?;
         across.draw_below(&page, map, true);
         up.draw_left(&page, map, true);
         if has_bars {
-            bars[number].draw(&page, map, &[])?;
+            bar.draw(&page, map, &[])?;
         }
     }
     Ok(Some(page))

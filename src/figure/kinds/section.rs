@@ -3,19 +3,18 @@
 
 use std::borrow::Cow;
 
-use crate::density::{Density, EstimatedDensity, Kink, Observable, Structure, Variants};
+use crate::density::{Density, EstimatedDensity, Kink, Structure, Variants};
 use crate::space::Axis;
 use crate::topology::Between;
 
 use super::joint::DrawJoint;
 use super::marginals::{Overlaid, draw_overlaid};
 use super::{Kind, Sketch, Sweep};
-use crate::continuation::{Point, SweepResult};
 use crate::figure::FigureError;
 use crate::figure::canvas::page::Page;
 use crate::figure::canvas::symbols;
 use crate::figure::figures::Print;
-use crate::figure::parts::names;
+use crate::figure::parts::joint_map::Joint;
 use crate::figure::parts::view;
 
 pub(super) const KIND: Kind = Kind {
@@ -27,65 +26,52 @@ pub(super) const KIND: Kind = Kind {
 /// Two figures an observed pair of axes: the density on a line, and the same with an integral of one, which is the
 /// density of one axis where the other has a value.
 fn sketches<'a>(sweep: &Sweep<'a>) -> Vec<Sketch<'a>> {
-    let mut sketches = Vec::new();
-    for (number, pair) in sweep.pairs() {
-        let way = (number, "on lines through its centre");
-        let plain: DrawJoint =
-            |result, number, chosen, print| draw(result, (number, false), chosen, print);
-        sketches.push(sweep.joint(format!("section_{pair}"), way, &sweep.chosen, plain));
-        let way = (
-            number,
-            "on lines through its centre, each with an integral of one",
-        );
-        let conditional: DrawJoint =
-            |result, number, chosen, print| draw(result, (number, true), chosen, print);
-        sketches.push(sweep.joint(
-            format!("conditional_{pair}"),
-            way,
-            &sweep.chosen,
-            conditional,
-        ));
-    }
-    sketches
+    const WAY: &str = "on lines through its centre";
+    const CONDITIONAL: &str = "on lines through its centre, each with an integral of one";
+    let plain: DrawJoint = |joint, print| draw(joint, false, print);
+    let conditional: DrawJoint = |joint, print| draw(joint, true, print);
+    let kinds = [
+        ("section", WAY, plain),
+        ("conditional", CONDITIONAL, conditional),
+    ];
+    let pairs = sweep.pairs().flat_map(|(number, pair)| {
+        kinds.map(|(name, way, draw)| {
+            sweep.joint(format!("{name}_{pair}"), (number, way), &sweep.chosen, draw)
+        })
+    });
+    pairs.collect()
 }
 
 /// The figure; `None` without a density.
 fn draw(
-    result: &SweepResult,
-    (number, is_conditional): (usize, bool),
-    chosen: &[&Point],
+    joint: &Joint<'_>,
+    is_conditional: bool,
     print: &Print<'_>,
 ) -> Result<Option<Page>, FigureError> {
-    let family = &result.subject.family;
-    let Observable::Joint(first, second) = result.subject.observables[number] else {
-        return Ok(None);
-    };
-    let found: Vec<(usize, &EstimatedDensity)> = chosen
-        .iter()
-        .enumerate()
-        .filter_map(|(place, point)| Some((place, view::density(point, number)?)))
+    let points = joint.points.iter().enumerate();
+    let found: Vec<(usize, &EstimatedDensity)> = points
+        .filter_map(|(place, point)| Some((place, view::density(point, joint.number)?)))
         .collect();
     let Some(centre) = found.first().and_then(|(_, estimated)| centre(estimated)) else {
         return Ok(None);
     };
+    let [first, second, _] = &joint.titles;
     let mut panels = Vec::new();
-    for (along, axis, other) in [(0, first, second), (1, second, first)] {
+    for (along, own, other) in [(0, first, second), (1, second, first)] {
         let at = centre[1 - along];
         let sections = found.iter().filter_map(|(place, estimated)| {
             let section = section(estimated, along, at, is_conditional)?;
             Some((*place, Cow::Owned(section)))
         });
-        let (own, value) = (names::axis(family, axis), symbols::value(at));
+        let value = symbols::value(at);
         let title = match (is_conditional, along) {
-            (true, _) => {
-                format!("$p$({own} | {} = {value})", names::axis(family, other))
-            }
-            (false, 0) => symbols::density_of(&[own, value]),
-            (false, _) => symbols::density_of(&[value, own]),
+            (true, _) => format!("$p$({own} | {other} = {value})"),
+            (false, 0) => symbols::density_of(&[own.clone(), value]),
+            (false, _) => symbols::density_of(&[value, own.clone()]),
         };
-        panels.extend(Overlaid::new(print, axis, sections.collect(), &title)?);
+        panels.extend(Overlaid::new(print, own, sections.collect(), &title)?);
     }
-    draw_overlaid(result, chosen, &panels, print)
+    draw_overlaid(&joint.result.subject.family, joint.points, &panels, print)
 }
 
 /// The centre of symmetry of a joint density, else its summit.
@@ -203,6 +189,7 @@ fn section(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::density::Observable;
 
     /// A Gaussian in both axes with standard deviations 1 and 0.5, exact in the middles of cells.
     fn gaussian(correlation: f64) -> EstimatedDensity {

@@ -3,8 +3,6 @@
 //! of the cells' middles; where there are more cells than can be seen, lines of cells are left out, but never those
 //! beside a kink or through the summit.
 
-use crate::continuation::{Point, SweepResult};
-use crate::density::Observable;
 use crate::space::Axis;
 
 use super::{Kind, Sketch, Sweep};
@@ -14,9 +12,7 @@ use crate::figure::canvas::page::{Heading, Page, Rectangle};
 use crate::figure::canvas::space::{Heights, Ranges, Space};
 use crate::figure::canvas::style::{MARGIN, TEXT};
 use crate::figure::figures::Print;
-use crate::figure::parts::joint_map::{Found, lettered, windows, write_above};
-use crate::figure::parts::names;
-use crate::system::Family;
+use crate::figure::parts::joint_map::{Found, Joint, lettered, write_above};
 
 /// Width of a single surface with its axes, in pixels.
 const SINGLE: f64 = 470.0;
@@ -28,7 +24,7 @@ const WIDEST: f64 = 560.0;
 /// Room of the line above a surface.
 const ABOVE: f64 = 1.5 * TEXT;
 /// Lines of a single surface, and of one on a sheet.
-pub(super) const FINE: usize = 100;
+const FINE: usize = 100;
 pub(super) const COARSE: usize = 90;
 
 pub(super) const KIND: Kind = Kind {
@@ -48,108 +44,60 @@ fn sketches<'a>(sweep: &Sweep<'a>) -> Vec<Sketch<'a>> {
     sketches
 }
 
-/// What surfaces of one pair of axes share.
-pub(super) struct Frame {
-    x: (f64, f64),
-    y: (f64, f64),
-    titles: [String; 3],
-}
-
-impl Frame {
-    /// The windows and titles of some densities of a pair; `None` where there is nothing to see.
-    pub(super) fn new(
-        family: &Family,
-        observable: Observable,
-        found: &[Found<'_>],
-    ) -> Option<Self> {
-        let Observable::Joint(first, second) = observable else {
-            return None;
-        };
-        let (x, y) = windows(found)?;
-        Some(Self {
-            x,
-            y,
-            titles: [
-                names::axis(family, first),
-                names::axis(family, second),
-                names::density(family, observable),
-            ],
-        })
-    }
-
-    /// The axes of a surface whose heights go up to `top`.
-    pub(super) fn ranges(&self, top: f64) -> Ranges<'_> {
-        Ranges {
-            x: (self.x, &self.titles[0]),
-            y: (self.y, &self.titles[1]),
-            z: ((0.0, top), &self.titles[2]),
-        }
-    }
-
-    /// Draws a surface into a rectangle as high as [`Space::height`] says.
-    pub(super) fn draw(
-        &self,
-        page: &Page,
-        rect: Rectangle,
-        (found, top, most): (&Found<'_>, f64, usize),
-    ) -> Result<(), FigureError> {
-        let space = Space::new(page.look(), rect, self.ranges(top))?;
-        if let Some(heights) = heights(found, (self.x, self.y), top, most) {
-            space.draw(page, &heights);
-        }
-        Ok(())
+/// The axes of a surface whose heights go up to `top`.
+pub(super) fn ranges<'a>(joint: &'a Joint<'_>, top: f64) -> Ranges<'a> {
+    let ([first, second, density], (x, y)) = (&joint.titles, joint.window);
+    Ranges {
+        x: (x, first),
+        y: (y, second),
+        z: ((0.0, top), density),
     }
 }
 
-/// One surface at one point; `None` without a density.
-fn draw_single(
-    result: &SweepResult,
-    observable: usize,
-    points: &[&Point],
-    print: &Print<'_>,
-) -> Result<Option<Page>, FigureError> {
-    let (family, look) = (&result.subject.family, &print.look);
-    let watched = result.subject.observables[observable];
-    let found = Found::all(points, observable);
-    let Some(frame) = Frame::new(family, watched, &found) else {
-        return Ok(None);
-    };
-    let top = found[0].shown.largest;
+/// Draws a surface of at most so many lines into a rectangle as high as [`Space::height`] says.
+pub(super) fn draw_surface(
+    page: &Page,
+    rect: Rectangle,
+    joint: &Joint<'_>,
+    (found, most): (&Found<'_>, usize),
+) -> Result<(), FigureError> {
+    let top = found.shown.largest;
+    let space = Space::new(page.look(), rect, ranges(joint, top))?;
+    if let Some(heights) = heights(found, joint.window, top, most) {
+        space.draw(page, &heights);
+    }
+    Ok(())
+}
+
+/// One surface at one point.
+fn draw_single(joint: &Joint<'_>, print: &Print<'_>) -> Result<Option<Page>, FigureError> {
+    let (look, found) = (&print.look, &joint.found[0]);
     let width = look.page.unwrap_or(SINGLE + 2.0 * MARGIN);
     let wide = (width - 2.0 * MARGIN).min(WIDEST);
-    let high = Space::height(look, wide, frame.ranges(top))?;
+    let high = Space::height(look, wide, ranges(joint, found.shown.largest))?;
     let heading = Heading::new(look, print.title, width)?;
     let page = Page::new(look, width, heading.height() + ABOVE + high + MARGIN);
     heading.draw(&page);
-    let rect = Rectangle::new(
-        (0.5 * (width - wide), heading.height() + ABOVE),
-        (wide, high),
-    );
-    write_above(&page, rect, names::at(family, found[0].value));
-    frame.draw(&page, rect, (&found[0], top, FINE))?;
+    let corner = (0.5 * (width - wide), heading.height() + ABOVE);
+    let rect = Rectangle::new(corner, (wide, high));
+    write_above(&page, rect, joint.at(found));
+    draw_surface(&page, rect, joint, (found, FINE))?;
     Ok(Some(page))
 }
 
 /// All surfaces of a pair on one sheet, with the same windows, each with heights of its own; `None` for fewer than two
 /// densities.
-fn draw_sheet(
-    result: &SweepResult,
-    observable: usize,
-    chosen: &[&Point],
-    print: &Print<'_>,
-) -> Result<Option<Page>, FigureError> {
-    let (family, look) = (&result.subject.family, &print.look);
-    let watched = result.subject.observables[observable];
-    let found = Found::all(chosen, observable);
-    let (true, Some(frame)) = (found.len() > 1, Frame::new(family, watched, &found)) else {
+fn draw_sheet(joint: &Joint<'_>, print: &Print<'_>) -> Result<Option<Page>, FigureError> {
+    let (look, found) = (&print.look, &joint.found);
+    if found.len() < 2 {
         return Ok(None);
-    };
+    }
     let (columns, wide) = arrangement(look, found.len());
     let width = look.page.unwrap_or(columns as f64 * wide + 2.0 * MARGIN);
-    let tops: Vec<f64> = found.iter().map(|found| found.shown.largest).collect();
     let mut high: f64 = 0.0;
-    for &top in &tops {
-        high = high.max(Space::height(look, wide - MARGIN, frame.ranges(top))?);
+    for one in found {
+        let ranges = ranges(joint, one.shown.largest);
+        high = high.max(Space::height(look, wide - MARGIN, ranges)?);
     }
     let heading = Heading::new(look, print.title, width)?;
     let rows = found.len().div_ceil(columns);
@@ -157,17 +105,11 @@ fn draw_sheet(
     let page = Page::new(look, width, heading.height() + rows as f64 * step);
     heading.draw(&page);
     let margin = 0.5 * (width - columns as f64 * wide);
-    for (number, (found, &top)) in found.iter().zip(&tops).enumerate() {
-        let rect = Rectangle::new(
-            (
-                margin + (number % columns) as f64 * wide,
-                heading.height() + ABOVE + (number / columns) as f64 * step,
-            ),
-            (wide - MARGIN, high),
-        );
-        let line = lettered(look, number, names::at(family, found.value));
-        write_above(&page, rect, line);
-        frame.draw(&page, rect, (found, top, COARSE))?;
+    let first = Rectangle::new((margin, heading.height() + ABOVE), (wide - MARGIN, high));
+    for (number, found) in found.iter().enumerate() {
+        let rect = first.tile(number, columns, (wide, step));
+        write_above(&page, rect, lettered(look, number, joint.at(found)));
+        draw_surface(&page, rect, joint, (found, COARSE))?;
     }
     Ok(Some(page))
 }
@@ -179,8 +121,8 @@ fn arrangement(look: &Look, surfaces: usize) -> (usize, f64) {
         _ => 3,
     };
     let width = |columns: usize| look.fill(SMALL * columns as f64, 2.0 * MARGIN) / columns as f64;
-    let fits = |columns: &usize| look.page.is_none() || width(*columns) >= NARROWEST;
-    let columns = (1..=most).rev().find(fits).unwrap_or(1);
+    let fits = |columns: usize| look.page.is_none() || width(columns) >= NARROWEST;
+    let columns = Look::columns(most, fits);
     (columns, width(columns).min(WIDEST))
 }
 
@@ -232,9 +174,12 @@ fn heights(
         }
         cells
     };
-    let height = |value: f64| match value.is_finite() {
-        true => (value / top).clamp(0.0, 1.0),
-        false => 0.0,
+    let height = |value: f64| {
+        if value.is_finite() {
+            (value / top).clamp(0.0, 1.0)
+        } else {
+            0.0
+        }
     };
     if let (Some(between), true) = (&found.shown.between, top > 0.0) {
         let through = |k: usize, axis: &Axis, window: (f64, f64)| {

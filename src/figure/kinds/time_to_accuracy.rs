@@ -1,6 +1,6 @@
 //! Error against time: total variation to the reference over seconds, both logarithmic, a line a method.
 
-use crate::compare::{Accuracy, AccuracyPoint, Method, Reference};
+use crate::compare::{AccuracyPoint, Method, Reference};
 
 use super::compared_marginals::caption_with;
 use super::compared_marginals::stroke;
@@ -57,41 +57,33 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
     let x = range(accuracy.points.iter().map(|point| place(point).0));
     let y = range(accuracy.points.iter().map(|point| place(point).1));
     let density = names::density(family, accuracy.observable);
-    let up = Scale::logarithmic(
-        look,
-        y,
-        PANEL.1,
-        &format!("total variation to {} {density}", by(accuracy)),
-    )?;
+    let (by, reference) = match accuracy.reference {
+        Reference::Exact => ("exact", "the exact density"),
+        Reference::Generator(_) => ("finest", "that of the generator on its finest cells"),
+    };
+    let ordinate = format!("total variation to {by} {density}");
+    let up = Scale::logarithmic(look, y, PANEL.1, &ordinate)?;
     let left = MARGIN + up.left();
     let wide = look.fill(PANEL.0, left + 12.0 + MARGIN);
     let across = Scale::logarithmic(look, x, wide, "seconds")?;
     let width = left + wide + 12.0 + MARGIN;
-    let title = match title {
-        "" => String::new(),
-        title => format!("{title}; "),
-    };
+    let separator = if title.is_empty() { "" } else { "; " };
     let value = symbols::rounded(accuracy.value)
         .to_string()
         .replace('-', "−");
-    let heading = Heading::new(
-        look,
-        &format!("{title}at {} = {value}", family.parameter()),
-        width,
-    )?;
+    let title = format!("{title}{separator}at {} = {value}", family.parameter());
+    let heading = Heading::new(look, &title, width)?;
     let shown = |method: &Method| accuracy.points.iter().any(|one| one.method == *method);
-    let methods: Vec<(usize, Method)> = Method::ALL.into_iter().enumerate().collect();
-    let methods = methods.into_iter().filter(|(_, method)| shown(method));
+    let methods = Method::ALL.into_iter().enumerate();
+    let methods = methods.filter(|(_, method)| shown(method));
     let methods: Vec<(usize, Method)> = methods.collect();
     let entries = methods.iter().map(|&(number, method)| {
         let sample = Sample::Marked(line(method), number);
         (sample, method.title().to_owned())
     });
     let legend = Legend::new(look, entries.collect(), width - 2.0 * MARGIN)?;
-    let rect = Rectangle::new(
-        (left, heading.height() + legend.height() + 6.0),
-        (wide, PANEL.1),
-    );
+    let top = heading.height() + legend.height() + 6.0;
+    let rect = Rectangle::new((left, top), (wide, PANEL.1));
     let page = Page::new(look, width, rect.bottom() + Scale::below() + MARGIN);
     heading.draw(&page);
     legend.draw(&page, 0.5 * width, heading.height());
@@ -115,10 +107,6 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
     frame::border(&page, rect);
     across.draw_below(&page, rect, true);
     up.draw_left(&page, rect, true);
-    let reference = match accuracy.reference {
-        Reference::Exact => "the exact density",
-        Reference::Generator(_) => "that of the generator on its finest cells",
-    };
     let seen = format!(
         "Total variation of {} at {} = {} to {reference}, over the seconds that each method took; bars are two standard errors.",
         caption::density(family, accuracy.observable),
@@ -130,11 +118,11 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
         [vec![point.method.name().to_owned()], numbers.to_vec()].concat()
     });
     let columns = ["method", "seconds", "total_variation", "standard_error"];
-    let table = table::table(&columns, rows);
+    let caption = caption_with(comparison, &seen);
     Ok(Some(Figure::new(
         &page,
-        caption_with(comparison, &seen),
-        table,
+        caption,
+        table::table(&columns, rows),
     )))
 }
 
@@ -147,13 +135,5 @@ fn line(method: Method) -> Stroke {
     Stroke {
         colour,
         ..stroke(method)
-    }
-}
-
-/// What errors are measured by, in words.
-fn by(accuracy: &Accuracy) -> &'static str {
-    match accuracy.reference {
-        Reference::Exact => "exact",
-        Reference::Generator(_) => "finest",
     }
 }

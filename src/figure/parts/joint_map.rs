@@ -2,9 +2,10 @@
 
 use plotters_backend::text_anchor::HPos;
 
+use super::names;
 use super::view::{self, View, middles};
-use crate::continuation::Point;
-use crate::density::{Density, EstimatedDensity};
+use crate::continuation::{Point, SweepResult};
+use crate::density::{Density, EstimatedDensity, Observable};
 use crate::figure::FigureError;
 use crate::figure::canvas::colour_bar::ColourBar;
 use crate::figure::canvas::contour::{Grid, thinned};
@@ -23,6 +24,53 @@ pub(crate) const LEVELS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 const CONTOUR: f64 = 1.5;
 const ALIKE: f64 = 0.05;
 
+/// The joint densities of a pair of axes at some points of a sweep.
+pub(crate) struct Joint<'a> {
+    pub(crate) result: &'a SweepResult,
+    /// Its number among the observables.
+    pub(crate) number: usize,
+    /// The points, with and without a density.
+    pub(crate) points: &'a [&'a Point],
+    /// The densities that there are.
+    pub(crate) found: Vec<Found<'a>>,
+    /// The windows of both axes, which all share.
+    pub(crate) window: ((f64, f64), (f64, f64)),
+    /// Titles of both axes, and of the density.
+    pub(crate) titles: [String; 3],
+}
+
+impl<'a> Joint<'a> {
+    /// `None` where there is nothing to see.
+    pub(crate) fn new(
+        result: &'a SweepResult,
+        number: usize,
+        points: &'a [&'a Point],
+    ) -> Option<Self> {
+        let (family, watched) = (&result.subject.family, result.subject.observables[number]);
+        let Observable::Joint(first, second) = watched else {
+            return None;
+        };
+        let found = points.iter();
+        let found = found.filter_map(|point| Found::new(point, number));
+        let found: Vec<Found<'_>> = found.collect();
+        let axes = [first, second].map(|axis| names::axis(family, axis));
+        let [first, second] = axes;
+        Some(Self {
+            result,
+            number,
+            points,
+            window: windows(&found)?,
+            found,
+            titles: [first, second, names::density(family, watched)],
+        })
+    }
+
+    /// The value of the parameter that a density is of, as it stands above its map.
+    pub(crate) fn at(&self, found: &Found<'_>) -> String {
+        names::at(&self.result.subject.family, found.value)
+    }
+}
+
 /// A joint density with what was found in it.
 pub(crate) struct Found<'a> {
     pub(crate) value: f64,
@@ -32,14 +80,6 @@ pub(crate) struct Found<'a> {
 }
 
 impl<'a> Found<'a> {
-    /// The joint densities with that number among the observables at those of some points that have one.
-    pub(crate) fn all(points: &[&'a Point], observable: usize) -> Vec<Self> {
-        let points = points.iter();
-        points
-            .filter_map(|point| Self::new(point, observable))
-            .collect()
-    }
-
     fn new(point: &'a Point, observable: usize) -> Option<Self> {
         let estimated = view::density(point, observable)?;
         let detection = point.detections.get(observable);

@@ -1,11 +1,8 @@
 //! Joint densities on one sheet: as many columns as there is room for, the same windows, one colour bar.
 
-use crate::continuation::{Point, SweepResult};
-use crate::density::Observable;
 use crate::figure::figures::Print;
-use crate::system::Family;
 
-use super::joint_map::{Found, LEVELS, draw_map, lettered, open_page, windows, write_above};
+use super::joint_map::{Found, Joint, LEVELS, draw_map, lettered, open_page, write_above};
 use super::names;
 use crate::figure::FigureError;
 use crate::figure::canvas::colour_bar::ColourBar;
@@ -40,9 +37,7 @@ struct Sheet {
     step: (f64, f64),
     /// Size of all maps together, in pixels.
     whole: (f64, f64),
-    /// The density at the upper end of the colours, one a map.
-    tops: Vec<f64>,
-    /// That density where all maps share it.
+    /// The density at the upper end of the colours, where all maps share it.
     common: Option<f64>,
 }
 
@@ -59,24 +54,23 @@ impl Sheet {
             let gaps = (columns - 1) as f64 * between;
             look.fill(SMALL * columns as f64, beside + gaps) / columns as f64
         };
+        let most = if found.len() == 9 || found.len() < 4 {
+            3
+        } else {
+            4
+        };
         let columns = match look.page {
             None => own_columns,
-            Some(_) => {
-                let most = if found.len() == 9 || found.len() < 4 {
-                    3
-                } else {
-                    4
-                };
-                let fits = |columns: &usize| width(*columns) >= least.max(SMALLEST);
-                (1..=most.min(found.len())).rev().find(fits).unwrap_or(1)
-            }
+            Some(_) => Look::columns(most.min(found.len()), |columns| {
+                width(columns) >= least.max(SMALLEST)
+            }),
         };
         let side = (width(columns), width(columns).min(TALLEST_SMALL));
         let rows = found.len().div_ceil(columns);
         let step = (side.0 + between, side.1 + BETWEEN + 1.4 * TEXT);
-        let own: Vec<f64> = found.iter().map(|found| found.shown.largest).collect();
-        let largest = own.iter().copied().fold(0.0, f64::max);
-        let comparable = own.iter().all(|&own| own * COMPARABLE >= largest);
+        let own = found.iter().map(|found| found.shown.largest);
+        let largest = own.clone().fold(0.0, f64::max);
+        let comparable = own.into_iter().all(|own| own * COMPARABLE >= largest);
         Self {
             columns,
             side,
@@ -85,25 +79,8 @@ impl Sheet {
                 (columns - 1) as f64 * step.0 + side.0,
                 (rows - 1) as f64 * step.1 + side.1,
             ),
-            tops: if comparable {
-                vec![largest; own.len()]
-            } else {
-                own
-            },
             common: comparable.then_some(largest),
         }
-    }
-
-    /// The rectangle of a map.
-    fn map(&self, all: Rectangle, number: usize) -> Rectangle {
-        let (row, column) = (number / self.columns, number % self.columns);
-        Rectangle::new(
-            (
-                all.left + column as f64 * self.step.0,
-                all.top + row as f64 * self.step.1,
-            ),
-            (self.side.0, self.side.1),
-        )
     }
 
     /// The colour bar of all maps.
@@ -128,11 +105,11 @@ fn widest(look: &Look, lines: &[String]) -> Result<f64, FigureError> {
 /// each other fill no page of a journal: without letters, or with values in fewer digits, there may be room for a
 /// second column.
 fn with_lines(
-    family: &Family,
-    (look, found): (&Look, &[Found<'_>]),
+    (look, joint): (&Look, &Joint<'_>),
     arranged: &dyn Fn(f64) -> Result<Sheet, FigureError>,
 ) -> Result<(Sheet, Vec<String>), FigureError> {
-    let at = |found: &Found<'_>| names::at(family, found.value);
+    let (found, family) = (&joint.found, &joint.result.subject.family);
+    let at = |found: &Found<'_>| joint.at(found);
     let short = |found: &Found<'_>| names::at(family, symbols::rounded_to(found.value, FEW));
     let numbered = found.iter().enumerate();
     let lettered = numbered.map(|(number, found)| lettered(look, number, at(found)));
@@ -156,49 +133,39 @@ fn with_lines(
 }
 
 /// All maps of a pair on one sheet, with the same windows; `None` for fewer than two densities.
-pub(crate) fn draw(
-    result: &SweepResult,
-    observable: usize,
-    points: &[&Point],
-    print: &Print<'_>,
-) -> Result<Option<Page>, FigureError> {
-    let (family, look) = (&result.subject.family, &print.look);
-    let watched = result.subject.observables[observable];
-    let found = Found::all(points, observable);
-    let (Observable::Joint(first, second), Some((x, y))) = (watched, windows(&found)) else {
-        return Ok(None);
-    };
+pub(crate) fn draw(joint: &Joint<'_>, print: &Print<'_>) -> Result<Option<Page>, FigureError> {
+    let (look, found, (x, y)) = (&print.look, &joint.found, joint.window);
     if found.len() < 2 {
         return Ok(None);
     }
-    let density = names::density(family, watched);
-    let vertical = |high: f64| Scale::vertical(look, y, high, &names::axis(family, second));
-    let horizontal = |long: f64| Scale::horizontal(look, x, long, &names::axis(family, first));
+    let [first, second, density] = &joint.titles;
+    let vertical = |high: f64| Scale::vertical(look, y, high, second);
+    let horizontal = |long: f64| Scale::horizontal(look, x, long, first);
     let arranged = |least: f64| -> Result<Sheet, FigureError> {
         // The bar and the labels of the ordinate hardly depend on how high the maps are: a first sheet measures them.
-        let first_sheet = Sheet::new(look, &found, (140.0, BETWEEN), least);
-        let bar_width = first_sheet.bar(look, &density)?.width();
-        let left = MARGIN + vertical(first_sheet.side.1)?.left();
-        let beyond = horizontal(first_sheet.side.0)?.beyond(first_sheet.side.0);
+        let rough = Sheet::new(look, found, (140.0, BETWEEN), least);
+        let bar_width = rough.bar(look, density)?.width();
+        let left = MARGIN + vertical(rough.side.1)?.left();
+        let beyond = horizontal(rough.side.0)?.beyond(rough.side.0);
         let between = BETWEEN.max(beyond + BETWEEN_LABELS);
         let beside = left + bar_width + MARGIN;
-        Ok(Sheet::new(look, &found, (beside, between), least))
+        Ok(Sheet::new(look, found, (beside, between), least))
     };
-    let (sheet, lines) = with_lines(family, (look, &found), &arranged)?;
-    let bar = sheet.bar(look, &density)?;
-    let across = horizontal(sheet.side.0)?;
-    let up = vertical(sheet.side.1)?;
+    let (sheet, lines) = with_lines((look, joint), &arranged)?;
+    let bar = sheet.bar(look, density)?;
+    let (across, up) = (horizontal(sheet.side.0)?, vertical(sheet.side.1)?);
     let left = MARGIN + up.left();
-    let width = look
-        .page
-        .unwrap_or(left + sheet.whole.0 + bar.width() + MARGIN);
-    let (page, all) = open_page(print, &found, (left, width), sheet.whole)?;
-    for (number, (found, &top)) in found.iter().zip(&sheet.tops).enumerate() {
-        let map = sheet.map(all, number);
-        write_above(&page, map, lines[number].clone());
+    let own = left + sheet.whole.0 + bar.width() + MARGIN;
+    let width = look.page.unwrap_or(own);
+    let (page, all) = open_page(print, found, (left, width), sheet.whole)?;
+    let first = Rectangle::new((all.left, all.top), sheet.side);
+    for (number, (found, line)) in found.iter().zip(lines).enumerate() {
+        let map = first.tile(number, sheet.columns, sheet.step);
+        write_above(&page, map, line);
+        let top = sheet.common.unwrap_or(found.shown.largest);
         draw_map(&page, map, found, (x, y), top)?;
         // A map with none below it carries the labels of its column.
-        across.draw_below(&page, map, number + sheet.columns >= sheet.tops.len());
+        across.draw_below(&page, map, number + sheet.columns >= joint.found.len());
         up.draw_left(&page, map, number % sheet.columns == 0);
     }
     let marks: &[f64] = if sheet.common.is_some() { &[] } else { &LEVELS };

@@ -41,6 +41,11 @@ impl<'a> View<'a> {
         }
     }
 
+    /// Its cells.
+    pub(crate) fn density(&self) -> &'a Density {
+        &self.estimated.density
+    }
+
     /// The same cell by cell.
     pub(crate) fn by_cells(estimated: &'a EstimatedDensity) -> Self {
         Self {
