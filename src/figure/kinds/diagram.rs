@@ -190,7 +190,8 @@ impl<'a> Columns<'a> {
     fn share(&self, above: usize, place: f64) -> Option<f64> {
         let below = above.checked_sub(1)?;
         let view = |number: usize| self.shown.get(number)?.as_ref()?.between.as_ref();
-        (view(below)?, view(above)?);
+        view(below)?;
+        view(above)?;
         let (from, to) = (self.points.get(below)?, self.points.get(above)?);
         let is_near = to.distance.is_some_and(|distance| distance <= ALIKE);
         is_near.then(|| (place - from.value) / (to.value - from.value))

@@ -233,7 +233,7 @@ impl Scene<'_> {
     ) -> Result<Legend, FigureError> {
         let mut entries = entries(self.curves.iter().copied(), self.family, rect);
         entries.extend(self.crossed.entries());
-        for ground in ground {
+        if let Some(ground) = ground {
             for (kind, signature) in ground.kinds.iter().enumerate() {
                 let text = words(*signature);
                 if places.iter().all(|placed| placed.words != text) {
