@@ -22,10 +22,6 @@ const NUMBERS: [Number; 6] = [
         Some(point.report.solver_error)
     }),
     ("escape rate", true, |point| {
-        point.report.measure("escape_rate")
-    }),
-    ("negative mass", true, |point| {
-    ("escape rate", true, |point| {
         point.report.measure("escape_rate").or(Some(0.0))
     }),
     ("negative mass", true, |point| {
@@ -34,8 +30,6 @@ const NUMBERS: [Number; 6] = [
     ("edge mass", true, |point| {
         point.report.edge_mass().or(Some(0.0))
     }),
-    }),
-    ("edge mass", true, |point| point.report.edge_mass()),
     ("distance", false, |point| point.distance),
 ];
 
