@@ -249,7 +249,8 @@ fn a_figure_is_drawn_by_its_name() {
             "homology_x",
             "homology_y",
             "homology_xy",
-            "health"
+            "health",
+            "measures"
         ]
     );
     let all = figures.draw_all().unwrap();
@@ -297,7 +298,7 @@ fn a_figure_is_drawn_by_its_name() {
     // Without a density there is nothing to see, which is no error.
     let empty = SweepResult {
         points: Vec::new(),
-        ..result
+        ..result.clone()
     };
     let figures = Figures::of_sweep(&empty, "t", &[0.5]);
     assert_eq!(figures.draw("diagram_x").unwrap(), None);

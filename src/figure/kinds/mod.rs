@@ -12,6 +12,7 @@ mod indicator;
 mod joint;
 pub(super) mod map;
 mod marginals;
+mod measures;
 mod pairs;
 mod peaks;
 mod section;
@@ -27,7 +28,7 @@ use crate::density::Observable;
 use crate::system::Family;
 
 /// The kinds of figures of a sweep, in the order in which they are drawn: a new kind is one line here.
-pub(super) const OF_SWEEPS: [Kind; 10] = [
+pub(super) const OF_SWEEPS: [Kind; 11] = [
     diagram::KIND,
     marginals::KIND,
     joint::KIND,
@@ -38,6 +39,7 @@ pub(super) const OF_SWEEPS: [Kind; 10] = [
     indicator::KIND,
     homology::KIND,
     health::KIND,
+    measures::KIND,
 ];
 
 /// The kinds of figures of a comparison.
