@@ -91,7 +91,11 @@ fn draw(result: &SweepResult, print: &Print<'_>) -> Drawn {
             number_of(point.value),
             point.report.status.word().to_owned(),
         ];
-        let numbers = NUMBERS.map(|(_, _, number)| number(point).map(number_of));
+        // Mass at an edge that is below zero by rounding is none.
+        let numbers = NUMBERS.map(|(title, _, number)| match number(point) {
+            Some(mass) if title == "edge mass" => Some(number_of(mass.max(0.0))),
+            other => other.map(number_of),
+        });
         let numbers = numbers.into_iter().map(Option::unwrap_or_default);
         named.into_iter().chain(numbers).collect()
     });
