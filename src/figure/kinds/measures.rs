@@ -12,6 +12,8 @@ use crate::figure::parts::table::{self, number};
 /// Height of a panel among others, and of one by itself, in pixels.
 const AMONG: f64 = 92.0;
 const SINGLE: f64 = 190.0;
+/// Differences of less than this share of the largest measure of the same unit are rounding.
+const ROUNDING: f64 = 1e-9;
 /// A panel is as high as so many of the largest error, so that its band is seen whole.
 const ERRORS: f64 = 2.4;
 
@@ -40,6 +42,15 @@ struct Along {
     unit: String,
     /// Parameter, value and error, which is zero where none is known.
     values: Vec<(f64, f64, f64)>,
+    /// A range is no shorter: what differs by less is rounding.
+    least: f64,
+}
+
+impl Along {
+    fn largest(&self) -> f64 {
+        let sizes = self.values.iter().map(|(_, value, _)| value.abs());
+        sizes.fold(0.0, f64::max)
+    }
 }
 
 /// The measures that are not zero all along, in the order in which the points have them.
@@ -59,11 +70,17 @@ fn measures(result: &SweepResult) -> Vec<Along> {
                     name: one.name.clone(),
                     unit: one.unit.clone(),
                     values: vec![value],
+                    least: 0.0,
                 }),
             }
         }
     }
-    found.retain(|one| one.values.iter().any(|(_, value, _)| *value != 0.0));
+    found.retain(|one| one.largest() > 0.0);
+    for number in 0..found.len() {
+        let unit = &found[number].unit;
+        let alike = found.iter().filter(|one| one.unit == *unit && unit != "1");
+        found[number].least = ROUNDING * alike.map(Along::largest).fold(0.0, f64::max);
+    }
     found
 }
 
@@ -81,7 +98,9 @@ fn draw(result: &SweepResult, all: &[Along], (height, print): (f64, &Print<'_>))
             title: symbols::plain(&format!("{}{unit}", one.name)),
             is_logarithmic: false,
             has_zero: false,
-            least: ERRORS * errors.iter().copied().fold(0.0, f64::max),
+            least: errors
+                .iter()
+                .fold(one.least, |least, error| least.max(ERRORS * error)),
             share: 1.0,
             curves: vec![Curve {
                 name: String::new(),
