@@ -1,8 +1,9 @@
 //! The checks of a located value: on a finer grid, and between ends of Ω that let nothing out.
 //!
 //! The indicator's zero on the finer grid is found by a secant that starts with the slope known from the coarser one.
-//! The finer value is the better one and is kept. With r times as many cells an axis and order p its error is
-//! 1/(rᵖ - 1) of the distance between both: what order two gives is stated, and never less than the distance itself.
+//! The finer value is the better one and is kept, where the indicator changes its sign about it on the finer grid too.
+//! With r times as many cells an axis and order p its error is 1/(rᵖ - 1) of the distance between both: what order two
+//! gives is stated, and never less than the distance itself.
 
 use super::root::Root;
 use super::span::Span;
@@ -21,6 +22,9 @@ pub(super) fn share_of_distance(check: CellCheck) -> f64 {
 const MOST_SOLVES: usize = 4;
 /// A step below this share of the tolerance ends the search.
 const SMALL: f64 = 0.02;
+/// Where beyond the zero the other sign is looked for, as a share of the tolerance: farther than the secant is off, so
+/// that rounding decides nothing, and near enough for the row.
+const BEYOND: f64 = 0.5;
 
 /// What a finer grid says of a value.
 #[derive(Debug, Clone, PartialEq)]
@@ -200,6 +204,9 @@ pub(super) fn leak(seen: Seen, checked: &Checked<'_>) -> Option<Leak> {
 }
 
 /// Looks for the zero on the finer grid, within the range of the sweep. `None` when asked to stop.
+///
+/// A small step of the secant is not enough: beside a pole the indicator is steep without being small. The indicator
+/// must change its sign about the zero, between values that are near it.
 pub(super) fn check(
     evaluate: &mut dyn FnMut(f64) -> Seen,
     checked: &Checked<'_>,
@@ -208,15 +215,13 @@ pub(super) fn check(
 ) -> Option<GridCheck> {
     let mut value = checked.root.value;
     let mut slope = checked.root.slope;
-    let mut last: Option<(f64, f64)> = None;
+    let mut seen: Vec<(f64, f64)> = Vec::new();
     for _ in 0..MOST_SOLVES {
-        let indicator = match evaluate(value) {
-            Seen::Value(indicator) => indicator,
-            Seen::Absent => return Some(GridCheck::Unconfirmed),
-            Seen::Failed(reason) => return Some(GridCheck::Failed(reason)),
-            Seen::Unknown => return None,
+        let indicator = match indicator_at(evaluate, value) {
+            Ok(indicator) => indicator,
+            Err(ended) => return ended,
         };
-        if let Some((before, then)) = last {
+        if let Some((before, then)) = seen.last() {
             slope = (indicator - then) / (value - before);
         }
         let step = -indicator / slope;
@@ -224,11 +229,111 @@ pub(super) fn check(
         if !span.contains(next) {
             return Some(GridCheck::Unconfirmed);
         }
+        seen.push((value, indicator));
         if step.abs() <= SMALL * tolerance {
-            return Some(GridCheck::Confirmed(next));
+            return changes_sign(evaluate, &seen, next, span, tolerance);
         }
-        last = Some((value, indicator));
         value = next;
     }
     Some(GridCheck::Unconfirmed)
+}
+
+/// The indicator at a value, or how the check ends without one.
+fn indicator_at(
+    evaluate: &mut dyn FnMut(f64) -> Seen,
+    value: f64,
+) -> Result<f64, Option<GridCheck>> {
+    match evaluate(value) {
+        Seen::Value(indicator) => Ok(indicator),
+        Seen::Absent => Err(Some(GridCheck::Unconfirmed)),
+        Seen::Failed(reason) => Err(Some(GridCheck::Failed(reason))),
+        Seen::Unknown => Err(None),
+    }
+}
+
+/// Whether the indicator has different signs on both sides of a zero: by what was seen, or by one more solve on the
+/// side that was not, or not so near. A value of zero is on neither side.
+fn changes_sign(
+    evaluate: &mut dyn FnMut(f64) -> Seen,
+    seen: &[(f64, f64)],
+    zero: f64,
+    span: Span,
+    tolerance: f64,
+) -> Option<GridCheck> {
+    let confirmed = Some(GridCheck::Confirmed(zero));
+    let Some(&(last, indicator)) = seen.last().filter(|(_, indicator)| *indicator != 0.0) else {
+        return confirmed;
+    };
+    let is_other = |one: f64| one * indicator <= 0.0;
+    let is_seen = |&(value, one): &(f64, f64)| (value - zero).abs() <= tolerance && is_other(one);
+    if seen.iter().any(is_seen) {
+        return confirmed;
+    }
+    let beyond = zero + (zero - last).signum() * BEYOND * tolerance;
+    let across = if span.contains(beyond) { beyond } else { zero };
+    match indicator_at(evaluate, across) {
+        Ok(one) if is_other(one) => confirmed,
+        Ok(_) => Some(GridCheck::Unconfirmed),
+        Err(ended) => ended,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::continuation::{ErrorParts, Subject};
+    use crate::system::examples::bistable;
+
+    /// What the check says of a function whose zero the coarser grid saw at 0.5 with a slope, and the values asked for.
+    fn checked_by(function: impl Fn(f64) -> f64, slope: f64) -> (Option<GridCheck>, usize) {
+        let root = Root {
+            value: 0.5,
+            slope,
+            error: ErrorParts::default(),
+        };
+        let checked = Checked {
+            observable: 0,
+            kind: IndicatorKind::CURVATURE,
+            place: &[0.0],
+            root,
+        };
+        let mut solves = 0;
+        let mut evaluate = |value: f64| {
+            solves += 1;
+            Seen::Value(function(value))
+        };
+        let subject = Subject {
+            family: bistable(0.0, 1.0),
+            observables: Vec::new(),
+            cell_check: CellCheck::OnFinerCells { ratio: 1.25 },
+        };
+        let span = Span::new(&subject, 2);
+        let found = check(&mut evaluate, &checked, span, 1e-4);
+        (found, solves)
+    }
+
+    #[test]
+    fn a_zero_is_confirmed_by_a_change_of_sign() {
+        // The secant of a straight line is exact; its last value lies on the zero but for rounding, or before it.
+        for (zero, most) in [(0.5 + 1e-7, 2), (0.51, 3), (0.4, 3)] {
+            let (found, solves) = checked_by(|value| 3.0 * (value - zero), 3.0);
+            let Some(GridCheck::Confirmed(value)) = found else {
+                panic!("{found:?}");
+            };
+            assert!(
+                (value - zero).abs() < 1e-6 && solves <= most,
+                "{value} {solves}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_pole_is_not_confirmed_however_steep_the_indicator_was() {
+        // On the coarser grid p passes zero, and p'/p with it through infinity: a slope of 10⁷ makes 12 a small step.
+        let (found, _) = checked_by(|_| 12.0, 1e7);
+        assert_eq!(found, Some(GridCheck::Unconfirmed));
+        let touching = |value: f64| 1e-9 + (value - 0.5).powi(2);
+        let (found, _) = checked_by(touching, 1.0);
+        assert_eq!(found, Some(GridCheck::Unconfirmed));
+    }
 }

@@ -11,7 +11,9 @@ use super::reason::{
 };
 
 use super::root::{Root, root};
-use super::rows::{in_order, inseparable, merge, say, without_flicker};
+use super::rows::{
+    doubt_what_does_not_continue, in_order, inseparable, merge, say, without_flicker,
+};
 use super::{CellCheck, Goal, Point, PointStatus, Subject, persistence};
 use crate::density::{EstimatedDensity, Kink, Observable};
 use crate::topology::{Detector, Indicator};
@@ -53,6 +55,7 @@ pub(super) fn label_points(
         }
     }
     let mut rows = without_flicker(rows);
+    doubt_what_does_not_continue(&mut rows, &solved, observables);
     for row in &mut rows {
         say(row);
     }

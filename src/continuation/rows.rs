@@ -1,8 +1,10 @@
 //! Rows of a sweep beside each other: in which order they come, and which of them are one because nothing tells them
 //! apart.
 
+use super::Point;
 use super::change::Change;
 use super::label::{BifurcationStatus, LabelledPoint};
+use crate::density::Observable;
 use crate::topology::{IndicatorKind, Step};
 
 /// So many rows in a row that are not located are one.
@@ -87,6 +89,45 @@ fn is_one_doubt(first: &LabelledPoint, second: &LabelledPoint) -> bool {
         false => (first.upper - first.lower).max(second.upper - second.lower),
     };
     first.observable == second.observable && in_doubt(first) && in_doubt(second) && between <= width
+}
+
+/// The reason of a row beside which something is missing, or too much.
+const DOES_NOT_CONTINUE: &str = "what is counted on one side of it is not what is counted beside the next change: a change between them was \
+     missed, or one of the two is none; more cells may show which";
+
+/// Takes the status of being located from rows that contradict each other: what is counted after one row must be
+/// what is counted before the next one of its observable, and at the ends of the sweep what is counted there.
+pub(super) fn doubt_what_does_not_continue(
+    rows: &mut [LabelledPoint],
+    points: &[&Point],
+    observables: &[Observable],
+) {
+    for (place, observable) in observables.iter().enumerate() {
+        let signature = |point: &&Point| Some(point.detections.get(place)?.signature);
+        let mut own: Vec<usize> = (0..rows.len())
+            .filter(|&row| rows[row].observable == Some(*observable))
+            .collect();
+        own.sort_by(|&a, &b| rows[a].value.total_cmp(&rows[b].value));
+        let mut last = points.first().and_then(signature);
+        let mut contradicting = Vec::new();
+        for (number, &row) in own.iter().enumerate() {
+            if rows[row].before != last {
+                contradicting.extend(number.checked_sub(1).map(|before| own[before]));
+                contradicting.push(row);
+            }
+            last = rows[row].after;
+        }
+        if last != points.last().and_then(signature) {
+            contradicting.extend(own.last());
+        }
+        for row in contradicting {
+            let row = &mut rows[row];
+            if row.status == Some(BifurcationStatus::Located) {
+                row.status = Some(BifurcationStatus::Unresolved);
+                row.reason = Some(DOES_NOT_CONTINUE.to_owned());
+            }
+        }
+    }
 }
 
 /// Says what happens, once it is known between which signatures.

@@ -170,6 +170,20 @@ const CASES: &[Case] = &[
         truths: &[("x", 2.0)],
         expected: Partly(0, "needed"),
     },
+    Case {
+        file: "sine",
+        set: &[],
+        words: "births in tails that 80 cells an axis do not resolve",
+        truths: &[("x", -0.065_336_9), ("x", 0.123_170_6)],
+        expected: Partly(0, "more cells"),
+    },
+    Case {
+        file: "circulation",
+        set: &[],
+        words: "the same of a drift that circulates, 50 cells an axis",
+        truths: &[("x", -0.089_664_6), ("x", 0.208_679_0)],
+        expected: Partly(0, "more cells"),
+    },
 ];
 
 /// The changes that a case finds.
@@ -254,6 +268,15 @@ fn all(cases: &[Case]) {
         wrong.extend(fault.map(|fault| format!("{}: {fault}", case.words)));
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn nothing_is_located_where_a_density_passes_zero() {
+    let in_tails = |case: &&Case| ["sine", "circulation"].contains(&case.file);
+    for case in CASES.iter().filter(in_tails) {
+        let (text, wrong) = judged(case, &run(case, "hard_cases_tails"));
+        assert!(wrong.is_none(), "{wrong:?}\n{text}");
+    }
 }
 
 #[test]

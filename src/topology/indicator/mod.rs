@@ -51,6 +51,7 @@ pub(crate) use words::Step;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use crate::density::{EstimatedDensity, Variants};
+use crate::space::Axis;
 
 /// An indicator at one parameter value.
 #[derive(Debug, Clone, PartialEq)]
@@ -113,6 +114,9 @@ impl Indicator {
         function: impl Fn(&[f64]) -> f64,
         rougher: impl Fn(&[f64]) -> f64,
     ) -> Option<Self> {
+        if !is_clear(estimated, &place) {
+            return None;
+        }
         let values = &estimated.density.values;
         let variants = &estimated.variants;
         let value = function(values);
@@ -156,6 +160,47 @@ fn is_told(estimated: &EstimatedDensity, place: &[f64]) -> bool {
     estimated.is_noisy() || value.is_some_and(|value| value > least)
 }
 
+/// Times its own error that a density must be, on every cell that an indicator is read from. Where it is not, the
+/// density may pass zero there, and a derivative over it has a pole, whose change of sign is no bifurcation.
+const CLEAR: f64 = 2.0;
+
+/// Whether a density is a clear multiple of its error on all cells along the axes through a place that derivatives
+/// there may depend on: of its distance to the second scheme, and of what the solver leaves. Sampled densities have
+/// tests of their own.
+fn is_clear(estimated: &EstimatedDensity, place: &[f64]) -> bool {
+    let density = &estimated.density;
+    if estimated.is_noisy() {
+        return true;
+    }
+    let second = estimated.variants.second_scheme();
+    let least = estimated.negligible * density.maximum();
+    let is_clear = |cell: usize| {
+        let value = density.values[cell];
+        let error = second.map_or(0.0, |second| (second[cell] - value).abs());
+        value > least && value > CLEAR * error
+    };
+    let near = |k: usize| near(&density.axes[k], place[k]);
+    match density.axes.as_slice() {
+        [_] => near(0).all(is_clear),
+        [first, second] => {
+            let (row, column) = (first.find(place[0]), second.find(place[1]));
+            let (Some(row), Some(column)) = (row, column) else {
+                return false;
+            };
+            let along_first = near(0).map(|one| one * second.count() + column);
+            let along_second = near(1).map(|one| row * second.count() + one);
+            along_first.chain(along_second).all(is_clear)
+        }
+        _ => true,
+    }
+}
+
+/// The cells along an axis about a coordinate that derivatives there may depend on.
+fn near(axis: &Axis, at: f64) -> std::ops::Range<usize> {
+    let middle = axis.find(at).unwrap_or(0);
+    middle.saturating_sub(NEIGHBOURHOOD)..(middle + NEIGHBOURHOOD + 1).min(axis.count())
+}
+
 /// Cells on either side of a place that its derivatives may depend on.
 const NEIGHBOURHOOD: usize = 4;
 /// Relative step of the differences that give a sensitivity.
@@ -170,10 +215,7 @@ fn sensitivity(
     function: &impl Fn(&[f64]) -> f64,
 ) -> f64 {
     let axes = &estimated.density.axes;
-    let near = |k: usize| {
-        let middle = axes[k].find(place[k]).unwrap_or(0);
-        middle.saturating_sub(NEIGHBOURHOOD)..(middle + NEIGHBOURHOOD + 1).min(axes[k].count())
-    };
+    let near = |k: usize| near(&axes[k], place[k]);
     let cells: Vec<usize> = match axes.get(1) {
         None => near(0).collect(),
         Some(axis) => near(0)

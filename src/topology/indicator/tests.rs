@@ -343,3 +343,25 @@ fn features_about_the_centre_say_what_the_signature_says() {
         );
     }
 }
+
+#[test]
+fn nothing_is_read_where_a_density_is_no_clear_multiple_of_its_error() {
+    // A shoulder at x = 1 at a thousandth of the maximum, and a second scheme that is off by a share of that.
+    let shoulder_with = |off: f64| {
+        let mut estimated = marginal(&axis(80), |x| {
+            (-8.0 * x * x).exp() + 1e-3 * (-0.5 * (x - 1.0).powi(2)).exp()
+        });
+        let scale = estimated.density.maximum();
+        let second = estimated.density.values.iter();
+        let second = second.map(|value| value + off * 1e-3 * scale).collect();
+        estimated.variants = Variants::Scheme(second);
+        shoulder(&estimated, 0.9, true).or_else(|| shoulder(&estimated, 0.9, false))
+    };
+    assert!(shoulder_with(0.01).is_some());
+    assert!(shoulder_with(0.7).is_none());
+    // Where the solver leaves as much as there is, nothing is read either.
+    let mut estimated = bistable(0.3, 80);
+    assert!(!at_centre(&estimated).is_empty());
+    estimated.negligible = 1.0;
+    assert!(at_centre(&estimated).is_empty());
+}
