@@ -305,6 +305,7 @@ mod tests {
         let subject = Subject {
             family: bistable(0.0, 1.0),
             observables: Vec::new(),
+            measures: Vec::new(),
             cell_check: CellCheck::OnFinerCells { ratio: 1.25 },
         };
         let span = Span::new(&subject, 2);
