@@ -15,7 +15,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .validate()?
         .prepare(&never)?;
     let plane = Plane::new(("a", -1.0, 1.0), ("sigma2", 0.2, 0.6))?;
-    let source = |plane: &Plane| sweep.boxed_source_in(plane, &never);
+    let source = |plane: &Plane| sweep.source_in(plane, &never);
     let options = MapOptions {
         counts: [9, 5],
         ..MapOptions::default()

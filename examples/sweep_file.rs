@@ -1,7 +1,8 @@
-//! A sweep file in a program: opened, changed, checked and run; what is said of mistakes; a stored run opened again.
+//! A sweep file in a program: opened, changed, checked and run; the same as a job, which leaves what `pbif sweep` does;
+//! what is said of mistakes; a stored run opened again.
 //!
-//! Run with `cargo run --release --example sweep_file [RUN]`, where RUN is a folder that `pbif sweep` wrote. The README
-//! shows the middle of this program.
+//! Run with `cargo run --release --example sweep_file [FOLDER]`, where FOLDER is for the run that the job leaves, or has
+//! it from an earlier time. The README shows the middle of this program.
 
 #![allow(clippy::print_stdout)] // An example talks to its reader.
 
@@ -10,6 +11,7 @@ use std::path::Path;
 
 use pbif::cancellation::Cancellation;
 use pbif::continuation::SweepResult;
+use pbif::job::{Job, SweepJob, carry_out};
 use pbif::run::StoredRun;
 use pbif::sweep_file::SweepFile;
 
@@ -17,8 +19,29 @@ fn main() -> Result<(), Box<dyn Error>> {
     let text = solved()?;
     mistakes(&text);
     match std::env::args_os().nth(1) {
-        Some(folder) => print(&reopened(Path::new(&folder))?),
-        None => println!("give the folder of a run to detect in it again"),
+        Some(folder) => {
+            carried_out(Path::new(&folder))?;
+            print(&reopened(Path::new(&folder))?);
+        }
+        None => println!("give a folder for a run to leave it there"),
+    }
+    Ok(())
+}
+
+/// What `pbif sweep sweeps/bistable.toml --out FOLDER --resume` does: tables, densities and figures, and a job that was
+/// stopped is gone on with. Maps, curves and comparisons are jobs too.
+fn carried_out(folder: &Path) -> Result<(), Box<dyn Error>> {
+    let never = Cancellation::new();
+    let file = SweepFile::read(Path::new("sweeps/bistable.toml"))?;
+    let sweep = file.validate()?.prepare(&never)?;
+    let mut job = SweepJob::new(&sweep);
+    let start = job.start(folder)?;
+    let done = carry_out(&mut job, folder, start, &never, &|step| {
+        println!("{step:?}")
+    })?;
+    match done {
+        Some(done) => print(&done.found),
+        None => println!("it is complete"),
     }
     Ok(())
 }

@@ -19,6 +19,7 @@
 //! | draw | [`figure`] |
 //! | read, check and write sweep files | [`sweep_file`] |
 //! | write tables and arrays, and read them back | [`run`] |
+//! | carry out what a sweep file asks for, into a folder | [`job`] |
 //! | put a sweep into one page that slides along it | [`explore`] |
 //! | the program `pbif` | [`cli`] |
 //!
@@ -38,6 +39,8 @@ pub mod explore;
 pub mod figure;
 pub mod formula;
 pub mod generator;
+#[cfg(all(feature = "store", feature = "figures"))]
+pub mod job;
 pub mod method;
 pub mod monte_carlo;
 #[cfg(feature = "store")]

@@ -1,26 +1,20 @@
 //! `pbif curve`, and `pbif sweep` of a file with `[curve]`: from located rows, the curves of the same P-bifurcations in
 //! the plane of the swept and a second parameter.
 
-mod asked;
-mod job;
-mod refusals;
 mod told;
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use super::args::{CurveArguments, SweepInput, Work};
-use super::output::OutputFolder;
-use super::stored::{Stored, set};
-use super::{CommandError, Outcome};
+use super::args::{CurveArguments, Work};
+use super::jobs::{self, Printed, files, kept};
+use super::stored::{Override, Stored, set};
+use super::{CommandError, load, tell};
 use crate::cancellation::Cancellation;
-use crate::continuation::{LabelledPoint, SweepResult};
-use crate::method::MethodError;
-use crate::run::{CURVES, CurveFolder, RunError};
-use crate::sweep_file::{SolveError, Sweep, list};
-use asked::Asked;
-use job::Job;
-use refusals::check_corners;
+use crate::continuation::curve::CurveTree;
+use crate::continuation::{LabelledPoint, SourceError, SweepResult};
+use crate::job::{CurveJob, Done, Job as _, JobError, Outcome, Start, curve_rows};
+use crate::run::{CURVES, RunError};
+use crate::sweep_file::{SolveError, Sweep, SweepFile, list};
 pub(super) use told::codimension_line;
 
 /// Sections of a run's sweep that may be set anew.
@@ -34,39 +28,23 @@ const SECTIONS: [&str; 4] = ["detect", "locate", "figures", "curve"];
 pub(super) fn run(arguments: &CurveArguments) -> Result<Outcome, CommandError> {
     let (threads, cancellation) = super::interruptible(arguments.work.threads)?;
     threads.install(|| {
-        let Some((spec, result)) = swept(arguments, &cancellation)? else {
+        let Some((spec, result, only)) = swept(arguments, &cancellation)? else {
             super::print("interrupted: nothing was written\n")?;
             return Ok(Outcome::Interrupted);
         };
-        let asked = Asked::by(arguments, &spec)?;
-        let rows = asked.rows(&spec, &result)?;
+        let rows = curve_rows(&spec, &result, only)?;
         let alone = rows.len() == 1;
-        let home = |name: &str| place(arguments, name, alone);
         Following {
-            asked: &asked,
             spec: &spec,
             result: &result,
-            home: &home,
-            begin: match arguments.resume {
-                true => Begin::GoOn,
-                false => Begin::Anew,
-            },
-            quiet: arguments.work.quiet,
+            home: &|name| place(arguments, name, alone),
+            resume: arguments.resume,
+            keeps_others: false,
+            work: &arguments.work,
             cancellation: &cancellation,
         }
         .all(&rows)
     })
-}
-
-/// Refuses curves that a sweep file asks for before its sweep is run.
-///
-/// # Errors
-/// [`CommandError::Input`] where the box has a corner that is not allowed.
-pub(super) fn check(spec: &Sweep) -> Result<(), CommandError> {
-    match &spec.settings.curve {
-        Some(curve) => check_corners(spec, &Asked::of(curve).plane(spec)?),
-        None => Ok(()),
-    }
 }
 
 /// Follows the curves that a sweep file asks for, from the run of its sweep in `folder`, which ended with `outcome`.
@@ -79,33 +57,33 @@ pub(super) fn after_sweep(
     (work, resume): (&Work, bool),
     outcome: Outcome,
 ) -> Result<Outcome, CommandError> {
-    let Some(curve) = &spec.settings.curve else {
-        return Ok(outcome);
-    };
-    if outcome == Outcome::Interrupted {
+    if spec.settings.curve.is_none() || outcome == Outcome::Interrupted {
         return Ok(outcome);
     }
     let (threads, cancellation) = super::interruptible(work.threads)?;
     let done = || format!("the run in {} is complete", folder.display());
     let found = threads.install(|| {
-        let stored = Stored::read(folder, &[], &[], true)?;
-        let asked = Asked::of(curve);
-        let rows = asked.rows(&stored.spec, &stored.result)?;
+        let Stored {
+            spec: swept,
+            result,
+            ..
+        } = Stored::read(folder, &[], &[], true)?;
+        // The section is that of the file, which may have changed since.
+        let mut followed = swept;
+        followed.settings.curve.clone_from(&spec.settings.curve);
+        let rows = curve_rows(&followed, &result, false)?;
         if rows.is_empty() {
             return super::print(
                 "no row in the box was located by an indicator: no curve to follow\n",
             );
         }
         Following {
-            asked: &asked,
-            spec: &stored.spec,
-            result: &stored.result,
+            spec: &followed,
+            result: &result,
             home: &|name| folder.join(CURVES).join(name),
-            begin: match resume {
-                true => Begin::GoOnWhereTheSame,
-                false => Begin::Anew,
-            },
-            quiet: work.quiet,
+            resume,
+            keeps_others: true,
+            work,
             cancellation: &cancellation,
         }
         .all(&rows)
@@ -118,26 +96,17 @@ pub(super) fn after_sweep(
 
 /// Rows that are followed one after the other.
 struct Following<'a> {
-    asked: &'a Asked,
     spec: &'a Sweep,
     result: &'a SweepResult,
     /// The folder for the results of a row, by the name that it has for itself.
     home: &'a dyn Fn(&str) -> PathBuf,
-    begin: Begin,
-    quiet: bool,
+    /// Whether unfinished curves are gone on with, and complete ones left.
+    resume: bool,
+    /// Whether those of other settings are then kept below `previous/`, not refused: the sweep file is what is wanted,
+    /// and its section may have changed since.
+    keeps_others: bool,
+    work: &'a Work,
     cancellation: &'a Cancellation,
-}
-
-/// What is done with curves that are there.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Begin {
-    /// They are kept below `previous/`, and followed anew.
-    Anew,
-    /// Unfinished ones are gone on with, complete ones are left; those of other settings are refused.
-    GoOn,
-    /// The same, but those of other settings are kept and followed anew: the sweep file is what is wanted, and its
-    /// section may have changed since.
-    GoOnWhereTheSame,
 }
 
 impl Following<'_> {
@@ -161,71 +130,45 @@ impl Following<'_> {
     }
 
     fn one(&self, row: &LabelledPoint) -> Result<Outcome, CommandError> {
-        let job = Job::new(self.asked, self.spec, (row, self.result), self.quiet)?;
-        let output = OutputFolder::prepare(&(self.home)(&format!(
-            "{}-{}",
-            row.label, self.asked.second
-        )))?;
-        let home = output.path();
-        let of = job.described();
-        let goes_on = self.begin != Begin::Anew;
-        let has_journal = CurveFolder::has_journal(home);
-        if goes_on && !has_journal {
-            let complete = CurveFolder::is_complete(home, &of).map(|is| is.then_some(()));
-            if self.or_other(complete, home)?.is_some() {
-                let home = home.display();
-                let text = format!("the curves in {home} are complete: nothing was solved\n");
-                return super::print(&text);
-            }
-        }
-        let folder = CurveFolder::new(home)?;
-        let mut journal = None;
-        if goes_on && has_journal {
-            journal = self.or_other(folder.go_on(&of).map(Some), home)?;
-        }
-        let journal = match journal {
-            Some(journal) => journal,
-            None => folder.begin(&of)?,
+        let mut job = CurveJob::new(self.spec, self.result, row)?;
+        let second = &job.plane().sides()[1].parameter;
+        let home = (self.home)(&format!("{}-{second}", row.label));
+        let how = (self.work, self.cancellation);
+        let start = if self.resume {
+            job.start(&home)
+        } else {
+            Ok(Start::Anew)
         };
-        let kept = || kept(home);
-        let found = job.follow(&journal, self.cancellation);
-        let found = match journal.failure() {
-            Some(error) => Err(error.into()),
-            None => found,
-        };
-        match found.map_err(|error| error.after(kept()))? {
-            Some(tree) => {
-                let concluded = job.conclude(&tree, (folder, &of), home);
-                concluded.map_err(|error| error.after(kept()))
-            }
-            None => {
-                super::print(&format!("interrupted: {}\n", kept()))?;
-                Ok(Outcome::Interrupted)
-            }
-        }
-    }
-}
-
-impl Following<'_> {
-    /// What was found in a folder; `None` where curves of other settings are there that do not keep new ones away.
-    fn or_other<T>(
-        &self,
-        found: Result<Option<T>, RunError>,
-        home: &Path,
-    ) -> Result<Option<T>, RunError> {
-        match found {
-            Err(RunError::OtherSweep { differences, .. })
-                if self.begin == Begin::GoOnWhereTheSame =>
+        let mut begin = |start| jobs::carry_out(&mut job, &home, start, how);
+        match start.map_err(CommandError::from).and_then(&mut begin) {
+            Err(CommandError::Run(RunError::OtherSweep { differences, .. }))
+                if self.keeps_others =>
             {
                 let (home, differences) = (home.display(), list(&differences));
                 let text = format!(
                     "the curves in {home} are of other settings ({differences}): they are kept in its folder previous/, and followed anew\n"
                 );
-                tell(self.quiet, &text);
-                Ok(None)
+                tell(self.work.quiet, &text);
+                begin(Start::Anew)
             }
             found => found,
         }
+    }
+}
+
+impl Printed for CurveJob<'_> {
+    fn text(&self, done: &Done<CurveTree>, home: &Path) -> String {
+        let mut text = told::summary(self, &done.found);
+        if done.outcome == Outcome::Interrupted {
+            text += &format!("interrupted: {}\n", kept(self, home));
+        }
+        text + &files(&done.files)
+    }
+
+    fn complete(&self, home: &Path) -> Result<(String, Outcome), CommandError> {
+        let home = home.display();
+        let text = format!("the curves in {home} are complete: nothing was solved\n");
+        Ok((text, Outcome::Complete))
     }
 }
 
@@ -246,51 +189,77 @@ fn place(arguments: &CurveArguments, name: &str, alone: bool) -> PathBuf {
     }
 }
 
-/// What there is of curves that did not come to their end.
-fn kept(home: &Path) -> String {
-    format!(
-        "what was solved is kept in {}, and `--resume` goes on from there",
-        home.display()
-    )
+/// The options as keys.
+fn overrides(arguments: &CurveArguments) -> Vec<Override> {
+    let text = |text: &String| format!("{text:?}");
+    let number = |number: &f64| format!("{number:?}");
+    let options = [
+        ("--second", "parameter", arguments.second.as_ref().map(text)),
+        ("--from", "from", arguments.from.as_ref().map(number)),
+        ("--to", "to", arguments.to.as_ref().map(number)),
+        (
+            "--first-from",
+            "first_from",
+            arguments.first_from.as_ref().map(number),
+        ),
+        (
+            "--first-to",
+            "first_to",
+            arguments.first_to.as_ref().map(number),
+        ),
+        ("--step", "step", arguments.step.as_ref().map(number)),
+        (
+            "--row",
+            "rows",
+            arguments.row.as_ref().map(|row| format!("[{row:?}]")),
+        ),
+        (
+            "--alone",
+            "branches",
+            arguments.alone.then(|| "\"off\"".to_owned()),
+        ),
+    ];
+    let given = options.into_iter().filter_map(|(option, key, value)| {
+        let value = value?;
+        Some((option, format!("curve.{key}={value}")))
+    });
+    set(&arguments.overrides).into_iter().chain(given).collect()
 }
 
-/// The sweep with its result: that of a run as it is stored, that of a sweep file solved now; `None` when interrupted.
+/// The sweep with its result, that of a run as it is stored, that of a sweep file solved now, and whether it is to the
+/// only row that can be followed that nothing has named; `None` when interrupted.
 fn swept(
     arguments: &CurveArguments,
     cancellation: &Cancellation,
-) -> Result<Option<(Sweep, SweepResult)>, CommandError> {
-    if !super::is_sweep_file(&arguments.target) {
-        let overrides = &set(&arguments.overrides);
-        let stored = Stored::read(
-            &arguments.target,
-            overrides,
-            &SECTIONS,
-            arguments.work.quiet,
-        )?;
-        return Ok(Some((stored.spec, stored.result)));
-    }
-    let input = SweepInput {
-        file: arguments.target.clone(),
-        overrides: arguments.overrides.clone(),
+) -> Result<Option<(Sweep, SweepResult, bool)>, CommandError> {
+    let (target, quiet) = (&arguments.target, arguments.work.quiet);
+    let overrides = &overrides(arguments);
+    let mut only = true;
+    let mut prepare = |file: &mut SweepFile| {
+        let written = file.get("curve.parameter");
+        let second = arguments.second.as_ref().map(|name| format!("{name:?}"));
+        // A section about another parameter says nothing of this one.
+        if second.is_some() && second != written {
+            file.remove("curve");
+        } else {
+            only = written.is_none();
+        }
     };
-    let spec = super::load(&input, arguments.work.quiet)?.prepare(cancellation)?;
+    if !super::is_sweep_file(target) {
+        let stored = Stored::read_as(target, &mut prepare, overrides, &SECTIONS, quiet)?;
+        return Ok(Some((stored.spec, stored.result, only)));
+    }
+    let mut of_file = |file: &mut SweepFile| prepare(file.without_map());
+    let spec = load(target, &mut of_file, overrides, quiet)?.prepare(cancellation)?;
     tell(
-        arguments.work.quiet,
+        quiet,
         "sweeping; the run of a `pbif sweep` is read instead of solved\n",
     );
     match spec.run(cancellation, &mut ()) {
         Ok(result) if result.interrupted => Ok(None),
-        Ok(result) => Ok(Some((spec, result))),
-        Err(SolveError::Method(MethodError::Cancelled(_))) => Ok(None),
-        Err(SolveError::Method(error)) => Err(error.into()),
-        Err(SolveError::Sweep(error)) => Err(error.into()),
-    }
-}
-
-/// Says how it goes.
-fn tell(quiet: bool, text: &str) {
-    if !quiet {
-        // Without a reader of stderr there is nobody to tell.
-        let _ = std::io::stderr().lock().write_all(text.as_bytes());
+        Ok(result) => Ok(Some((spec, result, only))),
+        Err(SolveError::Source(SourceError::Interrupted)) => Ok(None),
+        Err(SolveError::Source(error)) => Err(JobError::Source(error).into()),
+        Err(SolveError::Sweep(error)) => Err(JobError::from(error).into()),
     }
 }

@@ -5,9 +5,11 @@ use std::time::Instant;
 use super::args::DetectArguments;
 use super::output::OutputFolder;
 use super::stored::{Stored, set};
-use super::sweep::{draw, outcome, summary};
-use super::{CommandError, Outcome, warnings};
-use crate::run::{Ending, Manifest, RunFolder, StagedRun};
+use super::sweep::summary;
+use super::{CommandError, Outcome};
+use crate::figure::write_figures;
+use crate::job::{draw_sweep, sweep_outcome};
+use crate::run::{Ending, Manifest, StagedRun, warnings_of_points};
 
 /// Sections of a sweep file that do not concern the densities.
 const SECTIONS: [&str; 3] = ["detect", "locate", "figures"];
@@ -28,9 +30,9 @@ pub(super) fn run(arguments: &DetectArguments) -> Result<Outcome, CommandError> 
     let out = arguments.out.as_deref().unwrap_or(&arguments.run);
     let output = OutputFolder::prepare(out)?;
     let staged = StagedRun::new(output.path(), &arguments.run)?;
-    write(&stored, seconds, staged.folder())?;
+    write(&stored, seconds, &staged)?;
     staged.take_place()?;
-    let outcome = match outcome(&stored.result, &stored.spec.settings.locate) {
+    let outcome = match sweep_outcome(&stored.result, &stored.spec.settings.locate) {
         // It was the run that was interrupted, not this command.
         Outcome::Interrupted => Outcome::Partial,
         outcome => outcome,
@@ -43,33 +45,30 @@ pub(super) fn run(arguments: &DetectArguments) -> Result<Outcome, CommandError> 
 }
 
 /// Writes tables, figures, and last the manifest.
-fn write(stored: &Stored, detect_seconds: f64, folder: &RunFolder) -> Result<(), CommandError> {
+fn write(stored: &Stored, detect_seconds: f64, staged: &StagedRun) -> Result<(), CommandError> {
     let Stored { run, spec, result } = stored;
-    let mut manifest = Manifest::start(
-        &spec.to_toml(),
-        spec.settings.typed(),
-        run.seed(),
-        run.threads(),
-    )?;
+    let settings = &spec.settings;
+    let (seed, threads) = (run.seed(), run.threads());
+    let mut manifest = Manifest::start(&spec.to_toml(), settings.typed(), seed, threads)?;
     manifest.seconds = run.seconds();
     manifest.seconds.detect = Some(detect_seconds);
     let clock = Instant::now();
-    folder.write_tables(result)?;
+    staged.write(result)?;
     manifest.seconds.tables = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
-    draw(spec, result, &folder.figures())?;
+    let figures = draw_sweep(spec, result)?;
+    write_figures(&figures, &settings.figures.formats, &staged.figures())?;
     manifest.seconds.figures = clock.elapsed().as_secs_f64();
     manifest.points = result.points.len();
     manifest.largest_distance = result.largest_distance();
     // A run that was killed has written none.
     manifest.warnings = match run.ending() {
-        Ending::Running => warnings::of_points(spec.problem.family(), &result.points),
+        Ending::Running => warnings_of_points(spec.problem.family(), &result.points),
         _ => run.warnings().to_vec(),
     };
     manifest.ending = match run.ending() {
         Ending::Complete => Ending::Complete,
         Ending::Running | Ending::Interrupted => Ending::Interrupted,
     };
-    folder.write_manifest(&manifest)?;
-    Ok(())
+    Ok(staged.write_manifest(&manifest)?)
 }

@@ -1,15 +1,15 @@
 //! `pbif explore`: the page of a stored run, or a live one of a sweep file.
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use super::args::{ExploreArguments, SweepInput};
+use super::progress::Progress;
 use super::stored::{Stored, set};
-use super::sweep::progress::Progress;
-use super::{CommandError, Outcome};
+use super::{CommandError, Outcome, tell};
 use crate::cancellation::Cancellation;
-use crate::explore::{LiveServer, StoredPage};
-use crate::run::{CURVES, MapTables, StoredPlane, write_atomically};
+use crate::explore::{ExploreError, LiveServer, StoredPage};
+use crate::job;
+use crate::run::{CURVES, StoredPlane, StoredPlaneContent, write_atomically};
 use crate::sweep_file::{Diagnostic, SweepFile};
 
 /// Densities of a map between two words of how many are solved.
@@ -28,8 +28,8 @@ pub(super) fn run(arguments: &ExploreArguments) -> Result<Outcome, CommandError>
             "`--port` is for a sweep file: the page of a run is a file",
         ));
     }
-    if MapTables::is_there(&arguments.target) || MapTables::of_curves_are_there(&arguments.target) {
-        return of_plane(arguments);
+    if let Some(stored) = StoredPlane::open(&arguments.target)? {
+        return of_plane(&stored, arguments);
     }
     let stored = Stored::read(
         &arguments.target,
@@ -46,7 +46,7 @@ pub(super) fn run(arguments: &ExploreArguments) -> Result<Outcome, CommandError>
 fn curves_of(run: &Path) -> String {
     let entries = std::fs::read_dir(run.join(CURVES)).into_iter().flatten();
     let mut folders: Vec<_> = entries.flatten().map(|entry| entry.path()).collect();
-    folders.retain(|folder| MapTables::of_curves_are_there(folder));
+    folders.retain(|folder| folder.join("curve.json").is_file());
     folders.sort();
     let line = |folder: &PathBuf| {
         let folder = folder.display();
@@ -56,38 +56,35 @@ fn curves_of(run: &Path) -> String {
 }
 
 /// Writes the page of a map of regimes, or of curves, whose densities are solved.
-fn of_plane(arguments: &ExploreArguments) -> Result<Outcome, CommandError> {
+fn of_plane(stored: &StoredPlane, arguments: &ExploreArguments) -> Result<Outcome, CommandError> {
     if !arguments.overrides.is_empty() {
         return Err(refused(
             "`--set` is for a sweep file or the run of a sweep: what the page of a map or of curves shows stands in its tables",
         ));
     }
-    let folder = &arguments.target;
-    let stored = match MapTables::is_there(folder) {
-        true => None,
-        false => StoredPlane::open(folder)?,
-    };
-    let curves = stored.as_ref().and_then(StoredPlane::plane);
-    let tables = match &curves {
-        Some(_) => MapTables::of_curves(folder)?,
-        None => MapTables::read(folder)?,
-    };
-    let sweep = match &stored {
-        Some(stored) => SweepFile::parse("plane.json", stored.resolved()),
-        None => SweepFile::parse("map.json", &tables.sweep_file),
-    };
+    let sweep = SweepFile::parse("plane.json", stored.resolved());
     let sweep = sweep.validate()?.fixed()?;
+    let content = stored.content(&sweep.problem)?;
     let (threads, cancellation) = super::interruptible(None)?;
-    let progress = Progress::new(0, arguments.quiet);
+    let progress = Progress::new(Some(0), arguments.quiet);
     // Without a terminal every one would be a line.
     let count = |solved: usize, all: usize| {
         if solved.is_multiple_of(EVERY) || solved == all {
-            progress.count("densities", solved, all);
+            progress.show(&job::Progress::Done {
+                words: "densities",
+                done: solved,
+                wanted: all,
+            });
         }
     };
-    let page = threads.install(|| match &curves {
-        Some(plane) => StoredPage::of_curves(&sweep, (plane, tables), &cancellation, &count),
-        None => StoredPage::of_map(&sweep, &tables, &cancellation, &count),
+    let page = threads.install(|| match &content {
+        StoredPlaneContent::Map(map) => StoredPage::of_map(&sweep, map, &cancellation, &count),
+        StoredPlaneContent::Curves(curves, origin) => {
+            let plane = curves.first().map(|curve| &curve.plane);
+            let plane = plane.ok_or(ExploreError::NoPlane)?;
+            let curves = (curves.as_slice(), origin.label.as_str());
+            StoredPage::of_curves(&sweep, plane, curves, &cancellation, &count)
+        }
     });
     progress.finish();
     if cancellation.is_cancelled() {
@@ -132,15 +129,12 @@ fn serve(arguments: &ExploreArguments) -> Result<Outcome, CommandError> {
         file: arguments.target.clone(),
         overrides: arguments.overrides.clone(),
     };
-    let sweep = super::load(&input, arguments.quiet)?.prepare(&Cancellation::new())?;
+    let sweep = super::given(&input, arguments.quiet)?.prepare(&Cancellation::new())?;
     let server = LiveServer::bind(&sweep, arguments.port.unwrap_or(0))?;
     let (_, cancellation) = super::interruptible(None)?;
     super::print(&format!("{}\n", server.address()))?;
-    if !arguments.quiet {
-        let words = "open this address in a browser of this machine; Ctrl-C ends\n";
-        // Without a reader of stderr there is nobody to tell.
-        let _ = std::io::stderr().lock().write_all(words.as_bytes());
-    }
+    let words = "open this address in a browser of this machine; Ctrl-C ends\n";
+    tell(arguments.quiet, words);
     if arguments.open {
         open(&server.address());
     }
@@ -167,7 +161,7 @@ fn open(address: &str) {
         .spawn();
     if started.is_err() {
         let words = format!("`{program}` cannot be started: open the page by hand\n");
-        let _ = std::io::stderr().lock().write_all(words.as_bytes());
+        tell(false, &words);
     }
 }
 

@@ -1,161 +1,59 @@
-//! `pbif sweep` on a file with `[map]`: the signatures over a box of two parameters, and the curves between them.
-
-pub(super) mod shards;
+//! What `pbif sweep` prints of a map of regimes: the signatures over a box of two parameters, and the curves between them.
 
 use std::path::Path;
-use std::time::Instant;
 
-use super::args::SweepArguments;
+use super::CommandError;
 use super::curve::codimension_line;
-use super::output::OutputFolder;
-use super::sweep::progress::Progress;
-use super::{CommandError, Outcome};
-use crate::cancellation::Cancellation;
+use super::jobs::{Printed, files};
+use super::sweep::shard_in_words;
+use crate::continuation::BifurcationStatus;
 use crate::continuation::curve::Curve;
-use crate::continuation::map::{MapMaker, MapProgress, RegimeMap};
-use crate::continuation::{BifurcationStatus, DensitySource, LocateOptions, SourceError};
-use crate::figure::{Figures, write_figures};
-use crate::run::{Journal, JournalledSource, MapFolder, RunError, format_with_error};
-use crate::sweep_file::{Diagnostic, Sweep};
+use crate::continuation::map::{MapShard, RegimeMap};
+use crate::job::{Done, Job, MapJob, MapShardJob, Outcome};
+use crate::run::format_with_error;
 
 /// Columns and rows of the picture that shares of regions are counted in.
 const PICTURE: [usize; 2] = [300, 300];
 /// Regions smaller than this share of the box are not listed.
 const SEEN: f64 = 1e-3;
 
-/// Makes a map and prints what it found; `folder` is where it goes.
-///
-/// # Errors
-/// [`CommandError`] where the box is not allowed, or the results cannot be written.
-pub(super) fn run(
-    spec: &Sweep,
-    folder: &Path,
-    arguments: &SweepArguments,
-) -> Result<Outcome, CommandError> {
-    if let Some(shard) = arguments.shard {
-        return shards::run(spec, (folder, shard), arguments);
+impl Printed for MapJob<'_> {
+    fn planned(&self) -> Option<usize> {
+        planned(self)
     }
-    let output = OutputFolder::prepare(folder)?;
-    let home = MapFolder::new(output.path())?;
-    let Some(journal) = journal(&home, output.path(), &spec.to_toml(), arguments.resume)? else {
-        super::print("the map is complete: there is nothing to go on with\n")?;
-        return Ok(Outcome::Complete);
-    };
-    let (threads, cancellation) = super::interruptible(arguments.work.threads)?;
-    threads.install(|| {
-        let clock = Instant::now();
-        let job = Job {
-            spec,
-            journal: &journal,
-            quiet: arguments.work.quiet,
-        };
-        let map = job.made(&cancellation, &|maker| maker.whole().map(Some))?;
-        let Some(map) = map.filter(|map| !map.nodes.is_empty()) else {
-            return interrupted();
-        };
-        conclude(spec, &map, home, (output.path(), clock))
-    })
+
+    fn text(&self, done: &Done<RegimeMap>, _: &Path) -> String {
+        summary(&done.found) + "\n" + &files(&done.files)
+    }
+
+    fn complete(&self, _: &Path) -> Result<(String, Outcome), CommandError> {
+        let text = "the map is complete: there is nothing to go on with\n";
+        Ok((text.to_owned(), Outcome::Complete))
+    }
 }
 
-/// The journal of a map that begins, or goes on where there is one; `None` where the map is complete.
-fn journal(
-    home: &MapFolder,
-    path: &Path,
-    sweep: &str,
-    resume: bool,
-) -> Result<Option<Journal>, RunError> {
-    if resume && MapFolder::has_journal(path) {
-        return home.go_on(sweep).map(Some);
+impl Printed for MapShardJob<'_> {
+    fn planned(&self) -> Option<usize> {
+        planned(self)
     }
-    if resume && MapFolder::ending(path, sweep)?.is_some_and(|ending| ending == "complete") {
-        return Ok(None);
+
+    fn text(&self, done: &Done<MapShard>, home: &Path) -> String {
+        let found = &done.found;
+        let what = format!(" of a map: {} nodes", found.nodes.len());
+        shard_in_words(found.shard, &what, (found.interrupted, home))
     }
-    home.begin(sweep).map(Some)
+
+    fn complete(&self, _: &Path) -> Result<(String, Outcome), CommandError> {
+        let text = "the shard is complete: there is nothing to go on with\n";
+        Ok((text.to_owned(), Outcome::Complete))
+    }
 }
 
-/// What is said where there is nothing to write.
-fn interrupted() -> Result<Outcome, CommandError> {
-    super::print("interrupted: nothing was written\n")?;
-    Ok(Outcome::Interrupted)
-}
-
-/// Writes a map with its figures and prints what it found.
-fn conclude(
-    spec: &Sweep,
-    map: &RegimeMap,
-    home: MapFolder,
-    (path, clock): (&Path, Instant),
-) -> Result<Outcome, CommandError> {
-    home.write(map, &spec.to_toml(), clock.elapsed().as_secs_f64())?;
-    let settings = &spec.settings;
-    let figures = Figures::of_map(map, &[], &settings.title).with_style(&settings.figures.style);
-    let figures = figures.draw_all()?;
-    write_figures(&figures, &settings.figures.formats, &home.figures())?;
-    let mut text = summary(map);
-    text += "\nfiles\n";
-    for file in home.take_place(map.interrupted)? {
-        text += &format!("  {}\n", file.display());
-    }
-    super::conclude(&text, outcome(map, &settings.locate), path)
-}
-
-/// A map in the making.
-struct Job<'a> {
-    spec: &'a Sweep,
-    /// Where what is solved is kept while the map is made.
-    journal: &'a Journal,
-    quiet: bool,
-}
-
-impl Job<'_> {
-    /// The map, or what is wanted of it; `None` where it was interrupted before there was anything. What is in the
-    /// journal is not solved again.
-    fn made<T>(
-        &self,
-        cancellation: &Cancellation,
-        wanted: &dyn Fn(&MapMaker<'_>) -> Result<Option<T>, SourceError>,
-    ) -> Result<Option<T>, CommandError> {
-        let sides = self.spec.settings.map.as_ref();
-        let rows = sides.map_or(1, |map| map.points);
-        let progress = Progress::new(self.spec.settings.points * rows, self.quiet);
-        let solves = self.journal.solves();
-        if solves > 0 {
-            progress.say(&format!("going on after {solves} solves"));
-        }
-        let second = sides.map_or("", |map| map.parameter.as_str());
-        let first = self.spec.problem.family().parameter();
-        let at =
-            |values: [f64; 2]| format!("{first} = {:.6}  {second} = {:.6}", values[0], values[1]);
-        let observer = |told: &MapProgress<'_>| match *told {
-            MapProgress::Solved { node, done, wanted } => {
-                let words: Vec<String> = node.signatures.iter().map(ToString::to_string).collect();
-                let text = format!("{}  {}", at(node.values), words.join(", "));
-                progress.count(&text, done, wanted);
-            }
-            MapProgress::Met { values, done } => {
-                progress.say(&format!("curves: {done} points, {}", at(values)));
-            }
-        };
-        let wrap = |source| {
-            let source = JournalledSource::new(source, self.journal);
-            Box::new(source) as Box<dyn DensitySource>
-        };
-        let found = self.spec.make_map(&wrap, cancellation, &observer, wanted);
-        progress.finish();
-        if let Some(error) = self.journal.failure() {
-            return Err(error.into());
-        }
-        match found {
-            Ok(found) => Ok(found),
-            Err(SourceError::Interrupted) => Ok(None),
-            Err(SourceError::Method(error)) => {
-                let title = format!("the box of the map has a corner that is not allowed: {error}");
-                let report = Diagnostic::new(title)
-                    .remedy("narrow it with `sweep.from`, `sweep.to`, `map.from` and `map.to`");
-                Err(CommandError::Input(report.into()))
-            }
-        }
-    }
+/// Nodes of the coarse grid.
+fn planned(job: &impl Job) -> Option<usize> {
+    let settings = &job.sweep().settings;
+    let rows = settings.map.as_ref().map_or(1, |map| map.points);
+    Some(settings.points * rows)
 }
 
 fn summary(map: &RegimeMap) -> String {
@@ -262,22 +160,4 @@ fn line(map: &RegimeMap, index: usize, curve: &Curve) -> String {
         text += &format!("      {:<4} {values}  {words}\n", end.label);
     }
     text
-}
-
-/// How a command ends that gives this map.
-fn outcome(map: &RegimeMap, locate: &LocateOptions) -> Outcome {
-    let located = |curve: &Curve| {
-        let mut points = curve.points.iter();
-        points.all(|point| locate.is_met_by(point.status))
-    };
-    if map.interrupted {
-        Outcome::Interrupted
-    } else if map.nodes.iter().all(|node| node.status.is_resolved())
-        && map.untraced.is_empty()
-        && map.curves.iter().all(located)
-    {
-        Outcome::Complete
-    } else {
-        Outcome::Partial
-    }
 }

@@ -1,16 +1,15 @@
-//! `pbif merge`: the shards of a sweep, put together to one run.
+//! `pbif merge`: the shards of a sweep or of a map, put together to one.
 
 use std::path::Path;
 
 use super::args::MergeArguments;
 use super::output::OutputFolder;
-use super::stored::Stored;
-use super::sweep::resume::{self, Begin};
-use super::sweep::{Kind, Task, draw, summary};
-use super::{CommandError, Outcome, curve, warnings};
-use crate::continuation::{SweepResult, detect_again};
-use crate::run::{Ending, Gathered, Manifest, MapShards, RunError, RunFolder, Shards, StoredRun};
-use crate::sweep_file::{MethodKind, Sweep};
+use super::sweep::summary;
+use super::{CommandError, curve, jobs};
+use crate::cancellation::Cancellation;
+use crate::job::{self, Job as _, MapJob, Outcome, Start, SweepJob};
+use crate::run::{Gathered, MapShards, RunError, Shards};
+use crate::sweep_file::{Diagnostic, Sweep, SweepFile};
 
 /// Puts shards together and prints what is found in all of them.
 ///
@@ -18,7 +17,7 @@ use crate::sweep_file::{MethodKind, Sweep};
 /// [`CommandError`] when shards are missing or cannot be read, or the results not be written.
 pub(super) fn run(arguments: &MergeArguments) -> Result<Outcome, CommandError> {
     if MapShards::are_there(&arguments.run) {
-        return super::map::shards::merge(arguments);
+        return of_map(arguments);
     }
     let shards = Shards::open(&arguments.run)?;
     if !arguments.partial {
@@ -27,42 +26,14 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<Outcome, CommandError> {
     let spec = shards.any()?.sweep_file().validate()?.fixed()?;
     let problem = &spec.problem;
     let (subject, cells) = (problem.subject(), (problem.space(), problem.bins()));
-    let gathered = shards.gather(subject, cells, &MethodKind::ALL.map(MethodKind::name))?;
-    let output = OutputFolder::prepare(arguments.out.as_deref().unwrap_or(&arguments.run))?;
+    let gathered = shards.gather(subject, cells, &spec.methods())?;
+    let path = arguments.out.as_deref().unwrap_or(&arguments.run);
     if !shards.missing().is_empty() {
-        return partial(&spec, &shards, gathered, output.path());
+        return partial(&spec, &shards, gathered, path);
     }
-    let kind = Kind::Merged(shards.of(), gathered);
-    let (path, quiet) = (output.path(), arguments.work.quiet);
-    let outcome = match begin(&spec, path, shards.of())? {
-        Begin::Done(stored) => resume::show(&stored, path, &kind)?,
-        begin => {
-            let task = Task {
-                spec: &spec,
-                path,
-                kind,
-                quiet,
-            };
-            task.carry_out(begin, arguments.work.threads)?
-        }
-    };
+    let job = SweepJob::merged(&spec, shards.of(), gathered);
+    let outcome = jobs::run(job, path, true, &arguments.work)?;
     curve::after_sweep(&spec, path, (&arguments.work, true), outcome)
-}
-
-/// Goes on where an earlier merge of the same sweep was stopped; one that is complete is not made again.
-fn begin(spec: &Sweep, path: &Path, of: usize) -> Result<Begin, CommandError> {
-    let run = match StoredRun::open(path) {
-        Err(RunError::NotARun { .. }) => return Ok(Begin::Anew),
-        run => run?,
-    };
-    let is_ours = run.merged() == Some(of) && run.check_sweep(&spec.to_toml()).is_ok();
-    Ok(match is_ours {
-        true if run.ending() == Ending::Complete => {
-            Begin::Done(Box::new(Stored::read(path, &[], &[], true)?))
-        }
-        true if run.can_go_on() => Begin::GoOn,
-        _ => Begin::Anew,
-    })
 }
 
 /// What there is of an incomplete set of shards, as an unfinished run. Nothing is solved.
@@ -72,22 +43,15 @@ fn partial(
     gathered: Gathered,
     path: &Path,
 ) -> Result<Outcome, CommandError> {
-    let Gathered { points, checks } = gathered;
-    if points.is_empty() {
+    if gathered.points.is_empty() {
         shards.check_complete()?;
     }
-    let swept = (spec.problem.subject().clone(), spec.settings.points);
-    let mut result = detect_again(
-        swept,
-        &spec.detector(),
-        points,
-        checks,
-        &spec.settings.locate,
-    );
-    result.interrupted = true;
-    write(spec, shards.of(), &result, path)?;
-    let mut text = summary::text(&result, path);
-    text += &format!("\n{}\n", missing(shards));
+    let output = OutputFolder::prepare(path)?;
+    let path = output.path();
+    let mut job = SweepJob::gathered(spec, shards.of(), gathered);
+    let done = job::carry_out(&mut job, path, Start::Anew, &Cancellation::new(), &|_| ())?;
+    let found = done.map(|done| summary::text(&done.found, path));
+    let text = format!("{}\n{}\n", found.unwrap_or_default(), missing(shards));
     super::conclude(&text, Outcome::Partial, path)
 }
 
@@ -102,25 +66,33 @@ fn missing(shards: &Shards) -> String {
     format!("missing: {count} of {of} shards: {}", words.join(", "))
 }
 
-/// Writes tables, densities, figures, and last the manifest.
-fn write(spec: &Sweep, of: usize, result: &SweepResult, path: &Path) -> Result<(), CommandError> {
-    let mut folder = RunFolder::create(path)?;
-    let seed = spec.settings.method.chosen().seed();
-    let mut manifest = Manifest::start(
-        &spec.to_toml(),
-        spec.settings.typed(),
-        seed,
-        rayon::current_num_threads(),
-    )?;
-    manifest.merged = Some(of);
-    folder.write_manifest(&manifest)?;
-    folder.finish(result)?;
-    draw(spec, result, &folder.figures())?;
-    manifest.points = result.points.len();
-    manifest.largest_distance = result.largest_distance();
-    manifest.warnings = warnings::of_points(spec.problem.family(), &result.points);
-    manifest.ending = Ending::Interrupted;
-    manifest.made.end();
-    folder.write_manifest(&manifest)?;
-    Ok(folder.seal()?)
+/// Puts the shards of a map together, follows its curves and prints what was found.
+fn of_map(arguments: &MergeArguments) -> Result<Outcome, CommandError> {
+    if arguments.partial {
+        let found = Diagnostic::new("`--partial` is for the shards of a sweep")
+            .remedy("compute the shards of the map that are missing; each goes on with `--resume`");
+        return Err(CommandError::Input(found.into()));
+    }
+    let shards = MapShards::open(&arguments.run).map_err(refused)?;
+    let file = SweepFile::parse("the shards' sweep", &shards.sweep_file);
+    let spec = file.validate()?.fixed()?;
+    let path = arguments.out.as_deref().unwrap_or(&arguments.run);
+    let job = MapJob::merged(&spec, &shards.shards);
+    // A map that is there is made again.
+    let resume = job.layout().has_part(path);
+    jobs::run(job, path, resume, &arguments.work)
+}
+
+/// What is said of shards of a map that cannot be read.
+fn refused(error: RunError) -> CommandError {
+    let RunError::MissingShards { path, missing, .. } = &error else {
+        return error.into();
+    };
+    let first = missing.first().map(|(shard, _)| shard.to_string());
+    let remedy = format!(
+        "`pbif sweep FILE --shard {} --out {} --resume` computes it, and so each of them",
+        first.unwrap_or_default(),
+        path.display()
+    );
+    CommandError::Input(Diagnostic::new(error.to_string()).remedy(remedy).into())
 }

@@ -11,6 +11,7 @@ mod explore;
 mod export;
 mod friction;
 mod interrupts;
+mod jobs;
 mod list;
 mod manual;
 mod map;
@@ -18,12 +19,12 @@ mod merge;
 mod new;
 mod output;
 mod plot;
+mod progress;
 mod show;
 mod stored;
 mod sweep;
 mod systems;
 mod verify;
-mod warnings;
 
 use std::io::{self, IsTerminal as _, Write as _};
 use std::path::Path;
@@ -32,33 +33,10 @@ use std::process::ExitCode;
 use clap::Parser as _;
 
 use crate::cancellation::Cancellation;
-use crate::compare::CompareError;
-use crate::run::RunError;
+use crate::job::{JobError, Outcome};
 use crate::sweep_file::{Diagnostic, Report, Settings, Sweep, SweepFile};
 use args::{Arguments, Command};
 use output::OutputError;
-
-/// How a command ended that did what it was asked to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Outcome {
-    /// Done.
-    Complete,
-    /// Finished, but some row is unresolved, did not converge or has no steady state.
-    Partial,
-    /// Interrupted by the user.
-    #[allow(dead_code)] // only the sweep command can end so
-    Interrupted,
-}
-
-impl Outcome {
-    fn exit_code(self) -> u8 {
-        match self {
-            Self::Complete => 0,
-            Self::Partial => 1,
-            Self::Interrupted => 130,
-        }
-    }
-}
 
 /// Why a command was not carried out.
 #[derive(Debug, thiserror::Error)]
@@ -69,15 +47,9 @@ pub(crate) enum CommandError {
     /// The results cannot be written where they should go.
     #[error(transparent)]
     Output(#[from] OutputError),
-    /// The method refuses.
+    /// Something cannot be computed.
     #[error(transparent)]
-    Method(#[from] crate::method::MethodError),
-    /// The methods cannot be compared.
-    #[error(transparent)]
-    Compare(crate::compare::CompareError),
-    /// The sweep ended without a result.
-    #[error(transparent)]
-    Sweep(#[from] crate::continuation::SweepError),
+    Job(JobError),
     /// A file of the run cannot be written or read.
     #[error(transparent)]
     Run(#[from] crate::run::RunError),
@@ -128,15 +100,12 @@ impl CommandError {
     }
 }
 
-impl From<CompareError> for CommandError {
-    fn from(error: CompareError) -> Self {
+impl From<JobError> for CommandError {
+    fn from(error: JobError) -> Self {
         match error {
-            // What is solved could not be kept.
-            CompareError::Observer(error) => match error.downcast::<RunError>() {
-                Ok(error) => Self::Run(*error),
-                Err(error) => Self::Compare(CompareError::Observer(error)),
-            },
-            error => Self::Compare(error),
+            JobError::Refused(report) => Self::Input(report),
+            JobError::Run(error) => Self::Run(error),
+            error => Self::Job(error),
         }
     }
 }
@@ -159,7 +128,7 @@ pub fn run() -> ExitCode {
         }
     };
     match dispatch(&arguments.command) {
-        Ok(outcome) => ExitCode::from(outcome.exit_code()),
+        Ok(outcome) => ExitCode::from(exit_code(outcome)),
         // The reader of a pipe may stop early, as `head` does.
         Err(CommandError::Print(error)) if error.kind() == io::ErrorKind::BrokenPipe => {
             ExitCode::SUCCESS
@@ -172,20 +141,26 @@ pub fn run() -> ExitCode {
     }
 }
 
+fn exit_code(outcome: Outcome) -> u8 {
+    match outcome {
+        Outcome::Complete => 0,
+        Outcome::Partial => 1,
+        Outcome::Interrupted => 130,
+    }
+}
+
 fn dispatch(command: &Command) -> Result<Outcome, CommandError> {
     match command {
         Command::Sweep { input, run } => {
-            let spec = load(input, run.work.quiet)?.prepare(&Cancellation::new())?;
-            tell_chosen(&spec, run.work.quiet);
+            let spec = chosen(input, run.work.quiet)?;
             sweep::run(&spec, &input.name(), run)
         }
         Command::Check { input } => {
-            let spec = load(input, false)?.prepare(&Cancellation::new())?;
+            let spec = given(input, false)?.prepare(&Cancellation::new())?;
             print(&check::text(&input.file, &spec)?)
         }
         Command::Compare { input, run } => {
-            let spec = load(input, run.work.quiet)?.prepare(&Cancellation::new())?;
-            tell_chosen(&spec, run.work.quiet);
+            let spec = chosen(input, run.work.quiet)?;
             compare::run(&spec, &input.name(), run)
         }
         Command::Curve { run } => curve::run(run),
@@ -222,23 +197,50 @@ fn is_sweep_file(target: &Path) -> bool {
     target.is_file() || !target.exists() && is_named_so()
 }
 
-/// Reads and checks a sweep file; says on stderr what a user should know, unless it is to be quiet.
-fn load(input: &args::SweepInput, quiet: bool) -> Result<Settings, Report> {
-    let mut file = SweepFile::read(&input.file)?;
-    let settings = file.set_all("--set", &input.overrides).validate()?;
-    if !quiet && !settings.warnings.is_empty() {
-        let text = settings.warnings.render(is_styled());
-        let _ = io::stderr().lock().write_all(text.as_bytes());
+/// Reads and checks a sweep file, prepared before overrides are set; says on stderr what a user should know, unless it
+/// is to be quiet.
+fn load(
+    path: &Path,
+    prepare: &mut dyn FnMut(&mut SweepFile),
+    overrides: &[stored::Override],
+    quiet: bool,
+) -> Result<Settings, Report> {
+    let mut file = SweepFile::read(path)?;
+    prepare(&mut file);
+    for (option, setting) in overrides {
+        file.set_all(option, [setting]);
+    }
+    let settings = file.validate()?;
+    if !settings.warnings.is_empty() {
+        tell(quiet, &settings.warnings.render(is_styled()));
     }
     Ok(settings)
 }
 
-/// Says on stderr what was chosen for the program's part, unless it is to be quiet. `pbif check` has it on stdout.
-fn tell_chosen(spec: &Sweep, quiet: bool) {
+/// The sweep file that was given.
+fn given(input: &args::SweepInput, quiet: bool) -> Result<Settings, Report> {
+    load(
+        &input.file,
+        &mut |_| (),
+        &stored::set(&input.overrides),
+        quiet,
+    )
+}
+
+/// The sweep that was given; says on stderr what was chosen for the program's part. `pbif check` has it on stdout.
+fn chosen(input: &args::SweepInput, quiet: bool) -> Result<Sweep, Report> {
+    let spec = given(input, quiet)?.prepare(&Cancellation::new())?;
+    for line in &spec.settings.chosen {
+        tell(quiet, &format!("{line}\n"));
+    }
+    Ok(spec)
+}
+
+/// Says something on stderr, unless it is to be quiet.
+fn tell(quiet: bool, text: &str) {
     if !quiet {
-        for line in &spec.settings.chosen {
-            let _ = writeln!(io::stderr().lock(), "{line}");
-        }
+        // Without a reader of stderr there is nobody to tell.
+        let _ = io::stderr().lock().write_all(text.as_bytes());
     }
 }
 

@@ -5,10 +5,10 @@ mod plane;
 use super::args::PlotArguments;
 use super::output::OutputFolder;
 use super::stored::{Override, Stored, set};
-use super::sweep::draw;
 use super::{CommandError, Outcome};
 use crate::continuation::{Point, SweepResult};
-use crate::figure::{ColourMap, FigureWidth, Figures, Ground, Typeface};
+use crate::figure::{ColourMap, FigureWidth, Figures, Ground, Typeface, write_figures};
+use crate::job::draw_sweep;
 use crate::run::{StoredPlane, format_number};
 use crate::sweep_file::{Diagnostic, list};
 
@@ -41,16 +41,16 @@ pub(super) fn run(arguments: &PlotArguments) -> Result<Outcome, CommandError> {
     check_names(&stored)?;
     let figures = arguments.run.join("figures");
     let output = OutputFolder::prepare(arguments.out.as_deref().unwrap_or(&figures))?;
-    let files = draw(&stored.spec, &stored.result, output.path())?;
+    let drawn = draw_sweep(&stored.spec, &stored.result)?;
+    let formats = &stored.spec.settings.figures.formats;
+    let files = write_figures(&drawn, formats, output.path())?;
     if files.is_empty() {
         return super::print(nothing_drawn(&stored));
     }
     if arguments.out.is_none() {
         stored.run.renew_figures()?;
     }
-    let lines = files.iter().map(|file| format!("  {}\n", file.display()));
-    let text = format!("files\n{}", lines.collect::<String>());
-    super::conclude(&text, Outcome::Complete, output.path())
+    super::conclude(&super::jobs::files(files), Outcome::Complete, output.path())
 }
 
 /// Why there is no figure.

@@ -1,12 +1,11 @@
 //! What `pbif detect` and `pbif plot` share: a stored run with its sweep, its points, and what is found in them.
 
-use std::io::Write as _;
 use std::path::Path;
 
-use super::CommandError;
+use super::{CommandError, tell};
 use crate::continuation::SweepResult;
 use crate::run::{RunError, StoredRun};
-use crate::sweep_file::{Diagnostic, Report, Sweep, list};
+use crate::sweep_file::{Diagnostic, Report, Sweep, SweepFile, list};
 
 /// An option of the command line, and the `KEY=VALUE` that it stands for.
 pub(super) type Override = (&'static str, String);
@@ -35,9 +34,24 @@ impl Stored {
         sections: &[&str],
         quiet: bool,
     ) -> Result<Self, CommandError> {
+        Self::read_as(path, &mut |_| (), overrides, sections, quiet)
+    }
+
+    /// The same where the sweep file is prepared before overrides are set.
+    ///
+    /// # Errors
+    /// As [`Stored::read`].
+    pub(super) fn read_as(
+        path: &Path,
+        prepare: &mut dyn FnMut(&mut SweepFile),
+        overrides: &[Override],
+        sections: &[&str],
+        quiet: bool,
+    ) -> Result<Self, CommandError> {
         let run = StoredRun::open(path)?;
         check_overrides(overrides, sections)?;
         let mut file = run.sweep_file();
+        prepare(&mut file);
         for (option, setting) in overrides {
             file.set_all(option, [setting]);
         }
@@ -62,8 +76,7 @@ impl Stored {
                 "the run was interrupted: of its {given} given values, and those that refine brackets, there are {points} points\n"
             );
         }
-        // Without a reader of stderr there is nobody to tell.
-        let _ = std::io::stderr().lock().write_all(text.as_bytes());
+        tell(false, &text);
     }
 }
 

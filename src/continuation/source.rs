@@ -131,6 +131,28 @@ pub trait Sensitivity {
     fn along_path(&mut self) -> Result<Vec<Vec<f64>>, SourceError>;
 }
 
+impl<S: DensitySource + ?Sized> DensitySource for Box<S> {
+    fn method(&self) -> &'static str {
+        self.as_ref().method()
+    }
+
+    fn subject(&self) -> &Subject {
+        self.as_ref().subject()
+    }
+
+    fn open(&self, cancellation: &Cancellation) -> Box<dyn Session> {
+        self.as_ref().open(cancellation)
+    }
+
+    fn finer(&self, want: &Want) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
+        self.as_ref().finer(want)
+    }
+
+    fn enclosed(&self, want: &Want) -> Option<Box<dyn DensitySource>> {
+        self.as_ref().enclosed(want)
+    }
+}
+
 /// Why a source cannot give a solution at all. A failed solve is data, not an error: see
 /// [`PointStatus`](super::PointStatus).
 #[derive(Debug, thiserror::Error)]

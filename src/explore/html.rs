@@ -9,8 +9,7 @@ const FRAME: &str = include_str!("page/page.html");
 const STYLE: &str = include_str!("page/page.css");
 
 /// The parts of the script in the order in which they need each other.
-const SCRIPT: [&str; 19] = [
-    include_str!("page/inflate.js"),
+const SCRIPT: [&str; 18] = [
     include_str!("page/unpack.js"),
     include_str!("page/numbers.js"),
     include_str!("page/colours.js"),

@@ -46,16 +46,6 @@ pub enum ExploreError {
     /// What the page is told cannot be written.
     #[error("cannot compose the page: {0}")]
     Compose(#[from] serde_json::Error),
-    /// A table of a map that holds something else than a number where one should stand.
-    #[error(
-        "the tables of the map are not what pbif left: `{value}` is no number, in the column `{column}`"
-    )]
-    MapTable {
-        /// The column.
-        column: String,
-        /// What stands there.
-        value: String,
-    },
     /// A sweep file without `[map]` in the place of a map's.
     #[error("the sweep file of the map has no section [map]")]
     NoPlane,

@@ -1,16 +1,17 @@
 //! What the page is told of a plane of two parameters: its regions, the curves between them, and the points where these
-//! meet, as they stand in the tables of a map.
+//! meet.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
 
-use super::ExploreError;
 use crate::continuation::Subject;
-use crate::continuation::curve::Plane;
-use crate::continuation::map::{PlaneState, Seed, flooded};
-use crate::run::{MapTables, Rows};
+use crate::continuation::curve::{CodimensionTwo, Curve, CurvePoint, Plane, codimension_two};
+use crate::continuation::map::{FloodedRegion, MapNode, PlaneState, Seed, flooded};
+use crate::density::Observable;
+use crate::run::{curve_name, point_labels};
 use crate::sweep_file::Sweep;
+use crate::system::Family;
 
 /// Columns and rows of the picture of the regions.
 const PICTURE: [usize; 2] = [240, 240];
@@ -69,10 +70,10 @@ struct CurveTold {
     name: String,
     /// Number among the observables.
     observable: Option<usize>,
-    method: String,
+    method: &'static str,
     /// Both parameters, the error as a share of the sides of the box, and the way to the edge of the band.
     points: Vec<[f64; 5]>,
-    statuses: Vec<String>,
+    statuses: Vec<&'static str>,
     labels: Vec<String>,
 }
 
@@ -80,34 +81,25 @@ struct CurveTold {
 #[derive(Debug, Serialize)]
 struct SpecialPoint {
     label: String,
-    kind: String,
+    kind: &'static str,
     at: [f64; 2],
     /// A share of the sides of the box.
     error: f64,
-    status: String,
+    status: &'static str,
     observable: String,
     curves: String,
 }
 
 impl PlaneScene {
-    /// The plane of a sweep with `[map]`, with what the tables of a map say of it; `None` without the section.
-    pub(super) fn new(
-        sweep: &Sweep,
-        tables: Option<&MapTables>,
-    ) -> Result<Option<Self>, ExploreError> {
+    /// The plane of a sweep with `[map]`; `None` without the section.
+    pub(super) fn new(sweep: &Sweep) -> Option<Self> {
         let map = sweep.settings.map.as_ref();
         let plane = map.and_then(|map| map.plane(&sweep.settings.family));
-        let scene = plane.map(|plane| Self::of(&plane, sweep, tables));
-        scene.transpose()
+        plane.map(|plane| Self::of(&plane, sweep.problem.family()))
     }
 
-    /// The same of the box of a plane, with what tables say of it.
-    pub(super) fn of(
-        plane: &Plane,
-        sweep: &Sweep,
-        tables: Option<&MapTables>,
-    ) -> Result<Self, ExploreError> {
-        let family = &sweep.settings.family;
+    /// The box of a plane.
+    pub(super) fn of(plane: &Plane, family: &Family) -> Self {
         let symbol = |name: &str| {
             let mut parameters = family.model().parameters.iter();
             let known = parameters.find(|parameter| parameter.name == name);
@@ -121,58 +113,46 @@ impl PlaneScene {
             from: side.from,
             to: side.to,
         });
-        let subject = sweep.problem.subject();
-        let scene = Self { sides, found: None };
-        let found = tables.map(|tables| scene.found_in(tables, subject));
-        Ok(Self {
-            found: found.transpose()?,
-            ..scene
-        })
+        Self { sides, found: None }
     }
 
-    /// States as the nodes of a table.
-    pub(super) fn nodes_of(states: &[PlaneState], plane: &Plane, subject: &Subject) -> Rows {
-        let names = subject.observables.iter();
-        let names: Vec<String> = names
-            .map(|one| format!("signature_{}", one.name(&subject.family)))
-            .collect();
-        let row = |state: &PlaneState| {
-            let sides = plane.sides().iter().zip(state.values);
-            let values = sides.map(|(side, value)| (side.parameter.clone(), value.to_string()));
-            let found = state.point.detections.iter();
-            let found = found.map(|detection| detection.signature.to_string());
-            let level = ("level".to_owned(), "0".to_owned());
-            let cells = values
-                .chain([level])
-                .chain(names.iter().cloned().zip(found));
-            cells.collect()
-        };
-        states.iter().map(row).collect()
-    }
-
-    fn found_in(&self, tables: &MapTables, subject: &Subject) -> Result<PlaneFound, ExploreError> {
-        let observables = subject.observables.iter();
-        let names: Vec<String> = observables.map(|one| one.name(&subject.family)).collect();
-        let curves = self.curves(&tables.curves, &names)?;
-        let regions = names.iter().enumerate();
-        let regions = regions.map(|(number, name)| {
-            let lines = curves
-                .iter()
-                .filter(|curve| curve.observable == Some(number));
-            let line = |curve: &CurveTold| {
+    /// The same with what was found there; `start` is the label of the row that the first curve was begun at, if it was.
+    pub(super) fn with(
+        self,
+        subject: &Subject,
+        nodes: &[MapNode],
+        (curves, start): (&[Curve], &str),
+    ) -> Self {
+        let lines = |observable: Observable| -> Vec<Vec<[f64; 2]>> {
+            let of = curves.iter().filter(|curve| curve.observable == observable);
+            let line = |curve: &Curve| {
                 let points = curve.points.iter();
-                points
-                    .map(|point| self.share([point[0], point[1]]))
-                    .collect()
+                points.map(|point| self.share(point.values)).collect()
             };
-            self.regions(&tables.nodes, name, &lines.map(line).collect::<Vec<_>>())
+            of.map(line).collect()
+        };
+        let observables = subject.observables.iter().enumerate();
+        let regions = observables
+            .map(|(number, &observable)| self.regions(nodes, number, &lines(observable)))
+            .collect();
+        let told = curves.iter().enumerate().map(|(index, curve)| {
+            let start = if index == 0 { start } else { "start" };
+            CurveTold::new(subject, (index, curve), start)
         });
-        Ok(PlaneFound {
-            nodes: tables.nodes.len(),
-            regions: regions.collect::<Result<_, _>>()?,
-            points: self.points(&tables.codimension_two)?,
-            curves,
-        })
+        let points = codimension_two(curves);
+        let points = points
+            .iter()
+            .map(|one| SpecialPoint::new(&subject.family, one));
+        let found = PlaneFound {
+            nodes: nodes.len(),
+            regions,
+            curves: told.collect(),
+            points: points.collect(),
+        };
+        Self {
+            found: Some(found),
+            ..self
+        }
     }
 
     /// Where two values lie in the box with sides of length one.
@@ -180,132 +160,106 @@ impl PlaneScene {
         [0, 1].map(|k| (values[k] - self.sides[k].from) / (self.sides[k].to - self.sides[k].from))
     }
 
-    fn values(
-        &self,
-        row: &std::collections::BTreeMap<String, String>,
-    ) -> Result<[f64; 2], ExploreError> {
-        let [first, second] = self.sides.each_ref().map(|side| number(row, &side.name));
-        Ok([first?, second?])
-    }
-
-    /// The values of both parameters that make the coarse grid of a map, ascending, at most so many of each; both ends
-    /// are among them.
-    pub(super) fn grid(&self, nodes: &Rows, most: usize) -> Result<[Vec<f64>; 2], ExploreError> {
-        let mut sides = [Vec::new(), Vec::new()];
-        for row in nodes.iter().filter(|row| word(row, "level") == "0") {
-            let values = self.values(row)?;
-            (0..2).for_each(|k| sides[k].push(values[k]));
-        }
-        Ok(sides.map(|mut values: Vec<f64>| {
-            values.sort_by(f64::total_cmp);
-            values.dedup();
-            thinned(&values, most)
-        }))
-    }
-
-    fn regions(
-        &self,
-        nodes: &Rows,
-        name: &str,
-        lines: &[Vec<[f64; 2]>],
-    ) -> Result<Regions, ExploreError> {
+    fn regions(&self, nodes: &[MapNode], observable: usize, lines: &[Vec<[f64; 2]>]) -> Regions {
         let mut kinds: Vec<String> = Vec::new();
         let mut seeds = Vec::new();
         let mut finest = 0;
-        let column = format!("signature_{name}");
-        for row in nodes {
-            let words = word(row, &column);
-            let known = kinds.iter().position(|kind| kind == words);
+        for node in nodes {
+            let words = node.signatures.get(observable);
+            let words = words.map_or_else(String::new, ToString::to_string);
+            let known = kinds.iter().position(|kind| *kind == words);
             let kind = known.unwrap_or_else(|| {
-                kinds.push(words.to_owned());
+                kinds.push(words);
                 kinds.len() - 1
             });
-            finest = finest.max(number(row, "level")? as i32);
-            let place = self.share(self.values(row)?);
+            finest = finest.max(node.level);
+            let place = self.share(node.values);
             seeds.push(Seed { place, kind });
         }
-        let coarse = self.grid(nodes, usize::MAX)?;
+        let coarse = coarse_grid(nodes, usize::MAX);
         let widest = coarse.map(|values| 1.0 / (values.len().max(2) - 1) as f64);
-        let smallest = widest[0].max(widest[1]) / f64::from(1 << finest.min(30));
+        let smallest = widest[0].max(widest[1]) / f64::from(1_u32 << finest.min(30));
         let found = flooded(PICTURE, lines, &seeds, smallest);
         let kind = |&region: &usize| {
-            found
-                .regions
-                .get(region)
-                .map_or(0, |one| one.kind.min(255) as u8)
+            let region = found.regions.get(region);
+            region.map_or(0, |one| one.kind.min(255) as u8)
         };
         let pixels: Vec<u8> = found.pixels.iter().map(kind).collect();
-        let place = |region: &crate::continuation::map::FloodedRegion| Place {
+        let place = |region: &FloodedRegion| Place {
             kind: region.kind,
             at: region.inside,
             share: region.share,
         };
-        Ok(Regions {
+        Regions {
             kinds,
             size: PICTURE,
             pixels: STANDARD.encode(pixels),
             places: found.regions.iter().map(place).collect(),
-        })
-    }
-
-    fn curves(&self, rows: &Rows, names: &[String]) -> Result<Vec<CurveTold>, ExploreError> {
-        let mut curves: Vec<CurveTold> = Vec::new();
-        for row in rows {
-            let name = word(row, "curve");
-            if curves.last().is_none_or(|curve| curve.name != name) {
-                curves.push(CurveTold {
-                    name: name.to_owned(),
-                    observable: names.iter().position(|one| one == word(row, "observable")),
-                    method: word(row, "method").to_owned(),
-                    points: Vec::new(),
-                    statuses: Vec::new(),
-                    labels: Vec::new(),
-                });
-            }
-            let [x, y] = self.values(row)?;
-            let [to_x, to_y] = (self.sides.each_ref())
-                .map(|side| number(row, &format!("edge_{}", side.name)).unwrap_or(0.0));
-            let error = number(row, "error").unwrap_or(0.0);
-            if let Some(curve) = curves.last_mut() {
-                curve.points.push([x, y, error, to_x, to_y]);
-                curve.statuses.push(word(row, "status").to_owned());
-                curve.labels.push(word(row, "label").to_owned());
-            }
         }
-        Ok(curves)
     }
+}
 
-    fn points(&self, rows: &Rows) -> Result<Vec<SpecialPoint>, ExploreError> {
-        let point = |row| {
-            let of = |column: &str| word(row, column).to_owned();
-            Ok(SpecialPoint {
-                label: of("label"),
-                kind: of("kind"),
-                at: self.values(row)?,
-                error: number(row, "error").unwrap_or(0.0),
-                status: of("status"),
-                observable: of("observable"),
-                curves: of("curves"),
-            })
+impl CurveTold {
+    fn new(subject: &Subject, (index, curve): (usize, &Curve), start: &str) -> Self {
+        let mut observables = subject.observables.iter();
+        let finite = |value: f64| if value.is_finite() { value } else { 0.0 };
+        let point = |point: &CurvePoint| {
+            let ([x, y], [to_x, to_y]) = (point.values, point.to_edge.map(finite));
+            [x, y, finite(point.error), to_x, to_y]
         };
-        rows.iter().map(point).collect()
+        let statuses = curve.points.iter().map(|point| point.status.word());
+        Self {
+            name: curve_name(index),
+            observable: observables.position(|one| *one == curve.observable),
+            method: curve.kind.name(),
+            points: curve.points.iter().map(point).collect(),
+            statuses: statuses.collect(),
+            labels: point_labels(curve, start),
+        }
     }
 }
 
-fn word<'r>(row: &'r std::collections::BTreeMap<String, String>, column: &str) -> &'r str {
-    row.get(column).map_or("", String::as_str)
+impl SpecialPoint {
+    fn new(family: &Family, point: &CodimensionTwo) -> Self {
+        let observables = point.observables.iter().map(|one| one.name(family));
+        let curves = point.curves.iter().map(|&index| curve_name(index));
+        Self {
+            label: point.label.clone(),
+            kind: point.kind.name(),
+            at: point.values,
+            error: point.error,
+            status: point.status.word(),
+            observable: observables.collect::<Vec<_>>().join(" "),
+            curves: curves.collect::<Vec<_>>().join(" "),
+        }
+    }
 }
 
-fn number(
-    row: &std::collections::BTreeMap<String, String>,
-    column: &str,
-) -> Result<f64, ExploreError> {
-    let text = word(row, column);
-    let number = text.parse().ok().filter(|number: &f64| number.is_finite());
-    number.ok_or_else(|| ExploreError::MapTable {
-        column: column.to_owned(),
-        value: text.to_owned(),
+/// The values of both parameters that make the coarse grid of a map, ascending, at most so many of each; both ends are
+/// among them.
+pub(super) fn coarse_grid(nodes: &[MapNode], most: usize) -> [Vec<f64>; 2] {
+    let coarse = nodes.iter().filter(|node| node.level == 0);
+    [0, 1].map(|side| {
+        let mut values: Vec<f64> = coarse.clone().map(|node| node.values[side]).collect();
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        thinned(&values, most)
     })
+}
+
+/// States as the nodes of a map.
+pub(super) fn nodes_of(states: &[PlaneState]) -> Vec<MapNode> {
+    let node = |state: &PlaneState| MapNode {
+        values: state.values,
+        level: 0,
+        status: state.point.report.status,
+        signatures: (state.point.detections.iter())
+            .map(|one| one.signature)
+            .collect(),
+        is_seen: true,
+        reason: None,
+    };
+    states.iter().map(node).collect()
 }
 
 /// So many values at most, evenly over all, both ends among them.

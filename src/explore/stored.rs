@@ -4,12 +4,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::ExploreError;
 use super::compose::Shown;
-use super::plane::PlaneScene;
+use super::plane::{PlaneScene, coarse_grid, nodes_of};
 use crate::cancellation::Cancellation;
-use crate::continuation::curve::Plane;
-use crate::continuation::map::PlaneState;
+use crate::continuation::curve::{Curve, Plane};
+use crate::continuation::map::{PlaneState, RegimeMap};
 use crate::continuation::{SourceError, SweepResult, evenly_spaced};
-use crate::run::MapTables;
 use crate::sweep_file::Sweep;
 
 /// Values a side of a plane at most whose densities stand in its page.
@@ -42,20 +41,22 @@ impl StoredPage {
         shown.fitted()
     }
 
-    /// The page of a map: its plane as the tables of the map say it, and densities at nodes of its coarse grid, 21
-    /// values a side at most, which are solved again. `done` is told how many of how many are solved, from whatever
+    /// The page of a map: its plane, and densities at nodes of its coarse grid, 21 values a side at most, which are
+    /// solved again. `done` is told how many of how many are solved, from whatever
     /// thread.
     ///
     /// # Errors
     /// [`ExploreError`]; [`ExploreError::Source`] with [`SourceError::Interrupted`] when it was cancelled.
     pub fn of_map(
         sweep: &Sweep,
-        tables: &MapTables,
+        map: &RegimeMap,
         cancellation: &Cancellation,
         done: &(dyn Fn(usize, usize) + Sync),
     ) -> Result<Self, ExploreError> {
-        let plane = PlaneScene::new(sweep, Some(tables))?.ok_or(ExploreError::NoPlane)?;
-        let [first, second] = plane.grid(&tables.nodes, MOST_VALUES)?;
+        let subject = sweep.problem.subject();
+        let plane = PlaneScene::of(&map.plane, &subject.family);
+        let plane = plane.with(subject, &map.nodes, (&map.curves, "start"));
+        let [first, second] = coarse_grid(&map.nodes, MOST_VALUES);
         let (solved, all) = (AtomicUsize::new(0), first.len() * second.len());
         let count = || done(solved.fetch_add(1, Ordering::Relaxed) + 1, all);
         let states = sweep.plane_states([&first, &second], cancellation, &count)?;
@@ -66,14 +67,15 @@ impl StoredPage {
         shown(sweep, &plane, &states).fitted()
     }
 
-    /// The page of curves that were begun at a row of a sweep: their plane, and densities at 21 × 21 places of its box,
-    /// which are solved.
+    /// The page of curves that were begun at the row `start` of a sweep: their plane, and densities at 21 × 21 places of
+    /// its box, which are solved.
     ///
     /// # Errors
     /// As [`StoredPage::of_map`].
     pub fn of_curves(
         sweep: &Sweep,
-        (plane, mut tables): (&Plane, MapTables),
+        plane: &Plane,
+        (curves, start): (&[Curve], &str),
         cancellation: &Cancellation,
         done: &(dyn Fn(usize, usize) + Sync),
     ) -> Result<Self, ExploreError> {
@@ -87,8 +89,8 @@ impl StoredPage {
             return Err(SourceError::Interrupted.into());
         }
         let subject = sweep.problem.subject();
-        tables.nodes = PlaneScene::nodes_of(&states, plane, subject);
-        let plane = PlaneScene::of(plane, sweep, Some(&tables))?;
+        let plane = PlaneScene::of(plane, &subject.family);
+        let plane = plane.with(subject, &nodes_of(&states), (curves, start));
         shown(sweep, &plane, &states).fitted()
     }
 

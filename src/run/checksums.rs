@@ -7,10 +7,8 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 use sha2::{Digest as _, Sha256};
 
-use super::RunError;
 use super::atomic::write_durably;
-use super::folder::ENTRIES;
-use super::{compare, curve, journal, map, research_object};
+use super::{Layout, RunError, journal, research_object};
 
 /// Name of the file.
 pub(super) const NAME: &str = "checksums.sha256";
@@ -48,7 +46,7 @@ type Sums = BTreeMap<String, String>;
 /// # Errors
 /// [`RunError::Read`] or [`RunError::Write`].
 pub(super) fn write(run: &Path) -> Result<(), RunError> {
-    write_listed(run, &ENTRIES)
+    write_listed(run, Layout::SWEEP.entries)
 }
 
 /// The same of another folder, which holds these files and folders.
@@ -69,12 +67,8 @@ pub(super) fn write_listed(run: &Path, entries: &[&str]) -> Result<(), RunError>
 /// # Errors
 /// [`RunError::NotARun`] where it left nothing; as for a single file.
 pub fn check_folder(folder: &Path) -> Result<Option<Checked>, RunError> {
-    let kinds: [&[&str]; 4] = [&ENTRIES, &compare::ENTRIES, &curve::ENTRIES, &map::ENTRIES];
-    let kind = kinds
-        .into_iter()
-        .find(|entries| folder.join(entries[0]).is_file());
-    match kind {
-        Some(entries) => check_listed(folder, entries, &[]),
+    match Layout::of(folder) {
+        Some(layout) => check_listed(folder, layout.entries, &[]),
         None => Err(RunError::NotARun {
             path: folder.to_owned(),
         }),
@@ -100,7 +94,7 @@ pub(super) fn renew(run: &Path, entry: &str) -> Result<(), RunError> {
 /// # Errors
 /// [`RunError::Read`]; [`RunError::Checksums`] when the checksums are not readable themselves.
 pub(super) fn check(run: &Path, entries: &[&str]) -> Result<Option<Checked>, RunError> {
-    check_listed(run, &ENTRIES, entries)
+    check_listed(run, Layout::SWEEP.entries, entries)
 }
 
 /// The same of another folder, which may hold the files and folders `all`.

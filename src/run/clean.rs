@@ -3,9 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::archive::PREVIOUS;
-use super::folder::{ABOUT, ENTRIES};
 use super::lock::FolderLock;
-use super::{Ending, RunError, RunSummary, checksums, curve, find_runs};
+use super::{Ending, Layout, RunError, RunSummary, checksums, curve, find_runs};
 
 /// The folder of figures, in which users put their own.
 const FIGURES: &str = "figures";
@@ -31,7 +30,7 @@ pub fn removable_runs(folder: &Path) -> Vec<Removable> {
             return None;
         }
         let why = why(folder, path, summary.as_ref())?;
-        let names = ENTRIES.iter().chain(&ABOUT);
+        let names = Layout::SWEEP.entries.iter().chain(Layout::SWEEP.about);
         let bytes = names.map(|name| size(&path.join(name))).sum();
         Some(Removable {
             path: path.clone(),
@@ -75,14 +74,14 @@ fn size(path: &Path) -> u64 {
 /// # Errors
 /// [`RunError::NotARun`], [`RunError::InUse`], [`RunError::Write`].
 pub fn remove_run(path: &Path) -> Result<(), RunError> {
-    if !path.join(ENTRIES[0]).is_file() {
+    if !path.join(Layout::SWEEP.manifest()).is_file() {
         return Err(RunError::NotARun {
             path: path.to_owned(),
         });
     }
     let lock = FolderLock::take(path)?;
     remove_curves(&path.join(curve::FOLDER))?;
-    remove_entries(path, &ENTRIES)?;
+    remove_entries(path, Layout::SWEEP.entries)?;
     drop(lock);
     // Only empty folders can be removed so.
     let mut empty = Some(path);
@@ -103,17 +102,14 @@ pub fn remove_run(path: &Path) -> Result<(), RunError> {
 fn remove_curves(folder: &Path) -> Result<(), RunError> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     for path in entries.map(|entry| entry.path()) {
-        let [manifest, ..] = curve::ENTRIES;
-        if !path.is_dir()
-            || ![manifest, curve::PART]
-                .iter()
-                .any(|name| path.join(name).is_file())
-        {
+        let ours = Layout::CURVES;
+        let is_ours = path.join(ours.manifest()).is_file() || ours.has_part(&path);
+        if !path.is_dir() || !is_ours {
             continue;
         }
         let lock = FolderLock::take(&path)?;
         remove_curves(&path.join(PREVIOUS))?;
-        remove_entries(&path, &[&curve::ENTRIES[..], &[curve::PART]].concat())?;
+        remove_entries(&path, &[ours.entries, &[ours.part]].concat())?;
         drop(lock);
         // Only empty folders can be removed so.
         let _ = std::fs::remove_dir(&path);

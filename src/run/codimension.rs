@@ -9,13 +9,13 @@ use crate::continuation::curve::{CodimensionTwo, Curve, Plane, codimension_two};
 use crate::system::Family;
 
 /// What a curve is called, by its place among several.
-pub(super) fn curve_name(index: usize) -> String {
+pub(crate) fn curve_name(index: usize) -> String {
     format!("C{}", index + 1)
 }
 
 /// The table of several curves in a plane; the first column has the curve's name. `starts` are the labels of their
 /// starts; those without one are called `start`.
-pub(super) fn several_csv(
+fn several_csv(
     family: &Family,
     plane: &Plane,
     curves: &[Curve],
@@ -34,8 +34,27 @@ pub(super) fn several_csv(
     Ok(text)
 }
 
+/// The tables of curves in a plane by the names of their files; `starts` are the labels of their starts.
+pub(super) fn plane_files(
+    family: &Family,
+    plane: &Plane,
+    curves: &[Curve],
+    starts: &[&str],
+) -> Result<Vec<(String, String)>, RunError> {
+    let points = codimension_two_csv(family, plane, curves)?;
+    let rounded = codimension_two_tex(family, plane, curves);
+    Ok(vec![
+        (
+            "curves.csv".to_owned(),
+            several_csv(family, plane, curves, starts)?,
+        ),
+        ("codimension_two.csv".to_owned(), points),
+        ("codimension_two.tex".to_owned(), rounded),
+    ])
+}
+
 /// The table of the points of codimension two of curves.
-pub(super) fn codimension_two_csv(
+fn codimension_two_csv(
     family: &Family,
     plane: &Plane,
     curves: &[Curve],
@@ -64,7 +83,7 @@ pub(super) fn codimension_two_csv(
 }
 
 /// The same for LaTeX (with the package `booktabs`), values rounded to their errors.
-pub(super) fn codimension_two_tex(family: &Family, plane: &Plane, curves: &[Curve]) -> String {
+fn codimension_two_tex(family: &Family, plane: &Plane, curves: &[Curve]) -> String {
     let symbols = parameters(plane).map(|name| {
         let mut parameters = family.model().parameters.iter();
         let known = parameters.find(|parameter| parameter.name == name);

@@ -1,50 +1,16 @@
-//! A curve in a plane of two parameters on disk: `curves.csv`, `curve.json`, and the folder they go to.
-
-use std::path::{Path, PathBuf};
+//! Curves in a plane of two parameters on disk: `curves.csv`, `curve.json`.
 
 use serde_json::json;
 
 use super::RunError;
-use super::atomic::{sync_all, write_atomically};
-use super::checksums;
-use super::codimension::{codimension_two_csv, codimension_two_tex, curve_name, several_csv};
+use super::codimension::{curve_name, plane_files};
 use super::columns::{Column, flag, number, word};
-use super::journal::{Journal, came_to_its_end};
 use super::plane_file;
-use super::staging::Staging;
 use crate::continuation::curve::{Curve, CurveOrigin, CurvePoint, CurveTree, CurveWork, Plane};
 use crate::system::Family;
 
-/// Everything a curve leaves in its folder, the file that marks it as one first.
-pub(super) const ENTRIES: [&str; 7] = [
-    "curve.json",
-    checksums::NAME,
-    plane_file::NAME,
-    "curves.csv",
-    "codimension_two.csv",
-    "codimension_two.tex",
-    "figures",
-];
-
 /// Folder of a run below which its curves have a folder each.
 pub const FOLDER: &str = "curves";
-
-/// What unfinished curves have solved.
-pub(super) const PART: &str = "curve.part.bin";
-
-/// The table of the points of curves in one plane, each from end to end, numbers in full; `start` is the label of the
-/// row that the first was begun at.
-///
-/// # Errors
-/// [`RunError::Table`].
-pub fn curves_csv(
-    family: &Family,
-    plane: &Plane,
-    curves: &[Curve],
-    start: &str,
-) -> Result<String, RunError> {
-    several_csv(family, plane, curves, &[start])
-}
 
 /// A point of a curve as a row of a table.
 pub(super) struct CurveRow<'a> {
@@ -53,8 +19,8 @@ pub(super) struct CurveRow<'a> {
     pub(super) point: &'a CurvePoint,
 }
 
-/// The rows of a curve, from end to end.
-pub(super) fn rows<'a>(curve: &'a Curve, start: &str) -> Vec<CurveRow<'a>> {
+/// The labels of the points of a curve, from end to end, most of them empty; `start` is that of its start.
+pub(crate) fn point_labels(curve: &Curve, start: &str) -> Vec<String> {
     let label = |index: usize| {
         let mut ends = curve.ends.iter();
         match ends.find(|end| end.point == index) {
@@ -67,9 +33,14 @@ pub(super) fn rows<'a>(curve: &'a Curve, start: &str) -> Vec<CurveRow<'a>> {
             }
         }
     };
-    let points = curve.points.iter().enumerate();
-    let row = |(index, point)| CurveRow {
-        label: label(index),
+    (0..curve.points.len()).map(label).collect()
+}
+
+/// The rows of a curve, from end to end.
+pub(super) fn rows<'a>(curve: &'a Curve, start: &str) -> Vec<CurveRow<'a>> {
+    let points = point_labels(curve, start).into_iter().zip(&curve.points);
+    let row = |(label, point)| CurveRow {
+        label,
         curve,
         point,
     };
@@ -191,111 +162,29 @@ fn ends_json(curve: &Curve) -> Vec<serde_json::Value> {
     ends.collect()
 }
 
-/// A curve's folder in the making. Dropped before it is in place, it leaves what was there.
-#[derive(Debug)]
-pub struct CurveFolder {
-    staging: Staging,
-}
-
-impl CurveFolder {
-    /// Prepares to write to `home`, an existing folder; other processes are kept away from it.
-    ///
-    /// # Errors
-    /// [`RunError::InUse`], [`RunError::NotOurs`], [`RunError::Write`].
-    pub fn new(home: &Path) -> Result<Self, RunError> {
-        let staging = Staging::new(home, &ENTRIES)?;
-        Ok(Self { staging })
-    }
-
-    /// Whether the folder holds curves that came to their end, and are of what `of` describes.
-    ///
-    /// # Errors
-    /// [`RunError::OtherSweep`], with every difference, where they are of something else; [`RunError::Json`].
-    pub fn is_complete(home: &Path, of: &str) -> Result<bool, RunError> {
-        came_to_its_end(home, ENTRIES[0], of)
-    }
-
-    /// Whether the folder holds solves of curves that did not come to their end.
-    pub fn has_journal(home: &Path) -> bool {
-        home.join(PART).is_file()
-    }
-
-    /// A new journal for what the curves ask to be solved, which `of` describes as TOML; that of unfinished ones is
-    /// kept below `previous/`.
-    ///
-    /// # Errors
-    /// [`RunError::Read`] or [`RunError::Write`].
-    pub fn begin(&self, of: &str) -> Result<Journal, RunError> {
-        self.staging.keep_aside(&[PART])?;
-        Journal::create(&self.staging.home().join(PART), of)
-    }
-
-    /// The journal of the unfinished curves in the folder.
-    ///
-    /// # Errors
-    /// [`RunError::NoJournal`], [`RunError::OtherSweep`], [`RunError::Journal`], [`RunError::Read`].
-    pub fn go_on(&self, of: &str) -> Result<Journal, RunError> {
-        Journal::open(&self.staging.home().join(PART), of)
-    }
-
-    /// Where figures are drawn to.
-    pub fn figures(&self) -> PathBuf {
-        self.staging.fresh().join("figures")
-    }
-
-    /// Writes the tables; `origin` is the row that the first curve was begun at, `sweep` the resolved sweep as TOML,
-    /// `of` what describes the curves besides.
-    ///
-    /// # Errors
-    /// [`RunError`] when a file cannot be composed or written.
-    pub fn write(
-        &self,
-        family: &Family,
-        plane: &Plane,
-        tree: &CurveTree,
-        (origin, sweep, of): (&CurveOrigin, &str, &str),
-    ) -> Result<(), RunError> {
-        let start = origin.label.as_str();
-        let curves = tree.curves.as_slice();
-        for (name, text) in [
-            ("curves.csv", curves_csv(family, plane, curves, start)?),
-            (
-                "codimension_two.csv",
-                codimension_two_csv(family, plane, curves)?,
-            ),
-            (
-                "codimension_two.tex",
-                codimension_two_tex(family, plane, curves),
-            ),
-            (
-                "curve.json",
-                curve_json(family, plane, tree, start, (sweep, of))?,
-            ),
-            (
-                plane_file::NAME,
-                plane_file::of_curves(plane, curves, origin, sweep),
-            ),
-        ] {
-            write_atomically(&self.staging.fresh().join(name), text.as_bytes())?;
-        }
-        Ok(())
-    }
-
-    /// Puts the curve in its place and returns its files; what an earlier one left goes below `previous/`. The journal
-    /// goes, unless the curves were interrupted.
-    ///
-    /// # Errors
-    /// [`RunError::Read`] or [`RunError::Write`].
-    pub fn take_place(self, interrupted: bool) -> Result<Vec<PathBuf>, RunError> {
-        let fresh = self.staging.fresh();
-        checksums::write_listed(&fresh, &ENTRIES)?;
-        sync_all(&[fresh])?;
-        let part = self.staging.home().join(PART);
-        let placed = self.staging.take_place(&[])?;
-        if !interrupted {
-            // One that stays is of curves that are complete, which are looked at first.
-            let _ = std::fs::remove_file(part);
-        }
-        Ok(placed.files)
-    }
+/// The files of curves in a plane by their names; `origin` is the row that the first was begun at, `sweep` the resolved
+/// sweep as TOML, `of` what describes the curves besides.
+///
+/// # Errors
+/// [`RunError`] when a file cannot be composed.
+pub fn curve_files(
+    family: &Family,
+    plane: &Plane,
+    tree: &CurveTree,
+    (origin, sweep, of): (&CurveOrigin, &str, &str),
+) -> Result<Vec<(String, String)>, RunError> {
+    let start = origin.label.as_str();
+    let curves = tree.curves.as_slice();
+    let mut files = plane_files(family, plane, curves, &[start])?;
+    files.extend([
+        (
+            "curve.json".to_owned(),
+            curve_json(family, plane, tree, start, (sweep, of))?,
+        ),
+        (
+            plane_file::NAME.to_owned(),
+            plane_file::of_curves(plane, curves, origin, sweep),
+        ),
+    ]);
+    Ok(files)
 }

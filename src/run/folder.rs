@@ -1,13 +1,14 @@
-//! The folder of a run: which files it holds, and that an earlier run in the same place is kept.
+//! The files of a run, those that grow while it is solved and those that are written when it has ended.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use super::atomic::{clear_unfinished, sync_all, write_atomically, write_durably};
+use super::atomic::{sync_all, write_atomically, write_durably};
 use super::growing::GrowingTable;
 use super::{
-    DensityStore, Ending, Manifest, RunError, bifurcations, checks, checksums, features_table,
-    journal, lock::FolderLock, points_table, research_object, settling::Settling, staging::Staging,
+    DensityStore, Ending, Layout, Manifest, RunError, bifurcations_csv, bifurcations_json,
+    bifurcations_markdown, bifurcations_tex, checks, features_csv, features_table, points_csv,
+    points_table, settling::Settling,
 };
 use crate::continuation::{Point, Subject, SweepResult};
 use crate::density::EstimatedDensity;
@@ -15,30 +16,7 @@ use crate::density::EstimatedDensity;
 /// The stored densities.
 const STORE: &str = "densities.zarr";
 
-/// Everything a run may leave in its folder, the file that marks it as one first.
-pub(super) const ENTRIES: [&str; 16] = [
-    "run.json",
-    research_object::NAME,
-    checksums::NAME,
-    journal::NAME,
-    "points.csv",
-    "features.csv",
-    "bifurcations.csv",
-    "bifurcations.md",
-    "bifurcations.tex",
-    "bifurcations.json",
-    STORE,
-    "densities.zarr.new",
-    "densities.zarr.old",
-    "checks.csv",
-    "figures",
-    "explorer.html",
-];
-
-/// Folders of work that is about a run: it goes where the run goes, so that what stands beside a run is of that run.
-pub(super) const ABOUT: [&str; 1] = [super::curve::FOLDER];
-
-/// The folder of a run while it is written.
+/// The files of a run while they are written.
 #[derive(Debug)]
 pub struct RunFolder {
     path: PathBuf,
@@ -47,85 +25,21 @@ pub struct RunFolder {
     features: GrowingTable,
     /// Points that were added.
     added: usize,
-    kept: Option<PathBuf>,
     /// The finished store on its way to the disk.
     settling: Mutex<Option<Settling>>,
-    /// Keeps other processes away while the run is written.
-    _lock: Option<FolderLock>,
 }
 
 impl RunFolder {
-    /// Prepares a folder: makes it if need be, and moves the files of an earlier run, with the curves that were
-    /// followed from it, to `previous/1`, or the next number that is free. Files that are not a run's are left alone.
-    /// Until it is dropped, no other process writes to the folder.
-    ///
-    /// # Errors
-    /// [`RunError::InUse`], [`RunError::NotOurs`], [`RunError::Read`], [`RunError::Write`]; then the folder is as it
-    /// was.
-    pub fn create(path: &Path) -> Result<Self, RunError> {
-        std::fs::create_dir_all(path).map_err(|source| RunError::Write {
-            path: path.to_owned(),
-            source,
-        })?;
-        // A run is written as it goes on, so that a reader sees how far it is: only the earlier one is staged.
-        let placed = Staging::new(path, &ENTRIES)?
-            .with(&ABOUT)?
-            .take_place(&[])?;
-        Ok(Self {
-            kept: placed.kept,
-            _lock: Some(placed.lock),
-            ..Self::fresh(path)
-        })
-    }
-
-    /// Opens the folder of an unfinished run to go on with it. What is there is replaced whole, when the points of the
-    /// run are [added](RunFolder::add_points) again; figures of an interrupted run, which are of other values, are
-    /// removed.
-    ///
-    /// # Errors
-    /// [`RunError::InUse`], [`RunError::Write`].
-    pub fn reopen(path: &Path) -> Result<Self, RunError> {
-        let lock = FolderLock::take(path)?;
-        checksums::reopen(path);
-        clear_unfinished(path, &[STORE, "figures"]);
-        Ok(Self {
-            _lock: Some(lock),
-            ..Self::fresh(path)
-        })
-    }
-
-    /// A folder that is written beside its place, in which nothing was before.
-    pub(super) fn fresh(path: &Path) -> Self {
+    /// Nothing is written yet. Whoever writes to the folder of a run opens it first ([`JobFolder`](super::JobFolder)).
+    pub fn at(path: &Path) -> Self {
         Self {
             path: path.to_owned(),
             store: DensityStore::new(&path.join(STORE)),
             points: GrowingTable::new(&path.join("points.csv")),
             features: GrowingTable::new(&path.join("features.csv")),
             added: 0,
-            kept: None,
             settling: Mutex::default(),
-            _lock: None,
         }
-    }
-
-    /// Where the earlier run is kept that was in the folder.
-    pub fn kept(&self) -> Option<&Path> {
-        self.kept.as_deref()
-    }
-
-    /// The folder.
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// The journal, until the run is complete.
-    pub fn journal(&self) -> PathBuf {
-        self.path.join(journal::NAME)
-    }
-
-    /// Folder of the figures; made by whoever draws the first one.
-    pub fn figures(&self) -> PathBuf {
-        self.path.join("figures")
     }
 
     /// Writes `run.json`. One that says that the run has ended waits until everything else is on the disk.
@@ -136,7 +50,7 @@ impl RunFolder {
         if manifest.ending != Ending::Running {
             // The journal of a complete run is about to be removed.
             let mut done = match manifest.ending {
-                Ending::Complete => vec![journal::NAME],
+                Ending::Complete => vec![Layout::SWEEP.part],
                 _ => Vec::new(),
             };
             // A poisoned lock holds work as whole as any other.
@@ -146,7 +60,8 @@ impl RunFolder {
                 settling.end()?;
                 done.push(STORE);
             }
-            let kept = ENTRIES.iter().filter(|entry| !done.contains(entry));
+            let kept = Layout::SWEEP.entries.iter();
+            let kept = kept.filter(|entry| !done.contains(entry));
             let places: Vec<PathBuf> = kept.map(|entry| self.path.join(entry)).collect();
             sync_all(&places)?;
         }
@@ -160,7 +75,7 @@ impl RunFolder {
     /// [`RunError::Json`] or [`RunError::Write`].
     pub fn write_progress(&self, manifest: &Manifest) -> Result<(), RunError> {
         let text = serde_json::to_string_pretty(manifest)? + "\n";
-        self.write("run.json", &text)
+        write_atomically(&self.path.join("run.json"), text.as_bytes())
     }
 
     /// Stores a point's densities and adds its rows to the tables. What this costs does not depend on how many points
@@ -212,34 +127,12 @@ impl RunFolder {
         Ok(())
     }
 
-    /// Describes a run that has ended for archives, and writes the checksums of all its files, see
-    /// `docs/run-folder.md`.
-    ///
-    /// # Errors
-    /// [`RunError::Read`], [`RunError::Manifest`] or [`RunError::Write`].
-    pub fn seal(&self) -> Result<(), RunError> {
-        research_object::write(&self.path)?;
-        checksums::write(&self.path)
-    }
-
-    /// Removes the journal of a run that is complete.
-    ///
-    /// # Errors
-    /// [`RunError::Write`].
-    pub fn close_journal(&self) -> Result<(), RunError> {
-        let path = self.journal();
-        match std::fs::remove_file(&path) {
-            Err(source) if path.exists() => Err(RunError::Write { path, source }),
-            _ => Ok(()),
-        }
-    }
-
     /// How many points were added so far.
     pub fn points(&self) -> usize {
         self.added
     }
 
-    /// Writes all tables of a finished sweep and puts the stored densities in ascending order. They are brought to the
+    /// Writes all files of a finished sweep and puts the stored densities in ascending order. They are brought to the
     /// disk while the caller goes on, to the figures for example, until the manifest is written.
     ///
     /// # Errors
@@ -247,51 +140,42 @@ impl RunFolder {
     pub fn finish(&mut self, result: &SweepResult) -> Result<(), RunError> {
         self.points.close();
         self.features.close();
-        self.write_tables(result)?;
-        if let Some(checks) = &result.checks {
-            let text = checks::checks_csv(&result.subject, checks)?;
-            self.write("checks.csv", &text)?;
+        for (name, text) in sweep_files(result)? {
+            write_atomically(&self.path.join(name), text.as_bytes())?;
         }
         let densities = with_densities(&result.points);
         let before = self.store.replaced(&result.subject.family, &densities)?;
         self.settling = Some(Settling::begin(self.store.path(), before)).into();
         Ok(())
     }
+}
 
-    /// Writes all tables that detection and location make.
-    ///
-    /// # Errors
-    /// [`RunError`] when a file cannot be composed or written.
-    pub fn write_tables(&self, result: &SweepResult) -> Result<(), RunError> {
-        let (subject, points) = (&result.subject, &result.points);
-        let family = &subject.family;
-        self.write("points.csv", &points_table::points_csv(subject, points)?)?;
-        self.write(
-            "features.csv",
-            &features_table::features_csv(subject, points)?,
-        )?;
-        let labels = &result.labels;
-        self.write(
-            "bifurcations.csv",
-            &bifurcations::bifurcations_csv(family, labels)?,
-        )?;
-        self.write(
-            "bifurcations.json",
-            &bifurcations::bifurcations_json(family, labels)?,
-        )?;
-        self.write(
-            "bifurcations.md",
-            &bifurcations::bifurcations_markdown(family, labels),
-        )?;
-        self.write(
-            "bifurcations.tex",
-            &bifurcations::bifurcations_tex(family, labels),
-        )
+/// The files of a sweep by their names, but for its manifest and its densities.
+///
+/// # Errors
+/// [`RunError`] when one cannot be composed.
+pub fn sweep_files(result: &SweepResult) -> Result<Vec<(String, String)>, RunError> {
+    let SweepResult {
+        subject,
+        points,
+        labels,
+        checks,
+        ..
+    } = result;
+    let family = &subject.family;
+    let mut files = vec![
+        ("points.csv", points_csv(subject, points)?),
+        ("features.csv", features_csv(subject, points)?),
+        ("bifurcations.csv", bifurcations_csv(family, labels)?),
+        ("bifurcations.json", bifurcations_json(family, labels)?),
+        ("bifurcations.md", bifurcations_markdown(family, labels)),
+        ("bifurcations.tex", bifurcations_tex(family, labels)),
+    ];
+    if let Some(checks) = checks {
+        files.push(("checks.csv", checks::checks_csv(subject, checks)?));
     }
-
-    fn write(&self, name: &str, text: &str) -> Result<(), RunError> {
-        write_atomically(&self.path.join(name), text.as_bytes())
-    }
+    let files = files.into_iter();
+    Ok(files.map(|(name, text)| (name.to_owned(), text)).collect())
 }
 
 /// The densities of those points that have some.

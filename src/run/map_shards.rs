@@ -4,10 +4,9 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::atomic::write_atomically;
 use super::journal::differences;
 use super::shards::{count, shard_folder};
-use super::{RunError, map};
+use super::{Layout, RunError};
 use crate::continuation::Shard;
 use crate::continuation::map::{MapChange, MapNode, MapShard};
 
@@ -34,34 +33,6 @@ pub struct MapShards {
 }
 
 impl MapShards {
-    /// Writes what a shard has found to its `folder`, whole or not at all; `sweep` is the resolved sweep file.
-    ///
-    /// # Errors
-    /// [`RunError::Json`], [`RunError::Write`].
-    pub fn write(folder: &Path, sweep: &str, found: &MapShard) -> Result<(), RunError> {
-        let content = Content {
-            program: env!("CARGO_PKG_NAME").to_owned(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            sweep_file: sweep.to_owned(),
-            nodes: found.nodes.clone(),
-            changes: found.changes.clone(),
-        };
-        let text = serde_json::to_string(&content)?;
-        write_atomically(&folder.join(FILE), text.as_bytes())
-    }
-
-    /// Whether a shard's folder holds it, complete, of this sweep.
-    ///
-    /// # Errors
-    /// [`RunError::OtherSweep`] with every difference, [`RunError::Plane`] where the file cannot be understood.
-    pub fn is_complete(folder: &Path, sweep: &str) -> Result<bool, RunError> {
-        let Some(all) = read(folder)? else {
-            return Ok(false);
-        };
-        check(folder, &all, sweep)?;
-        Ok(true)
-    }
-
     /// Whether the shards in a folder are those of a map.
     pub fn are_there(path: &Path) -> bool {
         count(path).is_ok_and(|of| folders(path, of).any(|(_, folder)| is_of_map(&folder)))
@@ -107,6 +78,21 @@ impl MapShards {
     }
 }
 
+/// The file of a shard that is complete, by its name; `sweep` is the resolved sweep file.
+///
+/// # Errors
+/// [`RunError::Json`].
+pub fn map_shard_file(sweep: &str, found: &MapShard) -> Result<(String, String), RunError> {
+    let content = Content {
+        program: env!("CARGO_PKG_NAME").to_owned(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        sweep_file: sweep.to_owned(),
+        nodes: found.nodes.clone(),
+        changes: found.changes.clone(),
+    };
+    Ok((FILE.to_owned(), serde_json::to_string(&content)?))
+}
+
 /// The folders of all shards.
 fn folders(path: &Path, of: usize) -> impl Iterator<Item = (Shard, PathBuf)> {
     let all = (1..=of).filter_map(move |number| Shard::new(number, of));
@@ -115,7 +101,7 @@ fn folders(path: &Path, of: usize) -> impl Iterator<Item = (Shard, PathBuf)> {
 
 /// Whether a shard's folder is of a map, complete or not.
 fn is_of_map(folder: &Path) -> bool {
-    let files = [FILE, map::PART];
+    let files = [FILE, Layout::MAP.part];
     files.iter().any(|file| folder.join(file).is_file())
 }
 

@@ -20,13 +20,13 @@ mod features_table;
 mod findings;
 mod folder;
 mod growing;
+mod job_folder;
 mod journal;
 mod latex;
 mod lock;
 mod manifest;
 mod map;
 mod map_shards;
-mod map_tables;
 mod number;
 mod plane_file;
 mod points_table;
@@ -49,6 +49,7 @@ mod summary;
 #[cfg(test)]
 mod tests;
 mod tree;
+mod warnings;
 
 pub(crate) use atomic::write_atomically;
 pub use bifurcations::{
@@ -56,17 +57,19 @@ pub use bifurcations::{
 };
 pub use checksums::{Checked, Damage, check_folder};
 pub use clean::{Removable, removable_runs, remove_run};
-pub use compare::{CompareFolder, CompareTable, ComparedRun, compare_tables};
-pub use curve::{CurveFolder, FOLDER as CURVES, curves_csv};
+pub(crate) use codimension::curve_name;
+pub use compare::{CompareTable, ComparedRun, compare_files, compare_tables};
+pub(crate) use curve::point_labels;
+pub use curve::{FOLDER as CURVES, curve_files};
 pub use date::date_in_utc;
 pub use export::{ExportFormat, export};
 pub use features_table::features_csv;
-pub use folder::RunFolder;
+pub use folder::{RunFolder, sweep_files};
+pub use job_folder::{JobFolder, Layout};
 pub use journal::{Journal, JournalledSource};
 pub use manifest::{Ending, Manifest, PhaseSeconds};
-pub use map::{MapFolder, map_csv};
-pub use map_shards::MapShards;
-pub use map_tables::{MapTables, Rows};
+pub use map::{map_csv, map_files};
+pub use map_shards::{MapShards, map_shard_file};
 pub use number::{format_number, format_with_error};
 pub use plane_file::{StoredPlane, StoredPlaneContent};
 pub use points_table::points_csv;
@@ -78,6 +81,7 @@ pub use staged::StagedRun;
 pub use store::DensityStore;
 pub use stored_run::StoredRun;
 pub use summary::{FoundRow, RunSummary, find_runs};
+pub use warnings::{warnings_of_comparison, warnings_of_points};
 
 use std::path::PathBuf;
 

@@ -4,7 +4,7 @@ use super::{RunError, StoredRun};
 use crate::cancellation::Cancellation;
 use crate::continuation::{DensitySource as _, Point};
 use crate::density::{EstimatedDensity, total_variation};
-use crate::sweep_file::{MethodKind, Sweep};
+use crate::sweep_file::Sweep;
 
 /// What rounding and another order of sums may make of a density, as total variation.
 const ROUNDING: f64 = 1e-9;
@@ -35,8 +35,7 @@ impl StoredRun {
     pub fn solved_points(&self, sweep: &Sweep) -> Result<Vec<Point>, RunError> {
         let problem = &sweep.problem;
         let cells = (problem.space(), problem.bins());
-        let methods = MethodKind::ALL.map(MethodKind::name);
-        let mut points = self.points(problem.subject(), cells, &methods)?;
+        let mut points = self.points(problem.subject(), cells, &sweep.methods())?;
         points.retain(|point| !point.densities.is_empty());
         Ok(points)
     }

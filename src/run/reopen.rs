@@ -2,7 +2,7 @@
 
 use super::{Ending, RunError, StoredRun};
 use crate::continuation::{SweepResult, detect_again};
-use crate::sweep_file::{MethodKind, Sweep, SweepFile};
+use crate::sweep_file::{Sweep, SweepFile};
 
 impl StoredRun {
     /// The complete sweep file that was run. Keys of `detect`, `locate` and `figures` can be set anew; its cells are
@@ -24,7 +24,7 @@ impl StoredRun {
     pub fn detect(&self, sweep: &Sweep) -> Result<SweepResult, RunError> {
         let problem = &sweep.problem;
         let (subject, cells) = (problem.subject(), (problem.space(), problem.bins()));
-        let points = self.points(subject, cells, &MethodKind::ALL.map(MethodKind::name))?;
+        let points = self.points(subject, cells, &sweep.methods())?;
         let checks = self.checks(subject)?;
         let swept = (subject.clone(), sweep.settings.points);
         let (detector, locate) = (sweep.detector(), &sweep.settings.locate);

@@ -2,11 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
+use super::atomic::write_atomically;
 use super::staging::Staging;
 use super::tree::link_tree;
 use super::{
-    RunError, RunFolder, StoredRun, checksums, exchange, folder, journal, research_object,
+    Layout, Manifest, RunError, RunFolder, StoredRun, checksums, exchange, journal,
+    research_object, sweep_files,
 };
+use crate::continuation::SweepResult;
 
 /// What a sweep solved for: it stays when the run is detected again.
 const SOLVED: [&str; 2] = ["densities.zarr", "checks.csv"];
@@ -15,7 +18,6 @@ const SOLVED: [&str; 2] = ["densities.zarr", "checks.csv"];
 #[derive(Debug)]
 pub struct StagedRun {
     staging: Staging,
-    folder: RunFolder,
     /// Whether what was solved for is in place already.
     same: bool,
 }
@@ -26,7 +28,7 @@ impl StagedRun {
     /// # Errors
     /// [`RunError::InUse`], [`RunError::NotOurs`], [`RunError::Read`] or [`RunError::Write`].
     pub fn new(home: &Path, solved: &Path) -> Result<Self, RunError> {
-        let staging = Staging::new(home, &folder::ENTRIES)?.with(&folder::ABOUT)?;
+        let staging = Staging::new(home, Layout::SWEEP.entries)?.with(Layout::SWEEP.about)?;
         let same = is_same(home, solved);
         for entry in SOLVED {
             let place = solved.join(entry);
@@ -35,17 +37,34 @@ impl StagedRun {
                 link_tree(&standing, &staging.fresh().join(entry))?;
             }
         }
-        let folder = RunFolder::fresh(&staging.fresh());
-        Ok(Self {
-            staging,
-            folder,
-            same,
+        Ok(Self { staging, same })
+    }
+
+    /// Where figures are drawn to.
+    pub fn figures(&self) -> PathBuf {
+        self.staging.fresh().join("figures")
+    }
+
+    /// Writes all that detection and location make.
+    ///
+    /// # Errors
+    /// [`RunError`] when a file cannot be composed or written.
+    pub fn write(&self, result: &SweepResult) -> Result<(), RunError> {
+        let files = sweep_files(result)?;
+        let mut made = files
+            .iter()
+            .filter(|(name, _)| !SOLVED.contains(&name.as_str()));
+        made.try_for_each(|(name, text)| {
+            write_atomically(&self.staging.fresh().join(name), text.as_bytes())
         })
     }
 
-    /// The folder to write tables, manifest and figures to.
-    pub fn folder(&self) -> &RunFolder {
-        &self.folder
+    /// Writes the manifest.
+    ///
+    /// # Errors
+    /// As [`RunFolder::write_manifest`].
+    pub fn write_manifest(&self, manifest: &Manifest) -> Result<(), RunError> {
+        RunFolder::at(&self.staging.fresh()).write_manifest(manifest)
     }
 
     /// Puts the new version in place and returns its files. A run that was there becomes a complete one below
@@ -59,9 +78,9 @@ impl StagedRun {
         let mut staying = Vec::new();
         if self.same {
             staying.extend(SOLVED);
-            staying.push(journal::NAME);
+            staying.push(Layout::SWEEP.part);
             if has_the_rows_of(&self.staging.fresh(), &home) {
-                staying.extend(folder::ABOUT);
+                staying.extend(Layout::SWEEP.about);
             }
         }
         let placed = self.staging.take_place(&staying)?;

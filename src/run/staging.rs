@@ -82,7 +82,7 @@ impl Staging {
     ///
     /// # Errors
     /// [`RunError::Read`] or [`RunError::Write`].
-    pub(super) fn keep_aside(&self, names: Entries) -> Result<(), RunError> {
+    pub(super) fn keep_aside(&self, names: &[&str]) -> Result<(), RunError> {
         let there = |name: &&&str| self.home.join(name).exists();
         if names.iter().any(|name| there(&name)) {
             archive::keep(&self.home, names, self.room.path())?;

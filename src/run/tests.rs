@@ -162,7 +162,7 @@ fn features_carry_both_coordinates() {
 #[test]
 fn the_store_reads_back_in_ascending_order_with_names() {
     let folder = tempfile::tempdir().unwrap();
-    let mut run = RunFolder::create(folder.path()).unwrap();
+    let mut run = RunFolder::at(folder.path());
     let mut points = Vec::new();
     for (value, solved) in [(0.01, true), (0.0, false), (-0.02, true)] {
         let point = point(value, solved);
@@ -199,7 +199,7 @@ fn the_store_reads_back_in_ascending_order_with_names() {
 #[test]
 fn tables_grow_by_rows_and_end_in_ascending_order() {
     let folder = tempfile::tempdir().unwrap();
-    let mut run = RunFolder::create(folder.path()).unwrap();
+    let mut run = RunFolder::at(folder.path());
     let (mut points, mut before) = (Vec::new(), [String::new(), String::new()]);
     for value in [0.3, 0.1, 0.2, 0.25] {
         let point = point(value, value != 0.2);
@@ -233,10 +233,11 @@ fn every_earlier_run_is_kept_and_other_files_are_left_alone() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("notes.txt"), "mine").unwrap();
     for text in ["first", "second", "third"] {
-        let run = RunFolder::create(folder.path()).unwrap();
+        let open = || JobFolder::open(folder.path(), Layout::SWEEP, false);
+        let run = open().unwrap();
         std::fs::write(folder.path().join("run.json"), text).unwrap();
         std::fs::write(folder.path().join("points.csv"), text).unwrap();
-        let error = RunFolder::create(folder.path()).unwrap_err();
+        let error = open().unwrap_err();
         assert!(matches!(error, RunError::InUse { .. }), "{error}");
         assert_eq!(run.kept().is_some(), text != "first");
     }

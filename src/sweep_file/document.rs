@@ -62,6 +62,13 @@ impl Document {
         }
     }
 
+    /// Takes a section out.
+    pub(super) fn remove(&mut self, section: &str) {
+        if let Value::Table(entries) = &mut self.root.value {
+            entries.retain(|entry| entry.key != section);
+        }
+    }
+
     /// The file as it was typed, with what was set on top of it.
     pub(super) fn typed(&self) -> SweepText {
         let mut texts = self.sources.all();

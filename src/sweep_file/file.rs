@@ -58,6 +58,28 @@ impl SweepFile {
         self
     }
 
+    /// Takes a section out, as if it were not there.
+    pub fn remove(&mut self, section: &str) -> &mut Self {
+        self.document.remove(section);
+        self
+    }
+
+    /// Takes `[map]` out: what is left is a sweep of the first parameter alone, which holds the second one, if the file
+    /// does not say where, in the middle of the map.
+    pub fn without_map(&mut self) -> &mut Self {
+        let number = |key: &str| self.get(key)?.parse::<f64>().ok();
+        let name = self.get("map.parameter");
+        let name = name.map(|name| name.trim_matches('"').to_owned());
+        let held = name.map(|name| format!("system.parameters.{name}"));
+        let ends = number("map.from").zip(number("map.to"));
+        if let Some((held, (from, to))) = held.zip(ends)
+            && self.get(&held).is_none()
+        {
+            self.set(&held, &format!("{:?}", 0.5 * (from + to)));
+        }
+        self.remove("map")
+    }
+
     /// What the file, or what was set on top of it, says of a key, as TOML; `None` where it says nothing.
     pub fn get(&self, key: &str) -> Option<String> {
         let path: Vec<&str> = key.split('.').collect();

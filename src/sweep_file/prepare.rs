@@ -61,6 +61,7 @@ impl Settings {
         Ok(Sweep {
             settings: self,
             problem,
+            own: None,
         })
     }
 

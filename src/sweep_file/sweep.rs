@@ -1,5 +1,8 @@
 //! A sweep that is ready to run: settings with their cells.
 
+use std::sync::Arc;
+
+use super::draft::MethodKind;
 use super::settings::Settings;
 use crate::cancellation::Cancellation;
 use crate::continuation::curve::{CurveOptions, Plane};
@@ -16,6 +19,24 @@ pub struct Sweep {
     pub settings: Settings,
     /// What is solved: the systems, the cells that the axes of the settings make, and what is watched.
     pub problem: Problem,
+    pub(super) own: Option<OwnMethod>,
+}
+
+/// A method of a library's user.
+#[derive(Clone)]
+pub(super) struct OwnMethod {
+    method: &'static str,
+    make: Arc<MakeSource>,
+}
+
+/// Makes the source of densities of a problem.
+type MakeSource =
+    dyn Fn(&Problem, &Cancellation) -> Result<Box<dyn DensitySource>, SourceError> + Send + Sync;
+
+impl std::fmt::Debug for OwnMethod {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.method)
+    }
 }
 
 /// What is made of a source before it is opened.
@@ -26,7 +47,7 @@ pub type WrapSource<'a> = dyn Fn(Box<dyn DensitySource>) -> Box<dyn DensitySourc
 pub enum SolveError {
     /// The method refuses.
     #[error(transparent)]
-    Method(#[from] MethodError),
+    Source(#[from] SourceError),
     /// The sweep ended early.
     #[error(transparent)]
     Sweep(#[from] SweepError),
@@ -41,51 +62,112 @@ impl Sweep {
         PersistenceDetector::new(settings.detect.clone(), looks)
     }
 
+    /// The same sweep by a method of one's own, in the place of that of the sweep file: `method` is its name, as
+    /// [`DensitySource::method`] gives it, and `make` its source for the systems, cells and observables of a problem. The
+    /// sweep asks for one along its parameter, curves and maps for others along paths of theirs.
+    ///
+    /// ```
+    /// use pbif::cancellation::Cancellation;
+    /// use pbif::method::MethodSource;
+    /// use pbif::sweep_file::SweepFile;
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let mut file = SweepFile::parse("bistable.toml", include_str!("../../sweeps/bistable.toml"));
+    /// file.set("sweep.points", "5").set("cells.x.count", "60");
+    /// let never = Cancellation::new();
+    /// let sweep = file.validate()?.prepare(&never)?;
+    /// let options = sweep.settings.method.chosen();
+    /// let sweep = sweep.by_method("generator", move |problem, cancellation| {
+    ///     Ok(Box::new(MethodSource::new(problem, &options, cancellation)?))
+    /// });
+    /// assert_eq!(sweep.run(&never, &mut ())?.labels[1].label, "PB1");
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn by_method(
+        self,
+        method: &'static str,
+        make: impl Fn(&Problem, &Cancellation) -> Result<Box<dyn DensitySource>, SourceError>
+        + Send
+        + Sync
+        + 'static,
+    ) -> Self {
+        let make = Arc::new(make);
+        Self {
+            own: Some(OwnMethod { method, make }),
+            ..self
+        }
+    }
+
+    /// Names of the methods whose solves a run of this sweep may hold.
+    pub fn methods(&self) -> Vec<&'static str> {
+        match &self.own {
+            Some(own) => vec![own.method],
+            None => MethodKind::ALL.map(MethodKind::name).into(),
+        }
+    }
+
     /// The source of densities by the chosen method; what is left to it is chosen here.
     ///
     /// # Errors
-    /// [`MethodError`] where the method refuses.
-    pub fn source(&self, cancellation: &Cancellation) -> Result<MethodSource, MethodError> {
-        MethodSource::new(&self.problem, &self.settings.method.chosen(), cancellation)
+    /// [`SourceError`] where the method refuses, or was interrupted.
+    pub fn source(
+        &self,
+        cancellation: &Cancellation,
+    ) -> Result<Box<dyn DensitySource>, SourceError> {
+        Ok(self.described_source(cancellation)?.0)
+    }
+
+    /// The same with what a user may want to know of it before the first point.
+    ///
+    /// # Errors
+    /// As [`Sweep::source`].
+    pub fn described_source(
+        &self,
+        cancellation: &Cancellation,
+    ) -> Result<(Box<dyn DensitySource>, String), SourceError> {
+        self.source_of(&self.problem, cancellation)
+    }
+
+    fn source_of(
+        &self,
+        problem: &Problem,
+        cancellation: &Cancellation,
+    ) -> Result<(Box<dyn DensitySource>, String), SourceError> {
+        if let Some(own) = &self.own {
+            return Ok(((own.make)(problem, cancellation)?, own.method.to_owned()));
+        }
+        let source = MethodSource::new(problem, &self.settings.method.chosen(), cancellation)?;
+        let words = source.describe();
+        Ok((Box::new(source), words))
     }
 
     /// A source of densities by the same method on the same cells in a plane of two parameters, one of which is swept.
     ///
     /// # Errors
-    /// [`MethodError`] where the method refuses, [`MethodError::System`] for a parameter that the model does not have,
-    /// or a corner of the plane's box that it does not allow.
+    /// [`SourceError::Method`] where the method refuses, for a parameter that the model does not have, and for a corner
+    /// of the plane's box that it does not allow; [`SourceError::Interrupted`].
     pub fn source_in(
         &self,
         plane: &Plane,
         cancellation: &Cancellation,
-    ) -> Result<MethodSource, MethodError> {
+    ) -> Result<Box<dyn DensitySource>, SourceError> {
         let (family, path) = (self.problem.family(), plane.path());
         let is_held = |(name, _): &(&str, f64)| path.moved().iter().all(|moved| moved != name);
-        let swept = family.values_at(family.ends().0)?;
+        let swept = family.values_at(family.ends().0);
+        let swept = swept.map_err(MethodError::from)?;
         let named = family.model().parameters.iter().zip(swept.as_slice());
         let values = named.map(|(parameter, &value)| (parameter.name.as_str(), value));
         let held: Vec<(&str, f64)> = values.filter(is_held).collect();
         let model = family.model().clone();
         let (quantities, averaged) = (family.quantities().to_vec(), family.averaged().to_vec());
-        let in_plane = Family::new(model, &held, path.clone())?
-            .with_quantities(quantities)
-            .with_averaged(averaged);
+        let in_plane = Family::new(model, &held, path.clone()).map_err(MethodError::from)?;
+        let in_plane = in_plane.with_quantities(quantities).with_averaged(averaged);
         let problem = &self.problem;
         let (space, observables) = (problem.space().clone(), problem.observables().to_vec());
         let problem = Problem::watching(in_plane, space, observables, problem.bins().to_vec())?;
-        MethodSource::new(&problem, &self.settings.method.chosen(), cancellation)
-    }
-
-    /// The same as [`Sweep::source_in`] as whatever asks for sources in planes takes it, such as a map.
-    ///
-    /// # Errors
-    /// [`SourceError::Method`] with what [`Sweep::source_in`] says, [`SourceError::Interrupted`].
-    pub fn boxed_source_in(
-        &self,
-        plane: &Plane,
-        cancellation: &Cancellation,
-    ) -> Result<Box<dyn DensitySource>, SourceError> {
-        Ok(Box::new(self.source_in(plane, cancellation)?))
+        Ok(self.source_of(&problem, cancellation)?.0)
     }
 
     /// Solves along the parameter and locates the changes; `observer` sees every point as it is done, `()` looks away.
@@ -147,7 +229,7 @@ impl Sweep {
             self.curve_options(plane.sides()[0].length()),
         );
         task(&MapMaker {
-            source: &|plane: &Plane| Ok(wrap(self.boxed_source_in(plane, cancellation)?)),
+            source: &|plane: &Plane| Ok(wrap(self.source_in(plane, cancellation)?)),
             plane: &plane,
             detector: &self.detector(),
             options: &options,
@@ -184,7 +266,7 @@ impl Sweep {
         cancellation: &Cancellation,
         done: &(dyn Fn() + Sync),
     ) -> Result<Vec<PlaneState>, SourceError> {
-        let source = |plane: &Plane| self.boxed_source_in(plane, cancellation);
+        let source = |plane: &Plane| self.source_in(plane, cancellation);
         let detector = self.detector();
         plane_states(&source, plane, values, &detector, cancellation, done)
     }

@@ -38,16 +38,19 @@ fn the_program_follows_a_row_of_a_run_and_says_what_is_wrong() {
             "--row PB7 --second a --from 0 --to 2",
             "no P-bifurcation `PB7`",
         ),
-        ("--second b --from 0 --to 2", "there is no parameter `b`"),
+        ("--second b --from 0 --to 2", "no parameter `b`"),
         (
             "--second h --from 0 --to 2",
-            "the second parameter is the swept one",
+            "the second parameter of the curve is the swept one",
         ),
         (
             "--second a --from 1.2 --to 2",
-            "PB1 is not in the box: a is 1 there",
+            "the sweep holds `a` at 1, and the box of the curves goes from 1.2 to 2",
         ),
-        ("--second a --from 1 --to 1", "the box has no extent in a"),
+        (
+            "--second a --from 1 --to 1",
+            "the box of the curves goes from 1 to 1 along `a`",
+        ),
         ("--second a --from x --to 1", "allowed: a number"),
     ] {
         room.refused(&fold(more), &[words]);
@@ -103,10 +106,7 @@ fn a_sweep_file_names_the_curves_that_its_sweep_is_followed_by() {
     room.write("cusp.toml", CUSP);
     for (more, words) in [
         ("", "which is the second parameter of the plane?"),
-        (
-            "--second a --from 0.2",
-            "from where to where does the box go in `a`?",
-        ),
+        ("--second a --from 0.2", "missing key `curve.to`"),
     ] {
         room.refused(&format!("curve cusp.toml --quiet {more}"), &[words]);
     }

@@ -35,13 +35,15 @@ const ALLOWED: &[(&str, &[&str])] = &[
         "system", "space", "density", "topology", "continuation", "compare", "sweep_file", "bytes",
         "cancellation", "method"
     ]),
+    ("job", &["cancellation", "continuation", "compare", "figure", "sweep_file", "run"]),
     ("explore", &[
         "cancellation", "formula", "system", "space", "monte_carlo", "density", "topology", "continuation",
         "sweep_file", "run"
     ]),
     ("cli", &[
         "cancellation", "system", "space", "sampling", "monte_carlo", "generator", "stationary", "density",
-        "topology", "continuation", "method", "compare", "run", "figure", "sweep_file", "explore"
+        "topology", "continuation", "method", "compare", "run", "figure", "sweep_file", "job",
+        "explore"
     ]),
 ];
 

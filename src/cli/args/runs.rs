@@ -61,7 +61,6 @@ Exit status: 0 removed, or nothing to remove; 1 not removed because the answer w
 pub(super) const EXPORT_EXAMPLES: &str = "\
 Examples:
   pbif export output/coulomb_fc --format netcdf            output/coulomb_fc.nc, for xarray, MATLAB, Octave, Julia, ...
-  pbif export output/coulomb_fc --format npz --out a.npz   for numpy.load
   pbif export output/coulomb_fc --format csv --out tables  a folder with a table a density
 
 Densities (∫ = 1) with their errors, centres and edges of the cells, means and standard deviations, at every value that has a density.
@@ -112,7 +111,7 @@ pub(crate) struct ExportArguments {
     /// What to write
     #[arg(long, value_name = "FORMAT", value_parser = format, default_value = "netcdf")]
     pub(crate) format: ExportFormat,
-    /// File, or folder of tables; it must not be there yet [default: RUN.nc, RUN.npz or RUN-csv]
+    /// File, or folder of tables; it must not be there yet [default: RUN.nc or RUN-csv]
     #[arg(long, value_name = "PATH")]
     pub(crate) out: Option<PathBuf>,
 }

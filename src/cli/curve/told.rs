@@ -1,84 +1,84 @@
 //! What is said of curves that were followed.
 
-use super::job::Job;
 use crate::continuation::BifurcationStatus;
 use crate::continuation::curve::{
     CodimensionTwo, CodimensionTwoKind, Curve, CurveTree, Plane, codimension_two,
 };
+use crate::job::{CurveJob, Job as _};
 use crate::run::format_with_error;
 
-impl Job<'_> {
-    /// Everything that was found, in lines.
-    pub(super) fn summary(&self, tree: &CurveTree) -> String {
-        let mut text = String::new();
-        for (index, curve) in tree.curves.iter().enumerate() {
-            text += &self.told(tree, index, curve);
-        }
-        for point in codimension_two(&tree.curves) {
-            text += &codimension_line(&point, &self.plane);
-        }
-        for missed in &tree.missed {
-            text += &format!(
-                "not followed: {} is zero near {}: {}\n",
-                missed.start.kind.name(),
-                place(&self.plane, missed.start.values, 1e-3),
-                missed.reason
-            );
-        }
-        text
+/// Everything that was found, in lines.
+pub(super) fn summary(job: &CurveJob<'_>, tree: &CurveTree) -> String {
+    let (mut text, plane) = (String::new(), job.plane());
+    for (index, curve) in tree.curves.iter().enumerate() {
+        text += &of_curve(job, tree, (index, curve));
     }
-
-    /// A curve with its ends.
-    fn told(&self, tree: &CurveTree, index: usize, curve: &Curve) -> String {
-        let family = self.spec.problem.family();
-        let [first, second] = curve.plane.sides();
-        let what = format!(
-            "{} of {} is zero",
-            curve.kind.name(),
-            curve.observable.name(family)
-        );
-        let number = match tree.curves.len() {
-            1 => String::new(),
-            _ => format!("C{}  ", index + 1),
-        };
-        let mut text = match index {
-            0 => format!(
-                "{number}{what}, followed from {} in the plane of {} and {}\n",
-                self.row.label, first.parameter, second.parameter
-            ),
-            _ => format!("{number}{what}\n"),
-        };
-        let mut line = |label: &str, index: usize, words: &str| {
-            if let Some(point) = curve.points.get(index) {
-                let values = place(&curve.plane, point.values, point.error);
-                text += &format!("  {label:<4} {values}  {words}\n");
-            }
-        };
-        let first_end = curve.ends.first().filter(|_| curve.ends.len() > 1);
-        if let Some(end) = first_end {
-            line(&end.label, end.point, &end.reason.words(&curve.plane));
-        }
-        if index == 0 {
-            line(&self.row.label, curve.start, "start");
-        }
-        for split in &curve.degenerate {
-            line(&split.label, split.point, turn_in_words(split.kind));
-        }
-        if let Some(end) = curve.ends.last() {
-            line(&end.label, end.point, &end.reason.words(&curve.plane));
-        }
-        let errors = curve.points.iter().map(|point| point.error);
-        let largest = errors.fold(0.0, f64::max);
-        let checked = curve.points.iter().filter(|point| point.checked).count();
-        let located = curve.points.iter();
-        let located = located.filter(|point| is_located(point.status)).count();
+    for point in codimension_two(&tree.curves) {
+        text += &codimension_line(&point, plane);
+    }
+    for missed in &tree.missed {
         text += &format!(
-            "  {} points, {located} of them located, {checked} checked; largest error {largest:.1e} of the sides of the box\n",
-            curve.points.len()
+            "not followed: {} is zero near {}: {}\n",
+            missed.start.kind.name(),
+            place(plane, missed.start.values, 1e-3),
+            missed.reason
         );
-        let tolerance = self.spec.curve_options(first.length()).tolerance;
-        text + &sampling_in_words(curve, tolerance)
     }
+    text
+}
+
+/// A curve with its ends.
+fn of_curve(job: &CurveJob<'_>, tree: &CurveTree, (index, curve): (usize, &Curve)) -> String {
+    let family = job.sweep().problem.family();
+    let [first, second] = curve.plane.sides();
+    let what = format!(
+        "{} of {} is zero",
+        curve.kind.name(),
+        curve.observable.name(family)
+    );
+    let number = match tree.curves.len() {
+        1 => String::new(),
+        _ => format!("C{}  ", index + 1),
+    };
+    let mut text = match index {
+        0 => format!(
+            "{number}{what}, followed from {} in the plane of {} and {}\n",
+            job.row().label,
+            first.parameter,
+            second.parameter
+        ),
+        _ => format!("{number}{what}\n"),
+    };
+    let mut line = |label: &str, index: usize, words: &str| {
+        if let Some(point) = curve.points.get(index) {
+            let values = place(&curve.plane, point.values, point.error);
+            text += &format!("  {label:<4} {values}  {words}\n");
+        }
+    };
+    let first_end = curve.ends.first().filter(|_| curve.ends.len() > 1);
+    if let Some(end) = first_end {
+        line(&end.label, end.point, &end.reason.words(&curve.plane));
+    }
+    if index == 0 {
+        line(&job.row().label, curve.start, "start");
+    }
+    for split in &curve.degenerate {
+        line(&split.label, split.point, turn_in_words(split.kind));
+    }
+    if let Some(end) = curve.ends.last() {
+        line(&end.label, end.point, &end.reason.words(&curve.plane));
+    }
+    let errors = curve.points.iter().map(|point| point.error);
+    let largest = errors.fold(0.0, f64::max);
+    let checked = curve.points.iter().filter(|point| point.checked).count();
+    let located = curve.points.iter();
+    let located = located.filter(|point| is_located(point.status)).count();
+    text += &format!(
+        "  {} points, {located} of them located, {checked} checked; largest error {largest:.1e} of the sides of the box\n",
+        curve.points.len()
+    );
+    let tolerance = job.options().tolerance;
+    text + &sampling_in_words(curve, tolerance)
 }
 
 /// What sampling leaves open, where it is more than the tolerance; nothing for densities that are not sampled.

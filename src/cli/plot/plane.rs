@@ -70,13 +70,8 @@ pub(super) fn run(
     if arguments.out.is_none() {
         stored.renew_figures()?;
     }
-    let lines = files.iter().map(|file| format!("  {}\n", file.display()));
     let told = crossed.iter().map(|one| one.told(plane, curves));
-    let text = format!(
-        "{}files\n{}",
-        told.collect::<String>(),
-        lines.collect::<String>()
-    );
+    let text = told.collect::<String>() + &super::super::jobs::files(files);
     super::super::conclude(&text, Outcome::Complete, output.path())
 }
 

@@ -103,7 +103,7 @@ pub type MapObserver<'a> = dyn Fn(&MapProgress<'_>) + Sync + 'a;
 /// let sweep = file.validate()?.prepare(&never)?;
 /// let plane = Plane::new(("a", -1.0, 1.0), ("sigma2", 0.2, 0.6))?;
 /// let options = MapOptions { counts: [7, 4], depth: 1, ..MapOptions::default() };
-/// let source = |plane: &Plane| sweep.boxed_source_in(plane, &never);
+/// let source = |plane: &Plane| sweep.source_in(plane, &never);
 /// let map = regime_map(&source, &plane, &sweep.detector(), &options, &never, &|_| ())?;
 /// // One peak becomes two where a = 0, whatever the noise.
 /// assert_eq!(map.curves.len(), 1);

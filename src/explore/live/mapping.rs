@@ -11,7 +11,6 @@ use crate::cancellation::Cancellation;
 use crate::continuation::SourceError;
 use crate::continuation::map::MapProgress;
 use crate::explore::plane::{PlaneFound, PlaneScene};
-use crate::run::MapTables;
 
 /// How far the maps in the making are, by their lanes.
 #[derive(Debug, Default)]
@@ -82,10 +81,9 @@ impl Live {
                 Err(SourceError::Interrupted) => return Err(Stop::Stale),
                 Err(error) => return Err(Stop::Refused(error.to_string())),
             };
-            let refused = |error: &dyn std::error::Error| Stop::Refused(error.to_string());
-            let tables = MapTables::of(&map).map_err(|error| refused(&error))?;
-            let plane = PlaneScene::new(&sweep, Some(&tables)).map_err(|error| refused(&error))?;
-            Ok::<Option<PlaneFound>, Stop>(plane.and_then(|plane| plane.found))
+            let plane = PlaneScene::of(&map.plane, &map.subject.family);
+            let plane = plane.with(&map.subject, &map.nodes, (&map.curves, "start"));
+            Ok::<Option<PlaneFound>, Stop>(plane.found)
         })
     }
 

@@ -132,7 +132,7 @@ impl Live {
             live: true,
             dimension: axes.len(),
             scene: &Scene::new(sweep, &[]),
-            plane: PlaneScene::new(sweep, None)?,
+            plane: PlaneScene::new(sweep),
             frames: [],
             arrays: (sweep.problem.observables().iter())
                 .map(|observable| Grid {

@@ -71,7 +71,7 @@ impl Sessions {
                 let surplus = (self.open.len() + 1).saturating_sub(MOST);
                 self.open.drain(..surplus);
                 let source = bound.sweep.source(&cancellation);
-                let source = source.map_err(|error| match SourceError::from(error) {
+                let source = source.map_err(|error| match error {
                     SourceError::Interrupted => Solving::Stale,
                     error => Solving::Open(error.to_string()),
                 })?;

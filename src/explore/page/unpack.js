@@ -2,8 +2,12 @@
 
 const fromBase64 = (text) => Uint8Array.from(atob(text.trim()), (letter) => letter.charCodeAt(0));
 
-/** The inflated content of a block of the page. */
-const readBlock = (id) => inflate(fromBase64(document.getElementById(id).textContent));
+/** The inflated content of a block of the page, which is a zlib stream (RFC 1950). */
+const readBlock = async (id) => {
+  const bytes = fromBase64(document.getElementById(id).textContent);
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+};
 
 /** Packed values of all frames; `frame` gives those of one. */
 class Packed {

@@ -1,21 +1,16 @@
-//! The tables of a comparison of methods, for programs in full and for people rounded, and the folder they go to.
+//! The tables of a comparison of methods, for programs in full and for people rounded.
 
-mod folder;
 mod people;
 mod rows;
 
-pub use folder::CompareFolder;
-pub(super) use folder::ENTRIES;
 pub use people::{CompareTable, compare_tables};
 
 use people::{compare_markdown, compare_tex};
 use rows::{accuracy_csv, agreement_csv, compare_csv, compare_json, densities_csv, distances_csv};
 
+use super::RunError;
 use crate::compare::{Comparison, Method};
 use crate::system::Family;
-
-/// What an unfinished comparison has solved.
-const PART: &str = "compare.part.bin";
 
 /// A comparison with what the tables need beside it.
 #[derive(Clone, Copy)]
@@ -40,4 +35,22 @@ impl<'a> ComparedRun<'a> {
 /// Name of a partner in a pair.
 fn partner(second: Option<Method>) -> &'static str {
     second.map_or("exact", Method::name)
+}
+
+/// The files of a comparison by their names.
+///
+/// # Errors
+/// [`RunError`] when a file cannot be composed.
+pub fn compare_files(run: &ComparedRun<'_>) -> Result<Vec<(String, String)>, RunError> {
+    let files = [
+        ("compare.csv", compare_csv(run)?),
+        ("compare.md", compare_markdown(run)),
+        ("compare.tex", compare_tex(run)),
+        ("compare.json", compare_json(run)?),
+        ("distances.csv", distances_csv(run)?),
+        ("agreement.csv", agreement_csv(run)?),
+        ("accuracy.csv", accuracy_csv(run)?),
+        ("densities.csv", densities_csv(run)?),
+    ];
+    Ok(files.map(|(name, text)| (name.to_owned(), text)).into())
 }

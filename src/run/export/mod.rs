@@ -1,8 +1,7 @@
-//! A run for other programs: its densities with their axes as one NetCDF or NumPy file, or as tables of text.
+//! A run for other programs: its densities with their axes as one NetCDF file, or as tables of text.
 
 mod csv;
 mod netcdf;
-mod npz;
 
 use std::path::Path;
 
@@ -18,21 +17,18 @@ use crate::system::Family;
 pub enum ExportFormat {
     /// NetCDF classic with 64-bit offsets, one file.
     NetCdf,
-    /// NumPy's archive of arrays, one file.
-    Npz,
     /// A folder with a table a density.
     Csv,
 }
 
 impl ExportFormat {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::NetCdf, Self::Npz, Self::Csv];
+    pub const ALL: [Self; 2] = [Self::NetCdf, Self::Csv];
 
     /// Name used on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::NetCdf => "netcdf",
-            Self::Npz => "npz",
             Self::Csv => "csv",
         }
     }
@@ -41,7 +37,6 @@ impl ExportFormat {
     pub fn ending(self) -> &'static str {
         match self {
             Self::NetCdf => ".nc",
-            Self::Npz => ".npz",
             Self::Csv => "-csv",
         }
     }
@@ -96,7 +91,6 @@ pub fn export(
     }
     match format {
         ExportFormat::Csv => csv::write(subject, &solved, path),
-        ExportFormat::Npz => npz::write(&data_set(subject, &solved, title), path),
         ExportFormat::NetCdf => netcdf::write(&data_set(subject, &solved, title), path),
     }
 }

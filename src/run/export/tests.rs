@@ -86,24 +86,6 @@ fn netcdf_holds_every_array_with_its_dimensions() {
 }
 
 #[test]
-fn npz_is_an_archive_of_arrays_as_numpy_writes_them() {
-    let (_folder, path) = exported(ExportFormat::Npz);
-    let mut archive = zip::ZipArchive::new(std::fs::File::open(&path).unwrap()).unwrap();
-    let mut bytes = Vec::new();
-    std::io::Read::read_to_end(&mut archive.by_name("p_x.npy").unwrap(), &mut bytes).unwrap();
-    assert_eq!(&bytes[..8], b"\x93NUMPY\x01\x00");
-    let header = u16::from_le_bytes([bytes[8], bytes[9]]) as usize;
-    assert_eq!((10 + header) % 64, 0);
-    let text = std::str::from_utf8(&bytes[10..10 + header]).unwrap();
-    assert!(text.starts_with("{'descr': '<f8', 'fortran_order': False, 'shape': (2, 2, ), }"));
-    assert!(text.ends_with('\n'));
-    let (words, rest) = bytes[10 + header..].as_chunks::<8>();
-    let values: Vec<f64> = words.iter().map(|word| f64::from_le_bytes(*word)).collect();
-    assert_eq!((values, rest.len()), (vec![0.125, 1.125, 0.5, 1.5], 0));
-    assert!(archive.by_name("sd_x.npy").is_ok() && archive.by_name("p_xy_error.npy").is_ok());
-}
-
-#[test]
 fn tables_have_a_row_a_cell() {
     let (_folder, path) = exported(ExportFormat::Csv);
     let table = |name: &str| std::fs::read_to_string(path.join(name)).unwrap();
@@ -123,7 +105,7 @@ fn a_run_without_densities_has_nothing_to_export() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("export");
     let points = [point(0.25, false)];
-    let error = export(&subject(), &points, "", ExportFormat::Npz, &path).unwrap_err();
+    let error = export(&subject(), &points, "", ExportFormat::NetCdf, &path).unwrap_err();
     assert!(matches!(error, RunError::NothingToExport));
     assert!(!path.exists());
 }

@@ -184,25 +184,6 @@ pub(super) fn can_go_on(run: &Path) -> bool {
     run.join(NAME).is_file() || not_begun(run)
 }
 
-/// Whether the manifest of a comparison or of curves says that they came to their end; `false` where there is none.
-///
-/// # Errors
-/// [`RunError::OtherSweep`], with every difference, where it is of something else than `of`; [`RunError::Json`].
-pub(super) fn came_to_its_end(home: &Path, manifest: &str, of: &str) -> Result<bool, RunError> {
-    let Ok(text) = std::fs::read_to_string(home.join(manifest)) else {
-        return Ok(false);
-    };
-    let there: serde_json::Value = serde_json::from_str(&text)?;
-    let differences = different_keys(there["made_of"].as_str().unwrap_or_default(), of);
-    if !differences.is_empty() {
-        return Err(RunError::OtherSweep {
-            path: home.to_owned(),
-            differences,
-        });
-    }
-    Ok(there["ending"] == "complete")
-}
-
 /// In what unfinished or complete work that is there differs from what is wanted.
 pub(super) fn differences(version: &str, there: &str, here: &str) -> Vec<String> {
     let own = env!("CARGO_PKG_VERSION");

@@ -143,7 +143,7 @@ fn without_density(value: f64) -> Point {
 const RESOLVED: &str = "title = \"t\"\nfrom = 0.30000000000000004\n";
 
 fn write(folder: &std::path::Path, points: &[Point]) {
-    let mut run = RunFolder::create(folder).unwrap();
+    let mut run = RunFolder::at(folder);
     for point in points {
         run.add_point(&subject(&OBSERVABLES), point).unwrap();
     }

@@ -49,7 +49,7 @@ fn values_by_quadrature_and_on_cells_come_back_as_they_were_solved() {
             assert_eq!(density.structure.profile.is_some(), by_quadrature);
         }
         let folder = tempfile::tempdir().unwrap();
-        let mut run = RunFolder::create(folder.path()).unwrap();
+        let mut run = RunFolder::at(folder.path());
         for point in &points {
             run.add_point(source.subject(), point).unwrap();
         }

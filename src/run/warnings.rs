@@ -1,8 +1,8 @@
 //! Findings gathered for people: each kind once, with the parameter values it concerns.
 
+use super::{finding_in_words, format_number};
 use crate::compare::{Comparison, Method};
 use crate::continuation::{Finding, Point};
-use crate::run::{finding_in_words, format_number};
 use crate::system::Family;
 
 /// Findings of one kind: the first is quoted, the others are counted.
@@ -15,7 +15,7 @@ struct Gathered<'a> {
 }
 
 /// The warnings of all points: each kind of finding once, in the numbers of its first.
-pub(super) fn of_points(family: &Family, points: &[Point]) -> Vec<String> {
+pub fn warnings_of_points(family: &Family, points: &[Point]) -> Vec<String> {
     let mut kinds: Vec<Gathered<'_>> = Vec::new();
     for point in points {
         for finding in &point.report.findings {
@@ -56,7 +56,7 @@ impl Gathered<'_> {
 }
 
 /// What methods say of themselves and of each other: each kind of finding once a method, at its first value.
-pub(super) fn of_comparison(family: &Family, comparison: &Comparison) -> Vec<String> {
+pub fn warnings_of_comparison(family: &Family, comparison: &Comparison) -> Vec<String> {
     let mut seen: Vec<(Method, _)> = Vec::new();
     let mut warnings = Vec::new();
     for value in &comparison.values {
@@ -112,7 +112,7 @@ mod tests {
             distance: None,
             seconds: 0.0,
         });
-        let told = of_points(&family, &points);
+        let told = warnings_of_points(&family, &points);
         let starts = [
             "f_c = 0.5: 12.50 % of the mass lies in the outermost cells of x: ",
             "f_c = 0.5: no face of y falls on the switching surface at -1: ",

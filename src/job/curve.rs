@@ -1,0 +1,208 @@
+//! The curves from a located row: the same P-bifurcation in the plane of the swept and a second parameter.
+
+mod refusals;
+
+pub use refusals::{check_curves, curve_rows};
+
+use super::{Context, Job, JobError, Outcome};
+use crate::continuation::curve::{
+    Curve, CurveError, CurveOptions, CurveOrigin, CurveStart, CurveTree, Plane, follow_all,
+};
+use crate::continuation::{DensitySource, LabelledPoint, SourceError, SweepResult};
+use crate::figure::{Figure, FigureError, Figures};
+use crate::run::{JobFolder, JournalledSource, Layout, RunError, curve_files, format_number};
+use crate::sweep_file::{CurveSettings, Diagnostic, Report, Sweep};
+use refusals::{check_corners, no_indicator, plane, refused, refused_plane, which_parameter};
+
+/// The curves from one row of a sweep, as `[curve]` of its file asks for them.
+pub struct CurveJob<'a> {
+    sweep: &'a Sweep,
+    curve: &'a CurveSettings,
+    row: &'a LabelledPoint,
+    plane: Plane,
+    start: CurveStart,
+    source: Option<Box<dyn DensitySource>>,
+    /// Solves that are stored.
+    kept: usize,
+}
+
+impl<'a> CurveJob<'a> {
+    /// The curves from a row of what a sweep has found; whatever can be refused before anything is solved is.
+    ///
+    /// # Errors
+    /// A report where the sweep file has no `[curve]`, the row no indicator, or the box is not one to follow it in.
+    pub fn new(
+        sweep: &'a Sweep,
+        result: &SweepResult,
+        row: &'a LabelledPoint,
+    ) -> Result<Self, Report> {
+        let family = sweep.problem.family();
+        let curve = sweep.settings.curve.as_ref();
+        let (curve, plane) = curve
+            .zip(plane(sweep)?)
+            .ok_or_else(|| which_parameter(sweep))?;
+        let held = family.fixed().find(|(name, _)| *name == curve.parameter);
+        let held = held.map_or(f64::NAN, |(_, value)| value);
+        let start = CurveStart::from_row(row, held, sweep.problem.subject());
+        let start = start.ok_or_else(|| no_indicator(row, result))?;
+        let job = Self {
+            sweep,
+            curve,
+            row,
+            plane,
+            start,
+            source: None,
+            kept: 0,
+        };
+        job.check_box()?;
+        check_corners(sweep, &job.plane)?;
+        Ok(job)
+    }
+
+    /// The row that the first curve starts from.
+    pub fn row(&self) -> &'a LabelledPoint {
+        self.row
+    }
+
+    /// The box.
+    pub fn plane(&self) -> &Plane {
+        &self.plane
+    }
+
+    /// How curves are followed.
+    pub fn options(&self) -> CurveOptions {
+        CurveOptions {
+            largest_step: self.curve.step,
+            branches: self.curve.branches,
+            ..self.sweep.curve_options(self.plane.sides()[0].length())
+        }
+    }
+
+    /// Refuses a box that the start is not in.
+    fn check_box(&self) -> Result<(), Report> {
+        let (side, value) = (&self.plane.sides()[0], self.start.values[0]);
+        if (side.from..=side.to).contains(&value) {
+            return Ok(());
+        }
+        let (parameter, from, to) = (&side.parameter, side.from, side.to);
+        let value = format_number(value);
+        let title = format!(
+            "{} is not in the box: {parameter} is {value} there, and the box goes from {from} to {to}",
+            self.row.label,
+        );
+        let remedy = format!("give `--first-from` and `--first-to` on either side of {value}");
+        Err(Diagnostic::new(title).remedy(remedy).into())
+    }
+}
+
+impl Job for CurveJob<'_> {
+    type Found = CurveTree;
+
+    fn sweep(&self) -> &Sweep {
+        self.sweep
+    }
+
+    fn layout(&self) -> Layout {
+        Layout::CURVES
+    }
+
+    fn made_of(&self) -> String {
+        let sides = self.plane.sides().iter();
+        let sides = sides.map(|side| format!("[{:?}, {:?}]", side.from, side.to));
+        let sides: Vec<String> = sides.collect();
+        format!(
+            "{}\n[followed]\nrow = \"{}\"\nstart = {:?}\nsecond = \"{}\"\nbox = [{}]\nstep = {:?}\nbranches = {}\n",
+            self.sweep.to_toml(),
+            self.row.label,
+            self.start.values,
+            self.curve.parameter,
+            sides.join(", "),
+            self.curve.step,
+            self.curve.branches,
+        )
+    }
+
+    fn plan(&mut self, context: &Context<'_>) -> Result<bool, JobError> {
+        self.source = match self.sweep.source_in(&self.plane, context.cancellation) {
+            Ok(source) => Some(source),
+            Err(SourceError::Interrupted) => return Ok(false),
+            Err(SourceError::Method(error)) => return Err(refused_plane(error.as_ref()).into()),
+        };
+        Ok(true)
+    }
+
+    fn solve(
+        &mut self,
+        folder: &JobFolder,
+        goes_on: bool,
+        context: &Context<'_>,
+    ) -> Result<Option<CurveTree>, JobError> {
+        let Some(source) = self.source.take() else {
+            return Ok(None);
+        };
+        let journal = folder.journal(&self.made_of(), goes_on)?;
+        self.kept = journal.solves();
+        if self.kept > 0 {
+            context.say(&format!("going on after {} solves", self.kept));
+        }
+        let [first, second] = self.plane.sides().each_ref().map(|side| &side.parameter);
+        let mut met = 0;
+        let mut observer = |values: [f64; 2]| {
+            met += 1;
+            context.say(&format!(
+                "{met}: {first} = {:.6e}  {second} = {:.6e}",
+                values[0], values[1]
+            ));
+        };
+        let found = follow_all(
+            &JournalledSource::new(source, &journal),
+            &self.plane,
+            &self.sweep.detector(),
+            &self.start,
+            &self.options(),
+            context.cancellation,
+            &mut observer,
+        );
+        self.kept += met.max(1);
+        if let Some(error) = journal.failure() {
+            return Err(error.into());
+        }
+        match found {
+            Ok(tree) => Ok(Some(tree)),
+            Err(CurveError::Source(SourceError::Interrupted)) => Ok(None),
+            Err(error) => Err(refused(error).into()),
+        }
+    }
+
+    fn kept(&self) -> usize {
+        self.kept
+    }
+
+    fn outcome(&self, found: &CurveTree) -> Outcome {
+        let locate = &self.sweep.settings.locate;
+        let mut points = found.curves.iter().flat_map(|curve| &curve.points);
+        let is_complete =
+            found.missed.is_empty() && points.all(|point| locate.is_met_by(point.status));
+        let interrupted = found.curves.iter().any(Curve::is_interrupted);
+        Outcome::of(interrupted, is_complete)
+    }
+
+    fn files(&self, found: &CurveTree, _: f64) -> Result<Vec<(String, String)>, RunError> {
+        let (origin, sweep) = (CurveOrigin::from(self.row), self.sweep.to_toml());
+        let family = self.sweep.problem.family();
+        curve_files(
+            family,
+            &self.plane,
+            found,
+            (&origin, &sweep, &self.made_of()),
+        )
+    }
+
+    fn figures(&self, found: &CurveTree, _: &Context<'_>) -> Result<Vec<Figure>, FigureError> {
+        let (family, settings) = (self.sweep.problem.family(), &self.sweep.settings);
+        let origin = CurveOrigin::from(self.row);
+        Figures::of_curves(&found.curves, (&origin, &[]), family, &settings.title)
+            .with_style(&settings.figures.style)
+            .draw_all()
+    }
+}

@@ -1,0 +1,71 @@
+//! Writes every point as soon as it is done, and tells how far the sweep is.
+
+use crate::continuation::{CheckedIndicator, Observer, Point};
+use crate::job::{Context, Progress};
+use crate::run::{JournalledSource, Manifest, RunError, RunFolder};
+use crate::sweep_file::Sweep;
+
+/// Failures as observers hand them on.
+type Failure = Box<dyn std::error::Error + Send + Sync>;
+
+/// What a sweep tells its points.
+pub(super) struct Recorder<'a> {
+    pub(super) sweep: &'a Sweep,
+    pub(super) run: RunFolder,
+    pub(super) manifest: Manifest,
+    pub(super) context: &'a Context<'a>,
+    pub(super) source: &'a JournalledSource,
+    /// What shards saw in their checks.
+    pub(super) checks: Vec<CheckedIndicator>,
+    /// Points that came from the journal. The tables that are there are replaced when all have come.
+    pub(super) given: Vec<Point>,
+}
+
+impl Recorder<'_> {
+    /// Writes what came from the journal, in the place of what is there.
+    pub(super) fn write_given(&mut self) -> Result<(), RunError> {
+        let given = std::mem::take(&mut self.given);
+        if given.is_empty() {
+            return Ok(());
+        }
+        self.run.add_points(self.sweep.problem.subject(), &given)
+    }
+
+    /// A point in words: its value, and what was found there.
+    fn say(&self, point: &Point, done: usize, wanted: usize) {
+        let subject = self.sweep.problem.subject();
+        let family = &subject.family;
+        let mut words = format!("{} = {:.6}", family.parameter(), point.value);
+        if point.detections.is_empty() {
+            words += &format!(": {}", point.report.status.word());
+        }
+        for (&observable, detection) in subject.observables.iter().zip(&point.detections) {
+            let name = observable.name(family);
+            words += &format!("  {name}: {}", detection.signature);
+        }
+        let words = &words;
+        (self.context.observer)(&Progress::Done {
+            words,
+            done,
+            wanted,
+        });
+    }
+}
+
+impl Observer for Recorder<'_> {
+    fn point(&mut self, point: &Point, done: usize, remaining: usize) -> Result<(), Failure> {
+        if self.source.is_stored() {
+            self.given.push(point.clone());
+            return Ok(());
+        }
+        self.write_given()?;
+        self.run.add_point(self.sweep.problem.subject(), point)?;
+        self.say(point, done, done + remaining);
+        self.manifest.points = done;
+        Ok(self.run.write_progress(&self.manifest)?)
+    }
+
+    fn known_checks(&mut self) -> Vec<CheckedIndicator> {
+        std::mem::take(&mut self.checks)
+    }
+}

@@ -1,0 +1,291 @@
+//! The folder of a job: which files it leaves there, how it begins and goes on, and how what it made takes its place.
+
+use std::path::{Path, PathBuf};
+
+use super::atomic::{clear_unfinished, sync_all, write_atomically};
+use super::journal::differences;
+use super::lock::FolderLock;
+use super::staging::{Entries, Staging};
+use super::{Ending, Journal, RunError, checksums, curve, journal, plane_file, research_object};
+
+/// What a kind of job leaves in its folder.
+#[derive(Debug, Clone, Copy)]
+pub struct Layout {
+    /// Files and folders by name, the manifest first: it marks the folder.
+    pub(super) entries: Entries,
+    /// Folders of work that is about the job: they go where its files go.
+    pub(super) about: Entries,
+    /// What an unfinished job has solved.
+    pub(super) part: &'static str,
+    /// Whether files grow in their place, so that a reader sees how far the job is; others are put there when all are
+    /// whole.
+    grows: bool,
+}
+
+impl Layout {
+    /// A sweep.
+    pub const SWEEP: Self = Self {
+        entries: &[
+            "run.json",
+            research_object::NAME,
+            checksums::NAME,
+            journal::NAME,
+            "points.csv",
+            "features.csv",
+            "bifurcations.csv",
+            "bifurcations.md",
+            "bifurcations.tex",
+            "bifurcations.json",
+            "densities.zarr",
+            "densities.zarr.new",
+            "densities.zarr.old",
+            "checks.csv",
+            "figures",
+            "explorer.html",
+        ],
+        about: &[curve::FOLDER],
+        part: journal::NAME,
+        grows: true,
+    };
+
+    /// A map of regimes.
+    pub const MAP: Self = Self {
+        entries: &[
+            "map.json",
+            checksums::NAME,
+            plane_file::NAME,
+            "map.csv",
+            "curves.csv",
+            "codimension_two.csv",
+            "codimension_two.tex",
+            "densities",
+            "figures",
+        ],
+        about: &[],
+        part: "map.part.bin",
+        grows: false,
+    };
+
+    /// A shard of a map.
+    pub const MAP_SHARD: Self = Self {
+        entries: &["map.shard.json"],
+        ..Self::MAP
+    };
+
+    /// The curves from a row of a sweep.
+    pub const CURVES: Self = Self {
+        entries: &[
+            "curve.json",
+            checksums::NAME,
+            plane_file::NAME,
+            "curves.csv",
+            "codimension_two.csv",
+            "codimension_two.tex",
+            "figures",
+        ],
+        about: &[],
+        part: "curve.part.bin",
+        grows: false,
+    };
+
+    /// A comparison of methods.
+    pub const COMPARISON: Self = Self {
+        entries: &[
+            "compare.json",
+            checksums::NAME,
+            "compare.csv",
+            "compare.md",
+            "compare.tex",
+            "distances.csv",
+            "agreement.csv",
+            "accuracy.csv",
+            "densities.csv",
+            "figures",
+        ],
+        about: &[],
+        part: "compare.part.bin",
+        grows: false,
+    };
+
+    /// That of the job whose files are in a folder.
+    pub(super) fn of(folder: &Path) -> Option<Self> {
+        let all = [Self::SWEEP, Self::COMPARISON, Self::CURVES, Self::MAP];
+        let mut all = all.into_iter();
+        all.find(|layout| folder.join(layout.manifest()).is_file())
+    }
+
+    /// The file that marks the folder.
+    pub(super) fn manifest(&self) -> &'static str {
+        self.entries.first().copied().unwrap_or_default()
+    }
+
+    /// Whether a folder holds what an unfinished job has solved.
+    pub fn has_part(&self, folder: &Path) -> bool {
+        folder.join(self.part).is_file()
+    }
+
+    /// Whether a folder holds a job that came to its end, and is of what `of` describes as TOML.
+    ///
+    /// # Errors
+    /// [`RunError::OtherSweep`], with every difference, where it is of something else; [`RunError::Json`].
+    pub fn is_complete(&self, folder: &Path, of: &str) -> Result<bool, RunError> {
+        let Ok(text) = std::fs::read_to_string(folder.join(self.manifest())) else {
+            return Ok(false);
+        };
+        let there: serde_json::Value = serde_json::from_str(&text)?;
+        let word = |key: &str| there[key].as_str();
+        let made_of = word("made_of").or_else(|| word("sweep_file"));
+        let version = word("version").unwrap_or_default();
+        let differences = differences(version, made_of.unwrap_or_default(), of);
+        if !differences.is_empty() {
+            return Err(RunError::OtherSweep {
+                path: folder.to_owned(),
+                differences,
+            });
+        }
+        // A shard of a map is written when it is complete, and does not say so.
+        let ending = word("ending");
+        Ok(ending.is_none_or(|ending| ending == "complete"))
+    }
+}
+
+/// The folder of a job in the making, from which other writers are kept away. Dropped before it is closed, it leaves
+/// what was there, but for files that grow in their place.
+#[derive(Debug)]
+pub struct JobFolder {
+    home: PathBuf,
+    layout: Layout,
+    place: Place,
+    kept: Option<PathBuf>,
+}
+
+/// Where files are written to.
+#[derive(Debug)]
+enum Place {
+    /// Beside their place.
+    Beside(Staging),
+    /// There.
+    There { _lock: FolderLock },
+}
+
+impl JobFolder {
+    /// Prepares the folder `home` for a job that begins, or goes on with what is there. What an earlier one left, and
+    /// what was followed from it, is kept below `previous/`: of files that grow at once, of others when new ones take
+    /// their place, of unfinished work when another one begins. Files that are not the job's are left alone.
+    ///
+    /// # Errors
+    /// [`RunError::InUse`], [`RunError::NotOurs`], [`RunError::Read`], [`RunError::Write`]; then the folder is as it
+    /// was.
+    pub fn open(home: &Path, layout: Layout, goes_on: bool) -> Result<Self, RunError> {
+        std::fs::create_dir_all(home).map_err(|source| RunError::Write {
+            path: home.to_owned(),
+            source,
+        })?;
+        let mut kept = None;
+        let place = if layout.grows && goes_on {
+            let lock = FolderLock::take(home)?;
+            checksums::reopen(home);
+            clear_unfinished(home, &["densities.zarr", "figures"]);
+            Place::There { _lock: lock }
+        } else {
+            let staging = Staging::new(home, layout.entries)?.with(layout.about)?;
+            if layout.grows {
+                let placed = staging.take_place(&[])?;
+                kept = placed.kept;
+                Place::There { _lock: placed.lock }
+            } else {
+                if !goes_on {
+                    staging.keep_aside(&[layout.part])?;
+                }
+                Place::Beside(staging)
+            }
+        };
+        Ok(Self {
+            home: home.to_owned(),
+            layout,
+            place,
+            kept,
+        })
+    }
+
+    /// Where an earlier run is kept that was in the place of files that grow.
+    pub fn kept(&self) -> Option<&Path> {
+        self.kept.as_deref()
+    }
+
+    /// Where the files are to stand.
+    pub fn home(&self) -> &Path {
+        &self.home
+    }
+
+    /// The file for what is solved, until the job has come to its end.
+    fn part(&self) -> PathBuf {
+        self.home.join(self.layout.part)
+    }
+
+    /// Where files are written to.
+    pub fn path(&self) -> PathBuf {
+        match &self.place {
+            Place::Beside(staging) => staging.fresh(),
+            Place::There { .. } => self.home.clone(),
+        }
+    }
+
+    /// Writes files by their names.
+    ///
+    /// # Errors
+    /// [`RunError::Write`].
+    pub fn write(&self, files: &[(String, String)]) -> Result<(), RunError> {
+        let path = self.path();
+        let mut files = files.iter();
+        files.try_for_each(|(name, text)| write_atomically(&path.join(name), text.as_bytes()))
+    }
+
+    /// The journal of a job that is made of what `of` describes as TOML: a new one, or that of the unfinished job.
+    ///
+    /// # Errors
+    /// As [`Journal::create`] and [`Journal::open`].
+    pub fn journal(&self, of: &str, goes_on: bool) -> Result<Journal, RunError> {
+        if goes_on {
+            Journal::open(&self.part(), of)
+        } else {
+            Journal::create(&self.part(), of)
+        }
+    }
+
+    /// Removes what was solved: nothing is left of a job that has hardly begun.
+    pub fn give_up(self) {
+        // One that cannot be removed can be gone on with.
+        let _ = std::fs::remove_file(self.part());
+    }
+
+    /// Writes the checksums, puts the files in their place and returns those that were not there yet; what an earlier
+    /// job left goes below `previous/`. What was solved goes where the job is complete.
+    ///
+    /// # Errors
+    /// [`RunError::Read`], [`RunError::Manifest`] or [`RunError::Write`].
+    pub fn close(self, ending: Ending) -> Result<Vec<PathBuf>, RunError> {
+        let (part, path) = (self.part(), self.path());
+        let files = match self.place {
+            Place::Beside(staging) => {
+                if self.layout.entries.contains(&checksums::NAME) {
+                    checksums::write_listed(&path, self.layout.entries)?;
+                }
+                sync_all(&[path])?;
+                staging.take_place(&[])?.files
+            }
+            Place::There { .. } => {
+                research_object::write(&path)?;
+                checksums::write_listed(&path, self.layout.entries)?;
+                Vec::new()
+            }
+        };
+        if ending != Ending::Complete {
+            return Ok(files);
+        }
+        match std::fs::remove_file(&part) {
+            Err(source) if part.exists() => Err(RunError::Write { path: part, source }),
+            _ => Ok(files),
+        }
+    }
+}
