@@ -13,81 +13,35 @@ use pbif::continuation::{LocateOptions, sweep};
 use pbif::density::Observable;
 use pbif::method::{Problem, SgcmOptions, SgcmSource};
 use pbif::space::{Axis, CellSpace};
-use pbif::system::friction::{FrictionLaw, Motion};
 use pbif::system::{
-    AxisDescription, Duffing, Family, Model, Oscillator, ParameterDescription, ParameterRange,
-    Path, Viscous, contract,
+    Family, Model, ParameterDescription, ParameterRange, Path, TypedModel, TypedModelError,
+    contract,
 };
 use pbif::topology::{DetectOptions, PersistenceDetector};
 
-fn belt() -> Model {
+fn belt() -> Result<Arc<Model>, TypedModelError> {
     let parameter = |name: &str, meaning: &str, default: f64| {
         ParameterDescription::new(name, name, meaning)
             .with_default(default)
             .within(ParameterRange::Positive)
     };
-    Model::new(
-        "belt",
-        "Oscillator on a moving belt with Stribeck friction",
-        |values| {
-            let spring = Duffing {
-                alpha: 1.0,
-                mu: 0.0,
-            };
-            let damping = Viscous { kappa: values[0] };
-            let friction = StribeckOnBelt {
-                f_s: values[1],
-                f_c: values[2],
-                v_s: values[3],
-                speed: values[4],
-            };
-            Arc::new(Oscillator::new(spring, damping, friction, values[5]))
-        },
-    )
-    .with_equations(["x' = y", "y' = -κ y - x - F(y - v) + ξ(t)"])
-    .with_axes([
-        AxisDescription::new("x", "x", "displacement"),
-        AxisDescription::new("y", "ẋ", "velocity"),
-    ])
-    .with_parameters([
-        parameter("kappa", "viscous damping", 0.05),
-        parameter("f_s", "static friction level", 0.4),
-        parameter("f_c", "sliding friction level", 0.2),
-        parameter("v_s", "Stribeck velocity", 0.5),
-        parameter("v", "speed of the belt", 1.0),
-        parameter("sigma2", "noise intensity", 0.02),
-    ])
-    .with_source("this example")
-}
-
-/// The law, for one state; spring, damping, noise and the loop over a batch of states are the oscillator's.
-struct StribeckOnBelt {
-    f_s: f64,
-    f_c: f64,
-    v_s: f64,
-    speed: f64,
-}
-
-impl FrictionLaw<0> for StribeckOnBelt {
-    #[inline(always)]
-    fn rates(&self, _motion: Motion, _state: &[f64; 0]) -> [f64; 0] {
-        []
-    }
-
-    #[inline(always)]
-    fn force(&self, motion: Motion, _state: &[f64; 0], _rates: &[f64; 0]) -> f64 {
-        let slip = motion.velocity - self.speed;
-        let level = self.f_c + (self.f_s - self.f_c) * (-slip.abs() / self.v_s).exp();
-        if slip == 0.0 {
-            0.0
-        } else {
-            slip.signum() * level
-        }
-    }
-
-    fn base_velocity(&self) -> Option<f64> {
-        Some(self.speed)
-    }
+    let title = "Oscillator on a moving belt with Stribeck friction";
+    TypedModel::new("belt", title, ["x", "y"])
+        .with_equation("x", "y")
+        .with_equation("y", "-kappa y - x - F")
+        .with_definition("u", "y - v")
+        .with_definition("F", "sgn(u) (f_c + (f_s - f_c) exp(-abs(u)/v_s))")
+        .with_noise("y", ["sqrt(sigma2)"])
+        .with_parameters([
+            parameter("kappa", "viscous damping", 0.05),
+            parameter("f_s", "static friction level", 0.4),
+            parameter("f_c", "sliding friction level", 0.2),
+            parameter("v_s", "Stribeck velocity", 0.5),
+            parameter("v", "speed of the belt", 1.0),
+            parameter("sigma2", "noise intensity", 0.02),
+        ])
+        .with_source("this example")
+        .build()
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -96,8 +50,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Axis::uniform(-2.5, 2.5, 40)?,
     ])?;
     let observables = [Observable::Marginal(0), Observable::Joint(0, 1)];
-    let family = Family::new(Arc::new(belt()), &[], Path::parameter("v", 0.2, 1.6))?;
-    // What the law declares holds: here its surface, at a velocity that moves with the belt.
+    let family = Family::new(belt()?, &[], Path::parameter("v", 0.2, 1.6))?;
+    // What is read off the formulas holds: here the surface, at a velocity that moves with the belt.
     contract::verify_model(family.model(), &family.values_at(0.2)?, &[(-2.5, 2.5); 2])?;
     let problem = Problem::new(family, space, observables.to_vec())?;
     let options = SgcmOptions {

@@ -128,7 +128,7 @@ fn model(family: &Family) -> Model {
     let equations = model.equations.iter().zip(model.typeset());
     let equations = equations.map(|(text, element)| Equation {
         text: text.clone(),
-        layout: layout(&element),
+        layout: layout(element),
     });
     Model {
         name: model.name.clone(),

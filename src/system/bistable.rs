@@ -1,45 +1,28 @@
 //! Overdamped motion in a quartic potential: the smallest model with a P-bifurcation, exactly solvable.
 
-use std::sync::Arc;
-
 use multiversion::multiversion;
 
 use super::parameters::{GROWTH, SIGMA2, X};
-use super::{Facts, Lanes, Model, Noise, Symmetry, System};
+use super::typed::AMPLITUDE;
+use super::{Lanes, TypedModel};
 
-/// dx = (ax - x³) dt + σ dW.
-pub(super) fn model() -> Model {
-    Model::new(
-        "bistable",
-        "Overdamped particle in a quartic potential, exactly solvable",
-        bind,
-    )
-    .with_equations(["dx = (a x - x³) dt + σ dW"])
-    .with_axes([X])
-    .with_parameters([GROWTH, SIGMA2])
-    .with_source("textbook pitchfork normal form with additive noise")
-    .with_notes([
-        "The steady state is p ∝ exp((2/σ²)(a x²/2 - x⁴/4)): one peak for a ≤ 0, two for a > 0.",
-    ])
-}
-
-fn bind(values: &[f64]) -> Arc<dyn System> {
-    Arc::new(Bistable {
-        a: values[0],
-        sigma2: values[1],
-        noise: [Noise::constant(0, values[1].sqrt())],
-        facts: Facts {
-            symmetry: Some(Symmetry::about_origin(1)),
-            ..Facts::default()
-        },
-    })
-}
-
-struct Bistable {
-    a: f64,
-    sigma2: f64,
-    noise: [Noise; 1],
-    facts: Facts,
+/// x' = ax - x³ + σ ξ.
+pub(super) fn model() -> TypedModel {
+    let title = "Overdamped particle in a quartic potential, exactly solvable";
+    TypedModel::new("bistable", title, [X])
+        .with_equation("x", "a x - x³")
+        .with_noise("x", [AMPLITUDE])
+        .with_definition(AMPLITUDE, "sqrt(sigma2)")
+        .with_parameters([GROWTH, SIGMA2])
+        .with_compiled_drift(|values| {
+            let a = values[0];
+            Box::new(move |_, states, slopes| drift(a, states, slopes))
+        })
+        .with_exact_log_density(exact_log_density)
+        .with_source("textbook pitchfork normal form with additive noise")
+        .with_notes([
+            "The steady state is p ∝ exp((2/σ²)(a x²/2 - x⁴/4)): one peak for a ≤ 0, two for a > 0.",
+        ])
 }
 
 #[multiversion(targets = "simd")]
@@ -53,29 +36,13 @@ fn drift(a: f64, states: &[Lanes], drift: &mut [Lanes]) {
     }
 }
 
-impl System for Bistable {
-    fn dimension(&self) -> usize {
-        1
-    }
-
-    fn drift(&self, _time: f64, states: &[Lanes], slopes: &mut [Lanes]) {
-        drift(self.a, states, slopes);
-    }
-
-    fn noises(&self) -> &[Noise] {
-        &self.noise
-    }
-
-    fn facts(&self) -> &Facts {
-        &self.facts
-    }
-
-    /// p ∝ exp((2/σ²)(ax²/2 - x⁴/4)).
-    fn exact_log_density(&self, state: &[f64]) -> Option<f64> {
-        let &[x] = state else { return None };
-        let square = x * x;
-        Some(2.0 / self.sigma2 * square * (0.5 * self.a - 0.25 * square))
-    }
+/// p ∝ exp((2/σ²)(ax²/2 - x⁴/4)).
+fn exact_log_density(values: &[f64], state: &[f64]) -> Option<f64> {
+    let (&[a, sigma2], &[x]) = (values, state) else {
+        return None;
+    };
+    let square = x * x;
+    Some(2.0 / sigma2 * square * (0.5 * a - 0.25 * square))
 }
 
 #[cfg(test)]

@@ -27,7 +27,6 @@ mod rayleigh;
 pub mod registry;
 mod symmetry;
 mod typed;
-mod typeset;
 
 pub use crate::formula::{LANES, Lanes};
 pub use binding::{ParameterValues, SystemError};
@@ -41,14 +40,13 @@ pub use facts::{Facts, PeriodicDrift, SwitchingSurface, Symmetry};
 pub use family::Family;
 pub use model::Model;
 pub use noise::{Amplitude, Noise};
-pub use oscillator::{
-    DISPLACEMENT, Damping, Duffing, FIRST_INTERNAL_STATE, Oscillator, VELOCITY, Viscous,
-};
+pub use oscillator::{DISPLACEMENT, FIRST_INTERNAL_STATE, VELOCITY};
 pub use path::Path;
 pub use quantity::{BoundQuantity, Quantity, QuantityError, QuantityFault, quantities};
 pub use symmetry::proved_symmetry;
 pub use typed::{
-    FormulaHazard, FormulaPlace, Interpretation, TypedEquations, TypedModel, TypedModelError,
+    CompiledDrift, FormulaHazard, FormulaPlace, Interpretation, TypedEquations, TypedModel,
+    TypedModelError,
 };
 
 /// An Itô equation dX = a(X, t) dt + Σ_k b_k(X, t) e_{axis(k)} dW_k with bound parameters.

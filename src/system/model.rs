@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use super::coloured::{ColouredNoiseError, coloured};
+use super::typed::statement::Statement;
 use super::{AxisDescription, NoiseKind, ParameterDescription, System, TypedEquations};
+use crate::formula::mathml::{Element, words};
 
 /// Binds checked values, given in the order of a model's parameters.
 type Binding = dyn Fn(&[f64]) -> Arc<dyn System> + Send + Sync;
@@ -57,6 +59,7 @@ pub struct Model {
     pub source: String,
     /// Anything a user should know, one paragraph a string.
     pub notes: Vec<String>,
+    layouts: Vec<Element>,
     pub(super) definitions: Vec<(String, String)>,
     noise_kind: NoiseKind,
     pub(super) bind: Box<Binding>,
@@ -89,6 +92,7 @@ impl Model {
             parameters: Vec::new(),
             source: String::new(),
             notes: Vec::new(),
+            layouts: Vec::new(),
             definitions: Vec::new(),
             noise_kind: NoiseKind::White,
             bind: Box::new(bind),
@@ -96,8 +100,13 @@ impl Model {
         }
     }
 
-    /// The equations as formulas, where the model is made of them.
+    /// The equations as formulas, where the model is made of nothing else: not those of one whose drift is compiled.
     pub fn typed(&self) -> Option<&TypedEquations> {
+        self.formulas().filter(|typed| !typed.is_compiled())
+    }
+
+    /// The equations as formulas, where they are known.
+    pub(super) fn formulas(&self) -> Option<&TypedEquations> {
         self.typed.as_deref()
     }
 
@@ -170,8 +179,30 @@ impl Model {
     /// The model with its equations, one a line, as a person writes them.
     #[must_use]
     pub fn with_equations<S: Into<String>>(self, lines: impl IntoIterator<Item = S>) -> Self {
-        let equations = lines.into_iter().map(Into::into).collect();
-        Self { equations, ..self }
+        let lines = lines.into_iter().map(Into::into);
+        self.with_statements(lines.map(|line| (line.clone(), words(&line))).collect())
+    }
+
+    /// The model with its equations as lines and typeset.
+    pub(super) fn with_statements(self, statements: Vec<Statement>) -> Self {
+        let (equations, layouts) = statements.into_iter().unzip();
+        Self {
+            equations,
+            layouts,
+            ..self
+        }
+    }
+
+    /// The lines of [`Model::equations`] as MathML: laid out where they come from formulas, else the text.
+    ///
+    /// ```
+    /// let model = pbif::system::registry::find("coulomb")?;
+    /// let first = model.typeset()[0].to_string();
+    /// assert!(first.starts_with("<mrow><mover") && first.ends_with("<mo>=</mo><mi>y</mi></mrow>"), "{first}");
+    /// # Ok::<(), pbif::system::SystemError>(())
+    /// ```
+    pub fn typeset(&self) -> &[Element] {
+        &self.layouts
     }
 
     /// The model with names for formulas of its coordinates and parameters, which quantities that are watched may use.

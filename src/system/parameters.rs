@@ -42,6 +42,9 @@ const fn parameter(name: &'static str, symbol: &'static str, meaning: &'static s
     }
 }
 
+/// Of a friction law without internal states.
+pub(super) const NO_STATES: [Axis; 0] = [];
+
 /// Displacement of an oscillator.
 pub(super) const X: Axis = Axis("x", "x", "displacement");
 

@@ -1,36 +1,52 @@
 //! Oscillator whose damping depends on its energy: its steady state is known exactly (Caughey and Ma).
 
-use std::sync::Arc;
-
-use super::friction::Frictionless;
-use super::parameters::{ALPHA, GROWTH, MU, SATURATION, SIGMA2, X, Y};
-use super::{Damping, Duffing, Model, Oscillator, System};
+use super::TypedModel;
+use super::friction::{Frictionless, Motion};
+use super::oscillator::{Damping, Duffing, Oscillator, oscillator};
+use super::parameters::{ALPHA, GROWTH, MU, NO_STATES, SATURATION, SIGMA2};
 
 /// x' = y, y' = -(-a + bH)y - αx - μx³ + ξ, H the energy.
-pub(super) fn model() -> Model {
-    Model::new("rayleigh", "Oscillator with energy-dependent damping, exactly solvable", bind)
-        .with_equations([
-            "x' = y",
-            "y' = -(-a + b H) y - α x - μ x³ + ξ(t)",
-            "H = y²/2 + α x²/2 + μ x⁴/4",
-            "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
-        ])
-        .with_axes([X, Y])
-        .with_parameters([GROWTH, SATURATION, ALPHA, MU, SIGMA2])
+pub(super) fn model() -> TypedModel {
+    let title = "Oscillator with energy-dependent damping, exactly solvable";
+    let parameters = [GROWTH, SATURATION, ALPHA, MU, SIGMA2];
+    oscillator(("rayleigh", title), "-(-a + b H) y - α x - μ x³", NO_STATES, parameters)
+        .with_definition("H", "y²/2 + α x²/2 + μ x⁴/4")
+        .with_compiled_drift(|values| {
+            let (damping, spring) = parts(values);
+            let friction = Frictionless;
+            Oscillator { spring, damping, friction }.compiled()
+        })
+        .with_exact_log_density(exact_log_density)
         .with_source("T. K. Caughey and F. Ma, The exact steady-state solution of a class of non-linear stochastic systems (1982)")
         .with_notes([
             "The steady state is p ∝ exp(-(2/σ²)(-a H + b H²/2)): with α > 0 and μ ≥ 0 the joint density has one peak for a ≤ 0 and a crater for a > 0.",
         ])
 }
 
-fn bind(values: &[f64]) -> Arc<dyn System> {
-    let (alpha, mu) = (values[2], values[3]);
+fn parts(values: &[f64]) -> (EnergyDamping, Duffing) {
     let damping = EnergyDamping {
         growth: values[0],
         saturation: values[1],
     };
-    let spring = Duffing { alpha, mu };
-    Arc::new(Oscillator::new(spring, damping, Frictionless, values[4]))
+    let spring = Duffing {
+        alpha: values[2],
+        mu: values[3],
+    };
+    (damping, spring)
+}
+
+/// p ∝ exp(-(2/σ²) ∫₀ᴴ h dH).
+fn exact_log_density(values: &[f64], state: &[f64]) -> Option<f64> {
+    let &[displacement, velocity] = state else {
+        return None;
+    };
+    let (damping, spring) = parts(values);
+    let energy = spring.energy(Motion {
+        displacement,
+        velocity,
+    });
+    let integral = energy * (0.5 * damping.saturation * energy - damping.growth);
+    Some(-2.0 / values[4] * integral)
 }
 
 /// h = -a + bH.
@@ -44,10 +60,6 @@ impl Damping for EnergyDamping {
     #[inline(always)]
     fn coefficient(&self, energy: f64) -> f64 {
         self.saturation * energy - self.growth
-    }
-
-    fn integral(&self, energy: f64) -> f64 {
-        energy * (0.5 * self.saturation * energy - self.growth)
     }
 }
 

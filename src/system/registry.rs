@@ -3,10 +3,16 @@
 use std::sync::{Arc, LazyLock};
 
 use super::friction::{bliman_sorine, bouc_wen, coulomb, dahl, elasto_plastic, lugre, stribeck};
-use super::{Model, SystemError, bistable, rayleigh};
+use super::{Model, SystemError, TypedModel, bistable, rayleigh};
 
 static MODELS: LazyLock<Vec<Arc<Model>>> = LazyLock::new(|| {
-    let models = [
+    let models = typed().into_iter();
+    models.filter_map(|model| model.build().ok()).collect()
+});
+
+/// The built-in models as their formulas; a test builds each.
+fn typed() -> [TypedModel; 11] {
+    [
         coulomb::model(),
         dahl::model(),
         dahl::model_eq8(),
@@ -18,9 +24,8 @@ static MODELS: LazyLock<Vec<Arc<Model>>> = LazyLock::new(|| {
         bliman_sorine::model(),
         rayleigh::model(),
         bistable::model(),
-    ];
-    models.map(Arc::new).into()
-});
+    ]
+}
 
 /// Every built-in model, in the order in which they are listed.
 pub fn models() -> &'static [Arc<Model>] {
@@ -37,4 +42,15 @@ pub fn find(name: &str) -> Result<Arc<Model>, SystemError> {
     found.ok_or_else(|| SystemError::UnknownModel {
         name: name.to_owned(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_formulas_of_every_model_are_right() {
+        for model in super::typed() {
+            let built = model.build();
+            assert!(built.is_ok(), "{}", built.unwrap_err());
+        }
+    }
 }

@@ -67,9 +67,10 @@ impl Laid {
     /// A number in the fewest digits; very large and small ones with a power of ten.
     pub(super) fn number(value: f64) -> Self {
         let size = value.abs();
-        let digits = match size == 0.0 || (1e-4..1e9).contains(&size) {
-            true => format!("{size}"),
-            false => format!("{size:e}"),
+        let digits = if size == 0.0 || (1e-4..1e9).contains(&size) {
+            format!("{size}")
+        } else {
+            format!("{size:e}")
         };
         let plain = |digits: &str| Self::new(Element::text("mn", digits), Level::Atom);
         let number = match digits.split_once('e') {
@@ -124,9 +125,10 @@ impl Laid {
 
     /// In parentheses where it holds together less tightly than asked.
     fn at_least(self, level: Level) -> Self {
-        match self.level < level || self.negative {
-            true => self.between(Fence::Parentheses),
-            false => self,
+        if self.level < level || self.negative {
+            self.between(Fence::Parentheses)
+        } else {
+            self
         }
     }
 
@@ -179,9 +181,10 @@ impl Laid {
     }
 
     fn added(self, sign: &str, other: Self) -> Self {
-        let left = match self.level < Level::Sum {
-            true => self.between(Fence::Parentheses),
-            false => self,
+        let left = if self.level < Level::Sum {
+            self.between(Fence::Parentheses)
+        } else {
+            self
         };
         let mut elements = left.signed();
         elements.push(operator(sign));
@@ -195,25 +198,25 @@ impl Laid {
 
     pub(super) fn times(self, other: Self) -> Self {
         let negative = self.negative && self.level >= Level::Product;
-        let left = match negative {
-            true => Self {
+        let left = if negative {
+            Self {
                 negative: false,
                 ..self
-            },
-            false => self.at_least(Level::Product),
+            }
+        } else {
+            self.at_least(Level::Product)
         };
         let right = other.at_least(Level::Product);
-        let product = match right.begins_with_number() || left.is_mixed_with(&right) {
-            true => left.joined("·", right),
-            false => {
-                let mut product = left;
-                product
-                    .elements
-                    .push(operator(TIMES).with("rspace", "0.14em"));
-                product.elements.extend(right.elements);
-                product.level = Level::Product;
-                product
-            }
+        let product = if right.begins_with_number() || left.is_mixed_with(&right) {
+            left.joined("·", right)
+        } else {
+            let mut product = left;
+            product
+                .elements
+                .push(operator(TIMES).with("rspace", "0.14em"));
+            product.elements.extend(right.elements);
+            product.level = Level::Product;
+            product
         };
         Self {
             negative,
@@ -223,9 +226,10 @@ impl Laid {
 
     pub(super) fn over(self, other: Self) -> Self {
         let negative = self.negative && self.level >= Level::Product;
-        let above = match negative {
-            true => self.elements,
-            false => self.signed(),
+        let above = if negative {
+            self.elements
+        } else {
+            self.signed()
         };
         let parts = vec![Element::row(above), Element::row(other.signed())];
         let fraction = Self::new(Element::of("mfrac", parts), Level::Factor);
@@ -303,16 +307,6 @@ impl Laid {
             negative: false,
             level: Level::Relation,
         }
-    }
-
-    /// As one symbol.
-    pub(super) fn whole(self) -> Self {
-        Self::new(Element::row(self.signed()), Level::Atom)
-    }
-
-    /// A sign alone, such as that of a relation.
-    pub(super) fn sign(sign: &str) -> Self {
-        Self::new(operator(sign), Level::Relation)
     }
 
     pub(super) fn related(self, sign: &str, other: Self) -> Self {

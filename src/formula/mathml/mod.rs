@@ -1,20 +1,16 @@
 //! Equations typeset as MathML, which browsers draw themselves: fractions, roots, powers, subscripts, Greek letters.
 //!
 //! ```text
-//! formula as typed ── syntax tree ──┐
-//!                                   ├──► Laid (how tightly it holds together, its sign) ──► Element
-//! line as people write it ──────────┘
+//! formula as typed ── syntax tree ──► Laid (how tightly it holds together, its sign) ──► Element
 //! ```
 
 mod laid;
-mod stated;
 mod typed;
 
 use std::fmt;
 
 use super::language::{FormulaError, parse};
-
-pub use stated::stated;
+use laid::{Fence, Laid};
 
 /// Longest text that is laid out, in bytes; what is longer is shown as it was written.
 const LONGEST: usize = 4096;
@@ -55,29 +51,60 @@ pub enum Content {
 /// # Errors
 /// What is wrong with it, and where.
 pub fn formula(text: &str) -> Result<Element, FormulaError> {
-    typed::laid(text, &parse(text)?).map(laid::Laid::element)
+    typed::laid(text, &parse(text)?).map(Laid::element)
 }
 
-/// The layout of `left = right + factor noise + …`, an equation with formulas as they are typed.
+/// The layout of `left = right + amplitude noise(t) + …`, an equation with formulas as they are typed.
 ///
-/// `left` is a name with primes or without, and each noise a name, with its amplitude before it.
+/// `left` may be a name with primes, `relation` another sign than `=`; a noise is its amplitude and its name.
 ///
 /// # Errors
 /// What is wrong with a formula, and where.
-pub fn equation(
+pub(crate) fn equation(
     left: &str,
+    relation: &str,
     right: &str,
-    noises: &[(&str, String)],
+    noises: &[(String, String)],
 ) -> Result<Element, FormulaError> {
-    let mut sum = typed::laid(right, &parse(right)?)?;
+    let of = |text: &str| typed::laid(text, &parse(text)?);
+    let mut sum = of(right)?;
     for (amplitude, noise) in noises {
-        let noise = laid::Laid::name(noise).called(vec![laid::Laid::name("t")]);
-        let term = typed::laid(amplitude, &parse(amplitude)?)?.times(noise);
-        sum = sum.plus(term);
+        sum = sum.plus(of(amplitude)?.times(at(noise, Laid::name("t"))));
     }
     let name = left.trim_end_matches('\'');
-    let name = laid::Laid::name(name).primed(left.len() - name.len());
-    Ok(name.related("=", sum).element())
+    let left = of(name)?.primed(left.len() - name.len());
+    Ok(left.related(relation, sum).element())
+}
+
+/// The layout of `E[one(t) other(t+lag)] = factor δ(lag)`, with words behind it.
+pub(crate) fn correlation(
+    [one, other]: [&str; 2],
+    factor: &str,
+    lag: &str,
+    words: &str,
+) -> Element {
+    let time = || Laid::name("t");
+    let product = at(one, time()).times(at(other, time().plus(Laid::name(lag))));
+    let mean = Laid::name("E").applied(product.between(Fence::Brackets));
+    let mut delta = at("δ", Laid::name(lag));
+    if !factor.is_empty() {
+        delta = Laid::name(factor).times(delta);
+    }
+    let whole = mean.related("=", delta);
+    if words.is_empty() {
+        return whole.element();
+    }
+    whole.beside(Laid::words(words)).element()
+}
+
+/// Text that is no formula.
+pub(crate) fn words(text: &str) -> Element {
+    Laid::words(text).element()
+}
+
+/// A function of time.
+fn at(name: &str, time: Laid) -> Laid {
+    Laid::name(name).called(vec![time])
 }
 
 impl Element {

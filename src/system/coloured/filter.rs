@@ -1,6 +1,7 @@
 //! What noise can be, and the linear filters behind which white noise becomes coloured.
 
 use super::{CORRELATION_TIME, NOISE_DAMPING, NOISE_FREQUENCY};
+use crate::system::typed::statement::{Statement, equation, white};
 use crate::system::{LANES, Lanes, ParameterDescription, ParameterRange};
 
 /// What noise is, by its name in files.
@@ -76,27 +77,41 @@ impl NoiseKind {
         self.parameters().iter().any(|one| one.name == name)
     }
 
-    /// What the correlation of the noise has in place of δ(s).
-    pub(super) fn correlation(self) -> &'static str {
-        match self {
-            Self::White => "δ(s)",
-            Self::OrnsteinUhlenbeck => "exp(-|s|/τ)/(2 τ)",
-            Self::Harmonic => "ω_n C(s)/(4 ζ_n)",
+    /// The equations of the filters of this many noises.
+    pub(super) fn statements(self, noises: usize) -> Vec<Statement> {
+        let mut statements = Vec::new();
+        for number in 1..=noises {
+            let index = if noises == 1 {
+                String::new()
+            } else {
+                format!("_{number}")
+            };
+            let [noise, state, rate] = ["ξ", "η", "ν"].map(|name| format!("{name}{index}"));
+            let mut add = |left: &str, right: &str, amplitude: Option<&str>| {
+                let white = amplitude.map(|one| (one.to_owned(), format!("w{index}")));
+                let white: Vec<_> = white.into_iter().collect();
+                statements.push(equation(left, "=", right, &white));
+            };
+            match self {
+                Self::White => {}
+                Self::OrnsteinUhlenbeck => {
+                    add(&noise, &format!("{state}/sqrt(2 τ)"), None);
+                    add(
+                        &format!("{state}'"),
+                        &format!("-{state}/τ"),
+                        Some("sqrt(2/τ)"),
+                    );
+                }
+                Self::Harmonic => {
+                    add(&noise, &format!("sqrt(ω_n/(4 ζ_n)) {state}"), None);
+                    add(&format!("{state}'"), &format!("ω_n {rate}"), None);
+                    let damped = format!("-ω_n {state} - 2 ζ_n ω_n {rate}");
+                    add(&format!("{rate}'"), &damped, Some("2 sqrt(ζ_n ω_n)"));
+                }
+            }
         }
-    }
-
-    /// The equations of the filter, as a person writes them.
-    pub(super) fn equations(self) -> &'static [&'static str] {
-        match self {
-            Self::White => &[],
-            Self::OrnsteinUhlenbeck => &[
-                "noise b ξ(t) = b η/√(2 τ),   η' = -η/τ + √(2/τ) w(t),   w white noise of unit intensity",
-            ],
-            Self::Harmonic => &[
-                "noise b ξ(t) = b √(ω_n/(4 ζ_n)) η,   η' = ω_n ν,   ν' = -ω_n η - 2 ζ_n ω_n ν + 2 √(ζ_n ω_n) w(t)",
-                "w white noise of unit intensity,   C'' + 2 ζ_n ω_n C' + ω_n² C = 0 for s > 0,   C(0) = 1,   C'(0) = 0",
-            ],
-        }
+        statements.push(white("w", noises > 1, "s", ""));
+        statements
     }
 
     /// The filter with values of [`NoiseKind::parameters`]; `None` for white noise.

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::filtered::Filtered;
 use super::{ColouredNoiseError, NOISE_AXIS, NOISE_RATE_AXIS, NoiseKind};
 use crate::MAX_DIMENSION;
+use crate::system::typed::statement::Statement;
 use crate::system::{AxisDescription, Model, System};
 
 /// A model with coloured noise in place of each of `noises` white noises, with one set of parameters for all their
@@ -44,7 +45,7 @@ pub(in crate::system) fn coloured(
     };
     let described = model.axes.iter().cloned();
     let coloured = Model::new(&model.name, &model.title, bind)
-        .with_equations(lines(model, kind))
+        .with_statements(statements(model, kind, noises))
         .with_axes(described.chain(filters).collect::<Vec<_>>())
         .with_parameters(parameters)
         .with_source(&model.source)
@@ -52,7 +53,7 @@ pub(in crate::system) fn coloured(
         .with_notes(model.typed().map_or(Vec::new(), |_| model.notes.clone()))
         .with_definitions(model.definitions().to_vec())
         .with_noise_kind(kind);
-    Ok(match model.typed() {
+    Ok(match model.formulas() {
         Some(typed) => coloured.with_typed(typed.clone()),
         None => coloured,
     })
@@ -105,18 +106,10 @@ fn check_names(
     }
 }
 
-/// The model's equations, with the correlation that its noises have now, and where they come from.
-fn lines(model: &Model, kind: NoiseKind) -> Vec<String> {
-    let states_intensity = |line: &&String| line.starts_with("E[ξ");
-    let kept = model
-        .equations
-        .iter()
-        .filter(|line| !states_intensity(line));
-    let intensity = model.equations.iter().find(states_intensity);
-    let coloured = intensity.map(|line| {
-        line.replace("(t+τ)", "(t+s)")
-            .replace("δ(τ)", kind.correlation())
-    });
-    let filter = kind.equations().iter().map(|line| (*line).to_owned());
-    kept.cloned().chain(coloured).chain(filter).collect()
+/// The model's equations, and where its noises come from in place of what says that they are white.
+fn statements(model: &Model, kind: NoiseKind, noises: usize) -> Vec<Statement> {
+    let lines = model.equations.iter().cloned();
+    let own = lines.zip(model.typeset().iter().cloned());
+    let kept = own.filter(|(line, _)| !line.starts_with("E[ξ"));
+    kept.chain(kind.statements(noises)).collect()
 }

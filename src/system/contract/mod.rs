@@ -8,6 +8,7 @@
 //! | --- | --- |
 //! | dimension, noises, bounds, surfaces, symmetry, period | they fit each other |
 //! | drift and noise | finite; a batch gives each lane what the state gives alone |
+//! | formulas of a model whose drift is compiled | the drift is what they say |
 //! | [`Facts::period`] | drift and noise repeat after it; without one they do not change with time |
 //! | [`Facts::symmetry`] | the image of a state has the image of its drift, its noise and its exact density |
 //! | `Facts::bounds` | at a bound the drift points inward or along, and noise does not act across |
@@ -33,6 +34,7 @@ use std::collections::HashSet;
 #[cfg(doc)]
 use super::Facts;
 use super::{Model, ParameterValues, System};
+use crate::formula::tape::Tape;
 use trial::Trial;
 
 /// Whether what a system declares holds at random states of the box `ranges` (one range an axis, those of the domain Ω
@@ -71,8 +73,20 @@ use trial::Trial;
 /// # Errors
 /// The first [`ContractViolation`] that is found, with a state at which it shows.
 pub fn verify(system: &dyn System, ranges: &[(f64, f64)]) -> Result<(), ContractViolation> {
+    verify_with(system, ranges, None)
+}
+
+/// As [`verify`]; with formulas that say the same as the drift.
+fn verify_with(
+    system: &dyn System,
+    ranges: &[(f64, f64)],
+    formulas: Option<&Tape>,
+) -> Result<(), ContractViolation> {
     let ranges = declarations::check(system, ranges)?;
     let trial = Trial::new(system, ranges)?;
+    if let Some(formulas) = formulas {
+        trial.check_formulas(formulas)?;
+    }
     trial.check_time()?;
     trial.check_symmetry()?;
     trial.check_bounds()?;
@@ -82,8 +96,8 @@ pub fn verify(system: &dyn System, ranges: &[(f64, f64)]) -> Result<(), Contract
     surfaces::check(&trial)
 }
 
-/// As [`verify`] for a model with these parameter values; also that the model describes every axis, names
-/// nothing twice, and allows its own defaults.
+/// As [`verify`] for a model with these parameter values; also that a compiled drift is what the model's formulas say,
+/// that the model describes every axis, names nothing twice, and allows its own defaults.
 ///
 /// # Errors
 /// The first [`ContractViolation`] that is found.
@@ -115,5 +129,10 @@ pub fn verify_model(
             dimension,
         });
     }
-    verify(system.as_ref(), ranges)
+    // Filters of coloured noise have no formulas.
+    let typed = model
+        .formulas()
+        .filter(|_| !model.noise_kind().is_coloured());
+    let formulas = typed.and_then(|typed| typed.drift(values.as_slice()));
+    verify_with(system.as_ref(), ranges, formulas.as_ref())
 }

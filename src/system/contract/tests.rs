@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use super::*;
 use crate::system::{
-    AxisDescription, Facts, Noise, ParameterDescription, ParameterRange, SwitchingSurface, registry,
+    AxisDescription, Facts, Noise, ParameterDescription, ParameterRange, SwitchingSurface,
+    TypedModel, registry,
 };
 
 mod patient;
@@ -253,6 +254,26 @@ fn what_does_not_hold_is_found_out_at_a_state() {
     assert_eq!(
         violation(|system| system.facts.switching_surfaces.push(smooth)),
         V::SmoothSurface { surface: smooth }
+    );
+}
+
+#[test]
+fn a_compiled_drift_must_be_what_the_formulas_say() {
+    let verified = |stiffness: f64| {
+        let model = TypedModel::new("linear", "Linear", ["x"])
+            .with_equation("x", "-2 x")
+            .with_noise("x", ["0.5"])
+            .with_compiled_drift(move |_| {
+                Box::new(move |_, states, drift| drift[0] = states[0].map(|x| -stiffness * x))
+            });
+        let model = model.build().unwrap();
+        verify_model(&model, &model.values(&[]).unwrap(), &[(-2.0, 2.0)])
+    };
+    assert_eq!(verified(2.0), Ok(()));
+    let wrong = verified(2.0 + 1e-6);
+    assert!(
+        matches!(wrong, Err(ContractViolation::Formula { axis: 0, .. })),
+        "{wrong:?}"
     );
 }
 

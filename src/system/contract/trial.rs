@@ -5,6 +5,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::super::{LANES, Lanes, System};
 use super::{ContractViolation, Quantity};
+use crate::formula::tape::Tape;
 
 /// Difference that is rounding, in units of the root mean square of the drift (or of the mean noise intensity) on its
 /// axis.
@@ -98,16 +99,40 @@ impl<'a> Trial<'a> {
         self.system.intensity_at(axis, time, state)
     }
 
-    /// Drift and noise of all states as one batch are finite and those of each state alone.
-    fn check_batch(&self, time: f64) -> Result<(), ContractViolation> {
-        let dimension = self.dimension();
-        let mut batch = vec![[0.0; LANES]; dimension];
+    /// All states side by side.
+    fn batch(&self) -> Vec<Lanes> {
+        let axes = 0..self.dimension();
+        axes.map(|axis| std::array::from_fn(|lane| self.states[lane][axis]))
+            .collect()
+    }
+
+    /// The drift is what these formulas say.
+    pub(super) fn check_formulas(&self, formulas: &Tape) -> Result<(), ContractViolation> {
+        let batch = self.batch();
+        let (mut compiled, mut typed) = (batch.clone(), batch.clone());
+        self.system.drift(0.0, &batch, &mut compiled);
+        formulas.run(0.0, &batch, &mut typed);
         for (lane, state) in self.states.iter().enumerate() {
-            for (axis, &value) in state.iter().enumerate() {
-                batch[axis][lane] = value;
+            for axis in 0..self.dimension() {
+                let (found, expected) = (compiled[axis][lane], typed[axis][lane]);
+                if !same(found, expected, self.drift_size[axis]) {
+                    let state = state.clone();
+                    return Err(ContractViolation::Formula {
+                        axis,
+                        state,
+                        found,
+                        expected,
+                    });
+                }
             }
         }
-        let mut drift: Vec<Lanes> = vec![[f64::NAN; LANES]; dimension];
+        Ok(())
+    }
+
+    /// Drift and noise of all states as one batch are finite and those of each state alone.
+    fn check_batch(&self, time: f64) -> Result<(), ContractViolation> {
+        let batch = self.batch();
+        let mut drift: Vec<Lanes> = vec![[f64::NAN; LANES]; batch.len()];
         self.system.drift(time, &batch, &mut drift);
         for (lane, state) in self.states.iter().enumerate() {
             let alone = self.system.drift_at(time, state);

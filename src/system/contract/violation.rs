@@ -157,6 +157,20 @@ pub enum ContractViolation {
         /// Value among others.
         in_batch: f64,
     },
+    /// A compiled drift that is not what the formulas say.
+    #[error(
+        "the compiled drift along axis {axis} is {found} at {state:?}, where its formula gives {expected}"
+    )]
+    Formula {
+        /// The axis.
+        axis: usize,
+        /// Where.
+        state: Vec<f64>,
+        /// The compiled drift.
+        found: f64,
+        /// The drift by the formula.
+        expected: f64,
+    },
     /// A quantity that does not repeat after the period, or changes with time without one.
     #[error(
         "{quantity} at {state:?} changes from {first} at time {from} to {second} at time {to}; the period is {}",

@@ -2,37 +2,29 @@
 //! so that the force peaks before it slides.
 
 use super::{FrictionLaw, Motion};
-use crate::system::oscillator::{axes, parameters, with_friction};
+use crate::system::oscillator::{compiled, with_friction};
 use crate::system::parameters::{
     FAST_FORCE, FAST_LEVEL, SLIDING_DISTANCE, SLOW_FORCE, SLOW_LEVEL, SWIFTNESS,
 };
-use crate::system::{AxisDescription, Model};
+use crate::system::{AxisDescription, TypedModel};
 
 /// x' = y, y' = -κy - αx - μx³ - (u - v) + ξ, u' = (f₁y - |y|u)/(ρε), v' = (f₂y - |y|v)/ε.
-pub(in crate::system) fn model() -> Model {
-    let bind = |values: &[f64]| {
-        with_friction(values, |own| BlimanSorine {
-            level: [own[0], own[1]],
-            per_distance: [(own[2] * own[3]).recip(), own[2].recip()],
-        })
-    };
+pub(in crate::system) fn model() -> TypedModel {
+    let title = "Duffing oscillator with second-order Bliman-Sorine friction";
     let states =
         [FAST_FORCE, SLOW_FORCE].map(|axis| AxisDescription::from(axis).carried_by_modes());
-    Model::new("bliman_sorine", "Duffing oscillator with second-order Bliman-Sorine friction", bind)
-        .with_equations([
-            "x' = y",
-            "y' = -κ y - α x - μ x³ - (u - v) + ξ(t)",
-            "u' = (f_1 y - |y| u)/(ρ ε),   |u| ≤ f_1",
-            "v' = (f_2 y - |y| v)/ε,   |v| ≤ f_2",
-            "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
-        ])
-        .with_axes(axes(states))
-        .with_parameters(parameters([
-            FAST_LEVEL,
-            SLOW_LEVEL,
-            SLIDING_DISTANCE,
-            SWIFTNESS,
-        ]))
+    let own = [FAST_LEVEL, SLOW_LEVEL, SLIDING_DISTANCE, SWIFTNESS];
+    with_friction(("bliman_sorine", title), "(u - v)", states, own)
+        .with_equation("u", "(f_1 y - abs(y) u)/(ρ ε)")
+        .with_equation("v", "(f_2 y - abs(y) v)/ε")
+        .with_bounds("u", "-f_1", "f_1")
+        .with_bounds("v", "-f_2", "f_2")
+        .with_compiled_drift(|values| {
+            compiled(values, |own| BlimanSorine {
+                level: [own[0], own[1]],
+                per_distance: [(own[2] * own[3]).recip(), own[2].recip()],
+            })
+        })
         .with_source(
             "P.-A. Bliman and M. Sorine, Easy-to-use realistic dry friction models for automatic control, \
              European Control Conference (1995)",
@@ -66,15 +58,6 @@ impl FrictionLaw<2> for BlimanSorine {
     #[inline(always)]
     fn force(&self, _motion: Motion, [u, v]: &[f64; 2], _rates: &[f64; 2]) -> f64 {
         u - v
-    }
-
-    fn bounds(&self, state: usize) -> Option<(f64, f64)> {
-        let level = *self.level.get(state)?;
-        Some((-level, level))
-    }
-
-    fn base_velocity(&self) -> Option<f64> {
-        Some(0.0)
     }
 }
 

@@ -2,30 +2,33 @@
 
 use super::{FrictionLaw, Motion};
 use crate::formula::arithmetic::power;
-use crate::system::oscillator::{axes, parameters, with_friction};
+use crate::system::oscillator::{compiled, with_friction};
 use crate::system::parameters::{
     HYSTERESIS_FORCE, HYSTERESIS_GROWTH, HYSTERESIS_LOSS, HYSTERESIS_SHAPE, SHARPNESS, Z,
 };
-use crate::system::{AxisDescription, FIRST_INTERNAL_STATE, Model, SwitchingSurface, System};
-use std::sync::Arc;
+use crate::system::{AxisDescription, Facts, TypedModel, VELOCITY};
 
-/// x' = y, y' = -κy - αx - μx³ - λz + ξ, z' = A y - β|y||z|ⁿ⁻¹z - γy|z|ⁿ.
-pub(in crate::system) fn model() -> Model {
-    Model::new("bouc_wen", "Duffing oscillator with Bouc-Wen hysteresis", bind)
-        .with_equations([
-            "x' = y",
-            "y' = -κ y - α x - μ x³ - λ z + ξ(t)",
-            "z' = A y - β |y| |z|ⁿ⁻¹ z - γ y |z|ⁿ,   |z| ≤ (A/(β + γ))^(1/n)",
-            "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
-        ])
-        .with_axes(axes([AxisDescription::from(Z).carried_by_modes()]))
-        .with_parameters(parameters([
-            HYSTERESIS_FORCE,
-            HYSTERESIS_GROWTH,
-            HYSTERESIS_LOSS,
-            HYSTERESIS_SHAPE,
-            SHARPNESS,
-        ]))
+/// x' = y, y' = -κy - αx - μx³ - λz + ξ, z' = A y - β|y||z|ⁿ sgn z - γy|z|ⁿ.
+pub(in crate::system) fn model() -> TypedModel {
+    let named = ("bouc_wen", "Duffing oscillator with Bouc-Wen hysteresis");
+    let z = AxisDescription::from(Z).carried_by_modes();
+    let own = [
+        HYSTERESIS_FORCE,
+        HYSTERESIS_GROWTH,
+        HYSTERESIS_LOSS,
+        HYSTERESIS_SHAPE,
+        SHARPNESS,
+    ];
+    with_friction(named, "λ z", [z], own)
+        .with_equation("z", "A y - (β abs(y) sgn(z) + γ y) abs(z)^n")
+        .with_bounds("z", "-(A/(β + γ))^(1/n)", "(A/(β + γ))^(1/n)")
+        .with_mended_facts(mend)
+        .with_compiled_drift(|values| match values[EXPONENT] {
+            // Exponents of one and two have loops of their own, compiled without a power.
+            1.0 => compiled(values, |own| BoucWen::new(own, One)),
+            2.0 => compiled(values, |own| BoucWen::new(own, Two)),
+            _ => compiled(values, |own| BoucWen::new(own, Any(own[4]))),
+        })
         .with_source(
             "Y.-K. Wen, Method for random vibration of hysteretic systems, Journal of the Engineering Mechanics Division (ASCE) 102 (1976); \
              bounds: F. Ikhouane and J. Rodellar, Systems with Hysteresis (2007)",
@@ -40,13 +43,18 @@ pub(in crate::system) fn model() -> Model {
         ])
 }
 
-/// Exponents of one and two have loops of their own, compiled without a power.
-fn bind(values: &[f64]) -> Arc<dyn System> {
-    match values[EXPONENT] {
-        1.0 => with_friction(values, |own| BoucWen::new(own, One)),
-        2.0 => with_friction(values, |own| BoucWen::new(own, Two)),
-        _ => with_friction(values, |own| BoucWen::new(own, Any(own[4]))),
-    }
+/// There are no bounds without a positive β + γ, nor where the power overflows; and across z = 0 the rate bends only
+/// with |z| itself.
+fn mend(values: &[f64], facts: &mut Facts) {
+    let (loss, shape) = (values[EXPONENT - 2], values[EXPONENT - 1]);
+    facts
+        .bounds
+        .retain(|_, (_, limit)| loss + shape > 0.0 && limit.is_finite());
+    let bends = values[EXPONENT] <= 1.0 && shape != 0.0;
+    facts
+        .switching_surfaces
+        .retain(|surface| surface.axis == VELOCITY || bends);
+    facts.switching_surfaces.sort_by_key(|surface| surface.axis);
 }
 
 /// Place of n among the parameters of the oscillator.
@@ -95,19 +103,16 @@ struct BoucWen<E> {
     loss: f64,
     shape: f64,
     exponent: E,
-    /// n.
-    sharpness: f64,
 }
 
 impl<E> BoucWen<E> {
-    /// From λ, A, β, γ and n.
+    /// From λ, A, β and γ.
     fn new(values: &[f64], exponent: E) -> Self {
         Self {
             stiffness: values[0],
             growth: values[1],
             loss: values[2],
             shape: values[3],
-            sharpness: values[4],
             exponent,
         }
     }
@@ -124,30 +129,6 @@ impl<E: Exponent> FrictionLaw<1> for BoucWen<E> {
     #[inline(always)]
     fn force(&self, _motion: Motion, [z]: &[f64; 1], _rates: &[f64; 1]) -> f64 {
         self.stiffness * z
-    }
-
-    fn bounds(&self, _state: usize) -> Option<(f64, f64)> {
-        let limit = power(
-            self.growth / (self.loss + self.shape),
-            self.sharpness.recip(),
-        );
-        // Not so without a positive β + γ, nor where the power overflows.
-        (self.loss + self.shape > 0.0 && limit.is_finite()).then_some((-limit, limit))
-    }
-
-    fn base_velocity(&self) -> Option<f64> {
-        Some(0.0)
-    }
-
-    /// The rate bends with |z| too where n is one.
-    fn switching_surfaces(&self) -> Vec<SwitchingSurface> {
-        let at_zero = SwitchingSurface {
-            axis: FIRST_INTERNAL_STATE,
-            at: 0.0,
-        };
-        let bends = self.sharpness <= 1.0 && self.shape != 0.0;
-        let of_the_state = bends.then_some(at_zero);
-        self.at_base().into_iter().chain(of_the_state).collect()
     }
 }
 

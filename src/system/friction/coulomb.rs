@@ -3,26 +3,34 @@
 //! Convention of the paper's Eq. (7): κ is the viscous damping, α the linear stiffness.
 
 use super::{FrictionLaw, Motion};
-use crate::system::oscillator::{axes, parameters, with_friction};
-use crate::system::parameters::COULOMB_LEVEL;
-use crate::system::{AxisDescription, Model};
+use crate::system::TypedModel;
+use crate::system::oscillator::{Duffing, compiled, with_friction};
+use crate::system::parameters::{COULOMB_LEVEL, NO_STATES};
 
 /// x' = y, y' = -κy - αx - μx³ - f_c sgn(y) + ξ.
-pub(in crate::system) fn model() -> Model {
-    let bind = |values: &[f64]| with_friction(values, |own| Coulomb { level: own[0] });
-    Model::new("coulomb", "Duffing oscillator with Coulomb friction", bind)
-        .with_equations([
-            "x' = y",
-            "y' = -κ y - α x - μ x³ - f_c sgn(y) + ξ(t),   sgn(0) = 0",
-            "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
-        ])
-        .with_axes(axes::<AxisDescription>([]))
-        .with_parameters(parameters([COULOMB_LEVEL]))
+pub(in crate::system) fn model() -> TypedModel {
+    let named = ("coulomb", "Duffing oscillator with Coulomb friction");
+    with_friction(named, "f_c sgn(y)", NO_STATES, [COULOMB_LEVEL])
+        .with_compiled_drift(|values| compiled(values, |own| Coulomb { level: own[0] }))
+        .with_exact_log_density(exact_log_density)
         .with_source("the paper, Eqs. (5)-(6), with the letters of Eq. (7)")
         .with_notes([
             "The paper's Eq. (5) prints α = 1 as damping and κ = 0.01 as stiffness. With that reading the marginal of x has one peak at every f_c, against the paper's Fig. 2(a); with the letters of its Eq. (7), used here, its figures come out.",
             "The marginal of y has a kink at 0, p'(0+)/p(0) = -2 f_c/σ², so it changes from two peaks to one exactly at f_c = 0.",
         ])
+}
+
+/// Without friction p ∝ exp(-(2/σ²) κ H).
+fn exact_log_density(values: &[f64], state: &[f64]) -> Option<f64> {
+    let (&[alpha, kappa, mu, level, sigma2], &[displacement, velocity]) = (values, state) else {
+        return None;
+    };
+    let motion = Motion {
+        displacement,
+        velocity,
+    };
+    let energy = Duffing { alpha, mu }.energy(motion);
+    (level == 0.0).then(|| -2.0 / sigma2 * (kappa * energy))
 }
 
 /// F = f_c sgn(y).
@@ -48,14 +56,6 @@ impl FrictionLaw<0> for Coulomb {
     #[inline(always)]
     fn force(&self, motion: Motion, _state: &[f64; 0], _rates: &[f64; 0]) -> f64 {
         self.level * sign(motion.velocity)
-    }
-
-    fn base_velocity(&self) -> Option<f64> {
-        Some(0.0)
-    }
-
-    fn is_absent(&self) -> bool {
-        self.level == 0.0
     }
 }
 

@@ -4,22 +4,18 @@
 //! saturates at ±f_c/λ under steady sliding. The print has x where the law has z, and then nothing saturates.
 
 use super::{FrictionLaw, Motion};
-use crate::system::oscillator::{axes, parameters, with_friction};
+use crate::system::oscillator::{compiled, with_friction};
 use crate::system::parameters::{DAHL_LEVEL, LAMBDA, Z};
-use crate::system::{AxisDescription, Model};
+use crate::system::{AxisDescription, TypedModel};
 
 /// x' = y, y' = -κy - αx - μx³ - λz + ξ, z' = y - (λ|y|/f_c) z.
-pub(in crate::system) fn model() -> Model {
-    let bind = |values: &[f64]| with_friction(values, |own| Dahl(Contact::new(own)));
-    Model::new("dahl", "Duffing oscillator with Dahl friction", bind)
-        .with_equations([
-            "x' = y",
-            "y' = -κ y - α x - μ x³ - λ z + ξ(t)",
-            "z' = y - (λ |y| / f_c) z,   |z| ≤ f_c/λ",
-            "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
-        ])
-        .with_axes(axes([AxisDescription::from(Z).carried_by_modes()]))
-        .with_parameters(parameters([LAMBDA, DAHL_LEVEL]))
+pub(in crate::system) fn model() -> TypedModel {
+    let named = ("dahl", "Duffing oscillator with Dahl friction");
+    let z = AxisDescription::from(Z).carried_by_modes();
+    with_friction(named, "λ z", [z], [LAMBDA, DAHL_LEVEL])
+        .with_equation("z", "y - (λ abs(y)/f_c) z")
+        .with_bounds("z", "-f_c/λ", "f_c/λ")
+        .with_compiled_drift(|values| compiled(values, |own| Dahl(Contact::new(own))))
         .with_source("the paper, Eqs. (7)-(9), with z as last factor of z'; P. R. Dahl, A solid friction model (1968)")
         .with_notes([
             "The paper's Eqs. (8) and (9) print x as the last factor of z'. Dahl's law has z, and with it the paper's claims hold; the printed equations are the model `dahl_eq8`, which has no steady state.",
@@ -28,17 +24,11 @@ pub(in crate::system) fn model() -> Model {
 }
 
 /// x' = y, y' = -κy - αx - μx³ - λz + ξ, z' = y - (λ|y|/f_c) x.
-pub(in crate::system) fn model_eq8() -> Model {
-    let bind = |values: &[f64]| with_friction(values, |own| DahlAsPrinted(Contact::new(own)));
-    Model::new("dahl_eq8", "Duffing oscillator with Dahl friction as printed (no steady state)", bind)
-        .with_equations([
-            "x' = y",
-            "y' = -κ y - α x - μ x³ - λ z + ξ(t)",
-            "z' = y - (λ |y| / f_c) x",
-            "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
-        ])
-        .with_axes(axes([Z]))
-        .with_parameters(parameters([LAMBDA, DAHL_LEVEL]))
+pub(in crate::system) fn model_eq8() -> TypedModel {
+    let title = "Duffing oscillator with Dahl friction as printed (no steady state)";
+    with_friction(("dahl_eq8", title), "λ z", [Z], [LAMBDA, DAHL_LEVEL])
+        .with_equation("z", "y - (λ abs(y)/f_c) x")
+        .with_compiled_drift(|values| compiled(values, |own| DahlAsPrinted(Contact::new(own))))
         .with_source("the paper, Eqs. (8)-(9), as printed")
         .with_notes([
             "The print has x as the last factor of z', where Dahl's law has z (model `dahl`). Nothing then holds z back: it is not bounded, it runs away, and the system has no steady state.",
@@ -50,8 +40,6 @@ pub(in crate::system) fn model_eq8() -> Model {
 struct Contact {
     /// λ.
     stiffness: f64,
-    /// f_c/λ, at which z saturates.
-    limit: f64,
     /// λ/f_c.
     saturation: f64,
 }
@@ -62,7 +50,6 @@ impl Contact {
         let (lambda, f_c) = (values[0], values[1]);
         Self {
             stiffness: lambda,
-            limit: f_c / lambda,
             saturation: lambda / f_c,
         }
     }
@@ -87,14 +74,6 @@ impl FrictionLaw<1> for Dahl {
     fn force(&self, _motion: Motion, [z]: &[f64; 1], _rates: &[f64; 1]) -> f64 {
         self.0.stiffness * z
     }
-
-    fn bounds(&self, _state: usize) -> Option<(f64, f64)> {
-        Some((-self.0.limit, self.0.limit))
-    }
-
-    fn base_velocity(&self) -> Option<f64> {
-        Some(0.0)
-    }
 }
 
 /// The law as printed: the displacement stands where z should, and z knows no bounds.
@@ -110,10 +89,6 @@ impl FrictionLaw<1> for DahlAsPrinted {
     #[inline(always)]
     fn force(&self, _motion: Motion, [z]: &[f64; 1], _rates: &[f64; 1]) -> f64 {
         self.0.stiffness * z
-    }
-
-    fn base_velocity(&self) -> Option<f64> {
-        Some(0.0)
     }
 }
 

@@ -4,39 +4,35 @@ use std::f64::consts::PI;
 
 use super::{FrictionLaw, Motion};
 use crate::formula::arithmetic::{reduced_cosine, sign};
-use crate::system::oscillator::{axes, parameters, with_friction};
+use crate::system::oscillator::{compiled, with_friction};
 use crate::system::parameters::{CONTACT_DAMPING, ELASTIC_LEVEL, LAMBDA, YIELDING_LEVEL, Z};
-use crate::system::{AxisDescription, Model};
+use crate::system::{AxisDescription, TypedModel};
 
 /// x' = y, y' = -κy - αx - μx³ - λz - ηz' + ξ, z' = y (1 - a(w) w/(f_b + f_t)), w = λ z sgn y.
-pub(in crate::system) fn model() -> Model {
-    let bind = |values: &[f64]| {
-        with_friction(values, |own| ElastoPlastic {
+pub(in crate::system) fn model() -> TypedModel {
+    let title = "Duffing oscillator with elasto-plastic friction";
+    let z = AxisDescription::from(Z).carried_by_modes();
+    let own = [LAMBDA, CONTACT_DAMPING, ELASTIC_LEVEL, YIELDING_LEVEL];
+    with_friction(
+        ("elasto_plastic", title),
+        "(λ z + η r)",
+        [z],
+        own,
+    )
+    .with_equation("z", "r")
+    .with_definition("r", "y (1 - a w/(f_b + f_t))")
+    .with_definition("w", "λ z sgn(y)")
+    .with_definition("a", "(1 - cos(π s))/2")
+    .with_definition("s", "min(max((w - f_b)/f_t, 0), 1)")
+    .with_bounds("z", "-(f_b + f_t)/λ", "(f_b + f_t)/λ")
+    .with_compiled_drift(|values| {
+        compiled(values, |own| ElastoPlastic {
             stiffness: own[0],
             damping: own[1],
             elastic: own[2],
             yielding: own[3],
         })
-    };
-    Model::new(
-        "elasto_plastic",
-        "Duffing oscillator with elasto-plastic friction",
-        bind,
-    )
-    .with_equations([
-        "x' = y",
-        "y' = -κ y - α x - μ x³ - λ z - η z' + ξ(t)",
-        "z' = y (1 - a(w) w/(f_b + f_t)),   w = λ z sgn(y),   |z| ≤ (f_b + f_t)/λ",
-        "a(w) = 0 for w ≤ f_b,   (1 - cos(π (w - f_b)/f_t))/2 up to f_b + f_t,   1 beyond",
-        "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
-    ])
-    .with_axes(axes([AxisDescription::from(Z).carried_by_modes()]))
-    .with_parameters(parameters([
-        LAMBDA,
-        CONTACT_DAMPING,
-        ELASTIC_LEVEL,
-        YIELDING_LEVEL,
-    ]))
+    })
     .with_source(
         "P. Dupont, V. Hayward, B. Armstrong and F. Altpeter, Single state elastoplastic friction models, \
          IEEE Transactions on Automatic Control 47 (2002)",
@@ -46,7 +42,7 @@ pub(in crate::system) fn model() -> Model {
          Under steady sliding the friction force is (f_b + f_t) sgn(y) + κ y.",
         "Below f_b the contact is a spring: unlike `dahl` and `lugre` it does not creep under a small force that goes to and fro.",
         "Noise and friction balance exactly: E[y (λ z + η z')] + κ E[y²] = σ²/2.",
-        "a(w) has a jump of its second derivative at both ends of the yielding, so that modes converge as a power of their number; cells \
+        "a has a jump of its second derivative at both ends of the yielding, so that modes converge as a power of their number; cells \
          (`cells.z.count = 16`) are for the density of z itself and for the methods with trajectories.",
     ])
 }
@@ -73,15 +69,6 @@ impl FrictionLaw<1> for ElastoPlastic {
     #[inline(always)]
     fn force(&self, _motion: Motion, [z]: &[f64; 1], [rate]: &[f64; 1]) -> f64 {
         self.stiffness * z + self.damping * rate
-    }
-
-    fn bounds(&self, _state: usize) -> Option<(f64, f64)> {
-        let limit = (self.elastic + self.yielding) / self.stiffness;
-        Some((-limit, limit))
-    }
-
-    fn base_velocity(&self) -> Option<f64> {
-        Some(0.0)
     }
 }
 

@@ -2,37 +2,36 @@
 
 use super::sliding::StribeckLevel;
 use super::{FrictionLaw, Motion};
-use crate::system::oscillator::{axes, parameters, with_friction};
+use crate::system::oscillator::{compiled, with_friction};
 use crate::system::parameters::{
     CONTACT_DAMPING, DAHL_LEVEL, LAMBDA, STATIC_LEVEL_OF_BRISTLES, STRIBECK_VELOCITY, Z,
 };
-use crate::system::{AxisDescription, Model};
+use crate::system::{AxisDescription, TypedModel};
 
 /// x' = y, y' = -κy - αx - μx³ - λz - ηz' + ξ, z' = y - (λ|y|/g(y)) z.
-pub(in crate::system) fn model() -> Model {
-    let bind = |values: &[f64]| {
-        with_friction(values, |own| LuGre {
-            stiffness: own[0],
-            damping: own[1],
-            level: StribeckLevel::new(own[2], own[3], own[4]),
+pub(in crate::system) fn model() -> TypedModel {
+    let named = ("lugre", "Duffing oscillator with LuGre friction");
+    let z = AxisDescription::from(Z).carried_by_modes();
+    let own = [
+        LAMBDA,
+        CONTACT_DAMPING,
+        DAHL_LEVEL,
+        STATIC_LEVEL_OF_BRISTLES,
+        STRIBECK_VELOCITY,
+    ];
+    with_friction(named, "(λ z + η w)", [z], own)
+        .with_equation("z", "w")
+        .with_definition("w", "y - (λ abs(y)/g) z")
+        .with_definition("g", "f_c + (f_s - f_c) exp(-(y/v_s)²)")
+        // Beyond the largest level the bristles are never bent.
+        .with_bounds("z", "-max(f_c, f_s)/λ", "max(f_c, f_s)/λ")
+        .with_compiled_drift(|values| {
+            compiled(values, |own| LuGre {
+                stiffness: own[0],
+                damping: own[1],
+                level: StribeckLevel::new(own[2], own[3], own[4]),
+            })
         })
-    };
-    Model::new("lugre", "Duffing oscillator with LuGre friction", bind)
-        .with_equations([
-            "x' = y",
-            "y' = -κ y - α x - μ x³ - λ z - η z' + ξ(t)",
-            "z' = y - (λ |y| / g(y)) z,   |z| ≤ max(f_c, f_s)/λ",
-            "g(y) = f_c + (f_s - f_c) exp(-(y/v_s)²)",
-            "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
-        ])
-        .with_axes(axes([AxisDescription::from(Z).carried_by_modes()]))
-        .with_parameters(parameters([
-            LAMBDA,
-            CONTACT_DAMPING,
-            DAHL_LEVEL,
-            STATIC_LEVEL_OF_BRISTLES,
-            STRIBECK_VELOCITY,
-        ]))
         .with_source(
             "C. Canudas de Wit, H. Olsson, K. J. Åström and P. Lischinsky, A new model for control of systems with friction, \
              IEEE Transactions on Automatic Control 40 (1995)",
@@ -66,16 +65,6 @@ impl FrictionLaw<1> for LuGre {
     #[inline(always)]
     fn force(&self, _motion: Motion, [z]: &[f64; 1], [rate]: &[f64; 1]) -> f64 {
         self.stiffness * z + self.damping * rate
-    }
-
-    /// Beyond the largest level the bristles are never bent.
-    fn bounds(&self, _state: usize) -> Option<(f64, f64)> {
-        let limit = self.level.largest() / self.stiffness;
-        Some((-limit, limit))
-    }
-
-    fn base_velocity(&self) -> Option<f64> {
-        Some(0.0)
     }
 }
 

@@ -32,11 +32,6 @@ impl StribeckLevel {
         let ratio = sliding / self.velocity;
         self.kinetic + self.excess * exponential(-(ratio * ratio))
     }
-
-    /// Largest value of g.
-    pub(super) fn largest(&self) -> f64 {
-        self.kinetic.max(self.kinetic + self.excess)
-    }
 }
 
 impl SlidingForce for StribeckLevel {
@@ -83,8 +78,6 @@ mod tests {
         assert_eq!(level.at(0.0), 0.5);
         assert!((level.at(-0.25) - (0.2 + 0.3 * (-1.0_f64).exp())).abs() < 1e-15);
         assert!((level.at(3.0) - 0.2).abs() < 1e-15);
-        assert_eq!(level.largest(), 0.5);
-        assert_eq!(StribeckLevel::new(0.5, 0.2, 1.0).largest(), 0.5);
         // Without a Stribeck part the level is the kinetic one to the last bit.
         assert_eq!(StribeckLevel::new(0.3, 0.3, 0.1).at(0.07), 0.3);
     }

@@ -5,11 +5,12 @@
 
 use super::sliding::{CubicForce, SlidingForce, StribeckLevel};
 use super::{FrictionLaw, Motion};
-use crate::system::oscillator::{axes, parameters, with_friction};
+use crate::system::TypedModel;
+use crate::system::oscillator::{compiled, with_friction};
 use crate::system::parameters::{
-    BELT_VELOCITY, COULOMB_LEVEL, LEAST_LEVEL, LEAST_VELOCITY, STATIC_LEVEL, STRIBECK_VELOCITY,
+    BELT_VELOCITY, COULOMB_LEVEL, LEAST_LEVEL, LEAST_VELOCITY, NO_STATES, STATIC_LEVEL,
+    STRIBECK_VELOCITY,
 };
-use crate::system::{AxisDescription, Model};
 
 const KINK: &str = "The density has a kink where the body moves with the base: the jump of ∂p/∂y over p across y = v_b is -4 f_s/σ². \
      With v_b = 0 the marginal of y therefore changes from two peaks to one exactly at f_s = 0.";
@@ -18,28 +19,24 @@ const BASE: &str = "With v_b ≠ 0 the force in the middle, g(v_b), pulls the bo
      on which friction switches; cells then cannot have a face on it at every value. Sweep κ, f_c or f_s on a grid with a face at v_b \
      (`grade = \"auto\"`), or v_b itself on narrow uniform cells.";
 
-/// x' = y, y' = -κy - αx - μx³ - g(u) sgn(u) + ξ, u = y - v_b.
-pub(in crate::system) fn model() -> Model {
-    let bind = |values: &[f64]| {
-        with_friction(values, |own| Sliding {
-            force: StribeckLevel::new(own[0], own[1], own[2]),
-            base: own[3],
+/// x' = y, y' = -κy - αx - μx³ - g sgn(u) + ξ, u = y - v_b.
+pub(in crate::system) fn model() -> TypedModel {
+    let title = "Duffing oscillator with Coulomb, viscous and Stribeck friction";
+    let own = [
+        COULOMB_LEVEL,
+        STATIC_LEVEL,
+        STRIBECK_VELOCITY,
+        BELT_VELOCITY,
+    ];
+    with_friction(("stribeck", title), "g sgn(u)", NO_STATES, own)
+        .with_definition("u", "y - v_b")
+        .with_definition("g", "f_c + (f_s - f_c) exp(-(u/v_s)²)")
+        .with_compiled_drift(|values| {
+            compiled(values, |own| Sliding {
+                force: StribeckLevel::new(own[0], own[1], own[2]),
+                base: own[3],
+            })
         })
-    };
-    Model::new("stribeck", "Duffing oscillator with Coulomb, viscous and Stribeck friction", bind)
-        .with_equations([
-            "x' = y",
-            "y' = -κ y - α x - μ x³ - g(u) sgn(u) + ξ(t),   u = y - v_b,   sgn(0) = 0",
-            "g(u) = f_c + (f_s - f_c) exp(-(u/v_s)²)",
-            "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
-        ])
-        .with_axes(axes::<AxisDescription>([]))
-        .with_parameters(parameters([
-            COULOMB_LEVEL,
-            STATIC_LEVEL,
-            STRIBECK_VELOCITY,
-            BELT_VELOCITY,
-        ]))
         .with_source(
             "L. C. Bo and D. Pavelescu, The friction-speed relation and its influence on the critical velocity of stick-slip motion, \
              Wear 82 (1982); B. Armstrong-Hélouvry, P. Dupont and C. Canudas de Wit, Automatica 30 (1994)",
@@ -51,28 +48,19 @@ pub(in crate::system) fn model() -> Model {
         ])
 }
 
-/// x' = y, y' = -κy - αx - μx³ - F(u) + ξ, u = y - v_b, F a cubic polynomial and a jump.
-pub(in crate::system) fn model_cubic() -> Model {
-    let bind = |values: &[f64]| {
-        with_friction(values, |own| Sliding {
-            force: CubicForce::new(own[0], own[1], own[2]),
-            base: own[3],
+/// x' = y, y' = -κy - αx - μx³ - F + ξ, u = y - v_b, F a cubic polynomial of u and a jump.
+pub(in crate::system) fn model_cubic() -> TypedModel {
+    let title = "Duffing oscillator with friction that is a jump and a cubic polynomial";
+    let own = [STATIC_LEVEL, LEAST_LEVEL, LEAST_VELOCITY, BELT_VELOCITY];
+    with_friction(("stribeck_cubic", title), "F", NO_STATES, own)
+        .with_definition("u", "y - v_b")
+        .with_definition("F", "f_s sgn(u) - (3/2) (f_s - f_m) (u/v_m - (u/v_m)³/3)")
+        .with_compiled_drift(|values| {
+            compiled(values, |own| Sliding {
+                force: CubicForce::new(own[0], own[1], own[2]),
+                base: own[3],
+            })
         })
-    };
-    Model::new("stribeck_cubic", "Duffing oscillator with friction that is a jump and a cubic polynomial", bind)
-        .with_equations([
-            "x' = y",
-            "y' = -κ y - α x - μ x³ - F(u) + ξ(t),   u = y - v_b",
-            "F(u) = f_s sgn(u) - (3/2)(f_s - f_m)(u/v_m - (u/v_m)³/3),   sgn(0) = 0",
-            "E[ξ(t) ξ(t+τ)] = σ² δ(τ)",
-        ])
-        .with_axes(axes::<AxisDescription>([]))
-        .with_parameters(parameters([
-            STATIC_LEVEL,
-            LEAST_LEVEL,
-            LEAST_VELOCITY,
-            BELT_VELOCITY,
-        ]))
         .with_source(
             "J. J. Thomsen and A. Fidlin, Analytical approximations for stick-slip vibration amplitudes, \
              International Journal of Non-Linear Mechanics 38 (2003)",
@@ -101,10 +89,6 @@ impl<G: SlidingForce> FrictionLaw<0> for Sliding<G> {
     #[inline(always)]
     fn force(&self, motion: Motion, _state: &[f64; 0], _rates: &[f64; 0]) -> f64 {
         self.force.at(motion.velocity - self.base)
-    }
-
-    fn base_velocity(&self) -> Option<f64> {
-        Some(self.base)
     }
 }
 

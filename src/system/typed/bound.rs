@@ -2,10 +2,11 @@
 
 use std::sync::{Arc, OnceLock};
 
+use super::CompiledDrift;
 use super::read::Reading;
 use crate::formula::analysis::Reflection;
 use crate::formula::graph::{Expression, Point};
-use crate::formula::tape::{Program, Tape};
+use crate::formula::tape::Program;
 use crate::system::{Facts, LANES, Lanes, Noise, SwitchingSurface, Symmetry, System};
 
 /// Largest distance of a bound from the mirror image of the other, as a share of the range, that is rounding.
@@ -24,7 +25,7 @@ pub(super) fn bind(reading: &Arc<Reading>, values: &[f64]) -> Arc<dyn System> {
         Err(_) => Noise::constant(axis, f64::NAN),
     };
     Arc::new(Typed {
-        drift: reading.drift.bind(values).ok(),
+        drift: drift(reading, values),
         noises: amplitudes.map(noise).collect(),
         values: values.to_vec(),
         facts: OnceLock::new(),
@@ -32,12 +33,23 @@ pub(super) fn bind(reading: &Arc<Reading>, values: &[f64]) -> Arc<dyn System> {
     })
 }
 
+/// The compiled drift, else that of the formulas.
+fn drift(reading: &Reading, values: &[f64]) -> CompiledDrift {
+    if let Some(compiled) = &reading.extras.drift {
+        return compiled(values);
+    }
+    match reading.drift.bind(values) {
+        Ok(tape) => Box::new(move |time, states, drift| tape.run(time, states, drift)),
+        // The formulas with these values need more room than a tape has.
+        Err(_) => Box::new(|_, _, drift| drift.fill([f64::NAN; LANES])),
+    }
+}
+
 /// Formulas with numbers for their parameters.
 struct Typed {
     reading: Arc<Reading>,
     values: Vec<f64>,
-    /// `None` where the formulas with these values need more room than a tape has: the drift is then not a number.
-    drift: Option<Tape>,
+    drift: CompiledDrift,
     noises: Vec<Noise>,
     /// Looked for when first asked for.
     facts: OnceLock<Facts>,
@@ -46,8 +58,12 @@ struct Typed {
 impl Typed {
     /// The value of an expression of parameters.
     fn value(&self, expression: Expression) -> f64 {
+        self.value_at(expression, &[])
+    }
+
+    fn value_at(&self, expression: Expression, states: &[f64]) -> f64 {
         let point = Point {
-            states: &[],
+            states,
             parameters: &self.values,
             time: f64::NAN,
         };
@@ -72,6 +88,9 @@ impl Typed {
             period: reading.period.map(|period| self.value(period)),
             ..Facts::default()
         };
+        if let Some(mend) = reading.extras.facts {
+            mend(&self.values, &mut facts);
+        }
         facts.symmetry = self.find_symmetry(&facts);
         facts
     }
@@ -110,10 +129,7 @@ impl System for Typed {
     }
 
     fn drift(&self, time: f64, states: &[Lanes], drift: &mut [Lanes]) {
-        match &self.drift {
-            Some(tape) => tape.run(time, states, drift),
-            None => drift.fill([f64::NAN; LANES]),
-        }
+        (self.drift)(time, states, drift);
     }
 
     fn noises(&self) -> &[Noise] {
@@ -122,5 +138,19 @@ impl System for Typed {
 
     fn facts(&self) -> &Facts {
         self.facts.get_or_init(|| self.find_facts())
+    }
+
+    /// Friction whose level is zero is none: the density is then known exactly.
+    fn friction_force(&self, state: &[f64]) -> Option<f64> {
+        let force = self.reading.friction?;
+        let exact = self.exact_log_density(state);
+        exact.is_none().then(|| self.value_at(force, state))
+    }
+
+    fn exact_log_density(&self, state: &[f64]) -> Option<f64> {
+        self.reading
+            .extras
+            .log_density
+            .and_then(|density| density(&self.values, state))
     }
 }

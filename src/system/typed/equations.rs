@@ -8,6 +8,7 @@ use super::{FormulaPlace, Interpretation, TypedModel};
 use crate::formula::analysis::{Domain, HazardKind, Interval};
 use crate::formula::graph::{Expression, Symbol};
 use crate::formula::language::typeset_name;
+use crate::formula::tape::Tape;
 
 /// The typed equations of a model, as they were typed and as they were read.
 #[derive(Debug, Clone)]
@@ -36,6 +37,16 @@ pub struct FormulaHazard {
 impl TypedEquations {
     pub(super) fn new(model: TypedModel, reading: Arc<Reading>) -> Self {
         Self { model, reading }
+    }
+
+    /// Whether a compiled drift stands for the formulas.
+    pub(in crate::system) fn is_compiled(&self) -> bool {
+        self.model.is_compiled()
+    }
+
+    /// The drift by the formulas, with values of the parameters.
+    pub(in crate::system) fn drift(&self, values: &[f64]) -> Option<Tape> {
+        self.reading.drift.bind(values).ok()
     }
 
     /// What was typed.

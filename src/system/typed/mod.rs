@@ -12,13 +12,14 @@ mod equations;
 mod error;
 mod read;
 mod relaxation;
+pub(super) mod statement;
 
 use std::sync::Arc;
 
 use super::coloured::coloured;
-use super::{AxisDescription, Model, NoiseKind, ParameterDescription};
+use super::{AxisDescription, Facts, Lanes, Model, NoiseKind, ParameterDescription};
 use crate::formula::language::typeset_name;
-use crate::formula::mathml::{self, Element};
+use statement::{Statement, equation, white, with_bars};
 
 pub use equations::{FormulaHazard, TypedEquations};
 pub use error::{FormulaPlace, TypedModelError};
@@ -101,6 +102,36 @@ pub struct TypedModel {
     period: Option<String>,
     source: String,
     notes: Vec<String>,
+    extras: Extras,
+}
+
+/// Drift of a batch: time and states in, slopes out.
+pub type CompiledDrift = Box<dyn Fn(f64, &[Lanes], &mut [Lanes]) + Send + Sync>;
+
+/// Makes a drift from values of the parameters.
+type BindDrift = dyn Fn(&[f64]) -> CompiledDrift + Send + Sync;
+
+/// Logarithm of a density at values of the parameters and a state.
+type LogDensity = fn(&[f64], &[f64]) -> Option<f64>;
+
+/// What a model may have beside its formulas.
+#[derive(Clone, Default)]
+struct Extras {
+    drift: Option<Arc<BindDrift>>,
+    log_density: Option<LogDensity>,
+    /// Mends what the formulas tell, given values of the parameters.
+    facts: Option<fn(&[f64], &mut Facts)>,
+    /// Formula of a friction force.
+    friction: Option<String>,
+}
+
+impl std::fmt::Debug for Extras {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mut shown = f.debug_struct("Extras");
+        shown.field("drift", &self.drift.is_some());
+        shown.field("friction", &self.friction);
+        shown.finish_non_exhaustive()
+    }
 }
 
 /// How a model is typed.
@@ -125,6 +156,7 @@ impl TypedModel {
             period: None,
             source: String::new(),
             notes: Vec::new(),
+            extras: Extras::default(),
         }
     }
 
@@ -231,6 +263,60 @@ impl TypedModel {
         self
     }
 
+    /// The model with a drift that is compiled: what its formulas say, but faster. Everything else still follows from
+    /// the formulas, and [`contract::verify_model`](super::contract::verify_model) tries whether both agree. Such a
+    /// model counts as compiled in, not as one of a sweep file: its formulas are no part of what a file says.
+    ///
+    /// ```
+    /// use pbif::system::{TypedModel, contract};
+    ///
+    /// let model = TypedModel::new("cubic", "Cubic damping", ["x"])
+    ///     .with_equation("x", "-a x^3")
+    ///     .with_noise("x", ["0.5"])
+    ///     .with_parameters(["a"])
+    ///     .with_compiled_drift(|values| {
+    ///         let a = values[0];
+    ///         Box::new(move |_, states, drift| drift[0] = states[0].map(|x| -a * x * x * x))
+    ///     })
+    ///     .build()?;
+    /// contract::verify_model(&model, &model.values(&[("a", 2.0)])?, &[(-2.0, 2.0)])?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn with_compiled_drift(
+        mut self,
+        bind: impl Fn(&[f64]) -> CompiledDrift + Send + Sync + 'static,
+    ) -> Self {
+        self.extras.drift = Some(Arc::new(bind));
+        self
+    }
+
+    /// The model with the logarithm of its steady-state density at values of the parameters and a state, up to a
+    /// constant, where it is known exactly.
+    #[must_use]
+    pub fn with_exact_log_density(mut self, density: fn(&[f64], &[f64]) -> Option<f64>) -> Self {
+        self.extras.log_density = Some(density);
+        self
+    }
+
+    /// The model with what its formulas tell mended by values of the parameters, before a symmetry is looked for.
+    #[must_use]
+    pub(super) fn with_mended_facts(mut self, mend: fn(&[f64], &mut Facts)) -> Self {
+        self.extras.facts = Some(mend);
+        self
+    }
+
+    /// The model with a formula of its friction force, the viscous part left out.
+    #[must_use]
+    pub(super) fn with_friction(mut self, force: impl Into<String>) -> Self {
+        self.extras.friction = Some(force.into());
+        self
+    }
+
+    fn is_compiled(&self) -> bool {
+        self.extras.drift.is_some()
+    }
+
     /// Reads all formulas. Places where the drift is not smooth and that are no plane of one coordinate are named in
     /// the model's notes.
     ///
@@ -253,22 +339,30 @@ impl TypedModel {
     pub fn build_or_all_errors(self) -> Result<Arc<Model>, Vec<TypedModelError>> {
         let (reading, found) = read::read(&self)?;
         let reading = Arc::new(reading);
-        let lines = self.lines();
+        let statements = self.statements();
+        let is_compiled = self.is_compiled();
         let bound = Arc::clone(&reading);
         let bind = move |values: &[f64]| bound::bind(&bound, values);
+        // Built-in models say themselves what a user should know of them, and quantities keep the names of their parts.
+        let found = found.into_iter().filter(|_| !is_compiled);
+        let definitions = self.definitions.iter().filter(|_| !is_compiled);
         let notes = self.notes.iter().cloned().chain(found);
         let axes = self.axes.iter().enumerate();
-        let axes = axes.map(|(index, axis)| match is_internal(&reading, index) {
-            true => axis.clone().carried_by_modes(),
-            false => axis.clone(),
+        let axes = axes.map(|(index, axis)| {
+            let axis = axis.clone();
+            if is_internal(&reading, index) {
+                axis.carried_by_modes()
+            } else {
+                axis
+            }
         });
         let model = Model::new(self.name.as_str(), self.title.as_str(), bind)
-            .with_equations(lines)
+            .with_statements(statements)
             .with_axes(axes.collect::<Vec<_>>())
             .with_parameters(self.parameters.clone())
             .with_source(self.source.as_str())
             .with_notes(notes)
-            .with_definitions(self.definitions.clone());
+            .with_definitions(definitions.cloned().collect());
         let (kind, noises) = (self.noise_kind, reading.noise_axes.len());
         let model = Arc::new(model.with_typed(TypedEquations::new(self, reading)));
         if !kind.is_coloured() {
@@ -278,62 +372,61 @@ impl TypedModel {
         coloured.map(Arc::new).map_err(|error| vec![error.into()])
     }
 
-    /// The equations as they were typed, one a line.
-    fn lines(&self) -> Vec<String> {
-        let statements = self.statements().into_iter();
-        let mut lines: Vec<String> = statements.map(|one| one.line()).collect();
+    /// The equations axis by axis, the definitions, and what the noises are.
+    fn statements(&self) -> Vec<Statement> {
+        let mut statements = Vec::new();
+        for axis in &self.axes {
+            let own = self.equations.iter().filter(|(name, _)| *name == axis.name);
+            for (name, drift) in own {
+                let left = format!("{name}'");
+                statements.push(equation(&left, "=", drift, &self.noises_of(name)));
+            }
+        }
+        for (name, formula) in &self.definitions {
+            if !self.is_compiled() || name != AMPLITUDE {
+                statements.push(equation(name, "=", formula, &[]));
+            }
+        }
+        if self.is_compiled() {
+            // Bounds that are alike on both sides.
+            let bounds = self.bounds.iter();
+            let alike = bounds.filter(|(_, lower, upper)| lower.strip_prefix('-') == Some(upper));
+            statements.extend(
+                alike.map(|(name, _, upper)| equation(&format!("abs({name})"), "≤", upper, &[])),
+            );
+            statements = statements.into_iter().map(with_bars).collect();
+        }
         if !self.processes.is_empty() {
             let read = match self.interpretation {
                 Some(Interpretation::Ito) => ", read as Itô",
                 Some(Interpretation::Stratonovich) => ", read as Stratonovich",
                 None => "",
             };
-            lines.push(format!("E[ξ_i(t) ξ_j(t+τ)] = δ_ij δ(τ){read}"));
+            statements.push(white("ξ", !self.is_compiled(), "τ", read));
         }
-        lines
-    }
-
-    /// The equations, axis by axis, then the definitions.
-    fn statements(&self) -> Vec<Statement<'_>> {
-        let mut statements = Vec::new();
-        for axis in &self.axes {
-            let own = self.equations.iter().filter(|(name, _)| *name == axis.name);
-            for (name, drift) in own {
-                let processes = self.processes.iter().enumerate();
-                let noises = processes.flat_map(|(number, process)| {
-                    let driven = process.iter().filter(|(driven, _)| driven == name);
-                    driven.map(move |(_, amplitude)| {
-                        (amplitude.as_str(), format!("ξ_{}", number + 1))
-                    })
-                });
-                statements.push(Statement {
-                    left: format!("{name}'"),
-                    right: drift,
-                    noises: noises.collect(),
-                });
-            }
-        }
-        let definitions = self.definitions.iter().map(|(name, formula)| Statement {
-            left: name.clone(),
-            right: formula,
-            noises: Vec::new(),
-        });
-        statements.extend(definitions);
         statements
     }
 
-    /// Each statement as its line of [`Model::equations`], and typeset.
-    pub(in crate::system) fn typeset(&self) -> Vec<(String, Element)> {
-        let statements = self.statements().into_iter();
-        let laid = statements.map(|one| {
-            let line = one.line();
-            let element = mathml::equation(&one.left, one.right, &one.noises);
-            let element = element.unwrap_or_else(|_| mathml::stated(&line));
-            (line, element)
+    /// Amplitudes and names of the noises on an axis, as they are shown.
+    fn noises_of(&self, axis: &str) -> Vec<(String, String)> {
+        let processes = self.processes.iter().enumerate();
+        let noises = processes.flat_map(|(number, process)| {
+            let driven = process.iter().filter(|(driven, _)| driven == axis);
+            driven.map(move |(_, amplitude)| {
+                if self.is_compiled() {
+                    (amplitude.clone(), "ξ".to_owned())
+                } else {
+                    (format!("({amplitude})"), format!("ξ_{}", number + 1))
+                }
+            })
         });
-        laid.collect()
+        noises.collect()
     }
 }
+
+/// Name of the amplitude of the noise of built-in models, the root of their parameter σ². That it is so goes without
+/// saying in what they show.
+pub(super) const AMPLITUDE: &str = "σ";
 
 /// Axes from this one on are internal states; those before it are the oscillator's, which are looked at.
 const FIRST_INTERNAL_AXIS: usize = 2;
@@ -341,23 +434,6 @@ const FIRST_INTERNAL_AXIS: usize = 2;
 /// Whether an axis is that of an internal state that relaxes linearly, for which modes serve better than cells.
 fn is_internal(reading: &read::Reading, axis: usize) -> bool {
     axis >= FIRST_INTERNAL_AXIS && reading.relaxation[axis].is_some()
-}
-
-/// An equation or a definition: its left side, its formula, and amplitudes with the names of their noises.
-struct Statement<'a> {
-    left: String,
-    right: &'a str,
-    noises: Vec<(&'a str, String)>,
-}
-
-impl Statement<'_> {
-    fn line(&self) -> String {
-        let mut line = format!("{} = {}", self.left, self.right);
-        for (amplitude, noise) in &self.noises {
-            line.push_str(&format!(" + ({amplitude}) {noise}(t)"));
-        }
-        line
-    }
 }
 
 /// What was typed, to write it down again.

@@ -3,7 +3,7 @@
 mod joined;
 mod names;
 
-use super::{FormulaPlace, TypedModel, TypedModelError};
+use super::{Extras, FormulaPlace, TypedModel, TypedModelError};
 use crate::formula::graph::{Expression, Symbol, TooLarge};
 use crate::formula::scope::Scope;
 use crate::formula::tape::Program;
@@ -38,6 +38,8 @@ pub(super) struct Reading {
     pub(super) period: Option<Expression>,
     /// Rates, of parameters alone, at which axes without noise and bounds relax.
     pub(super) relaxation: Vec<Option<Expression>>,
+    pub(super) friction: Option<Expression>,
+    pub(super) extras: Extras,
 }
 
 /// Reads a model; with it, sentences on what was found and cannot be declared.
@@ -170,6 +172,16 @@ impl Reader<'_> {
             }
         }
         Some(bounds)
+    }
+
+    /// The friction force, where one is given.
+    fn friction(&mut self) -> Result<Option<Expression>, TypedModelError> {
+        let place = FormulaPlace::Definition {
+            name: "friction".to_owned(),
+        };
+        let force = self.model.extras.friction.as_deref();
+        let read = force.and_then(|force| self.formula(force, &place));
+        self.errors.pop().map_or(Ok(read), Err)
     }
 
     fn axis(&mut self, name: &str, place: &FormulaPlace) -> Option<usize> {

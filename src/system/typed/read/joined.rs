@@ -23,6 +23,7 @@ impl Reader<'_> {
         let (surfaces, notes) = self.surfaces(&rough)?;
         let free = |axis: usize| bounds[axis].is_none() && !noise_axes.contains(&axis);
         let relaxation = relaxation::rates(self.scope.graph_mut(), &drift_expressions, &free)?;
+        let friction = self.friction()?;
         let scope = self.scope;
         let own = noise.iter().zip(&noise_axes);
         let amplitudes = own.map(|(process, &axis)| scope.compile(&process[axis..=axis]));
@@ -48,6 +49,8 @@ impl Reader<'_> {
             bounds,
             period,
             relaxation,
+            friction,
+            extras: self.model.extras.clone(),
         };
         Ok((reading, notes))
     }
