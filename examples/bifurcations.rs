@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         &never,
         &mut (),
     )?;
-    for row in &found.labels {
+    for row in found.bifurcations() {
         println!("{}: a = {:.2} ± {:.2}", row.label, row.value, row.error);
     }
     Ok(())

@@ -16,7 +16,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let found = sweep.run(&never, &mut ())?;
     let plane = Plane::new(("a", -1.0, 1.0), ("sigma2", 0.1, 1.0))?;
     let source = sweep.source_in(&plane, &never)?;
-    let row = found.labels.iter().find(|row| row.label == "PB1");
+    let row = found.bifurcations().next();
     let start = row.and_then(|row| CurveStart::from_row(row, 0.25, &found.subject));
     let start = start.ok_or("no row to start from")?;
     let (detector, options) = (sweep.detector(), CurveOptions::default());

@@ -60,23 +60,17 @@ fn section(file: &StartingFile, images: &Path) -> Result<String, Box<dyn std::er
         text,
         "\n| {parameter} | observable | change, {parameter} ascending | status |\n| ---: | --- | --- | --- |"
     )?;
-    for row in &found.labels {
-        let (Some(observable), Some(status)) = (row.observable, row.status) else {
-            continue;
-        };
-        let signature = |one: &Option<pbif::topology::Signature>| {
-            one.as_ref().map_or(String::new(), ToString::to_string)
-        };
+    for row in found.bifurcations() {
         writeln!(
             text,
             "| {:.4} ± {:.1e} | {} | {} → {}, {} | {} |",
             row.value,
             row.error,
-            observable.name(&subject.family),
-            signature(&row.before),
-            signature(&row.after),
-            row.change,
-            status.word()
+            row.observable.name(&subject.family),
+            row.before,
+            row.after,
+            row.change(),
+            row.status().word()
         )?;
     }
     let figures = Figures::of_sweep(&found, file.title(), &[]);

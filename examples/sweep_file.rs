@@ -85,7 +85,7 @@ fn reopened(folder: &Path) -> Result<SweepResult, Box<dyn Error>> {
 }
 
 fn print(found: &SweepResult) {
-    for row in &found.labels {
+    for row in found.bifurcations() {
         println!("{}: {:.6} ± {:.6}", row.label, row.value, row.error);
     }
 }

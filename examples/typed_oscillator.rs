@@ -63,7 +63,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         &Cancellation::new(),
         &mut (),
     )?;
-    for row in &found.labels {
+    for row in found.bifurcations() {
         println!("{}: c0 = {:.3} ± {:.3}", row.label, row.value, row.error);
     }
     Ok(())

@@ -6,7 +6,7 @@
 #![allow(clippy::print_stdout)] // An example talks to its reader.
 
 use pbif::cancellation::Cancellation;
-use pbif::continuation::{DensitySource, LocateOptions, PointType, sweep};
+use pbif::continuation::{DensitySource, LocateOptions, sweep};
 use pbif::density::{EstimatedDensity, Observable, hellinger_of_masses, total_variation_of_masses};
 use pbif::generator::{AdvectiveScheme, automatic_grading};
 use pbif::method::{
@@ -409,10 +409,7 @@ impl Sweep {
             &Cancellation::new(),
             &mut (),
         )?;
-        let mut rows = found
-            .labels
-            .iter()
-            .filter(|row| row.kind == PointType::Bifurcation);
+        let mut rows = found.bifurcations();
         match (rows.next(), rows.next()) {
             (Some(row), None) => Ok((row.value, row.error)),
             _ => Err(format!("not one bifurcation: {:?}", found.labels).into()),

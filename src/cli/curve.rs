@@ -11,7 +11,7 @@ use super::stored::{Override, Stored, set};
 use super::{CommandError, load, tell};
 use crate::cancellation::Cancellation;
 use crate::continuation::curve::CurveTree;
-use crate::continuation::{LabelledPoint, SourceError, SweepResult};
+use crate::continuation::{Located, SourceError, SweepResult};
 use crate::job::{CurveJob, Done, Job as _, JobError, Outcome, Start, curve_rows};
 use crate::run::{CURVES, RunError};
 use crate::sweep_file::{SolveError, Sweep, SweepFile, list};
@@ -111,7 +111,7 @@ struct Following<'a> {
 
 impl Following<'_> {
     /// Follows all rows. Of several, one that cannot be followed keeps none of the others from it.
-    fn all(&self, rows: &[&LabelledPoint]) -> Result<Outcome, CommandError> {
+    fn all(&self, rows: &[&Located]) -> Result<Outcome, CommandError> {
         let mut worst = Outcome::Complete;
         for row in rows {
             match self.one(row) {
@@ -129,7 +129,7 @@ impl Following<'_> {
         Ok(worst)
     }
 
-    fn one(&self, row: &LabelledPoint) -> Result<Outcome, CommandError> {
+    fn one(&self, row: &Located) -> Result<Outcome, CommandError> {
         let mut job = CurveJob::new(self.spec, self.result, row)?;
         let second = &job.plane().sides()[1].parameter;
         let home = (self.home)(&format!("{}-{second}", row.label));

@@ -79,7 +79,7 @@ fn summary(map: &RegimeMap) -> String {
         text += &line(map, index, curve);
     }
     for point in map.codimension_two() {
-        text += &codimension_line(&point, &map.plane);
+        text += &codimension_line(&point, &map.plane, &map.subject.family);
     }
     for one in &map.untraced {
         let observable = map.subject.observables.get(one.observable);
@@ -136,7 +136,7 @@ fn line(map: &RegimeMap, index: usize, curve: &Curve) -> String {
     let located = curve
         .points
         .iter()
-        .filter(|point| point.status == BifurcationStatus::Located);
+        .filter(|point| point.status() == BifurcationStatus::Located);
     let errors = curve.points.iter().map(|point| point.error);
     let largest = errors.fold(0.0, f64::max);
     let mut text = format!(

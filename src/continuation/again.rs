@@ -2,9 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::grid::{
-    Checked, CheckedBy, CheckedIndicator, Checks, GridCheck, Leak, Seen, check, known, leak,
-};
+use super::doubt::Doubt;
+use super::grid::{Checked, CheckedBy, CheckedIndicator, Checks, Seen, check, known, leak};
 use super::span::Span;
 use super::sweep::distance_between;
 use super::{Goal, LocateOptions, Point, Subject, SweepResult, locate::label_points};
@@ -68,23 +67,23 @@ struct Repeated<'a> {
 }
 
 impl Checks for Repeated<'_> {
-    fn on_finer_cells(&mut self, checked: &Checked<'_>) -> Option<GridCheck> {
+    fn on_finer_cells(&mut self, checked: &Checked<'_>) -> Option<Result<f64, Doubt>> {
         let seen = self.seen?;
         let mut evaluate = |value: f64| known(seen, CheckedBy::FinerCells, checked, value);
         let same = check(&mut evaluate, checked, self.span, self.options.tolerance);
         same.or_else(|| {
             let zero = nearest_zero(seen, CheckedBy::FinerCells, checked, self.span);
-            Some(zero.map_or(GridCheck::Unconfirmed, GridCheck::Confirmed))
+            Some(zero.ok_or(Doubt::NotOnFinerCells))
         })
     }
 
-    fn between_closed_ends(&mut self, checked: &Checked<'_>) -> Option<Leak> {
+    fn between_closed_ends(&mut self, checked: &Checked<'_>) -> Option<Result<f64, Doubt>> {
         let seen = self.seen?;
         let same = known(seen, CheckedBy::ClosedEnds, checked, checked.root.value);
         match same {
             Seen::Unknown => {
                 let zero = nearest_zero(seen, CheckedBy::ClosedEnds, checked, self.span);
-                zero.map(|zero| Leak::Moves((zero - checked.root.value).abs()))
+                zero.map(|zero| Ok((zero - checked.root.value).abs()))
             }
             same => leak(same, checked),
         }

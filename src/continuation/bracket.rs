@@ -25,10 +25,10 @@ pub(super) fn is_settled(a: &Point, b: &Point, step: f64, options: &Goal) -> boo
         return true;
     }
     // Rounding must not ask for one more halving.
-    width <= step / 4.0 * (1.0 + 1e-9) && undecided(a, b)
+    width <= step / 4.0 * (1.0 + 1e-9) && is_undecided(a, b)
 }
 
-fn undecided(a: &Point, b: &Point) -> bool {
+fn is_undecided(a: &Point, b: &Point) -> bool {
     let mut differing = a
         .detections
         .iter()

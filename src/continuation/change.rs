@@ -6,7 +6,7 @@
 
 use super::Point;
 use super::events::{Event, events};
-use super::follow::{Followed, follow};
+use super::follow::{Course, Crossing, follow};
 use crate::topology::{Detector, FeatureKind, Indicator, IndicatorKind, Signature};
 
 /// A change of one observable's signature between two neighbouring points.
@@ -20,23 +20,10 @@ pub(super) struct Change {
     pub(super) right: usize,
     pub(super) before: Signature,
     pub(super) after: Signature,
-    pub(super) found: Found,
+    /// How its indicator passes zero; `None` where only persistence tells.
+    pub(super) course: Option<Course>,
     /// The feature that appears or vanishes; `None` where the change is that of a centre, or of no single feature.
     pub(super) event: Option<Event>,
-}
-
-/// How a change is known.
-#[derive(Debug, Clone)]
-pub(super) enum Found {
-    /// An indicator changes sign.
-    Crossing(Box<Crossing>),
-    /// An indicator is lost between the point with this index and the next one: values between would show more.
-    Lost(usize),
-    /// An indicator says that the feature is there up to the end of the sweep, beyond the point with this index and the
-    /// next one, though too low to be counted: it was born before.
-    Beyond(usize),
-    /// Only persistence tells.
-    Persistence,
 }
 
 impl Change {
@@ -73,27 +60,10 @@ impl Change {
     }
 
     pub(super) fn crossing(&self) -> Option<&Crossing> {
-        match &self.found {
-            Found::Crossing(crossing) => Some(crossing),
+        match &self.course {
+            Some(Course::Crossing(crossing)) => Some(crossing),
             _ => None,
         }
-    }
-}
-
-/// A change of sign of an indicator between two neighbouring points.
-#[derive(Debug, Clone)]
-pub(super) struct Crossing {
-    /// Place of the observable among those that are watched.
-    pub(super) observable: usize,
-    /// The point below; the next one is the point above.
-    pub(super) left: usize,
-    /// The indicator at both.
-    pub(super) ends: [Indicator; 2],
-}
-
-impl Crossing {
-    pub(super) fn kind(&self) -> IndicatorKind {
-        self.ends[0].kind
     }
 }
 
@@ -125,13 +95,13 @@ fn between(
     (left, right): (usize, usize),
 ) -> Vec<Change> {
     let signature = |index: usize| points[index].detections[observable].signature;
-    let change = |found: Found, event: Option<Event>| Change {
+    let change = |course: Option<Course>, event: Option<Event>| Change {
         observable,
         left,
         right,
         before: signature(left),
         after: signature(right),
-        found,
+        course,
         event,
     };
     let mut events = events(points[left], points[right], observable);
@@ -153,24 +123,17 @@ fn between(
     }
     if !centre.is_empty() {
         take_those_of_centre(&mut events, &signature(left), &signature(right));
-        found.extend(
-            centre
-                .into_iter()
-                .map(|crossing| change(Found::Crossing(Box::new(crossing)), None)),
-        );
+        found.extend(centre.into_iter().map(|crossing| {
+            let course = Course::Crossing(Box::new(crossing));
+            change(Some(course), None)
+        }));
     }
     for event in events {
-        match followed(points, detector, observable, (left, right), &event) {
-            Some(Followed::Crossing(crossing)) => {
-                found.push(change(Found::Crossing(crossing), Some(event)))
-            }
-            Some(Followed::Lost(gap)) => found.push(change(Found::Lost(gap), Some(event))),
-            Some(Followed::Beyond(gap)) => found.push(change(Found::Beyond(gap), Some(event))),
-            None => {}
-        }
+        let course = decisive(points, detector, observable, (left, right), &event);
+        found.extend(course.map(|course| change(Some(course), Some(event))));
     }
     if found.is_empty() {
-        found.push(change(Found::Persistence, None));
+        found.push(change(None, None));
     }
     found
 }
@@ -178,20 +141,20 @@ fn between(
 /// What follows an event. Where counts follow from the equations, a change of sign at which the count stays is another
 /// event's: a peak that was born on a flank before it reaches a kink. Then its inflection is followed in place of the
 /// kink.
-fn followed(
+fn decisive(
     points: &[&Point],
     detector: &dyn Detector,
     observable: usize,
     gap: (usize, usize),
     event: &Event,
-) -> Option<Followed> {
+) -> Option<Course> {
     let first = follow(points, detector, observable, gap, event);
     let is_exact = |index: usize| {
         let density = &points[index].densities[observable];
         density.structure.profile.is_some()
     };
-    let holds = |found: &Option<Followed>| match found {
-        Some(Followed::Crossing(crossing)) => separates(points, crossing, event.above),
+    let holds = |found: &Option<Course>| match found {
+        Some(Course::Crossing(crossing)) => separates(points, crossing, event.above),
         _ => false,
     };
     if !(is_exact(gap.0) && is_exact(gap.1)) || holds(&first) {
@@ -201,7 +164,7 @@ fn followed(
     let second = follow(points, detector, observable, gap, &other);
     match (holds(&second), first) {
         (true, _) => second,
-        (false, Some(Followed::Crossing(_))) => None,
+        (false, Some(Course::Crossing(_))) => None,
         (false, first) => first,
     }
 }

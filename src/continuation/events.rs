@@ -39,7 +39,7 @@ impl Event {
     pub(super) fn at_inflection(&self) -> Option<Self> {
         let (kind, place) = self.indicator.as_ref()?;
         Some(Self {
-            indicator: Some((kind.away_from_kink()?, place.clone())),
+            indicator: Some(((kind.traits().away_from_kink)()?, place.clone())),
             ..self.clone()
         })
     }
@@ -55,7 +55,7 @@ pub(super) fn events(a: &Point, b: &Point, observable: usize) -> Vec<Event> {
         .collect();
     let mut found = Vec::new();
     for kind in COUNTED {
-        let (below, above) = unpaired(
+        let (below, above) = pair_off(
             present(a, observable, kind),
             present(b, observable, kind),
             &lengths,
@@ -190,7 +190,7 @@ fn distance(a: &[f64], b: &[f64], lengths: &[f64]) -> f64 {
 }
 
 /// What is left of two lists when their nearest members have been paired.
-fn unpaired<'a>(
+fn pair_off<'a>(
     mut below: Vec<&'a Feature>,
     mut above: Vec<&'a Feature>,
     lengths: &[f64],

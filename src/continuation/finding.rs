@@ -181,11 +181,6 @@ pub enum ShiftedQuantity {
 }
 
 impl Finding {
-    /// Whether it puts the shape of the densities in doubt wherever they are read.
-    pub(super) fn blurs(&self) -> bool {
-        matches!(self, Self::FewModes { .. } | Self::JumpInsideCells { .. })
-    }
-
     /// What is stored of a finding: its code, the axis it speaks of, and its numbers, the one that matters most first.
     pub fn parts(&self) -> (&'static str, Option<usize>, Vec<f64>) {
         let plain = |code, numbers: &[f64]| (code, None, numbers.to_vec());

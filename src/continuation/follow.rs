@@ -1,15 +1,32 @@
 //! An indicator away from any centre, followed from the point where its feature is present to where it changes sign.
 
 use super::Point;
-use super::change::Crossing;
 use super::events::Event;
-use crate::topology::{Detector, Indicator};
+use crate::topology::{Detector, Indicator, IndicatorKind};
 
 /// Places of an indicator at neighbouring points farther apart than this, in ranges, are not one place that moved.
 const ONE_PLACE: f64 = 0.1;
 
-/// What following an indicator shows.
-pub(super) enum Followed {
+/// A change of sign of an indicator between two neighbouring points.
+#[derive(Debug, Clone)]
+pub(super) struct Crossing {
+    /// Place of the observable among those that are watched.
+    pub(super) observable: usize,
+    /// The point below; the next one is the point above.
+    pub(super) left: usize,
+    /// The indicator at both.
+    pub(super) ends: [Indicator; 2],
+}
+
+impl Crossing {
+    pub(super) fn kind(&self) -> IndicatorKind {
+        self.ends[0].kind
+    }
+}
+
+/// How an indicator goes that is followed from where its feature is present.
+#[derive(Debug, Clone)]
+pub(super) enum Course {
     /// It changes sign between two neighbours.
     Crossing(Box<Crossing>),
     /// It is lost between the point with this index and the next one, before it changes sign.
@@ -26,7 +43,7 @@ pub(super) fn follow(
     observable: usize,
     (left, right): (usize, usize),
     event: &Event,
-) -> Option<Followed> {
+) -> Option<Course> {
     let (kind, near) = event.indicator.as_ref()?;
     let at = |index: usize, near: &[f64]| {
         let density = &points[index].densities[observable];
@@ -48,7 +65,7 @@ pub(super) fn follow(
         let Some(next) =
             at(index, &last.place).filter(|next| is_one_place(points, observable, &last, next))
         else {
-            return Some(Followed::Lost(gap));
+            return Some(Course::Lost(gap));
         };
         if next.value <= 0.0 {
             let ends = if event.above {
@@ -56,7 +73,7 @@ pub(super) fn follow(
             } else {
                 [last, next]
             };
-            return Some(Followed::Crossing(Box::new(Crossing {
+            return Some(Course::Crossing(Box::new(Crossing {
                 observable,
                 left: gap,
                 ends,
@@ -71,7 +88,7 @@ pub(super) fn follow(
     } else {
         points.len().checked_sub(2)?
     };
-    certain.then_some(Followed::Beyond(end))
+    certain.then_some(Course::Beyond(end))
 }
 
 /// The zero lies on the side where the feature was seen: noise of the cells showed it too early.
@@ -82,7 +99,7 @@ fn deeper(
     present: usize,
     above: bool,
     observable: usize,
-) -> Option<Followed> {
+) -> Option<Course> {
     let inward: Vec<usize> = match above {
         true => (present + 1..points.len()).collect(),
         false => (0..present).rev().collect(),
@@ -93,7 +110,7 @@ fn deeper(
             at(index, &last.place).filter(|next| is_one_place(points, observable, &last, next))?;
         if next.value > 0.0 {
             let ends = if above { [last, next] } else { [next, last] };
-            return Some(Followed::Crossing(Box::new(Crossing {
+            return Some(Course::Crossing(Box::new(Crossing {
                 observable,
                 left: index.min(last_index),
                 ends,

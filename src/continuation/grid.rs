@@ -5,6 +5,7 @@
 //! With r times as many cells an axis and order p its error is 1/(rᵖ - 1) of the distance between both: what order two
 //! gives is stated, and never less than the distance itself.
 
+use super::doubt::Doubt;
 use super::root::Root;
 use super::span::Span;
 use super::{CellCheck, Session, SourceError};
@@ -26,33 +27,13 @@ const SMALL: f64 = 0.02;
 /// that rounding decides nothing, and near enough for the row.
 const BEYOND: f64 = 0.5;
 
-/// What a finer grid says of a value.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum GridCheck {
-    /// The change lies here.
-    Confirmed(f64),
-    /// There is none near.
-    Unconfirmed,
-    /// It could not be asked, for this reason.
-    Failed(String),
-}
-
-/// What the mass that leaves Ω does to a value.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Leak {
-    /// It moves the value so far.
-    Moves(f64),
-    /// It could not be asked, for this reason.
-    Failed(String),
-}
-
 /// How located values are checked: by solves, or by what earlier solves saw. `None` where there is nothing to check
 /// with, or the sweep is to end.
 pub(super) trait Checks {
-    /// On finer cells.
-    fn on_finer_cells(&mut self, checked: &Checked<'_>) -> Option<GridCheck>;
-    /// Between closed ends of Ω.
-    fn between_closed_ends(&mut self, checked: &Checked<'_>) -> Option<Leak>;
+    /// Where the change lies on finer cells.
+    fn on_finer_cells(&mut self, checked: &Checked<'_>) -> Option<Result<f64, Doubt>>;
+    /// How far the mass that leaves Ω moves it: between closed ends nothing does.
+    fn between_closed_ends(&mut self, checked: &Checked<'_>) -> Option<Result<f64, Doubt>>;
 }
 
 /// The indicator of a check at one value.
@@ -192,13 +173,11 @@ pub(super) fn solve(
 }
 
 /// How far the mass that leaves Ω moves a value: the indicator at the zero, when nothing leaves, over its slope.
-pub(super) fn leak(seen: Seen, checked: &Checked<'_>) -> Option<Leak> {
+pub(super) fn leak(seen: Seen, checked: &Checked<'_>) -> Option<Result<f64, Doubt>> {
     match seen {
-        Seen::Value(indicator) => Some(Leak::Moves((indicator / checked.root.slope).abs())),
-        Seen::Absent => Some(Leak::Failed(
-            "no such indicator when nothing leaves".to_owned(),
-        )),
-        Seen::Failed(reason) => Some(Leak::Failed(reason)),
+        Seen::Value(indicator) => Some(Ok((indicator / checked.root.slope).abs())),
+        Seen::Absent => Some(Err(Doubt::NotBetweenClosedEnds)),
+        Seen::Failed(reason) => Some(Err(Doubt::CheckFailed(CheckedBy::ClosedEnds, reason))),
         Seen::Unknown => None,
     }
 }
@@ -212,14 +191,14 @@ pub(super) fn check(
     checked: &Checked<'_>,
     span: Span,
     tolerance: f64,
-) -> Option<GridCheck> {
+) -> Option<Result<f64, Doubt>> {
     let mut value = checked.root.value;
     let mut slope = checked.root.slope;
     let mut seen: Vec<(f64, f64)> = Vec::new();
     for _ in 0..MOST_SOLVES {
         let indicator = match indicator_at(evaluate, value) {
             Ok(indicator) => indicator,
-            Err(ended) => return ended,
+            Err(ended) => return ended.map(Err),
         };
         if let Some((before, then)) = seen.last() {
             slope = (indicator - then) / (value - before);
@@ -227,7 +206,7 @@ pub(super) fn check(
         let step = -indicator / slope;
         let next = value + step;
         if !span.contains(next) {
-            return Some(GridCheck::Unconfirmed);
+            return Some(Err(Doubt::NotOnFinerCells));
         }
         seen.push((value, indicator));
         if step.abs() <= SMALL * tolerance {
@@ -235,23 +214,20 @@ pub(super) fn check(
         }
         value = next;
     }
-    Some(GridCheck::Unconfirmed)
+    Some(Err(Doubt::NotOnFinerCells))
 }
 
 /// The indicator at a value, or how the check ends without one.
-fn indicator_at(
-    evaluate: &mut dyn FnMut(f64) -> Seen,
-    value: f64,
-) -> Result<f64, Option<GridCheck>> {
+fn indicator_at(evaluate: &mut dyn FnMut(f64) -> Seen, value: f64) -> Result<f64, Option<Doubt>> {
     match evaluate(value) {
         Seen::Value(indicator) => Ok(indicator),
-        Seen::Absent => Err(Some(GridCheck::Unconfirmed)),
-        Seen::Failed(reason) => Err(Some(GridCheck::Failed(reason))),
+        Seen::Absent => Err(Some(Doubt::NotOnFinerCells)),
+        Seen::Failed(reason) => Err(Some(Doubt::CheckFailed(CheckedBy::FinerCells, reason))),
         Seen::Unknown => Err(None),
     }
 }
 
-/// Whether the indicator has different signs on both sides of a zero: by what was seen, or by one more solve on the
+/// The zero, if the indicator has different signs on both sides of a zero: by what was seen, or by one more solve on the
 /// side that was not, or not so near. A value of zero is on neither side.
 fn changes_sign(
     evaluate: &mut dyn FnMut(f64) -> Seen,
@@ -259,8 +235,8 @@ fn changes_sign(
     zero: f64,
     span: Span,
     tolerance: f64,
-) -> Option<GridCheck> {
-    let confirmed = Some(GridCheck::Confirmed(zero));
+) -> Option<Result<f64, Doubt>> {
+    let confirmed = Some(Ok(zero));
     let Some(&(last, indicator)) = seen.last().filter(|(_, indicator)| *indicator != 0.0) else {
         return confirmed;
     };
@@ -273,8 +249,8 @@ fn changes_sign(
     let across = if span.contains(beyond) { beyond } else { zero };
     match indicator_at(evaluate, across) {
         Ok(one) if is_other(one) => confirmed,
-        Ok(_) => Some(GridCheck::Unconfirmed),
-        Err(ended) => ended,
+        Ok(_) => Some(Err(Doubt::NotOnFinerCells)),
+        Err(ended) => ended.map(Err),
     }
 }
 
@@ -285,7 +261,10 @@ mod tests {
     use crate::system::examples::bistable;
 
     /// What the check says of a function whose zero the coarser grid saw at 0.5 with a slope, and the values asked for.
-    fn checked_by(function: impl Fn(f64) -> f64, slope: f64) -> (Option<GridCheck>, usize) {
+    fn checked_by(
+        function: impl Fn(f64) -> f64,
+        slope: f64,
+    ) -> (Option<Result<f64, Doubt>>, usize) {
         let root = Root {
             value: 0.5,
             slope,
@@ -318,7 +297,7 @@ mod tests {
         // The secant of a straight line is exact; its last value lies on the zero but for rounding, or before it.
         for (zero, most) in [(0.5 + 1e-7, 2), (0.51, 3), (0.4, 3)] {
             let (found, solves) = checked_by(|value| 3.0 * (value - zero), 3.0);
-            let Some(GridCheck::Confirmed(value)) = found else {
+            let Some(Ok(value)) = found else {
                 panic!("{found:?}");
             };
             assert!(
@@ -332,9 +311,9 @@ mod tests {
     fn a_pole_is_not_confirmed_however_steep_the_indicator_was() {
         // On the coarser grid p passes zero, and p'/p with it through infinity: a slope of 10⁷ makes 12 a small step.
         let (found, _) = checked_by(|_| 12.0, 1e7);
-        assert_eq!(found, Some(GridCheck::Unconfirmed));
+        assert_eq!(found, Some(Err(Doubt::NotOnFinerCells)));
         let touching = |value: f64| 1e-9 + (value - 0.5).powi(2);
         let (found, _) = checked_by(touching, 1.0);
-        assert_eq!(found, Some(GridCheck::Unconfirmed));
+        assert_eq!(found, Some(Err(Doubt::NotOnFinerCells)));
     }
 }

@@ -2,7 +2,8 @@
 //! changes there.
 
 use super::Point;
-use super::change::Crossing;
+use super::doubt::Doubt;
+use super::follow::Crossing;
 use crate::topology::{Detector, Indicator};
 
 /// Times as steep as beside a bracket that an indicator must be inside it to have jumped. A smooth one is as steep,
@@ -11,21 +12,18 @@ const STEEPER: f64 = 30.0;
 /// Widths of the bracket within which values beside it tell how steep the indicator is.
 const BESIDE: f64 = 16.0;
 
-/// The sentence for an indicator that does not pass zero: two densities on either side that are solved in different
+/// The doubt in an indicator that does not pass zero: two densities on either side that are solved in different
 /// ways, or a value that does not come down while the bracket closes in on the zero.
 pub(super) fn instead_of_zero(
     points: &[&Point],
     crossing: &Crossing,
     detector: &dyn Detector,
-) -> Option<String> {
+) -> Option<Doubt> {
     let (left, right) = (crossing.left, crossing.left + 1);
     let by_quadrature =
         |index: usize| points[index].densities[crossing.observable].is_by_quadrature();
     if by_quadrature(left) != by_quadrature(right) {
-        return Some(
-            "from there on the drift at an end of Ω points outward, and what is seen beside that end changes: a wider range is needed"
-                .to_owned(),
-        );
+        return Some(Doubt::OutwardDrift);
     }
     // Noise makes every indicator uneven.
     if crossing.ends.iter().any(|end| end.sampling_error > 0.0) {
@@ -49,9 +47,7 @@ pub(super) fn instead_of_zero(
         .into_iter()
         .flatten()
         .any(|slope| inside > STEEPER * slope);
-    jumps.then(|| {
-        "the slope or curvature that tells of it jumps there in place of passing zero: a wider range or more cells may show why".to_owned()
-    })
+    jumps.then_some(Doubt::Jump)
 }
 
 /// Change of an indicator over the parameter, without its sign, between two points given by their numbers.
@@ -68,11 +64,11 @@ mod tests {
     use crate::topology::{Detection, IndicatorKind};
 
     /// Densities whose first value is the indicator.
-    struct Told;
+    struct FirstValue;
 
-    impl Detector for Told {
+    impl Detector for FirstValue {
         fn name(&self) -> &'static str {
-            "told"
+            "first value"
         }
         fn detect(&self, _: &EstimatedDensity) -> Detection {
             unreachable!("only indicators are asked for")
@@ -124,7 +120,7 @@ mod tests {
 
     /// What is said of a function of the parameter that changes its sign between 0.5 and 0.5 + width, given values
     /// beside.
-    fn said(of: impl Fn(f64) -> f64, width: f64, sampling_error: f64) -> Option<String> {
+    fn doubt(of: impl Fn(f64) -> f64, width: f64, sampling_error: f64) -> Option<Doubt> {
         let values = [0.5 - 4.0 * width, 0.5, 0.5 + width, 0.5 + 5.0 * width];
         let points = values.map(|value| point(value, of(value), 1e-7));
         let ends = [1, 2].map(|index| Indicator {
@@ -137,7 +133,7 @@ mod tests {
             ends,
         };
         assert!(crossing.ends[0].value * crossing.ends[1].value <= 0.0);
-        instead_of_zero(&points.each_ref(), &crossing, &Told)
+        instead_of_zero(&points.each_ref(), &crossing, &FirstValue)
     }
 
     #[test]
@@ -146,11 +142,11 @@ mod tests {
         for width in [1e-3, 1e-5, 1e-7] {
             let at = 0.5 + 0.3 * width;
             let smooth = |x: f64| 3.0 * (x - at) + (x - at).powi(2);
-            assert_eq!(said(smooth, width, 0.0), None);
+            assert_eq!(doubt(smooth, width, 0.0), None);
             let step = |x: f64| if x > zero { 0.2 } else { -0.1 } + 0.5 * (x - zero);
-            assert!(said(step, width, 0.0).is_some_and(|words| words.contains("jumps")));
+            assert_eq!(doubt(step, width, 0.0), Some(Doubt::Jump));
             // Noise makes every indicator uneven.
-            assert_eq!(said(step, width, 0.01), None);
+            assert_eq!(doubt(step, width, 0.01), None);
         }
     }
 
@@ -159,9 +155,9 @@ mod tests {
         // A cubic root is the steepest of smooth branches that meet zero, two zeros at a distance of a bracket a fold
         // of them.
         let root = |x: f64| (x - 0.500_02_f64).cbrt();
-        assert_eq!(said(root, 1e-4, 0.0), None);
+        assert_eq!(doubt(root, 1e-4, 0.0), None);
         let two = |x: f64| (x - 0.500_05) * (x - 0.500_2) * -1e4;
-        assert_eq!(said(two, 1e-4, 0.0), None);
+        assert_eq!(doubt(two, 1e-4, 0.0), None);
     }
 
     #[test]
@@ -173,7 +169,7 @@ mod tests {
             left: 0,
             ends,
         };
-        let said = instead_of_zero(&points.each_ref(), &crossing, &Told);
-        assert!(said.is_some_and(|words| words.contains("points outward")));
+        let doubt = instead_of_zero(&points.each_ref(), &crossing, &FirstValue);
+        assert_eq!(doubt, Some(Doubt::OutwardDrift));
     }
 }

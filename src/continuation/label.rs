@@ -1,30 +1,9 @@
 //! Labelled points of a sweep: AUTO's habit of a type and an ordinal for everything worth a row.
 
+use super::doubt::{Doubt, status_of};
 use super::{ErrorParts, Point};
 use crate::density::Observable;
-use crate::topology::{IndicatorKind, Signature};
-
-/// What a labelled point is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum PointType {
-    /// `PB`: a P-bifurcation.
-    Bifurcation,
-    /// `EP`: an end of the sweep.
-    EndPoint,
-    /// `MX`: no converged steady state.
-    NoConvergence,
-}
-
-impl PointType {
-    /// The letters of its labels.
-    pub fn prefix(self) -> &'static str {
-        match self {
-            Self::Bifurcation => "PB",
-            Self::EndPoint => "EP",
-            Self::NoConvergence => "MX",
-        }
-    }
-}
+use crate::topology::{IndicatorKind, Signature, Step};
 
 /// How well a P-bifurcation is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -38,8 +17,7 @@ pub enum BifurcationStatus {
     /// the cells.
     Unconfirmed,
     /// Finer cells were not asked ([`LocateOptions::grid_check`](super::LocateOptions::grid_check) is off), so that its
-    /// error lacks what the cells do to it; or a check failed: [`LabelledPoint::reason`] says which. The value may be
-    /// right.
+    /// error lacks what the cells do to it; or a check failed: [`Located::reason`] says which. The value may be right.
     Unchecked,
 }
 
@@ -63,102 +41,191 @@ impl BifurcationStatus {
     }
 }
 
-/// A row of `bifurcations.csv`.
+/// A labelled point of a sweep, a row of `bifurcations.csv`.
 #[derive(Debug, Clone, PartialEq)]
-pub struct LabelledPoint {
-    /// Type and ordinal, for example `PB1`.
+pub enum Label {
+    /// An end of the sweep.
+    End {
+        /// `EP` and its ordinal.
+        label: String,
+        /// The parameter's value.
+        value: f64,
+    },
+    /// Neighbouring points without a density, or without convergence.
+    Failure {
+        /// `MX` and its ordinal.
+        label: String,
+        /// Value of the first.
+        lower: f64,
+        /// Value of the last.
+        upper: f64,
+    },
+    /// A P-bifurcation.
+    Bifurcation(Box<Located>),
+}
+
+/// A P-bifurcation of a sweep.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Located {
+    /// `PB` and its ordinal.
     pub label: String,
-    /// The type.
-    pub kind: PointType,
     /// The parameter's value.
     pub value: f64,
-    /// Half-width of the interval that is believed to hold the true value; zero for end points.
+    /// Half-width of the interval that is believed to hold the true value.
     pub error: f64,
     /// Lower end of the bracket or unresolved band.
     pub lower: f64,
     /// Upper end of the bracket or unresolved band.
     pub upper: f64,
-    /// The observable whose signature changes; `None` for end points and failures.
-    pub observable: Option<Observable>,
+    /// The observable whose signature changes.
+    pub observable: Observable,
     /// Signature below the value.
-    pub before: Option<Signature>,
+    pub before: Signature,
     /// Signature above the value.
-    pub after: Option<Signature>,
-    /// How well it is known; `None` for end points and failures.
-    pub status: Option<BifurcationStatus>,
-    /// What happens there, in words; empty for end points and failures.
-    pub change: &'static str,
-    /// What it was located by: the name of an indicator, or `persistence`; empty for end points and failures.
-    pub method: &'static str,
-    /// The indicator whose zero it is.
-    pub indicator: Option<IndicatorKind>,
-    /// Whether the indicator rises through its zero.
-    pub rises: bool,
-    /// Why it is not located, where a sentence is known.
-    pub reason: Option<String>,
-    /// Where the indicator is, one coordinate an axis of the density; empty without one.
+    pub after: Signature,
+    /// The zero of an indicator that it is; `None` where persistence alone tells.
+    pub zero: Option<Zero>,
+    /// Whether it is several changes that cannot be told apart.
+    pub is_several: bool,
+    /// Why it may not be what it says; the first decides its status. None where it is located.
+    pub doubts: Vec<Doubt>,
+}
+
+/// A zero of an indicator.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Zero {
+    /// The indicator.
+    pub indicator: IndicatorKind,
+    /// Where it is, one coordinate an axis of the density.
     pub place: Vec<f64>,
-    /// Change of the indicator per unit of the parameter at its zero.
-    pub slope: Option<f64>,
-    /// Parts of the error; `None` where persistence alone gives a band, and for end points and failures.
-    pub parts: Option<ErrorParts>,
+    /// Change of the indicator per unit of the parameter.
+    pub slope: f64,
+    /// Parts of the error of the value.
+    pub parts: ErrorParts,
 }
 
-/// The end points of a sweep, unnumbered.
-pub(super) fn end_points(points: &[Point]) -> Vec<LabelledPoint> {
-    let ends = [points.first(), points.last()];
-    ends.into_iter()
-        .flatten()
-        .map(|point| unplaced(PointType::EndPoint, point.value, point.value))
-        .collect()
-}
+impl Label {
+    /// Type and ordinal, for example `PB1`.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::End { label, .. } | Self::Failure { label, .. } => label,
+            Self::Bifurcation(located) => &located.label,
+        }
+    }
 
-/// One row for every run of neighbouring points without a density or without convergence, unnumbered.
-pub(super) fn failures(points: &[Point]) -> Vec<LabelledPoint> {
-    points
-        .chunk_by(|a, b| a.report.status.is_resolved() == b.report.status.is_resolved())
-        .filter(|run| !run[0].report.status.is_resolved())
-        .map(|run| {
-            unplaced(
-                PointType::NoConvergence,
-                run[0].value,
-                run[run.len() - 1].value,
-            )
-        })
-        .collect()
-}
+    /// The parameter's value; of a failure the middle.
+    pub fn value(&self) -> f64 {
+        match self {
+            Self::Bifurcation(located) => located.value,
+            _ => {
+                let (lower, upper) = self.bracket();
+                0.5 * (lower + upper)
+            }
+        }
+    }
 
-fn unplaced(kind: PointType, lower: f64, upper: f64) -> LabelledPoint {
-    LabelledPoint {
-        label: String::new(),
-        kind,
-        value: 0.5 * (lower + upper),
-        error: 0.5 * (upper - lower),
-        lower,
-        upper,
-        observable: None,
-        before: None,
-        after: None,
-        status: None,
-        change: "",
-        method: "",
-        parts: None,
-        indicator: None,
-        rises: false,
-        reason: None,
-        place: Vec::new(),
-        slope: None,
+    /// Half-width of the interval that is believed to hold the true value; zero for end points.
+    pub fn error(&self) -> f64 {
+        match self {
+            Self::Bifurcation(located) => located.error,
+            _ => {
+                let (lower, upper) = self.bracket();
+                0.5 * (upper - lower)
+            }
+        }
+    }
+
+    /// Ends of the bracket, of an unresolved band, or of what failed.
+    pub fn bracket(&self) -> (f64, f64) {
+        match self {
+            Self::End { value, .. } => (*value, *value),
+            Self::Failure { lower, upper, .. } => (*lower, *upper),
+            Self::Bifurcation(located) => (located.lower, located.upper),
+        }
+    }
+
+    /// The P-bifurcation, if it is one.
+    pub fn bifurcation(&self) -> Option<&Located> {
+        match self {
+            Self::Bifurcation(located) => Some(located),
+            _ => None,
+        }
+    }
+
+    /// Whether it is an end of the sweep.
+    pub fn is_end(&self) -> bool {
+        matches!(self, Self::End { .. })
     }
 }
 
+impl Located {
+    /// How well it is known.
+    pub fn status(&self) -> BifurcationStatus {
+        status_of(&self.doubts)
+    }
+
+    /// Why it is not located; `None` where it is.
+    pub fn reason(&self) -> Option<&Doubt> {
+        self.doubts.first()
+    }
+
+    /// The indicator whose zero it is.
+    pub fn indicator(&self) -> Option<IndicatorKind> {
+        self.zero.as_ref().map(|zero| zero.indicator)
+    }
+
+    /// What it was located by: the name of an indicator, or `persistence`.
+    pub fn method(&self) -> &'static str {
+        let indicator = self.indicator();
+        indicator.map_or("persistence", |kind| kind.name())
+    }
+
+    /// What happens there as the parameter rises, in words.
+    pub fn change(&self) -> &'static str {
+        let step = Step {
+            // Several changes go the way in which they follow each other.
+            rises: self.is_several || self.zero.as_ref().is_some_and(|zero| zero.slope > 0.0),
+            before: self.before,
+            after: self.after,
+        };
+        step.words(self.indicator(), self.is_several)
+    }
+}
+
+/// The end points of a sweep, unnumbered.
+pub(super) fn end_points(points: &[Point]) -> impl Iterator<Item = Label> {
+    let ends = [points.first(), points.last()].into_iter().flatten();
+    ends.map(|point| Label::End {
+        label: String::new(),
+        value: point.value,
+    })
+}
+
+/// One row for every run of neighbouring points without a density or without convergence, unnumbered.
+pub(super) fn failures(points: &[Point]) -> impl Iterator<Item = Label> {
+    let alike =
+        |a: &Point, b: &Point| a.report.status.is_resolved() == b.report.status.is_resolved();
+    let runs = points.chunk_by(alike);
+    let failed = runs.filter(|run| !run[0].report.status.is_resolved());
+    failed.map(|run| Label::Failure {
+        label: String::new(),
+        lower: run[0].value,
+        upper: run[run.len() - 1].value,
+    })
+}
+
 /// Sorts rows by parameter and numbers each type from 1.
-pub(super) fn number(mut labels: Vec<LabelledPoint>) -> Vec<LabelledPoint> {
-    labels.sort_by(|a, b| a.value.total_cmp(&b.value));
-    let mut counts = std::collections::BTreeMap::new();
+pub(super) fn number(mut labels: Vec<Label>) -> Vec<Label> {
+    labels.sort_by(|a, b| a.value().total_cmp(&b.value()));
+    let mut counts = [0; 3];
     for row in &mut labels {
-        let count = counts.entry(row.kind.prefix()).or_insert(0);
+        let (label, prefix, count) = match row {
+            Label::Bifurcation(located) => (&mut located.label, "PB", &mut counts[0]),
+            Label::End { label, .. } => (label, "EP", &mut counts[1]),
+            Label::Failure { label, .. } => (label, "MX", &mut counts[2]),
+        };
         *count += 1;
-        row.label = format!("{}{count}", row.kind.prefix());
+        *label = format!("{prefix}{count}");
     }
     labels
 }

@@ -1,8 +1,7 @@
 //! The checks of located values by solves: on finer cells, and between ends of Ω that let nothing out.
 
-use super::grid::{
-    Checked, CheckedBy, CheckedIndicator, Checks, GridCheck, Leak, Seen, check, known, leak, solve,
-};
+use super::doubt::Doubt;
+use super::grid::{Checked, CheckedBy, CheckedIndicator, Checks, Seen, check, known, leak, solve};
 use super::span::Span;
 use super::{DensitySource, Session, SourceError, Want};
 use crate::cancellation::Cancellation;
@@ -110,7 +109,7 @@ impl<'a> Live<'a> {
 }
 
 impl Checks for Live<'_> {
-    fn on_finer_cells(&mut self, checked: &Checked<'_>) -> Option<GridCheck> {
+    fn on_finer_cells(&mut self, checked: &Checked<'_>) -> Option<Result<f64, Doubt>> {
         let (span, tolerance) = (self.span, self.tolerance);
         let mut evaluate = |value: f64| {
             let seen = self.evaluate(CheckedBy::FinerCells, checked, value);
@@ -119,7 +118,7 @@ impl Checks for Live<'_> {
         check(&mut evaluate, checked, span, tolerance)
     }
 
-    fn between_closed_ends(&mut self, checked: &Checked<'_>) -> Option<Leak> {
+    fn between_closed_ends(&mut self, checked: &Checked<'_>) -> Option<Result<f64, Doubt>> {
         let seen = self.evaluate(CheckedBy::ClosedEnds, checked, checked.root.value)?;
         leak(seen, checked)
     }

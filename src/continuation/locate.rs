@@ -1,20 +1,15 @@
 //! The rows of a sweep: every change of signature with its value, error, bracket and status.
 
-use super::change::{Change, Found, changes};
-use super::grid::{Checked, Checks, GridCheck, Leak, share_of_distance};
+use super::change::{Change, changes};
+use super::doubt::{Doubt, Evidence, WiderRange};
+use super::follow::{Course, Crossing};
+use super::grid::{Checked, Checks, share_of_distance};
 use super::jump::instead_of_zero;
-use super::label::{self, BifurcationStatus, LabelledPoint, PointType};
+use super::label::{self, Label, Located, Zero};
 use super::measure::NUMERICAL_DIFFUSION;
-use super::reason::{
-    MOST_NEGATIVE, change_by_modes, coarse, jump_inside_cells, leaks, negative_share, not_checked,
-    said_of, torn,
-};
-
 use super::root::{Root, root};
-use super::rows::{
-    doubt_what_does_not_continue, in_order, inseparable, merge, say, without_flicker,
-};
-use super::{CellCheck, Goal, Point, PointStatus, Subject, persistence};
+use super::rows::{doubt_what_does_not_continue, in_order, inseparable, merge, without_flicker};
+use super::{Goal, Point, Subject, persistence};
 use crate::density::{EstimatedDensity, Kink, Observable};
 use crate::topology::{Detector, Indicator};
 
@@ -25,23 +20,25 @@ pub(super) fn label_points(
     detector: &dyn Detector,
     options: &Goal,
     checks: &mut dyn Checks,
-) -> Vec<LabelledPoint> {
+) -> Vec<Label> {
     let observables = &subject.observables;
-    let mut labels = label::end_points(points);
-    labels.extend(label::failures(points));
     let solved: Vec<&Point> = points.iter().filter(|p| !p.detections.is_empty()).collect();
-    let mut rows: Vec<LabelledPoint> = Vec::new();
+    let mut rows: Vec<Located> = Vec::new();
     let changes = changes(&solved, detector);
     for gap in changes.chunk_by(|a, b| (a.observable, a.left) == (b.observable, b.left)) {
         let found = gap.iter().map(|change| {
-            let row = match &change.found {
-                Found::Crossing(_) => {
-                    by_indicator(&solved, subject, change, detector, options, checks)
+            let row = match &change.course {
+                Some(Course::Crossing(crossing)) => {
+                    let zero = (change, &**crossing);
+                    by_indicator(&solved, subject, zero, detector, options, checks)
                 }
-                Found::Lost(at) | Found::Beyond(at) => {
-                    by_bracket(&solved, observables, change, *at)
+                Some(Course::Lost(at)) => {
+                    by_bracket(&solved, observables, change, (*at, Doubt::IndicatorLost))
                 }
-                Found::Persistence => by_persistence(&solved, observables, change, options),
+                Some(Course::Beyond(at)) => {
+                    by_bracket(&solved, observables, change, (*at, Doubt::BornBeyond))
+                }
+                None => by_persistence(&solved, observables, change, options),
             };
             (row, change)
         });
@@ -56,37 +53,31 @@ pub(super) fn label_points(
     }
     let mut rows = without_flicker(rows);
     doubt_what_does_not_continue(&mut rows, &solved, observables);
-    for row in &mut rows {
-        say(row);
-    }
-    labels.extend(rows);
-    label::number(labels)
+    let rows = rows.into_iter();
+    let rows = rows.map(|row| Label::Bifurcation(Box::new(row)));
+    let others = label::end_points(points).chain(label::failures(points));
+    label::number(others.chain(rows).collect())
 }
 
-/// A row with all but value, error and status.
-fn blank(observables: &[Observable], change: &Change) -> LabelledPoint {
-    let crossing = change.crossing();
-    let kind = crossing.map(|crossing| crossing.kind());
-    let rises = crossing.is_some_and(|crossing| crossing.ends[1].value > crossing.ends[0].value);
-    LabelledPoint {
+/// A row that no indicator tells the value of.
+fn band(
+    observables: &[Observable],
+    change: &Change,
+    (lower, value, upper): (f64, f64, f64),
+    doubt: Option<Doubt>,
+) -> Located {
+    Located {
         label: String::new(),
-        kind: PointType::Bifurcation,
-        value: 0.0,
-        error: 0.0,
-        lower: 0.0,
-        upper: 0.0,
-        observable: observables.get(change.observable).copied(),
-        before: Some(change.before),
-        after: Some(change.after),
-        status: None,
-        change: "",
-        method: kind.map_or("persistence", |kind| kind.name()),
-        parts: None,
-        indicator: kind,
-        rises,
-        reason: None,
-        place: crossing.map_or(Vec::new(), |crossing| crossing.ends[0].place.clone()),
-        slope: None,
+        value,
+        error: (value - lower).max(upper - value),
+        lower,
+        upper,
+        observable: observables[change.observable],
+        before: change.before,
+        after: change.after,
+        zero: None,
+        is_several: false,
+        doubts: doubt.into_iter().collect(),
     }
 }
 
@@ -95,170 +86,183 @@ fn by_bracket(
     points: &[&Point],
     observables: &[Observable],
     change: &Change,
-    at: usize,
-) -> LabelledPoint {
+    (at, doubt): (usize, Doubt),
+) -> Located {
     let (lost, gap) = (
         (points[at].value, points[at + 1].value),
         (points[change.left].value, points[change.right].value),
     );
     let (lower, upper) = (lost.0.min(gap.0), lost.1.max(gap.1));
-    LabelledPoint {
-        value: 0.5 * (lower + upper),
+    Located {
         error: 0.5 * (upper - lower),
-        lower,
-        upper,
-        status: Some(BifurcationStatus::Unresolved),
-        reason: Some(match change.found {
-            Found::Beyond(_) => {
-                "too low to be counted, it is there up to the end of the sweep".to_owned()
-            }
-            _ => "there its slope can be followed no further: more cells may show it".to_owned(),
-        }),
-        ..blank(observables, change)
+        ..band(
+            observables,
+            change,
+            (lower, 0.5 * (lower + upper), upper),
+            Some(doubt),
+        )
     }
 }
-
-/// The reason of a band that persistence gives.
-const NO_INDICATOR: &str = "no slope or curvature tells of it: the band is from where it is seen to where it is not, and more cells \
-     or samples narrow it";
 
 fn by_persistence(
     points: &[&Point],
     observables: &[Observable],
     change: &Change,
     options: &Goal,
-) -> LabelledPoint {
-    let band = persistence::band(points, change.observable, change.left);
+) -> Located {
+    let found = persistence::band(points, change.observable, change.left);
     // Counting follows what the cells show, and nothing says how far that is from the truth, but for noise.
     let is_noisy = points[change.left].densities[change.observable].is_noisy();
-    let located = is_noisy && band.upper - band.lower <= options.tolerance * (1.0 + 1e-9);
+    let is_narrow = found.upper - found.lower <= options.tolerance * (1.0 + 1e-9);
+    let is_resolved = found.resolved_by_cells;
+    let in_doubt = !(is_noisy && is_narrow && is_resolved);
     // Signatures that were not seen whole say nothing of where in between.
-    let upper = match change.right == change.left + 1 {
-        true => band.upper,
-        false => band.upper.max(points[change.right].value),
+    let upper = if change.right == change.left + 1 {
+        found.upper
+    } else {
+        found.upper.max(points[change.right].value)
     };
-    LabelledPoint {
-        value: band.value,
-        error: (band.value - band.lower).max(upper - band.value),
-        lower: band.lower,
-        upper,
-        status: Some(match (band.resolved_by_cells, located) {
-            (false, _) => BifurcationStatus::Unconfirmed,
-            (true, true) => BifurcationStatus::Located,
-            (true, false) => BifurcationStatus::Unresolved,
-        }),
-        reason: (!located).then(|| NO_INDICATOR.to_owned()),
-        ..blank(observables, change)
-    }
+    let doubt = if is_resolved {
+        Doubt::NoIndicator
+    } else {
+        Doubt::FewCellsApart
+    };
+    band(
+        observables,
+        change,
+        (found.lower, found.value, upper),
+        in_doubt.then_some(doubt),
+    )
 }
 
 fn by_indicator(
     points: &[&Point],
     subject: &Subject,
-    change: &Change,
+    (change, crossing): (&Change, &Crossing),
     detector: &dyn Detector,
     options: &Goal,
     checks: &mut dyn Checks,
-) -> LabelledPoint {
-    let mut row = blank(&subject.observables, change);
-    let Some(crossing) = change.crossing() else {
-        return row;
-    };
-    let mut found: Root = root(points, crossing, detector.confidence());
+) -> Located {
+    let mut zero: Root = root(points, crossing, detector.confidence());
     let (a, b) = (points[crossing.left], points[crossing.left + 1]);
-    let bracket = (a.value, b.value);
+    let density = &a.densities[change.observable];
     // What follows from the equations: no grid takes part.
     let depends_on_cells = !crossing.ends.iter().all(Indicator::is_free_of_cells);
     let checked = Checked {
         observable: change.observable,
         kind: crossing.kind(),
         place: &crossing.ends[0].place,
-        root: found,
+        root: zero,
     };
-    let mut failed = None;
-    let on_finer = depends_on_cells
-        .then(|| checks.on_finer_cells(&checked))
+    let on_finer = depends_on_cells.then(|| checks.on_finer_cells(&checked));
+    let on_finer = on_finer.flatten();
+    let leaks = depends_on_cells && edge_mass(a).max(edge_mass(b)) > QUIET;
+    let leak = leaks
+        .then(|| checks.between_closed_ends(&checked))
         .flatten();
-    match &on_finer {
-        Some(GridCheck::Confirmed(value)) => {
-            let density = &a.densities[change.observable];
-            let chance = by_chance(density, checked.place);
-            let share = share_of_distance(subject.cell_check) * chance;
-            let grid = share * (value - found.value).abs();
-            // Where a bend lies in its cell is chance: two grids may agree, and both be off by what a scheme makes of
-            // it.
-            found.error.grid = match chance > 1.0 && density.density.axes.len() > 1 {
-                // No scheme takes part in closed forms that another source gives on cells. What the generator finds by
-                // quadrature does not come here: its indicators follow from a profile, which no cells change.
-                _ if density.is_by_quadrature() => grid,
-                true => grid
-                    .max(found.error.grid)
-                    .max(LEAST_CLAIM * options.tolerance),
-                false => grid.max(LEAST_CLAIM * options.tolerance),
-            };
-            found.value = *value;
-        }
-        Some(GridCheck::Failed(reason)) => failed = Some(format!("on finer cells: {reason}")),
-        _ => {}
+    if let Some(Ok(value)) = on_finer {
+        let chance = by_chance(density, checked.place);
+        let share = share_of_distance(subject.cell_check) * chance;
+        let distance = share * (value - zero.value).abs();
+        zero.error.grid = at_least(distance, zero.error.grid, chance, density, options);
+        zero.value = value;
     }
-    if depends_on_cells && edge_mass(a).max(edge_mass(b)) > QUIET {
-        match checks.between_closed_ends(&checked) {
-            Some(Leak::Moves(distance)) => found.error.leak = distance,
-            Some(Leak::Failed(reason)) => {
-                failed.get_or_insert(format!("with closed ends: {reason}"));
-            }
-            None => {}
-        }
+    if let Some(Ok(distance)) = leak {
+        zero.error.leak = distance;
     }
-    let error = found.error.total();
-    let narrow = bracket.1 - bracket.0 <= options.tolerance * (1.0 + 1e-9);
-    row.value = found.value;
-    row.error = error;
-    row.lower = bracket.0.min(found.value - error);
-    row.upper = bracket.1.max(found.value + error);
-    row.parts = Some(found.error);
-    row.slope = Some(found.slope);
-    // The diffusion that the cells of a sampled map add moves values; without a finer grid nobody knows by how much.
-    let diffused = a.report.all(&NUMERICAL_DIFFUSION).next().is_some();
-    // What holds of a density that leaks away, or has not converged, is not what holds of the steady state.
-    let unsound = [a, b]
-        .into_iter()
-        .find(|one| one.report.status != PointStatus::Solved);
-    let wiggles = [a, b].map(|one| negative_share(&one.densities[change.observable].density));
-    let wiggles = wiggles[0].max(wiggles[1]);
-    let is_torn = depends_on_cells && wiggles > MOST_NEGATIVE;
-    let lacks_check = on_finer.is_none() && depends_on_cells && is_checkable(subject);
-    let few_modes = [a, b].into_iter().find_map(change_by_modes);
-    let mut by_cells = [a, b].into_iter().filter(|_| depends_on_cells);
-    let blurred = by_cells.find_map(|point| jump_inside_cells(point, subject));
-    let jump = instead_of_zero(points, crossing, detector);
-    row.status = Some(match on_finer {
-        Some(GridCheck::Unconfirmed) => BifurcationStatus::Unconfirmed,
-        _ if failed.is_some() => BifurcationStatus::Unchecked,
-        _ if unsound.is_some()
-            || is_torn
-            || few_modes.is_some()
-            || blurred.is_some()
-            || jump.is_some()
-            || !narrow
-            || error > options.tolerance =>
-        {
-            BifurcationStatus::Unresolved
-        }
-        None if diffused && depends_on_cells => BifurcationStatus::Unconfirmed,
-        None if lacks_check => BifurcationStatus::Unchecked,
-        _ => BifurcationStatus::Located,
+    let unchecked = if options.grid_check {
+        Doubt::CheckMissing
+    } else {
+        Doubt::GridCheckOff
+    };
+    let is_unchecked = on_finer.is_none() && depends_on_cells;
+    let mut densities = Vec::from_iter(instead_of_zero(points, crossing, detector));
+    densities.extend(against(
+        [a, b],
+        (subject, change.observable),
+        depends_on_cells,
+    ));
+    let evidence = Evidence {
+        check: [on_finer, leak].into_iter().flatten().find_map(Result::err),
+        densities,
+        unchecked: is_unchecked.then_some(unchecked),
+        cell_check: subject.cell_check,
+        is_diffused: a.report.all(&NUMERICAL_DIFFUSION).next().is_some(),
+        parts: zero.error,
+        width: b.value - a.value,
+        tolerance: options.tolerance,
+        density: &density.density,
+        is_noisy: density.is_noisy(),
+        wider: WiderRange::of(a, subject),
+    };
+    let error = zero.error.total();
+    Located {
+        value: zero.value,
+        error,
+        lower: a.value.min(zero.value - error),
+        upper: b.value.max(zero.value + error),
+        zero: Some(Zero {
+            indicator: crossing.kind(),
+            place: checked.place.to_vec(),
+            slope: zero.slope,
+            parts: zero.error,
+        }),
+        doubts: evidence.doubts(),
+        ..band(&subject.observables, change, (0.0, 0.0, 0.0), None)
+    }
+}
+
+/// What speaks against the densities on either side of a zero. What holds of one that leaks away, or has not converged,
+/// is not what holds of the steady state.
+fn against(
+    pair: [&Point; 2],
+    (subject, observable): (&Subject, usize),
+    depends_on_cells: bool,
+) -> Vec<Doubt> {
+    let ends = pair.iter().find_map(|point| {
+        let status = point.report.status;
+        Doubt::of_status(status, WiderRange::of(point, subject))
     });
-    row.reason = failed
-        .or(jump)
-        .or_else(|| unsound.map(|point| said_of(point, subject)))
-        .or_else(|| is_torn.then(|| torn(wiggles)))
-        .or(few_modes)
-        .or(blurred)
-        .or_else(|| leaks(&found, error, options, subject, [a, b]))
-        .or_else(|| coarse(&found, error, options, &a.densities[change.observable]))
-        .or_else(|| lacks_check.then(|| not_checked(options)));
-    row
+    let negative = |point: &&Point| Doubt::of_negative(&point.densities[observable].density);
+    let share = |doubt: &Doubt| match doubt {
+        Doubt::NegativeDensity(share) => *share,
+        _ => 0.0,
+    };
+    let torn = pair
+        .iter()
+        .filter(|_| depends_on_cells)
+        .filter_map(negative);
+    let torn = torn.max_by(|a, b| share(a).total_cmp(&share(b)));
+    let findings = pair.iter().flat_map(|point| &point.report.findings);
+    let blurs: Vec<Doubt> = findings.filter_map(Doubt::of_finding).collect();
+    let (jumps, modes): (Vec<Doubt>, Vec<Doubt>) = blurs
+        .into_iter()
+        .partition(|doubt| matches!(doubt, Doubt::JumpInsideCells(..)));
+    let jumps = jumps.into_iter().filter(|_| depends_on_cells);
+    ends.into_iter()
+        .chain(torn)
+        .chain(modes)
+        .chain(jumps)
+        .collect()
+}
+
+/// The error that cells are said to make, of the distance to finer ones. Two grids may agree by chance: where a bend
+/// lies in its cell is chance, and both may be off by what a scheme makes of it.
+fn at_least(
+    distance: f64,
+    before: f64,
+    chance: f64,
+    density: &EstimatedDensity,
+    options: &Goal,
+) -> f64 {
+    let is_blurred = chance > 1.0 && density.density.axes.len() > 1;
+    if is_blurred && density.is_by_quadrature() {
+        // No scheme takes part in closed forms that another source gives on cells. What the generator finds by
+        // quadrature does not come here: its indicators follow from a profile, which no cells change.
+        return distance;
+    }
+    let least = distance.max(LEAST_CLAIM * options.tolerance);
+    if is_blurred { least.max(before) } else { least }
 }
 
 /// Share of the tolerance below which no error is claimed where a scheme takes part: two grids may agree that well by
@@ -271,8 +275,9 @@ const REACH: usize = 4;
 /// By how much a distance to finer cells may be too small by chance there.
 const CHANCE: f64 = 10.0;
 
-/// One, or more beside a kink that lies inside a cell, as where in its cell differs from grid to grid, and with it the
-/// error; and beside a bend that a scheme has followed, whose order is not known there.
+/// By how much a distance to finer cells may be too small by chance at a place. Where a kink lies inside a cell, its
+/// place in the cell differs from grid to grid, and the error with it. At a bend that a scheme has followed the order of
+/// the scheme is not known. Elsewhere it is one.
 fn by_chance(estimated: &EstimatedDensity, place: &[f64]) -> f64 {
     let is_cut = |kink: &Kink| {
         let Some((axis, place)) = estimated
@@ -290,11 +295,6 @@ fn by_chance(estimated: &EstimatedDensity, place: &[f64]) -> f64 {
     };
     let mut kinks = estimated.structure.kinks.iter();
     if kinks.any(is_cut) { CHANCE } else { 1.0 }
-}
-
-/// Whether finer cells could tell what the cells do to a value.
-fn is_checkable(subject: &Subject) -> bool {
-    matches!(subject.cell_check, CellCheck::OnFinerCells { .. })
 }
 
 /// Mass in the outermost cells below which what leaves Ω matters nowhere.

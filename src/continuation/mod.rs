@@ -8,6 +8,7 @@ mod bracket;
 mod change;
 pub mod curve;
 mod dips;
+mod doubt;
 mod events;
 mod finding;
 mod follow;
@@ -21,7 +22,6 @@ pub(crate) mod measure;
 mod observer;
 mod persistence;
 mod point;
-mod reason;
 mod report;
 mod root;
 mod rows;
@@ -31,11 +31,12 @@ mod span;
 mod sweep;
 
 pub use again::detect_again;
+pub use doubt::{Doubt, WiderRange};
 #[cfg(test)]
 pub(crate) use finding::every_finding;
 pub use finding::{Finding, ShiftedQuantity, SteadyClass};
 pub use grid::{CheckedBy, CheckedIndicator};
-pub use label::{BifurcationStatus, LabelledPoint, PointType};
+pub use label::{BifurcationStatus, Label, Located, Zero};
 pub use measure::{Measure, MeasureColumn, MeasureKind};
 pub use observer::Observer;
 pub use point::Point;
@@ -117,7 +118,7 @@ pub struct SweepResult {
     /// All points in ascending parameter.
     pub points: Vec<Point>,
     /// Labelled points in ascending parameter: end points `EP`, changes `PB`, failures `MX`.
-    pub labels: Vec<LabelledPoint>,
+    pub labels: Vec<Label>,
     /// What was seen in the checks of located values; `None` where there was none.
     pub checks: Option<Vec<CheckedIndicator>>,
     /// Whether the sweep was interrupted before it was complete.
@@ -125,6 +126,11 @@ pub struct SweepResult {
 }
 
 impl SweepResult {
+    /// The P-bifurcations, in ascending parameter.
+    pub fn bifurcations(&self) -> impl Iterator<Item = &Located> {
+        self.labels.iter().filter_map(Label::bifurcation)
+    }
+
     /// Largest Hellinger distance between neighbouring densities that was accepted; `None` with fewer than two.
     pub fn largest_distance(&self) -> Option<f64> {
         let distances = self.points.iter().filter_map(|point| point.distance);

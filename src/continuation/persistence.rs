@@ -69,7 +69,7 @@ pub(super) fn band(points: &[&Point], observable: usize, left: usize) -> Band {
 
 /// The deciding feature at one point where it is present.
 #[derive(Debug, Clone, Copy)]
-struct Seen {
+struct Sighting {
     value: f64,
     persistence: f64,
     error: f64,
@@ -85,7 +85,7 @@ fn present_side(
     kind: FeatureKind,
     rank: usize,
     present_below: bool,
-) -> Vec<Seen> {
+) -> Vec<Sighting> {
     let indices: Vec<usize> = if present_below {
         (0..=left).rev().collect()
     } else {
@@ -96,7 +96,7 @@ fn present_side(
         let detection = &point.detections[observable];
         let feature = deciding_feature(detection, kind, rank)
             .filter(|feature| feature.verdict == Verdict::Present)?;
-        Some(Seen {
+        Some(Sighting {
             value: point.value,
             persistence: feature.persistence,
             error: feature.standard_error,
@@ -124,7 +124,7 @@ fn cells_apart(feature: &Feature, detection: &Detection, density: &EstimatedDens
 }
 
 /// Births by a line through the nearest points, and by one through the nearest where the feature is well apart.
-fn births_of(present: &[Seen]) -> Vec<(f64, f64, f64)> {
+fn births_of(present: &[Sighting]) -> Vec<(f64, f64, f64)> {
     let nearest = |apart: f64| -> Vec<(f64, f64, f64)> {
         let points = present.iter().filter(|seen| seen.cells_apart >= apart);
         points

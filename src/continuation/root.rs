@@ -4,7 +4,7 @@
 //! random numbers their noise is the same at both points, and the jackknife sees what that does to the zero.
 
 use super::Point;
-use super::change::Crossing;
+use super::follow::Crossing;
 use crate::topology::{Detector, Indicator, two_sided_limit};
 
 /// The parts of the error of a P-bifurcation's value, in units of the parameter; each bounds its part at the

@@ -2,15 +2,16 @@
 //! where neighbouring densities differ much; then narrows every change of signature.
 
 use super::bracket::is_settled;
-use super::change::{Change, Found, changes, crossings_at_centre};
+use super::change::{Change, changes, crossings_at_centre};
 use super::dips::{self, Flanks};
+use super::follow::Course;
 use super::grid::CheckedIndicator;
 use super::live::Live;
 use super::locate::label_points;
 use super::root::{beyond_doubt, next_value, root};
 use super::span::Span;
 use super::{
-    CellCheck, DensitySource, Goal, LabelledPoint, LocateOptions, Observer, Point, Session, Shard,
+    CellCheck, DensitySource, Goal, Label, LocateOptions, Observer, Point, Session, Shard,
     SourceError, SweepResult,
 };
 use crate::cancellation::Cancellation;
@@ -249,17 +250,17 @@ impl Run<'_> {
             return Some(value);
         }
         let changes = changes(&solved, self.detector);
-        let wanted = |change: &Change| match &change.found {
-            Found::Crossing(crossing) => {
+        let wanted = |change: &Change| match &change.course {
+            Some(Course::Crossing(crossing)) => {
                 next_value(&solved, crossing, self.detector.confidence(), tolerance)
             }
-            Found::Lost(at) => {
+            Some(Course::Lost(at)) => {
                 let (a, b) = (solved[*at].value, solved[*at + 1].value);
                 let middle = 0.5 * (a + b);
                 (b - a > tolerance && middle > a && middle < b).then_some(middle)
             }
-            Found::Beyond(_) => None,
-            Found::Persistence => {
+            Some(Course::Beyond(_)) => None,
+            None => {
                 let (a, b) = (solved[change.left], solved[change.left + 1]);
                 let middle = 0.5 * (a.value + b.value);
                 let settled = is_settled(a, b, self.span.step, &self.options);
@@ -338,7 +339,7 @@ impl Run<'_> {
 }
 
 /// Rows, and what was seen in their checks.
-type Labelled = (Vec<LabelledPoint>, Option<Vec<CheckedIndicator>>);
+type Labelled = (Vec<Label>, Option<Vec<CheckedIndicator>>);
 
 /// Largest Hellinger distance over the watched densities of two points; `None` when one has none.
 pub(super) fn distance_between(a: &Point, b: &Point) -> Option<f64> {

@@ -124,11 +124,8 @@ fn run(source: &Ramp, detector: &SquareLaw, points: usize, tolerance: f64) -> Sw
     .unwrap()
 }
 
-fn bifurcations(result: &SweepResult) -> Vec<&LabelledPoint> {
-    let labels = result.labels.iter();
-    labels
-        .filter(|row| row.kind == PointType::Bifurcation)
-        .collect()
+fn bifurcations(result: &SweepResult) -> Vec<&Located> {
+    result.bifurcations().collect()
 }
 
 #[test]
@@ -146,9 +143,9 @@ fn a_birth_hidden_by_noise_lies_in_the_stated_band() {
     // The persistence is counted only from 0.1 + √(5e-3) = 0.171 on.
     assert!(row.upper > 0.165 && row.upper - row.lower < 0.1);
     assert!((row.value - 0.1).abs() < 0.01);
-    assert_eq!(row.status, Some(BifurcationStatus::Unresolved));
-    assert_eq!(row.before.unwrap().peaks, 1);
-    assert_eq!(row.after.unwrap().peaks, 2);
+    assert_eq!(row.status(), BifurcationStatus::Unresolved);
+    assert_eq!(row.before.peaks, 1);
+    assert_eq!(row.after.peaks, 2);
 }
 
 #[test]
@@ -160,7 +157,7 @@ fn without_noise_the_bracket_reaches_the_tolerance() {
     let result = run(&Ramp::new(-1.0, 1.0), &detector, 41, 1e-4);
     let rows = bifurcations(&result);
     // What cells count is no proof, however narrow the bracket.
-    assert_eq!(rows[0].status, Some(BifurcationStatus::Unresolved));
+    assert_eq!(rows[0].status(), BifurcationStatus::Unresolved);
     assert!(rows[0].upper - rows[0].lower <= 1e-4);
     assert!(rows[0].lower <= 0.1 && 0.1 <= rows[0].upper);
     // 0.05 / 2^9 < 1e-4: nine halvings and no more.
@@ -178,7 +175,10 @@ fn the_direction_of_the_sweep_changes_no_row() {
     let (a, b) = (bifurcations(&up), bifurcations(&down));
     assert_eq!(a.len(), b.len());
     for (a, b) in a.iter().zip(&b) {
-        assert_eq!((a.before, a.after, a.status), (b.before, b.after, b.status));
+        assert_eq!(
+            (a.before, a.after, a.status()),
+            (b.before, b.after, b.status())
+        );
         for (x, y) in [(a.value, b.value), (a.lower, b.lower), (a.upper, b.upper)] {
             assert!((x - y).abs() < 1e-12);
         }
@@ -199,13 +199,14 @@ fn failures_are_rows_and_do_not_stop_the_sweep() {
     let failures: Vec<_> = result
         .labels
         .iter()
-        .filter(|row| row.kind == PointType::NoConvergence)
+        .filter(|row| matches!(row, Label::Failure { .. }))
         .collect();
     assert_eq!(failures.len(), 1);
-    assert!((failures[0].lower + 0.3).abs() < 1e-12 && failures[0].upper == 0.0);
-    assert_eq!(failures[0].label, "MX1");
+    let (lower, upper) = failures[0].bracket();
+    assert!((lower + 0.3).abs() < 1e-12 && upper == 0.0);
+    assert_eq!(failures[0].name(), "MX1");
     assert_eq!(bifurcations(&result).len(), 1);
-    assert_eq!(result.labels[0].label, "EP1");
+    assert_eq!(result.labels[0].name(), "EP1");
 }
 
 #[test]

@@ -9,7 +9,7 @@ use super::pack::{Packed, Scale, deflate};
 use super::plane::PlaneScene;
 use super::scene::Scene;
 use super::stored::StoredPage;
-use crate::continuation::{LabelledPoint, Point, Subject};
+use crate::continuation::{Label, Point, Subject};
 use crate::density::Observable;
 use crate::sweep_file::Sweep;
 
@@ -64,7 +64,7 @@ struct Stated {
 pub(super) struct Shown<'a> {
     pub(super) sweep: &'a Sweep,
     pub(super) subject: &'a Subject,
-    pub(super) labels: &'a [LabelledPoint],
+    pub(super) labels: &'a [Label],
     pub(super) points: Vec<&'a Point>,
     pub(super) plane: Option<&'a PlaneScene>,
     /// Of a map, the second parameter of every point.

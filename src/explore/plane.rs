@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::continuation::Subject;
 use crate::continuation::curve::{CodimensionTwo, Curve, CurvePoint, Plane, codimension_two};
-use crate::continuation::map::{FloodedRegion, MapNode, PlaneState, Seed, flooded};
+use crate::continuation::map::{FloodedRegion, MapNode, PlaneState, Seed, flood};
 use crate::density::Observable;
 use crate::run::{curve_name, point_labels};
 use crate::sweep_file::Sweep;
@@ -179,7 +179,7 @@ impl PlaneScene {
         let coarse = coarse_grid(nodes, usize::MAX);
         let widest = coarse.map(|values| 1.0 / (values.len().max(2) - 1) as f64);
         let smallest = widest[0].max(widest[1]) / f64::from(1_u32 << finest.min(30));
-        let found = flooded(PICTURE, lines, &seeds, smallest);
+        let found = flood(PICTURE, lines, &seeds, smallest);
         let kind = |&region: &usize| {
             let region = found.regions.get(region);
             region.map_or(0, |one| one.kind.min(255) as u8)
@@ -207,7 +207,7 @@ impl CurveTold {
             let ([x, y], [to_x, to_y]) = (point.values, point.to_edge.map(finite));
             [x, y, finite(point.error), to_x, to_y]
         };
-        let statuses = curve.points.iter().map(|point| point.status.word());
+        let statuses = curve.points.iter().map(|point| point.status().word());
         Self {
             name: curve_name(index),
             observable: observables.position(|one| *one == curve.observable),
@@ -228,7 +228,7 @@ impl SpecialPoint {
             kind: point.kind.name(),
             at: point.values,
             error: point.error,
-            status: point.status.word(),
+            status: point.status().word(),
             observable: observables.collect::<Vec<_>>().join(" "),
             curves: curves.collect::<Vec<_>>().join(" "),
         }

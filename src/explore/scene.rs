@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::continuation::{LabelledPoint, PointType, Subject};
+use crate::continuation::{self, Located, Subject};
 use crate::density::Observable;
 use crate::formula::mathml::{Content, Element};
 use crate::sweep_file::Sweep;
@@ -95,7 +95,7 @@ pub(super) struct Label {
 
 impl Scene {
     /// What is said of a sweep, with the rows that were found on it.
-    pub(super) fn new(sweep: &Sweep, labels: &[LabelledPoint]) -> Self {
+    pub(super) fn new(sweep: &Sweep, labels: &[continuation::Label]) -> Self {
         let subject = sweep.problem.subject();
         let family = &subject.family;
         let (from, to) = family.ends();
@@ -196,28 +196,30 @@ fn moments(family: &Family) -> Vec<String> {
 }
 
 impl Label {
-    pub(super) fn new(row: &LabelledPoint, subject: &Subject) -> Self {
+    pub(super) fn new(row: &continuation::Label, subject: &Subject) -> Self {
         let number = |wanted: Observable| {
             let mut observables = subject.observables.iter();
             observables.position(|&observable| observable == wanted)
         };
+        let located = row.bifurcation();
+        let (lower, upper) = row.bracket();
         Self {
-            label: row.label.clone(),
-            kind: match row.kind {
-                PointType::Bifurcation => "bifurcation",
-                PointType::EndPoint => "end",
-                PointType::NoConvergence => "failure",
+            label: row.name().to_owned(),
+            kind: match row {
+                continuation::Label::Bifurcation(_) => "bifurcation",
+                continuation::Label::End { .. } => "end",
+                continuation::Label::Failure { .. } => "failure",
             },
-            value: row.value,
-            error: row.error,
-            lower: row.lower,
-            upper: row.upper,
-            observable: row.observable.and_then(number),
-            before: row.before.map(|signature| signature.to_string()),
-            after: row.after.map(|signature| signature.to_string()),
-            status: row.status.map(|status| status.word()),
-            change: row.change,
-            method: row.method,
+            value: row.value(),
+            error: row.error(),
+            lower,
+            upper,
+            observable: located.and_then(|one| number(one.observable)),
+            before: located.map(|one| one.before.to_string()),
+            after: located.map(|one| one.after.to_string()),
+            status: located.map(|one| one.status().word()),
+            change: located.map_or("", Located::change),
+            method: located.map_or("", Located::method),
         }
     }
 }

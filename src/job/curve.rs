@@ -8,7 +8,7 @@ use super::{Context, Job, JobError, Outcome};
 use crate::continuation::curve::{
     Curve, CurveError, CurveOptions, CurveOrigin, CurveStart, CurveTree, Plane, follow_all,
 };
-use crate::continuation::{DensitySource, LabelledPoint, SourceError, SweepResult};
+use crate::continuation::{DensitySource, Located, SourceError, SweepResult};
 use crate::figure::{Figure, FigureError, Figures};
 use crate::run::{JobFolder, JournalledSource, Layout, RunError, curve_files, format_number};
 use crate::sweep_file::{CurveSettings, Diagnostic, Report, Sweep};
@@ -18,7 +18,7 @@ use refusals::{check_corners, no_indicator, plane, refused, refused_plane, which
 pub struct CurveJob<'a> {
     sweep: &'a Sweep,
     curve: &'a CurveSettings,
-    row: &'a LabelledPoint,
+    row: &'a Located,
     plane: Plane,
     start: CurveStart,
     source: Option<Box<dyn DensitySource>>,
@@ -31,11 +31,7 @@ impl<'a> CurveJob<'a> {
     ///
     /// # Errors
     /// A report where the sweep file has no `[curve]`, the row no indicator, or the box is not one to follow it in.
-    pub fn new(
-        sweep: &'a Sweep,
-        result: &SweepResult,
-        row: &'a LabelledPoint,
-    ) -> Result<Self, Report> {
+    pub fn new(sweep: &'a Sweep, result: &SweepResult, row: &'a Located) -> Result<Self, Report> {
         let family = sweep.problem.family();
         let curve = sweep.settings.curve.as_ref();
         let (curve, plane) = curve
@@ -60,7 +56,7 @@ impl<'a> CurveJob<'a> {
     }
 
     /// The row that the first curve starts from.
-    pub fn row(&self) -> &'a LabelledPoint {
+    pub fn row(&self) -> &'a Located {
         self.row
     }
 
@@ -182,7 +178,7 @@ impl Job for CurveJob<'_> {
         let locate = &self.sweep.settings.locate;
         let mut points = found.curves.iter().flat_map(|curve| &curve.points);
         let is_complete =
-            found.missed.is_empty() && points.all(|point| locate.is_met_by(point.status));
+            found.missed.is_empty() && points.all(|point| locate.is_met_by(point.status()));
         let interrupted = found.curves.iter().any(Curve::is_interrupted);
         Outcome::of(interrupted, is_complete)
     }

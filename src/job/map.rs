@@ -62,7 +62,7 @@ impl Job for MapJob<'_> {
         let locate = &self.sweep.settings.locate;
         let is_met = |curve: &Curve| {
             let mut points = curve.points.iter();
-            points.all(|point| locate.is_met_by(point.status))
+            points.all(|point| locate.is_met_by(point.status()))
         };
         let is_complete = found.nodes.iter().all(|node| node.status.is_resolved())
             && found.untraced.is_empty()

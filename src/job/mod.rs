@@ -18,7 +18,7 @@
 //! let sweep = file.validate()?.prepare(&never)?;
 //! let done = carry_out(&mut SweepJob::new(&sweep), home, Start::Anew, &never, &|_| ())?;
 //! let done = done.ok_or("interrupted")?;
-//! assert_eq!(done.found.labels[1].label, "PB1");
+//! assert_eq!(done.found.labels[1].name(), "PB1");
 //! assert!(home.join("bifurcations.csv").is_file());
 //! // A job that came to its end is not done again.
 //! assert_eq!(SweepJob::new(&sweep).start(home)?, Start::Complete);

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use super::{Context, Job, JobError, Outcome, Start};
 use crate::continuation::{
-    BifurcationStatus, DensitySource, LocateOptions, Shard, SourceError, SweepError, SweepResult,
-    detect_again, sweep_shard,
+    DensitySource, LocateOptions, Shard, SourceError, SweepError, SweepResult, detect_again,
+    sweep_shard,
 };
 use crate::figure::{Figure, FigureError, Figures};
 use crate::run::{
@@ -303,10 +303,8 @@ pub fn draw_sweep(sweep: &Sweep, found: &SweepResult) -> Result<Vec<Figure>, Fig
 
 /// How a sweep ended that has found this.
 pub fn sweep_outcome(found: &SweepResult, locate: &LocateOptions) -> Outcome {
-    let is_met = |status: Option<BifurcationStatus>| status.is_none_or(|one| locate.is_met_by(one));
-    let mut points = found.points.iter();
-    let mut rows = found.labels.iter();
-    let is_complete =
-        points.all(|point| point.report.status.is_resolved()) && rows.all(|row| is_met(row.status));
+    let (mut points, mut rows) = (found.points.iter(), found.bifurcations());
+    let is_complete = points.all(|point| point.report.status.is_resolved())
+        && rows.all(|row| locate.is_met_by(row.status()));
     Outcome::of(found.interrupted, is_complete)
 }

@@ -105,8 +105,8 @@ fn a_method_of_ones_own_sweeps_is_interrupted_and_goes_on_to_the_same_bytes() {
     let (whole, cut) = (room.path().join("whole"), room.path().join("cut"));
     let (sweep, solves) = exact();
     let found = done(&sweep, &whole);
-    let births = found.labels.iter().filter(|row| row.label == "PB1");
-    assert!(births.clone().count() == 1 && births.clone().all(|row| row.value.abs() < 0.3));
+    let births: Vec<_> = (found.bifurcations().filter(|row| row.label == "PB1")).collect();
+    assert!(births.len() == 1 && births[0].value.abs() < 0.3);
     let all = solves.swap(0, Ordering::Relaxed);
     // Interrupted after some points, it leaves their tables and a journal.
     let stop = Cancellation::new();

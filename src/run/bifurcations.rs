@@ -5,59 +5,64 @@
 use super::columns::{Columns, number, optional, word};
 use super::{
     RunError,
+    doubts::doubt_in_words,
     latex::{self, escape},
     number::format_with_error,
 };
-use crate::continuation::{LabelledPoint, PointType};
+use crate::continuation::{ErrorParts, Label, Located};
 use crate::system::Family;
-use crate::topology::Signature;
 
 /// The table's columns; numbers in full.
-fn columns<'a>(family: &'a Family) -> Columns<'a, LabelledPoint> {
-    type Row = LabelledPoint;
+fn columns<'a>(family: &'a Family) -> Columns<'a, Label> {
+    fn text(row: &Label, of: impl Fn(&Located) -> String) -> String {
+        row.bifurcation().map(of).unwrap_or_default()
+    }
+    fn part(row: &Label, of: impl Fn(&ErrorParts) -> f64) -> Option<f64> {
+        let zero = row.bifurcation()?.zero.as_ref()?;
+        Some(of(&zero.parts))
+    }
+    type Row = Label;
     Columns(vec![
-        word("label", |row: &Row| row.label.clone()),
+        word("label", |row: &Row| row.name().to_owned()),
         word("parameter", move |_| family.parameter().to_owned()),
-        number("value", |row: &Row| row.value),
-        number("error", |row: &Row| row.error),
-        number("lower", |row: &Row| row.lower),
-        number("upper", |row: &Row| row.upper),
-        word("observable", move |row: &Row| observable(family, row)),
-        word("before", |row: &Row| words(row.before)),
-        word("after", |row: &Row| words(row.after)),
-        word("status", |row: &Row| status(row).to_owned()),
-        word("change", |row: &Row| row.change.to_owned()),
-        word("method", |row: &Row| row.method.to_owned()),
-        optional("error_solver", |row: &Row| {
-            row.parts.map(|parts| parts.solver)
+        number("value", |row: &Row| row.value()),
+        number("error", |row: &Row| row.error()),
+        number("lower", |row: &Row| row.bracket().0),
+        number("upper", |row: &Row| row.bracket().1),
+        word("observable", move |row: &Row| {
+            text(row, |one| one.observable.name(family))
         }),
-        optional("error_grid", |row: &Row| row.parts.map(|parts| parts.grid)),
+        word("before", |row: &Row| {
+            text(row, |one| one.before.to_string())
+        }),
+        word("after", |row: &Row| text(row, |one| one.after.to_string())),
+        word("status", |row: &Row| {
+            text(row, |one| one.status().word().to_owned())
+        }),
+        word("change", |row: &Row| {
+            text(row, |one| one.change().to_owned())
+        }),
+        word("method", |row: &Row| {
+            text(row, |one| one.method().to_owned())
+        }),
+        optional("error_solver", |row: &Row| part(row, |parts| parts.solver)),
+        optional("error_grid", |row: &Row| part(row, |parts| parts.grid)),
         optional("error_sampling", |row: &Row| {
-            row.parts.map(|parts| parts.sampling)
+            part(row, |parts| parts.sampling)
         }),
-        optional("error_leak", |row: &Row| row.parts.map(|parts| parts.leak)),
-        word("reason", |row: &Row| row.reason.clone().unwrap_or_default()),
+        optional("error_leak", |row: &Row| part(row, |parts| parts.leak)),
+        word("reason", move |row: &Row| {
+            let reason = row.bifurcation().and_then(Located::reason);
+            reason.map_or_else(String::new, |doubt| doubt_in_words(family, doubt))
+        }),
     ])
-}
-
-fn observable(family: &Family, row: &LabelledPoint) -> String {
-    let observable = row.observable;
-    observable.map_or(String::new(), |one| one.name(family))
-}
-
-fn words(signature: Option<Signature>) -> String {
-    signature.map_or(String::new(), |signature| signature.to_string())
-}
-
-fn status(row: &LabelledPoint) -> &'static str {
-    row.status.map_or("", |status| status.word())
 }
 
 /// The CSV, numbers in full.
 ///
 /// # Errors
 /// [`RunError::Table`].
-pub fn bifurcations_csv(family: &Family, labels: &[LabelledPoint]) -> Result<String, RunError> {
+pub fn bifurcations_csv(family: &Family, labels: &[Label]) -> Result<String, RunError> {
     columns(family).csv(labels)
 }
 
@@ -65,52 +70,74 @@ pub fn bifurcations_csv(family: &Family, labels: &[LabelledPoint]) -> Result<Str
 ///
 /// # Errors
 /// [`RunError::Json`].
-pub fn bifurcations_json(family: &Family, labels: &[LabelledPoint]) -> Result<String, RunError> {
+pub fn bifurcations_json(family: &Family, labels: &[Label]) -> Result<String, RunError> {
     let rows = columns(family).json(labels);
     Ok(serde_json::to_string_pretty(&rows)? + "\n")
 }
 
+/// What stands for the status of values without a density.
+const NO_DENSITY: &str = "no steady state or not converged";
+
+/// Value, error and bracket of a row, rounded to the error.
+fn rounded(row: &Label) -> [String; 4] {
+    let (value, error) = format_with_error(row.value(), row.error());
+    let (lower, upper) = row.bracket();
+    let [lower, upper] = [lower, upper].map(|end| format_with_error(end, row.error()).0);
+    [value, error, lower, upper]
+}
+
 /// The Markdown table, values rounded to their errors.
-pub fn bifurcations_markdown(family: &Family, labels: &[LabelledPoint]) -> String {
+pub fn bifurcations_markdown(family: &Family, labels: &[Label]) -> String {
     let mut text = format!(
         "| label | {} | bracket | observable | before | after | change | status |\n| --- | --- | --- | --- | --- | --- | --- | --- |\n",
         family.parameter()
     );
-    for row in labels.iter().filter(|row| row.kind != PointType::EndPoint) {
-        let (value, error) = format_with_error(row.value, row.error);
-        let (lower, _) = format_with_error(row.lower, row.error);
-        let (upper, _) = format_with_error(row.upper, row.error);
-        let (observable, before, after) =
-            (observable(family, row), words(row.before), words(row.after));
-        let status = match row.kind {
-            PointType::NoConvergence => "no steady state or not converged",
-            _ => status(row),
+    for row in labels.iter().filter(|row| !row.is_end()) {
+        let [value, error, lower, upper] = rounded(row);
+        let cells = match row.bifurcation() {
+            Some(one) => [
+                one.observable.name(family),
+                one.before.to_string(),
+                one.after.to_string(),
+                one.change().to_owned(),
+                one.status().word().to_owned(),
+            ],
+            None => ["", "", "", "", NO_DENSITY].map(str::to_owned),
         };
         text += &format!(
-            "| {} | {value} ± {error} | [{lower}, {upper}] | {observable} | {before} | {after} | {} | {status} |\n",
-            row.label, row.change
+            "| {} | {value} ± {error} | [{lower}, {upper}] | {} |\n",
+            row.name(),
+            cells.join(" | ")
         );
     }
     text
 }
 
 /// A LaTeX table with booktabs rules, values rounded to their errors.
-pub fn bifurcations_tex(family: &Family, labels: &[LabelledPoint]) -> String {
+pub fn bifurcations_tex(family: &Family, labels: &[Label]) -> String {
     let mut text = String::from(
         "% needs \\usepackage{booktabs}\n\\begin{tabular}{lllllll}\n\\toprule\nlabel & $",
     );
     text += &latex::parameter(family);
     text += "$ & density & below & above & change & status \\\\\n\\midrule\n";
-    for row in labels.iter().filter(|row| row.kind != PointType::EndPoint) {
-        let (value, error) = format_with_error(row.value, row.error);
-        let density = row.observable.map_or(String::new(), |observable| {
-            format!("$p({})$", latex::observable(family, observable))
+    for row in labels.iter().filter(|row| !row.is_end()) {
+        let [value, error, ..] = rounded(row);
+        let of_none = || vec![String::new(); 5];
+        let cells = row.bifurcation().map_or_else(of_none, |one| {
+            let words = [
+                one.before.to_string(),
+                one.after.to_string(),
+                one.change().to_owned(),
+                one.status().word().to_owned(),
+            ];
+            let density = format!("$p({})$", latex::observable(family, one.observable));
+            let words = words.iter().map(|word| escape(word));
+            std::iter::once(density).chain(words).collect()
         });
-        let (before, after) = (words(row.before), words(row.after));
-        let [label, before, after, change, status] =
-            [&row.label, &before, &after, row.change, status(row)].map(escape);
+        let cells = cells.join(" & ");
         text += &format!(
-            "{label} & ${value} \\pm {error}$ & {density} & {before} & {after} & {change} & {status} \\\\\n"
+            "{} & ${value} \\pm {error}$ & {cells} \\\\\n",
+            escape(row.name())
         );
     }
     text + "\\bottomrule\n\\end{tabular}\n"

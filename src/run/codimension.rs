@@ -67,7 +67,7 @@ fn codimension_two_csv(
         number(second, |one: &CodimensionTwo| one.values[1]),
         number("error", |one: &CodimensionTwo| one.error),
         word("status", |one: &CodimensionTwo| {
-            one.status.word().to_owned()
+            one.status().word().to_owned()
         }),
         word("observable", |one: &CodimensionTwo| {
             observables(family, one)

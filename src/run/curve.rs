@@ -78,7 +78,9 @@ pub(super) fn columns<'a>(family: &'a Family, plane: &Plane) -> Vec<Column<'a, C
             row.point.tangent[1] / row.point.tangent[0]
         }),
         flag("checked", |row: &Row<'_>| row.point.checked),
-        word("status", |row: &Row<'_>| row.point.status.word().to_owned()),
+        word("status", |row: &Row<'_>| {
+            row.point.status().word().to_owned()
+        }),
         number("error_solver", |row: &Row<'_>| row.point.parts.solver),
         number("error_grid", |row: &Row<'_>| row.point.parts.grid),
         number("error_sampling", |row: &Row<'_>| row.point.parts.sampling),

@@ -12,7 +12,7 @@ use crate::continuation::curve::{
     EndReason, Plane,
 };
 use crate::continuation::map::{MapWork, RegimeMap, RegionSample, Untraced};
-use crate::continuation::{BifurcationStatus, ErrorParts, Subject};
+use crate::continuation::{BifurcationStatus, Doubt, ErrorParts, Subject};
 use crate::density::{Density, Observable};
 use crate::method::Problem;
 use crate::topology::IndicatorKind;
@@ -103,7 +103,7 @@ fn point_json(point: &CurvePoint) -> Value {
         "arclength": point.arclength,
         "tangent": point.tangent,
         "checked": point.checked,
-        "status": point.status.word(),
+        "status": point.status().word(),
     })
 }
 
@@ -327,7 +327,10 @@ fn curve(value: &Value, plane: &Plane) -> Option<Curve> {
 }
 
 fn point(value: &Value) -> Option<CurvePoint> {
-    let status = value["status"].as_str()?;
+    let word = value["status"].as_str()?;
+    let mut statuses = BifurcationStatus::ALL.into_iter();
+    let status = statuses.find(|one| one.word() == word)?;
+    let in_doubt = status != BifurcationStatus::Located;
     let parts = &value["parts"];
     Some(CurvePoint {
         values: pair(&value["values"])?,
@@ -345,9 +348,7 @@ fn point(value: &Value) -> Option<CurvePoint> {
         arclength: number(&value["arclength"]),
         tangent: pair(&value["tangent"])?,
         checked: value["checked"].as_bool()?,
-        status: BifurcationStatus::ALL
-            .into_iter()
-            .find(|one| one.word() == status)?,
+        doubts: Vec::from_iter(in_doubt.then_some(Doubt::Stored(status))),
     })
 }
 

@@ -250,42 +250,36 @@ fn every_earlier_run_is_kept_and_other_files_are_left_alone() {
 
 #[test]
 fn tables_for_people_round_to_the_error() {
-    use crate::continuation::{BifurcationStatus, LabelledPoint, PointType};
-    let signature = |peaks| Some(Signature::of_peaks(peaks));
-    let row = LabelledPoint {
+    use crate::continuation::{Doubt, ErrorParts, Label, Located, Zero};
+    use crate::topology::IndicatorKind;
+    let zero = Zero {
+        indicator: IndicatorKind::CURVATURE,
+        place: vec![0.0],
+        slope: -1.0,
+        parts: ErrorParts::default(),
+    };
+    let row = Label::Bifurcation(Box::new(Located {
         label: "PB1".into(),
-        kind: PointType::Bifurcation,
         value: -0.012345678,
         error: 0.00045,
         lower: -0.0127,
         upper: -0.0119,
-        observable: Some(Observable::Marginal(1)),
-        before: signature(2),
-        after: signature(1),
-        status: Some(BifurcationStatus::Unresolved),
-        change: "symmetric split",
-        method: "curvature at the centre",
-        indicator: None,
-        rises: false,
-        reason: None,
-        place: Vec::new(),
-        slope: None,
-        parts: None,
-    };
-    let end = LabelledPoint {
+        observable: Observable::Marginal(1),
+        before: Signature::of_peaks(2),
+        after: Signature::of_peaks(1),
+        zero: Some(zero),
+        is_several: false,
+        doubts: vec![Doubt::Jump],
+    }));
+    let end = Label::End {
         label: "EP1".into(),
-        kind: PointType::EndPoint,
-        observable: None,
-        before: None,
-        after: None,
-        status: None,
-        ..row.clone()
+        value: -0.03,
     };
     let rows = [end, row];
     insta::assert_snapshot!(bifurcations_markdown(&coulomb(), &rows), @r"
     | label | f_c | bracket | observable | before | after | change | status |
     | --- | --- | --- | --- | --- | --- | --- | --- |
-    | PB1 | -0.01235 ± 0.00045 | [-0.01270, -0.01190] | y | 2 peaks | 1 peak | symmetric split | unresolved |
+    | PB1 | -0.01235 ± 0.00045 | [-0.01270, -0.01190] | y | 2 peaks | 1 peak | symmetric merger | unresolved |
     ");
     insta::assert_snapshot!(bifurcations_tex(&coulomb(), &rows), @r"
     % needs \usepackage{booktabs}
@@ -293,7 +287,7 @@ fn tables_for_people_round_to_the_error() {
     \toprule
     label & $f_{c}$ & density & below & above & change & status \\
     \midrule
-    PB1 & $-0.01235 \pm 0.00045$ & $p(\dot{x})$ & 2 peaks & 1 peak & symmetric split & unresolved \\
+    PB1 & $-0.01235 \pm 0.00045$ & $p(\dot{x})$ & 2 peaks & 1 peak & symmetric merger & unresolved \\
     \bottomrule
     \end{tabular}
     ");

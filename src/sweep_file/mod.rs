@@ -18,7 +18,7 @@
 //! let never = Cancellation::new();
 //! let sweep = file.validate()?.prepare(&never)?;
 //! let found = sweep.run(&never, &mut ())?;
-//! let change = found.labels.iter().find(|row| row.label == "PB1").unwrap();
+//! let change = found.bifurcations().next().unwrap();
 //! assert!(change.value.abs() < 1e-3);
 //!
 //! // Written and read again it is the same sweep.

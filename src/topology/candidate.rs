@@ -28,7 +28,7 @@ pub(super) struct Candidate {
 }
 
 /// Judges components and keeps those worth listing, by falling persistence.
-pub(super) fn judged(
+pub(super) fn judge(
     mut found: Vec<Component>,
     is_crater: bool,
     estimated: &EstimatedDensity,

@@ -2,9 +2,9 @@
 
 use std::cmp::Ordering;
 
-use super::candidate::{Candidate, judged};
+use super::candidate::{Candidate, judge};
 use super::exact;
-use super::indicator::{Counted, at_centre, corrected, flanks_from_centre, put_right, shoulders};
+use super::indicator::{Counted, at_centre, correct, flanks_from_centre, put_right, shoulders};
 use super::persistence::{Grid, components};
 use super::significance::Limits;
 use super::surroundings::{contents, rims};
@@ -99,8 +99,8 @@ impl Detector for PersistenceDetector {
             return exact::detection(density, profile, &limits, self.doubt());
         }
         let (peaks, craters) = components(grid);
-        let peaks = judged(peaks, false, density, &limits);
-        let craters = judged(craters, true, density, &limits);
+        let peaks = judge(peaks, false, density, &limits);
+        let craters = judge(craters, true, density, &limits);
         let rims = rims(grid, density, &craters, &limits);
         let persistent = contents(&peaks, &craters, &rims);
         let on_rim = |peak: &&Candidate| {
@@ -133,7 +133,7 @@ impl Detector for PersistenceDetector {
             craters: &craters,
             rings_around_centre: around_centre.filter(|one| one.is_ring).count(),
         };
-        let signature = corrected(density, &indicators, self.doubt(), &counted);
+        let signature = correct(density, &indicators, self.doubt(), &counted);
         put_right(density, &indicators, self.doubt(), &mut features);
         Detection {
             signature,
@@ -149,7 +149,7 @@ impl Detector for PersistenceDetector {
         kind: IndicatorKind,
         near: &[f64],
     ) -> Option<Indicator> {
-        kind.read(density, near)
+        (kind.traits().read)(density, near)
     }
 
     fn flanks(&self, density: &EstimatedDensity) -> Vec<Flank> {

@@ -2,7 +2,7 @@
 //! lost between cells.
 
 use super::detector::{by_kind_and_height, present_places};
-use super::indicator::{Counted, at_centre, corrected};
+use super::indicator::{Counted, at_centre, correct};
 use super::significance::Limits;
 use super::{Detection, Feature, FeatureKind, Signature};
 use crate::density::{EstimatedDensity, Extremum, Profile};
@@ -30,7 +30,7 @@ pub(super) fn detection(
         craters: &[],
         rings_around_centre: 0,
     };
-    let signature = corrected(density, &indicators, doubt, &counted);
+    let signature = correct(density, &indicators, doubt, &counted);
     Detection {
         signature,
         is_seen: true,

@@ -56,7 +56,7 @@ impl Signature {
 }
 
 /// A number with its noun.
-fn counted(number: usize, noun: &str) -> String {
+fn count_in_words(number: usize, noun: &str) -> String {
     match number {
         1 => format!("1 {noun}"),
         _ => format!("{number} {noun}s"),
@@ -70,20 +70,20 @@ impl Display for Signature {
         let outside = self.peaks - self.enclosed_peaks.min(self.peaks);
         if self.rings == 0 {
             return match (self.craters, outside, self.enclosed_peaks) {
-                (0, ..) => f.write_str(&counted(self.peaks, "peak")),
+                (0, ..) => f.write_str(&count_in_words(self.peaks, "peak")),
                 (1, 0 | 1, 0) => f.write_str("crater"),
-                (1, ..) => write!(f, "crater with {}", counted(outside, "peak")),
-                (craters, 0 | 1, 0) => f.write_str(&counted(craters, "crater")),
+                (1, ..) => write!(f, "crater with {}", count_in_words(outside, "peak")),
+                (craters, 0 | 1, 0) => f.write_str(&count_in_words(craters, "crater")),
                 (craters, ..) => write!(
                     f,
                     "{} with {}",
-                    counted(craters, "crater"),
-                    counted(outside, "peak")
+                    count_in_words(craters, "crater"),
+                    count_in_words(outside, "peak")
                 ),
             }
             .and_then(|()| match (self.craters, self.enclosed_peaks) {
                 (0, _) | (_, 0) => Ok(()),
-                (_, enclosed) => write!(f, " around {}", counted(enclosed, "peak")),
+                (_, enclosed) => write!(f, " around {}", count_in_words(enclosed, "peak")),
             });
         }
         let ring = match (self.rings, self.enclosed_rings) {
@@ -104,7 +104,7 @@ impl Display for Signature {
         }
         match outside {
             0 => Ok(()),
-            peaks => write!(f, " and {}", counted(peaks, "peak")),
+            peaks => write!(f, " and {}", count_in_words(peaks, "peak")),
         }
     }
 }

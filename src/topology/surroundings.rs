@@ -128,14 +128,14 @@ pub(super) fn rims(
     for saddle in saddles {
         let around = Enclosure::at(grid, saddle);
         if !found.iter().any(|rim| rim.around.is_rim(around.top)) {
-            found.push(judged(estimated, around, saddle, limits));
+            found.push(judge(estimated, around, saddle, limits));
         }
     }
     found
 }
 
 /// A rim with its peaks.
-fn judged(estimated: &EstimatedDensity, around: Enclosure, saddle: usize, limits: &Limits) -> Rim {
+fn judge(estimated: &EstimatedDensity, around: Enclosure, saddle: usize, limits: &Limits) -> Rim {
     let field = Field::new(estimated).filter(|_| is_smooth(estimated));
     let inside = around.middle(&estimated.density.axes);
     let summits = field.and_then(|field| summits(&field, estimated, &around, &inside));

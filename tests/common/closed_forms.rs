@@ -1,8 +1,8 @@
 //! Sweeps with closed-form densities, for tests that need a result but no solver.
 
 use pbif::continuation::{
-    BifurcationStatus, CellCheck, LabelledPoint, Point, PointStatus, PointType, SolveReport,
-    Subject, SweepResult,
+    BifurcationStatus, CellCheck, Doubt, Label, Located, Point, PointStatus, SolveReport, Subject,
+    SweepResult,
 };
 use pbif::density::{Density, EstimatedDensity, Observable};
 use pbif::space::Axis;
@@ -64,27 +64,21 @@ fn bifurcation(
     band: (f64, f64),
     observable: Observable,
     status: BifurcationStatus,
-) -> LabelledPoint {
-    LabelledPoint {
+) -> Label {
+    let in_doubt = status != BifurcationStatus::Located;
+    Label::Bifurcation(Box::new(Located {
         label: label.to_owned(),
-        kind: PointType::Bifurcation,
         value: 0.5 * (band.0 + band.1),
         error: 0.5 * (band.1 - band.0),
         lower: band.0,
         upper: band.1,
-        observable: Some(observable),
-        before: None,
-        after: None,
-        status: Some(status),
-        change: "",
-        method: "",
-        indicator: None,
-        rises: false,
-        reason: None,
-        place: Vec::new(),
-        slope: None,
-        parts: None,
-    }
+        observable,
+        before: Signature::of_peaks(1),
+        after: Signature::of_peaks(2),
+        zero: None,
+        is_several: false,
+        doubts: Vec::from_iter(in_doubt.then_some(Doubt::Stored(status))),
+    }))
 }
 
 /// Scales values to ∫ = 1 and gives them a standard error that grows like their root.

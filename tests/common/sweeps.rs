@@ -1,7 +1,7 @@
 //! Sweep files as text, made ready to run, and what their sweeps find.
 
 use pbif::cancellation::Cancellation;
-use pbif::continuation::{LabelledPoint, SweepResult};
+use pbif::continuation::{Located, SweepResult};
 use pbif::sweep_file::{Settings, Sweep, SweepFile};
 
 /// The settings of a file with this text, with keys set by words `key=value`.
@@ -24,11 +24,9 @@ pub(crate) fn swept(text: &str, words: &str) -> (Sweep, SweepResult) {
 }
 
 /// The rows of an observable.
-pub(crate) fn rows<'a>(result: &'a SweepResult, observable: &str) -> Vec<&'a LabelledPoint> {
+pub(crate) fn rows<'a>(result: &'a SweepResult, observable: &str) -> Vec<&'a Located> {
     let family = &result.subject.family;
-    let is_it = |row: &&LabelledPoint| {
-        let name = row.observable.map(|one| one.name(family));
-        name.as_deref() == Some(observable)
-    };
-    result.labels.iter().filter(is_it).collect()
+    let rows = result.bifurcations();
+    rows.filter(|row| row.observable.name(family) == observable)
+        .collect()
 }

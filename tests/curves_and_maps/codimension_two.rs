@@ -1,12 +1,18 @@
 //! Points of codimension two, and the curves that start from them, against systems whose densities are known exactly.
 
-use pbif::continuation::BifurcationStatus;
-use pbif::continuation::curve::{CodimensionTwoKind, CurveOptions, EndReason, codimension_two};
+use pbif::cancellation::Cancellation;
+use pbif::continuation::curve::{
+    CodimensionTwoKind, CurveOptions, CurveStart, EndReason, Plane, codimension_two, follow,
+};
+use pbif::continuation::{
+    BifurcationStatus, DensitySource, Doubt, Session, SourceError, Subject, Want,
+};
 
 use super::support::{
     Side, assert_drawn_again, assert_meet, assert_on, ends, mapped, off_the_fold, stepping, tree,
 };
 use crate::common::room::{Room, assert_says};
+use crate::common::sweeps::swept;
 
 /// Peaks of the density are zeros of the drift: the centre splits at a = 0, and for b > 0 two peaks are born away from
 /// it at a = -b²/4.
@@ -52,7 +58,7 @@ fn births_at_the_centre_turn_into_births_away_from_it_and_their_fold_is_followed
         panic!("{:?}", split.degenerate);
     };
     let point = &split.points[degenerate.point];
-    assert_eq!(point.status, BifurcationStatus::Located);
+    assert_eq!(point.status(), BifurcationStatus::Located);
     assert!(point.checked, "{point:?}");
     let begins = split.points[split.start].values;
     assert!((begins[1] + 0.5).abs() < 1e-6, "{begins:?}");
@@ -125,7 +131,60 @@ fn a_cusp_of_a_fold_that_no_finer_cells_have_checked_is_unchecked() {
         let tree = tree(CUSP, |_| true, BOX_OF_CUSP, 0.8, options);
         let points = codimension_two(&tree.curves);
         assert_eq!(points.len(), 1);
-        assert_eq!(points[0].status, status);
+        assert_eq!(points[0].status(), status);
+    }
+}
+
+/// A source of which none on finer cells can be made.
+struct NoFiner<S>(S);
+
+impl<S: DensitySource> DensitySource for NoFiner<S> {
+    fn method(&self) -> &'static str {
+        self.0.method()
+    }
+    fn subject(&self) -> &Subject {
+        self.0.subject()
+    }
+    fn open(&self, cancellation: &Cancellation) -> Box<dyn Session> {
+        self.0.open(cancellation)
+    }
+    fn finer(&self, _: &Want) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
+        Err(SourceError::Method("no room".into()))
+    }
+}
+
+#[test]
+fn a_degenerate_split_that_no_finer_cells_have_checked_is_unchecked_and_says_why() {
+    let never = Cancellation::new();
+    let (sweep, result) = swept(TRICRITICAL, "");
+    let row = result.bifurcations().next().unwrap();
+    let start = CurveStart::from_row(row, -0.5, sweep.problem.subject()).unwrap();
+    let plane = Plane::new(("a", -0.3, 0.2), ("b", -1.0, 1.0)).unwrap();
+    let source = NoFiner(sweep.source_in(&plane, &never).unwrap());
+    let (detector, watched) = (sweep.detector(), &mut |_: [f64; 2]| ());
+    for check_every in [0, 8] {
+        let options = CurveOptions {
+            // Wide enough that the error without finer cells is no doubt of its own.
+            tolerance: 2e-2,
+            branches: false,
+            check_every,
+            ..CurveOptions::default()
+        };
+        let curve = follow(
+            &source, &plane, &detector, &start, &options, &never, watched,
+        );
+        let points = codimension_two(&[curve.unwrap()]);
+        let [point] = points.as_slice() else {
+            panic!("{points:?}");
+        };
+        assert_eq!(point.kind, CodimensionTwoKind::DegenerateSplit);
+        assert_eq!(point.status(), BifurcationStatus::Unchecked, "{point:?}");
+        let says_why = match &point.doubts[..] {
+            [Doubt::GridCheckOff] => check_every == 0,
+            [Doubt::CheckFailed(_, reason)] => check_every > 0 && reason == "no room",
+            _ => false,
+        };
+        assert!(says_why, "{:?}", point.doubts);
     }
 }
 
@@ -154,7 +213,7 @@ fn curves_that_cross_are_told_with_where_they_do() {
         off <= crossing.error && crossing.error < 1e-4,
         "{crossing:?}"
     );
-    assert_eq!(crossing.status, BifurcationStatus::Located);
+    assert_eq!(crossing.status(), BifurcationStatus::Located);
     assert_eq!(crossing.label, "CX1");
 }
 

@@ -2,7 +2,7 @@
 //! densities are known exactly.
 
 use pbif::continuation::curve::{CodimensionTwoKind, Curve, EndReason};
-use pbif::continuation::{BifurcationStatus, LabelledPoint};
+use pbif::continuation::{BifurcationStatus, Located};
 use pbif::topology::IndicatorKind;
 
 use super::support::{
@@ -59,13 +59,12 @@ locate = { relative_tolerance = 1e-3 }
 const DEGENERATE: (&str, CodimensionTwoKind) = ("DK1", CodimensionTwoKind::DegenerateKink);
 const CORNER: (&str, CodimensionTwoKind) = ("KC1", CodimensionTwoKind::KinkCorner);
 
-fn is_kink(row: &LabelledPoint) -> bool {
-    row.indicator == Some(IndicatorKind::KINK_SLOPE)
+fn is_kink(row: &Located) -> bool {
+    row.indicator() == Some(IndicatorKind::KINK_SLOPE)
 }
 
-fn is_beside(row: &LabelledPoint) -> bool {
-    let beside = |kind: IndicatorKind| kind.side_of_kink().is_some();
-    row.indicator.is_some_and(beside)
+fn is_beside(row: &Located) -> bool {
+    row.method() == "slope beside the kink"
 }
 
 fn assert_ends(curve: &Curve, reason: EndReason) {
@@ -81,7 +80,7 @@ fn births_at_a_kink_turn_into_births_away_from_it_and_their_fold_is_followed() {
     };
     assert_on(kink, 1e-5, |[f, _]| f / 0.41);
     let mut points = kink.points.iter();
-    assert!(points.all(|point| point.status == BifurcationStatus::Located));
+    assert!(points.all(|point| point.status() == BifurcationStatus::Located));
     // The slope at a kink follows from the equations, and so does how it changes: no solve but one a point.
     let (solves, points) = (kink.work.solves, kink.points.len());
     assert!(solves <= points + 2, "{solves} solves for {points} points");
@@ -92,7 +91,7 @@ fn births_at_a_kink_turn_into_births_away_from_it_and_their_fold_is_followed() {
     assert_ends(fold, EndReason::DegenerateKink);
     assert_meet(&tree.curves, DEGENERATE, &[0, 1], [0.0, 0.0], 3e-4);
     let points = pbif::continuation::curve::codimension_two(&tree.curves);
-    assert_eq!(points[0].status, BifurcationStatus::Located);
+    assert_eq!(points[0].status(), BifurcationStatus::Located);
 }
 
 #[test]
@@ -205,7 +204,7 @@ system.parameters = { h = 0.0 }
 sweep = { parameter = "a", from = -0.5, to = 0.55, points = 5 }
 cells.x = { from = -2.2, to = 2.2, count = 240 }
 "#;
-    let split = |row: &LabelledPoint| row.indicator == Some(IndicatorKind::CURVATURE);
+    let split = |row: &Located| row.indicator() == Some(IndicatorKind::CURVATURE);
     let plane = (("a", -0.5, 0.55), ("h", -0.2, 0.2));
     let cusp = tree(cusp, split, plane, 0.0, stepping(0.025));
     for (tree, kind) in [

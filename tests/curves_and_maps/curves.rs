@@ -64,7 +64,7 @@ locate = { relative_tolerance = 1e-3 }
 
 fn all_located(curve: &Curve) -> bool {
     let mut points = curve.points.iter();
-    points.all(|point| point.status == BifurcationStatus::Located)
+    points.all(|point| point.status() == BifurcationStatus::Located)
 }
 
 #[test]
@@ -430,7 +430,7 @@ fn sampled_curves_hold_the_exact_one_in_their_bands_or_say_that_samples_are_few(
                 "{method}: {point:?}"
             );
             // What is known to a tenth of the box is not located.
-            assert_eq!(point.status, BifurcationStatus::Unresolved, "{method}");
+            assert_eq!(point.status(), BifurcationStatus::Unresolved, "{method}");
             assert!(
                 point.parts.sampling > 0.5 * point.error,
                 "{method}: {point:?}"

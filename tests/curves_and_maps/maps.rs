@@ -90,7 +90,7 @@ fn a_tilted_double_well_has_two_peaks_within_the_cusp_and_one_outside() {
         let highest = curve.points.iter().map(|point| point.values[0].abs());
         assert!((highest.fold(0.0, f64::max) - 0.3849).abs() < 1e-3);
         // All but perhaps the cusp.
-        let located = |point: &&CurvePoint| point.status == BifurcationStatus::Located;
+        let located = |point: &&CurvePoint| point.status() == BifurcationStatus::Located;
         assert!(curve.points.iter().filter(located).count() + 1 >= curve.points.len());
     }
     let sides: f64 = map

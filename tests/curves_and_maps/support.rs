@@ -6,7 +6,7 @@ use pbif::continuation::curve::{
     codimension_two, follow, follow_all,
 };
 use pbif::continuation::map::RegimeMap;
-use pbif::continuation::{LabelledPoint, SweepResult};
+use pbif::continuation::{Located, SweepResult};
 use pbif::sweep_file::Sweep;
 
 use crate::common::room::{Printed, Room};
@@ -28,13 +28,9 @@ pub(super) fn off(curve: &Curve, values: [f64; 2], exact: [f64; 2]) -> f64 {
 }
 
 /// The row of an observable that an indicator of this name located.
-pub(super) fn row<'a>(
-    result: &'a SweepResult,
-    observable: &str,
-    method: &str,
-) -> &'a LabelledPoint {
+pub(super) fn row<'a>(result: &'a SweepResult, observable: &str, method: &str) -> &'a Located {
     let mut rows = rows(result, observable).into_iter();
-    rows.find(|row| row.method == method).unwrap()
+    rows.find(|row| row.method() == method).unwrap()
 }
 
 /// The curve from a start in a plane, or why there is none.
@@ -51,7 +47,7 @@ pub(super) fn followed(
 }
 
 /// The curve from a row in the plane of the swept and a second parameter, which the sweep holds at `held`.
-pub(super) fn curve(sweep: &Sweep, row: &LabelledPoint, plane: &Plane, held: f64) -> Curve {
+pub(super) fn curve(sweep: &Sweep, row: &Located, plane: &Plane, held: f64) -> Curve {
     let start = CurveStart::from_row(row, held, sweep.problem.subject()).unwrap();
     followed(sweep, plane, &start, &CurveOptions::default()).unwrap()
 }
@@ -67,14 +63,14 @@ pub(super) fn stepping(largest_step: f64) -> CurveOptions {
 /// the sweep holds the second at `held`, at a tolerance of 1e-3 of its sides. None is missed.
 pub(super) fn tree(
     text: &str,
-    is_start: fn(&LabelledPoint) -> bool,
+    is_start: fn(&Located) -> bool,
     (first, second): (Side<'_>, Side<'_>),
     held: f64,
     options: CurveOptions,
 ) -> CurveTree {
     let never = Cancellation::new();
     let (sweep, result) = swept(text, "");
-    let row = result.labels.iter().filter(|row| is_start(row));
+    let row = result.bifurcations().filter(|row| is_start(row));
     let mut starts = row.filter_map(|row| CurveStart::from_row(row, held, sweep.problem.subject()));
     let plane = Plane::new(first, second).unwrap();
     let source = sweep.source_in(&plane, &never).unwrap();

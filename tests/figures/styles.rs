@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use proptest::prelude::*;
 use resvg::usvg::{self, fontdb};
 
-use pbif::continuation::{LabelledPoint, PointType, SweepResult};
+use pbif::continuation::{Label, Located, SweepResult};
 use pbif::figure::{ColourMap, Figure, FigureStyle, FigureWidth, Figures, Ground, Typeface};
 
 use crate::common::closed_forms::{bistable, rayleigh, uniform};
@@ -113,32 +113,25 @@ fn every_figure_reads_in_every_named_width() {
 
 /// Gives a sweep so many labelled changes, close to each other where there are many, of its observables by turns.
 fn with_labels(result: &mut SweepResult, count: usize) {
-    let Some(row) = result
-        .labels
-        .iter()
-        .find(|row| row.kind == PointType::Bifurcation)
-        .cloned()
-    else {
+    let Some(row) = result.bifurcations().next().cloned() else {
         return;
     };
     let (from, to) = (
         result.points[0].value,
         result.points[result.points.len() - 1].value,
     );
-    result
-        .labels
-        .retain(|row| row.kind != PointType::Bifurcation);
+    result.labels.retain(|row| row.bifurcation().is_none());
     result.labels.extend((0..count).map(|number| {
         let value = from + (to - from) * (number as f64 / count as f64).powi(3);
         let observables = &result.subject.observables;
-        LabelledPoint {
+        Label::Bifurcation(Box::new(Located {
             label: format!("PB{}", number + 1),
             value,
             lower: value,
             upper: value,
-            observable: Some(observables[number % observables.len()]),
+            observable: observables[number % observables.len()],
             ..row.clone()
-        }
+        }))
     }));
 }
 

@@ -40,7 +40,7 @@ fn from_a_text_to_a_figure_without_a_disk() {
     assert_eq!(detections[0].signature.to_string(), "2 peaks");
 
     let found = sweep.run(&Cancellation::new(), &mut ()).unwrap();
-    let change = found.labels.iter().find(|row| row.label == "PB1").unwrap();
+    let change = found.bifurcations().next().unwrap();
     // One peak for a ≤ 0, two for a > 0.
     assert!(
         change.value.abs() <= 3.0 * change.error + 1e-6,

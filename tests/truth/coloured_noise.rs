@@ -228,8 +228,7 @@ fn the_colour_of_noise_moves_a_pitchfork_by_six_times_its_memory_and_strength() 
              [locate]\ngrid_check = \"off\"\n"
         );
         let (_, found) = swept(&text, "");
-        let mut rows = found.labels.iter().filter(|row| row.observable.is_some());
-        rows.next().unwrap().value
+        found.bifurcations().next().unwrap().value
     };
     let rate = |tau: f64| located(tau) / tau;
     let (long, short) = (rate(0.04), rate(0.02));
@@ -376,8 +375,8 @@ fn where_no_affordable_number_of_modes_is_enough_no_change_is_located() {
         });
         assert!(few.unwrap() > 1e-2, "{}", point.value);
     }
-    for row in &found.labels {
-        assert_ne!(row.status, Some(BifurcationStatus::Located), "{row:?}");
+    for row in found.bifurcations() {
+        assert_ne!(row.status(), BifurcationStatus::Located, "{row:?}");
     }
 }
 
@@ -401,9 +400,8 @@ fn too_few_modes_are_told_when_they_were_given() {
     let told = |point: &pbif::continuation::Point| point.report.findings.iter().any(is_told);
     assert!(long.points.iter().all(told));
     assert!(
-        long.labels
-            .iter()
-            .all(|row| row.status != Some(BifurcationStatus::Located))
+        long.bifurcations()
+            .all(|row| row.status() != BifurcationStatus::Located)
     );
     let short = run([0.05, 0.15]);
     let few = |finding: &Finding| matches!(finding, Finding::FewModes { .. });

@@ -192,9 +192,9 @@ fn a_typed_circuit_is_carried_by_modes_and_the_prepared_file_gives_the_same_swee
     // x is watched, and its peak becomes two; on cells along v the same, with more error.
     let found = sweep.run(&never, &mut ()).unwrap();
     let of_x = |found: &pbif::continuation::SweepResult| {
-        let mut rows = found.labels.iter();
+        let mut rows = found.bifurcations();
         let row = rows
-            .find(|row| row.observable == Some(Observable::Marginal(0)))
+            .find(|row| row.observable == Observable::Marginal(0))
             .unwrap();
         (row.value, row.error)
     };

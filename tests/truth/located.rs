@@ -5,9 +5,7 @@
 use std::sync::Arc;
 
 use pbif::cancellation::Cancellation;
-use pbif::continuation::{
-    BifurcationStatus, LabelledPoint, LocateOptions, PointType, SweepResult, sweep,
-};
+use pbif::continuation::{BifurcationStatus, Doubt, LocateOptions, Located, SweepResult, sweep};
 use pbif::density::Observable;
 use pbif::method::{GeneratorMethodOptions, GeneratorSource, Problem};
 use pbif::space::{Axis, CellSpace};
@@ -76,7 +74,7 @@ fn rows(
     ends: (f64, f64),
     points: usize,
     axes: Vec<Axis>,
-) -> (SweepResult, Vec<LabelledPoint>) {
+) -> (SweepResult, Vec<Located>) {
     let observable = match axes.len() {
         1 => Observable::Marginal(0),
         _ => Observable::Joint(0, 1),
@@ -98,7 +96,7 @@ fn rows_of(
     points: usize,
     axes: Vec<Axis>,
     locate: &LocateOptions,
-) -> (SweepResult, Vec<LabelledPoint>) {
+) -> (SweepResult, Vec<Located>) {
     let path = Path::parameter("theta", ends.0, ends.1);
     let family = Family::new(model, &[], path).unwrap();
     let problem = Problem::new(family, CellSpace::new(axes).unwrap(), vec![observable]).unwrap();
@@ -114,39 +112,30 @@ fn rows_of(
         &mut (),
     )
     .unwrap();
-    let rows = result
-        .labels
-        .iter()
-        .filter(|row| row.kind == PointType::Bifurcation);
-    let rows = rows.cloned().collect();
+    let rows = result.bifurcations().cloned().collect();
     (result, rows)
 }
 
-fn words(rows: &[LabelledPoint]) -> String {
+fn words(rows: &[Located]) -> String {
     let lines = rows.iter().map(|row| {
         format!(
             "{:?} {} ± {} {} → {}, {}\n",
-            row.status,
+            row.status(),
             row.value,
             row.error,
-            row.before.unwrap(),
-            row.after.unwrap(),
-            row.change
+            row.before,
+            row.after,
+            row.change()
         )
     });
     lines.collect()
 }
 
 /// Asserts that the rows are located at the truths, with errors within 1e-4 of the range.
-fn assert_located(rows: &[LabelledPoint], truths: &[f64], range: f64) {
+fn assert_located(rows: &[Located], truths: &[f64], range: f64) {
     assert_eq!(rows.len(), truths.len(), "{}", words(rows));
     for (row, truth) in rows.iter().zip(truths) {
-        assert_eq!(
-            row.status,
-            Some(BifurcationStatus::Located),
-            "{}",
-            words(rows)
-        );
+        assert_eq!(row.status(), BifurcationStatus::Located, "{}", words(rows));
         assert!(
             (row.value - truth).abs() <= row.error,
             "{truth}\n{}",
@@ -222,7 +211,7 @@ fn a_ring_ends_around_a_peak_where_its_moat_does() {
     let axis = || Axis::uniform(-2.4, 2.4, 80).unwrap();
     let (_, rows) = rows(model(2, 0.4, drift), (-0.2, 0.5), 15, vec![axis(), axis()]);
     assert!(
-        rows[0].after.unwrap().to_string() == "peak in a ring",
+        rows[0].after.to_string() == "peak in a ring",
         "{}",
         words(&rows)
     );
@@ -342,8 +331,8 @@ fn a_peak_that_opens_to_a_ring_away_from_a_centre_is_located() {
         vec![axis(), axis()],
     );
     assert_eq!(rows.len(), 1, "{}", words(&rows));
-    assert_eq!(rows[0].before.unwrap().to_string(), "2 peaks");
-    assert_eq!(rows[0].after.unwrap().to_string(), "2 rings");
+    assert_eq!(rows[0].before.to_string(), "2 peaks");
+    assert_eq!(rows[0].after.to_string(), "2 rings");
     let found = &rows[0];
     assert!(
         (found.value + 0.025).abs() <= found.error,
@@ -354,7 +343,7 @@ fn a_peak_that_opens_to_a_ring_away_from_a_centre_is_located() {
 }
 
 /// The rows of a sweep of θ over a system with one axis whose noise bends, in Itô's sense.
-fn with_bent_noise(drift: &str, noise: &str, (from, to): (f64, f64)) -> Vec<LabelledPoint> {
+fn with_bent_noise(drift: &str, noise: &str, (from, to): (f64, f64)) -> Vec<Located> {
     let model = TypedModel::new("bent", "Noise that bends", ["x"])
         .with_equation("x", drift)
         .with_noise("x", [noise])
@@ -414,9 +403,8 @@ fn without_the_check_on_finer_cells_nothing_is_located() {
     );
     assert_eq!(rows.len(), 2, "{}", words(&rows));
     for row in &rows {
-        assert_eq!(row.status, Some(BifurcationStatus::Unchecked));
-        let reason = row.reason.as_deref().unwrap();
-        assert!(reason.contains("not checked on finer cells"), "{reason}");
+        assert_eq!(row.status(), BifurcationStatus::Unchecked);
+        assert_eq!(row.reason(), Some(&Doubt::GridCheckOff));
         assert!(unchecked.is_met_by(BifurcationStatus::Unchecked));
         assert!(!LocateOptions::default().is_met_by(BifurcationStatus::Unchecked));
     }
@@ -433,7 +421,7 @@ fn a_peak_that_reaches_a_kink_is_not_born_there() {
     let half = 0.5 * 0.3 * 0.466;
     assert_eq!(rows.len(), 2, "{}", words(&rows));
     for (row, truth) in rows.iter().zip([-turn - half, turn - half]) {
-        assert_eq!(row.status, Some(BifurcationStatus::Located));
+        assert_eq!(row.status(), BifurcationStatus::Located);
         assert!((row.value - truth).abs() <= row.error, "{}", words(&rows));
     }
 }
@@ -458,11 +446,11 @@ fn a_jump_that_moves_through_the_cells_leaves_no_value_located() {
         let (_, rows) = rows_of(model.clone(), observable, ends, 14, axes, &options);
         assert!(!rows.is_empty());
         for row in &rows {
-            let (status, reason) = (row.status, row.reason.as_deref().unwrap_or_default());
-            assert_ne!(status, Some(BifurcationStatus::Located), "{}", words(&rows));
-            let is_told =
-                reason.contains("jumps at y") || status != Some(BifurcationStatus::Unresolved);
-            assert!(is_told || row.parts.is_none(), "{}", words(&rows));
+            let status = row.status();
+            assert_ne!(status, BifurcationStatus::Located, "{}", words(&rows));
+            let jumps = matches!(row.reason(), Some(Doubt::JumpInsideCells(1, _)));
+            let is_told = jumps || status != BifurcationStatus::Unresolved;
+            assert!(is_told || row.zero.is_none(), "{}", words(&rows));
         }
     }
 }

@@ -2,7 +2,7 @@
 //! calibration of stated errors over many seeds (ignored by default; results in docs/location.md).
 
 use pbif::cancellation::Cancellation;
-use pbif::continuation::{LabelledPoint, LocateOptions, PointType, SweepResult, sweep};
+use pbif::continuation::{LocateOptions, Located, SweepResult, sweep};
 use pbif::density::Observable;
 use pbif::method::{
     GeneratorMethodOptions, MethodOptions, MethodSource, Problem, SgcmOptions, StepChoice,
@@ -69,11 +69,9 @@ fn rayleigh(count: usize, points: usize, range: (f64, f64)) -> Case<'static> {
     }
 }
 
-fn rows(result: &SweepResult, observable: Observable) -> Vec<&LabelledPoint> {
-    let labels = result.labels.iter();
-    labels
-        .filter(|row| row.kind == PointType::Bifurcation && row.observable == Some(observable))
-        .collect()
+fn rows(result: &SweepResult, observable: Observable) -> Vec<&Located> {
+    let rows = result.bifurcations();
+    rows.filter(|row| row.observable == observable).collect()
 }
 
 /// The only row of an observable holds the truth within an error of at most `share` of the range.
@@ -135,7 +133,7 @@ fn the_generator_locates_exact_families_within_its_stated_errors() {
     assert_located(&result, Observable::Joint(0, 1), 0.0, 2e-6);
     assert_located(&result, x, rayleigh_split_of_x(0.1, 0.02), 5e-5);
     let joint = rows(&result, Observable::Joint(0, 1))[0];
-    assert_eq!(joint.after.unwrap().to_string(), "ring");
+    assert_eq!(joint.after.to_string(), "ring");
 }
 
 #[test]

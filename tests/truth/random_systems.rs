@@ -18,7 +18,7 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 
 use pbif::cancellation::Cancellation;
-use pbif::continuation::{BifurcationStatus, LabelledPoint, LocateOptions, PointType, sweep};
+use pbif::continuation::{BifurcationStatus, LocateOptions, Located, sweep};
 use pbif::density::Observable;
 use pbif::method::{GeneratorMethodOptions, GeneratorSource, Problem};
 use pbif::space::{Axis, CellSpace};
@@ -350,7 +350,7 @@ fn potential(seed: u64) -> Option<Case> {
     })
 }
 
-fn solve(case: &Case) -> Vec<LabelledPoint> {
+fn solve(case: &Case) -> Vec<Located> {
     let observable = match case.axes.len() {
         1 => Observable::Marginal(0),
         _ => Observable::Joint(0, 1),
@@ -371,9 +371,7 @@ fn solve(case: &Case) -> Vec<LabelledPoint> {
         &mut (),
     )
     .unwrap();
-    let rows = found.labels.into_iter();
-    rows.filter(|row| row.kind == PointType::Bifurcation)
-        .collect()
+    found.bifurcations().cloned().collect()
 }
 
 /// How rows and truths compare.
@@ -390,9 +388,9 @@ struct Score {
 }
 
 impl Score {
-    fn of(case: &Case, rows: &[LabelledPoint]) -> Self {
-        let is_located = |row: &LabelledPoint| row.status == Some(BifurcationStatus::Located);
-        let holds = |row: &LabelledPoint, truth: f64| match is_located(row) {
+    fn of(case: &Case, rows: &[Located]) -> Self {
+        let is_located = |row: &Located| row.status() == BifurcationStatus::Located;
+        let holds = |row: &Located, truth: f64| match is_located(row) {
             true => (row.value - truth).abs() <= row.error,
             false => {
                 row.lower.min(row.value - row.error) <= truth
@@ -454,21 +452,21 @@ impl Score {
     }
 }
 
-fn told(case: &Case, rows: &[LabelledPoint]) -> String {
+fn told(case: &Case, rows: &[Located]) -> String {
     let mut text = format!("{}\n  changes at {:?}\n", case.words, case.truths);
     for row in rows {
         writeln!(
             text,
             "  {:?} {:.7} ± {:.1e} [{:.5}, {:.5}] {} → {}: {} ({})",
-            row.status.unwrap(),
+            row.status(),
             row.value,
             row.error,
             row.lower,
             row.upper,
-            row.before.unwrap(),
-            row.after.unwrap(),
-            row.change,
-            row.method
+            row.before,
+            row.after,
+            row.change(),
+            row.method()
         )
         .unwrap();
     }

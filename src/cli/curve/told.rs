@@ -5,7 +5,8 @@ use crate::continuation::curve::{
     CodimensionTwo, CodimensionTwoKind, Curve, CurveTree, Plane, codimension_two,
 };
 use crate::job::{CurveJob, Job as _};
-use crate::run::format_with_error;
+use crate::run::{doubt_in_words, format_with_error};
+use crate::system::Family;
 
 /// Everything that was found, in lines.
 pub(super) fn summary(job: &CurveJob<'_>, tree: &CurveTree) -> String {
@@ -14,7 +15,7 @@ pub(super) fn summary(job: &CurveJob<'_>, tree: &CurveTree) -> String {
         text += &of_curve(job, tree, (index, curve));
     }
     for point in codimension_two(&tree.curves) {
-        text += &codimension_line(&point, plane);
+        text += &codimension_line(&point, plane, job.sweep().problem.family());
     }
     for missed in &tree.missed {
         text += &format!(
@@ -72,7 +73,7 @@ fn of_curve(job: &CurveJob<'_>, tree: &CurveTree, (index, curve): (usize, &Curve
     let largest = errors.fold(0.0, f64::max);
     let checked = curve.points.iter().filter(|point| point.checked).count();
     let located = curve.points.iter();
-    let located = located.filter(|point| is_located(point.status)).count();
+    let located = located.filter(|point| is_located(point.status())).count();
     text += &format!(
         "  {} points, {located} of them located, {checked} checked; largest error {largest:.1e} of the sides of the box\n",
         curve.points.len()
@@ -118,7 +119,11 @@ fn turn_in_words(kind: CodimensionTwoKind) -> &'static str {
 }
 
 /// A point of codimension two in a line.
-pub(in crate::cli) fn codimension_line(point: &CodimensionTwo, plane: &Plane) -> String {
+pub(in crate::cli) fn codimension_line(
+    point: &CodimensionTwo,
+    plane: &Plane,
+    family: &Family,
+) -> String {
     let curves = point.curves.iter().map(|index| format!("C{}", index + 1));
     let curves = curves.collect::<Vec<_>>().join(" and ");
     let words = match point.kind {
@@ -137,11 +142,16 @@ pub(in crate::cli) fn codimension_line(point: &CodimensionTwo, plane: &Plane) ->
         }
         CodimensionTwoKind::Crossing => format!("crossing of {curves}"),
     };
+    let doubt = point.doubts.first().map(|doubt| {
+        let (status, words) = (doubt.status().word(), doubt_in_words(family, doubt));
+        format!("; {status}: {words}")
+    });
     format!(
-        "{}  {}  {words}; known to {:.1e} of the sides of the box\n",
+        "{}  {}  {words}; known to {:.1e} of the sides of the box{}\n",
         point.label,
         place(plane, point.values, point.error),
-        point.error
+        point.error,
+        doubt.unwrap_or_default()
     )
 }
 

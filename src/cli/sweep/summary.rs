@@ -4,18 +4,15 @@ use std::path::Path;
 
 use comfy_table::{Table, presets};
 
-use crate::continuation::{LabelledPoint, Point, PointStatus, PointType, SweepResult};
-use crate::run::{format_number, format_with_error};
+use crate::continuation::{Label, Located, Point, PointStatus, SweepResult};
+use crate::run::{doubt_in_words, format_number, format_with_error};
 use crate::system::Family;
 
 /// The labelled points as a table, the signatures at both ends, and where the files are.
 pub(in crate::cli) fn text(result: &SweepResult, folder: &Path) -> String {
     let family = &result.subject.family;
-    let rows: Vec<&LabelledPoint> = result
-        .labels
-        .iter()
-        .filter(|row| row.kind != PointType::EndPoint)
-        .collect();
+    let rows = result.labels.iter().filter(|row| !row.is_end());
+    let rows: Vec<&Label> = rows.collect();
     let mut text = String::new();
     if !rows.is_empty() {
         text += &table(family, &rows);
@@ -57,7 +54,7 @@ pub(in crate::cli) fn nothing_to_draw(result: &SweepResult) -> &'static str {
     }
 }
 
-fn table(family: &Family, rows: &[&LabelledPoint]) -> String {
+fn table(family: &Family, rows: &[&Label]) -> String {
     let mut table = Table::new();
     table.load_style(presets::NOTHING).set_header([
         "label",
@@ -68,30 +65,25 @@ fn table(family: &Family, rows: &[&LabelledPoint]) -> String {
         "status",
     ]);
     for row in rows {
-        let (value, error) = format_with_error(row.value, row.error);
-        let (lower, _) = format_with_error(row.lower, row.error);
-        let (upper, _) = format_with_error(row.upper, row.error);
-        let change = match (row.before, row.after) {
-            (Some(before), Some(after)) => format!("{before} → {after}, {}", row.change),
-            _ => String::new(),
-        };
-        let observable = row.observable.map(|observable| observable.name(family));
+        let rounded = |value: f64| format_with_error(value, row.error());
+        let ((value, error), bracket) = (rounded(row.value()), row.bracket());
+        let of = |words: &dyn Fn(&Located) -> String| row.bifurcation().map(words);
+        let change = |one: &Located| format!("{} → {}, {}", one.before, one.after, one.change());
+        let status = of(&|one| one.status().word().to_owned());
         table.add_row([
-            row.label.clone(),
+            row.name().to_owned(),
             format!("{value} ± {error}"),
-            format!("[{lower}, {upper}]"),
-            observable.unwrap_or_default(),
-            change,
-            row.status
-                .map_or("no steady state, or not converged", |s| s.word())
-                .to_owned(),
+            format!("[{}, {}]", rounded(bracket.0).0, rounded(bracket.1).0),
+            of(&|one| one.observable.name(family)).unwrap_or_default(),
+            of(&change).unwrap_or_default(),
+            status.unwrap_or_else(|| "no steady state, or not converged".to_owned()),
         ]);
     }
     let lines = table.to_string();
     let trimmed: Vec<&str> = lines.lines().map(str::trim_end).collect();
     let reasons = rows.iter().filter_map(|row| {
-        let reason = row.reason.as_ref()?;
-        Some(format!(" {}: {reason}\n", row.label))
+        let reason = doubt_in_words(family, row.bifurcation()?.reason()?);
+        Some(format!(" {}: {reason}\n", row.name()))
     });
     trimmed.join("\n") + "\n" + &reasons.collect::<String>()
 }

@@ -51,7 +51,7 @@ fn put(point: &mut CurvePoint, known: &CodimensionTwo) {
         solver: known.error,
         ..ErrorParts::default()
     };
-    point.status = known.status;
+    point.doubts.clone_from(&known.doubts);
 }
 
 /// Whether curves of an indicator begin at such a point, and are lost before they come to it: those of joint densities
@@ -61,7 +61,7 @@ fn begins_there(kind: IndicatorKind, known: CodimensionTwoKind) -> bool {
         CodimensionTwoKind::DegenerateSplit => {
             kind == IndicatorKind::RING || kind == IndicatorKind::FOLD
         }
-        CodimensionTwoKind::DegenerateKink => kind.rising().is_some(),
+        CodimensionTwoKind::DegenerateKink => kind.traits().rising.is_some(),
         _ => false,
     }
 }

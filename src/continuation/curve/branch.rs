@@ -1,7 +1,7 @@
 //! Where other curves pass that begin at a point of codimension two of a curve, found beside it.
 
 use super::companion::ends_there;
-use super::degenerate::{Both, Seeker, solved};
+use super::degenerate::{Both, Seeker, solve_pair};
 use super::reading::Reader;
 use super::walked::{Walked, within};
 use super::{CodimensionTwoKind, CurvePoint, CurveStart, CurveWork};
@@ -96,7 +96,7 @@ impl Seeker<'_> {
     /// the other. Of the inflections beside the kink that one tells which is nearest to a zero.
     fn fold_of_kink(&self, both: &Both, work: &mut CurveWork) -> Option<CurveStart> {
         let kink = self.0.start.place.first().copied()?;
-        let above = self.0.start.kind.side_of_kink().unwrap_or(true);
+        let above = self.0.start.kind.traits().side_of_kink.unwrap_or(true);
         let side = if above { 1.0 } else { -1.0 };
         let mut reader = self.reader(self.0.source, self.0.start.kind);
         let mut nearest: Option<(f64, CurveStart)> = None;
@@ -152,7 +152,7 @@ impl Seeker<'_> {
     /// the kink is.
     fn other_side(&self, both: &Both) -> Option<CurveStart> {
         let [own, other] = [&both.reading, &both.companion_reading].map(|one| one.gradient);
-        let along = solved([(other, 0.0), (own, 1.0)])?;
+        let along = solve_pair([(other, 0.0), (own, 1.0)])?;
         let length = along[0].hypot(along[1]);
         let at = [0, 1].map(|k| both.at[k] + BESIDE_CORNER * along[k] / length);
         let is_new = ends_there(both.companion.kind) && within(at);

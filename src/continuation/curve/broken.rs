@@ -7,7 +7,7 @@
 use super::degenerate::Seeker;
 use super::walked::{Walked, within};
 use super::{CurvePoint, CurveStart, CurveWork, EndReason};
-use crate::continuation::BifurcationStatus;
+use crate::continuation::{BifurcationStatus, Doubt};
 use crate::topology::IndicatorKind;
 
 /// Distances from the point at which the others are looked for, in sides of the box.
@@ -18,7 +18,7 @@ const NEAR: f64 = 0.1;
 impl Seeker<'_> {
     /// Ends a curve that is one point in it, where that is because the symmetry is lost beside it; gives where the
     /// curves pass that begin there.
-    pub(super) fn broken(
+    pub(super) fn break_symmetry(
         &self,
         walked: &mut Walked,
         points: &mut [CurvePoint],
@@ -79,11 +79,10 @@ impl Seeker<'_> {
         let Some(found) = found else {
             return Vec::new();
         };
-        if point.status == BifurcationStatus::Unconfirmed {
-            point.status = match point.error <= self.0.options.tolerance {
-                true => BifurcationStatus::Located,
-                false => BifurcationStatus::Unresolved,
-            };
+        if point.status() == BifurcationStatus::Unconfirmed {
+            // Finer cells may move the centre, beside which the indicator is not read.
+            let is_imprecise = |doubt: &Doubt| doubt.status() == BifurcationStatus::Unresolved;
+            point.doubts.retain(is_imprecise);
         }
         walked.ends = vec![reason];
         found

@@ -7,12 +7,10 @@
 use super::reading::{Missing, Reader};
 use super::walked::{Node, Walked};
 use super::{CurvePoint, CurveWork, Task};
+use crate::continuation::doubt::Evidence;
 use crate::continuation::grid::share_of_distance;
 use crate::continuation::locate::QUIET;
-use crate::continuation::reason::{MOST_NEGATIVE, negative_share};
-use crate::continuation::{
-    BifurcationStatus, CellCheck, DensitySource, ErrorParts, PointStatus, Want,
-};
+use crate::continuation::{CheckedBy, DensitySource, Doubt, ErrorParts, SourceError, Want};
 use crate::topology::two_sided_limit;
 
 /// A finer curve farther than this from the coarser one is not the same, in sides of the box.
@@ -22,21 +20,35 @@ const SAME: f64 = 0.05;
 const NEIGHBOURS: usize = 2;
 
 /// What a check shows: how far uphill the curve is by it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 enum Shown {
     Moved(f64),
     /// There is no such curve near.
     Nothing,
-    /// It could not be asked.
-    Failed,
+    /// It could not be asked, for this reason.
+    Failed(String),
 }
 
 /// What the checks of one point show; `None` where none was made.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 struct Check {
     index: usize,
     finer: Option<Shown>,
     enclosed: Option<Shown>,
+}
+
+impl Check {
+    /// What it says against the point.
+    fn doubt(&self) -> Option<Doubt> {
+        let failed = |by: CheckedBy, reason: &String| Some(Doubt::CheckFailed(by, reason.clone()));
+        match (&self.finer, &self.enclosed) {
+            (Some(Shown::Nothing), _) => Some(Doubt::NotOnFinerCells),
+            (Some(Shown::Failed(reason)), _) => failed(CheckedBy::FinerCells, reason),
+            (_, Some(Shown::Nothing)) => Some(Doubt::NotBetweenClosedEnds),
+            (_, Some(Shown::Failed(reason))) => failed(CheckedBy::ClosedEnds, reason),
+            _ => None,
+        }
+    }
 }
 
 /// How curves are checked.
@@ -44,8 +56,8 @@ pub(super) struct Checks<'a>(pub(super) Task<'a>);
 
 impl Checks<'_> {
     /// The points with their errors, and what checking them took.
-    pub(super) fn judged(&self, walked: &Walked) -> (Vec<CurvePoint>, CurveWork) {
-        let selected = self.selected(walked);
+    pub(super) fn judge(&self, walked: &Walked) -> (Vec<CurvePoint>, CurveWork) {
+        let selected = self.selection(walked);
         let mut checks: Vec<Check> = selected
             .iter()
             .map(|&index| Check {
@@ -65,9 +77,10 @@ impl Checks<'_> {
                     pairs.for_each(|(check, shown)| check.finer = shown);
                 }
                 Ok(None) => {}
-                Err(_) => checks
+                Err(SourceError::Interrupted) => {}
+                Err(SourceError::Method(error)) => checks
                     .iter_mut()
-                    .for_each(|check| check.finer = Some(Shown::Failed)),
+                    .for_each(|check| check.finer = Some(Shown::Failed(error.to_string()))),
             }
             let leaks = walked
                 .points
@@ -90,9 +103,9 @@ impl Checks<'_> {
     }
 
     /// The points that are checked. The slope at a kink follows from the equations: no grid takes part.
-    fn selected(&self, walked: &Walked) -> Vec<usize> {
+    fn selection(&self, walked: &Walked) -> Vec<usize> {
         let every = self.0.options.check_every;
-        if every == 0 || self.0.start.kind.is_exact() {
+        if every == 0 || self.0.start.kind.traits().is_exact {
             return Vec::new();
         }
         let last = walked.points.len() - 1;
@@ -101,12 +114,6 @@ impl Checks<'_> {
             index == 0 || index == last || from_start.is_multiple_of(every)
         };
         (0..=last).filter(is_chosen).collect()
-    }
-
-    /// Whether finer cells could tell what the cells do to the curve.
-    fn is_checkable(&self) -> bool {
-        let check = self.0.source.subject().cell_check;
-        matches!(check, CellCheck::OnFinerCells { .. })
     }
 
     /// What another source shows at the selected points, `None` where it was asked to stop.
@@ -143,7 +150,7 @@ impl Checks<'_> {
                     })
                 }
                 Err(Missing::Indicator | Missing::Symmetry) => Some(Shown::Nothing),
-                Err(Missing::Density(_)) => Some(Shown::Failed),
+                Err(Missing::Density(reason)) => Some(Shown::Failed(reason)),
                 Err(Missing::Interrupted) => break,
             };
         }
@@ -177,18 +184,25 @@ impl Checks<'_> {
             None => (0..2).for_each(|k| foot[k] += check.shift * uphill[k]),
         }
         let sides = self.0.plane.sides();
-        let depends_on_cells = !self.0.start.kind.is_exact();
-        let unknown = check.grid.is_none() && depends_on_cells && reading.is_diffused;
-        let is_torn = depends_on_cells && negative_share(&reading.density) > MOST_NEGATIVE;
-        let is_unsound = reading.status != PointStatus::Solved || is_torn || reading.is_blurred;
-        let status = match check.status {
-            Some(status) => status,
-            None if is_unsound || error > self.0.options.tolerance => BifurcationStatus::Unresolved,
-            None if unknown => BifurcationStatus::Unconfirmed,
-            None if check.grid.is_none() && depends_on_cells && self.is_checkable() => {
-                BifurcationStatus::Unchecked
-            }
-            None => BifurcationStatus::Located,
+        let depends_on_cells = !self.0.start.kind.traits().is_exact;
+        let unchecked = if self.0.options.check_every == 0 {
+            Doubt::GridCheckOff
+        } else {
+            Doubt::CheckMissing
+        };
+        let is_unchecked = check.grid.is_none() && depends_on_cells;
+        let evidence = Evidence {
+            check: check.doubt.clone(),
+            densities: reading.against(depends_on_cells),
+            unchecked: is_unchecked.then_some(unchecked),
+            cell_check: self.0.source.subject().cell_check,
+            is_diffused: reading.is_diffused,
+            parts,
+            width: 0.0,
+            tolerance: self.0.options.tolerance,
+            density: &reading.density,
+            is_noisy: indicator.sampling_error > 0.0,
+            wider: None,
         };
         CurvePoint {
             values: self.0.plane.values(foot),
@@ -201,7 +215,7 @@ impl Checks<'_> {
             arclength: node.arclength,
             tangent: [0, 1].map(|k| node.tangent[k] * sides[k].length()),
             checked: check.is_own,
-            status,
+            doubts: evidence.doubts(),
         }
     }
 }
@@ -216,8 +230,8 @@ struct Interpolated {
     leak: f64,
     /// Whether the point itself was checked.
     is_own: bool,
-    /// The status where a check shows no curve, or failed.
-    status: Option<BifurcationStatus>,
+    /// The doubt where a check shows no curve, or failed.
+    doubt: Option<Doubt>,
 }
 
 /// Between the nearest checked points on either side.
@@ -238,16 +252,16 @@ fn between(checks: &[Check], nodes: &[Node], index: usize, of_distance: f64) -> 
         false => 0.0,
     };
     let nearest = if share <= 0.5 { below } else { above };
-    let moved = |shown: Option<Shown>| match shown {
-        Some(Shown::Moved(moved)) => Some(moved),
+    let moved = |shown: &Option<Shown>| match shown {
+        Some(Shown::Moved(moved)) => Some(*moved),
         _ => None,
     };
-    let (a, b) = (moved(below.finer), moved(above.finer));
+    let (a, b) = (moved(&below.finer), moved(&above.finer));
     let pair = a.or(b).zip(b.or(a));
     let around = checks[after.saturating_sub(NEIGHBOURS)..]
         .iter()
         .take(2 * NEIGHBOURS);
-    let around: Vec<f64> = around.filter_map(|check| moved(check.finer)).collect();
+    let around: Vec<f64> = around.filter_map(|check| moved(&check.finer)).collect();
     let largest = around
         .iter()
         .fold(0.0_f64, |max, moved| max.max(moved.abs()));
@@ -255,20 +269,13 @@ fn between(checks: &[Check], nodes: &[Node], index: usize, of_distance: f64) -> 
         true => 0.0,
         false => spread(&around),
     };
-    let leaks = [below, above].map(|check| moved(check.enclosed).map_or(0.0, f64::abs));
-    let shows = |what: Shown| nearest.finer == Some(what) || nearest.enclosed == Some(what);
+    let leaks = [below, above].map(|check| moved(&check.enclosed).map_or(0.0, f64::abs));
     Interpolated {
         shift: pair.map_or(0.0, |(a, b)| (1.0 - share) * a + share * b),
         grid: pair.map(|_| of_distance * largest + from_neighbours),
         leak: leaks[0].max(leaks[1]),
         is_own: below.index == index,
-        status: if nearest.finer == Some(Shown::Nothing) {
-            Some(BifurcationStatus::Unconfirmed)
-        } else if shows(Shown::Failed) || nearest.enclosed == Some(Shown::Nothing) {
-            Some(BifurcationStatus::Unchecked)
-        } else {
-            None
-        },
+        doubt: nearest.doubt(),
     }
 }
 

@@ -4,7 +4,8 @@
 use super::found::{Curve, CurvePoint, EndReason};
 use super::piece::Piece;
 use super::walked::apart;
-use crate::continuation::BifurcationStatus;
+use crate::continuation::doubt::status_of;
+use crate::continuation::{BifurcationStatus, Doubt};
 use crate::density::Observable;
 
 /// Two points nearer than this, in sides of the box, are one.
@@ -69,14 +70,21 @@ pub struct CodimensionTwo {
     pub values: [f64; 2],
     /// Half-width of what it is believed to be off by, as a share of the sides of the box.
     pub error: f64,
-    /// How well it is known: of a crossing as its curves beside it.
-    pub status: BifurcationStatus,
+    /// Why it may not be where it says, of a crossing as its curves beside it; the first decides its status.
+    pub doubts: Vec<Doubt>,
     /// The observables of the curves; of a crossing there may be two.
     pub observables: Vec<Observable>,
     /// Where the density has the feature, one coordinate an axis; of a crossing that its curves show together nothing.
     pub place: Vec<f64>,
     /// The curves that end, or pass, there, by their places in the list.
     pub curves: Vec<usize>,
+}
+
+impl CodimensionTwo {
+    /// How well it is known.
+    pub fn status(&self) -> BifurcationStatus {
+        status_of(&self.doubts)
+    }
 }
 
 /// The points of codimension two of curves in one plane: of what several curves say of one, the one with the smallest
@@ -90,7 +98,7 @@ pub fn codimension_two(curves: &[Curve]) -> Vec<CodimensionTwo> {
     }
     for (index, curve) in curves.iter().enumerate() {
         for (number, other) in curves.iter().enumerate().skip(index + 1) {
-            for (at, error, status) in crossings(curve, other) {
+            for (at, error, doubts) in crossings(curve, other) {
                 let known = |one: &CodimensionTwo| {
                     let both = one.curves.contains(&index) || one.curves.contains(&number);
                     both && apart(curve.plane.place(one.values), at) <= SAME
@@ -105,7 +113,7 @@ pub fn codimension_two(curves: &[Curve]) -> Vec<CodimensionTwo> {
                     kind: CodimensionTwoKind::Crossing,
                     values: curve.plane.values(at),
                     error,
-                    status,
+                    doubts,
                     observables,
                     place: Vec::new(),
                     curves: vec![index, number],
@@ -157,7 +165,7 @@ fn add(
             kind,
             values: point.values,
             error: point.error,
-            status: point.status,
+            doubts: point.doubts.clone(),
             observables: vec![curve.observable],
             place: point.place.clone(),
             curves: vec![index],
@@ -170,14 +178,14 @@ fn add(
     if point.error < known.error {
         known.values = point.values;
         known.error = point.error;
-        known.status = point.status;
+        known.doubts.clone_from(&point.doubts);
         known.place = point.place.clone();
     }
 }
 
 /// Where two curves cross, in the box with sides of length one, with the error there.
-fn crossings(first: &Curve, second: &Curve) -> Vec<([f64; 2], f64, BifurcationStatus)> {
-    let mut found: Vec<([f64; 2], f64, BifurcationStatus)> = Vec::new();
+fn crossings(first: &Curve, second: &Curve) -> Vec<([f64; 2], f64, Vec<Doubt>)> {
+    let mut found: Vec<([f64; 2], f64, Vec<Doubt>)> = Vec::new();
     let others: Vec<Piece> = Piece::all_of(second).collect();
     for piece in Piece::all_of(first) {
         for other in others.iter().filter(|other| piece.is_near(other)) {
@@ -185,11 +193,8 @@ fn crossings(first: &Curve, second: &Curve) -> Vec<([f64; 2], f64, BifurcationSt
                 continue;
             };
             if found.iter().all(|one| apart(one.0, at) > SAME) {
-                let worse = match piece.status {
-                    BifurcationStatus::Located => other.status,
-                    status => status,
-                };
-                found.push((at, error, worse));
+                let doubts = piece.doubts.iter().chain(&other.doubts);
+                found.push((at, error, doubts.cloned().collect()));
             }
         }
     }

@@ -15,8 +15,8 @@ use crate::topology::{Detector, IndicatorKind};
 
 /// What the point is where an indicator and this companion of it vanish.
 pub(super) fn meeting(companion: IndicatorKind) -> CodimensionTwoKind {
-    let is_beside_kink = companion.side_of_kink().is_some();
-    match (companion.is_bifurcation(), is_beside_kink) {
+    let is_beside_kink = companion.traits().side_of_kink.is_some();
+    match (companion.traits().is_bifurcation, is_beside_kink) {
         (false, false) => CodimensionTwoKind::DegenerateSplit,
         (false, true) => CodimensionTwoKind::DegenerateKink,
         (true, true) => CodimensionTwoKind::KinkCorner,
@@ -26,7 +26,7 @@ pub(super) fn meeting(companion: IndicatorKind) -> CodimensionTwoKind {
 
 /// Whether nothing happens on the line beyond the point at which a companion vanishes.
 pub(super) fn ends_there(kind: IndicatorKind) -> bool {
-    kind.side_of_kink().is_some()
+    kind.traits().side_of_kink.is_some()
 }
 
 /// The values of the companions, in their order; `None` where there is no such indicator. Of a kink's, where its sign
@@ -37,7 +37,7 @@ pub(super) fn values(
     kind: IndicatorKind,
     place: &[f64],
 ) -> Vec<Option<f64>> {
-    let all = kind.companions(density.density.axes.len()).into_iter();
+    let all = (kind.traits().companions)(density.density.axes.len()).into_iter();
     all.map(|companion| {
         let indicator = detector.indicator(density, companion, place)?;
         let is_sure =
@@ -49,7 +49,7 @@ pub(super) fn values(
 
 /// The companion, by its place among them, that has another sign than where it was known last; what is known is brought
 /// up to date.
-pub(super) fn turned(known: &mut [Option<f64>], values: &[Option<f64>]) -> Option<usize> {
+pub(super) fn turn(known: &mut [Option<f64>], values: &[Option<f64>]) -> Option<usize> {
     let mut found = None;
     for (index, (known, value)) in known.iter_mut().zip(values).enumerate() {
         let Some(value) = *value else {
@@ -70,10 +70,10 @@ mod tests {
     #[test]
     fn a_companion_turns_where_its_sign_is_known_to_differ() {
         let mut known = vec![Some(1.0), None];
-        assert_eq!(turned(&mut known, &[None, Some(-2.0)]), None);
-        assert_eq!(turned(&mut known, &[Some(2.0), None]), None);
-        assert_eq!(turned(&mut known, &[Some(3.0), Some(0.5)]), Some(1));
-        assert_eq!(turned(&mut known, &[Some(-3.0), Some(0.6)]), Some(0));
+        assert_eq!(turn(&mut known, &[None, Some(-2.0)]), None);
+        assert_eq!(turn(&mut known, &[Some(2.0), None]), None);
+        assert_eq!(turn(&mut known, &[Some(3.0), Some(0.5)]), Some(1));
+        assert_eq!(turn(&mut known, &[Some(-3.0), Some(0.6)]), Some(0));
         assert_eq!(known, [Some(-3.0), Some(0.6)]);
     }
 }

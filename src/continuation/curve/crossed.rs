@@ -4,7 +4,7 @@
 use super::found::Curve;
 use super::piece::Piece;
 use super::plane::Plane;
-use crate::continuation::{BifurcationStatus, LabelledPoint, PointType, SweepResult};
+use crate::continuation::{BifurcationStatus, Located, SweepResult};
 use crate::density::Observable;
 use crate::system::Family;
 use crate::topology::IndicatorKind;
@@ -39,7 +39,7 @@ pub struct RowInPlane {
     /// The indicator whose zero it is.
     pub indicator: Option<IndicatorKind>,
     /// How well it is known.
-    pub status: Option<BifurcationStatus>,
+    pub status: BifurcationStatus,
 }
 
 /// How far a row is from a curve, in sides of the box.
@@ -148,24 +148,22 @@ impl SweepInPlane {
             range,
             rows: Vec::new(),
         };
-        let inside = |row: &&LabelledPoint| {
-            row.kind == PointType::Bifurcation && (range.0..=range.1).contains(&row.value)
-        };
-        let rows = sweep.labels.iter().filter(inside);
+        let rows = sweep.bifurcations();
+        let rows = rows.filter(|row| (range.0..=range.1).contains(&row.value));
         let rows = rows.map(|row| line.row(row, family, swept)).collect();
         Ok(Self { rows, ..line })
     }
 
-    fn row(&self, row: &LabelledPoint, family: &Family, swept: &Family) -> RowInPlane {
+    fn row(&self, row: &Located, family: &Family, swept: &Family) -> RowInPlane {
         let mut values = [self.held; 2];
         values[self.side] = row.value;
         RowInPlane {
             label: row.label.clone(),
             values,
             error: row.error,
-            observable: row.observable.and_then(|one| watched(one, family, swept)),
-            indicator: row.indicator,
-            status: row.status,
+            observable: watched(row.observable, family, swept),
+            indicator: row.indicator(),
+            status: row.status(),
         }
     }
 

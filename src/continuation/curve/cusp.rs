@@ -7,7 +7,7 @@
 
 use super::fold_end::{Beyond, FAR, Tail};
 use super::found::EndReason;
-use super::polynomial::{evaluated, fitted};
+use super::polynomial::{evaluate, fit};
 use super::walked::apart;
 use crate::topology::IndicatorKind;
 
@@ -68,7 +68,7 @@ impl Turning {
     fn at(&self, place: f64) -> [f64; 2] {
         let [origin, last] = self.ends;
         let u = (place - origin) / (last - origin);
-        self.fits.each_ref().map(|fit| evaluated(fit, u)[0])
+        self.fits.each_ref().map(|fit| evaluate(fit, u)[0])
     }
 }
 
@@ -82,9 +82,9 @@ fn turning(places: &[f64], values: &[[f64; 2]], degree: usize) -> Option<Turning
         .collect();
     let fits = [0, 1].map(|k| {
         let values: Vec<f64> = values.iter().map(|value| value[k]).collect();
-        fitted(&scaled, &values, degree)
+        fit(&scaled, &values, degree)
     });
-    let at = |u: f64| fits.each_ref().map(|fit| evaluated(fit, u));
+    let at = |u: f64| fits.each_ref().map(|fit| evaluate(fit, u));
     let mut u = 0.0;
     for _ in 0..20 {
         let both = at(u);

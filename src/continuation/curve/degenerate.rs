@@ -11,10 +11,10 @@ use super::found::DegeneratePoint;
 use super::reading::{Reader, Reading};
 use super::walked::{Node, Walked, apart, within};
 use super::{CodimensionTwoKind, CurvePoint, CurveStart, CurveWork, EndReason, Task};
+use crate::continuation::doubt::Evidence;
 use crate::continuation::grid::share_of_distance;
 use crate::continuation::locate::QUIET;
-use crate::continuation::reason::{MOST_NEGATIVE, negative_share};
-use crate::continuation::{BifurcationStatus, DensitySource, ErrorParts, PointStatus, Want};
+use crate::continuation::{CheckedBy, DensitySource, Doubt, ErrorParts, SourceError, Want};
 use crate::topology::{Indicator, IndicatorKind};
 
 /// Most steps of Newton's method.
@@ -28,7 +28,7 @@ const FAR: f64 = 0.05;
 pub(super) struct Seeker<'a>(pub(super) Task<'a>);
 
 /// Two neighbouring points between which a companion changes its sign.
-pub(super) struct Found {
+pub(super) struct SignChange {
     between: (usize, usize),
     kind: CodimensionTwoKind,
     /// The point, and where another curve passes that begins there; `None` where it was not found.
@@ -40,7 +40,7 @@ pub(super) struct Found {
 pub(super) fn add(
     points: &mut Vec<CurvePoint>,
     start: &mut usize,
-    found: Vec<Found>,
+    found: Vec<SignChange>,
 ) -> (Vec<DegeneratePoint>, Vec<CurveStart>) {
     let (mut degenerate, mut branches) = (Vec::<DegeneratePoint>::new(), Vec::new());
     for found in found {
@@ -67,7 +67,7 @@ pub(super) fn add(
 pub(super) fn cut(
     points: &mut Vec<CurvePoint>,
     walked: &mut Walked,
-    found: Vec<Found>,
+    found: Vec<SignChange>,
 ) -> Vec<CurveStart> {
     let mut branches = Vec::new();
     // From behind, so that places before stay.
@@ -114,14 +114,15 @@ pub(super) struct Both {
 
 impl Seeker<'_> {
     /// The points of codimension two of a curve, in its order; `judged` are its points as far as they are checked.
-    pub(super) fn found(
+    pub(super) fn search(
         &self,
         walked: &Walked,
         judged: &[CurvePoint],
         work: &mut CurveWork,
-    ) -> Vec<Found> {
-        let kinds = self.0.start.kind.companions(self.0.start.place.len());
-        let mut found: Vec<Found> = Vec::new();
+    ) -> Vec<SignChange> {
+        let start = self.0.start;
+        let kinds = (start.kind.traits().companions)(start.place.len());
+        let mut found: Vec<SignChange> = Vec::new();
         for (index, kind) in kinds.into_iter().enumerate() {
             let nodes = walked.points.iter().enumerate();
             let known = nodes.filter_map(|(place, node)| {
@@ -136,7 +137,7 @@ impl Seeker<'_> {
                 if (a > 0.0) == (b > 0.0) || self.0.cancellation.is_cancelled() {
                     continue;
                 }
-                found.push(Found {
+                found.push(SignChange {
                     between: (from, to),
                     kind: meeting(kind),
                     point: self.point((walked, judged), kind, [(from, a), (to, b)], work),
@@ -159,7 +160,7 @@ impl Seeker<'_> {
         let (before, after) = (&walked.points[from], &walked.points[to]);
         let share = a / (a - b);
         let near = [0, 1].map(|k| (1.0 - share) * before.foot[k] + share * after.foot[k]);
-        let (point, both) = self.located(kind, near, before, judged.get(from)?, work)?;
+        let (point, both) = self.locate(kind, near, before, judged.get(from)?, work)?;
         let away: Vec<usize> = match a > 0.0 {
             true => (0..=from).rev().collect(),
             false => (to..walked.points.len()).collect(),
@@ -169,7 +170,7 @@ impl Seeker<'_> {
     }
 
     /// The point near a place, on the finer cells where there are any.
-    fn located(
+    fn locate(
         &self,
         kind: IndicatorKind,
         near: [f64; 2],
@@ -179,13 +180,7 @@ impl Seeker<'_> {
     ) -> Option<(CurvePoint, Both)> {
         let coarse = self.newton(self.0.source, kind, near, work)?;
         let want = Want::densities(&self.0.source.subject().observables);
-        let finer = match self.0.options.check_every {
-            0 => None,
-            _ => self.0.source.finer(&want).ok().flatten(),
-        };
-        let fine = finer
-            .as_ref()
-            .map(|source| self.newton(source.as_ref(), kind, coarse.at, work));
+        let fine = self.on_finer_cells(&want, (kind, coarse.at), work);
         let leaks = coarse.companion_reading.edge_mass > QUIET;
         let enclosed = self.0.source.enclosed(&want).filter(|_| leaks);
         let enclosed =
@@ -193,8 +188,8 @@ impl Seeker<'_> {
         let leak = enclosed.map_or(0.0, |enclosed| apart(enclosed.at, coarse.at));
         let of_distance = share_of_distance(self.0.source.subject().cell_check);
         let (at, grid) = match &fine {
-            Some(Some(fine)) => (fine.at, of_distance * apart(fine.at, coarse.at)),
-            _ => (coarse.at, coarse.own),
+            Ok(fine) => (fine.at, of_distance * apart(fine.at, coarse.at)),
+            Err(_) => (coarse.at, coarse.own),
         };
         let parts = ErrorParts {
             solver: coarse.solver + SETTLED * SETTLED,
@@ -209,14 +204,24 @@ impl Seeker<'_> {
         if tangent[0] * from.tangent[0] + tangent[1] * from.tangent[1] < 0.0 {
             tangent = tangent.map(|part| -part);
         }
-        let is_torn = negative_share(&coarse.companion_reading.density) > MOST_NEGATIVE;
-        let is_unsound = reading.status != PointStatus::Solved || is_torn;
-        let status = match fine {
-            _ if is_unsound => BifurcationStatus::Unresolved,
-            _ if error > self.0.options.tolerance => BifurcationStatus::Unresolved,
-            Some(None) => BifurcationStatus::Unconfirmed,
-            None if reading.is_diffused => BifurcationStatus::Unconfirmed,
-            _ => BifurcationStatus::Located,
+        let checked = fine.is_ok();
+        let (check, unchecked) = match fine {
+            Ok(_) => (None, None),
+            Err(doubt @ (Doubt::GridCheckOff | Doubt::CheckMissing)) => (None, Some(doubt)),
+            Err(doubt) => (Some(doubt), None),
+        };
+        let evidence = Evidence {
+            check,
+            densities: coarse.companion_reading.against(true),
+            unchecked,
+            cell_check: self.0.source.subject().cell_check,
+            is_diffused: reading.is_diffused,
+            parts,
+            width: 0.0,
+            tolerance: self.0.options.tolerance,
+            density: &reading.density,
+            is_noisy: reading.indicator.sampling_error > 0.0,
+            wider: None,
         };
         let point = CurvePoint {
             values: self.0.plane.values(at),
@@ -228,10 +233,31 @@ impl Seeker<'_> {
             place: reading.indicator.place.clone(),
             arclength: from.arclength + apart(coarse.at, from.foot),
             tangent: [0, 1].map(|k| tangent[k] * sides[k].length()),
-            checked: matches!(fine, Some(Some(_))),
-            status,
+            checked,
+            doubts: evidence.doubts(),
         };
         Some((point, coarse))
+    }
+
+    /// The point on finer cells; otherwise why they do not tell.
+    fn on_finer_cells(
+        &self,
+        want: &Want,
+        (kind, near): (IndicatorKind, [f64; 2]),
+        work: &mut CurveWork,
+    ) -> Result<Both, Doubt> {
+        if self.0.options.check_every == 0 {
+            return Err(Doubt::GridCheckOff);
+        }
+        match self.0.source.finer(want) {
+            Ok(Some(source)) => self
+                .newton(source.as_ref(), kind, near, work)
+                .ok_or(Doubt::NotOnFinerCells),
+            Ok(None) | Err(SourceError::Interrupted) => Err(Doubt::CheckMissing),
+            Err(SourceError::Method(error)) => {
+                Err(Doubt::CheckFailed(CheckedBy::FinerCells, error.to_string()))
+            }
+        }
     }
 
     /// The zero of the indicator and of a companion near a place.
@@ -256,7 +282,8 @@ impl Seeker<'_> {
             let own = reader.read(at, &self.0.start.place).ok()?;
             reader.kind = kind;
             let companion = reader.read(at, &self.0.start.place).ok()?;
-            let step = solved([&own, &companion].map(|one| (one.gradient, -one.indicator.value)))?;
+            let step =
+                solve_pair([&own, &companion].map(|one| (one.gradient, -one.indicator.value)))?;
             at = [0, 1].map(|k| at[k] + step[k]);
             let size = step[0].hypot(step[1]);
             if apart(at, near) > FAR || !within(at) {
@@ -265,9 +292,9 @@ impl Seeker<'_> {
             if size <= SETTLED {
                 // What errors of either derivative move the place by, both at their worst.
                 let moved = |of: &dyn Fn(&Reading) -> f64| {
-                    let first = solved([(own.gradient, of(&own)), (companion.gradient, 0.0)]);
+                    let first = solve_pair([(own.gradient, of(&own)), (companion.gradient, 0.0)]);
                     let second =
-                        solved([(own.gradient, 0.0), (companion.gradient, of(&companion))]);
+                        solve_pair([(own.gradient, 0.0), (companion.gradient, of(&companion))]);
                     let length =
                         |step: Option<[f64; 2]>| step.map_or(f64::INFINITY, |[x, y]| x.hypot(y));
                     length(first) + length(second)
@@ -300,7 +327,7 @@ impl Seeker<'_> {
 
 /// The solution of two linear equations in the plane, each a gradient and what it shall give; `None` where they do not
 /// tell.
-pub(super) fn solved([(a, u), (b, v)]: [([f64; 2], f64); 2]) -> Option<[f64; 2]> {
+pub(super) fn solve_pair([(a, u), (b, v)]: [([f64; 2], f64); 2]) -> Option<[f64; 2]> {
     let determinant = a[0] * b[1] - a[1] * b[0];
     let step = [
         (u * b[1] - v * a[1]) / determinant,
@@ -316,9 +343,9 @@ mod tests {
     #[test]
     fn two_equations_are_solved() {
         assert_eq!(
-            solved([([2.0, 1.0], 5.0), ([1.0, -1.0], 1.0)]),
+            solve_pair([([2.0, 1.0], 5.0), ([1.0, -1.0], 1.0)]),
             Some([2.0, 1.0])
         );
-        assert_eq!(solved([([2.0, 1.0], 5.0), ([4.0, 2.0], 1.0)]), None);
+        assert_eq!(solve_pair([([2.0, 1.0], 5.0), ([4.0, 2.0], 1.0)]), None);
     }
 }

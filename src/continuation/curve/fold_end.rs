@@ -6,9 +6,9 @@ use super::CurveStart;
 use super::cusp::cusp;
 use super::found::{CurvePoint, EndReason};
 use super::plane::Plane;
-use super::polynomial::{evaluated, fitted};
+use super::polynomial::{evaluate, fit};
 use super::walked::{KinkAtEnd, apart};
-use crate::continuation::{BifurcationStatus, ErrorParts};
+use crate::continuation::{BifurcationStatus, Doubt, ErrorParts};
 use crate::topology::IndicatorKind;
 
 /// Fewest points that polynomials are fitted to.
@@ -32,8 +32,8 @@ const TOLD_APART: f64 = 6.0;
 const BESIDE_KINK: f64 = 2.0;
 /// How far points may be off, over the root of the mean square of what polynomials leave of them.
 const SCATTERS: f64 = 3.0;
-/// A fold that ends at a centre comes nearer to it than this share of where the points that tell begin, both squared.
-const NEAR_CENTRE: f64 = 0.25;
+/// A fold that ends at a centre or a kink comes nearer to it than this share of where the points that tell begin.
+const NEAR: f64 = 0.5;
 
 /// What is followed, and what its ends may be.
 pub(super) struct Folds<'a> {
@@ -145,7 +145,7 @@ pub(super) fn add_ends(
     folds: &Folds<'_>,
 ) -> Vec<CurveStart> {
     let mut branches = Vec::new();
-    let Some(rising) = folds.kind.rising() else {
+    let Some(rising) = folds.kind.traits().rising else {
         return branches;
     };
     let count = reasons.len();
@@ -213,8 +213,8 @@ fn widen(point: &mut CurvePoint, part: f64, tolerance: f64) {
     if before > 0.0 {
         point.to_edge = point.to_edge.map(|edge| edge * point.error / before);
     }
-    if point.error > tolerance && point.status == BifurcationStatus::Located {
-        point.status = BifurcationStatus::Unresolved;
+    if point.error > tolerance {
+        point.doubts.push(Doubt::Extrapolated(point.error));
     }
 }
 
@@ -223,6 +223,18 @@ fn point(beyond: &Beyond, last: &CurvePoint, is_first: bool, folds: &Folds<'_>) 
     let gap = apart(beyond.at, folds.plane.place(last.values));
     let (before, onward) = if is_first { (-gap, 1.0) } else { (gap, -1.0) };
     let across = [-beyond.leaves[1], beyond.leaves[0]];
+    let is_of_cells = matches!(
+        last.status(),
+        BifurcationStatus::Unchecked | BifurcationStatus::Unconfirmed
+    );
+    let doubts = if is_of_cells {
+        // What the points do not say of the cells, an end that follows from them does not say either.
+        last.doubts.clone()
+    } else if beyond.error > folds.tolerance {
+        vec![Doubt::Extrapolated(beyond.error)]
+    } else {
+        Vec::new()
+    };
     CurvePoint {
         values: folds.plane.values(beyond.at),
         error: beyond.error,
@@ -237,49 +249,44 @@ fn point(beyond: &Beyond, last: &CurvePoint, is_first: bool, folds: &Folds<'_>) 
         arclength: last.arclength + before,
         tangent: [0, 1].map(|k| onward * beyond.leaves[k] * sides[k].length()),
         checked: false,
-        status: match last.status {
-            // What the points do not say of the cells, an end that follows from them does not say either.
-            BifurcationStatus::Unchecked | BifurcationStatus::Unconfirmed => last.status,
-            _ if beyond.error <= folds.tolerance => BifurcationStatus::Located,
-            _ => BifurcationStatus::Unresolved,
-        },
+        doubts,
     }
 }
 
 /// Where a fold and its mirror image meet in the centre: both parameters are smooth functions of the square of the
 /// distance from it.
 fn at_centre(tail: &Tail<'_>, centre: f64) -> Option<Beyond> {
-    let squares: Vec<f64> = tail.places.iter().map(|x| (x - centre).powi(2)).collect();
-    let (nearest, scale) = (squares[0], squares[squares.len() - 1]);
-    let leaves = squares.windows(2).all(|pair| pair[1] > pair[0]);
-    if !leaves || nearest > NEAR_CENTRE * scale {
-        return None;
-    }
-    let scaled: Vec<f64> = squares.iter().map(|square| square / scale).collect();
-    let found = Meeting::new(&scaled, &tail.values, DEGREE);
-    let lower = Meeting::new(&scaled, &tail.values, DEGREE - 1);
-    let quarter = scaled.len() / 4;
-    let farther = Meeting::new(&scaled[quarter..], &tail.values[quarter..], DEGREE);
-    let doubt = apart(found.at, lower.at) + apart(found.at, farther.at);
-    let is_near = apart(found.at, tail.values[0]) <= FAR;
-    is_near.then(|| Beyond {
-        reason: EndReason::DegenerateSplit,
-        at: found.at,
-        place: centre,
-        error: tail.known() + 2.0 * doubt + SCATTERS * found.scatter,
-        scatter: SCATTERS * found.scatter,
-        leaves: found.leaves,
-        branch: (found.at, IndicatorKind::CURVATURE, centre),
-    })
+    let branch = (EndReason::DegenerateSplit, IndicatorKind::CURVATURE);
+    let found = meeting(tail, (centre, 2), branch)?;
+    (apart(found.at, tail.values[0]) <= FAR).then_some(found)
 }
 
 /// Where a fold comes to a kink: both parameters are smooth functions of the distance from it.
 fn at_kink(tail: &Tail<'_>, beside: &KinkAtEnd, is_centre: bool) -> Option<Beyond> {
-    let kink = beside.at;
-    let distances: Vec<f64> = tail.places.iter().map(|x| (x - kink).abs()).collect();
+    let above = tail.places[0] > beside.at;
+    let kind = if is_centre {
+        IndicatorKind::KINK_SLOPE
+    } else {
+        // The kink is what it was before the pair on this side: the peak or valley that the other side says.
+        IndicatorKind::beside_kink(above, beside.rises_away[usize::from(!above)])
+    };
+    let found = meeting(tail, (beside.at, 1), (EndReason::DegenerateKink, kind))?;
+    let is_near = apart(found.at, tail.values[0]) <= FAR_FROM_KINK;
+    (is_near && found.error <= MOST_VAGUE).then_some(found)
+}
+
+/// Where a fold meets a place in the density, both parameters being smooth functions of this power of its distance from
+/// there; with the indicator whose curve passes there.
+fn meeting(
+    tail: &Tail<'_>,
+    (place, power): (f64, i32),
+    (reason, kind): (EndReason, IndicatorKind),
+) -> Option<Beyond> {
+    let distances = tail.places.iter().map(|x| (x - place).abs().powi(power));
+    let distances: Vec<f64> = distances.collect();
     let (nearest, scale) = (distances[0], distances[distances.len() - 1]);
     let leaves = distances.windows(2).all(|pair| pair[1] > pair[0]);
-    if !leaves || nearest > NEAR_CENTRE.sqrt() * scale {
+    if !leaves || nearest > NEAR.powi(power) * scale {
         return None;
     }
     let scaled: Vec<f64> = distances.iter().map(|one| one / scale).collect();
@@ -288,27 +295,19 @@ fn at_kink(tail: &Tail<'_>, beside: &KinkAtEnd, is_centre: bool) -> Option<Beyon
     let quarter = scaled.len() / 4;
     let farther = Meeting::new(&scaled[quarter..], &tail.values[quarter..], DEGREE);
     let doubt = apart(found.at, lower.at) + apart(found.at, farther.at);
-    let above = tail.places[0] > kink;
-    let kind = if is_centre {
-        IndicatorKind::KINK_SLOPE
-    } else {
-        // The kink is what it was before the pair on this side: the peak or valley that the other side says.
-        IndicatorKind::beside_kink(above, beside.rises_away[usize::from(!above)])
-    };
-    let error = tail.known() + 2.0 * doubt + SCATTERS * found.scatter;
-    let is_near = apart(found.at, tail.values[0]) <= FAR_FROM_KINK;
-    (is_near && error <= MOST_VAGUE).then_some(Beyond {
-        reason: EndReason::DegenerateKink,
+    let scatter = SCATTERS * found.scatter;
+    Some(Beyond {
+        reason,
         at: found.at,
-        place: kink,
-        error,
-        scatter: SCATTERS * found.scatter,
+        place,
+        error: tail.known() + 2.0 * doubt + scatter,
+        scatter,
         leaves: found.leaves,
-        branch: (found.at, kind, kink),
+        branch: (found.at, kind, place),
     })
 }
 
-/// Both parameters where the square of the distance is zero.
+/// Both parameters where a power of the distance is zero.
 struct Meeting {
     at: [f64; 2],
     leaves: [f64; 2],
@@ -317,22 +316,22 @@ struct Meeting {
 }
 
 impl Meeting {
-    fn new(squares: &[f64], values: &[[f64; 2]], degree: usize) -> Self {
+    fn new(distances: &[f64], values: &[[f64; 2]], degree: usize) -> Self {
         let fits = [0, 1].map(|k| {
             let values: Vec<f64> = values.iter().map(|value| value[k]).collect();
-            fitted(squares, &values, degree)
+            fit(distances, &values, degree)
         });
-        let both = fits.each_ref().map(|fit| evaluated(fit, 0.0));
+        let both = fits.each_ref().map(|fit| evaluate(fit, 0.0));
         let slope = both.map(|one| one[1]);
         let length = slope[0].hypot(slope[1]);
-        let left = squares.iter().zip(values).map(|(&square, value)| {
-            let off = [0, 1].map(|k| evaluated(&fits[k], square)[0] - value[k]);
+        let left = distances.iter().zip(values).map(|(&distance, value)| {
+            let off = [0, 1].map(|k| evaluate(&fits[k], distance)[0] - value[k]);
             off[0] * off[0] + off[1] * off[1]
         });
         Self {
             at: both.map(|one| one[0]),
             leaves: slope.map(|part| part / length),
-            scatter: (left.sum::<f64>() / squares.len() as f64).sqrt(),
+            scatter: (left.sum::<f64>() / distances.len() as f64).sqrt(),
         }
     }
 }

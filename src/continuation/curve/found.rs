@@ -1,8 +1,9 @@
 //! What following a curve gives: its points with their errors, its ends with their reasons, and the work it took.
 
 use super::{CodimensionTwoKind, CurveStart, Plane};
+use crate::continuation::doubt::status_of;
 use crate::continuation::measure::FACTORISATIONS;
-use crate::continuation::{BifurcationStatus, ErrorParts, LabelledPoint, SolveReport};
+use crate::continuation::{BifurcationStatus, Doubt, ErrorParts, Located, SolveReport};
 use crate::density::Observable;
 use crate::topology::{IndicatorKind, Signature};
 
@@ -31,8 +32,15 @@ pub struct CurvePoint {
     pub tangent: [f64; 2],
     /// Whether it was checked on finer cells, or between closed ends.
     pub checked: bool,
+    /// Why it may not be where it says; the first decides its status. None where it is located.
+    pub doubts: Vec<Doubt>,
+}
+
+impl CurvePoint {
     /// How well it is known.
-    pub status: BifurcationStatus,
+    pub fn status(&self) -> BifurcationStatus {
+        status_of(&self.doubts)
+    }
 }
 
 /// Why a curve ends.
@@ -174,13 +182,13 @@ pub struct CurveOrigin {
     /// Value of the swept parameter.
     pub value: f64,
     /// Signature below it.
-    pub before: Option<Signature>,
+    pub before: Signature,
     /// Signature above it.
-    pub after: Option<Signature>,
+    pub after: Signature,
 }
 
-impl From<&LabelledPoint> for CurveOrigin {
-    fn from(row: &LabelledPoint) -> Self {
+impl From<&Located> for CurveOrigin {
+    fn from(row: &Located) -> Self {
         Self {
             label: row.label.clone(),
             value: row.value,
@@ -224,7 +232,7 @@ impl Curve {
 }
 
 /// Ends with their labels, numbered by their letters.
-pub(super) fn labelled(reasons: Vec<EndReason>, points: usize) -> Vec<CurveEnd> {
+pub(super) fn label_ends(reasons: Vec<EndReason>, points: usize) -> Vec<CurveEnd> {
     let mut ends: Vec<CurveEnd> = Vec::new();
     for (index, reason) in reasons.into_iter().enumerate() {
         let prefix = reason.prefix();

@@ -34,9 +34,9 @@ pub use plane::{Plane, PlaneSide};
 pub use tree::{CurveTree, MissedBranch, follow_all};
 pub(super) use tree::{ON_IT, distance};
 
-use found::labelled;
+use found::label_ends;
 
-use super::{BifurcationStatus, DensitySource, LabelledPoint, SourceError, Subject};
+use super::{BifurcationStatus, DensitySource, Doubt, Located, SourceError, Subject};
 use crate::cancellation::Cancellation;
 use crate::density::Observable;
 use crate::topology::{Detector, IndicatorKind};
@@ -88,14 +88,15 @@ pub struct CurveStart {
 impl CurveStart {
     /// A row of a sweep over the first parameter at a value of the second; `None` for a row that was located by no
     /// indicator, or is of no observable of the subject.
-    pub fn from_row(row: &LabelledPoint, second: f64, subject: &Subject) -> Option<Self> {
+    pub fn from_row(row: &Located, second: f64, subject: &Subject) -> Option<Self> {
         let mut observables = subject.observables.iter();
-        let observable = observables.position(|&one| Some(one) == row.observable)?;
+        let observable = observables.position(|&one| one == row.observable)?;
+        let zero = row.zero.as_ref()?;
         Some(Self {
             values: [row.value, second],
             observable,
-            kind: row.indicator?,
-            place: row.place.clone(),
+            kind: zero.indicator,
+            place: zero.place.clone(),
         })
     }
 }
@@ -183,7 +184,7 @@ pub fn follow(
     observer: &mut dyn FnMut([f64; 2]),
 ) -> Result<Curve, CurveError> {
     let subject = source.subject();
-    let observable = checked(subject, plane, start)?;
+    let observable = check_start(subject, plane, start)?;
     let task = Task {
         source,
         plane,
@@ -193,20 +194,20 @@ pub fn follow(
         cancellation,
     };
     let mut walked = walk::Follower(task).both_ways(observer)?;
-    let (mut points, mut check_work) = check::Checks(task).judged(&walked);
+    let (mut points, mut check_work) = check::Checks(task).judge(&walked);
     let seeker = degenerate::Seeker(task);
-    let mut broken = seeker.broken(&mut walked, &mut points, &mut check_work);
+    let mut broken = seeker.break_symmetry(&mut walked, &mut points, &mut check_work);
     // A zero beside which there is no curve is not one of a smooth indicator.
     if let [alone] = points.as_mut_slice()
         && matches!(
-            alone.status,
+            alone.status(),
             BifurcationStatus::Located | BifurcationStatus::Unchecked
         )
         && broken.is_empty()
     {
-        alone.status = BifurcationStatus::Unconfirmed;
+        alone.doubts.insert(0, Doubt::NoCurve);
     }
-    let found = seeker.found(&walked, &points, &mut check_work);
+    let found = seeker.search(&walked, &points, &mut check_work);
     let (degenerate, mut branches) = match companion::ends_there(start.kind) {
         true => (Vec::new(), degenerate::cut(&mut points, &mut walked, found)),
         false => degenerate::add(&mut points, &mut walked.start, found),
@@ -231,7 +232,7 @@ pub fn follow(
         observable,
         kind: start.kind,
         start: walked.start,
-        ends: labelled(walked.ends, points.len()),
+        ends: label_ends(walked.ends, points.len()),
         points,
         degenerate,
         branches,
@@ -241,7 +242,11 @@ pub fn follow(
 }
 
 /// Refuses a start that is not in the box, or not of this source; gives its observable.
-fn checked(subject: &Subject, plane: &Plane, start: &CurveStart) -> Result<Observable, CurveError> {
+fn check_start(
+    subject: &Subject,
+    plane: &Plane,
+    start: &CurveStart,
+) -> Result<Observable, CurveError> {
     let sides = plane.sides();
     let names = sides.each_ref().map(|side| side.parameter.clone());
     let moved = subject.family.path().moved();

@@ -2,7 +2,7 @@
 
 use super::found::{Curve, CurvePoint};
 use super::walked::apart;
-use crate::continuation::BifurcationStatus;
+use crate::continuation::Doubt;
 
 /// Curves at a smaller angle do not cross, but run along each other.
 const SLANTED: f64 = 0.02;
@@ -21,7 +21,8 @@ pub(super) struct Piece {
     /// Tangents times the length of the piece.
     tangents: [[f64; 2]; 2],
     pub(super) error: f64,
-    pub(super) status: BifurcationStatus,
+    /// Those of its first end, then of its last.
+    pub(super) doubts: Vec<Doubt>,
 }
 
 impl Piece {
@@ -40,10 +41,7 @@ impl Piece {
             tangents: [from, to]
                 .map(|point| [0, 1].map(|k| length * point.tangent[k] / sides[k].length())),
             error: from.error.max(to.error),
-            status: match from.status {
-                BifurcationStatus::Located => to.status,
-                status => status,
-            },
+            doubts: from.doubts.iter().chain(&to.doubts).cloned().collect(),
         }
     }
 
@@ -145,14 +143,14 @@ mod tests {
             ends: [on(0.0), on(0.5)],
             tangents: [tangent(0.0), tangent(0.5)],
             error: 1e-3,
-            status: BifurcationStatus::Located,
+            doubts: Vec::new(),
         };
         let [x, y] = on(0.3);
         let line = Piece {
             ends: [[0.9 * x, 0.9 * y], [1.1 * x, 1.1 * y]],
             tangents: [[0.2 * x, 0.2 * y]; 2],
             error: 2e-3,
-            status: BifurcationStatus::Located,
+            doubts: Vec::new(),
         };
         assert!(arc.is_near(&line));
         let (at, error) = arc.meets(&line).unwrap();
@@ -163,7 +161,7 @@ mod tests {
             ends: [[0.9, 0.6], [1.1, 0.6]],
             tangents: [[0.2, 0.0]; 2],
             error: 0.0,
-            status: BifurcationStatus::Located,
+            doubts: Vec::new(),
         };
         assert!(arc.meets(&beside).is_none());
         assert!(arc.meets(&arc).is_none());

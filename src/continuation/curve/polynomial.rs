@@ -2,7 +2,7 @@
 
 /// Coefficients, lowest power first, of the polynomial that is nearest to some points: by columns made orthogonal one
 /// after the other.
-pub(super) fn fitted(places: &[f64], values: &[f64], degree: usize) -> Vec<f64> {
+pub(super) fn fit(places: &[f64], values: &[f64], degree: usize) -> Vec<f64> {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let mut rest = values.to_vec();
     // Each column with its coefficients in powers.
@@ -37,7 +37,7 @@ fn subtract(from: &mut [f64], share: f64, other: &[f64]) {
 }
 
 /// Value, first and second derivative of a polynomial.
-pub(super) fn evaluated(coefficients: &[f64], x: f64) -> [f64; 3] {
+pub(super) fn evaluate(coefficients: &[f64], x: f64) -> [f64; 3] {
     let mut result = [0.0; 3];
     for coefficient in coefficients.iter().rev() {
         result[2] = result[2] * x + 2.0 * result[1];
@@ -55,7 +55,7 @@ mod tests {
     fn a_polynomial_is_fitted_to_the_digit_and_has_its_derivatives() {
         let of = |x: f64| 2.0 - x + 3.0 * x * x - x.powi(4);
         let places = [-1.0, -0.3, 0.2, 0.7, 0.9, 1.5, 1.6];
-        let [value, first, second] = evaluated(&fitted(&places, &places.map(of), 4), 0.4);
+        let [value, first, second] = evaluate(&fit(&places, &places.map(of), 4), 0.4);
         assert!((value - of(0.4)).abs() < 1e-12);
         assert!((first - (-1.0 + 2.4 - 4.0 * 0.064)).abs() < 1e-12);
         assert!((second - (6.0 - 12.0 * 0.16)).abs() < 1e-11);

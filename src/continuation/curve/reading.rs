@@ -7,7 +7,7 @@
 use super::{CurveStart, CurveWork, Plane, companion};
 use crate::cancellation::Cancellation;
 use crate::continuation::measure::NUMERICAL_DIFFUSION;
-use crate::continuation::{DensitySource, Finding, PointStatus, Sensitivity, Session, SourceError};
+use crate::continuation::{DensitySource, Doubt, PointStatus, Sensitivity, Session, SourceError};
 use crate::density::{Density, EstimatedDensity};
 use crate::topology::{Detector, Indicator, IndicatorKind};
 
@@ -31,8 +31,8 @@ pub(super) struct Reading {
     /// Mass in the outermost cells, the largest over the axes.
     pub(super) edge_mass: f64,
     pub(super) status: PointStatus,
-    /// Whether the shape of the density is in doubt, by too few modes or a kink inside cells.
-    pub(super) is_blurred: bool,
+    /// What the solve says against the shape of the density: too few modes, or a kink inside cells.
+    pub(super) blurs: Vec<Doubt>,
     /// Whether cells add diffusion of their own.
     pub(super) is_diffused: bool,
     pub(super) density: Density,
@@ -61,6 +61,16 @@ impl Reading {
     pub(super) fn tangent(&self) -> [f64; 2] {
         let [x, y] = self.uphill();
         [-y, x]
+    }
+
+    /// What speaks against the density that it was read from.
+    pub(super) fn against(&self, depends_on_cells: bool) -> Vec<Doubt> {
+        let negative = Doubt::of_negative(&self.density).filter(|_| depends_on_cells);
+        let solve = Doubt::of_status(self.status, None).into_iter();
+        solve
+            .chain(negative)
+            .chain(self.blurs.iter().cloned())
+            .collect()
     }
 
     /// How far uphill the curve is, by the gradient.
@@ -158,7 +168,7 @@ impl Reader<'_> {
         let density = solution.densities.get(self.observable);
         let density = density.ok_or_else(|| Missing::Density("no density".to_owned()))?;
         let indicator = self.detector.indicator(density, self.kind, near);
-        let has_centre = density.structure.centre.is_some() || !self.kind.is_at_centre();
+        let has_centre = density.structure.centre.is_some() || !self.kind.traits().is_at_centre;
         let indicator = indicator.ok_or(match has_centre {
             true => Missing::Indicator,
             false => Missing::Symmetry,
@@ -186,7 +196,11 @@ impl Reader<'_> {
             solver_error: report.solver_error,
             edge_mass: report.edge_mass().unwrap_or(0.0),
             status: report.status,
-            is_blurred: report.findings.iter().any(Finding::blurs),
+            blurs: report
+                .findings
+                .iter()
+                .filter_map(Doubt::of_finding)
+                .collect(),
             is_diffused: report.all(&NUMERICAL_DIFFUSION).next().is_some(),
             companions: companion::values(self.detector, density, self.kind, &indicator.place),
             kinks: kinks.map(|kink| kink.at).collect(),
@@ -228,7 +242,7 @@ fn along(
     sensitivity: &mut dyn Sensitivity,
     parameter: &str,
 ) -> Result<Option<f64>, SourceError> {
-    if indicator.kind.is_exact() {
+    if indicator.kind.traits().is_exact {
         let jumps = sensitivity.jumps_to_parameter(parameter)?;
         let jumps = jumps.get(observable);
         return Ok(jumps.and_then(|jumps| by_jumps(detector, density, indicator, jumps)));

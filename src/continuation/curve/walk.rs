@@ -126,7 +126,7 @@ impl<'a> Follower<'a> {
             if nodes.len() >= self.0.options.most_points {
                 return (nodes, EndReason::TooManyPoints);
             }
-            let Some((at, border)) = predicted(here, bend, step) else {
+            let Some((at, border)) = predict(here, bend, step) else {
                 let side = nearest_side(here.foot);
                 return (nodes, EndReason::Border(side));
             };
@@ -157,7 +157,7 @@ impl<'a> Follower<'a> {
                         });
                         return (nodes, EndReason::Closed);
                     }
-                    let turned = companion::turned(&mut known, &node.reading.companions);
+                    let turned = companion::turn(&mut known, &node.reading.companions);
                     nodes.push(node);
                     // The last point is beyond the end, which lies between it and the one before.
                     if turned.is_some() && companion::ends_there(self.0.start.kind) {
@@ -287,7 +287,7 @@ fn remainder(reading: &Reading, size: f64, before: Option<&Node>) -> f64 {
 
 /// Where the next point is expected, and the side of the box at whose end it lies, if the step leads out; `None` where
 /// nothing of the box is left in this direction.
-fn predicted(here: &Node, bend: [f64; 2], step: f64) -> Option<([f64; 2], Option<usize>)> {
+fn predict(here: &Node, bend: [f64; 2], step: f64) -> Option<([f64; 2], Option<usize>)> {
     let at = |step: f64| {
         [0, 1].map(|k| here.foot[k] + step * here.tangent[k] + 0.5 * step * step * bend[k])
     };

@@ -144,30 +144,21 @@ fn run<F: Formula>(
     sweep(&source, &detector, points, &options, &never, &mut ()).unwrap()
 }
 
-fn rows(result: &SweepResult) -> Vec<&LabelledPoint> {
-    let labels = result.labels.iter();
-    labels
-        .filter(|row| row.kind == PointType::Bifurcation)
-        .collect()
+fn rows(result: &SweepResult) -> Vec<&Located> {
+    result.bifurcations().collect()
 }
 
-fn words(row: &LabelledPoint) -> String {
-    let signature = |one: Option<crate::topology::Signature>| one.unwrap().to_string();
-    format!(
-        "{} → {}, {}",
-        signature(row.before),
-        signature(row.after),
-        row.change
-    )
+fn words(row: &Located) -> String {
+    format!("{} → {}, {}", row.before, row.after, row.change())
 }
 
 /// Every row in words, with its status, value and error: for messages.
-fn told(result: &SweepResult) -> Vec<String> {
-    let told = |row: &&LabelledPoint| {
-        let (status, value, error) = (row.status, row.value, row.error);
+fn lines(result: &SweepResult) -> Vec<String> {
+    let line = |row: &&Located| {
+        let (status, value, error) = (row.status(), row.value, row.error);
         format!("{} {status:?} {value} ± {error}", words(row))
     };
-    rows(result).iter().map(told).collect()
+    rows(result).iter().map(line).collect()
 }
 
 /// One peak to two at θ = 0.03: log p = 2((θ - 0.03) x²/2 - x⁴/4)/σ², σ² = 0.5.
@@ -191,7 +182,7 @@ fn a_symmetric_split_is_located_to_a_part_in_a_million_with_few_solves() {
     assert_eq!(rows.len(), 1);
     let row = rows[0];
     assert_eq!(words(row), "1 peak → 2 peaks, symmetric split");
-    assert_eq!(row.status, Some(BifurcationStatus::Located));
+    assert_eq!(row.status(), BifurcationStatus::Located);
     assert!(
         (row.value - 0.03).abs() <= row.error && row.error < 1e-5,
         "{row:?}"
@@ -209,7 +200,7 @@ fn scale_and_direction_change_no_row() {
         let row = rows(&result)[0].clone();
         (
             words(&row),
-            row.status,
+            row.status(),
             [row.value, row.error, row.lower, row.upper],
         )
     };
@@ -275,15 +266,16 @@ fn nothing_is_located_in_a_density_that_is_negative() {
         let result = run(&torn_split(depth), (-0.5, 0.5, 11), 1e-4);
         let row = rows(&result)[0].clone();
         assert!((row.value - 0.03).abs() <= row.error, "{row:?}");
-        (row.status, row.reason)
+        (row.status(), row.doubts)
     };
-    assert_eq!(status(0.0).0, Some(BifurcationStatus::Located));
+    assert_eq!(status(0.0).0, BifurcationStatus::Located);
     // 0.8 in x at about a tenth of the height of a density some two wide: four per cent of the mass, or two thousandths
     // of it.
-    let (torn, reason) = status(0.1);
-    assert_eq!(torn, Some(BifurcationStatus::Unresolved));
-    assert!(reason.unwrap().contains("of the density there is negative"));
-    assert_eq!(status(0.005).0, Some(BifurcationStatus::Located));
+    let (torn, doubts) = status(0.1);
+    assert_eq!(torn, BifurcationStatus::Unresolved);
+    let is_negative = matches!(doubts[..], [Doubt::NegativeDensity(share), ..] if share > 0.02);
+    assert!(is_negative, "{doubts:?}");
+    assert_eq!(status(0.005).0, BifurcationStatus::Located);
 }
 
 #[test]

@@ -113,7 +113,7 @@ fn two_folds_within_one_step_have_a_row_each() {
         },
     );
     let result = run(&source, (0.0, 0.3, 4), 1e-4);
-    let found = told(&result);
+    let found = lines(&result);
     assert_eq!(found.len(), 2, "{found:#?}");
     let rows = rows(&result);
     assert_eq!(words(rows[0]), "3 peaks → 2 peaks, peak and valley vanish");
@@ -124,7 +124,7 @@ fn two_folds_within_one_step_have_a_row_each() {
     );
     assert!(
         rows.iter()
-            .all(|row| row.status == Some(BifurcationStatus::Located))
+            .all(|row| row.status() == BifurcationStatus::Located)
     );
 }
 
@@ -148,8 +148,8 @@ fn changes_that_undo_each_other_far_apart_keep_their_rows_though_neither_is_loca
     assert_eq!(rows.len(), 2, "{found:?}");
     assert_eq!(rows[0].before, rows[1].after, "{found:?}");
     for row in &rows {
-        assert_eq!(row.status, Some(BifurcationStatus::Unresolved));
-        assert!(row.error < 1e-3 && row.reason.is_some(), "{row:?}");
+        assert_eq!(row.status(), BifurcationStatus::Unresolved);
+        assert!(row.error < 1e-3 && row.reason().is_some(), "{row:?}");
     }
     let (sum, error) = (rows[0].value + rows[1].value, rows[0].error + rows[1].error);
     assert!((sum - 0.6).abs() <= error, "{sum} ± {error}");

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use super::lattice::{At, Lattice};
-use super::node::{Grid, Solved};
+use super::node::{Grid, SolvedNode};
 use crate::continuation::Point;
 use crate::continuation::change::{Change, changes};
 use crate::continuation::root::between;
@@ -30,7 +30,7 @@ pub(super) struct Blurred {
 }
 
 /// A row or a column: its nodes in order, with their places along it.
-type Line<'g> = Vec<(usize, At, &'g Solved)>;
+type Line<'g> = Vec<(usize, At, &'g SolvedNode)>;
 
 /// All changes along rows and columns.
 pub(super) fn crossings(
@@ -93,7 +93,7 @@ fn lines<'g>(grid: &'g Grid, lattice: &Lattice, side: usize) -> Vec<Line<'g>> {
 
 /// The changes along a run of neighbours whose densities are there.
 fn along(
-    run: &[(usize, At, &Solved)],
+    run: &[(usize, At, &SolvedNode)],
     lattice: &Lattice,
     detector: &dyn Detector,
     found: &mut Vec<Crossing>,
@@ -155,7 +155,7 @@ fn on_upper_side(
     let (Some(centre), &[x]) = (centre, place.as_slice()) else {
         return (kind, place);
     };
-    match kind.mirror().filter(|_| x < centre) {
+    match (kind.traits().mirror)().filter(|_| x < centre) {
         Some(mirrored) => (mirrored, vec![2.0 * centre - x]),
         None => (kind, place),
     }

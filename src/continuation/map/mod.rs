@@ -21,7 +21,7 @@ mod trace;
 
 pub use found::{MapNode, MapWork, RegimeMap, RegionSample, Untraced};
 #[cfg(feature = "cli")] // the explorer colours planes likewise
-pub(crate) use regions::{FloodedRegion, Seed, flooded};
+pub(crate) use regions::{FloodedRegion, Seed, flood};
 pub use regions::{Region, RegionPicture};
 pub use shards::{MapChange, MapShard};
 pub use states::{PlaneState, plane_states};
@@ -157,7 +157,7 @@ impl MapMaker<'_> {
         let solver = Solver::new(self, &lattice);
         let leaves = solver.solve_all(&lattice.rows(), &|_| false)?;
         let found = crossing::crossings(&solver.grid(), &lattice, self.detector);
-        self.finished(&lattice, solver, leaves, found)
+        self.finish(&lattice, solver, leaves, found)
     }
 
     /// A shard of the map: its share of the coarse rows with what refinement asks for between them, and the changes
@@ -204,11 +204,11 @@ impl MapMaker<'_> {
             crossing::crossings(&solver.grid(), &lattice, self.detector);
         let changes = shards.iter().flat_map(|shard| &shard.changes);
         shards::gather(changes, &mut crossings, &mut blurred);
-        self.finished(&lattice, solver, leaves, (crossings, blurred))
+        self.finish(&lattice, solver, leaves, (crossings, blurred))
     }
 
     /// The map with its curves and a density of each regime.
-    fn finished(
+    fn finish(
         &self,
         lattice: &Lattice,
         solver: Solver<'_>,

@@ -14,26 +14,26 @@ pub(super) const NEAR: usize = 2;
 
 /// A node, and the solved point while it is kept.
 #[derive(Debug, Clone)]
-pub(super) struct Solved {
+pub(super) struct SolvedNode {
     pub(super) node: MapNode,
     pub(super) point: Option<Point>,
 }
 
 /// All solved nodes, row by row.
 #[derive(Debug, Default)]
-pub(super) struct Grid(BTreeMap<(usize, usize), Solved>);
+pub(super) struct Grid(BTreeMap<(usize, usize), SolvedNode>);
 
 impl Grid {
-    pub(super) fn get(&self, [column, row]: At) -> Option<&Solved> {
+    pub(super) fn get(&self, [column, row]: At) -> Option<&SolvedNode> {
         self.0.get(&(row, column))
     }
 
-    pub(super) fn insert(&mut self, [column, row]: At, solved: Solved) {
+    pub(super) fn insert(&mut self, [column, row]: At, solved: SolvedNode) {
         self.0.insert((row, column), solved);
     }
 
     /// All nodes with their places, by rows.
-    pub(super) fn all(&self) -> impl Iterator<Item = (At, &Solved)> {
+    pub(super) fn all(&self) -> impl Iterator<Item = (At, &SolvedNode)> {
         self.0
             .iter()
             .map(|(&(row, column), solved)| ([column, row], solved))
@@ -96,7 +96,7 @@ impl Grid {
     }
 }
 
-impl Solved {
+impl SolvedNode {
     /// Whether the signatures of two nodes differ, as far as they were seen.
     pub(super) fn differs(&self, other: &Self) -> bool {
         let both: [&[Signature]; 2] = [&self.node.signatures, &other.node.signatures];

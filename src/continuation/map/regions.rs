@@ -58,7 +58,7 @@ impl RegimeMap {
             Seed { place, kind }
         });
         let seeds: Vec<Seed> = seeds.collect();
-        let flooded = flooded(size, &self.lines(observable), &seeds, self.smallest_cell());
+        let flooded = flood(size, &self.lines(observable), &seeds, self.smallest_cell());
         let region = |one: &FloodedRegion| Region {
             signature: kinds.get(one.kind).copied().flatten(),
             share: one.share,
@@ -124,7 +124,7 @@ pub(crate) struct FloodedRegion {
 
 /// Gives every pixel of a picture to the nearest seed that no line parts it from; `smallest` is the longer side of the
 /// smallest cell between the seeds. Pixels of one kind that hang together are a region.
-pub(crate) fn flooded(
+pub(crate) fn flood(
     size: [usize; 2],
     lines: &[Vec<[f64; 2]>],
     seeds: &[Seed],
@@ -136,8 +136,8 @@ pub(crate) fn flooded(
         let is_beside = (lines.iter()).any(|line| distance(line, seed.place) < BESIDE * smallest);
         (canvas.pixel(seed.place), seed.kind as u32, is_beside)
     });
-    let owners = canvas.flooded(&walls, &seeds.collect::<Vec<_>>());
-    let (mut pixels, count) = canvas.connected(&owners);
+    let owners = canvas.owners(&walls, &seeds.collect::<Vec<_>>());
+    let (mut pixels, count) = canvas.components(&owners);
     let depth = canvas.depth(&pixels);
     let total = pixels.len() as f64;
     let shorter = size[0].min(size[1]) as f64;
@@ -217,7 +217,7 @@ impl Canvas {
 
     /// The kind of the nearest seed for every pixel, by ways that cross no wall. Seeds beside a wall count where no
     /// other leads, and walls fall to either side.
-    fn flooded(&self, walls: &[bool], seeds: &[(usize, u32, bool)]) -> Vec<u32> {
+    fn owners(&self, walls: &[bool], seeds: &[(usize, u32, bool)]) -> Vec<u32> {
         let mut owners = vec![NONE; walls.len()];
         let of = |beside: bool| {
             let seeds = seeds.iter().filter(move |seed| seed.2 == beside);
@@ -263,7 +263,7 @@ impl Canvas {
     }
 
     /// Numbers of the regions of pixels that hang together, and how many there are.
-    fn connected(&self, owners: &[u32]) -> (Vec<usize>, usize) {
+    fn components(&self, owners: &[u32]) -> (Vec<usize>, usize) {
         let mut numbers = vec![usize::MAX; owners.len()];
         let mut count = 0;
         for first in 0..owners.len() {
@@ -333,10 +333,10 @@ mod tests {
             // Too near to the wall to tell.
             (canvas.pixel([0.68, 0.5]), 1, true),
         ];
-        let owners = canvas.flooded(&walls, &seeds);
+        let owners = canvas.owners(&walls, &seeds);
         assert_eq!(owners[canvas.pixel([0.66, 0.9])], 0);
         assert_eq!(owners[canvas.pixel([0.74, 0.1])], 1);
-        let (numbers, count) = canvas.connected(&owners);
+        let (numbers, count) = canvas.components(&owners);
         assert_eq!(count, 2);
         let depth = canvas.depth(&numbers);
         assert_eq!(depth[canvas.pixel([0.35, 0.5])], 13);

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::found::MapNode;
 use super::lattice::{At, Lattice, Leaf};
-use super::node::{Grid, Solved};
+use super::node::{Grid, SolvedNode};
 use super::{MapMaker, MapProgress};
 use crate::continuation::curve::CurveWork;
 use crate::continuation::{Point, Session, SourceError};
@@ -68,7 +68,7 @@ impl<'a> Solver<'a> {
                 level: self.lattice.level(at),
                 ..node.clone()
             };
-            grid.insert(at, Solved { node, point: None });
+            grid.insert(at, SolvedNode { node, point: None });
         }
         let count = grid.all().count();
         self.done.store(count, Ordering::Relaxed);
@@ -121,7 +121,7 @@ impl<'a> Solver<'a> {
                     leaves.extend(mixed);
                     break;
                 }
-                let new = self.unsolved(&mixed);
+                let new = self.open_nodes(&mixed);
                 let parts: Vec<Vec<At>> = new.chunks(PART).map(<[At]>::to_vec).collect();
                 self.solve_parts(&parts)?;
                 leaves.extend(mixed.into_iter().flat_map(Leaf::halves));
@@ -139,7 +139,7 @@ impl<'a> Solver<'a> {
     }
 
     /// The places that halving these cells asks for, each near to the one before.
-    fn unsolved(&self, cells: &[Leaf]) -> Vec<At> {
+    fn open_nodes(&self, cells: &[Leaf]) -> Vec<At> {
         let mut places: Vec<At> = cells.iter().flat_map(|leaf| leaf.middles()).collect();
         places.sort_unstable();
         places.dedup();
@@ -209,7 +209,7 @@ impl<'a> Solver<'a> {
         method: &'static str,
         at: At,
         coordinate: f64,
-    ) -> Option<Solved> {
+    ) -> Option<SolvedNode> {
         let (point, refusal) = Point::solve(session, method, self.maker.detector, coordinate)?;
         let detections = &point.detections;
         let mut work = self.work.lock().unwrap_or_else(PoisonError::into_inner);
@@ -223,7 +223,7 @@ impl<'a> Solver<'a> {
             is_seen: detections.iter().all(|one| one.is_seen),
             reason: refusal.map(|error| error.to_string()),
         };
-        Some(Solved {
+        Some(SolvedNode {
             point: Some(point),
             node,
         })

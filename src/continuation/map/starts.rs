@@ -22,7 +22,7 @@ pub(super) fn starts(open: &mut Vec<Crossing>, failures: &[(Crossing, String)]) 
         }
     }
     // What follows from the equations is known best, and asks for no checks.
-    kinds.sort_by_key(|key| !key.1.is_exact());
+    kinds.sort_by_key(|key| !key.1.traits().is_exact);
     let all: Vec<Vec<Crossing>> = kinds.iter().map(|&key| of_kind(open, key)).collect();
     let mut taken: Vec<usize> = Vec::new();
     for number in 0..kinds.len() {

@@ -101,7 +101,7 @@ impl Tracer<'_> {
         let untraced = match self.maker.cancellation.is_cancelled() {
             true => Vec::new(),
             false => {
-                let mut untraced = self.untraced(&drawn, &open, &failures, &blurred);
+                let mut untraced = self.without_curve(&drawn, &open, &failures, &blurred);
                 untraced.extend(
                     vague
                         .iter()
@@ -194,7 +194,7 @@ impl Tracer<'_> {
     }
 
     /// Changes without a curve, one an observable and reason.
-    fn untraced(
+    fn without_curve(
         &self,
         drawn: &[Drawn],
         open: &[Crossing],

@@ -26,7 +26,7 @@ use super::pack::deflate;
 use super::plane::PlaneScene;
 use super::scene::{Label, Scene};
 use crate::cancellation::Cancellation;
-use crate::continuation::{Point, PointType, SourceError};
+use crate::continuation::{Point, SourceError};
 use crate::density::{EstimatedDensity, Observable};
 use crate::sweep_file::{SolveError, Sweep};
 use crate::topology::PersistenceDetector;
@@ -220,10 +220,8 @@ impl Live {
                 return Err(Stop::Stale);
             }
             lane.end();
-            let changes = result
-                .labels
-                .iter()
-                .filter(|row| row.kind == PointType::Bifurcation);
+            let labels = result.labels.iter();
+            let changes = labels.filter(|row| row.bifurcation().is_some());
             Ok(Located {
                 ticket: ask.ticket,
                 labels: changes

@@ -155,10 +155,7 @@ impl Scene<'_> {
         panel.draw(&[place(start)], Shape::Dot(DOT, BIFURCATION, rim));
         let at = panel.place(place(start));
         write(page, rect, at, &self.row.label, BIFURCATION, true);
-        let sides = [self.row.before, self.row.after]
-            .into_iter()
-            .zip([-1.0, 1.0]);
-        for (signature, side) in sides.filter_map(|(one, side)| Some((one?, side))) {
+        for (signature, side) in [(self.row.before, -1.0), (self.row.after, 1.0)] {
             let anchor = if side < 0.0 { HPos::Right } else { HPos::Left };
             let text = small(symbols::plain(&signature.to_string()), anchor, GREY);
             page.text((at.0 + side * 2.5 * AWAY, at.1 + AWAY), text);
@@ -212,7 +209,7 @@ impl Scene<'_> {
         for (number, curve) in self.curves.iter().enumerate() {
             for point in &curve.points {
                 let ([x, y], [dx, dy]) = (point.values, point.to_edge);
-                let status = point.status.word();
+                let status = point.status().word();
                 text += &format!("C{},{x},{y},{dx},{dy},{status}\n", number + 1);
             }
         }
@@ -268,7 +265,7 @@ pub(super) fn entries<'c>(
             band,
             "its error".to_owned(),
         );
-        let doubtful = |point: &CurvePoint| point.status != BifurcationStatus::Located;
+        let doubtful = |point: &CurvePoint| point.status() != BifurcationStatus::Located;
         let is_doubtful = curve.points.iter().any(doubtful);
         add(is_doubtful, stroke.dashed(DASHES), "not located".to_owned());
     }
@@ -302,7 +299,7 @@ fn pieces(curve: &Curve) -> Vec<(Vec<(f64, f64)>, bool)> {
     let mut pieces: Vec<(Vec<(f64, f64)>, bool)> = Vec::new();
     for pair in curve.points.windows(2) {
         let mut both = pair.iter();
-        let located = both.all(|point| point.status == BifurcationStatus::Located);
+        let located = both.all(|point| point.status() == BifurcationStatus::Located);
         let [a, b] = [0, 1].map(|k| kept(curve, pair[k].values[0], pair[k].values[1]));
         match pieces.last_mut().filter(|piece| piece.1 == located) {
             Some((places, _)) => places.push(b),

@@ -50,7 +50,7 @@ fn draw(result: &SweepResult, number: usize, print: &Print<'_>) -> Drawn {
                 .map(|(value, one)| ((value, one.value), error(one)))
                 .unzip();
             Track {
-                title: kind.title().to_owned(),
+                title: kind.traits().title.to_owned(),
                 is_logarithmic: false,
                 has_zero: true,
                 least: 0.0,

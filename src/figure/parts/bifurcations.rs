@@ -2,7 +2,7 @@
 
 use plotters_backend::text_anchor::HPos;
 
-use crate::continuation::{BifurcationStatus, LabelledPoint, PointType, SweepResult};
+use crate::continuation::{BifurcationStatus, Located, SweepResult};
 use crate::density::Observable;
 
 use crate::figure::FigureError;
@@ -37,7 +37,7 @@ fn stroke(status: BifurcationStatus) -> Stroke {
 
 /// A bifurcation's label with its place above the map.
 struct Placed<'a> {
-    point: &'a LabelledPoint,
+    point: &'a Located,
     own: bool,
     /// Pixels from the left of the page to the middle of the text.
     middle: f64,
@@ -68,15 +68,14 @@ impl<'a> Labels<'a> {
         range: (f64, f64),
         (left, width): (f64, f64),
     ) -> Result<Self, FigureError> {
-        let inside = |point: &&LabelledPoint| {
-            point.kind == PointType::Bifurcation && point.value >= range.0 && point.value <= range.1
-        };
-        let mut points: Vec<&LabelledPoint> = result.labels.iter().filter(inside).collect();
-        points.sort_by_key(|point| watched.is_none() || point.observable != watched);
+        let inside = |point: &&Located| point.value >= range.0 && point.value <= range.1;
+        let mut points: Vec<&Located> = result.bifurcations().filter(inside).collect();
+        let is_own = |point: &Located| watched == Some(point.observable);
+        points.sort_by_key(|point| !is_own(point));
         let mut placed = Vec::new();
         let mut rows: Vec<Vec<(f64, f64)>> = Vec::new();
         for point in points {
-            let own = watched.is_some() && point.observable == watched;
+            let own = is_own(point);
             let half = 0.5 * render::text_width(look, &point.label, TICK_TEXT, own)?;
             let share = (point.value - range.0) / (range.1 - range.0);
             let middle = (left + share * width).clamp(left + half, left + width - half);
@@ -118,7 +117,7 @@ impl<'a> Labels<'a> {
                 panel.draw(&line, Shape::Line(faint.dashed(OTHERS)));
                 continue;
             }
-            let status = point.status.unwrap_or(BifurcationStatus::Located);
+            let status = point.status();
             if status == BifurcationStatus::Unresolved {
                 let a = point.lower.max(self.range.0);
                 let b = point.upper.min(self.range.1);
@@ -134,7 +133,7 @@ impl<'a> Labels<'a> {
         for label in self.placed.iter().rev() {
             let point = label.point;
             let line = [(point.value, from), (point.value, to)];
-            let status = point.status.unwrap_or(BifurcationStatus::Located);
+            let status = point.status();
             let a = point.lower.max(self.range.0);
             let b = point.upper.min(self.range.1);
             if label.own && b > a {
@@ -187,7 +186,7 @@ impl<'a> Labels<'a> {
         let own = || self.placed.iter().filter(|label| label.own);
         let shown = words
             .into_iter()
-            .filter(|(status, _)| own().any(|label| label.point.status == Some(*status)));
+            .filter(|(status, _)| own().any(|label| label.point.status() == *status));
         shown
             .map(|(status, text)| (Sample::Curve(stroke(status)), text.to_owned()))
             .collect()

@@ -1,6 +1,6 @@
 //! Parts of captions, ready to be pasted: of which system a figure is, by which method, what is marked.
 
-use crate::continuation::{BifurcationStatus, LabelledPoint, PointType, SweepResult};
+use crate::continuation::{BifurcationStatus, Located, SweepResult};
 use crate::density::Observable;
 use crate::figure::canvas::symbols;
 use crate::space::Axis;
@@ -133,15 +133,12 @@ pub(crate) fn between_cells(result: &SweepResult, is_shown: impl Fn(Observable) 
 /// The P-bifurcations of a sweep, where they are marked.
 pub(crate) fn bifurcations(result: &SweepResult) -> String {
     let family = &result.subject.family;
-    let words = |row: &LabelledPoint| {
-        let status = match row.status {
-            Some(BifurcationStatus::Located) | None => String::new(),
-            Some(status) => format!(", {}", status.word()),
+    let words = |row: &Located| {
+        let status = match row.status() {
+            BifurcationStatus::Located => String::new(),
+            status => format!(", {}", status.word()),
         };
-        let observable = row
-            .observable
-            .map(|one| one.name(family))
-            .unwrap_or_default();
+        let observable = row.observable.name(family);
         let error = format!("{:.1e}", row.error);
         format!(
             "{} at {} ± {error} ({observable}{status})",
@@ -149,11 +146,7 @@ pub(crate) fn bifurcations(result: &SweepResult) -> String {
             located(row.value, row.error)
         )
     };
-    let rows = result
-        .labels
-        .iter()
-        .filter(|row| row.kind == PointType::Bifurcation);
-    let rows: Vec<String> = rows.map(words).collect();
+    let rows: Vec<String> = result.bifurcations().map(words).collect();
     if rows.is_empty() {
         String::new()
     } else {

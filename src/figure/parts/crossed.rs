@@ -64,7 +64,7 @@ impl Crossed<'_> {
             }
         }
         let inside = match row.status {
-            Some(BifurcationStatus::Located) => BIFURCATION,
+            BifurcationStatus::Located => BIFURCATION,
             _ => PAPER,
         };
         panel.draw(&[at(sweep, value)], Shape::Dot(DOT, inside, stroke));
@@ -135,7 +135,7 @@ impl Crossed<'_> {
         self.rows().map(|(sweep, row)| {
             let mut to_edge = [0.0; 2];
             to_edge[sweep.side] = row.error;
-            (row, to_edge, row.status.map_or("", BifurcationStatus::word))
+            (row, to_edge, row.status.word())
         })
     }
 }

@@ -1,7 +1,7 @@
 //! Which rows curves start from, and what is said where one cannot be followed.
 
 use crate::continuation::curve::{CurveError, Plane};
-use crate::continuation::{BifurcationStatus, LabelledPoint, PointType, SweepResult};
+use crate::continuation::{BifurcationStatus, Located, SweepResult};
 use crate::sweep_file::{Diagnostic, Report, Sweep, list};
 
 /// Share of an axis by which a bound may be beyond it: rounding.
@@ -37,16 +37,15 @@ pub fn curve_rows<'r>(
     sweep: &Sweep,
     result: &'r SweepResult,
     only: bool,
-) -> Result<Vec<&'r LabelledPoint>, Report> {
+) -> Result<Vec<&'r Located>, Report> {
     let Some(curve) = &sweep.settings.curve else {
         return Err(which_parameter(sweep));
     };
     if let Some(labels) = &curve.rows {
         return labels.iter().map(|label| named(label, result)).collect();
     }
-    let rows = result.labels.iter();
+    let mut rows = result.bifurcations().filter(|row| row.zero.is_some());
     if only {
-        let mut rows = rows.filter(|row| row.indicator.is_some());
         return match (rows.next(), rows.next()) {
             (Some(row), None) => Ok(vec![row]),
             _ => Err(
@@ -58,22 +57,15 @@ pub fn curve_rows<'r>(
         };
     }
     let (from, to) = curve.first;
-    let is_wanted = |row: &&LabelledPoint| {
+    let is_wanted = |row: &&Located| {
         let known = [BifurcationStatus::Located, BifurcationStatus::Unchecked];
-        row.kind == PointType::Bifurcation
-            && row.indicator.is_some()
-            && row.status.is_some_and(|status| known.contains(&status))
-            && (from..=to).contains(&row.value)
+        known.contains(&row.status()) && (from..=to).contains(&row.value)
     };
     Ok(rows.filter(is_wanted).collect())
 }
 
-fn named<'r>(label: &str, result: &'r SweepResult) -> Result<&'r LabelledPoint, Report> {
-    let rows = result.labels.iter();
-    let rows = || {
-        rows.clone()
-            .filter(|row| row.kind == PointType::Bifurcation)
-    };
+fn named<'r>(label: &str, result: &'r SweepResult) -> Result<&'r Located, Report> {
+    let rows = || result.bifurcations();
     rows().find(|row| row.label == label).ok_or_else(|| {
         Diagnostic::new(format!("the sweep has no P-bifurcation `{label}`"))
             .allowed(rows_in_words(result))
@@ -85,12 +77,11 @@ fn named<'r>(label: &str, result: &'r SweepResult) -> Result<&'r LabelledPoint, 
 /// The rows that curves can be followed from.
 fn rows_in_words(result: &SweepResult) -> String {
     let family = &result.subject.family;
-    let rows = result.labels.iter().filter(|row| row.indicator.is_some());
+    let rows = result.bifurcations().filter(|row| row.zero.is_some());
     let rows: Vec<String> = rows
         .map(|row| {
-            let observable = row.observable.map(|one| one.name(family));
-            let observable = observable.unwrap_or_default();
-            format!("{} ({} of {observable})", row.label, row.method)
+            let observable = row.observable.name(family);
+            format!("{} ({} of {observable})", row.label, row.method())
         })
         .collect();
     if rows.is_empty() {
@@ -100,10 +91,11 @@ fn rows_in_words(result: &SweepResult) -> String {
     }
 }
 
-pub(super) fn no_indicator(row: &LabelledPoint, result: &SweepResult) -> Report {
+pub(super) fn no_indicator(row: &Located, result: &SweepResult) -> Report {
     let title = format!(
         "{} was located by {}: it has no indicator whose zero could be followed",
-        row.label, row.method
+        row.label,
+        row.method()
     );
     Diagnostic::new(title).allowed(rows_in_words(result)).into()
 }

@@ -6,7 +6,7 @@
 
 use std::cmp::Ordering;
 
-use super::kind::Behaviour;
+use super::kind::Traits;
 use super::words::Step;
 use super::{Indicator, IndicatorKind, exact, window};
 use crate::density::EstimatedDensity;
@@ -17,75 +17,66 @@ use crate::topology::reconstruction::Line;
 /// Distance from the kink at which its sides are told apart, as a share of the range.
 const ASIDE: f64 = 1e-9;
 
-/// The slope on one side of a kink.
-pub(super) struct BesideKink {
-    pub(super) above: bool,
-    pub(super) is_valley: bool,
+/// Defines what the slope on one side of a kink is, that of a peak or that of a valley.
+macro_rules! slope {
+    ($code:literal, $above:literal, $is_valley:literal) => {
+        Traits {
+            name: "slope beside the kink",
+            words: born_or_lost,
+            companions: |_| {
+                vec![
+                    IndicatorKind::beside_kink(!$above, $is_valley),
+                    IndicatorKind::curvature_beside_kink($above),
+                ]
+            },
+            side_of_kink: Some($above),
+            // Above a valley, and below a peak, the density rises.
+            away_from_kink: || Some(IndicatorKind::shoulder($above == $is_valley)),
+            mirror: || Some(IndicatorKind::beside_kink(!$above, $is_valley)),
+            ..Traits::new($code, |density, near| {
+                beside_kink(density, *near.first()?, $above, $is_valley)
+            })
+        }
+    };
 }
 
-impl Behaviour for BesideKink {
-    fn code(&self) -> &'static str {
-        match (self.above, self.is_valley) {
-            (false, false) => "slope below the kink of a peak",
-            (false, true) => "slope below the kink of a valley",
-            (true, false) => "slope above the kink of a peak",
-            (true, true) => "slope above the kink of a valley",
-        }
-    }
-    fn name(&self) -> &'static str {
-        "slope beside the kink"
-    }
-    fn read(&self, estimated: &EstimatedDensity, near: &[f64]) -> Option<Indicator> {
-        beside_kink(estimated, *near.first()?, self.above, self.is_valley)
-    }
-    fn words(&self, step: &Step) -> Option<&'static str> {
-        Some(if step.peaks() == Ordering::Greater {
-            "peak and valley are born at a kink"
-        } else {
-            "peak and valley vanish at a kink"
+/// The slopes below a kink, of a peak and of a valley, and those above it.
+pub(super) static SLOPES: [[Traits; 2]; 2] = [
+    [
+        slope!("slope below the kink of a peak", false, false),
+        slope!("slope below the kink of a valley", false, true),
+    ],
+    [
+        slope!("slope above the kink of a peak", true, false),
+        slope!("slope above the kink of a valley", true, true),
+    ],
+];
+
+fn born_or_lost(step: &Step) -> Option<&'static str> {
+    Some(if step.peaks() == Ordering::Greater {
+        "peak and valley are born at a kink"
+    } else {
+        "peak and valley vanish at a kink"
+    })
+}
+
+/// The curvatures below a kink and above it, test functions.
+pub(super) static CURVATURES: [Traits; 2] = [
+    Traits {
+        is_bifurcation: false,
+        side_of_kink: Some(false),
+        ..Traits::new("curvature below the kink", |density, near| {
+            curvature_beside(density, *near.first()?, false)
         })
-    }
-    fn companions(&self, _: usize) -> Vec<IndicatorKind> {
-        vec![
-            IndicatorKind::beside_kink(!self.above, self.is_valley),
-            IndicatorKind::curvature_beside_kink(self.above),
-        ]
-    }
-    fn side_of_kink(&self) -> Option<bool> {
-        Some(self.above)
-    }
-    fn away_from_kink(&self) -> Option<IndicatorKind> {
-        // Above a valley, and below a peak, the density rises.
-        Some(IndicatorKind::shoulder(self.above == self.is_valley))
-    }
-    fn mirror(&self) -> Option<IndicatorKind> {
-        Some(IndicatorKind::beside_kink(!self.above, self.is_valley))
-    }
-}
-
-/// The curvature on one side of a kink, a test function.
-pub(super) struct CurvatureBesideKink {
-    pub(super) above: bool,
-}
-
-impl Behaviour for CurvatureBesideKink {
-    fn code(&self) -> &'static str {
-        if self.above {
-            "curvature above the kink"
-        } else {
-            "curvature below the kink"
-        }
-    }
-    fn read(&self, estimated: &EstimatedDensity, near: &[f64]) -> Option<Indicator> {
-        curvature_beside(estimated, *near.first()?, self.above)
-    }
-    fn is_bifurcation(&self) -> bool {
-        false
-    }
-    fn side_of_kink(&self) -> Option<bool> {
-        Some(self.above)
-    }
-}
+    },
+    Traits {
+        is_bifurcation: false,
+        side_of_kink: Some(true),
+        ..Traits::new("curvature above the kink", |density, near| {
+            curvature_beside(density, *near.first()?, true)
+        })
+    },
+];
 
 /// The slope beside the kink nearest to a place; `None` for joint densities, sampled ones, and kinks that a scheme has
 /// blurred because they lie on no face.

@@ -4,127 +4,81 @@
 use std::cmp::Ordering;
 
 use super::exact;
-use super::kind::Behaviour;
+use super::kind::Traits;
 use super::smooth::Smooth;
 use super::window;
-use super::words::Step;
 use super::{Indicator, IndicatorKind, is_told};
 use crate::density::{EstimatedDensity, Kink, Variants};
 use crate::space::Axis;
 use crate::topology::reconstruction::Line;
 
 /// p''/p of a marginal.
-pub(super) struct Curvature;
+pub(super) const CURVATURE: Traits = Traits {
+    title: "$p$″ / $p$",
+    words: |step| Some(step.of_centre()),
+    companions: |_| vec![IndicatorKind::QUARTIC],
+    is_at_centre: true,
+    ..Traits::new("curvature at the centre", |density, _| {
+        one_of(density, IndicatorKind::CURVATURE)
+    })
+};
 
-impl Behaviour for Curvature {
-    fn code(&self) -> &'static str {
-        "curvature at the centre"
-    }
-    fn title(&self) -> &'static str {
-        "$p$″ / $p$"
-    }
-    fn read(&self, estimated: &EstimatedDensity, _: &[f64]) -> Option<Indicator> {
-        one_of(self, estimated)
-    }
-    fn words(&self, step: &Step) -> Option<&'static str> {
-        Some(step.of_centre())
-    }
-    fn companions(&self, _: usize) -> Vec<IndicatorKind> {
-        vec![IndicatorKind::QUARTIC]
-    }
-    fn is_at_centre(&self) -> bool {
-        true
-    }
-}
+/// The lower principal curvature of a joint density.
+pub(super) const LOWER: Traits = Traits {
+    title: "lower curvature",
+    companions: |_| vec![IndicatorKind::QUARTIC],
+    is_at_centre: true,
+    ..Traits::new("lower curvature at the centre", |density, _| {
+        one_of(density, IndicatorKind::LOWER_CURVATURE)
+    })
+};
 
-/// One of the two principal curvatures of a joint density.
-pub(super) struct Principal {
-    pub(super) upper: bool,
-}
-
-impl Behaviour for Principal {
-    fn code(&self) -> &'static str {
-        if self.upper {
-            "upper curvature at the centre"
-        } else {
-            "lower curvature at the centre"
-        }
-    }
-    fn title(&self) -> &'static str {
-        if self.upper {
-            "upper curvature"
-        } else {
-            "lower curvature"
-        }
-    }
-    fn read(&self, estimated: &EstimatedDensity, _: &[f64]) -> Option<Indicator> {
-        one_of(self, estimated)
-    }
-    fn companions(&self, _: usize) -> Vec<IndicatorKind> {
-        vec![IndicatorKind::QUARTIC]
-    }
-    fn is_at_centre(&self) -> bool {
-        true
-    }
-}
+/// The upper one.
+pub(super) const UPPER: Traits = Traits {
+    code: "upper curvature at the centre",
+    name: "upper curvature at the centre",
+    title: "upper curvature",
+    read: |density, _| one_of(density, IndicatorKind::UPPER_CURVATURE),
+    ..LOWER
+};
 
 /// The slope on the upper side of a kink.
-pub(super) struct KinkSlope;
-
-impl Behaviour for KinkSlope {
-    fn code(&self) -> &'static str {
-        "slope at the kink"
-    }
-    fn title(&self) -> &'static str {
-        "$p$′ / $p$"
-    }
-    fn read(&self, estimated: &EstimatedDensity, _: &[f64]) -> Option<Indicator> {
-        one_of(self, estimated)
-    }
-    fn words(&self, step: &Step) -> Option<&'static str> {
+pub(super) const KINK_SLOPE: Traits = Traits {
+    title: "$p$′ / $p$",
+    words: |step| {
         let words = if step.rises {
             "split at a kink"
         } else {
             "merger at a kink"
         };
         (step.craters() == Ordering::Equal).then_some(words)
-    }
-    fn companions(&self, axes: usize) -> Vec<IndicatorKind> {
+    },
+    companions: |axes| {
         vec![match axes {
             1 => IndicatorKind::curvature_beside_kink(true),
             _ => IndicatorKind::CURVATURE_ALONG_KINK,
         }]
-    }
-    fn is_at_centre(&self) -> bool {
-        true
-    }
-    fn is_exact(&self) -> bool {
-        true
-    }
-}
+    },
+    is_at_centre: true,
+    is_exact: true,
+    ..Traits::new("slope at the kink", |density, _| {
+        one_of(density, IndicatorKind::KINK_SLOPE)
+    })
+};
 
 /// The curvature of a joint density along a kink.
-pub(super) struct AlongKink;
-
-impl Behaviour for AlongKink {
-    fn code(&self) -> &'static str {
-        "curvature along the kink"
-    }
-    fn read(&self, estimated: &EstimatedDensity, _: &[f64]) -> Option<Indicator> {
-        one_of(self, estimated)
-    }
-    fn companions(&self, _: usize) -> Vec<IndicatorKind> {
-        vec![IndicatorKind::KINK_SLOPE]
-    }
-    fn is_at_centre(&self) -> bool {
-        true
-    }
-}
+pub(super) const ALONG_KINK: Traits = Traits {
+    companions: |_| vec![IndicatorKind::KINK_SLOPE],
+    is_at_centre: true,
+    ..Traits::new("curvature along the kink", |density, _| {
+        one_of(density, IndicatorKind::CURVATURE_ALONG_KINK)
+    })
+};
 
 /// One of those at the centre.
-fn one_of(kind: &dyn Behaviour, estimated: &EstimatedDensity) -> Option<Indicator> {
-    let mut all = at_centre(estimated).into_iter();
-    all.find(|one| one.kind.code() == kind.code())
+fn one_of(density: &EstimatedDensity, kind: IndicatorKind) -> Option<Indicator> {
+    let mut all = at_centre(density).into_iter();
+    all.find(|one| one.kind == kind)
 }
 
 /// The indicators at the centre of symmetry: one of a marginal, two of a joint density; none where the system

@@ -45,7 +45,7 @@ pub(crate) struct Counted<'a> {
 
 /// The signature that persistence found, corrected by the type of the centre where that is beyond doubt. Peaks, unlike
 /// rings, come in pairs about the centre.
-pub(crate) fn corrected(
+pub(crate) fn correct(
     estimated: &EstimatedDensity,
     indicators: &[Indicator],
     doubt: f64,

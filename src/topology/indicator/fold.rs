@@ -11,8 +11,7 @@
 
 use std::cmp::Ordering;
 
-use super::kind::Behaviour;
-use super::words::Step;
+use super::kind::Traits;
 use super::{Indicator, IndicatorKind};
 use crate::density::EstimatedDensity;
 use crate::topology::field::{Curvature, Field, Jet, Stencil};
@@ -27,24 +26,17 @@ const FARTHEST: f64 = 25.0;
 const SETTLED: f64 = 1e-7;
 
 /// The slope at the shoulder.
-pub(super) struct Fold;
-
-impl Behaviour for Fold {
-    fn code(&self) -> &'static str {
-        "slope at the shoulder"
-    }
-    fn read(&self, estimated: &EstimatedDensity, near: &[f64]) -> Option<Indicator> {
-        fold(estimated, near)
-    }
-    fn words(&self, step: &Step) -> Option<&'static str> {
+pub(super) const FOLD: Traits = Traits {
+    words: |step| {
         let words = if step.peaks() == Ordering::Greater {
             "peak and saddle are born"
         } else {
             "peak and saddle vanish"
         };
         (step.craters() == Ordering::Equal).then_some(words)
-    }
-}
+    },
+    ..Traits::new("slope at the shoulder", fold)
+};
 
 /// The shoulder nearest to a place; `None` for marginals, for sampled densities, and where there is none.
 fn fold(estimated: &EstimatedDensity, near: &[f64]) -> Option<Indicator> {
@@ -64,7 +56,7 @@ fn fold(estimated: &EstimatedDensity, near: &[f64]) -> Option<Indicator> {
     let fine = field.stencil(&place, 0)?;
     let rough = field.stencil(&place, 1)?;
     let (along, _) = directions(&fine.jet(&estimated.density.values));
-    let direction = oriented(&fine.jet(&estimated.density.values), along);
+    let direction = orient(&fine.jet(&estimated.density.values), along);
     let slope = |jet: Jet| jet.slope(direction) / jet.value;
     let blur = blur(estimated, &field, &place);
     let mut found = Indicator::derive(
@@ -200,7 +192,7 @@ fn directions(jet: &Jet) -> (Curvature, Curvature) {
 
 /// The direction along the curve in which the curvature falls: from the saddle to the peak, from the crater to the
 /// saddle.
-fn oriented(jet: &Jet, along: Curvature) -> [f64; 2] {
+fn orient(jet: &Jet, along: Curvature) -> [f64; 2] {
     let [x, y] = along.direction;
     if jet.bend(along.direction, along.direction) > 0.0 {
         [-x, -y]

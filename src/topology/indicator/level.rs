@@ -10,7 +10,7 @@
 //! is nowhere in particular. With log p = c (H - H₀)² third derivatives vanish at the state of rest, and fourth ones do
 //! not: there it is.
 
-use super::kind::Behaviour;
+use super::kind::Traits;
 use super::{Indicator, IndicatorKind};
 use crate::density::EstimatedDensity;
 use crate::topology::field::{Field, Jet};
@@ -22,26 +22,23 @@ const FARTHEST: f64 = 2.0;
 /// Half the distance over which fourth derivatives are taken, in cells.
 const ASIDE: f64 = 0.5;
 
-/// The curvature along one axis at such a place.
-pub(super) struct Level {
-    pub(super) along_second: bool,
-}
-
-impl Behaviour for Level {
-    fn code(&self) -> &'static str {
-        if self.along_second {
-            "curvature along the second axis at a state of rest"
-        } else {
-            "curvature along the first axis at a state of rest"
-        }
-    }
-    fn name(&self) -> &'static str {
-        "curvature at a state of rest"
-    }
-    fn read(&self, estimated: &EstimatedDensity, near: &[f64]) -> Option<Indicator> {
-        level(estimated, near, self.along_second)
-    }
-}
+/// The curvature along the first axis at such a place, and along the second.
+pub(super) static BOTH: [Traits; 2] = [
+    Traits {
+        name: "curvature at a state of rest",
+        ..Traits::new(
+            "curvature along the first axis at a state of rest",
+            |density, near| level(density, near, false),
+        )
+    },
+    Traits {
+        name: "curvature at a state of rest",
+        ..Traits::new(
+            "curvature along the second axis at a state of rest",
+            |density, near| level(density, near, true),
+        )
+    },
+];
 
 /// The curvature along an axis at the state of rest near a place; `None` for marginals and sampled densities.
 fn level(estimated: &EstimatedDensity, near: &[f64], along_second: bool) -> Option<Indicator> {

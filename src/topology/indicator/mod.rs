@@ -40,7 +40,7 @@ mod written;
 
 pub(crate) use beside::born_at_kink;
 pub(super) use centre::at_centre;
-pub(super) use corrected::{Counted, corrected};
+pub(super) use corrected::{Counted, correct};
 pub use kind::IndicatorKind;
 pub(super) use pair::put_right;
 pub(super) use section::flanks_from_centre;

@@ -54,7 +54,7 @@ struct Centre<'a> {
 }
 
 /// What persistence saw.
-struct Seen {
+struct Persistent {
     highest: Feature,
     /// The peak nearest to the centre.
     nearest: Feature,
@@ -98,7 +98,7 @@ impl<'a> Centre<'a> {
 
     /// What persistence saw, unless it agrees with the indicator that the centre is a valley between two peaks, or a
     /// peak.
-    fn to_put_right(&self, features: &[Feature], split: bool) -> Option<Seen> {
+    fn to_put_right(&self, features: &[Feature], split: bool) -> Option<Persistent> {
         let present = features
             .iter()
             .filter(|one| one.verdict == Verdict::Present);
@@ -115,7 +115,7 @@ impl<'a> Centre<'a> {
         let highest = peaks.clone().next()?.clone();
         let nearest = peaks.min_by(|a, b| self.distance(a).total_cmp(&self.distance(b)))?;
         let offset = self.distance(nearest);
-        (offset <= self.reach || !complete).then(|| Seen {
+        (offset <= self.reach || !complete).then(|| Persistent {
             highest,
             nearest: nearest.clone(),
             offset,
@@ -123,7 +123,7 @@ impl<'a> Centre<'a> {
     }
 
     /// The features that the indicator proves.
-    fn proven(&self, seen: &Seen, split: bool) -> Vec<Feature> {
+    fn proven(&self, seen: &Persistent, split: bool) -> Vec<Feature> {
         let indicator = self.indicator;
         let significance =
             indicator.value.abs() / indicator.systematic_error.max(f64::MIN_POSITIVE);

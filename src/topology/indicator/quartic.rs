@@ -5,7 +5,7 @@
 //! by symmetry. With p'''' < 0 peaks leave the centre as it splits; with p'''' > 0 they stand away from it already, and
 //! were born in folds before. Between lies a point of codimension two in the plane of two parameters.
 
-use super::kind::Behaviour;
+use super::kind::Traits;
 use super::window::{self, Lines};
 use super::{Indicator, IndicatorKind};
 use crate::density::{EstimatedDensity, Variants};
@@ -17,22 +17,13 @@ const ORDERS: usize = 5;
 const BINOMIAL: [f64; 5] = [1.0, 4.0, 6.0, 4.0, 1.0];
 
 /// p''''/p at the centre, a test function.
-pub(super) struct Quartic;
-
-impl Behaviour for Quartic {
-    fn code(&self) -> &'static str {
-        "fourth derivative at the centre"
-    }
-    fn read(&self, estimated: &EstimatedDensity, _: &[f64]) -> Option<Indicator> {
-        quartic(estimated)
-    }
-    fn is_bifurcation(&self) -> bool {
-        false
-    }
-    fn is_at_centre(&self) -> bool {
-        true
-    }
-}
+pub(super) const QUARTIC: Traits = Traits {
+    is_bifurcation: false,
+    is_at_centre: true,
+    ..Traits::new("fourth derivative at the centre", |density, _| {
+        quartic(density)
+    })
+};
 
 /// p''''/p at the centre of a marginal; of a joint density along the direction in which its curvature is nearest to
 /// zero, axes scaled to their ranges. `None` without a centre, on a kink, and for sampled densities, whose noise it

@@ -1,33 +1,27 @@
 //! The registry of indicators: a name each, and the list of those that are stored.
 
 use super::IndicatorKind;
-use super::beside::{BesideKink, CurvatureBesideKink};
-use super::centre::{AlongKink, Curvature, KinkSlope, Principal};
-use super::fold::Fold;
-use super::level::Level;
-use super::quartic::Quartic;
-use super::ring::Ring;
-use super::shoulder::Shoulder;
+use super::{beside, centre, fold, level, quartic, ring, shoulder};
 
 impl IndicatorKind {
     /// p''/p of a marginal at its centre of symmetry.
-    pub const CURVATURE: Self = Self(&Curvature);
+    pub const CURVATURE: Self = Self(&centre::CURVATURE);
     /// Slope of log p on the upper side of a kink at the centre of symmetry; in a symmetric density half its jump.
-    pub const KINK_SLOPE: Self = Self(&KinkSlope);
+    pub const KINK_SLOPE: Self = Self(&centre::KINK_SLOPE);
     /// Curvature of a joint density along a kink through the centre of symmetry.
-    pub const CURVATURE_ALONG_KINK: Self = Self(&AlongKink);
+    pub const CURVATURE_ALONG_KINK: Self = Self(&centre::ALONG_KINK);
     /// The lower of the two principal curvatures of a joint density at its centre, axes scaled to their ranges.
-    pub const LOWER_CURVATURE: Self = Self(&Principal { upper: false });
+    pub const LOWER_CURVATURE: Self = Self(&centre::LOWER);
     /// The upper one.
-    pub const UPPER_CURVATURE: Self = Self(&Principal { upper: true });
+    pub const UPPER_CURVATURE: Self = Self(&centre::UPPER);
     /// Slope along a ridge or trench of a joint density where it is nearest to level, positive when a peak and a saddle
     /// (a saddle and a crater) are there.
-    pub const FOLD: Self = Self(&Fold);
+    pub const FOLD: Self = Self(&fold::FOLD);
     /// Outward slope of a joint density between a moat and the ring around it, positive when both are there.
-    pub const RING: Self = Self(&Ring);
+    pub const RING: Self = Self(&ring::RING);
     /// A test function: p''''/p at the centre, along the flattest direction of a joint density; negative where peaks
     /// are born at the centre as it splits, positive where they are born away from it.
-    pub(crate) const QUARTIC: Self = Self(&Quartic);
+    pub(crate) const QUARTIC: Self = Self(&quartic::QUARTIC);
 
     /// All but test functions, which are not stored.
     pub const ALL: [Self; 15] = [
@@ -51,56 +45,25 @@ impl IndicatorKind {
     /// Slope at the inflection between a valley and a peak of a marginal, positive when both are there; `rising` where
     /// the density rises with the coordinate between the two.
     pub const fn shoulder(rising: bool) -> Self {
-        Self(if rising {
-            &Shoulder { rising: true }
-        } else {
-            &Shoulder { rising: false }
-        })
+        Self(&shoulder::BOTH[rising as usize])
     }
 
     /// Slope of a marginal on one side of a kink, away from it, `above` where that is the side of larger coordinates;
     /// positive when the kink is an extremum, of the two the valley if `is_valley`, and another one lies on that side.
     pub const fn beside_kink(above: bool, is_valley: bool) -> Self {
-        Self(match (above, is_valley) {
-            (false, false) => &BesideKink {
-                above: false,
-                is_valley: false,
-            },
-            (false, true) => &BesideKink {
-                above: false,
-                is_valley: true,
-            },
-            (true, false) => &BesideKink {
-                above: true,
-                is_valley: false,
-            },
-            (true, true) => &BesideKink {
-                above: true,
-                is_valley: true,
-            },
-        })
+        Self(&beside::SLOPES[above as usize][is_valley as usize])
     }
 
     /// Curvature of a joint density along one axis at a place that turns from a peak to the bottom within a ring, or at
     /// the saddle between two rings: positive when the ring is there. Both principal curvatures pass zero there
     /// together.
     pub const fn level(along_second: bool) -> Self {
-        Self(if along_second {
-            &Level { along_second: true }
-        } else {
-            &Level {
-                along_second: false,
-            }
-        })
+        Self(&level::BOTH[along_second as usize])
     }
 
     /// A test function: curvature of the logarithm of a marginal on one side of a kink.
     pub(super) const fn curvature_beside_kink(above: bool) -> Self {
-        Self(if above {
-            &CurvatureBesideKink { above: true }
-        } else {
-            &CurvatureBesideKink { above: false }
-        })
+        Self(&beside::CURVATURES[above as usize])
     }
 
     /// The one that has this code.

@@ -5,7 +5,7 @@
 //! linearly. A ring is of one height, and born everywhere at once: the mean over several rays is the indicator, and
 //! what they differ by a part of its error.
 
-use super::kind::Behaviour;
+use super::kind::Traits;
 use super::{Indicator, IndicatorKind};
 use crate::density::EstimatedDensity;
 use crate::topology::field::{Field, Jet, Stencil};
@@ -23,16 +23,7 @@ const UNSURE: f64 = 0.1;
 const MOST_STEPS: usize = 8;
 
 /// The outward slope between moat and ring.
-pub(super) struct Ring;
-
-impl Behaviour for Ring {
-    fn code(&self) -> &'static str {
-        "slope to the ring"
-    }
-    fn read(&self, estimated: &EstimatedDensity, near: &[f64]) -> Option<Indicator> {
-        ring_slope(estimated, near)
-    }
-}
+pub(super) const RING: Traits = Traits::new("slope to the ring", ring_slope);
 
 /// Where the outward slope on a ray is largest.
 struct Shoulder {

@@ -7,9 +7,8 @@
 use std::cmp::Ordering;
 
 use super::exact;
-use super::kind::Behaviour;
+use super::kind::Traits;
 use super::window::around;
-use super::words::Step;
 use super::{Indicator, IndicatorKind};
 use crate::density::{EstimatedDensity, Variants};
 use crate::space::Axis;
@@ -28,26 +27,25 @@ const ASIDE: f64 = 1e-9;
 /// A step that is a smaller share of a cell ends the search.
 const SETTLED: f64 = 1e-6;
 
-/// The slope at the inflection.
-pub(super) struct Shoulder {
-    pub(super) rising: bool,
-}
+/// The slope at the inflection where the density falls from valley to peak, and where it rises.
+pub(super) static BOTH: [Traits; 2] = [
+    Traits {
+        rising: Some(false),
+        mirror: || Some(IndicatorKind::shoulder(true)),
+        ..AT_INFLECTION
+    },
+    Traits {
+        code: "slope at the rising inflection",
+        read: |density, near| shoulder(density, *near.first()?, true),
+        rising: Some(true),
+        mirror: || Some(IndicatorKind::shoulder(false)),
+        ..AT_INFLECTION
+    },
+];
 
-impl Behaviour for Shoulder {
-    fn code(&self) -> &'static str {
-        if self.rising {
-            "slope at the rising inflection"
-        } else {
-            "slope at the falling inflection"
-        }
-    }
-    fn name(&self) -> &'static str {
-        "slope at the inflection"
-    }
-    fn read(&self, estimated: &EstimatedDensity, near: &[f64]) -> Option<Indicator> {
-        shoulder(estimated, *near.first()?, self.rising)
-    }
-    fn words(&self, step: &Step) -> Option<&'static str> {
+const AT_INFLECTION: Traits = Traits {
+    name: "slope at the inflection",
+    words: |step| {
         let several = step.before.peaks.abs_diff(step.after.peaks) > 1;
         Some(match (step.peaks(), several) {
             (Ordering::Greater, true) => "peaks and valleys are born",
@@ -55,14 +53,11 @@ impl Behaviour for Shoulder {
             (Ordering::Greater, false) => "peak and valley are born",
             (_, false) => "peak and valley vanish",
         })
-    }
-    fn rising(&self) -> Option<bool> {
-        Some(self.rising)
-    }
-    fn mirror(&self) -> Option<IndicatorKind> {
-        Some(IndicatorKind::shoulder(!self.rising))
-    }
-}
+    },
+    ..Traits::new("slope at the falling inflection", |density, near| {
+        shoulder(density, *near.first()?, false)
+    })
+};
 
 /// The extremum of the slope of a marginal nearest to `near`: a maximum of p' where the density rises from valley to
 /// peak, else a minimum. `None` for joint densities and when there is none away from the ends and kinks.
@@ -76,7 +71,7 @@ pub(super) fn shoulder(estimated: &EstimatedDensity, near: f64, rising: bool) ->
     let sign = if rising { 1.0 } else { -1.0 };
     let kind = IndicatorKind::shoulder(rising);
     if matches!(estimated.variants, Variants::Jackknife(_)) {
-        return sampled(estimated, axis, near, sign, kind);
+        return from_samples(estimated, axis, near, sign, kind);
     }
     let field = Field::new(estimated)?;
     let kinked = |face: usize| is_kinked(estimated, axis, face);
@@ -290,7 +285,7 @@ fn settle(field: &Field<'_>, sign: f64, found: &Steepest) -> Option<f64> {
 }
 
 /// The same of a sampled density, by polynomials nearest to many cells.
-fn sampled(
+fn from_samples(
     estimated: &EstimatedDensity,
     axis: &Axis,
     near: f64,

@@ -216,7 +216,7 @@ impl Window {
         Some((smooth, misfit))
     }
 
-    fn solve(&self, terms: &[Powers], precision: &[f64], model: &Model) -> Option<Solved> {
+    fn solve(&self, terms: &[Powers], precision: &[f64], model: &Model) -> Option<Fit> {
         let design = DMatrix::from_fn(self.cells.len(), terms.len(), |row, column| {
             term(terms[column], &self.offsets[row], model.kinked)
         });
@@ -236,7 +236,7 @@ impl Window {
             Some((&weighted * normal.solve(&one)).iter().copied().collect())
         };
         let weights: Option<Vec<Vec<f64>>> = model.wanted.iter().map(row).collect();
-        Some(Solved {
+        Some(Fit {
             weights: weights?,
             coefficients: normal.solve(&weighted.transpose()),
             design,
@@ -245,7 +245,7 @@ impl Window {
 
     /// Weighted sum of the squares of the residuals over that of their jackknife variances: about one where the model
     /// follows the density to within noise.
-    fn misfit(&self, estimated: &EstimatedDensity, solved: &Solved, precision: &[f64]) -> f64 {
+    fn misfit(&self, estimated: &EstimatedDensity, solved: &Fit, precision: &[f64]) -> f64 {
         let Variants::Jackknife(replicates) = &estimated.variants else {
             return 0.0;
         };
@@ -275,7 +275,7 @@ impl Window {
 }
 
 /// One fit: weights for what is wanted, and the matrices that give all coefficients and the fitted values.
-struct Solved {
+struct Fit {
     weights: Vec<Vec<f64>>,
     coefficients: DMatrix<f64>,
     design: DMatrix<f64>,

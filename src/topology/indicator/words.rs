@@ -7,31 +7,29 @@ use crate::topology::Signature;
 
 /// A change of signature as the parameter rises.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Step {
+pub(crate) struct Step {
     /// Whether the indicator that is zero there rises.
-    pub rises: bool,
+    pub(crate) rises: bool,
     /// The signature below.
-    pub before: Signature,
+    pub(crate) before: Signature,
     /// The signature above.
-    pub after: Signature,
+    pub(crate) after: Signature,
 }
 
 impl Step {
-    /// What happens, by the indicators that are zero there: by one in its words, by several, which cannot be told
-    /// apart, or by none in those of what is counted.
-    pub(crate) fn words(&self, indicators: &[IndicatorKind]) -> &'static str {
+    /// What happens: in the words of the indicator that is zero there, in those of what is counted where several
+    /// changes cannot be told apart, and where no indicator tells.
+    pub(crate) fn words(&self, kind: Option<IndicatorKind>, is_several: bool) -> &'static str {
         if self.before == self.after {
             return "comes and goes";
         }
-        let own = match indicators {
-            [one] => one.words(self),
-            _ => None,
-        };
+        let own = kind.filter(|_| !is_several);
+        let own = own.and_then(|kind| (kind.traits().words)(self));
         own.or_else(|| self.of_rings())
             .unwrap_or_else(|| match (self.craters(), self.peaks()) {
                 (Greater, _) => "crater opens",
                 (Less, _) => "crater closes",
-                _ if !indicators.is_empty() => self.of_centre(),
+                _ if kind.is_some() || is_several => self.of_centre(),
                 (Equal, Greater) => "peak appears",
                 (Equal, _) => "peak vanishes",
             })

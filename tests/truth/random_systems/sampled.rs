@@ -75,7 +75,7 @@ fn sampled(dice: &mut Dice, kind: u64) -> Sampled {
 }
 
 /// The rows of one system.
-fn solved(system: &Sampled, seed: u64, points: usize) -> Vec<LabelledPoint> {
+fn solved(system: &Sampled, seed: u64, points: usize) -> Vec<Located> {
     let mut model = TypedModel::new("random", "A random system", ["x"])
         .with_equation("x", &system.drift)
         .with_noise("x", [system.noise.clone()])
@@ -98,9 +98,7 @@ fn solved(system: &Sampled, seed: u64, points: usize) -> Vec<LabelledPoint> {
     let detector = PersistenceDetector::new(DetectOptions::default(), points);
     let locate = LocateOptions::default();
     let found = sweep(&source, &detector, points, &locate, &never, &mut ()).unwrap();
-    let rows = found.labels.into_iter();
-    rows.filter(|row| row.kind == PointType::Bifurcation)
-        .collect()
+    found.bifurcations().cloned().collect()
 }
 
 fn run_sampled(
