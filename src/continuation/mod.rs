@@ -2,6 +2,27 @@
 //!
 //! This module knows a source of densities and a detector, and nothing of matrices: Monte Carlo, cell maps
 //! and closed-form densities all sweep alike.
+//!
+//! # Decisions
+//!
+//! **What a value has is a list of measures.** A method adds numbers to its report, each with a name, a unit and, where
+//! it knows one, an error; the measures that a sweep file asks for are derived from what the session has solved
+//! (`method::measures`, a file each). Tables, journal, export and page go through the list. Only `points.csv` knows
+//! where the oldest columns stand, since their order is read by other people's scripts.
+//!
+//! **What must be known of a point is data.** A method says it as findings: an enum with numbers
+//! (`continuation::Finding`). `points.csv` stores code and numbers, so that a stored run still knows them; sentences
+//! are made last, in `run::finding_in_words`. Warnings of a sweep are gathered by kind of finding and axis.
+//!
+//! **An indicator's zero is the bifurcation.** At a centre of symmetry the signs of curvatures (at a kink, of the
+//! slope) give the type of the critical point, and with it the signature, long before persistence can. `continuation`
+//! brackets the change of sign, not the change of count; `docs/location.md` has the rules and the measured errors. It
+//! asks a source for a finer one (`DensitySource::finer`), and for one between closed ends (`DensitySource::enclosed`),
+//! and knows nothing of its cells.
+//!
+//! **A band, not only a bracket.** A peak is counted when its persistence exceeds the noise, which is later than its
+//! birth. Where no indicator tells, `continuation::persistence` therefore extrapolates the square root of the
+//! persistence to zero and states the band from there to the last point where the feature is present.
 
 mod again;
 mod bracket;

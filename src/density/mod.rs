@@ -1,6 +1,19 @@
 //! From cell masses to densities that are watched: marginals, joint densities, moments, distances.
 //!
 //! *Mass* is a cell's probability, Σ = 1; *density* is mass over volume, ∫ = 1. They never share a variable.
+//!
+//! # Decisions
+//!
+//! **Equations travel with densities.** `EstimatedDensity` carries what the equations imply (`Structure`: centre of
+//! symmetry, kinks and their jumps; on one axis by quadrature the extrema themselves, `Profile`) and other estimates of
+//! itself (`Variants`: replicates, a second scheme). So `topology` knows no system, and whatever is derived from a
+//! density has an error by deriving it from the variants too. Both are stored, which is why `pbif detect` can repeat
+//! detection.
+//!
+//! **A quantity is an axis beyond the axes.** Formulas that are watched belong to the `Family` and are numbered on from
+//! the axes of the state, so that names, tables, figures and the store need no second kind of observable.
+//! `density::spread` maps masses of cells to bins linearly (trapezoids of a linear function over sub-cells), once a
+//! sweep where no swept parameter occurs in the formula; a coarser map is the second discretisation.
 
 mod discretisation;
 mod distance;

@@ -22,6 +22,18 @@
 //! # Ok(())
 //! # }
 //! ```
+//!
+//! # Decisions
+//!
+//! **The page is one file and trusts nothing.** Its script and style stand in it and are named by their hashes in its
+//! content security policy, so nothing else can run; texts from a run enter it as text, never as markup. Densities are
+//! predicted along the sweep before they are deflated, in arithmetic that Rust and JavaScript round alike
+//! (`explore/pack.rs`, `explore/page/unpack.js`), so the page holds every state of a sweep in about two bits a cell.
+//!
+//! **The live page asks for one thing at a time.** Requests come in lanes with rising tickets: a newer one makes the
+//! older ones of its lane stale (`explore/live/lanes.rs`). A session whose solve was cancelled is dropped, all others
+//! stay warm, keyed by what does not move. That a value is refused is an answer (HTTP 200), because browsers write
+//! failures into their consoles.
 
 mod compose;
 mod frame;

@@ -18,6 +18,17 @@
 //!
 //! A kind of figure is one file of `kinds`: what it draws, its caption, its table, its names; `kinds/mod.rs` lists them.
 //! `parts` is what several share, and `canvas` what draws. `settings` and `style`, which sweep files hold, need neither.
+//!
+//! # Decisions
+//!
+//! **What is drawn is what is judged.** `topology::between` carries the values at faces that indicators read, one-sided
+//! at kinks, into cells by parabolas with the cells' averages. Figures ask it for values anywhere, and draw cells where
+//! it refuses (noise). So a picture has the masses of the store, and no peak of its own.
+//!
+//! **A style is laid out, not scaled.** Lengths of a figure are in pixels of its lettering: a style says how many
+//! points such a pixel has, and so how many of them the page is wide. Panels, ticks and legends take what is left, text
+//! keeps its size. PDF is written by krilla from the tree that resvg reads of our SVG; its own SVG crate brings a
+//! second, older resvg.
 
 mod settings;
 mod style;

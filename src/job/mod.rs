@@ -25,6 +25,15 @@
 //! # Ok(())
 //! # }
 //! ```
+//!
+//! # Decisions
+//!
+//! **Four kinds of work, one life.** A sweep, a map, the curves from a row and a comparison differ in what they solve
+//! and in their tables, not in how they begin, are interrupted, go on and end. `job::Job` is the first,
+//! `job::carry_out` and `run::JobFolder` the second; a `run::Layout` says which files a kind leaves, and whether they
+//! grow in their place (a sweep's) or are put there when all are whole. What a job is made of is a TOML text
+//! (`Job::made_of`), which its journal and its manifest keep: work on something else is refused with the differences.
+//! Options of `pbif curve` are spellings of the keys of `[curve]`, so a curve needs no settings of its own.
 
 mod compare;
 mod curve;

@@ -3,6 +3,11 @@
 //! [`relaxation()`] measures how long a system remembers; [`ergodic()`] averages a fixed number of long trajectories
 //! over time, [`ensemble()`] counts many at one time; [`sample_path`] follows a single one, to be looked at;
 //! [`step_bias`] finds what a time step does to the density.
+//!
+//! # Decisions
+//!
+//! **A time step is honest or told.** Every method with trajectories compares its step with half of it on coupled
+//! paths, once a sweep; the bias is a column.
 
 mod autocorrelation;
 mod batch;

@@ -1,5 +1,46 @@
 //! What a run leaves on disk: tables, stored densities, manifest. Every file appears whole or not at all, and is read
 //! back as it was.
+//!
+//! # Decisions
+//!
+//! **A run replaces nothing.** The files of an earlier run in the same folder are linked into `previous/1`, the next
+//! free number, and only when they are whole there are they taken away (`run::staging`, `run::archive`). What was
+//! followed from a run (`curves/`) goes with it, so that nothing beside a run is of another one. The Zarr library
+//! composes arrays in memory, the files are put in place by renaming: a killed run leaves whole files. A lock of the
+//! operating system keeps a second writer away and cannot go stale (`run::lock`).
+//!
+//! **A job goes on to the same bytes.** A session's solve starts from what it solved before, so a job that goes on must
+//! know what the first one knew. A session says after each solve what it has left for later ones (`Session::memory`:
+//! trails and masses; of a factorisation only of which matrix it is), and a fresh one recalls it and factorises once.
+//! What a solve gives depends on what its session was asked before it, in that order, and on nothing else.
+//! `run::JournalledSource` wraps any source, with its finer and enclosed ones, and keeps every solve in the job's
+//! `run::Journal` by the hash of all that its session was asked until then: kind of source, values with their
+//! parameters, and what was asked of solutions. So a job of any kind repeats its decisions and knows nothing of
+//! resuming; neither the order in which sessions are opened nor the number of threads matters, and what is asked
+//! otherwise than before is solved from where an uninterrupted session would have stood. A comparison, which asks no
+//! sessions, keeps its solves by their numbers in the same file. One file is waited for, once a second (fsync of the
+//! journal); tables and chunks are made from it again. Its records are what serde derives of the types, in postcard's
+//! format, bit for bit; sessions' memories are theirs alone. They are read when they are asked for, so that the journal
+//! of a map may be larger than the memory.
+//!
+//! **A map keeps every solve while it is made.** Nodes beside changes decide where curves begin, from densities that
+//! depend on all solves of their session; a map that kept signatures alone, as it did, solved those nodes again from
+//! other starts and ended with other bytes. By the generator a solve takes 16 bytes a cell in the journal, and 24 a bin
+//! of a watched density. A map of 10 000 nodes takes 1.6 GB of the disk while it is made on 100 × 100 cells that watch
+//! marginals, and 4 GB where they watch a joint density: a few megabytes a second, beside solves that take a tenth of
+//! one. The file is read one record at a time and removed when the map is complete; nodes in memory stay as few as they
+//! were. A shard leaves nodes and changes all the same: its journal would have to be kept for weeks, and the merge
+//! could not use it, since a node that is reached along another path of its plane differs by rounding.
+//!
+//! **Shards are the same sweep over a source that knows more.** A shard runs `sweep_shard` over its values and is a run
+//! like any other. The merge runs the whole sweep over a `run::JournalledSource` that knows the shards' points: it
+//! gives what they have solved and solves what they have not, so there is no second way to locate anything.
+//!
+//! **Detection is repeated from what is stored.** `run` reads a folder back to the same points bit for bit,
+//! `continuation::detect_again` does what a sweep does after its last solve. What the finer grid showed is stored as
+//! numbers (`checks.csv`), not as densities: the check needs no more. `run::arrays` holds names and meaning of the
+//! arrays for writer and reader alike. The version before is linked into `previous/`, since no file is ever changed in
+//! place.
 
 mod archive;
 mod arrays;

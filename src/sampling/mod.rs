@@ -3,6 +3,17 @@
 //!
 //! [`pilot`] looks at a system with a few free trajectories: where its mass is, and which steps suit it.
 //! [`sample_transitions`] then samples every reachable cell.
+//!
+//! # Decisions
+//!
+//! **Streams are keyed by (seed, cell, sample), never by the parameter.** The transition matrix then varies smoothly
+//! with the parameter, warm starts save work, and results depend neither on the number of threads nor on which cells
+//! happen to be sampled first.
+//!
+//! **Only reachable cells are sampled.** Sampling grows from where a pilot's trajectories settle (and from the
+//! neighbour's mass) until no new cell appears. A chain without the sink is split into strongly connected components;
+//! the steady state lives on the closed one, or, with escape, on the one that keeps its mass longest. Several are
+//! reported, not averaged.
 
 #[cfg(test)]
 mod accuracy;

@@ -1,5 +1,14 @@
 //! Cell space: a rectilinear grid of boxes over the domain Ω. Everything outside is the sink. An axis may carry a
 //! series of modes in place of cells.
+//!
+//! # Decisions
+//!
+//! **Modes are nodes.** A density along an axis of modes is a polynomial, held as its values times weights at the nodes
+//! of Gauss's rule. In that basis whatever runs along the other axes needs no change (each node is a place like a
+//! cell), the mass is the plain sum, and the rates along the axis are a dense block; it is the same Galerkin method as
+//! with Legendre coefficients, to the last digit where the drift is a polynomial of degree two. `Axis::modes` therefore
+//! is an axis whose cells are as wide as the weights, and no other module asks, but those that reconstruct along an
+//! axis. The dissection never cuts across modes.
 
 mod axis;
 mod cells;

@@ -27,6 +27,15 @@
 //! # Ok(())
 //! # }
 //! ```
+//!
+//! # Decisions
+//!
+//! **A sweep file is read in stages.** Text, a document whose values know their places, checked settings, a sweep: up
+//! to the settings nothing is run, so that a file can be checked while it is typed; ranges and gradings that are left
+//! to the program, and whether the cells fit into this machine, are found in the stage after (`Settings::prepare`),
+//! whose errors still point at the key. A key is declared once (`sweep_file::keys`), with getter and setter on a plain
+//! draft; defaults are what the getter gives of untouched options. `run` stands above `sweep_file`, so that a stored
+//! run gives its sweep back.
 
 mod bins;
 mod counts;

@@ -5,6 +5,22 @@
 //! with their meaning, and a function that binds values. A [`Family`] is a model with fixed values and a [`Path`]
 //! through its parameters: what is swept. [`registry`] lists the built-in models; a [`TypedModel`] makes one of
 //! equations as text.
+//!
+//! # Decisions
+//!
+//! **Batches of 64 states.** `System::drift` takes 64 states at a time in structure-of-arrays form. One virtual call is
+//! shared by 64 states, the arithmetic fills vector registers, and a model that is not compiled in (an expression from
+//! a file) can be evaluated the same way. Models are compiled for several instruction sets and picked at run time;
+//! fused multiply-add is not used, so that results are the same bits on every machine.
+//!
+//! **A built-in model is formulas with a compiled drift.** Equations, noise, bounds, surfaces, symmetry and typesetting
+//! follow from formulas as a user types them (`system/typed`), and the contract holds the compiled drift to them. Of an
+//! oscillator the loop over a batch is generic over damping and friction law (`system/oscillator.rs`,
+//! `system/friction/`), and compiled for each pair, so that the parts cost what a loop written out costs.
+//!
+//! **Where an end is a wall, a face lies or the drift jumps has one definition each**: `Facts::walls`, `Axis::face_at`
+//! (a millionth of a cell) and `SwitchingSurface::drift_jump`. A system that declares a period is refused by every
+//! method (`Facts::autonomous`) until densities that follow it exist.
 
 mod binding;
 mod bistable;

@@ -6,6 +6,14 @@
 //! far, and is corrected along the gradient. Selected points are checked on finer cells and between closed ends of Ω,
 //! as the rows of a sweep are, and what the checks show is interpolated along the curve. This module knows an indicator
 //! and sessions, and nothing of cells.
+//!
+//! # Decisions
+//!
+//! **A curve is a path that is laid while it is walked.** A session solves along a path with one coordinate; in a plane
+//! of two parameters the path is not known before. `continuation::curve::Plane` lays it leg by leg and never changes
+//! what is laid, so that sessions, warm starts, finer and enclosed sources serve curves as they serve sweeps, and none
+//! of them knows that there is a plane. The coordinate is the length walked, so neighbours on it are neighbours in the
+//! plane.
 
 mod agree;
 mod branch;

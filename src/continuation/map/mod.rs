@@ -5,6 +5,17 @@
 //! neighbours differ, the grid is refined. From every change that an indicator decides its curve is followed, each
 //! once. Strips, and parts of a refinement, are sessions of their own that share nothing, so that a map is the same on
 //! any number of threads.
+//!
+//! # Decisions
+//!
+//! **A map opens many sessions and keeps few densities.** `continuation::map` asks for a source along a path of its own
+//! for every strip of its grid, every part of a refinement and every curve: nothing is shared, so a map does not depend
+//! on threads. A node's densities are let go once its neighbours have the same signatures; only about changes they are
+//! needed, to tell which indicator's zero to follow.
+//!
+//! **A shard of a map leaves nodes and changes, not densities.** A shard looks for the changes between its own nodes,
+//! where their densities are at hand, and stores only what they tell. The merge needs densities at the borders between
+//! shards alone; curves run through all shards, so it follows them.
 
 mod crossing;
 mod drawn;
