@@ -1,8 +1,8 @@
 //! A sweep file in a program: opened, changed, checked and run; the same as a job, which leaves what `pbif sweep` does;
 //! what is said of mistakes; a stored run opened again.
 //!
-//! Run with `cargo run --release --example sweep_file [FOLDER]`, where FOLDER is for the run that the job leaves, or has
-//! it from an earlier time. The README shows the middle of this program.
+//! Run with `cargo run --release --example sweep_file [FOLDER]`, where FOLDER is for the run that the job leaves, or
+//! has it from an earlier time. The README shows the middle of this program.
 
 #![allow(clippy::print_stdout)] // An example talks to its reader.
 

@@ -1,5 +1,5 @@
-//! What a program keeps for itself, such as the state of unfinished work, as bytes and back, the same to the bit. Tables
-//! and arrays that others read are written by [`run`](crate::run).
+//! What a program keeps for itself, such as the state of unfinished work, as bytes and back, the same to the bit.
+//! Tables and arrays that others read are written by [`run`](crate::run).
 
 use std::sync::Arc;
 

@@ -1,4 +1,5 @@
-//! What `pbif sweep` prints of a map of regimes: the signatures over a box of two parameters, and the curves between them.
+//! What `pbif sweep` prints of a map of regimes: the signatures over a box of two parameters, and the curves between
+//! them.
 
 use std::path::Path;
 

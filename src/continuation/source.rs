@@ -230,7 +230,8 @@ impl From<Cancelled> for SourceError {
 /// let path = Path::parameter("a", -1.0, 1.0);
 /// let family = Family::new(registry::find("bistable").unwrap(), &[("sigma2", 0.5)], path).unwrap();
 /// let observables = vec![Observable::Marginal(0)];
-/// let source = Quartic { subject: Subject { family, observables, measures: Vec::new(), cell_check: CellCheck::Needless } };
+/// let cell_check = CellCheck::Needless;
+/// let source = Quartic { subject: Subject { family, observables, measures: Vec::new(), cell_check } };
 /// let mut session = source.open(&Cancellation::new());
 /// let solution = session.solve(0.3).unwrap();
 /// assert!((solution.densities[0].density.masses().iter().sum::<f64>() - 1.0).abs() < 1e-12);

@@ -116,7 +116,8 @@ impl PlaneScene {
         Self { sides, found: None }
     }
 
-    /// The same with what was found there; `start` is the label of the row that the first curve was begun at, if it was.
+    /// The same with what was found there; `start` is the label of the row that the first curve was begun at, if it
+    /// was.
     pub(super) fn with(
         self,
         subject: &Subject,

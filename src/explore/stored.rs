@@ -67,8 +67,8 @@ impl StoredPage {
         shown(sweep, &plane, &states).fitted()
     }
 
-    /// The page of curves that were begun at the row `start` of a sweep: their plane, and densities at 21 × 21 places of
-    /// its box, which are solved.
+    /// The page of curves that were begun at the row `start` of a sweep: their plane, and densities at 21 × 21 places
+    /// of its box, which are solved.
     ///
     /// # Errors
     /// As [`StoredPage::of_map`].

@@ -16,8 +16,10 @@
 //! # }
 //! ```
 //!
-//! A kind of figure is one file of `kinds`: what it draws, its caption, its table, its names; `kinds/mod.rs` lists them.
-//! `parts` is what several share, and `canvas` what draws. `settings` and `style`, which sweep files hold, need neither.
+//! A kind of figure is one file of `kinds`: what it draws, its caption, its table, its names; `kinds/mod.rs` lists
+//! them.
+//! `parts` is what several share, and `canvas` what draws. `settings` and `style`, which sweep files hold, need
+//! neither.
 //!
 //! # Decisions
 //!

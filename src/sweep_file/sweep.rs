@@ -63,8 +63,8 @@ impl Sweep {
     }
 
     /// The same sweep by a method of one's own, in the place of that of the sweep file: `method` is its name, as
-    /// [`DensitySource::method`] gives it, and `make` its source for the systems, cells and observables of a problem. The
-    /// sweep asks for one along its parameter, curves and maps for others along paths of theirs.
+    /// [`DensitySource::method`] gives it, and `make` its source for the systems, cells and observables of a problem.
+    /// The sweep asks for one along its parameter, curves and maps for others along paths of theirs.
     ///
     /// ```
     /// use pbif::cancellation::Cancellation;

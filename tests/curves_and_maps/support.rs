@@ -15,7 +15,8 @@ use crate::common::sweeps::{prepared, rows, swept};
 /// The name of a parameter, from where and to where.
 pub(super) type Side<'a> = (&'a str, f64, f64);
 
-/// Distance of a point (h, a) from 27 h² = 4 a³, the fold of a tilted double well, in a box with sides of these lengths.
+/// Distance of a point (h, a) from 27 h² = 4 a³, the fold of a tilted double well, in a box with sides of these
+/// lengths.
 pub(super) fn off_the_fold([h, a]: [f64; 2], [of_h, of_a]: [f64; 2]) -> f64 {
     (27.0 * h * h - 4.0 * a.powi(3)) / (54.0 * h * of_h).hypot(12.0 * a * a * of_a)
 }

@@ -39,8 +39,8 @@ x = { from = -3, to = 3, count = 10 }
 y = { from = -3, to = 3, count = 10 }
 "#;
 
-/// Runs `pbif sweep` in a folder that holds `a.toml` alone, and returns stderr. Checks that it ends with code 2 in these
-/// words, prints nothing on stdout, and leaves the folder as it was.
+/// Runs `pbif sweep` in a folder that holds `a.toml` alone, and returns stderr. Checks that it ends with code 2 in
+/// these words, prints nothing on stdout, and leaves the folder as it was.
 fn refused(text: impl AsRef<[u8]>, line: &str, words: &[&str]) -> String {
     let room = Room::new();
     room.write("a.toml", text);

@@ -1,8 +1,8 @@
 //! A session whose solves are in a journal.
 //!
 //! A solve depends on what the session was asked before it, in that order, and on nothing else: the key of a solve is
-//! the hash of all of it. So whoever asks for the same is given what is there, in whatever order sessions are opened and
-//! on however many threads, and what is not there is solved from where an uninterrupted session would have stood.
+//! the hash of all of it. So whoever asks for the same is given what is there, in whatever order sessions are opened
+//! and on however many threads, and what is not there is solved from where an uninterrupted session would have stood.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;

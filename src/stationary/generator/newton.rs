@@ -111,7 +111,8 @@ impl Newton<'_> {
     }
 }
 
-/// Solves A x = source from a start that is zero at the held cell, restarted until the correction is small against x; gives x and the iterations used, `None` when it is not after `limit` of them.
+/// Solves A x = source from a start that is zero at the held cell, restarted until the correction is small against x;
+/// gives x and the iterations used, `None` when it is not after `limit` of them.
 ///
 /// # Errors
 /// [`Cancelled`].

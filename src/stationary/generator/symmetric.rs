@@ -307,8 +307,8 @@ impl RateSolver {
         self.plain.response(&question, mass)
     }
 
-    /// Qᵀ x = `right` for the generator of the last solve, `mass` its steady state: Σ_i Q_ij x_i = right_j at every cell
-    /// j, by the same factors. Mean times are of this kind: the time until mass escapes has the right side -1.
+    /// Qᵀ x = `right` for the generator of the last solve, `mass` its steady state: Σ_i Q_ij x_i = right_j at every
+    /// cell j, by the same factors. Mean times are of this kind: the time until mass escapes has the right side -1.
     ///
     /// Where no mass escapes there is a solution only for a right side without a mean under the steady state: its mean
     /// is taken off, and x is that without one. `guess` is what is expected, `tolerance` the relative error of x in L1.

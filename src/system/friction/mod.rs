@@ -23,8 +23,8 @@ pub(super) struct Motion {
 /// the law's formulas say, to be compiled.
 ///
 /// The law is written for one state, as on paper; an [`Oscillator`](super::oscillator::Oscillator) runs it over whole
-/// batches. Mark `rates` and `force` with `#[inline(always)]` and keep them free of branches on the state (a select such
-/// as `if y > 0.0 { 1.0 } else { 0.0 }` is none), so that the loop over a batch fills vector registers.
+/// batches. Mark `rates` and `force` with `#[inline(always)]` and keep them free of branches on the state (a select
+/// such as `if y > 0.0 { 1.0 } else { 0.0 }` is none), so that the loop over a batch fills vector registers.
 pub(super) trait FrictionLaw<const N: usize>: Send + Sync {
     /// Rates z' of the internal states.
     fn rates(&self, motion: Motion, state: &[f64; N]) -> [f64; N];
