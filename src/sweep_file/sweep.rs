@@ -9,7 +9,6 @@ use crate::continuation::curve::{CurveOptions, Plane};
 use crate::continuation::map::{MapMaker, MapObserver, PlaneState, RegimeMap, plane_states};
 use crate::continuation::{DensitySource, Observer, SourceError, SweepError, SweepResult, sweep};
 use crate::method::{MethodError, MethodSource, Problem};
-use crate::system::Family;
 use crate::topology::PersistenceDetector;
 
 /// Everything a sweep needs.
@@ -160,10 +159,9 @@ impl Sweep {
         let named = family.model().parameters.iter().zip(swept.as_slice());
         let values = named.map(|(parameter, &value)| (parameter.name.as_str(), value));
         let held: Vec<(&str, f64)> = values.filter(is_held).collect();
-        let model = family.model().clone();
-        let (quantities, averaged) = (family.quantities().to_vec(), family.averaged().to_vec());
-        let in_plane = Family::new(model, &held, path.clone()).map_err(MethodError::from)?;
-        let in_plane = in_plane.with_quantities(quantities).with_averaged(averaged);
+        let in_plane = family
+            .along_path(&held, path.clone())
+            .map_err(MethodError::from)?;
         let problem = &self.problem;
         let (space, observables) = (problem.space().clone(), problem.observables().to_vec());
         let problem = Problem::watching(in_plane, space, observables, problem.bins().to_vec())?;

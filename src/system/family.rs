@@ -71,6 +71,22 @@ impl Family {
         self
     }
 
+    /// The same model and quantities with other values, along another path.
+    ///
+    /// # Errors
+    /// As [`Family::new`].
+    pub(crate) fn along_path(
+        &self,
+        fixed: &[(&str, f64)],
+        path: Path,
+    ) -> Result<Self, SystemError> {
+        Ok(Self {
+            quantities: self.quantities.clone(),
+            averaged: self.averaged.clone(),
+            ..Self::new(self.model.clone(), fixed, path)?
+        })
+    }
+
     /// The quantities that can be watched.
     pub fn quantities(&self) -> &[Arc<Quantity>] {
         &self.quantities

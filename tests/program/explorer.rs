@@ -150,7 +150,11 @@ fn a_browser_shows_the_page_from_disk() {
 
 /// What a page is told.
 fn told(page: &Path) -> serde_json::Value {
-    let html = std::fs::read_to_string(page).unwrap();
+    scene(&std::fs::read_to_string(page).unwrap())
+}
+
+/// The same of the text of a page.
+pub(super) fn scene(html: &str) -> serde_json::Value {
     let packed = html.split("id=\"scene\">").nth(1).unwrap();
     let packed = packed.split("</script>").next().unwrap();
     let engine = base64::engine::general_purpose::STANDARD;

@@ -2,14 +2,16 @@
 
 use std::io::{Read as _, Write as _};
 use std::net::TcpStream;
+use std::path::{Path, PathBuf};
 
 use base64::Engine as _;
 use pbif::cancellation::Cancellation;
 use pbif::continuation::DensitySource as _;
 use pbif::explore::LiveServer;
-use pbif::sweep_file::SweepFile;
+use pbif::sweep_file::{MethodKind, SweepFile};
 use pbif::topology::Detector as _;
 
+use super::explorer::scene;
 use crate::common::sweeps::prepared;
 
 /// A live server of a small sweep, which ends with the test.
@@ -250,4 +252,85 @@ fn the_page_goes_on_when_many_connections_are_held() {
         asked() == 200
     });
     assert!(again.is_some(), "the server does not answer any more");
+}
+
+/// The sweep files that are shipped, and those of the gallery.
+fn shipped_files() -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("sweeps");
+    let folders = [root.clone(), root.join("gallery")].into_iter();
+    let entries = folders.flat_map(|folder| std::fs::read_dir(folder).unwrap());
+    let mut files: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
+    files.retain(|file| file.extension().is_some_and(|ending| ending == "toml"));
+    files.sort();
+    files
+}
+
+/// Keys that make a sweep cheap: a dozen cells an axis, two modes, few samples.
+fn cheap(text: &str) -> Vec<(String, &'static str)> {
+    let settings = SweepFile::parse("sweep.toml", text).validate().unwrap();
+    let named = settings.family.model().axes.iter().zip(&settings.axes);
+    let cells = named.map(|(axis, cells)| match cells.modes_by(settings.method.kind) {
+        Some(_) => (format!("cells.{}.modes", axis.name), "2"),
+        None => (format!("cells.{}.count", axis.name), "12"),
+    });
+    let sampled = [("samples", "16"), ("map_step", "1"), ("time_step", "0.1")];
+    let sampled = sampled.map(|(key, value)| (format!("method.{key}"), value));
+    let is_sampled = settings.method.kind == MethodKind::Sgcm;
+    let sampled = sampled.into_iter().filter(|_| is_sampled);
+    cells.chain(sampled).collect()
+}
+
+/// The live page of a file opens, and every slider can be moved: the densities come on the cells that the page was
+/// told, unless the system has none, which words say.
+fn assert_every_slider_moves(file: &Path) {
+    let text = std::fs::read_to_string(file).unwrap();
+    let settings = cheap(&text);
+    let settings: Vec<String> = (settings.iter())
+        .map(|(key, value)| format!("{key}={value}"))
+        .collect();
+    let served = Served::of(&text, &settings.join(" "));
+    let (port, path) = (served.port, served.path());
+    let page =
+        served.raw(format!("GET {path} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n").as_bytes());
+    assert_eq!(status(&page), 200, "{}", file.display());
+    let scene = scene(&page);
+    let family = served.sweep.problem.family();
+    let (from, to) = family.ends();
+    let swept = family.parameter();
+    let mut values = serde_json::Map::new();
+    values.insert(swept.to_owned(), (0.5 * (from + to)).into());
+    let parameters = scene["parameters"].as_array().unwrap();
+    for (ticket, parameter) in (1..).zip(parameters) {
+        let name = parameter["name"].as_str().unwrap();
+        let moved = parameter["value"]
+            .as_f64()
+            .map_or(0.6 * from + 0.4 * to, |value| 1.01 * value);
+        let mut values = values.clone();
+        values.insert(name.to_owned(), moved.into());
+        let ask =
+            serde_json::json!({"lane": "a", "ticket": ticket, "moving": name, "values": values});
+        let (code, answer) = served.post("solve", &ask.to_string());
+        let asked = format!("{}: {name} = {moved}: {answer}", file.display());
+        assert_eq!(code, 200, "{asked}");
+        assert!(answer["done"].is_object(), "{asked}");
+        if answer["done"]["frame"]["status"] == "no-steady-state" {
+            continue;
+        }
+        let (shown, grids) = (
+            scene["arrays"].as_array(),
+            answer["done"]["arrays"].as_array(),
+        );
+        let (shown, grids) = (shown.unwrap(), grids.unwrap());
+        assert!(!shown.is_empty() && shown.len() == grids.len(), "{asked}");
+        for (shown, grid) in shown.iter().zip(grids) {
+            assert_eq!(shown["edges"], grid["edges"], "{asked}");
+        }
+    }
+}
+
+#[test]
+fn every_shipped_file_opens_live_and_every_slider_moves() {
+    for file in shipped_files() {
+        assert_every_slider_moves(&file);
+    }
 }

@@ -154,12 +154,8 @@ impl Base {
         fixed.extend(values.iter().map(|(name, &value)| (name.as_str(), value)));
         fixed.remove(moving);
         let fixed: Vec<(&str, f64)> = fixed.into_iter().collect();
-        Family::new(
-            model.clone(),
-            &fixed,
-            Path::parameter(moving, ends.0, ends.1),
-        )
-        .map_err(|error| error.to_string())
+        base.along_path(&fixed, Path::parameter(moving, ends.0, ends.1))
+            .map_err(|error| error.to_string())
     }
 
     /// The settings with these systems; axes that end at walls end where the walls are now.

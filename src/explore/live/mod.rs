@@ -123,14 +123,13 @@ impl Live {
     /// The page that asks this.
     pub(super) fn page(&self) -> Result<String, ExploreError> {
         let sweep = self.base.sweep();
-        let axes = sweep.problem.space().axes();
-        let edges = |observable: &Observable| {
-            let kept = observable.axes().into_iter();
-            kept.map(|axis| axes[axis].edges().to_vec()).collect()
+        let edges = |&observable: &Observable| {
+            let axes = sweep.problem.axes_of(observable).into_iter();
+            axes.map(|axis| axis.edges().to_vec()).collect()
         };
         let told = Told {
             live: true,
-            dimension: axes.len(),
+            dimension: sweep.problem.space().dimension(),
             scene: &Scene::new(sweep, &[]),
             plane: PlaneScene::new(sweep),
             frames: [],
