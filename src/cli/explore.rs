@@ -1,5 +1,7 @@
 //! `pbif explore`: the page of a stored run, or a live one of a sweep file.
 
+mod place;
+
 use std::path::{Path, PathBuf};
 
 use super::args::{ExploreArguments, SweepInput};
@@ -28,6 +30,8 @@ pub(super) fn run(arguments: &ExploreArguments) -> Result<Outcome, CommandError>
             "`--port` is for a sweep file: the page of a run is a file",
         ));
     }
+    // Before anything is read or solved for it.
+    place::check(&file_of(arguments), arguments.force)?;
     if let Some(stored) = StoredPlane::open(&arguments.target)? {
         return of_plane(&stored, arguments);
     }
@@ -96,14 +100,20 @@ fn of_plane(stored: &StoredPlane, arguments: &ExploreArguments) -> Result<Outcom
 
 /// Writes a page where it is wanted, and says where that is.
 fn written(page: &StoredPage, arguments: &ExploreArguments) -> Result<Outcome, CommandError> {
-    let beside = arguments.target.join("explorer.html");
-    let file = arguments.html.as_deref().unwrap_or(&beside);
-    write_atomically(file, page.html().as_bytes())?;
+    let file = file_of(arguments);
+    place::check(&file, arguments.force)?;
+    write_atomically(&file, page.html().as_bytes())?;
     if arguments.open {
-        let file = file.canonicalize().unwrap_or_else(|_| file.to_owned());
+        let file = file.canonicalize().unwrap_or_else(|_| file.clone());
         open(&file.to_string_lossy());
     }
-    super::print(&text(page, file))
+    super::print(&text(page, &file))
+}
+
+/// The file of a run's page.
+fn file_of(arguments: &ExploreArguments) -> PathBuf {
+    let beside = || arguments.target.join("explorer.html");
+    arguments.html.clone().unwrap_or_else(beside)
 }
 
 /// Where the page is, how large, and what packing did to the densities.
@@ -120,9 +130,9 @@ fn text(page: &StoredPage, file: &Path) -> String {
 
 /// Serves the live page of a sweep file.
 fn serve(arguments: &ExploreArguments) -> Result<Outcome, CommandError> {
-    if arguments.html.is_some() {
+    if arguments.html.is_some() || arguments.force {
         return Err(refused(
-            "`--html` is for the folder of a run: `pbif sweep FILE` makes one",
+            "`--html` and `--force` are for the folder of a run: `pbif sweep FILE` makes one",
         ));
     }
     let input = SweepInput {

@@ -110,6 +110,7 @@ mod tests {
             let own = |line: &&str| line.contains("url(#");
             assert!(found.iter().all(own), "{outside}: {found:?}");
         }
+        assert!(page.starts_with(crate::PAGE));
         assert_eq!(page.matches("<!doctype html>").count(), 1);
         assert!(page.contains("id=\"block-0\">Zmlyc3Q=<"));
         assert!(!page.contains("<!--"));

@@ -74,9 +74,12 @@ pub(crate) struct ExploreArguments {
     /// Folder of a run or a map, as `pbif sweep` left it, or of curves, as `pbif curve` did, or a sweep file (TOML)
     #[arg(value_name = "RUN|FILE")]
     pub(crate) target: PathBuf,
-    /// Of a run: file of the page; one that is there is replaced [default: RUN/explorer.html]
+    /// Of a run: file of the page; a page that is there is replaced, nothing else [default: RUN/explorer.html]
     #[arg(long, value_name = "FILE")]
     pub(crate) html: Option<PathBuf>,
+    /// Of a run: replace the file of `--html` even if it is no page
+    #[arg(long, conflicts_with = "port")]
+    pub(crate) force: bool,
     /// Override a key of a sweep file, such as cells.x.count=60; of a run those under detect and locate (repeatable;
     /// the last one counts)
     #[arg(long = "set", value_name = "KEY=VALUE")]
