@@ -34,6 +34,7 @@ use clap::Parser as _;
 
 use crate::cancellation::Cancellation;
 use crate::job::{JobError, Outcome};
+use crate::run::check_names;
 use crate::sweep_file::{Diagnostic, Report, Settings, Sweep, SweepFile};
 use args::{Arguments, Command};
 use output::OutputError;
@@ -211,6 +212,7 @@ fn load(
         file.set_all(option, [setting]);
     }
     let settings = file.validate()?;
+    check_names(&settings)?;
     if !settings.warnings.is_empty() {
         tell(quiet, &settings.warnings.render(is_styled()));
     }

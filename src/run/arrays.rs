@@ -16,6 +16,7 @@
 
 use serde_json::{Map, Value, json};
 
+use super::names::Named;
 use crate::density::{EstimatedDensity, Kink, Observable};
 use crate::space::Axis;
 use crate::system::Family;
@@ -26,6 +27,11 @@ pub(super) const PARAMETER_CHUNK: u64 = 1024;
 /// Replicates a chunk holds. Groups of samples that leave no steady state give no replicate, so their number may grow
 /// along a sweep; chunks of fixed extent let it.
 pub(super) const REPLICATE_CHUNK: u64 = 8;
+
+/// What the array of the parameter is, in words.
+const SWEPT: &str = "swept parameter";
+/// Name of the dimension of replicates.
+const REPLICATE: &str = "replicate";
 
 /// Attribute of a density.
 pub(super) const CENTRE: &str = "centre_of_symmetry";
@@ -88,12 +94,7 @@ impl Layout {
     pub(super) fn parameter(family: &Family, count: u64) -> Self {
         let name = family.parameter().to_owned();
         let dimensions = vec![(name.clone(), count)];
-        Self::new(
-            name,
-            dimensions,
-            vec![PARAMETER_CHUNK],
-            "swept parameter".to_owned(),
-        )
+        Self::new(name, dimensions, vec![PARAMETER_CHUNK], SWEPT.to_owned())
     }
 
     /// Centres and edges of an axis.
@@ -171,7 +172,7 @@ impl Layout {
         let mut layout = Self::of_cells(family, estimate, name, long_name);
         layout
             .dimensions
-            .insert(1, ("replicate".to_owned(), count as u64));
+            .insert(1, (REPLICATE.to_owned(), count as u64));
         layout.chunk.insert(1, REPLICATE_CHUNK);
         layout
     }
@@ -278,6 +279,43 @@ pub(super) fn replicates(family: &Family, observable: Observable) -> String {
 /// Names of its kinks without their numbers.
 pub(super) fn kink_prefix(family: &Family, observable: Observable) -> String {
     density(family, observable) + "_kink_"
+}
+
+/// Every name that the store of densities may have, dimensions included.
+pub(super) fn names(family: &Family, observables: &[Observable]) -> Vec<Named> {
+    let mut names = vec![
+        Named::new(family.parameter(), SWEPT),
+        Named::new(REPLICATE, "groups of samples"),
+    ];
+    let mut known: Vec<&str> = Vec::new();
+    for axis in observables.iter().flat_map(|observable| observable.axes()) {
+        let axis = family.axis(axis);
+        if !known.contains(&axis) {
+            known.push(axis);
+            names.push(Named::new(axis, format!("centres of the cells of {axis}")));
+            names.push(Named::new(
+                edges(axis),
+                format!("edges of the cells of {axis}"),
+            ));
+        }
+    }
+    for &observable in observables {
+        let density_of = words(family, observable);
+        let named = |name: fn(&Family, Observable) -> String, what: &str| {
+            Named::new(name(family, observable), format!("{what}{density_of}"))
+        };
+        names.extend([
+            named(density, ""),
+            named(error, "standard error of the "),
+            named(second, "second discretisation of the "),
+            named(replicates, "replicates of the "),
+            Named {
+                is_numbered: true,
+                ..named(kink_prefix, "kinks of the ")
+            },
+        ]);
+    }
+    names
 }
 
 fn words(family: &Family, observable: Observable) -> String {

@@ -14,7 +14,10 @@ use crate::system::Family;
 use crate::topology::IndicatorKind;
 
 /// The table's columns. An observable that is not watched has a number beyond all of those that are.
-fn columns<'a>(family: &'a Family, observables: &'a [Observable]) -> Columns<'a, CheckedIndicator> {
+pub(super) fn columns<'a>(
+    family: &'a Family,
+    observables: &'a [Observable],
+) -> Columns<'a, CheckedIndicator> {
     let name = move |number: usize| {
         let observable = observables.get(number);
         observable.map_or(String::new(), |&one| one.name(family))

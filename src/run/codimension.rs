@@ -2,7 +2,7 @@
 
 use super::RunError;
 use super::columns::{Columns, number, word};
-use super::curve::{columns, rows};
+use super::curve::{self, CurveRow, rows};
 use super::latex;
 use super::number::{format_number, format_with_error};
 use crate::continuation::curve::{CodimensionTwo, Curve, Plane, codimension_two};
@@ -21,15 +21,10 @@ fn several_csv(
     curves: &[Curve],
     starts: &[&str],
 ) -> Result<String, RunError> {
-    let table = |index: usize| {
-        let mut all = vec![word("curve", move |_| curve_name(index))];
-        all.extend(columns(family, plane));
-        Columns(all)
-    };
-    let mut text = table(0).header()?;
+    let mut text = several_columns(family, plane, 0).header()?;
     for (index, curve) in curves.iter().enumerate() {
         let start = starts.get(index).copied().unwrap_or("start");
-        text += &table(index).lines(&rows(curve, start))?;
+        text += &several_columns(family, plane, index).lines(&rows(curve, start))?;
     }
     Ok(text)
 }
@@ -53,14 +48,30 @@ pub(super) fn plane_files(
     ])
 }
 
+/// The columns of the table of several curves, for the rows of one of them.
+pub(super) fn several_columns<'a>(
+    family: &'a Family,
+    plane: &Plane,
+    index: usize,
+) -> Columns<'a, CurveRow<'a>> {
+    let mut all = vec![word("curve", move |_| curve_name(index))];
+    all.extend(curve::columns(family, plane));
+    Columns(all)
+}
+
 /// The table of the points of codimension two of curves.
 fn codimension_two_csv(
     family: &Family,
     plane: &Plane,
     curves: &[Curve],
 ) -> Result<String, RunError> {
+    columns(family, plane).csv(&codimension_two(curves))
+}
+
+/// The columns of that table.
+pub(super) fn columns<'a>(family: &'a Family, plane: &Plane) -> Columns<'a, CodimensionTwo> {
     let [first, second] = parameters(plane);
-    let columns = vec![
+    Columns(vec![
         word("label", |one: &CodimensionTwo| one.label.clone()),
         word("kind", |one: &CodimensionTwo| one.kind.name().to_owned()),
         number(first, |one: &CodimensionTwo| one.values[0]),
@@ -69,7 +80,7 @@ fn codimension_two_csv(
         word("status", |one: &CodimensionTwo| {
             one.status().word().to_owned()
         }),
-        word("observable", |one: &CodimensionTwo| {
+        word("observable", move |one: &CodimensionTwo| {
             observables(family, one)
         }),
         word("place", |one: &CodimensionTwo| {
@@ -78,8 +89,7 @@ fn codimension_two_csv(
         word("curves", |one: &CodimensionTwo| {
             joined(one.curves.iter().map(|&index| curve_name(index)))
         }),
-    ];
-    Columns(columns).csv(&codimension_two(curves))
+    ])
 }
 
 /// The same for LaTeX (with the package `booktabs`), values rounded to their errors.

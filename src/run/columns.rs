@@ -7,6 +7,7 @@ use serde_json::{Map, Value};
 
 use super::RunError;
 use super::cell::Cell;
+use super::names::Named;
 use super::number::format_number;
 
 /// What the cells of a column hold, for JSON.
@@ -129,6 +130,12 @@ impl<T> Columns<'_, T> {
         T: 'r,
     {
         Ok(self.header()? + &self.lines(records)?)
+    }
+
+    /// The names of the columns.
+    pub(super) fn names(&self) -> Vec<Named> {
+        let columns = self.0.iter();
+        columns.map(|column| Named::new(&column.name, "")).collect()
     }
 
     /// The first line.

@@ -8,8 +8,11 @@ use super::columns::{Columns, count, number, word};
 use super::curve::{one_json, work_json};
 use super::number::format_number;
 use super::plane_file;
+use crate::continuation::Subject;
 use crate::continuation::map::{MapNode, RegimeMap};
+use crate::density::Observable;
 use crate::space::Axis;
+use crate::system::Family;
 
 /// Columns and rows of the picture that regions are measured in.
 const PICTURE: [usize; 2] = [300, 300];
@@ -19,13 +22,26 @@ const PICTURE: [usize; 2] = [300, 300];
 /// # Errors
 /// [`RunError::Table`].
 pub fn map_csv(map: &RegimeMap) -> Result<String, RunError> {
-    let family = &map.subject.family;
-    let [first, second] = parameters(map);
+    let Subject {
+        family,
+        observables,
+        ..
+    } = &map.subject;
+    let names = parameters(map);
+    columns(family, observables, names.each_ref().map(String::as_str)).csv(&map.nodes)
+}
+
+/// The columns of that table.
+pub(super) fn columns<'a>(
+    family: &Family,
+    observables: &[Observable],
+    [first, second]: [&str; 2],
+) -> Columns<'a, MapNode> {
     let mut columns = vec![
         number(first, |node: &MapNode| node.values[0]),
         number(second, |node: &MapNode| node.values[1]),
     ];
-    for (index, observable) in map.subject.observables.iter().enumerate() {
+    for (index, observable) in observables.iter().enumerate() {
         let name = format!("signature_{}", observable.name(family));
         columns.push(word(name, move |node: &MapNode| {
             let signature = node.signatures.get(index);
@@ -39,7 +55,7 @@ pub fn map_csv(map: &RegimeMap) -> Result<String, RunError> {
     columns.push(word("reason", |node: &MapNode| {
         node.reason.clone().unwrap_or_default()
     }));
-    Columns(columns).csv(&map.nodes)
+    Columns(columns)
 }
 
 /// Names of both parameters.
@@ -52,10 +68,10 @@ fn parameters(map: &RegimeMap) -> [String; 2] {
 fn densities_csv(map: &RegimeMap, index: usize) -> Option<String> {
     let family = &map.subject.family;
     let samples = map.samples.iter().filter(|one| one.observable == index);
-    let axes = map.subject.observables.get(index)?.axes();
-    let axes: Vec<&str> = axes.into_iter().map(|axis| family.axis(axis)).collect();
-    let [first, second] = parameters(map);
-    let mut text = format!("{first},{second},{},density\n", axes.join(","));
+    let observable = *map.subject.observables.get(index)?;
+    let names = parameters(map);
+    let names = density_columns(family, observable, names.each_ref().map(String::as_str));
+    let mut text = names.join(",") + "\n";
     let before = text.len();
     for sample in samples {
         let [a, b] = sample.values.map(format_number);
@@ -69,6 +85,21 @@ fn densities_csv(map: &RegimeMap, index: usize) -> Option<String> {
         }
     }
     (text.len() > before).then_some(text)
+}
+
+/// The columns of that table.
+pub(super) fn density_columns<'a>(
+    family: &'a Family,
+    observable: Observable,
+    [first, second]: [&'a str; 2],
+) -> Vec<&'a str> {
+    let axes = observable.axes().into_iter();
+    let axes = axes.map(|axis| family.axis(axis));
+    [first, second]
+        .into_iter()
+        .chain(axes)
+        .chain(["density"])
+        .collect()
 }
 
 /// What there is to know of a map beside its tables, as JSON.

@@ -91,7 +91,7 @@ fn said(document: &Document, error: &BinsError) -> Diagnostic {
 }
 
 /// Where a quantity was given.
-fn quantity_place(document: &Document, name: &str) -> Option<Place> {
+pub(super) fn quantity_place(document: &Document, name: &str) -> Option<Place> {
     let named = |table: &str| document.root.find(&[table, name]);
     let definition = || document.root.find(&["system", "define", name]);
     let entry = |key: &str| document.root.find(&["detect", key]);

@@ -45,6 +45,7 @@ mod draft;
 mod file;
 mod formula_place;
 mod gallery;
+mod given;
 mod keys;
 mod memory;
 mod names;

@@ -82,7 +82,12 @@ impl Settings {
     }
 
     pub(super) fn refuse(&self, diagnostic: Diagnostic) -> Report {
-        Report::new(self.document.sources.clone(), vec![diagnostic], 0)
+        self.refuse_all(vec![diagnostic])
+    }
+
+    /// Findings at places of the file.
+    pub(crate) fn refuse_all(&self, diagnostics: Vec<Diagnostic>) -> Report {
+        Report::new(self.document.sources.clone(), diagnostics, 0)
     }
 
     fn refuse_cells(&self, diagnostic: Diagnostic) -> Report {

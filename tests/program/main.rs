@@ -19,6 +19,7 @@ mod detect;
 mod explorer;
 mod live;
 mod monte_carlo;
+mod names;
 mod pages;
 mod paper;
 mod paths;

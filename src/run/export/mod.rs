@@ -128,7 +128,7 @@ fn data_set(subject: &Subject, points: &[&Point], title: &str) -> DataSet {
             }
         }
     }
-    arrays.extend(moments(family, points));
+    arrays.extend(moments_at(family, points));
     for (index, density) in first.densities.iter().enumerate() {
         arrays.extend(densities(family, points, index, density));
     }
@@ -138,30 +138,26 @@ fn data_set(subject: &Subject, points: &[&Point], title: &str) -> DataSet {
     }
 }
 
-/// Means and standard deviations.
-fn moments(family: &Family, points: &[&Point]) -> Vec<Array> {
-    let of = |kind: &MeasureKind, quantity: &str, long: &str| {
-        let name = kind.name(quantity);
-        let value = |point: &&Point| point.report.measure(&name);
+/// Names of means and standard deviations, with what they are.
+pub(super) fn moments(family: &Family) -> impl Iterator<Item = (String, String)> {
+    family.averages().flat_map(|quantity| {
+        let of =
+            |kind: &MeasureKind, long: &str| (kind.name(quantity), format!("{long} of {quantity}"));
+        [of(&MEAN, "mean"), of(&DEVIATION, "standard deviation")]
+    })
+}
+
+fn moments_at(family: &Family, points: &[&Point]) -> Vec<Array> {
+    let array = |(name, long_name): (String, String)| {
+        let value = |point: &&Point| point.report.measure(&name).unwrap_or(f64::NAN);
         Array {
             dimensions: vec![(family.parameter().to_owned(), points.len())],
-            values: points
-                .iter()
-                .map(|one| value(one).unwrap_or(f64::NAN))
-                .collect(),
-            long_name: format!("{long} of {quantity}"),
+            values: points.iter().map(value).collect(),
+            long_name,
             name,
         }
     };
-    let averages = family.averages();
-    averages
-        .flat_map(|quantity| {
-            [
-                of(&MEAN, quantity, "mean"),
-                of(&DEVIATION, quantity, "standard deviation"),
-            ]
-        })
-        .collect()
+    moments(family).map(array).collect()
 }
 
 /// A density, its error, and its second discretisation where there is one.

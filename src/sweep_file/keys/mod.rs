@@ -149,6 +149,20 @@ pub(super) fn find(names: &[&str]) -> Option<&'static Key> {
     KEYS.iter().find(|key| key.matches(names))
 }
 
+/// The key that has this name in a table where names such as `<axis>` are keys too.
+pub(super) fn named(stand_in: &str, name: &str) -> Option<&'static Key> {
+    KEYS.iter().find(|key| {
+        let at = key.parts().position(|part| part == name);
+        at.is_some_and(|at| {
+            let beside = |other: &Key| {
+                other.parts().nth(at) == Some(stand_in)
+                    && other.parts().take(at).eq(key.parts().take(at))
+            };
+            KEYS.iter().any(beside)
+        })
+    })
+}
+
 /// The keys for the long help of the commands that read a sweep file.
 pub fn help() -> String {
     let mut text = "Keys of a sweep file (--set KEY=VALUE overrides any of them):\n".to_owned();

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use crate::MAX_DIMENSION;
 use crate::sweep_file::diagnostic::Diagnostic;
 use crate::sweep_file::draft::{Draft, EquationsDraft};
+use crate::sweep_file::keys;
 use crate::sweep_file::names::{list, nearest_name, quotable};
 use crate::sweep_file::reader::Reader;
 use crate::sweep_file::value::Value;
@@ -141,6 +142,7 @@ fn typed(reader: &mut Reader<'_>, draft: &Draft) -> Option<Arc<Model>> {
     if !complete && equations.drift.len() < reader.entries(&["system", "equations"]).len() {
         return None;
     }
+    check_axis_names(reader);
     let parameters = parameters(reader, draft);
     let source = source(draft, equations, parameters);
     match source.build_or_all_errors() {
@@ -165,6 +167,23 @@ fn typed(reader: &mut Reader<'_>, draft: &Draft) -> Option<Arc<Model>> {
             None
         }
     }
+}
+
+/// Refuses axes whose names are keys in a table that has a key an axis: the file would say two things in one place.
+fn check_axis_names(reader: &mut Reader<'_>) {
+    let axes = reader.entries(&["system", "equations"]).iter();
+    let taken = axes.filter_map(|axis| {
+        let key = keys::named("<axis>", &axis.key)?;
+        let title = format!(
+            "an axis cannot be called `{}`: `{}` is a key",
+            axis.key,
+            key.path()
+        );
+        let found = Diagnostic::new(title).at(&axis.key_place, "this axis");
+        Some(found.remedy("give the axis another name"))
+    });
+    let taken: Vec<Diagnostic> = taken.collect();
+    taken.into_iter().for_each(|found| reader.report(found));
 }
 
 /// The parameters that are given, and the swept one. What is given is the default, so that any of them can be swept.

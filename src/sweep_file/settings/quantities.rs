@@ -29,8 +29,6 @@ pub struct BinSettings {
     pub count: usize,
 }
 
-/// Words that end the names of stored arrays.
-const RESERVED: [&str; 5] = ["error", "second", "replicate", "edges", "kink"];
 /// Bins by themselves: at least and at most.
 const COUNTS: (usize, usize) = (40, 200);
 
@@ -64,14 +62,6 @@ pub(super) fn read_all(
     model: &Model,
     given: &[Given],
 ) -> Vec<Arc<Quantity>> {
-    for one in given
-        .iter()
-        .filter(|one| RESERVED.contains(&one.name.as_str()))
-    {
-        let title = format!("`{}` ends the names of stored arrays", one.name);
-        let diagnostic = Diagnostic::new(title).at(&one.name_place, "cannot name a quantity");
-        reader.report(diagnostic.remedy("give it another name"));
-    }
     let texts: Vec<(&str, Option<&str>)> = given
         .iter()
         .map(|one| {
