@@ -15,7 +15,7 @@ fn the_list_names_every_model() {
 #[test]
 fn a_model_is_shown_in_full() {
     Room::new().done("systems dahl").says(&[
-        "z' = y - (λ |y| / f_c) z",
+        "z' = y - (λ |y|/f_c) z",
         "Axes",
         "| lambda ",
         "must be given",

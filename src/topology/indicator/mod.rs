@@ -160,13 +160,15 @@ fn is_told(estimated: &EstimatedDensity, place: &[f64]) -> bool {
     estimated.is_noisy() || value.is_some_and(|value| value > least)
 }
 
-/// Times its own error that a density must be, on every cell that an indicator is read from. Where it is not, the
-/// density may pass zero there, and a derivative over it has a pole, whose change of sign is no bifurcation.
+/// Times its own error that a density must be where an indicator is read. Where it is not, the density may pass zero
+/// there, and a derivative over it has a pole, whose change of sign is no bifurcation.
 const CLEAR: f64 = 2.0;
+/// Cells on either side of a place on which that is asked. Farther cells of a stencil may lie in a tail, where schemes
+/// differ by much of next to nothing: a derivative at the place hardly depends on them.
+const BESIDE: usize = 1;
 
-/// Whether a density is a clear multiple of its error on all cells along the axes through a place that derivatives
-/// there may depend on: of its distance to the second scheme, and of what the solver leaves. Sampled densities have
-/// tests of their own.
+/// Whether a density is a clear multiple of its error in the cell of a place and in those beside it along the axes: of
+/// its distance to the second scheme, and of what the solver leaves. Sampled densities have tests of their own.
 fn is_clear(estimated: &EstimatedDensity, place: &[f64]) -> bool {
     let density = &estimated.density;
     if estimated.is_noisy() {
@@ -179,7 +181,7 @@ fn is_clear(estimated: &EstimatedDensity, place: &[f64]) -> bool {
         let error = second.map_or(0.0, |second| (second[cell] - value).abs());
         value > least && value > CLEAR * error
     };
-    let near = |k: usize| near(&density.axes[k], place[k]);
+    let near = |k: usize| near(&density.axes[k], place[k], BESIDE);
     match density.axes.as_slice() {
         [_] => near(0).all(is_clear),
         [first, second] => {
@@ -195,10 +197,10 @@ fn is_clear(estimated: &EstimatedDensity, place: &[f64]) -> bool {
     }
 }
 
-/// The cells along an axis about a coordinate that derivatives there may depend on.
-fn near(axis: &Axis, at: f64) -> std::ops::Range<usize> {
+/// The cell along an axis that holds a coordinate, and so many on either side.
+fn near(axis: &Axis, at: f64, reach: usize) -> std::ops::Range<usize> {
     let middle = axis.find(at).unwrap_or(0);
-    middle.saturating_sub(NEIGHBOURHOOD)..(middle + NEIGHBOURHOOD + 1).min(axis.count())
+    middle.saturating_sub(reach)..(middle + reach + 1).min(axis.count())
 }
 
 /// Cells on either side of a place that its derivatives may depend on.
@@ -215,7 +217,7 @@ fn sensitivity(
     function: &impl Fn(&[f64]) -> f64,
 ) -> f64 {
     let axes = &estimated.density.axes;
-    let near = |k: usize| near(&axes[k], place[k]);
+    let near = |k: usize| near(&axes[k], place[k], NEIGHBOURHOOD);
     let cells: Vec<usize> = match axes.get(1) {
         None => near(0).collect(),
         Some(axis) => near(0)
