@@ -143,7 +143,7 @@ pub const NEGLIGIBLE_OF_QUANTITIES: f64 = 1e-5;
 
 impl EstimatedDensity {
     /// Whether there is one value a cell of every estimate: what was read from a file may not have it.
-    #[cfg(feature = "serde")]
+    #[cfg(feature = "store")]
     pub(crate) fn is_sound(&self) -> bool {
         let axes = &self.density.axes;
         let cells: usize = axes.iter().map(Axis::count).product();

@@ -41,7 +41,7 @@ const DEVIATIONS_OF_A_RANGE: f64 = 5.0;
 
 impl Axis {
     /// Whether every cell has its edges, its node and, but for modes, its piece: what was read from a file may not.
-    #[cfg(feature = "serde")]
+    #[cfg(feature = "store")]
     pub(crate) fn is_sound(&self) -> bool {
         let ascending = self.edges.windows(2).all(|pair| pair[0] < pair[1]);
         let mut cells = 0;
