@@ -57,7 +57,7 @@ pub mod topology;
 pub const MAX_DIMENSION: usize = 4;
 
 /// How a page of the explorer begins: what does not begin so is none of this program's.
-#[cfg(feature = "store")]
+#[cfg(feature = "cli")]
 pub(crate) const PAGE: &str = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"generator\" content=\"pbif\">\n";
 
 /// Beginning of the names of files and folders that are in the making, or taken out of the way.

@@ -100,8 +100,10 @@ pub use bifurcations::{
 };
 pub use checksums::{Checked, Damage, check_folder};
 pub use clean::{Removable, removable_runs, remove_run};
+#[cfg(feature = "cli")]
 pub(crate) use codimension::curve_name;
 pub use compare::{CompareTable, ComparedRun, compare_files, compare_tables};
+#[cfg(feature = "cli")]
 pub(crate) use curve::point_labels;
 pub use curve::{FOLDER as CURVES, curve_files};
 pub use date::date_in_utc;

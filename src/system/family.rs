@@ -75,6 +75,7 @@ impl Family {
     ///
     /// # Errors
     /// As [`Family::new`].
+    #[cfg(feature = "store")]
     pub(crate) fn along_path(
         &self,
         fixed: &[(&str, f64)],

@@ -52,7 +52,6 @@ pub(super) struct GeneratorSession {
     /// Where the solver stands.
     pub(super) stand: Stand,
     /// Whether the last solve has left a trail.
-    #[cfg_attr(not(feature = "serde"), expect(dead_code))]
     has_left: bool,
     cancellation: Cancellation,
 }

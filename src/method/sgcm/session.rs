@@ -15,7 +15,6 @@ pub(super) struct SgcmSession {
     source: SgcmSource,
     masses: Neighbours<Arc<Vec<f64>>>,
     /// Whether the last solve has left some.
-    #[cfg_attr(not(feature = "serde"), expect(dead_code))]
     has_left: bool,
     cancellation: Cancellation,
 }

@@ -11,6 +11,7 @@ pub(crate) struct Traits {
     /// The words used in tables.
     pub(super) name: &'static str,
     /// The title of its panel in figures.
+    #[cfg_attr(not(feature = "figures"), expect(dead_code))]
     pub(crate) title: &'static str,
     /// Reads it off a density, nearest to a place, one coordinate an axis; `None` where there is none.
     pub(crate) read: fn(&EstimatedDensity, &[f64]) -> Option<Indicator>,
