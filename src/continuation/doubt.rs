@@ -17,7 +17,8 @@ pub enum Doubt {
     CheckFailed(CheckedBy, String),
     /// Between closed ends of Ω there is no such indicator.
     NotBetweenClosedEnds,
-    /// The densities on either side are solved in different ways: from there on the drift at an end of Ω points outward.
+    /// The densities on either side are solved in different ways: from there on the drift at an end of Ω points
+    /// outward.
     OutwardDrift,
     /// The indicator jumps to the other side of zero.
     Jump,

@@ -227,8 +227,8 @@ fn indicator_at(evaluate: &mut dyn FnMut(f64) -> Seen, value: f64) -> Result<f64
     }
 }
 
-/// The zero, if the indicator has different signs on both sides of a zero: by what was seen, or by one more solve on the
-/// side that was not, or not so near. A value of zero is on neither side.
+/// The zero, if the indicator has different signs on both sides of a zero: by what was seen, or by one more solve on
+/// the side that was not, or not so near. A value of zero is on neither side.
 fn changes_sign(
     evaluate: &mut dyn FnMut(f64) -> Seen,
     seen: &[(f64, f64)],

@@ -276,8 +276,8 @@ const REACH: usize = 4;
 const CHANCE: f64 = 10.0;
 
 /// By how much a distance to finer cells may be too small by chance at a place. Where a kink lies inside a cell, its
-/// place in the cell differs from grid to grid, and the error with it. At a bend that a scheme has followed the order of
-/// the scheme is not known. Elsewhere it is one.
+/// place in the cell differs from grid to grid, and the error with it. At a bend that a scheme has followed the order
+/// of the scheme is not known. Elsewhere it is one.
 fn by_chance(estimated: &EstimatedDensity, place: &[f64]) -> f64 {
     let is_cut = |kink: &Kink| {
         let Some((axis, place)) = estimated

@@ -355,7 +355,7 @@ fn nothing_is_read_where_a_density_is_no_clear_multiple_of_its_error() {
         let second = estimated.density.values.iter();
         let second = second.map(|value| value + off * 1e-3 * scale).collect();
         estimated.variants = Variants::Scheme(second);
-        shoulder(&estimated, 0.9, true).or_else(|| shoulder(&estimated, 0.9, false))
+        shoulder(&estimated, 0.9, true)
     };
     assert!(shoulder_with(0.01).is_some());
     assert!(shoulder_with(10.0).is_none());
