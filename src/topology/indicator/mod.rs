@@ -114,12 +114,14 @@ impl Indicator {
         function: impl Fn(&[f64]) -> f64,
         rougher: impl Fn(&[f64]) -> f64,
     ) -> Option<Self> {
-        if !is_clear(estimated, &place) {
-            return None;
-        }
         let values = &estimated.density.values;
         let variants = &estimated.variants;
         let value = function(values);
+        let sensitivity = sensitivity(estimated, &place, value, &function);
+        // What follows from the equations has no pole where the density is small.
+        if sensitivity > 0.0 && !is_clear(estimated, &place) {
+            return None;
+        }
         let replicates: Vec<f64> = match variants {
             Variants::Jackknife(all) => all.iter().map(|one| function(one)).collect(),
             _ => Vec::new(),
@@ -140,7 +142,7 @@ impl Indicator {
                 sampling_error,
                 degrees_of_freedom: variants.degrees_of_freedom(),
                 systematic_error: rough + scheme,
-                sensitivity: sensitivity(estimated, &place, value, &function),
+                sensitivity,
                 place,
                 replicates,
             })
