@@ -79,7 +79,9 @@ impl Sweep {
     /// let sweep = sweep.by_method("generator", move |problem, cancellation| {
     ///     Ok(Box::new(MethodSource::new(problem, &options, cancellation)?))
     /// });
-    /// assert_eq!(sweep.run(&never, &mut ())?.labels[1].label, "PB1");
+    /// let found = sweep.run(&never, &mut ())?;
+    /// let first = found.bifurcations().next().map(|row| row.label.to_string());
+    /// assert_eq!(first.as_deref(), Some("PB1"));
     /// # Ok(())
     /// # }
     /// ```
