@@ -227,8 +227,8 @@ fn indicator_at(evaluate: &mut dyn FnMut(f64) -> Seen, value: f64) -> Result<f64
     }
 }
 
-/// The zero, if the indicator has different signs on both sides of a zero: by what was seen, or by one more solve on
-/// the side that was not, or not so near. A value of zero is on neither side.
+/// The zero, if the indicator has different signs on both sides of it: by what was seen, or by one more solve on the
+/// side that was not seen, or not so near. Where the indicator is zero, either sign will do.
 fn changes_sign(
     evaluate: &mut dyn FnMut(f64) -> Seen,
     seen: &[(f64, f64)],
@@ -246,8 +246,7 @@ fn changes_sign(
         return confirmed;
     }
     let beyond = zero + (zero - last).signum() * BEYOND * tolerance;
-    let across = if span.contains(beyond) { beyond } else { zero };
-    match indicator_at(evaluate, across) {
+    match indicator_at(evaluate, span.nearest(beyond)) {
         Ok(one) if is_other(one) => confirmed,
         Ok(_) => Some(Err(Doubt::NotOnFinerCells)),
         Err(ended) => ended.map(Err),

@@ -27,6 +27,11 @@ impl Span {
         self.upper - self.lower
     }
 
+    /// The value between the ends, or the end, that is nearest to a value.
+    pub(super) fn nearest(&self, value: f64) -> f64 {
+        value.clamp(self.lower, self.upper)
+    }
+
     /// Whether a value lies between the ends or is one of them.
     pub(super) fn contains(&self, value: f64) -> bool {
         (self.lower..=self.upper).contains(&value)

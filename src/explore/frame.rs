@@ -29,12 +29,12 @@ pub(super) struct Frame {
     /// All other measures: name, value, error, unit.
     measures: Vec<(String, f64, Option<f64>, String)>,
     /// Of every watched density; empty where there is none.
-    found: Vec<Found>,
+    found: Vec<DetectionMarks>,
 }
 
 /// What was found in one density.
 #[derive(Debug, Serialize)]
-struct Found {
+struct DetectionMarks {
     /// Counts in words.
     words: String,
     /// Whether all that the words count was seen.
@@ -71,7 +71,7 @@ impl Frame {
             findings: sentences(report, family),
             moments: family.averages().filter_map(moments).collect(),
             measures: others.map(numbers).collect(),
-            found: point.detections.iter().map(Found::new).collect(),
+            found: point.detections.iter().map(DetectionMarks::new).collect(),
         }
     }
 }
@@ -83,7 +83,7 @@ fn sentences(report: &SolveReport, family: &Family) -> Vec<String> {
         .collect()
 }
 
-impl Found {
+impl DetectionMarks {
     fn new(detection: &Detection) -> Self {
         let shown = |feature: &&Feature| feature.verdict != Verdict::Absent;
         let features = detection.features.iter().filter(shown);

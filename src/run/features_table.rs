@@ -9,32 +9,37 @@ use crate::system::Family;
 use crate::topology::{Feature, FeatureKind, Verdict};
 
 /// A feature with where it was found.
-pub(super) struct Found<'p> {
+pub(super) struct FeatureRow<'p> {
     value: f64,
     observable: Observable,
     feature: &'p Feature,
 }
 
 /// The table's columns.
-pub(super) fn columns<'a>(family: &'a Family) -> Columns<'a, Found<'a>> {
-    let coordinate = |axis: usize| move |row: &Found<'_>| row.feature.position.get(axis).copied();
+pub(super) fn columns<'a>(family: &'a Family) -> Columns<'a, FeatureRow<'a>> {
+    let coordinate =
+        |axis: usize| move |row: &FeatureRow<'_>| row.feature.position.get(axis).copied();
     Columns(vec![
-        number(family.parameter(), |row: &Found<'_>| row.value),
-        word("observable", move |row: &Found<'_>| {
+        number(family.parameter(), |row: &FeatureRow<'_>| row.value),
+        word("observable", move |row: &FeatureRow<'_>| {
             row.observable.name(family)
         }),
-        word("kind", |row: &Found<'_>| {
+        word("kind", |row: &FeatureRow<'_>| {
             kind_word(row.feature.kind).to_owned()
         }),
         optional("position", coordinate(0)),
-        number("density", |row: &Found<'_>| row.feature.density),
-        number("persistence", |row: &Found<'_>| row.feature.persistence),
-        number("significance", |row: &Found<'_>| row.feature.significance),
+        number("density", |row: &FeatureRow<'_>| row.feature.density),
+        number("persistence", |row: &FeatureRow<'_>| {
+            row.feature.persistence
+        }),
+        number("significance", |row: &FeatureRow<'_>| {
+            row.feature.significance
+        }),
         optional("position_2", coordinate(1)),
-        number("standard_error", |row: &Found<'_>| {
+        number("standard_error", |row: &FeatureRow<'_>| {
             row.feature.standard_error
         }),
-        word("verdict", |row: &Found<'_>| {
+        word("verdict", |row: &FeatureRow<'_>| {
             verdict_word(row.feature.verdict).to_owned()
         }),
     ])
@@ -44,12 +49,12 @@ pub(super) fn columns<'a>(family: &'a Family) -> Columns<'a, Found<'a>> {
 pub(super) fn found<'p>(
     observables: &[Observable],
     point: &'p Point,
-) -> impl Iterator<Item = Found<'p>> {
+) -> impl Iterator<Item = FeatureRow<'p>> {
     let detections = observables.iter().zip(&point.detections);
     detections.flat_map(move |(&observable, detection)| {
         let features = detection.features.iter();
         let listed = features.filter(|feature| feature.verdict != Verdict::Absent);
-        listed.map(move |feature| Found {
+        listed.map(move |feature| FeatureRow {
             value: point.value,
             observable,
             feature,
@@ -64,7 +69,7 @@ pub(super) fn found<'p>(
 pub fn features_csv(subject: &Subject, points: &[Point]) -> Result<String, RunError> {
     let points = ascending(points).into_iter();
     let observables = &subject.observables;
-    let rows: Vec<Found<'_>> = points.flat_map(|point| found(observables, point)).collect();
+    let rows: Vec<FeatureRow<'_>> = points.flat_map(|point| found(observables, point)).collect();
     columns(&subject.family).csv(&rows)
 }
 

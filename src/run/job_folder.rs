@@ -155,13 +155,13 @@ impl Layout {
 pub struct JobFolder {
     home: PathBuf,
     layout: Layout,
-    place: Place,
+    place: Destination,
     kept: Option<PathBuf>,
 }
 
 /// Where files are written to.
 #[derive(Debug)]
-enum Place {
+enum Destination {
     /// Beside their place.
     Beside(Staging),
     /// There.
@@ -186,18 +186,18 @@ impl JobFolder {
             let lock = FolderLock::take(home)?;
             checksums::reopen(home);
             clear_unfinished(home, &["densities.zarr", "figures"]);
-            Place::There { _lock: lock }
+            Destination::There { _lock: lock }
         } else {
             let staging = Staging::new(home, layout.entries)?.with(layout.about)?;
             if layout.grows {
                 let placed = staging.take_place(&[])?;
                 kept = placed.kept;
-                Place::There { _lock: placed.lock }
+                Destination::There { _lock: placed.lock }
             } else {
                 if !goes_on {
                     staging.keep_aside(&[layout.part])?;
                 }
-                Place::Beside(staging)
+                Destination::Beside(staging)
             }
         };
         Ok(Self {
@@ -226,8 +226,8 @@ impl JobFolder {
     /// Where files are written to.
     pub fn path(&self) -> PathBuf {
         match &self.place {
-            Place::Beside(staging) => staging.fresh(),
-            Place::There { .. } => self.home.clone(),
+            Destination::Beside(staging) => staging.fresh(),
+            Destination::There { .. } => self.home.clone(),
         }
     }
 
@@ -267,14 +267,14 @@ impl JobFolder {
     pub fn close(self, ending: Ending) -> Result<Vec<PathBuf>, RunError> {
         let (part, path) = (self.part(), self.path());
         let files = match self.place {
-            Place::Beside(staging) => {
+            Destination::Beside(staging) => {
                 if self.layout.entries.contains(&checksums::NAME) {
                     checksums::write_listed(&path, self.layout.entries)?;
                 }
                 sync_all(&[path])?;
                 staging.take_place(&[])?.files
             }
-            Place::There { .. } => {
+            Destination::There { .. } => {
                 research_object::write(&path)?;
                 checksums::write_listed(&path, self.layout.entries)?;
                 Vec::new()

@@ -2,6 +2,7 @@
 //! table, and no two arrays of a store, may have one name: the later would take the place of the earlier.
 
 use super::{arrays, checks, codimension, export, features_table, map, points_table};
+use crate::continuation::MeasureColumn;
 use crate::continuation::curve::Plane;
 use crate::density::Observable;
 use crate::sweep_file::{Diagnostic, Place, Report, Settings};
@@ -103,7 +104,11 @@ fn together(settings: &Settings) -> Vec<Together> {
     if let Some(plane) = map {
         return of_map(family, observables, &plane);
     }
-    let mut all = of_sweep(family, observables);
+    let measures = settings.measures.iter().flatten();
+    let measures: Vec<MeasureColumn> = measures
+        .flat_map(|measure| measure.columns(family, observables))
+        .collect();
+    let mut all = of_sweep(family, observables, &measures);
     let curve = settings.curve.as_ref().and_then(|curve| {
         let first = (family.parameter(), curve.first.0, curve.first.1);
         Plane::new(first, (curve.parameter.as_str(), curve.from, curve.to)).ok()
@@ -112,7 +117,11 @@ fn together(settings: &Settings) -> Vec<Together> {
     all
 }
 
-fn of_sweep(family: &Family, observables: &[Observable]) -> Vec<Together> {
+fn of_sweep(
+    family: &Family,
+    observables: &[Observable],
+    measures: &[MeasureColumn],
+) -> Vec<Together> {
     let stored = arrays::names(family, observables);
     let moments = export::moments(family).map(|(name, what)| Named::new(name, what));
     let coordinates = arrays::names(family, observables);
@@ -120,7 +129,7 @@ fn of_sweep(family: &Family, observables: &[Observable]) -> Vec<Together> {
         ("arrays of densities.zarr", stored),
         (
             "columns of points.csv",
-            points_table::columns(family, observables, &[], &[]).names(),
+            points_table::columns(family, observables, measures, &[]).names(),
         ),
         (
             "columns of features.csv",

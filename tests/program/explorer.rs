@@ -114,7 +114,7 @@ fn a_browser_shows_the_page_from_disk() {
     };
     let room = Room::new();
     let page = explored(&room);
-    let shown = |state: &str| {
+    let once = |state: &str| {
         let options = "--headless --no-sandbox --disable-gpu --virtual-time-budget=4000 --dump-dom";
         let mut browser = Command::new(browser);
         browser.args(options.split(' '));
@@ -125,9 +125,14 @@ fn a_browser_shows_the_page_from_disk() {
         browser.arg(format!("file://{}#{state}", page.display()));
         String::from_utf8(browser.output().unwrap().stdout).unwrap()
     };
+    // On a busy machine the browser's clock may run out before the page has read its data.
+    let shown = |state: &str| {
+        let tries = (0..8).map(|_| once(state));
+        let mut ready = tries.filter(|shown| shown.contains("data-ready=\"true\""));
+        ready.next().expect("the script did not run to its end")
+    };
     let at_end = shown("f_c=0.01&pin=-0.02");
     for (words, wrong) in [
-        ("data-ready=\"true\"", "the script did not run to its end"),
         (
             "f_c = 0.01: p(x) 1 peak; p(ẋ) 1 peak",
             "what is seen is not said",
@@ -137,15 +142,8 @@ fn a_browser_shows_the_page_from_disk() {
         assert!(at_end.contains(words), "{wrong}");
     }
     // What an address says wrongly changes nothing.
-    // On a busy machine the browser's clock may run out before the page has read its data.
-    let mut odd = String::new();
-    for _ in 0..5 {
-        odd = shown("f_c=much&pin=NaN&joint=7&theme=loud");
-        if odd.contains("data-ready=\"true\"") {
-            break;
-        }
-    }
-    assert!(odd.contains("data-ready=\"true\"") && odd.contains("aria-live=\"polite\">f_c = "));
+    let odd = shown("f_c=much&pin=NaN&joint=7&theme=loud");
+    assert!(odd.contains("aria-live=\"polite\">f_c = "));
 }
 
 /// What a page is told.

@@ -60,9 +60,11 @@ fn a_swept_parameter_is_not_called_as_a_column_or_an_array_is() {
         ("position_2", "features.csv"),
         ("verdict", "features.csv"),
         ("failure", "checks.csv"),
+        ("entropy_xy", "points.csv"),
     ];
+    let measured = "[detect]\njoint = [[\"x\", \"y\"]]\nmeasures = [\"entropy\"]";
     for (name, reason) in swept {
-        let said = refused(&two_axes(["x", "y"], name, ""));
+        let said = refused(&two_axes(["x", "y"], name, measured));
         let remedy = format!("give `{name}` another name");
         for words in [reason, &remedy, "mine.toml:10", "parameter = "] {
             assert!(said.contains(words), "{name}: {words}: {said}");

@@ -12,7 +12,10 @@ const start = async () => {
   else if (told.plane) buildSecond(page);
   connect(page);
   page.restore(readAddress());
-  document.documentElement.dataset.ready = "true";
+  // The page draws before the next picture of the screen; it is ready once that is done.
+  requestAnimationFrame(() => {
+    document.documentElement.dataset.ready = "true";
+  });
 };
 
 start().catch((error) => {

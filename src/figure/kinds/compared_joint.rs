@@ -13,7 +13,7 @@ use crate::figure::canvas::look::Look;
 use crate::figure::canvas::page::{Heading, Page, Rectangle};
 use crate::figure::canvas::style::{MARGIN, TEXT};
 use crate::figure::figures::{Figure, Print};
-use crate::figure::parts::joint_map::{Found, draw_map, windows, write_above};
+use crate::figure::parts::joint_map::{JointPoint, draw_map, windows, write_above};
 use crate::figure::parts::{caption, names};
 
 /// Side of a map, in pixels.
@@ -27,9 +27,9 @@ const BETWEEN: (f64, f64) = (12.0, 12.0);
 const ABOVE: f64 = 1.6 * TEXT;
 
 /// The densities of one value by the methods that have one.
-fn row(value: &ComparedValue, observable: Observable) -> Vec<(Method, Found<'_>)> {
+fn row(value: &ComparedValue, observable: Observable) -> Vec<(Method, JointPoint<'_>)> {
     let found = |(method, estimated)| {
-        let found = Found {
+        let found = JointPoint {
             value: value.value,
             estimated,
             shown: shown(method, estimated),
@@ -58,7 +58,7 @@ pub(super) fn sketches(comparison: &Comparison) -> Vec<Sketch<'_>> {
 fn draw(comparison: &Comparison, observable: Observable, print: &Print<'_>) -> Drawn {
     let (family, look) = (&comparison.subject.family, &print.look);
     let rows = comparison.values.iter();
-    let rows: Vec<Vec<(Method, Found<'_>)>> = rows
+    let rows: Vec<Vec<(Method, JointPoint<'_>)>> = rows
         .map(|value| row(value, observable))
         .filter(|row| !row.is_empty())
         .collect();

@@ -11,7 +11,7 @@ use crate::figure::canvas::page::{Heading, Page, Rectangle};
 use crate::figure::canvas::space::Space;
 use crate::figure::canvas::style::{MARGIN, TEXT};
 use crate::figure::figures::Print;
-use crate::figure::parts::joint_map::{Found, Joint, draw_map, lettered, write_above};
+use crate::figure::parts::joint_map::{Joint, JointPoint, draw_map, lettered, write_above};
 
 /// Width of a surface with its axes on a page of its own width, in pixels.
 const SURFACE: f64 = 330.0;
@@ -71,7 +71,7 @@ fn draw(joint: &Joint<'_>, print: &Print<'_>) -> Result<Option<Page>, FigureErro
     let (look, found, (x, y)) = (&print.look, &joint.found, joint.window);
     let [first, second, density] = &joint.titles;
     let bars = |high: f64| {
-        let bar = |found: &Found<'_>| ColourBar::new(look, found.shown.largest, high, density);
+        let bar = |found: &JointPoint<'_>| ColourBar::new(look, found.shown.largest, high, density);
         found.iter().map(bar).collect::<Result<Vec<_>, _>>()
     };
     let vertical = |high: f64| Scale::vertical(look, y, high, second);

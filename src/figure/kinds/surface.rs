@@ -12,7 +12,7 @@ use crate::figure::canvas::page::{Heading, Page, Rectangle};
 use crate::figure::canvas::space::{Heights, Ranges, Space};
 use crate::figure::canvas::style::{MARGIN, TEXT};
 use crate::figure::figures::Print;
-use crate::figure::parts::joint_map::{Found, Joint, lettered, write_above};
+use crate::figure::parts::joint_map::{Joint, JointPoint, lettered, write_above};
 
 /// Width of a single surface with its axes, in pixels.
 const SINGLE: f64 = 470.0;
@@ -59,7 +59,7 @@ pub(super) fn draw_surface(
     page: &Page,
     rect: Rectangle,
     joint: &Joint<'_>,
-    (found, most): (&Found<'_>, usize),
+    (found, most): (&JointPoint<'_>, usize),
 ) -> Result<(), FigureError> {
     let top = found.shown.largest;
     let space = Space::new(page.look(), rect, ranges(joint, top))?;
@@ -149,7 +149,7 @@ fn lines(axis: &Axis, window: (f64, f64), most: usize, wanted: &[usize]) -> Vec<
 /// The surface of a density over a window, in shares of the window and of `top`; `None` where there is too little of
 /// it.
 fn heights(
-    found: &Found<'_>,
+    found: &JointPoint<'_>,
     (x, y): ((f64, f64), (f64, f64)),
     top: f64,
     most: usize,

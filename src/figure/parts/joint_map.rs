@@ -32,7 +32,7 @@ pub(crate) struct Joint<'a> {
     /// The points, with and without a density.
     pub(crate) points: &'a [&'a Point],
     /// The densities that there are.
-    pub(crate) found: Vec<Found<'a>>,
+    pub(crate) found: Vec<JointPoint<'a>>,
     /// The windows of both axes, which all share.
     pub(crate) window: ((f64, f64), (f64, f64)),
     /// Titles of both axes, and of the density.
@@ -51,8 +51,8 @@ impl<'a> Joint<'a> {
             return None;
         };
         let found = points.iter();
-        let found = found.filter_map(|point| Found::new(point, number));
-        let found: Vec<Found<'_>> = found.collect();
+        let found = found.filter_map(|point| JointPoint::new(point, number));
+        let found: Vec<JointPoint<'_>> = found.collect();
         let axes = [first, second].map(|axis| names::axis(family, axis));
         let [first, second] = axes;
         Some(Self {
@@ -66,20 +66,20 @@ impl<'a> Joint<'a> {
     }
 
     /// The value of the parameter that a density is of, as it stands above its map.
-    pub(crate) fn at(&self, found: &Found<'_>) -> String {
+    pub(crate) fn at(&self, found: &JointPoint<'_>) -> String {
         names::at(&self.result.subject.family, found.value)
     }
 }
 
 /// A joint density with what was found in it.
-pub(crate) struct Found<'a> {
+pub(crate) struct JointPoint<'a> {
     pub(crate) value: f64,
     pub(crate) estimated: &'a EstimatedDensity,
     pub(crate) shown: View<'a>,
     pub(crate) features: &'a [Feature],
 }
 
-impl<'a> Found<'a> {
+impl<'a> JointPoint<'a> {
     fn new(point: &'a Point, observable: usize) -> Option<Self> {
         let estimated = view::density(point, observable)?;
         let detection = point.detections.get(observable);
@@ -107,8 +107,8 @@ impl<'a> Found<'a> {
 }
 
 /// The windows of both axes.
-pub(crate) fn windows(found: &[Found<'_>]) -> Option<((f64, f64), (f64, f64))> {
-    let densities: Vec<&Density> = found.iter().map(Found::density).collect();
+pub(crate) fn windows(found: &[JointPoint<'_>]) -> Option<((f64, f64), (f64, f64))> {
+    let densities: Vec<&Density> = found.iter().map(JointPoint::density).collect();
     Some((view::window(&densities, 0)?, view::window(&densities, 1)?))
 }
 
@@ -116,7 +116,7 @@ pub(crate) fn windows(found: &[Found<'_>]) -> Option<((f64, f64), (f64, f64))> {
 /// pixels from the left; returns the rectangle of the maps.
 pub(crate) fn open_page(
     print: &Print<'_>,
-    found: &[Found<'_>],
+    found: &[JointPoint<'_>],
     (left, page_width): (f64, f64),
     (width, height): (f64, f64),
 ) -> Result<(Page, Rectangle), FigureError> {
@@ -151,7 +151,7 @@ pub(crate) fn write_above(page: &Page, map: Rectangle, markup: String) {
 }
 
 /// Legend of the marks that are drawn.
-fn entries(found: &[Found<'_>]) -> Vec<(Sample, String)> {
+fn entries(found: &[JointPoint<'_>]) -> Vec<(Sample, String)> {
     let any = |kind| {
         found
             .iter()
@@ -171,7 +171,7 @@ fn entries(found: &[Found<'_>]) -> Vec<(Sample, String)> {
 pub(crate) fn draw_map(
     page: &Page,
     map: Rectangle,
-    found: &Found<'_>,
+    found: &JointPoint<'_>,
     (x, y): ((f64, f64), (f64, f64)),
     largest: f64,
 ) -> Result<(), FigureError> {
@@ -208,7 +208,7 @@ pub(crate) fn draw_map(
 fn draw_contours(
     look: &Look,
     (panel, map): (&Panel, Rectangle),
-    found: &Found<'_>,
+    found: &JointPoint<'_>,
     (x, y): ((f64, f64), (f64, f64)),
     largest: f64,
 ) {

@@ -2,7 +2,7 @@
 
 use crate::figure::figures::Print;
 
-use super::joint_map::{Found, Joint, LEVELS, draw_map, lettered, open_page, write_above};
+use super::joint_map::{Joint, JointPoint, LEVELS, draw_map, lettered, open_page, write_above};
 use super::names;
 use crate::figure::FigureError;
 use crate::figure::canvas::colour_bar::ColourBar;
@@ -44,7 +44,12 @@ struct Sheet {
 impl Sheet {
     /// Arranges maps in as many columns as there is room for between what stands left and right of them all, `beside`
     /// pixels; on a given page none is narrower than `least`. Columns are `between` pixels apart.
-    fn new(look: &Look, found: &[Found<'_>], (beside, between): (f64, f64), least: f64) -> Self {
+    fn new(
+        look: &Look,
+        found: &[JointPoint<'_>],
+        (beside, between): (f64, f64),
+        least: f64,
+    ) -> Self {
         let own_columns = match found.len() {
             2 | 4 => 2,
             10.. => 4,
@@ -109,8 +114,8 @@ fn with_lines(
     arranged: &dyn Fn(f64) -> Result<Sheet, FigureError>,
 ) -> Result<(Sheet, Vec<String>), FigureError> {
     let (found, family) = (&joint.found, &joint.result.subject.family);
-    let at = |found: &Found<'_>| joint.at(found);
-    let short = |found: &Found<'_>| names::at(family, symbols::rounded_to(found.value, FEW));
+    let at = |found: &JointPoint<'_>| joint.at(found);
+    let short = |found: &JointPoint<'_>| names::at(family, symbols::rounded_to(found.value, FEW));
     let numbered = found.iter().enumerate();
     let lettered = numbered.map(|(number, found)| lettered(look, number, at(found)));
     let lines: Vec<String> = lettered.collect();

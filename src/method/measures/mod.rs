@@ -33,7 +33,7 @@ impl DerivedMeasure {
     }
 
     /// Its columns in tables.
-    pub(super) fn columns(
+    pub(crate) fn columns(
         &self,
         family: &Family,
         observables: &[Observable],

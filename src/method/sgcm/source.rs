@@ -46,7 +46,7 @@ pub struct SgcmSource {
 }
 
 /// A solution, and the masses of all cells where there is a steady state.
-type Found = (Solution<'static>, Option<Vec<f64>>);
+type SolvedMasses = (Solution<'static>, Option<Vec<f64>>);
 
 /// The sampled cell map at one parameter value, to be solved with either [`Correction`].
 pub struct SampledPoint {
@@ -216,7 +216,7 @@ impl SgcmSource {
         (matrix, slopes): (&TransitionMatrix, &[[f64; MAX_DIMENSION]]),
         steady: SteadyState,
         cancellation: &Cancellation,
-    ) -> Result<Found, MethodError> {
+    ) -> Result<SolvedMasses, MethodError> {
         let transitions = &point.transitions;
         let info = &steady.info;
         let escape_rate = escape_rate(info.escape_per_step, self.steps.map_step);
@@ -316,7 +316,7 @@ impl SgcmSource {
         correction: Correction,
         start: Option<&[f64]>,
         cancellation: &Cancellation,
-    ) -> Result<Found, MethodError> {
+    ) -> Result<SolvedMasses, MethodError> {
         let options = Options::new(self.options.solver, self.options.solver_tolerance);
         let options = options.cancelled_by(cancellation);
         let Corrected {

@@ -11,7 +11,7 @@ pub(super) struct Kept {
     /// Seconds that it took.
     pub(super) seconds: f64,
     /// The solution, or what the method said instead.
-    pub(super) solved: Result<Found, String>,
+    pub(super) solved: Result<KeptSolution, String>,
     /// Whether the solution can be asked how it answers to parameters.
     pub(super) is_sensitive: bool,
     /// What was asked of it, in this order.
@@ -25,12 +25,12 @@ pub(super) type Answer = Result<Vec<Vec<f64>>, String>;
 
 /// A solution without its session.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct Found {
+pub(super) struct KeptSolution {
     report: SolveReport,
     densities: Vec<EstimatedDensity>,
 }
 
-impl Found {
+impl KeptSolution {
     /// What a solution holds, which is still to be handed on.
     pub(super) fn of(solution: &Solution<'_>) -> Self {
         Self {

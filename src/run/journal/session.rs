@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-use super::kept::{Found, Kept, Question, in_words};
+use super::kept::{Kept, KeptSolution, Question, in_words};
 use super::source::Known;
 use super::{Journal, Key};
 use crate::continuation::{Sensitivity, Session, Solution, SourceError};
@@ -143,7 +143,7 @@ impl JournalledSession {
             }
         };
         let live = solution.sensitivity.take();
-        self.last = Some(last(Ok(Found::of(&solution)), live.is_some()));
+        self.last = Some(last(Ok(KeptSolution::of(&solution)), live.is_some()));
         solution.sensitivity = live.map(|live| {
             Box::new(Answers {
                 last: &mut self.last,

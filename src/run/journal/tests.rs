@@ -1,6 +1,6 @@
 //! Journals that are cut, damaged and of other sweeps; sessions that go on from them.
 
-use super::kept::Found;
+use super::kept::KeptSolution;
 use super::*;
 use crate::cancellation::Cancellation;
 use crate::continuation::{
@@ -96,7 +96,7 @@ fn kept() -> Kept {
     };
     Kept {
         seconds: 0.5,
-        solved: Ok(Found::of(&solution)),
+        solved: Ok(KeptSolution::of(&solution)),
         is_sensitive: true,
         answers: vec![(Question::AlongPath, Ok(vec![vec![f64::NEG_INFINITY]]))],
         memory: vec![1, 2, 255],
@@ -147,7 +147,7 @@ fn a_density_that_does_not_fit_its_cells_is_refused() {
     let mut kept = kept();
     let mut solution = kept.solved.unwrap().solution("sgcm");
     solution.densities[1].standard_error.pop();
-    kept.solved = Ok(Found::of(&solution));
+    kept.solved = Ok(KeptSolution::of(&solution));
     assert!(!kept.is_sound());
 }
 
