@@ -31,7 +31,7 @@ pub struct Agreement {
 
 impl Agreement {
     /// Share of the bins that agree.
-    pub fn share(&self) -> f64 {
+    pub(crate) fn share(&self) -> f64 {
         self.within as f64 / self.bins.max(1) as f64
     }
 }

@@ -22,7 +22,7 @@ pub struct Distance {
 
 impl Distance {
     /// Whether the densities differ by more than noise, three standard errors and grid error together.
-    pub fn is_significant(&self) -> bool {
+    pub(crate) fn is_significant(&self) -> bool {
         self.value > self.noise + 3.0 * self.error + self.systematic
     }
 }

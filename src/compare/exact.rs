@@ -59,7 +59,7 @@ pub fn exact_masses(system: &dyn System, space: &CellSpace) -> Option<Vec<f64>> 
 ///
 /// # Errors
 /// [`CompareError`] when the value is not allowed, or the observable names no axis.
-pub fn exact_density(
+pub(crate) fn exact_density(
     family: &Family,
     value: f64,
     space: &CellSpace,

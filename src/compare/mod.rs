@@ -3,7 +3,7 @@
 //!
 //! All densities are compared on *common cells*, the paper's: 50 cells of equal width along the first two axes, as many
 //! as the file has along the others (16 where the generator has modes). SGCM and Monte Carlo work on these cells; what
-//! others give is brought there by [`rebin()`].
+//! others give is brought there by `rebin()`.
 
 mod accuracy;
 mod agreement;
@@ -16,9 +16,9 @@ mod solve;
 pub use accuracy::{Accuracy, AccuracyPoint, Reference};
 pub use agreement::{Agreement, agreement};
 pub use distance::{Distance, Distances, distances};
-pub use exact::{exact_density, exact_masses};
+pub(crate) use exact::exact_density;
+pub use exact::exact_masses;
 pub use observer::CompareObserver;
-pub use overlap::{rebin, rebin_density};
 pub use solve::{Solved, Work};
 
 use crate::cancellation::Cancellation;
@@ -30,13 +30,13 @@ use observer::Steps;
 use solve::Sources;
 
 /// Cells of equal width along the first two axes of the paper's cell space.
-pub const PAPER_CELLS: usize = 50;
+pub(crate) const PAPER_CELLS: usize = 50;
 
 /// Cells along an axis that the generator carries by modes.
 const MODE_CELLS: usize = 16;
 
 /// Time one transition of the paper's cell map spans.
-pub const PAPER_MAP_STEP: f64 = 1.0;
+pub(crate) const PAPER_MAP_STEP: f64 = 1.0;
 
 /// One of the methods that are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -80,7 +80,7 @@ impl Method {
     }
 
     /// Name used in figures.
-    pub fn title(self) -> &'static str {
+    pub(crate) fn title(self) -> &'static str {
         match self {
             Self::Generator => "generator",
             Self::Sgcm => "SGCM",
@@ -168,7 +168,7 @@ impl ComparedValue {
 
     /// Where generator and Monte Carlo disagree and mass leaves Ω: the escape rate and the share of the time outside.
     /// The one is conditioned on never having left, the other on being inside.
-    pub fn leaves(&self) -> Option<(f64, f64)> {
+    pub(crate) fn leaves(&self) -> Option<(f64, f64)> {
         let by = |method| self.solved.iter().find(|solved| solved.method == method);
         let rate = by(Method::Generator)?.report.measure("escape_rate")?;
         let outside = by(Method::MonteCarlo)?.share_outside?;
@@ -208,7 +208,7 @@ impl Comparison {
 
     /// Bins of all marginals at all values, and those in which generator and Monte Carlo differ by more than three
     /// standard errors and the generator's own error together.
-    pub fn bins(&self) -> (usize, usize) {
+    pub(crate) fn bins(&self) -> (usize, usize) {
         let all = self.values.iter().flat_map(|value| &value.agreement);
         all.fold((0, 0), |(bins, beyond), one| {
             (bins + one.bins, beyond + one.beyond)
@@ -265,7 +265,7 @@ impl From<MethodError> for CompareError {
     }
 }
 
-/// The common cells of a sweep on `space`: the same ranges, [`PAPER_CELLS`] cells of equal width along the first two
+/// The common cells of a sweep on `space`: the same ranges, `PAPER_CELLS` cells of equal width along the first two
 /// axes and as many as `space` has along the others.
 ///
 /// # Errors

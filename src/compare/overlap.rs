@@ -11,7 +11,7 @@ use crate::space::{Axis, CellSpace};
 
 /// Masses of the cells of `to` from those of the cells of `from`; what lies beyond the ends of `to` goes to its first
 /// and last cell.
-pub fn rebin(masses: &[f64], from: &Axis, to: &Axis) -> Vec<f64> {
+pub(crate) fn rebin(masses: &[f64], from: &Axis, to: &Axis) -> Vec<f64> {
     let mut below = vec![0.0];
     for mass in masses {
         below.push(below[below.len() - 1] + mass);
@@ -93,7 +93,7 @@ fn rebin_product(masses: &[f64], from: &[Axis], to: &[Axis]) -> Vec<f64> {
 ///
 /// # Errors
 /// [`DensityError`].
-pub fn rebin_density(
+pub(crate) fn rebin_density(
     estimated: &EstimatedDensity,
     to: &[Axis],
 ) -> Result<EstimatedDensity, DensityError> {

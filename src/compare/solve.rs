@@ -36,7 +36,7 @@ pub struct Work {
 
 impl Work {
     /// Seconds at this value.
-    pub fn seconds(&self) -> f64 {
+    pub(crate) fn seconds(&self) -> f64 {
         self.sampling_seconds + self.solve_seconds
     }
 }

@@ -16,7 +16,7 @@ use crate::topology::Detector;
 /// Located values are checked against `checks`, what a sweep saw in its checks ([`SweepResult::checks`]). With
 /// unchanged settings that is the same check. Other settings may ask for values that were not solved: the zero then
 /// comes from those that were, and a change near which there are none is unconfirmed.
-pub fn detect_again(
+pub(crate) fn detect_again(
     (subject, given): (Subject, usize),
     detector: &dyn Detector,
     mut points: Vec<Point>,

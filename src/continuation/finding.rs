@@ -182,7 +182,7 @@ pub enum ShiftedQuantity {
 
 impl Finding {
     /// What is stored of a finding: its code, the axis it speaks of, and its numbers, the one that matters most first.
-    pub fn parts(&self) -> (&'static str, Option<usize>, Vec<f64>) {
+    pub(crate) fn parts(&self) -> (&'static str, Option<usize>, Vec<f64>) {
         let plain = |code, numbers: &[f64]| (code, None, numbers.to_vec());
         let along = |code, axis, numbers: &[f64]| (code, Some(axis), numbers.to_vec());
         match *self {
@@ -234,7 +234,7 @@ impl Finding {
 
     /// The finding of these [`Finding::parts`]; `None` where there is no such finding. Sentences have no parts that
     /// would bring them back.
-    pub fn from_parts(code: &str, axis: Option<usize>, numbers: &[f64]) -> Option<Self> {
+    pub(crate) fn from_parts(code: &str, axis: Option<usize>, numbers: &[f64]) -> Option<Self> {
         Some(match (code, axis, numbers) {
             ("escaping", None, &[share, rate]) => Self::Escaping { share, rate },
             ("no-steady-state", None, &[rate, relaxation_time, limit]) => Self::NoSteadyState {

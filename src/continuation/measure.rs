@@ -44,7 +44,7 @@ impl MeasureKind {
     }
 
     /// A number of this kind without a known error.
-    pub fn measure(&self, of: &str, value: f64) -> Measure {
+    pub(crate) fn measure(&self, of: &str, value: f64) -> Measure {
         Measure {
             name: self.name(of),
             value,
@@ -54,7 +54,7 @@ impl MeasureKind {
     }
 
     /// Whether a measure is of this kind.
-    pub fn has(&self, measure: &Measure) -> bool {
+    pub(crate) fn has(&self, measure: &Measure) -> bool {
         let of = measure.name.strip_prefix(self.word);
         of.is_some_and(|of| of.is_empty() || of.starts_with('_'))
     }

@@ -51,7 +51,7 @@ mod source;
 mod span;
 mod sweep;
 
-pub use again::detect_again;
+pub(crate) use again::detect_again;
 pub use doubt::{Doubt, WiderRange};
 #[cfg(test)]
 pub(crate) use finding::every_finding;
@@ -67,7 +67,8 @@ pub use shard::Shard;
 pub use source::{
     CellCheck, DensitySource, Sensitivity, Session, Solution, SourceError, Subject, Want,
 };
-pub use sweep::{SweepError, evenly_spaced, sweep, sweep_shard};
+pub(crate) use sweep::sweep_shard;
+pub use sweep::{SweepError, evenly_spaced, sweep};
 
 #[cfg(test)]
 mod location_tests;

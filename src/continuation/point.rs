@@ -29,7 +29,7 @@ pub(super) type Refusal = Box<dyn std::error::Error + Send + Sync>;
 
 impl Point {
     /// A solution without detections yet.
-    pub fn undetected(value: f64, solution: Solution<'_>) -> Self {
+    pub(crate) fn undetected(value: f64, solution: Solution<'_>) -> Self {
         Self {
             value,
             report: solution.report,
@@ -66,7 +66,7 @@ impl Point {
     }
 
     /// Detects in its densities.
-    pub fn detect(&mut self, detector: &dyn Detector) {
+    pub(crate) fn detect(&mut self, detector: &dyn Detector) {
         let densities = self.densities.iter();
         self.detections = densities.map(|one| detector.detect(one)).collect();
     }

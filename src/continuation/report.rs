@@ -34,7 +34,7 @@ impl PointStatus {
     ];
 
     /// The word used in tables.
-    pub fn word(self) -> &'static str {
+    pub(crate) fn word(self) -> &'static str {
         match self {
             Self::Solved => "solved",
             Self::Escaping => "escaping",

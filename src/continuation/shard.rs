@@ -24,7 +24,7 @@ pub struct Shard {
 
 impl Shard {
     /// All of a sweep.
-    pub const WHOLE: Self = Self { number: 1, of: 1 };
+    pub(crate) const WHOLE: Self = Self { number: 1, of: 1 };
 
     /// Shard `number` of `of`; `None` unless 1 ≤ `number` ≤ `of`.
     pub fn new(number: usize, of: usize) -> Option<Self> {

@@ -83,7 +83,7 @@ pub fn sweep(
 ///
 /// # Errors
 /// As [`sweep`]; [`SweepError::Shards`] where there are more shards than steps.
-pub fn sweep_shard(
+pub(crate) fn sweep_shard(
     source: &dyn DensitySource,
     detector: &dyn Detector,
     (points, shard): (usize, Shard),

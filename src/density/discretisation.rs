@@ -13,7 +13,7 @@ pub(crate) const WIGGLE: f64 = 8.0;
 ///
 /// # Errors
 /// [`DensityError::Axis`], [`DensityError::RepeatedAxis`] or [`DensityError::Length`].
-pub fn estimate_from_difference(
+pub(crate) fn estimate_from_difference(
     space: &CellSpace,
     observable: Observable,
     mass: &[f64],
@@ -28,7 +28,7 @@ pub fn estimate_from_difference(
 }
 
 /// As [`estimate_from_difference`] from the densities by both discretisations (of the second its values alone).
-pub fn estimate_from_second(
+pub(crate) fn estimate_from_second(
     observable: Observable,
     density: Density,
     second: Vec<f64>,
@@ -64,14 +64,14 @@ fn of_both(
 impl EstimatedDensity {
     /// Whether the cells' masses are integrals of the density itself, free of any scheme: that of a system with one
     /// axis by quadrature, or a closed form.
-    pub fn is_by_quadrature(&self) -> bool {
+    pub(crate) fn is_by_quadrature(&self) -> bool {
         self.negligible == 0.0
     }
 
     /// Share of the maximum below which heights tell nothing: what the solver leaves, or more where the density is
     /// negative. A density is nowhere so: values below zero are wiggles of the scheme, and what is not clearly higher
     /// than they are deep is one of them. Noise has errors of its own.
-    pub fn negligible_height(&self) -> f64 {
+    pub(crate) fn negligible_height(&self) -> f64 {
         let maximum = self.density.maximum().max(f64::MIN_POSITIVE);
         if self.is_noisy() {
             return self.negligible;

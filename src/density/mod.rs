@@ -27,15 +27,17 @@ mod sub_cells;
 mod uncertainty;
 
 pub(crate) use discretisation::WIGGLE;
-pub use discretisation::{estimate_from_difference, estimate_from_second};
+pub(crate) use discretisation::{estimate_from_difference, estimate_from_second};
 pub use distance::{hellinger, hellinger_of_masses, total_variation, total_variation_of_masses};
 pub use moments::moments;
 pub use profile::{Extremum, Profile, SlopeJump, Turn};
-pub use projection::{Projection, QuantityMoments, project};
+pub use projection::Projection;
+pub(crate) use projection::QuantityMoments;
 pub(crate) use series_map::laid_out;
-pub use spread::{Coordinate, Detail};
+pub(crate) use spread::{Coordinate, Detail};
 pub use structure::{Kink, Structure, Variants};
-pub use uncertainty::{estimate, estimate_projected};
+pub use uncertainty::estimate;
+pub(crate) use uncertainty::estimate_projected;
 
 use crate::space::Axis;
 use crate::system::Family;
@@ -139,11 +141,10 @@ pub const NEGLIGIBLE: f64 = 1e-7;
 
 /// [`EstimatedDensity::negligible`] of a density of quantities: values that the solver leaves in single cells add up
 /// along level lines.
-pub const NEGLIGIBLE_OF_QUANTITIES: f64 = 1e-5;
+pub(crate) const NEGLIGIBLE_OF_QUANTITIES: f64 = 1e-5;
 
 impl EstimatedDensity {
     /// Whether there is one value a cell of every estimate: what was read from a file may not have it.
-    #[cfg(feature = "store")]
     pub(crate) fn is_sound(&self) -> bool {
         let axes = &self.density.axes;
         let cells: usize = axes.iter().map(Axis::count).product();
@@ -162,7 +163,7 @@ impl EstimatedDensity {
     }
 
     /// Whether its values carry noise, as those of sampled methods do; else its errors are those of a grid.
-    pub fn is_noisy(&self) -> bool {
+    pub(crate) fn is_noisy(&self) -> bool {
         match self.variants {
             Variants::Jackknife(_) => true,
             Variants::Scheme(_) => false,

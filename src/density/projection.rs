@@ -115,7 +115,7 @@ impl Projection {
     ///
     /// # Errors
     /// [`DensityError::Axis`] or [`DensityError::Coordinates`].
-    pub fn of_quantities(
+    pub(crate) fn of_quantities(
         space: &CellSpace,
         coordinates: &[Coordinate],
         detail: Detail,
@@ -150,7 +150,7 @@ impl Projection {
     }
 
     /// Number of cells of the observable.
-    pub fn n_cells(&self) -> usize {
+    pub(crate) fn n_cells(&self) -> usize {
         self.volumes.len()
     }
 
@@ -196,14 +196,14 @@ impl Projection {
 /// Mean and standard deviation of a quantity from the masses of cells, worked out once and applied to as many mass
 /// vectors as wanted.
 #[derive(Debug, Clone)]
-pub struct QuantityMoments {
+pub(crate) struct QuantityMoments {
     sums: Sums,
     averages: Arc<Averages>,
 }
 
 impl QuantityMoments {
     /// Works out the map; see [`Projection::of_quantities`].
-    pub fn new(
+    pub(crate) fn new(
         space: &CellSpace,
         quantity: &BoundQuantity,
         detail: Detail,
@@ -218,7 +218,7 @@ impl QuantityMoments {
 
     /// A state next to which the quantity, or its square, is no number or beyond the range of numbers: there is no mean
     /// then.
-    pub fn undefined(&self) -> Option<&[f64]> {
+    pub(crate) fn undefined(&self) -> Option<&[f64]> {
         self.averages.undefined()
     }
 
@@ -227,7 +227,7 @@ impl QuantityMoments {
     ///
     /// # Errors
     /// [`DensityError::Length`].
-    pub fn of(&self, mass: &[f64]) -> Result<Moments, DensityError> {
+    pub(crate) fn of(&self, mass: &[f64]) -> Result<Moments, DensityError> {
         let [mean, square] = self.averages.of(&self.sums.of(mass)?);
         let variance = square - mean * mean;
         Ok(Moments {
@@ -239,19 +239,6 @@ impl QuantityMoments {
             },
         })
     }
-}
-
-/// Density of an observable from the masses of all cells of a space (`n_cells` values, Σ = 1; some may be
-/// slightly negative).
-///
-/// # Errors
-/// [`DensityError::Axis`], [`DensityError::RepeatedAxis`] or [`DensityError::Length`].
-pub fn project(
-    space: &CellSpace,
-    observable: Observable,
-    mass: &[f64],
-) -> Result<Density, DensityError> {
-    Projection::new(space, observable)?.density(mass)
 }
 
 /// One value a cell, or an error.
@@ -268,6 +255,14 @@ pub(super) fn check_length(values: &[f64], wanted: usize) -> Result<(), DensityE
 mod tests {
     use super::*;
     use crate::space::Grading;
+
+    fn project(
+        space: &CellSpace,
+        observable: Observable,
+        mass: &[f64],
+    ) -> Result<Density, DensityError> {
+        Projection::new(space, observable)?.density(mass)
+    }
 
     fn axes() -> Vec<Axis> {
         let grading = Grading {

@@ -12,7 +12,7 @@ use crate::system::{BoundQuantity, LANES, Lanes};
 
 /// What one axis of a watched density is.
 #[derive(Debug, Clone)]
-pub enum Coordinate {
+pub(crate) enum Coordinate {
     /// A coordinate of the state.
     Axis(usize),
     /// A quantity, over these bins; values beyond them are not counted.
@@ -21,7 +21,7 @@ pub enum Coordinate {
 
 /// How finely cells are cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Detail {
+pub(crate) enum Detail {
     /// As finely as serves a density without noise.
     Fine,
     /// Twice as coarsely, to see what the cut does.

@@ -35,11 +35,11 @@ pub struct Kink {
 
 impl Kink {
     /// Jump of the slope of log p, times the range of the axis across, that is rounding.
-    pub const ROUNDING: f64 = 1e-7;
+    pub(crate) const ROUNDING: f64 = 1e-7;
 
     /// Whether the derivative bends there, and does not jump: no polynomial follows the density across, yet its slope
     /// is one.
-    pub fn is_bend(&self) -> bool {
+    pub(crate) fn is_bend(&self) -> bool {
         self.jump.is_empty()
     }
 
@@ -66,7 +66,7 @@ pub enum Variants {
 impl Variants {
     /// Jackknife standard error of a number derived from the density, given its values for the replicates; zero
     /// for other kinds.
-    pub fn sampling_error(&self, derived: impl Fn(&[f64]) -> f64) -> f64 {
+    pub(crate) fn sampling_error(&self, derived: impl Fn(&[f64]) -> f64) -> f64 {
         let Self::Jackknife(replicates) = self else {
             return 0.0;
         };
@@ -78,7 +78,7 @@ impl Variants {
     }
 
     /// Degrees of freedom of [`Variants::sampling_error`].
-    pub fn degrees_of_freedom(&self) -> f64 {
+    pub(crate) fn degrees_of_freedom(&self) -> f64 {
         match self {
             Self::Jackknife(replicates) => replicates.len().saturating_sub(1).max(1) as f64,
             _ => f64::INFINITY,
@@ -86,7 +86,7 @@ impl Variants {
     }
 
     /// Values of the second discretisation.
-    pub fn second_scheme(&self) -> Option<&[f64]> {
+    pub(crate) fn second_scheme(&self) -> Option<&[f64]> {
         match self {
             Self::Scheme(values) => Some(values),
             _ => None,

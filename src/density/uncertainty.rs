@@ -40,7 +40,7 @@ pub fn estimate(
 ///
 /// # Errors
 /// [`DensityError::Length`], or [`DensityError::Replicates`] for a single replicate.
-pub fn estimate_projected(
+pub(crate) fn estimate_projected(
     projection: &Projection,
     observable: Observable,
     mass: &[f64],

@@ -45,7 +45,7 @@ mod scene;
 mod server;
 mod stored;
 
-pub use pack::{PackError, Packed, Scale};
+pub use pack::{Packed, Scale};
 pub use server::LiveServer;
 pub use stored::StoredPage;
 
@@ -53,8 +53,8 @@ pub use stored::StoredPage;
 #[derive(Debug, thiserror::Error)]
 pub enum ExploreError {
     /// Values cannot be packed.
-    #[error(transparent)]
-    Pack(#[from] PackError),
+    #[error("the packed values are damaged: {0}")]
+    Pack(#[from] std::io::Error),
     /// What the page is told cannot be written.
     #[error("cannot compose the page: {0}")]
     Compose(#[from] serde_json::Error),

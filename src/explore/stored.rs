@@ -100,7 +100,7 @@ impl StoredPage {
     }
 
     /// Bits to which the square roots of joint densities are kept; `None` where none is watched.
-    pub fn joint_bits(&self) -> Option<u32> {
+    pub(crate) fn joint_bits(&self) -> Option<u32> {
         self.joint_bits
     }
 }
@@ -206,7 +206,7 @@ mod tests {
         }
         for (k, arrays) in told["arrays"].as_array().unwrap().iter().enumerate() {
             let packed = packed(page.html(), &arrays["values"], at.len());
-            let frames = packed.unpack(&at).unwrap();
+            let frames = packed.unpack(&at);
             for (frame, point) in frames.iter().zip(with_density()) {
                 let stored = &point.densities[k].density;
                 let edges: Vec<f64> = serde_json::from_value(arrays["edges"][0].clone()).unwrap();

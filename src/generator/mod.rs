@@ -42,7 +42,7 @@ pub use derivative::assemble_derivative;
 pub use grading::automatic_grading;
 pub use masses::{cell_masses, unknown_moments};
 pub use one_axis::{OneAxis, one_axis, profile};
-pub use resolution::{Resolution, resolution};
+pub(crate) use resolution::{Resolution, resolution};
 pub use scheme::AdvectiveScheme;
 
 use sprs::CsMat;
@@ -143,7 +143,7 @@ pub enum GeneratorError {
 
 impl GeneratorError {
     /// The same words with the names of the axes, in their order, in place of their numbers.
-    pub fn with_names(&self, names: &[&str]) -> String {
+    pub(crate) fn with_names(&self, names: &[&str]) -> String {
         let words = self.to_string();
         let (Self::NoiseAxis { axis, .. }
         | Self::NotFinite { axis, .. }

@@ -15,7 +15,7 @@ const NO_JUMP: f64 = 1e-3;
 
 /// How well the cells along one noisy axis resolve drift against diffusion.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Resolution {
+pub(crate) struct Resolution {
     /// The axis.
     pub axis: usize,
     /// Largest cell Péclet number |a| h/(2D) of the whole drift. Above 1 the drift is carried by the advective
@@ -36,7 +36,11 @@ pub struct Resolution {
 }
 
 /// Judges every noisy axis of a cell space, given the masses of its cells (length `n_cells`).
-pub fn resolution(system: &dyn System, space: &CellSpace, masses: &[f64]) -> Vec<Resolution> {
+pub(crate) fn resolution(
+    system: &dyn System,
+    space: &CellSpace,
+    masses: &[f64],
+) -> Vec<Resolution> {
     if system.dimension() != space.dimension() || masses.len() != space.n_cells() {
         return Vec::new();
     }

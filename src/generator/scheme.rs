@@ -44,7 +44,7 @@ impl AdvectiveScheme {
 
     /// Cells on either side of a face that its full stencil uses.
     /// Cells that a flux stencil reaches along its axis.
-    pub fn reach(self) -> usize {
+    pub(crate) fn reach(self) -> usize {
         match self {
             Self::Upwind5 | Self::Central6 => 3,
             Self::Central4 => 2,

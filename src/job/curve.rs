@@ -2,7 +2,7 @@
 
 mod refusals;
 
-pub use refusals::{check_curves, curve_rows};
+pub(crate) use refusals::{check_curves, curve_rows};
 
 use super::{Context, Job, JobError, Outcome};
 use crate::continuation::curve::{

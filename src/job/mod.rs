@@ -50,9 +50,11 @@ use crate::run::{Ending, JobFolder, Layout, PhaseSeconds, RunError};
 use crate::sweep_file::{Report, Sweep};
 
 pub use compare::CompareJob;
-pub use curve::{CurveJob, check_curves, curve_rows};
+pub use curve::CurveJob;
+pub(crate) use curve::{check_curves, curve_rows};
 pub use map::{MapJob, MapShardJob};
-pub use sweep::{SweepJob, draw_sweep, sweep_outcome};
+pub use sweep::SweepJob;
+pub(crate) use sweep::{draw_sweep, sweep_outcome};
 
 /// Work that a sweep file asks for.
 pub trait Job {

@@ -294,7 +294,7 @@ impl From<SweepError> for JobError {
 ///
 /// # Errors
 /// [`FigureError`].
-pub fn draw_sweep(sweep: &Sweep, found: &SweepResult) -> Result<Vec<Figure>, FigureError> {
+pub(crate) fn draw_sweep(sweep: &Sweep, found: &SweepResult) -> Result<Vec<Figure>, FigureError> {
     let settings = &sweep.settings;
     Figures::of_sweep(found, &settings.title, &settings.figures.at)
         .with_style(&settings.figures.style)
@@ -302,7 +302,7 @@ pub fn draw_sweep(sweep: &Sweep, found: &SweepResult) -> Result<Vec<Figure>, Fig
 }
 
 /// How a sweep ended that has found this.
-pub fn sweep_outcome(found: &SweepResult, locate: &LocateOptions) -> Outcome {
+pub(crate) fn sweep_outcome(found: &SweepResult, locate: &LocateOptions) -> Outcome {
     let (mut points, mut rows) = (found.points.iter(), found.bifurcations());
     let is_complete = points.all(|point| point.report.status.is_resolved())
         && rows.all(|row| locate.is_met_by(row.status()));

@@ -38,7 +38,7 @@ impl MethodSource {
     }
 
     /// What a user may want to know before the first point: the steps that were chosen.
-    pub fn describe(&self) -> String {
+    pub(crate) fn describe(&self) -> String {
         match self {
             Self::Generator(_) => "generator".to_owned(),
             Self::Sgcm(source) => format!(

@@ -77,7 +77,7 @@ pub enum BinsError {
 
 /// The values of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct QuantityRange {
+pub(crate) struct QuantityRange {
     /// Where its bins begin and end by themselves.
     pub ends: (f64, f64),
     /// Its least and largest value in Ω.
@@ -89,7 +89,7 @@ pub struct QuantityRange {
 ///
 /// # Errors
 /// [`BinsError`].
-pub fn automatic_bins(
+pub(crate) fn automatic_bins(
     family: &Family,
     space: &CellSpace,
     open: bool,
@@ -145,7 +145,7 @@ pub fn automatic_bins(
 ///
 /// # Errors
 /// [`BinsError`].
-pub fn check_averaged(family: &Family, space: &CellSpace) -> Result<(), BinsError> {
+pub(crate) fn check_averaged(family: &Family, space: &CellSpace) -> Result<(), BinsError> {
     let (from, to) = family.ends();
     for value in [from, 0.5 * (from + to), to] {
         let values = family.values_at(value)?;

@@ -31,7 +31,7 @@ impl MethodOptions {
     ///
     /// # Errors
     /// [`RateError::Memory`] when the generator's factors exceed their limit.
-    pub fn cost(&self, space: &CellSpace) -> Result<Cost, RateError> {
+    pub(crate) fn cost(&self, space: &CellSpace) -> Result<Cost, RateError> {
         let n_cells = space.n_cells() as f64;
         Ok(match self {
             Self::Generator(options) => Cost::Generator(options.cost(space)?),
@@ -41,7 +41,7 @@ impl MethodOptions {
     }
 
     /// Lower bound of the bytes at work on so many cells, which need not be laid out for it.
-    pub fn least_bytes(&self, n_cells: f64, dimension: usize) -> f64 {
+    pub(crate) fn least_bytes(&self, n_cells: f64, dimension: usize) -> f64 {
         match self {
             Self::Generator(options) => options.matrix_bytes(n_cells, dimension),
             Self::Sgcm(options) => options.cost(n_cells, dimension).least_bytes,

@@ -38,23 +38,19 @@ mod time_step;
 mod watched;
 
 pub use any::MethodSource;
-pub use bins::{BinsError, QuantityRange, automatic_bins, check_averaged};
+pub use bins::BinsError;
+pub(crate) use bins::{QuantityRange, automatic_bins, check_averaged};
 pub use cost::Cost;
-pub use generator::{
-    GeneratorCost, GeneratorMethodOptions, GeneratorSource, ModesFound, OneAxisFamily,
-    automatic_modes, change_by_more_modes,
-};
+pub use generator::{GeneratorCost, GeneratorMethodOptions, GeneratorSource};
+pub(crate) use generator::{OneAxisFamily, automatic_modes, change_by_more_modes};
 pub use measures::DerivedMeasure;
-pub use monte_carlo::{
-    Estimator, MonteCarloCost, MonteCarloOptions, MonteCarloPlan, MonteCarloSource,
-};
+pub use monte_carlo::{Estimator, MonteCarloCost, MonteCarloOptions, MonteCarloSource};
 pub use options::{MethodOptions, StepChoice};
 pub use problem::Problem;
-pub use range::{PILOT_BOX, RangeError, automatic_ranges};
-pub use sgcm::{
-    Corrected, Correction, SampledPoint, SgcmCost, SgcmOptions, SgcmSource, solve_corrected,
-};
-pub use sticking::check_sticking;
+pub use range::RangeError;
+pub(crate) use range::{PILOT_BOX, automatic_ranges};
+pub use sgcm::{Corrected, Correction, SgcmCost, SgcmOptions, SgcmSource, solve_corrected};
+pub(crate) use sticking::check_sticking;
 
 use crate::cancellation::Cancelled;
 use crate::continuation::SourceError;

@@ -25,7 +25,6 @@ impl<T> Neighbours<T> {
     }
 
     /// The start that was kept last; it is there at any rate.
-    #[cfg(feature = "serde")]
     pub(super) fn newest(&self) -> Option<&(f64, T)> {
         self.kept.last()
     }

@@ -27,16 +27,7 @@ impl Default for MethodOptions {
 
 impl MethodOptions {
     /// Names used in files, the default first.
-    pub const KINDS: [&'static str; 3] = ["generator", "sgcm", "monte-carlo"];
-
-    /// Name used in files.
-    pub fn kind(&self) -> &'static str {
-        match self {
-            Self::Generator(_) => Self::KINDS[0],
-            Self::Sgcm(_) => Self::KINDS[1],
-            Self::MonteCarlo(_) => Self::KINDS[2],
-        }
-    }
+    pub(crate) const KINDS: [&'static str; 3] = ["generator", "sgcm", "monte-carlo"];
 
     /// Whether what the cells of this space do to the densities can be checked.
     pub fn cell_check(&self, space: &CellSpace) -> CellCheck {
@@ -48,7 +39,7 @@ impl MethodOptions {
     }
 
     /// Seed of the random streams; zero for a method without any.
-    pub fn seed(&self) -> u64 {
+    pub(crate) fn seed(&self) -> u64 {
         match self {
             Self::Generator(_) => 0,
             Self::Sgcm(options) => options.seed,

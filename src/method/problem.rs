@@ -100,7 +100,7 @@ impl Problem {
 
     /// The same for a method of which this is known of its cells; a source says so of itself.
     #[must_use]
-    pub fn checked_by(&self, cell_check: CellCheck) -> Self {
+    pub(crate) fn checked_by(&self, cell_check: CellCheck) -> Self {
         let mut problem = self.clone();
         problem.subject.cell_check = cell_check;
         // What is worked out for one method is not for another.
@@ -110,7 +110,7 @@ impl Problem {
 
     /// The same with derived measures.
     #[must_use]
-    pub fn measuring(mut self, measures: &[DerivedMeasure]) -> Self {
+    pub(crate) fn measuring(mut self, measures: &[DerivedMeasure]) -> Self {
         let Subject {
             family,
             observables,
@@ -141,7 +141,7 @@ impl Problem {
     }
 
     /// What an observable's densities are laid out on.
-    pub fn axes_of(&self, observable: Observable) -> Vec<Axis> {
+    pub(crate) fn axes_of(&self, observable: Observable) -> Vec<Axis> {
         let all = || self.space.axes().iter().chain(&self.bins);
         let axes = observable.axes().into_iter();
         axes.filter_map(|axis| all().nth(axis).map(laid_out))
@@ -156,7 +156,7 @@ impl Problem {
     ///
     /// # Errors
     /// As [`Problem::new`].
-    pub fn on(&self, space: CellSpace) -> Result<Self, MethodError> {
+    pub(crate) fn on(&self, space: CellSpace) -> Result<Self, MethodError> {
         let Subject {
             family,
             observables,

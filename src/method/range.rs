@@ -9,7 +9,7 @@ use crate::space::{Axis, CellSpace};
 use crate::system::System;
 
 /// Where trajectories start along an axis of which nothing is known.
-pub const PILOT_BOX: (f64, f64) = (-1.0, 1.0);
+pub(crate) const PILOT_BOX: (f64, f64) = (-1.0, 1.0);
 /// Cells an axis of the box in which visits are counted.
 const CELLS: usize = 64;
 /// Share of the recorded states that must lie in the box.
@@ -42,7 +42,7 @@ pub enum RangeError {
 ///
 /// # Errors
 /// [`RangeError`].
-pub fn automatic_ranges(
+pub(crate) fn automatic_ranges(
     systems: &[Arc<dyn System>],
     known: &[Option<(f64, f64)>],
     seed: u64,

@@ -19,7 +19,7 @@ const HALVINGS: usize = 60;
 ///
 /// # Errors
 /// [`MethodError::Sticks`]; [`MethodError::System`] for values that are not allowed.
-pub fn check_sticking(family: &Family, ranges: &[(f64, f64)]) -> Result<(), MethodError> {
+pub(crate) fn check_sticking(family: &Family, ranges: &[(f64, f64)]) -> Result<(), MethodError> {
     let (from, to) = family.ends();
     for value in [from, 0.5 * (from + to), to] {
         let system = family.at(value)?;

@@ -41,7 +41,7 @@ impl ErgodicRun {
     /// Steps between looks: the time that crossing a cell takes on its narrowest axis (root mean square width over root
     /// mean square speed), but at most 0.5/ω. Denser looks see the same visit again and tell next to nothing. Even,
     /// because normals come in pairs.
-    pub fn stride(relaxation: &Relaxation, time_step: f64) -> usize {
+    pub(crate) fn stride(relaxation: &Relaxation, time_step: f64) -> usize {
         let crossing = relaxation.crossing_time.iter().copied();
         let crossing = crossing.filter(|time| time.is_finite() && *time > 0.0);
         let longest = LOOK_ANGLE / relaxation.frequency.max(f64::MIN_POSITIVE);

@@ -5,7 +5,7 @@ use crate::space::CellSpace;
 
 /// Blocks that standard errors rest on. Blocks are groups of independent trajectories, or, when there are fewer than
 /// this many batches, stretches of their time.
-pub const BLOCKS: usize = 32;
+pub(crate) const BLOCKS: usize = 32;
 
 /// Counts of one task.
 #[derive(Debug, Clone)]

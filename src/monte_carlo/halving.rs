@@ -28,11 +28,11 @@ const FARTHEST: f64 = 1e3;
 /// Shortenings of an automatic step.
 const MOST_ROUNDS: usize = 6;
 /// Largest bias that is passed over when the sampling error is larger still, or not known.
-pub const TOLERATED_BIAS: f64 = 0.02;
+pub(crate) const TOLERATED_BIAS: f64 = 0.02;
 
 /// A number of the steady state that a time step may shift.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum BiasedQuantity {
+pub(crate) enum BiasedQuantity {
     /// Variance of an axis.
     Variance(usize),
     /// Sum of the variances of all axes, each relative to its own: stands for the mean energy.
@@ -43,7 +43,7 @@ pub enum BiasedQuantity {
 
 /// Relative shift of a quantity by the time step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StepBias {
+pub(crate) struct StepBias {
     /// What is shifted.
     pub quantity: BiasedQuantity,
     /// (with this step - with infinitely short ones)/(with half the step), extrapolated from the difference of the two
@@ -55,12 +55,12 @@ pub struct StepBias {
 
 impl StepBias {
     /// Magnitude that is certain: less two standard errors, at least 0.
-    pub fn certain(&self) -> f64 {
+    pub(crate) fn certain(&self) -> f64 {
         (self.relative.abs() - 2.0 * self.standard_error).max(0.0)
     }
 
     /// The one of two that is more certain to be large; of two that may be nothing, the one that shows more clearly.
-    pub fn worse(self, other: Self) -> Self {
+    pub(crate) fn worse(self, other: Self) -> Self {
         let clear = |bias: &Self| bias.relative.abs() / bias.standard_error.max(f64::MIN_POSITIVE);
         let by_size = self.certain().total_cmp(&other.certain());
         match by_size.then(clear(&self).total_cmp(&clear(&other))) {
@@ -75,7 +75,7 @@ impl StepBias {
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn step_bias(
+pub(crate) fn step_bias(
     system: &dyn System,
     space: &CellSpace,
     relaxation: &Relaxation,
@@ -130,7 +130,7 @@ fn order(integrator: Integrator, additive: bool) -> u32 {
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn automatic_step(
+pub(crate) fn automatic_step(
     system: &dyn System,
     space: &CellSpace,
     relaxation: &Relaxation,

@@ -2,7 +2,7 @@
 //!
 //! [`relaxation()`] measures how long a system remembers; [`ergodic()`] averages a fixed number of long trajectories
 //! over time, [`ensemble()`] counts many at one time; [`sample_path`] follows a single one, to be looked at;
-//! [`step_bias`] finds what a time step does to the density.
+//! `step_bias` finds what a time step does to the density.
 //!
 //! # Decisions
 //!
@@ -23,8 +23,9 @@ mod tests;
 
 pub use ensemble::{EnsembleRun, ensemble};
 pub use ergodic::{ErgodicRun, ergodic};
-pub use estimate::{BLOCKS, Estimate};
-pub use halving::{BiasedQuantity, StepBias, TOLERATED_BIAS, automatic_step, step_bias};
+pub(crate) use estimate::BLOCKS;
+pub use estimate::Estimate;
+pub(crate) use halving::{BiasedQuantity, StepBias, TOLERATED_BIAS, automatic_step, step_bias};
 pub use path::{PathRun, SamplePath, sample_path};
 pub use relaxation::{Relaxation, relaxation};
 

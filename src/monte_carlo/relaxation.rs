@@ -51,18 +51,18 @@ pub struct Relaxation {
 
 impl Relaxation {
     /// A time step by the pilot's rule: dt ≤ 0.1/ω, and at most a share of the damping taken by the integrator.
-    pub fn time_step(&self, integrator: Integrator, share: f64) -> f64 {
+    pub(crate) fn time_step(&self, integrator: Integrator, share: f64) -> f64 {
         self.pilot.time_step_within(integrator, share)
     }
 
     /// States at the end of the trajectories that did not run away, d values each: draws from the steady state.
-    pub fn settled(&self) -> &[Vec<f64>] {
+    pub(crate) fn settled(&self) -> &[Vec<f64>] {
         &self.settled
     }
 
     /// Variance of (x_i - m_i)² relative to its mean's square, the largest of all axes: 2 for a normal density. The
     /// relative standard error of the variance of n independent states is the root of this over n.
-    pub fn relative_square(&self) -> f64 {
+    pub(crate) fn relative_square(&self) -> f64 {
         let of_axis = |axis: usize| {
             let off = |state: &Vec<f64>| (state[axis] - self.mean[axis]).powi(2);
             let count = self.settled.len() as f64;

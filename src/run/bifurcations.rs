@@ -62,7 +62,7 @@ fn columns<'a>(family: &'a Family) -> Columns<'a, Label> {
 ///
 /// # Errors
 /// [`RunError::Table`].
-pub fn bifurcations_csv(family: &Family, labels: &[Label]) -> Result<String, RunError> {
+pub(crate) fn bifurcations_csv(family: &Family, labels: &[Label]) -> Result<String, RunError> {
     columns(family).csv(labels)
 }
 
@@ -70,7 +70,7 @@ pub fn bifurcations_csv(family: &Family, labels: &[Label]) -> Result<String, Run
 ///
 /// # Errors
 /// [`RunError::Json`].
-pub fn bifurcations_json(family: &Family, labels: &[Label]) -> Result<String, RunError> {
+pub(crate) fn bifurcations_json(family: &Family, labels: &[Label]) -> Result<String, RunError> {
     let rows = columns(family).json(labels);
     Ok(serde_json::to_string_pretty(&rows)? + "\n")
 }
@@ -87,7 +87,7 @@ fn rounded(row: &Label) -> [String; 4] {
 }
 
 /// The Markdown table, values rounded to their errors.
-pub fn bifurcations_markdown(family: &Family, labels: &[Label]) -> String {
+pub(crate) fn bifurcations_markdown(family: &Family, labels: &[Label]) -> String {
     let mut text = format!(
         "| label | {} | bracket | observable | before | after | change | status |\n| --- | --- | --- | --- | --- | --- | --- | --- |\n",
         family.parameter()
@@ -114,7 +114,7 @@ pub fn bifurcations_markdown(family: &Family, labels: &[Label]) -> String {
 }
 
 /// A LaTeX table with booktabs rules, values rounded to their errors.
-pub fn bifurcations_tex(family: &Family, labels: &[Label]) -> String {
+pub(crate) fn bifurcations_tex(family: &Family, labels: &[Label]) -> String {
     let mut text = String::from(
         "% needs \\usepackage{booktabs}\n\\begin{tabular}{lllllll}\n\\toprule\nlabel & $",
     );

@@ -26,7 +26,7 @@ pub enum Damage {
 
 impl Damage {
     /// In a word.
-    pub fn word(self) -> &'static str {
+    pub(crate) fn word(self) -> &'static str {
         match self {
             Self::Missing => "missing",
             Self::Changed => "changed",
@@ -36,7 +36,7 @@ impl Damage {
 }
 
 /// What a check finds: how many files are as the run left them, and those that are not.
-pub type Checked = (usize, Vec<(PathBuf, Damage)>);
+pub(crate) type Checked = (usize, Vec<(PathBuf, Damage)>);
 
 /// Checksums by the names of files below a run's folder, with `/` between folders.
 type Sums = BTreeMap<String, String>;

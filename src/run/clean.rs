@@ -11,7 +11,7 @@ const FIGURES: &str = "figures";
 
 /// A run that may go.
 #[derive(Debug)]
-pub struct Removable {
+pub(crate) struct Removable {
     /// Its folder.
     pub path: PathBuf,
     /// Why it may go, in words.
@@ -22,7 +22,7 @@ pub struct Removable {
 
 /// The runs in a folder and below that may go: earlier versions, unfinished runs, and shards that were put together.
 /// Runs that are being written are left out.
-pub fn removable_runs(folder: &Path) -> Vec<Removable> {
+pub(crate) fn removable_runs(folder: &Path) -> Vec<Removable> {
     let runs = find_runs(folder);
     let known = runs.iter().filter_map(|path| {
         let summary = RunSummary::read(path).ok();
@@ -73,7 +73,7 @@ fn size(path: &Path) -> u64 {
 ///
 /// # Errors
 /// [`RunError::NotARun`], [`RunError::InUse`], [`RunError::Write`].
-pub fn remove_run(path: &Path) -> Result<(), RunError> {
+pub(crate) fn remove_run(path: &Path) -> Result<(), RunError> {
     if !path.join(Layout::SWEEP.manifest()).is_file() {
         return Err(RunError::NotARun {
             path: path.to_owned(),

@@ -6,7 +6,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 const DAY: u64 = 86_400;
 
 /// A moment as `2026-11-22T09:41:05Z` (ISO 8601); moments before 1970 as its beginning.
-pub fn date_in_utc(moment: SystemTime) -> String {
+pub(crate) fn date_in_utc(moment: SystemTime) -> String {
     let seconds = moment.duration_since(UNIX_EPOCH).map_or(0, |d| d.as_secs());
     let (year, month, day) = civil(seconds / DAY);
     let second = seconds % DAY;

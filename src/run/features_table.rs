@@ -66,7 +66,7 @@ pub(super) fn found<'p>(
 ///
 /// # Errors
 /// [`RunError::Table`].
-pub fn features_csv(subject: &Subject, points: &[Point]) -> Result<String, RunError> {
+pub(crate) fn features_csv(subject: &Subject, points: &[Point]) -> Result<String, RunError> {
     let points = ascending(points).into_iter();
     let observables = &subject.observables;
     let rows: Vec<FeatureRow<'_>> = points.flat_map(|point| found(observables, point)).collect();

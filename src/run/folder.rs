@@ -18,7 +18,7 @@ const STORE: &str = "densities.zarr";
 
 /// The files of a run while they are written.
 #[derive(Debug)]
-pub struct RunFolder {
+pub(crate) struct RunFolder {
     path: PathBuf,
     store: DensityStore,
     points: GrowingTable,
@@ -31,7 +31,7 @@ pub struct RunFolder {
 
 impl RunFolder {
     /// Nothing is written yet. Whoever writes to the folder of a run opens it first ([`JobFolder`](super::JobFolder)).
-    pub fn at(path: &Path) -> Self {
+    pub(crate) fn at(path: &Path) -> Self {
         Self {
             path: path.to_owned(),
             store: DensityStore::new(&path.join(STORE)),
@@ -46,7 +46,7 @@ impl RunFolder {
     ///
     /// # Errors
     /// [`RunError::Json`] or [`RunError::Write`].
-    pub fn write_manifest(&self, manifest: &Manifest) -> Result<(), RunError> {
+    pub(crate) fn write_manifest(&self, manifest: &Manifest) -> Result<(), RunError> {
         if manifest.ending != Ending::Running {
             // The journal of a complete run is about to be removed.
             let mut done = match manifest.ending {
@@ -73,7 +73,7 @@ impl RunFolder {
     ///
     /// # Errors
     /// [`RunError::Json`] or [`RunError::Write`].
-    pub fn write_progress(&self, manifest: &Manifest) -> Result<(), RunError> {
+    pub(crate) fn write_progress(&self, manifest: &Manifest) -> Result<(), RunError> {
         let text = serde_json::to_string_pretty(manifest)? + "\n";
         write_atomically(&self.path.join("run.json"), text.as_bytes())
     }
@@ -83,7 +83,7 @@ impl RunFolder {
     ///
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.
-    pub fn add_point(&mut self, subject: &Subject, point: &Point) -> Result<(), RunError> {
+    pub(crate) fn add_point(&mut self, subject: &Subject, point: &Point) -> Result<(), RunError> {
         let Subject {
             family,
             observables,
@@ -109,7 +109,11 @@ impl RunFolder {
     ///
     /// # Errors
     /// As [`RunFolder::add_point`].
-    pub fn add_points(&mut self, subject: &Subject, points: &[Point]) -> Result<(), RunError> {
+    pub(crate) fn add_points(
+        &mut self,
+        subject: &Subject,
+        points: &[Point],
+    ) -> Result<(), RunError> {
         let family = &subject.family;
         self.store.replace(family, &with_densities(points))?;
         let observables = &subject.observables;
@@ -128,7 +132,7 @@ impl RunFolder {
     }
 
     /// How many points were added so far.
-    pub fn points(&self) -> usize {
+    pub(crate) fn points(&self) -> usize {
         self.added
     }
 
@@ -137,7 +141,7 @@ impl RunFolder {
     ///
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.
-    pub fn finish(&mut self, result: &SweepResult) -> Result<(), RunError> {
+    pub(crate) fn finish(&mut self, result: &SweepResult) -> Result<(), RunError> {
         self.points.close();
         self.features.close();
         for (name, text) in sweep_files(result)? {
@@ -154,7 +158,7 @@ impl RunFolder {
 ///
 /// # Errors
 /// [`RunError`] when one cannot be composed.
-pub fn sweep_files(result: &SweepResult) -> Result<Vec<(String, String)>, RunError> {
+pub(crate) fn sweep_files(result: &SweepResult) -> Result<Vec<(String, String)>, RunError> {
     let SweepResult {
         subject,
         points,

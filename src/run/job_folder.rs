@@ -24,7 +24,7 @@ pub struct Layout {
 
 impl Layout {
     /// A sweep.
-    pub const SWEEP: Self = Self {
+    pub(crate) const SWEEP: Self = Self {
         entries: &[
             "run.json",
             research_object::NAME,
@@ -49,7 +49,7 @@ impl Layout {
     };
 
     /// A map of regimes.
-    pub const MAP: Self = Self {
+    pub(crate) const MAP: Self = Self {
         entries: &[
             "map.json",
             checksums::NAME,
@@ -67,13 +67,13 @@ impl Layout {
     };
 
     /// A shard of a map.
-    pub const MAP_SHARD: Self = Self {
+    pub(crate) const MAP_SHARD: Self = Self {
         entries: &["map.shard.json"],
         ..Self::MAP
     };
 
     /// The curves from a row of a sweep.
-    pub const CURVES: Self = Self {
+    pub(crate) const CURVES: Self = Self {
         entries: &[
             "curve.json",
             checksums::NAME,
@@ -89,7 +89,7 @@ impl Layout {
     };
 
     /// A comparison of methods.
-    pub const COMPARISON: Self = Self {
+    pub(crate) const COMPARISON: Self = Self {
         entries: &[
             "compare.json",
             checksums::NAME,
@@ -120,7 +120,7 @@ impl Layout {
     }
 
     /// Whether a folder holds what an unfinished job has solved.
-    pub fn has_part(&self, folder: &Path) -> bool {
+    pub(crate) fn has_part(&self, folder: &Path) -> bool {
         folder.join(self.part).is_file()
     }
 
@@ -128,7 +128,7 @@ impl Layout {
     ///
     /// # Errors
     /// [`RunError::OtherSweep`], with every difference, where it is of something else; [`RunError::Json`].
-    pub fn is_complete(&self, folder: &Path, of: &str) -> Result<bool, RunError> {
+    pub(crate) fn is_complete(&self, folder: &Path, of: &str) -> Result<bool, RunError> {
         let Ok(text) = std::fs::read_to_string(folder.join(self.manifest())) else {
             return Ok(false);
         };
@@ -209,7 +209,7 @@ impl JobFolder {
     }
 
     /// Where an earlier run is kept that was in the place of files that grow.
-    pub fn kept(&self) -> Option<&Path> {
+    pub(crate) fn kept(&self) -> Option<&Path> {
         self.kept.as_deref()
     }
 
@@ -235,7 +235,7 @@ impl JobFolder {
     ///
     /// # Errors
     /// [`RunError::Write`].
-    pub fn write(&self, files: &[(String, String)]) -> Result<(), RunError> {
+    pub(crate) fn write(&self, files: &[(String, String)]) -> Result<(), RunError> {
         let path = self.path();
         let mut files = files.iter();
         files.try_for_each(|(name, text)| write_atomically(&path.join(name), text.as_bytes()))
@@ -245,7 +245,7 @@ impl JobFolder {
     ///
     /// # Errors
     /// As [`Journal::create`] and [`Journal::open`].
-    pub fn journal(&self, of: &str, goes_on: bool) -> Result<Journal, RunError> {
+    pub(crate) fn journal(&self, of: &str, goes_on: bool) -> Result<Journal, RunError> {
         if goes_on {
             Journal::open(&self.part(), of)
         } else {
@@ -254,7 +254,7 @@ impl JobFolder {
     }
 
     /// Removes what was solved: nothing is left of a job that has hardly begun.
-    pub fn give_up(self) {
+    pub(crate) fn give_up(self) {
         // One that cannot be removed can be gone on with.
         let _ = std::fs::remove_file(self.part());
     }
@@ -264,7 +264,7 @@ impl JobFolder {
     ///
     /// # Errors
     /// [`RunError::Read`], [`RunError::Manifest`] or [`RunError::Write`].
-    pub fn close(self, ending: Ending) -> Result<Vec<PathBuf>, RunError> {
+    pub(crate) fn close(self, ending: Ending) -> Result<Vec<PathBuf>, RunError> {
         let (part, path) = (self.part(), self.path());
         let files = match self.place {
             Destination::Beside(staging) => {

@@ -72,7 +72,7 @@ impl Typed {
 
 /// The manifest of a run.
 #[derive(Debug, Clone, Serialize)]
-pub struct Manifest {
+pub(crate) struct Manifest {
     /// Always `pbif`.
     pub program: &'static str,
     /// Version of the program.
@@ -115,7 +115,7 @@ impl Manifest {
     ///
     /// # Errors
     /// [`RunError::Resolved`] when `resolved` is not TOML.
-    pub fn start(
+    pub(crate) fn start(
         resolved: &str,
         typed: SweepText,
         seed: u64,

@@ -21,7 +21,7 @@ const PICTURE: [usize; 2] = [300, 300];
 ///
 /// # Errors
 /// [`RunError::Table`].
-pub fn map_csv(map: &RegimeMap) -> Result<String, RunError> {
+pub(crate) fn map_csv(map: &RegimeMap) -> Result<String, RunError> {
     let Subject {
         family,
         observables,

@@ -25,7 +25,7 @@ struct Content {
 
 /// The shards of a map, all complete.
 #[derive(Debug, Clone)]
-pub struct MapShards {
+pub(crate) struct MapShards {
     /// The resolved sweep file as TOML.
     pub sweep_file: String,
     /// What each has found, in the order of their numbers.
@@ -34,7 +34,7 @@ pub struct MapShards {
 
 impl MapShards {
     /// Whether the shards in a folder are those of a map.
-    pub fn are_there(path: &Path) -> bool {
+    pub(crate) fn are_there(path: &Path) -> bool {
         count(path).is_ok_and(|of| folders(path, of).any(|(_, folder)| is_of_map(&folder)))
     }
 
@@ -44,7 +44,7 @@ impl MapShards {
     /// [`RunError::NoShards`]; [`RunError::MixedShards`] when the map was cut into shards in more than one way,
     /// [`RunError::MissingShards`] where some are not complete, [`RunError::OtherSweep`] where they are of different
     /// sweeps or of another version, [`RunError::Plane`].
-    pub fn open(path: &Path) -> Result<Self, RunError> {
+    pub(crate) fn open(path: &Path) -> Result<Self, RunError> {
         let of = count(path)?;
         let mut sweep_file: Option<String> = None;
         let (mut shards, mut missing) = (Vec::new(), Vec::new());
@@ -82,7 +82,7 @@ impl MapShards {
 ///
 /// # Errors
 /// [`RunError::Json`].
-pub fn map_shard_file(sweep: &str, found: &MapShard) -> Result<(String, String), RunError> {
+pub(crate) fn map_shard_file(sweep: &str, found: &MapShard) -> Result<(String, String), RunError> {
     let content = Content {
         program: env!("CARGO_PKG_NAME").to_owned(),
         version: env!("CARGO_PKG_VERSION").to_owned(),

@@ -95,40 +95,42 @@ mod tree;
 mod warnings;
 
 pub(crate) use atomic::write_atomically;
-pub use bifurcations::{
+pub(crate) use bifurcations::{
     bifurcations_csv, bifurcations_json, bifurcations_markdown, bifurcations_tex,
 };
-pub use checksums::{Checked, Damage, check_folder};
-pub use clean::{Removable, removable_runs, remove_run};
-#[cfg(feature = "cli")]
+pub(crate) use checksums::Checked;
+pub use checksums::{Damage, check_folder};
+pub(crate) use clean::{Removable, removable_runs, remove_run};
 pub(crate) use codimension::curve_name;
-pub use compare::{CompareTable, ComparedRun, compare_files, compare_tables};
-#[cfg(feature = "cli")]
+pub use compare::ComparedRun;
+pub(crate) use compare::{compare_files, compare_tables};
 pub(crate) use curve::point_labels;
 pub use curve::{FOLDER as CURVES, curve_files};
-pub use date::date_in_utc;
+pub(crate) use date::date_in_utc;
 pub use doubts::doubt_in_words;
 pub use export::{ExportFormat, export};
-pub use features_table::features_csv;
-pub use folder::{RunFolder, sweep_files};
+pub(crate) use features_table::features_csv;
+pub(crate) use folder::{RunFolder, sweep_files};
 pub use job_folder::{JobFolder, Layout};
 pub use journal::{Journal, JournalledSource};
-pub use manifest::{Ending, Manifest, PhaseSeconds};
-pub use map::{map_csv, map_files};
-pub use map_shards::{MapShards, map_shard_file};
+pub(crate) use manifest::Manifest;
+pub use manifest::{Ending, PhaseSeconds};
+pub use map::map_files;
+pub(crate) use map_shards::{MapShards, map_shard_file};
 pub use names::check_names;
-pub use number::{format_number, format_with_error};
+pub(crate) use number::{format_number, format_with_error};
 pub use plane_file::{StoredPlane, StoredPlaneContent};
-pub use points_table::points_csv;
-pub use provenance::Provenance;
+pub(crate) use points_table::points_csv;
+pub(crate) use provenance::Provenance;
 pub use recompute::Recomputed;
 pub use sentences::finding_in_words;
-pub use shards::{Gathered, Shards, shard_folder};
-pub use staged::StagedRun;
-pub use store::DensityStore;
+pub(crate) use shards::shard_folder;
+pub use shards::{Gathered, Shards};
+pub(crate) use staged::StagedRun;
+pub(crate) use store::DensityStore;
 pub use stored_run::StoredRun;
 pub use summary::{FoundRow, RunSummary, find_runs};
-pub use warnings::{warnings_of_comparison, warnings_of_points};
+pub(crate) use warnings::{warnings_of_comparison, warnings_of_points};
 
 use std::path::PathBuf;
 

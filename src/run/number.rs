@@ -2,7 +2,7 @@
 
 /// The shortest text that reads back as the same number; powers of ten outside 1e-4 … 1e15. Empty for values that
 /// are not finite, which tables never show as numbers.
-pub fn format_number(value: f64) -> String {
+pub(crate) fn format_number(value: f64) -> String {
     if !value.is_finite() {
         return String::new();
     }
@@ -21,7 +21,7 @@ const LARGEST_IN_DIGITS: f64 = 1e6;
 
 /// A value and its error, both to the error's second significant digit, for example `("-0.0123", "0.0045")`.
 /// Without an error the value is given in full.
-pub fn format_with_error(value: f64, error: f64) -> (String, String) {
+pub(crate) fn format_with_error(value: f64, error: f64) -> (String, String) {
     if !(error > 0.0 && error.is_finite() && value.is_finite()) {
         return (format_number(value), format_number(error));
     }

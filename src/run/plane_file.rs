@@ -201,7 +201,7 @@ impl StoredPlane {
     ///
     /// # Errors
     /// [`RunError::Read`], [`RunError::Write`], [`RunError::Checksums`].
-    pub fn renew_figures(&self) -> Result<(), RunError> {
+    pub(crate) fn renew_figures(&self) -> Result<(), RunError> {
         let folder = self.path.parent().unwrap_or(&self.path);
         checksums::renew(folder, "figures")
     }

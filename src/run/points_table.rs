@@ -243,7 +243,7 @@ pub(super) fn of_subject(subject: &Subject) -> Columns<'_, Point> {
 ///
 /// # Errors
 /// [`RunError::Table`].
-pub fn points_csv(subject: &Subject, points: &[Point]) -> Result<String, RunError> {
+pub(crate) fn points_csv(subject: &Subject, points: &[Point]) -> Result<String, RunError> {
     of_subject(subject).csv(ascending(points))
 }
 

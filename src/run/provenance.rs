@@ -8,7 +8,7 @@ use super::date_in_utc;
 
 /// What made a run. Results do not depend on it; whoever wants to know why two machines took different times does.
 #[derive(Debug, Clone, Serialize)]
-pub struct Provenance {
+pub(crate) struct Provenance {
     /// When the process began that wrote it, in UTC (ISO 8601).
     pub started: String,
     /// When the run ended; `None` before.
@@ -39,7 +39,7 @@ pub struct Provenance {
 
 impl Provenance {
     /// Of this process.
-    pub fn of_this_process() -> Self {
+    pub(crate) fn of_this_process() -> Self {
         Self {
             started: date_in_utc(SystemTime::now()),
             ended: None,
@@ -56,7 +56,7 @@ impl Provenance {
     }
 
     /// Now it has ended.
-    pub fn end(&mut self) {
+    pub(crate) fn end(&mut self) {
         self.ended = Some(date_in_utc(SystemTime::now()));
     }
 }

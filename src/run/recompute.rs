@@ -32,7 +32,7 @@ impl StoredRun {
     ///
     /// # Errors
     /// As [`StoredRun::points`].
-    pub fn solved_points(&self, sweep: &Sweep) -> Result<Vec<Point>, RunError> {
+    pub(crate) fn solved_points(&self, sweep: &Sweep) -> Result<Vec<Point>, RunError> {
         let problem = &sweep.problem;
         let cells = (problem.space(), problem.bins());
         let mut points = self.points(problem.subject(), cells, &sweep.methods())?;

@@ -16,7 +16,7 @@ const SOLVED: [&str; 2] = ["densities.zarr", "checks.csv"];
 
 /// The new version in the making. Dropped before it is in place, it leaves everything as it was.
 #[derive(Debug)]
-pub struct StagedRun {
+pub(crate) struct StagedRun {
     staging: Staging,
     /// Whether what was solved for is in place already.
     same: bool,
@@ -27,7 +27,7 @@ impl StagedRun {
     ///
     /// # Errors
     /// [`RunError::InUse`], [`RunError::NotOurs`], [`RunError::Read`] or [`RunError::Write`].
-    pub fn new(home: &Path, solved: &Path) -> Result<Self, RunError> {
+    pub(crate) fn new(home: &Path, solved: &Path) -> Result<Self, RunError> {
         let staging = Staging::new(home, Layout::SWEEP.entries)?.with(Layout::SWEEP.about)?;
         let same = is_same(home, solved);
         for entry in SOLVED {
@@ -41,7 +41,7 @@ impl StagedRun {
     }
 
     /// Where figures are drawn to.
-    pub fn figures(&self) -> PathBuf {
+    pub(crate) fn figures(&self) -> PathBuf {
         self.staging.fresh().join("figures")
     }
 
@@ -49,7 +49,7 @@ impl StagedRun {
     ///
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.
-    pub fn write(&self, result: &SweepResult) -> Result<(), RunError> {
+    pub(crate) fn write(&self, result: &SweepResult) -> Result<(), RunError> {
         let files = sweep_files(result)?;
         let mut made = files
             .iter()
@@ -63,7 +63,7 @@ impl StagedRun {
     ///
     /// # Errors
     /// As [`RunFolder::write_manifest`].
-    pub fn write_manifest(&self, manifest: &Manifest) -> Result<(), RunError> {
+    pub(crate) fn write_manifest(&self, manifest: &Manifest) -> Result<(), RunError> {
         RunFolder::at(&self.staging.fresh()).write_manifest(manifest)
     }
 
@@ -72,7 +72,7 @@ impl StagedRun {
     ///
     /// # Errors
     /// [`RunError::Read`] or [`RunError::Write`].
-    pub fn take_place(self) -> Result<Vec<PathBuf>, RunError> {
+    pub(crate) fn take_place(self) -> Result<Vec<PathBuf>, RunError> {
         // A run that goes on needs its journal, which cannot be shared with another folder.
         let home = self.staging.home().to_owned();
         let mut staying = Vec::new();

@@ -22,7 +22,7 @@ use files::chunk_name;
 
 /// The store of a run's densities.
 #[derive(Debug)]
-pub struct DensityStore {
+pub(crate) struct DensityStore {
     path: PathBuf,
     values: Vec<f64>,
     /// Centres and edges of the axes so far.
@@ -41,7 +41,7 @@ const ROOM: u64 = 64;
 
 impl DensityStore {
     /// A store that will be made at `path` with the first density.
-    pub fn new(path: &Path) -> Self {
+    pub(crate) fn new(path: &Path) -> Self {
         Self {
             path: path.to_owned(),
             values: Vec::new(),
@@ -62,7 +62,7 @@ impl DensityStore {
     ///
     /// # Errors
     /// [`RunError::Store`] or [`RunError::Write`].
-    pub fn append(
+    pub(crate) fn append(
         &mut self,
         family: &Family,
         value: f64,
@@ -79,7 +79,7 @@ impl DensityStore {
     ///
     /// # Errors
     /// As [`DensityStore::append`].
-    pub fn replace(
+    pub(crate) fn replace(
         &mut self,
         family: &Family,
         densities: &[(f64, &[EstimatedDensity])],

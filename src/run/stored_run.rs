@@ -121,7 +121,7 @@ impl StoredRun {
 
     /// The commit that the program was built from, with `-dirty` where files were changed; `None` where the run does
     /// not say.
-    pub fn commit(&self) -> Option<&str> {
+    pub(crate) fn commit(&self) -> Option<&str> {
         self.manifest.made["commit"].as_str()
     }
 
@@ -147,23 +147,23 @@ impl StoredRun {
     }
 
     /// Which shard of a sweep it is; `None` of a whole sweep.
-    pub fn shard(&self) -> Option<Shard> {
+    pub(crate) fn shard(&self) -> Option<Shard> {
         let (number, of) = self.manifest.shard.as_deref()?.split_once('/')?;
         Shard::new(number.parse().ok()?, of.parse().ok()?)
     }
 
     /// Of how many shards it was put together; `None` where it was run as a whole.
-    pub fn merged(&self) -> Option<usize> {
+    pub(crate) fn merged(&self) -> Option<usize> {
         self.manifest.merged
     }
 
     /// Points that are done; `None` for runs of early versions that were killed.
-    pub fn points_done(&self) -> Option<usize> {
+    pub(crate) fn points_done(&self) -> Option<usize> {
         self.manifest.points
     }
 
     /// Whether it is unfinished and can be gone on with.
-    pub fn can_go_on(&self) -> bool {
+    pub(crate) fn can_go_on(&self) -> bool {
         self.ending() != Ending::Complete && journal::can_go_on(&self.path)
     }
 
@@ -171,7 +171,7 @@ impl StoredRun {
     ///
     /// # Errors
     /// [`RunError::OtherSweep`].
-    pub fn check_sweep(&self, resolved: &str) -> Result<(), RunError> {
+    pub(crate) fn check_sweep(&self, resolved: &str) -> Result<(), RunError> {
         let differences = journal::different_keys(&self.resolved, resolved);
         match differences.is_empty() {
             true => Ok(()),
@@ -188,7 +188,7 @@ impl StoredRun {
     }
 
     /// Threads that the run used.
-    pub fn threads(&self) -> usize {
+    pub(crate) fn threads(&self) -> usize {
         self.manifest.threads
     }
 
@@ -287,7 +287,7 @@ impl StoredRun {
     ///
     /// # Errors
     /// [`RunError::Read`], [`RunError::Write`], [`RunError::Checksums`].
-    pub fn renew_figures(&self) -> Result<(), RunError> {
+    pub(crate) fn renew_figures(&self) -> Result<(), RunError> {
         checksums::renew(&self.path, "figures")
     }
 }

@@ -15,7 +15,7 @@ struct Gathered<'a> {
 }
 
 /// The warnings of all points: each kind of finding once, in the numbers of its first.
-pub fn warnings_of_points(family: &Family, points: &[Point]) -> Vec<String> {
+pub(crate) fn warnings_of_points(family: &Family, points: &[Point]) -> Vec<String> {
     let mut kinds: Vec<Gathered<'_>> = Vec::new();
     for point in points {
         for finding in &point.report.findings {
@@ -56,7 +56,7 @@ impl Gathered<'_> {
 }
 
 /// What methods say of themselves and of each other: each kind of finding once a method, at its first value.
-pub fn warnings_of_comparison(family: &Family, comparison: &Comparison) -> Vec<String> {
+pub(crate) fn warnings_of_comparison(family: &Family, comparison: &Comparison) -> Vec<String> {
     let mut seen: Vec<(Method, _)> = Vec::new();
     let mut warnings = Vec::new();
     for value in &comparison.values {

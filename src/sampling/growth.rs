@@ -24,16 +24,16 @@ pub struct SamplingOptions {
     /// Integrator of the trajectories.
     pub integrator: Integrator,
     /// Whether to keep where in its cell the samples of each transition started, for
-    /// [`SampledTransitions::corrected_matrix`].
+    /// `SampledTransitions::corrected_matrix`.
     pub keep_starts: bool,
 }
 
 impl SamplingOptions {
     /// Largest number of groups.
-    pub const MOST_GROUPS: usize = 256;
+    pub(crate) const MOST_GROUPS: usize = 256;
 
     /// Integrator steps in one map step.
-    pub fn steps(&self) -> usize {
+    pub(crate) fn steps(&self) -> usize {
         // A quotient that is whole but for rounding does not cost a further step.
         let steps = self.map_step / self.time_step * (1.0 - 1e-12);
         (steps.ceil() as usize).max(1)

@@ -33,7 +33,7 @@ pub use integrator::Integrator;
 pub(crate) use integrator::Stepper;
 pub use pilot::{Pilot, pilot};
 pub(crate) use random::{NormalStream, StreamKey, mix, unit};
-pub use slopes::cell_slopes;
+pub(crate) use slopes::cell_slopes;
 pub use transition::{SampledTransitions, TransitionMatrix};
 
 /// Why transitions could not be sampled.

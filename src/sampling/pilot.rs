@@ -69,7 +69,7 @@ impl Pilot {
 
     /// The same with another share of the damping than 1 %: about the relative error of the variances that the step
     /// leaves.
-    pub fn time_step_within(&self, integrator: Integrator, share: f64) -> f64 {
+    pub(crate) fn time_step_within(&self, integrator: Integrator, share: f64) -> f64 {
         let (frequency, damping) = (self.frequency, self.damping);
         time_step(frequency, frequency, damping, share, integrator)
     }

@@ -12,7 +12,11 @@ const STEEPEST: f64 = 1.9;
 /// Slopes are differences over both neighbours, which errs by O(h²); at an end of the range over the one that is there.
 /// Where the density would fall below zero in a corner the slopes are shortened together. `mass` has one value a cell
 /// of the space. An empty cell is flat.
-pub fn cell_slopes(space: &CellSpace, cells: &[usize], mass: &[f64]) -> Vec<[f64; MAX_DIMENSION]> {
+pub(crate) fn cell_slopes(
+    space: &CellSpace,
+    cells: &[usize],
+    mass: &[f64],
+) -> Vec<[f64; MAX_DIMENSION]> {
     let dimension = space.dimension();
     let mut strides = vec![1; dimension];
     for axis in (1..dimension).rev() {

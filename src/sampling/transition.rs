@@ -80,7 +80,7 @@ impl SampledTransitions {
     }
 
     /// Integrator steps of all trajectories together: the work that was done.
-    pub fn n_steps(&self) -> u64 {
+    pub(crate) fn n_steps(&self) -> u64 {
         let samples: usize = self.columns.iter().map(|column| column.groups.len()).sum();
         samples as u64 * (self.map_step / self.time_step).round() as u64
     }
@@ -99,7 +99,7 @@ impl SampledTransitions {
     /// across the cell: every sample counts by the density at its start. `slopes` holds the s_a of every sampled cell,
     /// as [`cell_slopes`](super::cell_slopes) makes them (Σ |s_a| < 2, so that no weight is negative). `left_out` names
     /// a group that is not counted. Without kept starts this is the plain matrix.
-    pub fn corrected_matrix(
+    pub(crate) fn corrected_matrix(
         &self,
         slopes: &[[f64; MAX_DIMENSION]],
         left_out: Option<usize>,
@@ -121,7 +121,7 @@ impl SampledTransitions {
     }
 
     /// Whether it is known where in their cells the samples started.
-    pub fn keeps_starts(&self) -> bool {
+    pub(crate) fn keeps_starts(&self) -> bool {
         self.columns.iter().any(|column| !column.starts.is_empty())
     }
 

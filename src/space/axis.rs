@@ -41,7 +41,6 @@ const DEVIATIONS_OF_A_RANGE: f64 = 5.0;
 
 impl Axis {
     /// Whether every cell has its edges, its node and, but for modes, its piece: what was read from a file may not.
-    #[cfg(feature = "store")]
     pub(crate) fn is_sound(&self) -> bool {
         let ascending = self.edges.windows(2).all(|pair| pair[0] < pair[1]);
         let mut cells = 0;
@@ -146,7 +145,7 @@ impl Axis {
     ///
     /// # Errors
     /// [`SpaceError::Range`] or [`SpaceError::Modes`].
-    pub fn hermite_over(from: f64, to: f64, count: usize) -> Result<Self, SpaceError> {
+    pub(crate) fn hermite_over(from: f64, to: f64, count: usize) -> Result<Self, SpaceError> {
         Self::check(from, to, count.max(2))?;
         let (mean, half) = (0.5 * (from + to), 0.5 * (to - from));
         Self::hermite(mean, half / DEVIATIONS_OF_A_RANGE, count)
@@ -313,7 +312,7 @@ impl Axis {
     /// The same axis with about `factor` times as many cells (fewer below 1, at least two a stretch between graded
     /// points), graded alike: faces stay on the points it is graded toward, and an even number of cells stays even, so
     /// that a face stays in the middle. An axis of modes gets a quarter more of them, at least one (none below 1).
-    pub fn refined(&self, factor: f64) -> Self {
+    pub(crate) fn refined(&self, factor: f64) -> Self {
         if self.is_modes() {
             let more = (self.count() / MODES_A_FINER_MODE).max(1);
             let count = self.count() + if factor > 1.0 { more } else { 0 };
@@ -424,13 +423,13 @@ impl Axis {
     }
 
     /// Whether two coordinates are one place on this axis: to a millionth of the width of the cell that holds `at`.
-    pub fn is_same_place(&self, at: f64, other: f64) -> bool {
+    pub(crate) fn is_same_place(&self, at: f64, other: f64) -> bool {
         self.find(at)
             .is_some_and(|cell| (other - at).abs() <= SAME_PLACE * self.width(cell))
     }
 
     /// The face (number of the edge, the two ends included) that lies at `at`; see [`Axis::is_same_place`].
-    pub fn face_at(&self, at: f64) -> Option<usize> {
+    pub(crate) fn face_at(&self, at: f64) -> Option<usize> {
         let cell = self.find(at)?;
         [cell, cell + 1]
             .into_iter()
@@ -438,18 +437,18 @@ impl Axis {
     }
 
     /// Whether a face lies at `at`.
-    pub fn has_face_at(&self, at: f64) -> bool {
+    pub(crate) fn has_face_at(&self, at: f64) -> bool {
         self.face_at(at).is_some()
     }
 
     /// Whether `at` lies in the range, but inside a cell instead of on a face.
-    pub fn is_inside_cell(&self, at: f64) -> bool {
+    pub(crate) fn is_inside_cell(&self, at: f64) -> bool {
         self.find(at).is_some() && !self.has_face_at(at)
     }
 
     /// The cells below and above `at`: both the same where it lies inside a cell or on an end, `None` outside the
     /// range.
-    pub fn cells_beside(&self, at: f64) -> Option<[usize; 2]> {
+    pub(crate) fn cells_beside(&self, at: f64) -> Option<[usize; 2]> {
         let cell = self.find(at)?;
         Some(match self.face_at(at) {
             Some(face) => [face.saturating_sub(1), face.min(self.count() - 1)],

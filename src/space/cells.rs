@@ -14,7 +14,7 @@ pub struct CellSpace {
 
 impl CellSpace {
     /// Largest number of cells: numbers fit in 32 bits, which the sparse matrices rely on.
-    pub const LIMIT: usize = u32::MAX as usize;
+    pub(crate) const LIMIT: usize = u32::MAX as usize;
 
     /// The product of the axes.
     ///
@@ -95,12 +95,6 @@ impl CellSpace {
         let axes = self.axes.iter().enumerate();
         axes.map(|(index, axis)| axis.width(self.position(cell, index)))
             .product()
-    }
-
-    /// Whether a cell touches an end of the range of the given axis.
-    pub fn is_at_edge(&self, cell: usize, axis: usize) -> bool {
-        let position = self.position(cell, axis);
-        position == 0 || position + 1 == self.axes[axis].count()
     }
 }
 

@@ -10,7 +10,7 @@ use super::series::Rule;
 
 /// Standard deviations on either side of the mean that an axis of Hermite modes spans at least: 2e-9 of the mass lies
 /// beyond.
-pub const NORMAL_RANGE: f64 = 6.0;
+pub(crate) const NORMAL_RANGE: f64 = 6.0;
 
 /// Distance of the ends of the range from the outermost nodes, in standard deviations.
 const BEYOND_NODES: f64 = 0.5;

@@ -19,8 +19,9 @@ mod series;
 pub use axis::Axis;
 pub use cells::CellSpace;
 pub use grading::Grading;
-pub use hermite::NORMAL_RANGE;
-pub use series::{MOST_MODES, Series};
+pub(crate) use hermite::NORMAL_RANGE;
+pub(crate) use series::MOST_MODES;
+pub use series::Series;
 
 /// Why an axis or a cell space could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -11,7 +11,7 @@
 
 /// Largest number of modes of an axis: nodes are found by Newton's method to rounding up to there, and the steepest
 /// density of a friction state that was met needs fewer.
-pub const MOST_MODES: usize = 128;
+pub(crate) const MOST_MODES: usize = 128;
 
 /// What carries the density along an axis in place of cells.
 #[derive(Debug, Clone, Copy, PartialEq)]

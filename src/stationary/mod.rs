@@ -27,6 +27,6 @@ pub mod generator;
 mod transition_matrix;
 
 pub use transition_matrix::{
-    ClassShare, Info, LARGEST_ESCAPE, Options, Outcome, SecondEigenvalue, Solver, StationaryError,
-    SteadyState, second_eigenvalue, solve,
+    ClassShare, Info, Options, Outcome, SecondEigenvalue, Solver, StationaryError, SteadyState,
+    second_eigenvalue, solve,
 };

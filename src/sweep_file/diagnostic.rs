@@ -20,7 +20,7 @@ pub struct Place {
 
 impl Place {
     /// Whether it is of a value that was set on top of the file.
-    pub fn is_set(&self) -> bool {
+    pub(crate) fn is_set(&self) -> bool {
         self.source > 0
     }
 }
@@ -104,7 +104,7 @@ impl Diagnostic {
     }
 
     /// Something that is worth knowing but no error.
-    pub fn warning(title: impl Into<String>) -> Self {
+    pub(crate) fn warning(title: impl Into<String>) -> Self {
         Self {
             is_warning: true,
             ..Self::new(title)
@@ -119,7 +119,7 @@ impl Diagnostic {
     }
 
     /// What is allowed there.
-    pub fn allowed(mut self, words: impl Into<String>) -> Self {
+    pub(crate) fn allowed(mut self, words: impl Into<String>) -> Self {
         self.allowed = Some(words.into());
         self
     }
@@ -131,7 +131,11 @@ impl Diagnostic {
     }
 
     /// Adds "did you mean" where one of `names` is near `given`, and lists the names as allowed.
-    pub fn nearest<'n>(mut self, given: &str, names: impl IntoIterator<Item = &'n str>) -> Self {
+    pub(crate) fn nearest<'n>(
+        mut self,
+        given: &str,
+        names: impl IntoIterator<Item = &'n str>,
+    ) -> Self {
         let names: Vec<&str> = names.into_iter().collect();
         if let Some(name) = nearest_name(given, names.iter().copied()) {
             self.remedy = Some(format!("did you mean `{name}`?"));

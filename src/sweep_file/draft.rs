@@ -63,11 +63,11 @@ pub enum MethodKind {
 }
 
 impl MethodKind {
-    /// All methods, in the order of [`MethodOptions::KINDS`].
+    /// All methods, in the order of `MethodOptions::KINDS`.
     pub const ALL: [Self; 3] = [Self::Generator, Self::Sgcm, Self::MonteCarlo];
 
     /// Whether it can carry an axis by modes; all can cut it into cells.
-    pub fn takes_modes(self) -> bool {
+    pub(crate) fn takes_modes(self) -> bool {
         self == Self::Generator
     }
 

@@ -35,7 +35,7 @@ impl SweepFile {
 
     /// The same of a complete sweep file that was made of what somebody typed.
     #[must_use]
-    pub fn made_of(mut self, typed: SweepText) -> Self {
+    pub(crate) fn made_of(mut self, typed: SweepText) -> Self {
         self.document.typed = Some(typed);
         self
     }
@@ -59,14 +59,14 @@ impl SweepFile {
     }
 
     /// Takes a section out, as if it were not there.
-    pub fn remove(&mut self, section: &str) -> &mut Self {
+    pub(crate) fn remove(&mut self, section: &str) -> &mut Self {
         self.document.remove(section);
         self
     }
 
     /// Takes `[map]` out: what is left is a sweep of the first parameter alone, which holds the second one, if the file
     /// does not say where, in the middle of the map.
-    pub fn without_map(&mut self) -> &mut Self {
+    pub(crate) fn without_map(&mut self) -> &mut Self {
         let number = |key: &str| self.get(key)?.parse::<f64>().ok();
         let name = self.get("map.parameter");
         let name = name.map(|name| name.trim_matches('"').to_owned());

@@ -20,7 +20,7 @@ impl StartingFile {
     }
 
     /// Whether it runs the built-in model of that name.
-    pub fn is_of_model(&self, name: &str) -> bool {
+    pub(crate) fn is_of_model(&self, name: &str) -> bool {
         let model = format!("model = \"{name}\"");
         self.text.lines().any(|line| line.starts_with(&model))
     }

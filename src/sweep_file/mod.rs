@@ -66,7 +66,6 @@ pub use draft::{MethodKind, MethodSettings};
 pub use file::SweepFile;
 pub use gallery::{StartingFile, starting_files};
 pub use keys::{Key, help, keys};
-#[cfg(feature = "cli")]
 pub(crate) use memory::{bytes_in_words, machine_memory};
 pub use names::list;
 pub use report::Report;

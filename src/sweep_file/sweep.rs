@@ -124,7 +124,7 @@ impl Sweep {
     ///
     /// # Errors
     /// As [`Sweep::source`].
-    pub fn described_source(
+    pub(crate) fn described_source(
         &self,
         cancellation: &Cancellation,
     ) -> Result<(Box<dyn DensitySource>, String), SourceError> {
@@ -243,7 +243,7 @@ impl Sweep {
     ///
     /// # Errors
     /// [`SourceError`] where the box has a corner that is not allowed.
-    pub fn plane_states(
+    pub(crate) fn plane_states(
         &self,
         values: [&[f64]; 2],
         cancellation: &Cancellation,
@@ -259,7 +259,7 @@ impl Sweep {
     ///
     /// # Errors
     /// As [`Sweep::plane_states`].
-    pub fn states_in(
+    pub(crate) fn states_in(
         &self,
         plane: &Plane,
         values: [&[f64]; 2],

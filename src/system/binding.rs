@@ -71,7 +71,7 @@ pub enum SystemError {
 /// How values become systems.
 impl Model {
     /// Names and formulas that quantities may use.
-    pub fn definitions(&self) -> &[(String, String)] {
+    pub(crate) fn definitions(&self) -> &[(String, String)] {
         &self.definitions
     }
 
@@ -79,7 +79,7 @@ impl Model {
     ///
     /// # Errors
     /// [`SystemError::UnknownParameter`].
-    pub fn parameter_index(&self, name: &str) -> Result<usize, SystemError> {
+    pub(crate) fn parameter_index(&self, name: &str) -> Result<usize, SystemError> {
         self.parameters
             .iter()
             .position(|parameter| parameter.name == name)

@@ -32,7 +32,7 @@ impl AxisDescription {
     /// The axis of an internal state that modes carry; a series in place of cells. The state has no noise, and either
     /// bounds, with a smooth density between them, or it relaxes linearly.
     #[must_use]
-    pub fn carried_by_modes(self) -> Self {
+    pub(crate) fn carried_by_modes(self) -> Self {
         Self {
             by_modes: true,
             ..self
@@ -63,7 +63,7 @@ impl ParameterRange {
     }
 
     /// The range in words.
-    pub fn words(self) -> &'static str {
+    pub(crate) fn words(self) -> &'static str {
         match self {
             Self::Any => "a finite number",
             Self::NonNegative => "a finite number, zero or more",

@@ -59,7 +59,7 @@ impl Facts {
 
     /// Whether the lower and the upper end of a range of an axis are walls: values that the coordinate never leaves
     /// (`Facts::bounds`), to a billionth of the range.
-    pub fn walls(&self, axis: usize, (from, to): (f64, f64)) -> [bool; 2] {
+    pub(crate) fn walls(&self, axis: usize, (from, to): (f64, f64)) -> [bool; 2] {
         let tolerance = AT_A_BOUND * (to - from);
         self.bounds(axis).map_or([false; 2], |(low, high)| {
             [from <= low + tolerance, to >= high - tolerance]
@@ -67,7 +67,7 @@ impl Facts {
     }
 
     /// Coordinates at which switching surfaces cut an axis, in the order in which they are declared.
-    pub fn surfaces_on(&self, axis: usize) -> impl Iterator<Item = f64> {
+    pub(crate) fn surfaces_on(&self, axis: usize) -> impl Iterator<Item = f64> {
         let here = self.switching_surfaces.iter();
         here.filter(move |surface| surface.axis == axis)
             .map(|surface| surface.at)
@@ -77,7 +77,7 @@ impl Facts {
     ///
     /// # Errors
     /// [`PeriodicDrift`].
-    pub fn autonomous(&self) -> Result<(), PeriodicDrift> {
+    pub(crate) fn autonomous(&self) -> Result<(), PeriodicDrift> {
         match self.period {
             Some(period) => Err(PeriodicDrift { period }),
             None => Ok(()),
@@ -98,7 +98,7 @@ impl SwitchingSurface {
     /// Jump of every component of the drift from below to above the surface, beside a state whose own coordinate on the
     /// axis does not count. The drift is taken at `distance` and at twice that on either side, and the part of its
     /// change that is proportional to the distance is taken off: what is left of a smooth drift is rounding.
-    pub fn drift_jump(&self, system: &dyn System, state: &[f64], distance: f64) -> Vec<f64> {
+    pub(crate) fn drift_jump(&self, system: &dyn System, state: &[f64], distance: f64) -> Vec<f64> {
         let mut state = state.to_vec();
         let mut across = |distance: f64| {
             state[self.axis] = self.at + distance;

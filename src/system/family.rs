@@ -75,7 +75,6 @@ impl Family {
     ///
     /// # Errors
     /// As [`Family::new`].
-    #[cfg(feature = "store")]
     pub(crate) fn along_path(
         &self,
         fixed: &[(&str, f64)],
@@ -99,7 +98,7 @@ impl Family {
     }
 
     /// The quantity of a number among axes and quantities; `None` for an axis.
-    pub fn quantity(&self, number: usize) -> Option<&Arc<Quantity>> {
+    pub(crate) fn quantity(&self, number: usize) -> Option<&Arc<Quantity>> {
         self.quantities
             .get(number.checked_sub(self.model.axes.len())?)
     }
@@ -143,7 +142,7 @@ impl Family {
     }
 
     /// The ends in ascending order.
-    pub fn range(&self) -> (f64, f64) {
+    pub(crate) fn range(&self) -> (f64, f64) {
         let (from, to) = self.ends();
         (from.min(to), from.max(to))
     }
@@ -157,14 +156,14 @@ impl Family {
 
     /// Symbol of an axis, with `_{}` and `^{}`, for example `ẋ`, or of the quantity of that number; `?` where there is
     /// none.
-    pub fn axis_symbol(&self, axis: usize) -> &str {
+    pub(crate) fn axis_symbol(&self, axis: usize) -> &str {
         let known = self.model.axes.get(axis).map(|axis| axis.symbol.as_str());
         let quantity = || self.quantity(axis).map(|quantity| quantity.symbol());
         known.or_else(quantity).unwrap_or("?")
     }
 
     /// Names of what means are taken of: the axes of the state, then the quantities that are averaged.
-    pub fn averages(&self) -> impl Iterator<Item = &str> {
+    pub(crate) fn averages(&self) -> impl Iterator<Item = &str> {
         let axes = self.model.axes.iter().map(|axis| axis.name.as_str());
         axes.chain(self.averaged.iter().map(|quantity| quantity.name()))
     }
@@ -192,7 +191,7 @@ impl Family {
     ///
     /// # Errors
     /// [`SystemError::OutOfRange`].
-    pub fn along(&self) -> Result<Vec<Arc<dyn System>>, SystemError> {
+    pub(crate) fn along(&self) -> Result<Vec<Arc<dyn System>>, SystemError> {
         let (from, to) = self.ends();
         let middle = 0.5 * (from + to);
         let places = [from, middle, to].into_iter();

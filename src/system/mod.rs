@@ -46,23 +46,21 @@ mod typed;
 
 pub use crate::formula::{LANES, Lanes};
 pub use binding::{ParameterValues, SystemError};
-pub use coloured::{
-    CORRELATION_TIME, ColouredNoiseError, NOISE_AXIS, NOISE_DAMPING, NOISE_FREQUENCY,
-    NOISE_RATE_AXIS, NoiseKind,
-};
+pub use coloured::{ColouredNoiseError, NoiseKind};
 pub use description::{AxisDescription, ParameterDescription, ParameterRange};
 pub(crate) use enclosed::Enclosed;
 pub use facts::{Facts, PeriodicDrift, SwitchingSurface, Symmetry};
 pub use family::Family;
 pub use model::Model;
 pub use noise::{Amplitude, Noise};
-pub use oscillator::{DISPLACEMENT, FIRST_INTERNAL_STATE, VELOCITY};
+pub use oscillator::VELOCITY;
+pub(crate) use oscillator::{DISPLACEMENT, FIRST_INTERNAL_STATE};
 pub use path::Path;
 pub use quantity::{BoundQuantity, Quantity, QuantityError, QuantityFault, quantities};
-pub use symmetry::proved_symmetry;
+pub(crate) use symmetry::proved_symmetry;
+pub(crate) use typed::FormulaHazard;
 pub use typed::{
-    CompiledDrift, FormulaHazard, FormulaPlace, Interpretation, TypedEquations, TypedModel,
-    TypedModelError,
+    CompiledDrift, FormulaPlace, Interpretation, TypedEquations, TypedModel, TypedModelError,
 };
 
 /// An Itô equation dX = a(X, t) dt + Σ_k b_k(X, t) e_{axis(k)} dW_k with bound parameters.
@@ -139,17 +137,17 @@ pub trait System: Send + Sync {
 
 impl dyn System + '_ {
     /// The noises on an axis.
-    pub fn noises_on(&self, axis: usize) -> impl Iterator<Item = &Noise> {
+    pub(crate) fn noises_on(&self, axis: usize) -> impl Iterator<Item = &Noise> {
         self.noises().iter().filter(move |noise| noise.axis == axis)
     }
 
     /// Whether noise drives an axis.
-    pub fn is_noisy(&self, axis: usize) -> bool {
+    pub(crate) fn is_noisy(&self, axis: usize) -> bool {
         self.noises_on(axis).next().is_some()
     }
 
     /// Noise intensity Σ b² on an axis at a state.
-    pub fn intensity_at(&self, axis: usize, time: f64, state: &[f64]) -> f64 {
+    pub(crate) fn intensity_at(&self, axis: usize, time: f64, state: &[f64]) -> f64 {
         let squares = self
             .noises_on(axis)
             .map(|noise| noise.at(time, state).powi(2));

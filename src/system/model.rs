@@ -158,7 +158,7 @@ impl Model {
     }
 
     /// Whether both are stated by the same equations, noises and names of states.
-    pub fn is_stated_like(&self, other: &Self) -> bool {
+    pub(crate) fn is_stated_like(&self, other: &Self) -> bool {
         let states = |model: &Self| {
             let axes = model.axes.iter();
             axes.map(|axis| axis.name.clone()).collect::<Vec<_>>()
@@ -172,7 +172,7 @@ impl Model {
     }
 
     /// What its noise is.
-    pub fn noise_kind(&self) -> NoiseKind {
+    pub(crate) fn noise_kind(&self) -> NoiseKind {
         self.noise_kind
     }
 

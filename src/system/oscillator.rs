@@ -10,13 +10,13 @@ use super::typed::AMPLITUDE;
 use super::{AxisDescription, CompiledDrift, LANES, Lanes, TypedModel};
 
 /// Axis of the displacement of an oscillator.
-pub const DISPLACEMENT: usize = 0;
+pub(crate) const DISPLACEMENT: usize = 0;
 
 /// Axis of the velocity of an oscillator.
 pub const VELOCITY: usize = 1;
 
 /// Axis of the first internal state of an oscillator's friction law.
-pub const FIRST_INTERNAL_STATE: usize = 2;
+pub(crate) const FIRST_INTERNAL_STATE: usize = 2;
 
 /// A spring with restoring force αx + μx³.
 #[derive(Clone, Copy)]

@@ -95,7 +95,7 @@ impl QuantityFault {
     }
 
     /// What is allowed there.
-    pub fn allowed(&self) -> Option<String> {
+    pub(crate) fn allowed(&self) -> Option<String> {
         self.error()?.allowed()
     }
 
@@ -241,7 +241,7 @@ impl Quantity {
     }
 
     /// Whether it changes along the path of a family.
-    pub fn moves_with(&self, family: &Family) -> bool {
+    pub(crate) fn moves_with(&self, family: &Family) -> bool {
         let moved = family.path().moved();
         self.parameters.iter().any(|name| moved.contains(name))
     }

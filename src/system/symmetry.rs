@@ -11,7 +11,7 @@ const BATCHES: usize = 2;
 /// The reflection of a system on a box with the given ends, one pair an axis: the one it declares, where that holds, or
 /// else one about the origin or the middle of the box that is found by trial, with the most axes reflected. Trial
 /// cannot tell a symmetry that fails only in a part of the box that no tried state lies in.
-pub fn proved_symmetry(system: &dyn System, ends: &[(f64, f64)]) -> Option<Symmetry> {
+pub(crate) fn proved_symmetry(system: &dyn System, ends: &[(f64, f64)]) -> Option<Symmetry> {
     if let Some(declared) = system.facts().symmetry.clone() {
         return holds(system, &declared, ends).then_some(declared);
     }

@@ -154,7 +154,6 @@ impl<'a> Field<'a> {
     }
 
     /// The cells of the finer reconstruction around a coordinate.
-    #[cfg(feature = "figures")]
     pub(super) fn window_at(&self, k: usize, at: f64) -> Option<Range<usize>> {
         self.window(k, at, REACH[0])
     }

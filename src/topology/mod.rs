@@ -1,6 +1,5 @@
 //! What a density looks like: its significant peaks and craters, and the signature they make.
 
-#[cfg(feature = "figures")] // figures draw densities between their cells
 mod between;
 mod candidate;
 mod critical;
@@ -16,7 +15,6 @@ mod reconstruction;
 mod refine;
 mod ridge;
 mod rim;
-#[cfg(feature = "figures")]
 mod shape;
 mod signature;
 mod significance;
@@ -29,7 +27,6 @@ mod calibration_tests;
 #[cfg(test)]
 mod invariance_tests;
 
-#[cfg(feature = "figures")]
 pub(crate) use between::Between;
 pub use detector::PersistenceDetector;
 pub use indicator::{Flank, Indicator, IndicatorKind};
@@ -123,7 +120,7 @@ pub struct Detection {
 
 impl Detection {
     /// The feature of that kind with the given rank in persistence (0 is the strongest).
-    pub fn ranked(&self, kind: FeatureKind, rank: usize) -> Option<&Feature> {
+    pub(crate) fn ranked(&self, kind: FeatureKind, rank: usize) -> Option<&Feature> {
         self.features
             .iter()
             .filter(|feature| feature.kind == kind)

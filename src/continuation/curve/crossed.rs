@@ -44,7 +44,7 @@ pub struct RowInPlane {
 
 /// How far a row is from a curve, in sides of the box.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct GapToCurve {
+pub(crate) struct GapToCurve {
     /// The curve, by its place in the list.
     pub curve: usize,
     /// Distance across the curve.
@@ -169,7 +169,7 @@ impl SweepInPlane {
 
     /// Distance of a row of this sweep from the nearest curve of its density and its indicator that crosses the sweep;
     /// `None` where none does.
-    pub fn gap(&self, row: &RowInPlane, curves: &[Curve]) -> Option<GapToCurve> {
+    pub(crate) fn gap(&self, row: &RowInPlane, curves: &[Curve]) -> Option<GapToCurve> {
         let of_row = |curve: &Curve| {
             Some(curve.observable) == row.observable && Some(curve.kind) == row.indicator
         };

@@ -36,7 +36,7 @@ mod walked;
 
 pub(super) use agree::agree;
 pub use codimension::{CodimensionTwo, CodimensionTwoKind, codimension_two};
-pub use crossed::{GapToCurve, NotInPlane, RowInPlane, SweepInPlane};
+pub use crossed::{NotInPlane, RowInPlane, SweepInPlane};
 pub use found::{Curve, CurveEnd, CurveOrigin, CurvePoint, CurveWork, DegeneratePoint, EndReason};
 pub use plane::{Plane, PlaneSide};
 pub use tree::{CurveTree, MissedBranch, follow_all};

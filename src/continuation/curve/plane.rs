@@ -27,7 +27,7 @@ impl PlaneSide {
     }
 }
 
-/// A box in the plane of two parameters, in which curves are followed. Clones are the same plane; [`Plane::afresh`] is
+/// A box in the plane of two parameters, in which curves are followed. Clones are the same plane; `Plane::afresh` is
 /// another one.
 ///
 /// A [`Family`](crate::system::Family) along [`Plane::path`] is what a source is made for.
@@ -110,7 +110,7 @@ impl Plane {
 
     /// The same box with a path of its own, of which nothing is laid yet.
     #[must_use]
-    pub fn afresh(&self) -> Self {
+    pub(crate) fn afresh(&self) -> Self {
         Self {
             sides: self.sides.clone(),
             legs: Arc::default(),
@@ -141,7 +141,7 @@ impl Plane {
     }
 
     /// Where two values lie in the box, as shares of its sides.
-    pub fn shares(&self, values: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn shares(&self, values: [f64; 2]) -> [f64; 2] {
         self.place(values)
     }
 

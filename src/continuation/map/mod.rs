@@ -31,11 +31,10 @@ mod states;
 mod trace;
 
 pub use found::{MapNode, MapWork, RegimeMap, RegionSample, Untraced};
-#[cfg(feature = "cli")] // the explorer colours planes likewise
 pub(crate) use regions::{FloodedRegion, Seed, flood};
 pub use regions::{Region, RegionPicture};
 pub use shards::{MapChange, MapShard};
-pub use states::{PlaneState, plane_states};
+pub(crate) use states::{PlaneState, plane_states};
 
 use super::curve::{Curve, CurveOptions, Plane, agree};
 use super::{DensitySource, Shard, SourceError};
@@ -176,7 +175,7 @@ impl MapMaker<'_> {
     ///
     /// # Errors
     /// [`SourceError`] where no source can be made in this plane.
-    pub fn shard(&self, shard: Shard) -> Result<Option<MapShard>, SourceError> {
+    pub(crate) fn shard(&self, shard: Shard) -> Result<Option<MapShard>, SourceError> {
         let lattice = Lattice::new(self.options.counts, self.options.depth);
         let Some(rows) = shard.places(self.options.counts[1]) else {
             return Ok(None);
@@ -196,7 +195,7 @@ impl MapMaker<'_> {
     ///
     /// # Errors
     /// [`SourceError`] where no source can be made in this plane.
-    pub fn merged(&self, shards: &[MapShard]) -> Result<RegimeMap, SourceError> {
+    pub(crate) fn merged(&self, shards: &[MapShard]) -> Result<RegimeMap, SourceError> {
         let lattice = Lattice::new(self.options.counts, self.options.depth);
         let solver = Solver::new(self, &lattice);
         shards.iter().for_each(|shard| solver.recall(&shard.nodes));

@@ -10,7 +10,7 @@ use crate::topology::Detector;
 
 /// A solved place of a plane.
 #[derive(Debug, Clone)]
-pub struct PlaneState {
+pub(crate) struct PlaneState {
     /// Values of both parameters.
     pub values: [f64; 2],
     /// What was found there; its value is that of the first parameter.
@@ -24,7 +24,7 @@ pub struct PlaneState {
 ///
 /// # Errors
 /// [`SourceError`] where no source can be made in this plane.
-pub fn plane_states(
+pub(crate) fn plane_states(
     source: &SourceInPlane<'_>,
     plane: &Plane,
     values: [&[f64]; 2],

@@ -71,7 +71,7 @@ impl FigureStyle {
 
 impl ColourMap {
     /// Red, green and blue of a share, clamped to 0 to 1.
-    pub fn colour(self, share: f64) -> (u8, u8, u8) {
+    pub(crate) fn colour(self, share: f64) -> (u8, u8, u8) {
         let share = share.clamp(0.0, 1.0);
         let of = |gradient: colorous::Gradient| {
             let colour = gradient.eval_continuous(share);

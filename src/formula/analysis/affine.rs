@@ -1,11 +1,11 @@
-//! How an expression depends on one symbol: as a straight line, as a polynomial.
+//! How an expression depends on one symbol: as a straight line.
 
-use crate::formula::arithmetic::{Binary, Unary, small_integer};
+use crate::formula::arithmetic::{Binary, Unary};
 use crate::formula::graph::{Builder, Expression, Graph, Node, PartMap, Symbol, TooLarge};
 
 /// constant + slope·symbol; neither contains the symbol.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Affine {
+pub(crate) struct Affine {
     /// The value where the symbol is zero.
     pub constant: Expression,
     /// The derivative by the symbol.
@@ -18,7 +18,7 @@ impl Graph {
     ///
     /// # Errors
     /// [`TooLarge`].
-    pub fn affine(
+    pub(crate) fn affine(
         &mut self,
         expression: Expression,
         symbol: Symbol,
@@ -46,43 +46,6 @@ impl Graph {
             }
             forms.get(expression).flatten()
         })
-    }
-
-    /// The degree of the expression as a polynomial in a symbol, if its form shows that it is one; terms that cancel
-    /// are counted.
-    pub fn degree(&self, expression: Expression, symbol: Symbol) -> Option<u32> {
-        let parts = self.parts(&[expression]);
-        let contains = self.containing(&parts, symbol);
-        let mut degrees: PartMap<Option<u32>> = PartMap::new(&parts, Some(0));
-        for &part in &parts {
-            if contains.get(part) != Some(true) {
-                continue;
-            }
-            let of = |operand: Expression| degrees.get(operand).flatten();
-            let degree = match self.node(part) {
-                Node::Constant(_) => Some(0),
-                Node::Symbol(_) => Some(1),
-                Node::Unary(Unary::Negate, a) => of(a),
-                Node::Binary(Binary::Add | Binary::Subtract, a, b) => {
-                    of(a).zip(of(b)).map(|(a, b)| a.max(b))
-                }
-                Node::Binary(Binary::Multiply, a, b) => {
-                    of(a).zip(of(b)).and_then(|(a, b)| a.checked_add(b))
-                }
-                Node::Binary(Binary::Divide, a, b) => of(a).filter(|_| of(b) == Some(0)),
-                Node::Binary(Binary::Power, a, b) => {
-                    let n = self.as_constant(b).and_then(small_integer);
-                    let n = n.and_then(|n| u32::try_from(n).ok());
-                    of(a).zip(n).and_then(|(a, n)| a.checked_mul(n))
-                }
-                Node::Select(condition, yes, no) if of(condition) == Some(0) => {
-                    of(yes).zip(of(no)).map(|(yes, no)| yes.max(no))
-                }
-                _ => None,
-            };
-            degrees.set(part, degree);
-        }
-        degrees.get(expression).flatten()
     }
 }
 

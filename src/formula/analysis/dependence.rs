@@ -4,7 +4,7 @@ use crate::formula::graph::{Expression, Graph, Node, Symbol};
 
 /// The symbols of an expression, each kind in ascending order.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Dependence {
+pub(crate) struct Dependence {
     /// Numbers of the states.
     pub states: Vec<usize>,
     /// Numbers of the parameters.
@@ -15,7 +15,7 @@ pub struct Dependence {
 
 impl Graph {
     /// Which symbols occur in an expression, whether or not its value changes with them.
-    pub fn dependence(&self, expression: Expression) -> Dependence {
+    pub(crate) fn dependence(&self, expression: Expression) -> Dependence {
         let mut dependence = Dependence::default();
         for part in self.parts(&[expression]) {
             match self.node(part) {

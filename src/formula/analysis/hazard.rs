@@ -41,7 +41,7 @@ pub enum HazardKind {
 
 impl HazardKind {
     /// The failure in words.
-    pub fn words(self) -> &'static str {
+    pub(crate) fn words(self) -> &'static str {
         match self {
             Self::DivisionByZero => "division by zero",
             Self::Logarithm => "logarithm of a number that is not positive",
@@ -88,7 +88,7 @@ impl Graph {
     }
 
     /// An interval that contains all values of an expression in a domain, where it has one.
-    pub fn range(&self, expression: Expression, domain: &Domain) -> Interval {
+    pub(crate) fn range(&self, expression: Expression, domain: &Domain) -> Interval {
         let mut bounds = Bounds::new(self, expression);
         bounds.work_out(domain);
         bounds.of(expression)

@@ -47,7 +47,7 @@ impl Interval {
     }
 
     /// The middle, and a finite number of it where it is unbounded.
-    pub fn middle(self) -> f64 {
+    pub(crate) fn middle(self) -> f64 {
         match (self.low.is_finite(), self.high.is_finite()) {
             (true, true) => self.low + 0.5 * (self.high - self.low),
             (true, false) => self.low.max(0.0),
@@ -57,7 +57,7 @@ impl Interval {
     }
 
     /// Whether both ends are finite.
-    pub fn is_bounded(self) -> bool {
+    pub(crate) fn is_bounded(self) -> bool {
         self.low.is_finite() && self.high.is_finite()
     }
 

@@ -52,7 +52,7 @@ pub struct Kink {
 }
 
 impl Graph {
-    /// All places where an expression may fail to be smooth, each once, the first [`limits::KINKS`] of them. What
+    /// All places where an expression may fail to be smooth, each once, the first `limits::KINKS` of them. What
     /// depends on parameters alone has none.
     ///
     /// # Errors

@@ -10,13 +10,10 @@ mod noise;
 mod parity;
 mod reflection;
 
-pub use affine::Affine;
-pub use dependence::Dependence;
 pub use hazard::{Domain, Hazard, HazardKind};
 pub use interval::Interval;
 pub use kink::{Kink, KinkKind, KinkPlace, Surface};
-pub use parity::{Parity, ParityFinding};
-pub use reflection::{Reflection, ReflectionError};
+pub(crate) use reflection::Reflection;
 
 #[cfg(test)]
 mod tests;

@@ -1,4 +1,4 @@
-//! What state-dependent noise does to the drift, and the diffusion it makes.
+//! What state-dependent noise does to the drift.
 
 use crate::formula::graph::{Expression, Graph, Symbol, TooLarge};
 
@@ -11,7 +11,7 @@ impl Graph {
     ///
     /// # Errors
     /// [`TooLarge`].
-    pub fn ito_drift(
+    pub(crate) fn ito_drift(
         &mut self,
         drift: &[Expression],
         noise: &[Vec<Expression>],
@@ -43,31 +43,5 @@ impl Graph {
             }
         }
         Ok((corrected, jumps))
-    }
-
-    /// The diffusion matrix D_ij = Σ_k b_ik b_jk for `noise[k][j]` the amplitude b_jk of process k on axis j: the
-    /// density obeys ∂p/∂t = -Σ_i ∂(a_i p)/∂x_i + ½ Σ_ij ∂²(D_ij p)/∂x_i∂x_j.
-    ///
-    /// # Errors
-    /// [`TooLarge`].
-    pub fn diffusion(
-        &mut self,
-        dimension: usize,
-        noise: &[Vec<Expression>],
-    ) -> Result<Vec<Vec<Expression>>, TooLarge> {
-        self.build(|builder| {
-            let zero = builder.constant(0.0);
-            let mut matrix = vec![vec![zero; dimension]; dimension];
-            for process in noise {
-                let amplitude = |axis: usize| process.get(axis).copied().unwrap_or(zero);
-                for (i, row) in matrix.iter_mut().enumerate() {
-                    for (j, entry) in row.iter_mut().enumerate() {
-                        let product = builder.product(amplitude(i), amplitude(j));
-                        *entry = builder.sum(*entry, product);
-                    }
-                }
-            }
-            matrix
-        })
     }
 }

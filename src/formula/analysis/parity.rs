@@ -6,7 +6,7 @@ use crate::formula::graph::{Evaluator, Expression, Graph, Node, PartMap, Point, 
 
 /// What a reflection does to an expression.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Parity {
+pub(crate) enum Parity {
     /// It is zero everywhere.
     Zero,
     /// It keeps its value.
@@ -19,7 +19,7 @@ pub enum Parity {
 
 /// The parity of an expression and how it is known.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ParityFinding {
+pub(crate) struct ParityFinding {
     /// What the reflection does.
     pub parity: Parity,
     /// Whether the form of the expression shows it; otherwise trials at many states do.
@@ -51,7 +51,7 @@ impl Graph {
     ///
     /// # Errors
     /// [`TooLarge`].
-    pub fn parity(
+    pub(crate) fn parity(
         &mut self,
         expression: Expression,
         reflection: &Reflection,

@@ -5,7 +5,7 @@ use crate::formula::graph::{Expression, Graph, TooLarge};
 
 /// A reflection: marked coordinates change sign about the centre, the others stay.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Reflection {
+pub(crate) struct Reflection {
     /// Centre, one value a state. Values of states that are not reflected do not matter.
     pub centre: Vec<f64>,
     /// Which states are reflected.
@@ -14,7 +14,7 @@ pub struct Reflection {
 
 /// Why a reflection does not map an equation onto itself.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum ReflectionError {
+pub(crate) enum ReflectionError {
     /// The drift of a state does not change as it has to.
     #[error("the drift of state {state} is not {wanted} under the reflection")]
     Drift {
@@ -42,7 +42,7 @@ pub enum ReflectionError {
 
 impl Reflection {
     /// The mirror image of a state.
-    pub fn mirrored(&self, state: &[f64]) -> Vec<f64> {
+    pub(crate) fn mirrored(&self, state: &[f64]) -> Vec<f64> {
         let mirrored = state.iter().zip(&self.centre).zip(&self.reflected);
         let mirrored = mirrored.map(
             |((x, centre), reflected)| {
@@ -61,7 +61,7 @@ impl Graph {
     ///
     /// # Errors
     /// [`ReflectionError`], with a state at which it fails.
-    pub fn check_reflection(
+    pub(crate) fn check_reflection(
         &mut self,
         drift: &[Expression],
         noise: &[Vec<Expression>],
@@ -112,7 +112,7 @@ impl Graph {
     ///
     /// # Errors
     /// [`TooLarge`].
-    pub fn find_reflection(
+    pub(crate) fn find_reflection(
         &mut self,
         drift: &[Expression],
         noise: &[Vec<Expression>],

@@ -24,7 +24,7 @@ impl<'a> Builder<'a> {
     }
 
     /// The graph so far.
-    pub fn graph(&self) -> &Graph {
+    pub(crate) fn graph(&self) -> &Graph {
         self.graph
     }
 
@@ -68,7 +68,7 @@ impl<'a> Builder<'a> {
     }
 
     /// An operation on one expression.
-    pub fn unary(&mut self, operation: Unary, a: Expression) -> Expression {
+    pub(crate) fn unary(&mut self, operation: Unary, a: Expression) -> Expression {
         if let Some(value) = self.constant_of(a).and_then(|a| fold::unary(operation, a)) {
             return self.constant(value);
         }
@@ -100,7 +100,7 @@ impl<'a> Builder<'a> {
     }
 
     /// An operation on two expressions.
-    pub fn binary(&mut self, operation: Binary, a: Expression, b: Expression) -> Expression {
+    pub(crate) fn binary(&mut self, operation: Binary, a: Expression, b: Expression) -> Expression {
         if let (Some(left), Some(right)) = (self.constant_of(a), self.constant_of(b))
             && let Some(value) = fold::binary(operation, left, right)
         {
@@ -127,12 +127,12 @@ impl<'a> Builder<'a> {
     }
 
     /// -a.
-    pub fn negate(&mut self, a: Expression) -> Expression {
+    pub(crate) fn negate(&mut self, a: Expression) -> Expression {
         self.unary(Unary::Negate, a)
     }
 
     /// a + b.
-    pub fn add(&mut self, a: Expression, b: Expression) -> Expression {
+    pub(crate) fn add(&mut self, a: Expression, b: Expression) -> Expression {
         if let Some(inner) = self.negated(b) {
             return self.subtract(a, inner);
         }
@@ -151,7 +151,7 @@ impl<'a> Builder<'a> {
     }
 
     /// a - b.
-    pub fn subtract(&mut self, a: Expression, b: Expression) -> Expression {
+    pub(crate) fn subtract(&mut self, a: Expression, b: Expression) -> Expression {
         if let Some(inner) = self.negated(b) {
             return self.add(a, inner);
         }
@@ -169,7 +169,7 @@ impl<'a> Builder<'a> {
     }
 
     /// a b.
-    pub fn multiply(&mut self, a: Expression, b: Expression) -> Expression {
+    pub(crate) fn multiply(&mut self, a: Expression, b: Expression) -> Expression {
         if let Some((a, b)) = self.without_sign(a, b) {
             let product = self.multiply(a, b);
             return self.negate(product);
@@ -200,7 +200,7 @@ impl<'a> Builder<'a> {
     }
 
     /// a/b.
-    pub fn divide(&mut self, a: Expression, b: Expression) -> Expression {
+    pub(crate) fn divide(&mut self, a: Expression, b: Expression) -> Expression {
         if let Some((a, b)) = self.without_sign(a, b) {
             let quotient = self.divide(a, b);
             return self.negate(quotient);
@@ -260,14 +260,13 @@ impl<'a> Builder<'a> {
         self.intern(Node::Binary(Binary::Power, a, b))
     }
 
-    /// An integer power.
-    pub fn integer_power(&mut self, a: Expression, n: i32) -> Expression {
-        let exponent = self.constant(f64::from(n));
-        self.power(a, exponent)
-    }
-
     /// `yes` where the condition is not zero, else `no`.
-    pub fn select(&mut self, condition: Expression, yes: Expression, no: Expression) -> Expression {
+    pub(crate) fn select(
+        &mut self,
+        condition: Expression,
+        yes: Expression,
+        no: Expression,
+    ) -> Expression {
         if let Some(value) = self.constant_of(condition) {
             return if value == 0.0 { no } else { yes };
         }

@@ -27,21 +27,21 @@ impl Point<'_> {
 
 /// Evaluates some expressions again and again.
 #[derive(Debug, Clone)]
-pub struct Evaluator {
+pub(crate) struct Evaluator {
     parts: Vec<Expression>,
     values: PartMap<f64>,
 }
 
 impl Evaluator {
     /// For these expressions and all their parts.
-    pub fn new(graph: &Graph, expressions: &[Expression]) -> Self {
+    pub(crate) fn new(graph: &Graph, expressions: &[Expression]) -> Self {
         let parts = graph.parts(expressions);
         let values = PartMap::new(&parts, f64::NAN);
         Self { parts, values }
     }
 
     /// Works out all values at a point.
-    pub fn evaluate(&mut self, graph: &Graph, point: &Point<'_>) {
+    pub(crate) fn evaluate(&mut self, graph: &Graph, point: &Point<'_>) {
         for &part in &self.parts {
             let of = |operand: Expression| self.values.get(operand).unwrap_or(f64::NAN);
             let value = match graph.node(part) {
@@ -56,7 +56,7 @@ impl Evaluator {
     }
 
     /// The value of one of the expressions, or of a part of one, as last worked out.
-    pub fn value(&self, expression: Expression) -> f64 {
+    pub(crate) fn value(&self, expression: Expression) -> f64 {
         self.values.get(expression).unwrap_or(f64::NAN)
     }
 }
@@ -67,17 +67,5 @@ impl Graph {
         let mut evaluator = Evaluator::new(self, &[expression]);
         evaluator.evaluate(self, point);
         evaluator.value(expression)
-    }
-
-    /// The value of an expression without symbols.
-    pub fn constant_value(&self, expression: Expression) -> Option<f64> {
-        let point = Point {
-            states: &[],
-            parameters: &[],
-            time: f64::NAN,
-        };
-        self.reach(expression)
-            .is_empty()
-            .then(|| self.evaluate(expression, &point))
     }
 }

@@ -18,7 +18,8 @@ use crate::formula::limits;
 
 pub use builder::Builder;
 pub use derivative::Derivative;
-pub use evaluate::{Evaluator, Point};
+pub(crate) use evaluate::Evaluator;
+pub use evaluate::Point;
 
 pub(crate) use part_map::PartMap;
 
@@ -75,7 +76,7 @@ pub enum Node {
 
 impl Node {
     /// The operands.
-    pub fn operands(&self) -> impl Iterator<Item = Expression> + use<> {
+    pub(crate) fn operands(&self) -> impl Iterator<Item = Expression> + use<> {
         let operands = match *self {
             Self::Constant(_) | Self::Symbol(_) => [None; 3],
             Self::Unary(_, a) => [Some(a), None, None],
@@ -101,11 +102,6 @@ impl Reach {
             parameters: self.parameters || other.parameters,
             time: self.time || other.time,
         }
-    }
-
-    /// Whether the value is a number that nothing changes.
-    pub(crate) fn is_empty(self) -> bool {
-        self == Self::default()
     }
 }
 
@@ -135,7 +131,7 @@ impl Default for Graph {
 
 impl Graph {
     /// What an expression is. An expression of another graph is taken for zero where this one is smaller.
-    pub fn node(&self, expression: Expression) -> Node {
+    pub(crate) fn node(&self, expression: Expression) -> Node {
         let zero = Node::Constant(Number(0));
         self.nodes
             .get(expression.0 as usize)
@@ -172,7 +168,7 @@ impl Graph {
     }
 
     /// The value of an expression that is a number as it stands.
-    pub fn as_constant(&self, expression: Expression) -> Option<f64> {
+    pub(crate) fn as_constant(&self, expression: Expression) -> Option<f64> {
         match self.node(expression) {
             Node::Constant(number) => Some(number.value()),
             _ => None,
@@ -200,7 +196,7 @@ impl Graph {
     }
 
     /// All subexpressions of some expressions and themselves, operands before what they are operands of.
-    pub fn parts(&self, expressions: &[Expression]) -> Vec<Expression> {
+    pub(crate) fn parts(&self, expressions: &[Expression]) -> Vec<Expression> {
         let last = expressions
             .iter()
             .map(|expression| expression.0 as usize)

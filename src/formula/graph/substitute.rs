@@ -1,43 +1,14 @@
-//! Replaces symbols by expressions.
+//! Puts numbers for parameters.
 
 use super::{Expression, Graph, Node, PartMap, Symbol, TooLarge};
 
 impl Graph {
-    /// The expression with each symbol replaced by what `by` gives for it; `None` leaves a symbol.
-    ///
-    /// # Errors
-    /// [`TooLarge`].
-    pub fn substitute(
-        &mut self,
-        expression: Expression,
-        by: impl Fn(Symbol) -> Option<Expression>,
-    ) -> Result<Expression, TooLarge> {
-        let parts = self.parts(&[expression]);
-        let mut replaced = PartMap::new(&parts, expression);
-        self.build(|builder| {
-            for &part in &parts {
-                let of = |operand: Expression| replaced.get(operand).unwrap_or(operand);
-                let new = match builder.graph().node(part) {
-                    Node::Constant(_) => part,
-                    Node::Symbol(symbol) => by(symbol).unwrap_or(part),
-                    Node::Unary(operation, a) => builder.unary(operation, of(a)),
-                    Node::Binary(operation, a, b) => builder.binary(operation, of(a), of(b)),
-                    Node::Select(condition, yes, no) => {
-                        builder.select(of(condition), of(yes), of(no))
-                    }
-                };
-                replaced.set(part, new);
-            }
-            replaced.get(expression).unwrap_or(expression)
-        })
-    }
-
     /// The expression with numbers for all parameters, and products with a zero among them gone: zero times x counts
     /// as zero, which is what a parameter that is switched off means.
     ///
     /// # Errors
     /// [`TooLarge`].
-    pub fn bound(
+    pub(crate) fn bound(
         &mut self,
         expression: Expression,
         parameters: &[f64],

@@ -22,7 +22,7 @@ pub enum Fault {
     /// Nothing but blanks.
     #[error("the formula is empty")]
     Empty,
-    /// Longer than [`limits::FORMULA_BYTES`].
+    /// Longer than `limits::FORMULA_BYTES`.
     #[error("the formula has {bytes} bytes")]
     TooLong {
         /// Its length.
@@ -52,7 +52,7 @@ pub enum Fault {
         /// What was written.
         text: String,
     },
-    /// A name longer than [`limits::NAME_LENGTH`].
+    /// A name longer than `limits::NAME_LENGTH`.
     #[error("a name of {length} characters")]
     LongName {
         /// Its length in characters.
@@ -180,7 +180,7 @@ impl FormulaError {
     }
 
     /// The name that nothing defines, if that is the fault.
-    pub fn unknown_symbol(&self) -> Option<&str> {
+    pub(crate) fn unknown_symbol(&self) -> Option<&str> {
         match &self.fault {
             Fault::Symbol { name, .. } if !is_no_number(name) => Some(name),
             _ => None,

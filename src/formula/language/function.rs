@@ -62,7 +62,7 @@ const SPELLINGS: &[(&str, Function)] = &[
 
 impl Function {
     /// The function of a name as it is written in a formula.
-    pub fn named(name: &str) -> Option<Self> {
+    pub(crate) fn named(name: &str) -> Option<Self> {
         let entry = SPELLINGS.iter().find(|(spelling, _)| *spelling == name)?;
         Some(entry.1)
     }
@@ -79,7 +79,7 @@ impl Function {
     }
 
     /// Fewest and most arguments; `None` where there is no most.
-    pub fn arguments(self) -> (usize, Option<usize>) {
+    pub(crate) fn arguments(self) -> (usize, Option<usize>) {
         match self {
             Self::Min | Self::Max => (2, None),
             Self::Hypot | Self::Atan2 | Self::Pow => (2, Some(2)),
@@ -89,7 +89,7 @@ impl Function {
     }
 
     /// How a call is written, for messages.
-    pub fn example(self) -> String {
+    pub(crate) fn example(self) -> String {
         match self {
             Self::Min | Self::Max => format!("{}(a, b, …)", self.name()),
             Self::Hypot => "hypot(x, y)".to_owned(),

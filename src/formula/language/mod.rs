@@ -12,7 +12,7 @@ mod token;
 
 pub use fault::{Fault, FormulaError};
 pub use function::Function;
-pub use spelling::{canonical_name, typeset_name};
+pub(crate) use spelling::{canonical_name, typeset_name};
 
 pub(crate) use grammar::parse;
 pub(crate) use spelling::check_name;

@@ -96,7 +96,7 @@ pub(crate) fn check_name(text: &str) -> bool {
 ///
 /// Greek letters become their names, subscript digits become digits, and one `_` between a letter and final
 /// digits is dropped. Two names are the same symbol exactly when their canonical names agree.
-pub fn canonical_name(text: &str) -> String {
+pub(crate) fn canonical_name(text: &str) -> String {
     let mut name = String::with_capacity(text.len());
     for character in text.chars() {
         if let Some(letter) = greek_name(character) {
@@ -116,7 +116,7 @@ pub fn canonical_name(text: &str) -> String {
 }
 
 /// A name as it is printed: `typeset_name("omega0") == "ω₀"`, `typeset_name("mu_k") == "μ_k"`.
-pub fn typeset_name(name: &str) -> String {
+pub(crate) fn typeset_name(name: &str) -> String {
     let parts = canonical_name(name);
     let parts = parts.split('_').map(typeset_part);
     parts.collect::<Vec<_>>().join("_")

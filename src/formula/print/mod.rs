@@ -11,7 +11,7 @@ use crate::formula::scope::{Scope, Symbols};
 
 use style::{Style, comparison, function_name, number};
 
-/// The text would be longer than [`limits::PRINTED_BYTES`]; shared parts are written out at each place.
+/// The text would be longer than `limits::PRINTED_BYTES`; shared parts are written out at each place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
     "the expression written out has more than {} bytes",

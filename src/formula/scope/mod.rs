@@ -72,7 +72,7 @@ impl Scope {
     }
 
     /// Names of the definitions with their expressions, in the order in which they were given.
-    pub fn definitions(&self) -> impl Iterator<Item = (&str, Expression)> {
+    pub(crate) fn definitions(&self) -> impl Iterator<Item = (&str, Expression)> {
         self.definitions.named(&self.symbols)
     }
 

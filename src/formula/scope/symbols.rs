@@ -19,7 +19,7 @@ pub enum Role {
 
 impl Role {
     /// The role in words, with its article.
-    pub fn words(self) -> &'static str {
+    pub(crate) fn words(self) -> &'static str {
         match self {
             Self::State => "a state",
             Self::Parameter => "a parameter",
@@ -39,7 +39,7 @@ pub enum SymbolError {
         /// What was given, shortened if it is long.
         name: String,
     },
-    /// A name longer than [`limits::NAME_LENGTH`].
+    /// A name longer than `limits::NAME_LENGTH`.
     #[error(
         "a name of {length} characters; at most {} are allowed",
         limits::NAME_LENGTH
@@ -74,7 +74,7 @@ pub enum SymbolError {
         /// How many are allowed.
         most: usize,
     },
-    /// Definitions longer than [`limits::DEFINITION_BYTES`] together.
+    /// Definitions longer than `limits::DEFINITION_BYTES` together.
     #[error(
         "the definitions have more than {} bytes together",
         limits::DEFINITION_BYTES
@@ -157,7 +157,7 @@ impl Symbols {
     }
 
     /// Names and formulas of the definitions, as given.
-    pub fn definitions(&self) -> &[(String, String)] {
+    pub(crate) fn definitions(&self) -> &[(String, String)] {
         &self.definitions
     }
 

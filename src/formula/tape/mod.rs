@@ -19,7 +19,7 @@ mod run;
 mod values;
 
 pub use program::{BindError, Program};
-pub use run::{Tape, Workspace};
+pub use run::Tape;
 
 #[cfg(test)]
 mod tests;

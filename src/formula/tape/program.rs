@@ -5,7 +5,7 @@ use super::fuse::fuse;
 use super::polynomial::nest;
 use super::run::Tape;
 use super::values::Values;
-use crate::formula::graph::{Expression, Graph, Node, Symbol};
+use crate::formula::graph::{Expression, Graph, Node};
 use crate::formula::limits;
 use crate::formula::scope::Scope;
 
@@ -30,7 +30,7 @@ pub enum BindError {
         /// Parameters of the scope.
         wanted: usize,
     },
-    /// More intermediate results at one time than [`limits::REGISTERS`].
+    /// More intermediate results at one time than `limits::REGISTERS`.
     #[error(
         "the formulas keep more than {} intermediate results at one time",
         limits::REGISTERS
@@ -90,16 +90,6 @@ impl Program {
     /// Number of parameters.
     pub fn parameters(&self) -> usize {
         self.parameters
-    }
-
-    /// Number of expressions.
-    pub fn outputs(&self) -> usize {
-        self.outputs.len()
-    }
-
-    /// Whether time occurs.
-    pub fn depends_on_time(&self) -> bool {
-        self.nodes.contains(&Node::Symbol(Symbol::Time))
     }
 
     /// A tape for these values of the parameters, in their order. Sums of powers are worked out in nested form

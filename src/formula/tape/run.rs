@@ -25,7 +25,7 @@ pub struct Tape {
 
 /// Room for intermediate results. It grows to what a tape needs and is then reused.
 #[derive(Debug, Default)]
-pub struct Workspace {
+pub(crate) struct Workspace {
     registers: Vec<Room>,
     scalars: Vec<f64>,
 }
@@ -66,11 +66,6 @@ impl Tape {
         self.states
     }
 
-    /// Number of expressions.
-    pub fn outputs(&self) -> usize {
-        self.fixed.len()
-    }
-
     /// Number of passes over the lanes.
     pub fn instructions(&self) -> usize {
         self.steps.len()
@@ -101,7 +96,7 @@ impl Tape {
     }
 
     /// As [`Tape::run`], in a room of the caller's.
-    pub fn run_with(
+    pub(crate) fn run_with(
         &self,
         workspace: &mut Workspace,
         time: f64,

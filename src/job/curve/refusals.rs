@@ -24,7 +24,7 @@ pub(super) fn plane(sweep: &Sweep) -> Result<Option<Plane>, Report> {
 ///
 /// # Errors
 /// A report where the box has a corner that is not allowed, or at which a state that modes carry goes beyond its axis.
-pub fn check_curves(sweep: &Sweep) -> Result<(), Report> {
+pub(crate) fn check_curves(sweep: &Sweep) -> Result<(), Report> {
     plane(sweep)?.map_or(Ok(()), |plane| check_corners(sweep, &plane))
 }
 
@@ -33,7 +33,7 @@ pub fn check_curves(sweep: &Sweep) -> Result<(), Report> {
 ///
 /// # Errors
 /// A report where one is not there, or which one is not clear.
-pub fn curve_rows<'r>(
+pub(crate) fn curve_rows<'r>(
     sweep: &Sweep,
     result: &'r SweepResult,
     only: bool,

@@ -27,7 +27,7 @@ pub struct GeneratorCost {
 
 impl GeneratorCost {
     /// Seconds of a factorisation on two ordinary cores, good to a factor of two.
-    pub fn factorisation_seconds(&self) -> f64 {
+    pub(crate) fn factorisation_seconds(&self) -> f64 {
         self.factors.operations / OPERATIONS_A_SECOND
             + self.factors.factor_bytes as f64 / BYTES_A_SECOND
     }
@@ -54,7 +54,7 @@ impl GeneratorMethodOptions {
     ///
     /// # Errors
     /// [`RateError::Memory`] when not even the smallest factorisation fits the limit.
-    pub fn cost(&self, space: &CellSpace) -> Result<GeneratorCost, RateError> {
+    pub(crate) fn cost(&self, space: &CellSpace) -> Result<GeneratorCost, RateError> {
         let reach = self.reach(space);
         let factors = estimate(space, &reach, (self.memory_limit * 1e9) as u64, None)?;
         // A node of a series sends to the others of its place, which are as many as its reach.

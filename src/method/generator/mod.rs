@@ -18,7 +18,7 @@ mod trail;
 
 pub(super) use coarse::rough_masses;
 pub use cost::GeneratorCost;
-pub use modes::{ModesFound, automatic_modes, change_by_more_modes};
-pub use one_axis::OneAxisFamily;
+pub(crate) use modes::{automatic_modes, change_by_more_modes};
+pub(crate) use one_axis::OneAxisFamily;
 pub use options::GeneratorMethodOptions;
 pub use source::GeneratorSource;

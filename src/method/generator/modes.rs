@@ -31,7 +31,7 @@ const COARSE: [usize; 2] = [128, 32];
 
 /// The numbers of modes that are needed, and the change of what is watched that more would make.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ModesFound {
+pub(crate) struct ModesFound {
     /// Number of modes of the axes asked for.
     pub count: usize,
     /// Largest change of a watched density, relative to its largest value, when the next number was tried.
@@ -52,7 +52,7 @@ const MUCH: f64 = 1e-2;
 ///
 /// # Errors
 /// [`MethodError::Cancelled`].
-pub fn change_by_more_modes(
+pub(crate) fn change_by_more_modes(
     problem: &Problem,
     options: &GeneratorMethodOptions,
     cancellation: &Cancellation,
@@ -83,7 +83,7 @@ pub fn change_by_more_modes(
 ///
 /// # Errors
 /// [`MethodError`].
-pub fn automatic_modes(
+pub(crate) fn automatic_modes(
     problem: &Problem,
     open: &[usize],
     options: &GeneratorMethodOptions,

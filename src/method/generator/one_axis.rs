@@ -43,14 +43,14 @@ fn between_ends(system: &dyn System, axis: &Axis, [low, high]: [bool; 2]) -> Opt
 /// What the equations say of densities of a family with one axis: those that come back from a store know it as they did
 /// when they were solved.
 #[derive(Debug, Clone, Copy)]
-pub struct OneAxisFamily {
+pub(crate) struct OneAxisFamily {
     /// Whether the ends of the axis are closed all along the sweep.
     closed: [bool; 2],
 }
 
 impl OneAxisFamily {
     /// `None` for a family with more axes.
-    pub fn new(family: &Family, space: &CellSpace) -> Option<Self> {
+    pub(crate) fn new(family: &Family, space: &CellSpace) -> Option<Self> {
         if space.dimension() != 1 {
             return None;
         }
@@ -63,7 +63,7 @@ impl OneAxisFamily {
 
     /// Gives a density over the axis, solved by the generator for a system of the family, what it is known by: the
     /// extrema of the equations where quadrature gives it, the solver's limit elsewhere.
-    pub fn restore(self, density: &mut EstimatedDensity, system: &dyn System) {
+    pub(crate) fn restore(self, density: &mut EstimatedDensity, system: &dyn System) {
         let [axis] = density.density.axes.as_slice() else {
             return;
         };

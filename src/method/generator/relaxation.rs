@@ -89,7 +89,6 @@ impl Relaxation {
     }
 
     /// Number of cells that it is on.
-    #[cfg(feature = "serde")]
     pub(super) fn cells(&self) -> usize {
         self.mode.len()
     }

@@ -99,7 +99,6 @@ impl Trail {
     }
 
     /// Lengths of all that has one value a cell.
-    #[cfg(feature = "serde")]
     pub(super) fn lengths(&self) -> Vec<usize> {
         let points = self.points.iter();
         let mut lengths: Vec<usize> = points
@@ -111,7 +110,6 @@ impl Trail {
     }
 
     /// The newest point.
-    #[cfg(feature = "serde")]
     pub(super) fn newest(&self) -> Option<&Arc<Solved>> {
         self.points.first()
     }

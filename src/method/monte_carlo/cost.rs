@@ -19,14 +19,14 @@ pub struct MonteCarloCost {
 
 impl MonteCarloCost {
     /// Seconds on two ordinary cores, good to a factor of two, where the steps are known.
-    pub fn seconds(&self) -> Option<f64> {
+    pub(crate) fn seconds(&self) -> Option<f64> {
         self.steps.map(|steps| steps / STEPS_A_SECOND)
     }
 }
 
 impl MonteCarloOptions {
     /// What a point costs on so many cells.
-    pub fn cost(&self, n_cells: f64) -> MonteCarloCost {
+    pub(crate) fn cost(&self, n_cells: f64) -> MonteCarloCost {
         MonteCarloCost {
             bytes: n_cells * 16.0 * BLOCKS as f64,
             steps: self.steps(),

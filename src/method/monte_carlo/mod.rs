@@ -7,5 +7,5 @@ mod source;
 
 pub use cost::MonteCarloCost;
 pub use options::{Estimator, MonteCarloOptions};
-pub use plan::MonteCarloPlan;
+pub(crate) use plan::MonteCarloPlan;
 pub use source::MonteCarloSource;

@@ -53,7 +53,7 @@ pub struct MonteCarloOptions {
 
 impl MonteCarloOptions {
     /// It need not be checked: cells only count.
-    pub const CELL_CHECK: CellCheck = CellCheck::Needless;
+    pub(crate) const CELL_CHECK: CellCheck = CellCheck::Needless;
 }
 
 impl Default for MonteCarloOptions {

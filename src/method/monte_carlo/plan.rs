@@ -21,7 +21,7 @@ const BIAS_SHARE: f64 = 0.5;
 
 /// What is done at every parameter value: one plan serves a sweep, so that densities vary smoothly along it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct MonteCarloPlan {
+pub(crate) struct MonteCarloPlan {
     /// Step of the integrator.
     pub time_step: f64,
     /// Its bias, the largest at both ends and in the middle of the sweep; `None` where nothing settles there.
@@ -44,7 +44,7 @@ pub struct MonteCarloPlan {
 
 impl MonteCarloPlan {
     /// Integrator steps of all trajectories at one parameter value.
-    pub fn steps(&self) -> f64 {
+    pub(crate) fn steps(&self) -> f64 {
         self.trajectories as f64 * (self.burn_in + self.length) / self.time_step
     }
 

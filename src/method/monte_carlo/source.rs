@@ -76,7 +76,7 @@ impl MonteCarloSource {
 
     /// The same trajectories for a share of the time during which states are counted; what was measured is not measured
     /// again.
-    pub fn shortened(&self, share: f64) -> Self {
+    pub(crate) fn shortened(&self, share: f64) -> Self {
         let mut source = self.clone();
         source.plan.length *= share;
         source.plan.error /= share.sqrt();
@@ -84,7 +84,7 @@ impl MonteCarloSource {
     }
 
     /// What is done at every parameter value.
-    pub fn plan(&self) -> &MonteCarloPlan {
+    pub(crate) fn plan(&self) -> &MonteCarloPlan {
         &self.plan
     }
 

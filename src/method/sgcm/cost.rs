@@ -24,7 +24,7 @@ pub struct SgcmCost {
 
 impl SgcmOptions {
     /// What a point costs on so many cells of so many dimensions.
-    pub fn cost(&self, n_cells: f64, dimension: usize) -> SgcmCost {
+    pub(crate) fn cost(&self, n_cells: f64, dimension: usize) -> SgcmCost {
         let most = n_cells.min(self.samples as f64);
         let least = most.min(2_f64.powi(dimension as i32));
         let steps = match (self.map_step, self.time_step) {
@@ -42,7 +42,7 @@ impl SgcmOptions {
     }
 
     /// Bytes at work at a point with so many entries of the transition matrix, in so many cells.
-    pub fn bytes(&self, transitions: f64, cells: f64, dimension: usize) -> f64 {
+    pub(crate) fn bytes(&self, transitions: f64, cells: f64, dimension: usize) -> f64 {
         let (starts, moments) = match self.correction {
             // Moments of the end points by start, 11 numbers an axis, and slopes.
             Correction::Slope => (

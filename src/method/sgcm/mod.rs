@@ -11,4 +11,4 @@ mod steps;
 pub use cost::SgcmCost;
 pub use options::{Correction, SgcmOptions};
 pub use slope_correction::{Corrected, solve_corrected};
-pub use source::{SampledPoint, SgcmSource};
+pub use source::SgcmSource;

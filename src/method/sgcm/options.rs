@@ -57,7 +57,7 @@ pub struct SgcmOptions {
 impl SgcmOptions {
     /// Not at all: cells add diffusion of their own, which moves what is found, and the noise of other cells is
     /// another.
-    pub const CELL_CHECK: CellCheck = CellCheck::Impossible;
+    pub(crate) const CELL_CHECK: CellCheck = CellCheck::Impossible;
 }
 
 impl Default for SgcmOptions {

@@ -23,7 +23,7 @@ pub struct Corrected {
     pub outcome: Outcome,
     /// The transition matrix of the last turn.
     pub matrix: TransitionMatrix,
-    /// Slopes of the density in every sampled cell, see [`cell_slopes`]; all zero without correction.
+    /// Slopes of the density in every sampled cell, see `cell_slopes`; all zero without correction.
     pub slopes: Vec<[f64; MAX_DIMENSION]>,
     /// Turns that were made.
     pub rounds: usize,

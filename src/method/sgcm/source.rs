@@ -49,7 +49,7 @@ pub struct SgcmSource {
 type SolvedMasses = (Solution<'static>, Option<Vec<f64>>);
 
 /// The sampled cell map at one parameter value, to be solved with either [`Correction`].
-pub struct SampledPoint {
+pub(crate) struct SampledPoint {
     value: f64,
     system: Arc<dyn System>,
     transitions: SampledTransitions,
@@ -57,7 +57,7 @@ pub struct SampledPoint {
 
 impl SampledPoint {
     /// The samples.
-    pub fn transitions(&self) -> &SampledTransitions {
+    pub(crate) fn transitions(&self) -> &SampledTransitions {
         &self.transitions
     }
 }
@@ -82,7 +82,6 @@ impl SgcmSource {
     }
 
     /// Number of cells of the space.
-    #[cfg(feature = "serde")]
     pub(super) fn cells(&self) -> usize {
         self.problem.space().n_cells()
     }
@@ -91,7 +90,7 @@ impl SgcmSource {
     ///
     /// # Errors
     /// [`MethodError`] when the cells have another number of axes.
-    pub fn on(&self, space: &CellSpace) -> Result<Self, MethodError> {
+    pub(crate) fn on(&self, space: &CellSpace) -> Result<Self, MethodError> {
         let check = self.problem.subject().cell_check;
         let problem = self.problem.on(space.clone())?.checked_by(check);
         let mut steps = self.steps.clone();
@@ -117,12 +116,12 @@ impl SgcmSource {
     }
 
     /// Time one transition spans.
-    pub fn map_step(&self) -> f64 {
+    pub(crate) fn map_step(&self) -> f64 {
         self.steps.map_step
     }
 
     /// Step of the trajectory integrator.
-    pub fn time_step(&self) -> f64 {
+    pub(crate) fn time_step(&self) -> f64 {
         self.steps.time_step
     }
 
@@ -290,7 +289,7 @@ impl SgcmSource {
     ///
     /// # Errors
     /// [`MethodError`] when the value is not allowed, or sampling was cancelled.
-    pub fn sample_at(
+    pub(crate) fn sample_at(
         &self,
         value: f64,
         start: Option<&[f64]>,
@@ -310,7 +309,7 @@ impl SgcmSource {
     ///
     /// # Errors
     /// [`MethodError`] when the samples cannot be solved, or the solve was cancelled.
-    pub fn solve_sampled(
+    pub(crate) fn solve_sampled(
         &self,
         point: &SampledPoint,
         correction: Correction,

@@ -3,7 +3,7 @@
 mod people;
 mod rows;
 
-pub use people::{CompareTable, compare_tables};
+pub(crate) use people::compare_tables;
 
 use people::{compare_markdown, compare_tex};
 use rows::{accuracy_csv, agreement_csv, compare_csv, compare_json, densities_csv, distances_csv};
@@ -41,7 +41,7 @@ fn partner(second: Option<Method>) -> &'static str {
 ///
 /// # Errors
 /// [`RunError`] when a file cannot be composed.
-pub fn compare_files(run: &ComparedRun<'_>) -> Result<Vec<(String, String)>, RunError> {
+pub(crate) fn compare_files(run: &ComparedRun<'_>) -> Result<Vec<(String, String)>, RunError> {
     let files = [
         ("compare.csv", compare_csv(run)?),
         ("compare.md", compare_markdown(run)),

@@ -8,7 +8,7 @@ use crate::run::{format_number, format_with_error};
 
 /// A table with a caption.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct CompareTable {
+pub(crate) struct CompareTable {
     /// What it shows.
     pub caption: String,
     /// Names of the columns.
@@ -191,7 +191,7 @@ fn agreement(run: &ComparedRun<'_>) -> CompareTable {
 }
 
 /// The tables: methods, total variation, Hellinger distance, agreement of generator and Monte Carlo.
-pub fn compare_tables(run: &ComparedRun<'_>) -> Vec<CompareTable> {
+pub(crate) fn compare_tables(run: &ComparedRun<'_>) -> Vec<CompareTable> {
     vec![
         methods(run),
         pairs(run, "Total variation", |pair| {

@@ -34,7 +34,7 @@ impl ExportFormat {
     }
 
     /// Ending of the name of its file or folder.
-    pub fn ending(self) -> &'static str {
+    pub(crate) fn ending(self) -> &'static str {
         match self {
             Self::NetCdf => ".nc",
             Self::Csv => "-csv",

@@ -93,7 +93,7 @@ impl Journal {
     ///
     /// # Errors
     /// [`RunError::Read`], [`RunError::Journal`].
-    pub fn known<T: DeserializeOwned>(&self, name: &str) -> Result<Option<T>, RunError> {
+    pub(crate) fn known<T: DeserializeOwned>(&self, name: &str) -> Result<Option<T>, RunError> {
         self.get(Key::of(name))
     }
 
@@ -101,7 +101,7 @@ impl Journal {
     ///
     /// # Errors
     /// [`RunError::Write`].
-    pub fn keep<T: Serialize>(&self, name: &str, what: &T) -> Result<(), RunError> {
+    pub(crate) fn keep<T: Serialize>(&self, name: &str, what: &T) -> Result<(), RunError> {
         self.put(Key::of(name), what)
     }
 

@@ -66,12 +66,12 @@ impl JournalledSource {
     }
 
     /// How many values this process has solved, those of checks not counted.
-    pub fn solves(&self) -> usize {
+    pub(crate) fn solves(&self) -> usize {
         self.known.solves.load(Ordering::Relaxed)
     }
 
     /// Whether the last solution came from the journal.
-    pub fn is_stored(&self) -> bool {
+    pub(crate) fn is_stored(&self) -> bool {
         self.known.is_stored.load(Ordering::Relaxed)
     }
 

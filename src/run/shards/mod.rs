@@ -11,7 +11,7 @@ use crate::space::{Axis, CellSpace};
 const SHARDS: &str = "shards";
 
 /// Where a shard of the run in `folder` stands.
-pub fn shard_folder(folder: &Path, shard: Shard) -> PathBuf {
+pub(crate) fn shard_folder(folder: &Path, shard: Shard) -> PathBuf {
     let name = format!("{}-of-{}", shard.number(), shard.of());
     folder.join(SHARDS).join(name)
 }
@@ -90,7 +90,7 @@ impl Shards {
     ///
     /// # Errors
     /// [`RunError::MissingShards`].
-    pub fn check_complete(&self) -> Result<(), RunError> {
+    pub(crate) fn check_complete(&self) -> Result<(), RunError> {
         if self.missing.is_empty() {
             return Ok(());
         }

@@ -5,7 +5,7 @@ use super::RateMethod;
 /// Where a [`RateSolver`](super::RateSolver) stands.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct SolverMemory {
+pub(crate) struct SolverMemory {
     /// Reach of the stencil and method of later factorisations.
     pub(super) plan: Option<(Vec<usize>, RateMethod)>,
     /// The same of the last factorisation.

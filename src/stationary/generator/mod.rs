@@ -44,7 +44,7 @@ mod transposed;
 mod triangular;
 mod updates;
 
-pub use memory::SolverMemory;
+pub(crate) use memory::SolverMemory;
 pub use preconditioner::{Estimate, RateMethod, estimate};
 pub use symmetric::{Along, RateSolver};
 pub use transposed::TransposedSolution;

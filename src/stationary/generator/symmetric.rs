@@ -99,7 +99,7 @@ impl RateSolver {
     ///
     /// # Errors
     /// As [`RateSolver::solve`]; [`RateError::Shape`] for a change of the wrong size.
-    pub fn solve_along(
+    pub(crate) fn solve_along(
         &mut self,
         matrix: &CsMat<f64>,
         escape: &[f64],
@@ -140,7 +140,7 @@ impl RateSolver {
 
     /// Whether iterating with the factorisation at hand has come to cost more than a new one would: the next solve
     /// factorises, unless [`RateSolver::renew`] does before.
-    pub fn is_worn(&self) -> bool {
+    pub(crate) fn is_worn(&self) -> bool {
         match (&self.folded, &self.half) {
             (Some(_), Some(half)) => half.solver.is_worn(),
             _ => self.plain.is_worn(),
@@ -152,7 +152,7 @@ impl RateSolver {
     ///
     /// # Errors
     /// As [`RateSolver::solve`].
-    pub fn renew(
+    pub(crate) fn renew(
         &mut self,
         matrix: &CsMat<f64>,
         escape: &[f64],
@@ -168,13 +168,13 @@ impl RateSolver {
     }
 
     /// Factorisations that were made since the solver was.
-    pub fn factorisations(&self) -> usize {
+    pub(crate) fn factorisations(&self) -> usize {
         let half = self.half.as_ref();
         self.plain.factorisations() + half.map_or(0, |half| half.solver.factorisations())
     }
 
     /// Where the solver stands, but for the matrices: on half of the cells if the last solve was, else on all of them.
-    pub fn memory(&self) -> SolverMemory {
+    pub(crate) fn memory(&self) -> SolverMemory {
         match (&self.folded, &self.half) {
             (Some(_), Some(half)) => SolverMemory {
                 folded: true,
@@ -189,7 +189,7 @@ impl RateSolver {
     ///
     /// # Errors
     /// As [`RateSolver::solve`].
-    pub fn restore(
+    pub(crate) fn restore(
         &mut self,
         memory: &SolverMemory,
         factorised: Option<&CsMat<f64>>,
@@ -262,7 +262,7 @@ impl RateSolver {
     ///
     /// # Errors
     /// As [`RateSolver::sensitivity`].
-    pub fn sensitivity_within(
+    pub(crate) fn sensitivity_within(
         &mut self,
         derivative: &CsMat<f64>,
         mass: &[f64],
@@ -278,7 +278,7 @@ impl RateSolver {
     ///
     /// # Errors
     /// As [`RateSolver::sensitivity`].
-    pub fn response(
+    pub(crate) fn response(
         &mut self,
         change: &[f64],
         mass: &[f64],

@@ -102,7 +102,7 @@ pub enum Outcome {
         /// Share of the initial mass that goes to the sink before it reaches any of them.
         escaped: f64,
     },
-    /// Every class of cells loses more than [`LARGEST_ESCAPE`] of its mass in one map step.
+    /// Every class of cells loses more than `LARGEST_ESCAPE` of its mass in one map step.
     NoneInside {
         /// Mass that the longest-lived class loses in one map step.
         escape_per_step: f64,
@@ -111,7 +111,7 @@ pub enum Outcome {
 
 /// Largest share of its mass that a class may lose in one map step and still be said to hold a
 /// (quasi-)steady state. Callers that know a time scale should ask for much less.
-pub const LARGEST_ESCAPE: f64 = 0.5;
+pub(crate) const LARGEST_ESCAPE: f64 = 0.5;
 
 /// A (quasi-)steady state.
 #[derive(Debug, Clone, PartialEq)]

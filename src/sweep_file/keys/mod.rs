@@ -50,12 +50,12 @@ impl Key {
     }
 
     /// What is allowed, in words.
-    pub fn allowed(&self) -> String {
+    pub(crate) fn allowed(&self) -> String {
         self.kind.words()
     }
 
     /// Meaning in words; the methods that it concerns stand first, where it does not concern all.
-    pub fn meaning(&self) -> String {
+    pub(crate) fn meaning(&self) -> String {
         match self.methods().as_slice() {
             methods if methods.len() == MethodKind::ALL.len() => self.meaning.to_owned(),
             methods => {
@@ -66,7 +66,7 @@ impl Key {
     }
 
     /// What holds when it is left out, in words.
-    pub fn default_words(&self) -> String {
+    pub(crate) fn default_words(&self) -> String {
         match self.default {
             KeyDefault::Required => "required".to_owned(),
             KeyDefault::OfOptions => self.option_words(),

@@ -25,7 +25,7 @@ pub struct AxisSettings {
     pub grade: Grade,
     /// What modes of the axis are made of.
     pub series: ModesOf,
-    /// Number of modes that carry it in place of cells, by methods that can ([`MethodKind::takes_modes`]).
+    /// Number of modes that carry it in place of cells, by methods that can (`MethodKind::takes_modes`).
     pub modes: Option<Modes>,
 }
 

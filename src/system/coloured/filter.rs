@@ -30,12 +30,12 @@ impl NoiseKind {
     }
 
     /// Whether noises have a memory.
-    pub fn is_coloured(self) -> bool {
+    pub(crate) fn is_coloured(self) -> bool {
         self != Self::White
     }
 
     /// States of the filter of each noise, which are axes.
-    pub fn filter_states(self) -> usize {
+    pub(crate) fn filter_states(self) -> usize {
         match self {
             Self::White => 0,
             Self::OrnsteinUhlenbeck => 1,
@@ -73,7 +73,7 @@ impl NoiseKind {
     }
 
     /// Whether the filter has a parameter of this name.
-    pub fn has_parameter(self, name: &str) -> bool {
+    pub(crate) fn has_parameter(self, name: &str) -> bool {
         self.parameters().iter().any(|one| one.name == name)
     }
 

@@ -20,19 +20,19 @@ pub(super) use model::coloured;
 use crate::MAX_DIMENSION;
 
 /// Name of the axis of coloured noise; numbered from 1 where there are several.
-pub const NOISE_AXIS: &str = "noise";
+pub(crate) const NOISE_AXIS: &str = "noise";
 
 /// Name of the axis of the second state of harmonic noise, its rate over its frequency; numbered likewise.
-pub const NOISE_RATE_AXIS: &str = "noise_rate";
+pub(crate) const NOISE_RATE_AXIS: &str = "noise_rate";
 
 /// Name of the correlation time of coloured noise among the parameters.
-pub const CORRELATION_TIME: &str = "tau";
+pub(crate) const CORRELATION_TIME: &str = "tau";
 
 /// Name of the natural frequency of the filter of harmonic noise among the parameters.
-pub const NOISE_FREQUENCY: &str = "noise_frequency";
+pub(crate) const NOISE_FREQUENCY: &str = "noise_frequency";
 
 /// Name of the damping ratio of the filter of harmonic noise among the parameters.
-pub const NOISE_DAMPING: &str = "noise_damping";
+pub(crate) const NOISE_DAMPING: &str = "noise_damping";
 
 /// Why a model cannot have coloured noise.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

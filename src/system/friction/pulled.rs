@@ -10,7 +10,7 @@ use crate::system::{FIRST_INTERNAL_STATE, Model, ParameterValues, System, System
 /// Places of a cycle whose states are given; a multiple of four, so that the path turns at one of them.
 const PLACES: usize = 400;
 /// Cycles after which a state that has not come back to itself never will.
-pub const MOST_CYCLES: usize = 60;
+pub(crate) const MOST_CYCLES: usize = 60;
 /// Pieces in which a body is pulled in one direction until it slides steadily, over so many yielding distances.
 const PIECES: usize = 200;
 const FAR: f64 = 40.0;
@@ -35,7 +35,10 @@ const SHOWN: [(&str, f64); 6] = [
 ///
 /// # Errors
 /// As [`Model::values`].
-pub fn shown_values(model: &Model, given: &[(&str, f64)]) -> Result<ParameterValues, SystemError> {
+pub(crate) fn shown_values(
+    model: &Model,
+    given: &[(&str, f64)],
+) -> Result<ParameterValues, SystemError> {
     let free = model.parameters.iter().filter(|one| one.default.is_none());
     let shown = |name: &str| {
         let known = SHOWN.iter().find(|(one, _)| *one == name);
@@ -49,7 +52,7 @@ pub fn shown_values(model: &Model, given: &[(&str, f64)]) -> Result<ParameterVal
 }
 
 /// Whether a system has a friction law that exerts a force.
-pub fn has_friction(system: &dyn System) -> bool {
+pub(crate) fn has_friction(system: &dyn System) -> bool {
     system
         .friction_force(&vec![0.0; system.dimension()])
         .is_some()
@@ -57,7 +60,7 @@ pub fn has_friction(system: &dyn System) -> bool {
 
 /// One place of a cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pulled {
+pub(crate) struct Pulled {
     /// Displacement x.
     pub displacement: f64,
     /// Velocity x'.
@@ -68,7 +71,7 @@ pub struct Pulled {
 
 /// Distance over which a law's contact yields: the largest of what its internal states may be over the rate at which
 /// they grow from zero, a unit of distance. `None` without bounded internal states.
-pub fn yielding_distance(system: &dyn System) -> Option<f64> {
+pub(crate) fn yielding_distance(system: &dyn System) -> Option<f64> {
     let mut moving = vec![0.0; system.dimension()];
     *moving.get_mut(1)? = 1.0;
     let rates = system.drift_at(0.0, &moving);
@@ -82,7 +85,7 @@ pub fn yielding_distance(system: &dyn System) -> Option<f64> {
 
 /// Friction force at a velocity that has been kept for long. `None` where the system has no friction law, or its states
 /// do not settle.
-pub fn steady_sliding(system: &dyn System, velocity: f64) -> Option<f64> {
+pub(crate) fn steady_sliding(system: &dyn System, velocity: f64) -> Option<f64> {
     if !has_friction(system) {
         return None;
     }
@@ -109,7 +112,7 @@ pub fn steady_sliding(system: &dyn System, velocity: f64) -> Option<f64> {
 /// the middle upward and back to it, after as many cycles as the states need to come back to themselves, at most
 /// [`MOST_CYCLES`]: see [`closes`]. Empty where the system has no friction law, or amplitude or velocity is not
 /// positive, and where its states run away.
-pub fn cycle(system: &dyn System, amplitude: f64, fastest: f64) -> Vec<Pulled> {
+pub(crate) fn cycle(system: &dyn System, amplitude: f64, fastest: f64) -> Vec<Pulled> {
     let is_path = amplitude > 0.0 && fastest > 0.0 && (amplitude + fastest).is_finite();
     if !is_path || !has_friction(system) {
         return Vec::new();
@@ -147,7 +150,7 @@ pub fn cycle(system: &dyn System, amplitude: f64, fastest: f64) -> Vec<Pulled> {
 }
 
 /// Whether a cycle ends with the force that it began with; it does not where the states never come back to themselves.
-pub fn closes(cycle: &[Pulled]) -> bool {
+pub(crate) fn closes(cycle: &[Pulled]) -> bool {
     let sizes = cycle.iter().map(|one| one.force.abs());
     let largest = sizes.fold(0.0, f64::max);
     match (cycle.first(), cycle.last()) {

@@ -19,7 +19,7 @@ pub struct TypedEquations {
 
 /// An operation of a formula that fails somewhere: a division by zero, the root of a negative number, an overflow.
 #[derive(Debug, Clone, PartialEq)]
-pub struct FormulaHazard {
+pub(crate) struct FormulaHazard {
     /// The formula.
     pub place: FormulaPlace,
     /// How the operation fails.
@@ -117,7 +117,7 @@ impl TypedEquations {
     }
 
     /// Parameters that no equation, noise or bound contains, by name; coloured noise uses those of its filter.
-    pub fn unused_parameters(&self) -> Vec<&str> {
+    pub(crate) fn unused_parameters(&self) -> Vec<&str> {
         let reading = &self.reading;
         let mut all: Vec<Expression> = reading.typed_drift.clone();
         all.extend(reading.noise.iter().flatten());
@@ -138,7 +138,11 @@ impl TypedEquations {
 
     /// Operations of drift and noise that fail, or may fail, somewhere in a box of states and of parameters: one range
     /// each.
-    pub fn hazards(&self, states: &[(f64, f64)], parameters: &[(f64, f64)]) -> Vec<FormulaHazard> {
+    pub(crate) fn hazards(
+        &self,
+        states: &[(f64, f64)],
+        parameters: &[(f64, f64)],
+    ) -> Vec<FormulaHazard> {
         let reading = &self.reading;
         let domain = domain(states, parameters);
         let mut found = Vec::new();
@@ -159,7 +163,7 @@ impl TypedEquations {
 
     /// Amplitudes that depend on the state and may be zero somewhere in a box of states and of parameters, typeset;
     /// those beside an additive noise on the same axis do no harm and are left out.
-    pub fn vanishing_noises(
+    pub(crate) fn vanishing_noises(
         &self,
         states: &[(f64, f64)],
         parameters: &[(f64, f64)],

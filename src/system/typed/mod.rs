@@ -21,7 +21,8 @@ use super::{AxisDescription, Facts, Lanes, Model, NoiseKind, ParameterDescriptio
 use crate::formula::language::typeset_name;
 use statement::{Statement, equation, white, with_bars};
 
-pub use equations::{FormulaHazard, TypedEquations};
+pub(crate) use equations::FormulaHazard;
+pub use equations::TypedEquations;
 pub use error::{FormulaPlace, TypedModelError};
 
 /// How a stochastic integral is read where the amplitude of a noise depends on the state that it drives.
@@ -439,27 +440,22 @@ fn is_internal(reading: &read::Reading, axis: usize) -> bool {
 /// What was typed, to write it down again.
 impl TypedModel {
     /// Axes and the right sides of their equations, in the order typed.
-    pub fn equations(&self) -> &[(String, String)] {
+    pub(crate) fn equations(&self) -> &[(String, String)] {
         &self.equations
     }
 
     /// Wiener processes in the order typed, each with the axes that it drives and its amplitudes there.
-    pub fn processes(&self) -> &[Vec<(String, String)>] {
+    pub(crate) fn processes(&self) -> &[Vec<(String, String)>] {
         &self.processes
     }
 
     /// How the noise is read, where it was said.
-    pub fn interpretation(&self) -> Option<Interpretation> {
+    pub(crate) fn interpretation(&self) -> Option<Interpretation> {
         self.interpretation
     }
 
-    /// What the noises are.
-    pub fn noise_kind(&self) -> NoiseKind {
-        self.noise_kind
-    }
-
     /// Names and formulas of the definitions.
-    pub fn definitions(&self) -> &[(String, String)] {
+    pub(crate) fn definitions(&self) -> &[(String, String)] {
         &self.definitions
     }
 

@@ -88,7 +88,7 @@ impl Indicator {
     }
 
     /// Whether it follows from the equations, without cells or samples: no finer grid can tell more of it.
-    pub fn is_free_of_cells(&self) -> bool {
+    pub(crate) fn is_free_of_cells(&self) -> bool {
         self.sensitivity == 0.0 && self.sampling_error == 0.0
     }
 

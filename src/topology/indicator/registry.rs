@@ -50,7 +50,7 @@ impl IndicatorKind {
 
     /// Slope of a marginal on one side of a kink, away from it, `above` where that is the side of larger coordinates;
     /// positive when the kink is an extremum, of the two the valley if `is_valley`, and another one lies on that side.
-    pub const fn beside_kink(above: bool, is_valley: bool) -> Self {
+    pub(crate) const fn beside_kink(above: bool, is_valley: bool) -> Self {
         Self(&beside::SLOPES[above as usize][is_valley as usize])
     }
 
@@ -67,7 +67,7 @@ impl IndicatorKind {
     }
 
     /// The one that has this code.
-    pub fn of_code(code: &str) -> Option<Self> {
+    pub(crate) fn of_code(code: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.code() == code)
     }
 }

@@ -1,7 +1,9 @@
 //! Parity of formulas and reflections of systems.
 
 use super::{formula, scope};
-use crate::formula::analysis::{Parity, Reflection, ReflectionError};
+use crate::formula::analysis::Reflection;
+use crate::formula::analysis::parity::Parity;
+use crate::formula::analysis::reflection::ReflectionError;
 use crate::formula::graph::{Expression, Point};
 
 fn parity(text: &str, reflected: [bool; 3], centre: [f64; 3]) -> (Parity, bool) {
