@@ -6,7 +6,7 @@ pub(super) mod coulomb;
 pub(super) mod dahl;
 pub(super) mod elasto_plastic;
 pub(super) mod lugre;
-pub mod pulled;
+pub(crate) mod pulled;
 mod sliding;
 pub(super) mod stribeck;
 
