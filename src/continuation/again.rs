@@ -2,8 +2,9 @@
 
 use rayon::prelude::*;
 
+use super::doubt::CheckedBy;
 use super::doubt::Doubt;
-use super::grid::{Checked, CheckedBy, CheckedIndicator, Checks, Seen, check, known, leak};
+use super::grid::{Checked, CheckedIndicator, Checks, Seen, check, known, leak};
 use super::span::Span;
 use super::sweep::distance_between;
 use super::{Goal, LocateOptions, Point, Subject, SweepResult, locate::label_points};

@@ -2,11 +2,67 @@
 //! its first doubt, and so does the reason that is given for it.
 
 use super::measure::{DEVIATION, EDGE_MASS, MEAN};
-use super::{
-    BifurcationStatus, CellCheck, CheckedBy, ErrorParts, Finding, Point, PointStatus, Subject,
-};
+use super::{CellCheck, ErrorParts, Finding, Point, PointStatus, Subject};
 use crate::density::Density;
 use crate::space::Axis;
+
+/// How well a P-bifurcation is known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum BifurcationStatus {
+    /// Its bracket and its error are within the tolerance, and finer cells, where there are any, show it too.
+    Located,
+    /// The data cannot tell where in the bracket it lies.
+    Unresolved,
+    /// A finer grid does not show it there, or there is none to check a cell map that adds diffusion of its own, or,
+    /// where only persistence tells, its feature is nowhere more than a few cells from another: it may be an effect of
+    /// the cells.
+    Unconfirmed,
+    /// Finer cells were not asked ([`LocateOptions::grid_check`](super::LocateOptions::grid_check) is off), so that its
+    /// error lacks what the cells do to it; or a check failed: [`Located::reason`] says which. The value may be right.
+    Unchecked,
+}
+
+impl BifurcationStatus {
+    /// All of them.
+    pub const ALL: [Self; 4] = [
+        Self::Located,
+        Self::Unresolved,
+        Self::Unconfirmed,
+        Self::Unchecked,
+    ];
+
+    /// The word used in tables.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Located => "located",
+            Self::Unresolved => "unresolved",
+            Self::Unconfirmed => "unconfirmed",
+            Self::Unchecked => "unchecked",
+        }
+    }
+}
+
+/// What a located value is checked by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum CheckedBy {
+    /// The same source on finer cells.
+    FinerCells,
+    /// The same source between ends of Ω that let nothing out.
+    ClosedEnds,
+}
+
+impl CheckedBy {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::FinerCells, Self::ClosedEnds];
+
+    /// The words used in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::FinerCells => "finer cells",
+            Self::ClosedEnds => "closed ends",
+        }
+    }
+}
 
 /// A reason why a located value may not be what it says.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,7 +5,7 @@
 //! With r times as many cells an axis and order p its error is 1/(rᵖ - 1) of the distance between both: what order two
 //! gives is stated, and never less than the distance itself.
 
-use super::doubt::Doubt;
+use super::doubt::{CheckedBy, Doubt};
 use super::root::Root;
 use super::span::Span;
 use super::{CellCheck, Session, SourceError};
@@ -72,28 +72,6 @@ impl Seen {
             indicator,
             failure,
         })
-    }
-}
-
-/// What a located value is checked by.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum CheckedBy {
-    /// The same source on finer cells.
-    FinerCells,
-    /// The same source between ends of Ω that let nothing out.
-    ClosedEnds,
-}
-
-impl CheckedBy {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::FinerCells, Self::ClosedEnds];
-
-    /// The words used in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::FinerCells => "finer cells",
-            Self::ClosedEnds => "closed ends",
-        }
     }
 }
 

@@ -1,45 +1,9 @@
 //! Labelled points of a sweep: AUTO's habit of a type and an ordinal for everything worth a row.
 
-use super::doubt::{Doubt, status_of};
+use super::doubt::{BifurcationStatus, Doubt, status_of};
 use super::{ErrorParts, Point};
 use crate::density::Observable;
 use crate::topology::{IndicatorKind, Signature, Step};
-
-/// How well a P-bifurcation is known.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum BifurcationStatus {
-    /// Its bracket and its error are within the tolerance, and finer cells, where there are any, show it too.
-    Located,
-    /// The data cannot tell where in the bracket it lies.
-    Unresolved,
-    /// A finer grid does not show it there, or there is none to check a cell map that adds diffusion of its own, or,
-    /// where only persistence tells, its feature is nowhere more than a few cells from another: it may be an effect of
-    /// the cells.
-    Unconfirmed,
-    /// Finer cells were not asked ([`LocateOptions::grid_check`](super::LocateOptions::grid_check) is off), so that its
-    /// error lacks what the cells do to it; or a check failed: [`Located::reason`] says which. The value may be right.
-    Unchecked,
-}
-
-impl BifurcationStatus {
-    /// All of them.
-    pub const ALL: [Self; 4] = [
-        Self::Located,
-        Self::Unresolved,
-        Self::Unconfirmed,
-        Self::Unchecked,
-    ];
-
-    /// The word used in tables.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Located => "located",
-            Self::Unresolved => "unresolved",
-            Self::Unconfirmed => "unconfirmed",
-            Self::Unchecked => "unchecked",
-        }
-    }
-}
 
 /// A labelled point of a sweep, a row of `bifurcations.csv`.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,8 @@
 //! The checks of located values by solves: on finer cells, and between ends of Ω that let nothing out.
 
+use super::doubt::CheckedBy;
 use super::doubt::Doubt;
-use super::grid::{Checked, CheckedBy, CheckedIndicator, Checks, Seen, check, known, leak, solve};
+use super::grid::{Checked, CheckedIndicator, Checks, Seen, check, known, leak, solve};
 use super::span::Span;
 use super::{DensitySource, Session, SourceError, Want};
 use crate::cancellation::Cancellation;

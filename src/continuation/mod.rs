@@ -52,12 +52,12 @@ mod span;
 mod sweep;
 
 pub(crate) use again::detect_again;
-pub use doubt::{Doubt, WiderRange};
+pub use doubt::{BifurcationStatus, CheckedBy, Doubt, WiderRange};
 #[cfg(test)]
 pub(crate) use finding::every_finding;
 pub use finding::{Finding, ShiftedQuantity, SteadyClass};
-pub use grid::{CheckedBy, CheckedIndicator};
-pub use label::{BifurcationStatus, Label, Located, Zero};
+pub use grid::CheckedIndicator;
+pub use label::{Label, Located, Zero};
 pub use measure::{Measure, MeasureColumn, MeasureKind};
 pub use observer::Observer;
 pub use point::Point;

@@ -8,7 +8,6 @@ use super::html;
 use super::pack::{Packed, Scale, deflate};
 use super::plane::PlaneScene;
 use super::scene::Scene;
-use super::stored::StoredPage;
 use crate::continuation::{Label, Point, Subject};
 use crate::density::Observable;
 use crate::sweep_file::Sweep;
@@ -17,10 +16,6 @@ use crate::sweep_file::Sweep;
 const MARGINAL_BITS: u32 = 24;
 /// Bits of a band.
 const BAND_BITS: u32 = 12;
-/// Bits of a joint density that are tried, the finest first; the last is taken however large the page becomes.
-const JOINT_BITS: [u32; 4] = [14, 12, 10, 8];
-/// Size of a page that is aimed at, in bytes.
-const AIM: usize = 3_000_000;
 
 /// What the page is told, beside its arrays.
 #[derive(Debug, Serialize)]
@@ -72,34 +67,8 @@ pub(super) struct Shown<'a> {
 }
 
 impl Shown<'_> {
-    /// The page with as many bits for joint densities as fit.
-    pub(super) fn fitted(&self) -> Result<StoredPage, ExploreError> {
-        let subject = self.subject;
-        let is_joint = |observable: &Observable| matches!(observable, Observable::Joint(..));
-        let has_joint = subject.observables.iter().any(is_joint);
-        let ladder = if has_joint {
-            &JOINT_BITS[..]
-        } else {
-            &JOINT_BITS[..1]
-        };
-        let mut smallest = None;
-        for &bits in ladder {
-            let html = self.compose(bits)?;
-            let fits = html.len() <= AIM;
-            smallest = Some((html, bits));
-            if fits {
-                break;
-            }
-        }
-        let (html, bits) = smallest.unwrap_or_default();
-        Ok(StoredPage {
-            html,
-            joint_bits: has_joint.then_some(bits),
-        })
-    }
-
     /// A page whose joint densities have so many bits.
-    fn compose(&self, joint_bits: u32) -> Result<String, ExploreError> {
+    pub(super) fn compose(&self, joint_bits: u32) -> Result<String, ExploreError> {
         let sweep = self.sweep;
         let scene = Scene::new(sweep, self.labels);
         let subject = self.subject;

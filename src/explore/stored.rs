@@ -9,6 +9,7 @@ use crate::cancellation::Cancellation;
 use crate::continuation::curve::{Curve, Plane};
 use crate::continuation::map::{PlaneState, RegimeMap};
 use crate::continuation::{SourceError, SweepResult, evenly_spaced};
+use crate::density::Observable;
 use crate::sweep_file::Sweep;
 
 /// Values a side of a plane at most whose densities stand in its page.
@@ -114,6 +115,40 @@ fn shown<'a>(sweep: &'a Sweep, plane: &'a PlaneScene, states: &'a [PlaneState]) 
         points: states.iter().map(|state| &state.point).collect(),
         plane: Some(plane),
         across: states.iter().map(|state| state.values[1]).collect(),
+    }
+}
+
+/// Bits of a joint density that are tried, the finest first; the last is taken however large the page becomes.
+const JOINT_BITS: [u32; 4] = [14, 12, 10, 8];
+
+/// Size of a page that is aimed at, in bytes.
+const AIM: usize = 3_000_000;
+
+impl Shown<'_> {
+    /// The page with as many bits for joint densities as fit.
+    pub(super) fn fitted(&self) -> Result<StoredPage, ExploreError> {
+        let subject = self.subject;
+        let is_joint = |observable: &Observable| matches!(observable, Observable::Joint(..));
+        let has_joint = subject.observables.iter().any(is_joint);
+        let ladder = if has_joint {
+            &JOINT_BITS[..]
+        } else {
+            &JOINT_BITS[..1]
+        };
+        let mut smallest = None;
+        for &bits in ladder {
+            let html = self.compose(bits)?;
+            let fits = html.len() <= AIM;
+            smallest = Some((html, bits));
+            if fits {
+                break;
+            }
+        }
+        let (html, bits) = smallest.unwrap_or_default();
+        Ok(StoredPage {
+            html,
+            joint_bits: has_joint.then_some(bits),
+        })
     }
 }
 

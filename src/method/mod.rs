@@ -45,12 +45,13 @@ pub use generator::{GeneratorCost, GeneratorMethodOptions, GeneratorSource};
 pub(crate) use generator::{OneAxisFamily, automatic_modes, change_by_more_modes};
 pub use measures::DerivedMeasure;
 pub use monte_carlo::{Estimator, MonteCarloCost, MonteCarloOptions, MonteCarloSource};
-pub use options::{MethodOptions, StepChoice};
+pub use options::MethodOptions;
 pub use problem::Problem;
 pub use range::RangeError;
 pub(crate) use range::{PILOT_BOX, automatic_ranges};
 pub use sgcm::{Corrected, Correction, SgcmCost, SgcmOptions, SgcmSource, solve_corrected};
 pub(crate) use sticking::check_sticking;
+pub use time_step::StepChoice;
 
 use crate::cancellation::Cancelled;
 use crate::continuation::SourceError;

@@ -5,9 +5,6 @@ use crate::space::CellSpace;
 
 use super::{GeneratorMethodOptions, MonteCarloOptions, SgcmOptions};
 
-/// Largest share of the mass that may leave Ω within one relaxation time, whatever the method.
-pub(super) const ESCAPE_LIMIT: f64 = 0.5;
-
 /// A method with its settings.
 #[derive(Debug, Clone, PartialEq)]
 pub enum MethodOptions {
@@ -44,25 +41,6 @@ impl MethodOptions {
             Self::Generator(_) => 0,
             Self::Sgcm(options) => options.seed,
             Self::MonteCarlo(options) => options.seed,
-        }
-    }
-}
-
-/// A step (a time, a number of trajectories) that is given, or left to the program.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum StepChoice {
-    /// Chosen from the system, the cells and the noise.
-    Auto,
-    /// Given; times in the system's unit of time.
-    Fixed(f64),
-}
-
-impl StepChoice {
-    /// What is given, or else what is chosen.
-    pub(super) fn or(self, chosen: impl FnOnce() -> f64) -> f64 {
-        match self {
-            Self::Auto => chosen(),
-            Self::Fixed(value) => value,
         }
     }
 }

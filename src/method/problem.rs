@@ -1,12 +1,26 @@
 //! What a source of densities is made for.
 
+use std::sync::{Arc, OnceLock};
+
 use super::MethodError;
 use super::measures::DerivedMeasure;
-use super::watched::Fixed;
 use crate::continuation::{CellCheck, Subject, Want};
-use crate::density::{DensityError, Observable, Projection, laid_out};
+use crate::density::{DensityError, Observable, Projection, QuantityMoments, laid_out};
 use crate::space::{Axis, CellSpace};
-use crate::system::Family;
+use crate::system::{BoundQuantity, Family};
+
+/// What quantities need at one value of the path.
+#[derive(Debug)]
+pub(super) struct Maps {
+    /// One an observable that has a quantity: the map, and a coarser one where the masses carry no noise.
+    pub(super) watched: Vec<Option<(Projection, Option<Projection>)>>,
+    pub(super) averaged: Vec<QuantityMoments>,
+    /// The quantities that can be watched, in their order.
+    pub(super) bound: Vec<BoundQuantity>,
+}
+
+/// The maps where they are the same along a whole path.
+pub(super) type Fixed = Arc<OnceLock<Arc<Maps>>>;
 
 /// Systems along a path, the cells on which they are solved, and what is watched: three things that fit together.
 #[derive(Debug, Clone)]

@@ -292,3 +292,6 @@ impl<'a> Reporter<'a> {
         }
     }
 }
+
+/// Largest share of the mass that may leave Ω within one relaxation time, whatever the method.
+pub(super) const ESCAPE_LIMIT: f64 = 0.5;

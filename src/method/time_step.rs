@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::StepChoice;
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::monte_carlo::{Relaxation, StepBias, automatic_step, step_bias};
 use crate::sampling::Integrator;
@@ -43,4 +42,23 @@ pub(super) fn time_step(
         worst = worst.into_iter().chain(bias).reduce(StepBias::worse);
     }
     Ok((step, worst))
+}
+
+/// A step (a time, a number of trajectories) that is given, or left to the program.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum StepChoice {
+    /// Chosen from the system, the cells and the noise.
+    Auto,
+    /// Given; times in the system's unit of time.
+    Fixed(f64),
+}
+
+impl StepChoice {
+    /// What is given, or else what is chosen.
+    pub(super) fn or(self, chosen: impl FnOnce() -> f64) -> f64 {
+        match self {
+            Self::Auto => chosen(),
+            Self::Fixed(value) => value,
+        }
+    }
 }

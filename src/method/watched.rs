@@ -1,8 +1,9 @@
 //! From cell masses to what is watched: coordinates by sums, quantities by sub-cells, and the means that are wanted
 //! beside them.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
+use super::problem::Maps;
 use super::structure::structure;
 use super::{MethodError, Problem};
 use crate::density::{
@@ -11,19 +12,6 @@ use crate::density::{
     estimate_projected, total_variation,
 };
 use crate::system::{BoundQuantity, LANES, SwitchingSurface, System, proved_symmetry};
-
-/// What quantities need at one value of the path.
-#[derive(Debug)]
-pub(super) struct Maps {
-    /// One an observable that has a quantity: the map, and a coarser one where the masses carry no noise.
-    watched: Vec<Option<(Projection, Option<Projection>)>>,
-    averaged: Vec<QuantityMoments>,
-    /// The quantities that can be watched, in their order.
-    bound: Vec<BoundQuantity>,
-}
-
-/// The maps where they are the same along a whole path.
-pub(super) type Fixed = Arc<OnceLock<Arc<Maps>>>;
 
 /// Whether masses carry noise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,7 +30,7 @@ impl Problem {
     ) -> Result<Arc<Maps>, MethodError> {
         let family = self.family();
         let mut all = family.quantities().iter().chain(family.averaged());
-        if all.any(|quantity| quantity.moves_with(family)) {
+        if all.any(|quantity| family.moves(quantity)) {
             return Ok(Arc::new(self.maps_at(value, kinked, masses)?));
         }
         if let Some(known) = self.fixed().get() {

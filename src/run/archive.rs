@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 
 use super::RunError;
 use super::atomic::sync_folder;
-use super::staging::Entries;
 use super::tree::{is_part, link_tree, make, rename};
+
+/// What a folder may hold by this program's doing: files and folders by name, the file that marks the folder first.
+pub(super) type Entries = &'static [&'static str];
 
 /// Where earlier versions are kept.
 pub(super) const PREVIOUS: &str = "previous";

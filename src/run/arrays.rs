@@ -16,7 +16,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::names::Named;
+use super::columns::Named;
 use crate::density::{EstimatedDensity, Kink, Observable};
 use crate::space::Axis;
 use crate::system::Family;

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use sha2::{Digest as _, Sha256};
 
 use super::atomic::write_durably;
-use super::{Layout, RunError, journal, research_object};
+use super::{RunError, journal, research_object};
 
 /// Name of the file.
 pub(super) const NAME: &str = "checksums.sha256";
@@ -41,38 +41,18 @@ pub(crate) type Checked = (usize, Vec<(PathBuf, Damage)>);
 /// Checksums by the names of files below a run's folder, with `/` between folders.
 type Sums = BTreeMap<String, String>;
 
-/// Writes the checksums of all files of a run. A journal is not one of them: it grows.
+/// Writes the checksums of all files of a folder that holds these files and folders. A journal is not one of them: it
+/// grows.
 ///
 /// # Errors
 /// [`RunError::Read`] or [`RunError::Write`].
-pub(super) fn write(run: &Path) -> Result<(), RunError> {
-    write_listed(run, Layout::SWEEP.entries)
-}
-
-/// The same of another folder, which holds these files and folders.
-///
-/// # Errors
-/// As [`write`].
-pub(super) fn write_listed(run: &Path, entries: &[&str]) -> Result<(), RunError> {
+pub(super) fn write(run: &Path, entries: &[&str]) -> Result<(), RunError> {
     let entries = entries.iter().filter(|entry| is_summed(entry));
     let mut sums = Sums::new();
     for entry in entries {
         add(run, entry, &mut sums)?;
     }
     put(run, &sums)
-}
-
-/// The same of whatever the program left in a folder: a run, a comparison, curves or a map.
-///
-/// # Errors
-/// [`RunError::NotARun`] where it left nothing; as for a single file.
-pub fn check_folder(folder: &Path) -> Result<Option<Checked>, RunError> {
-    match Layout::of(folder) {
-        Some(layout) => check_listed(folder, layout.entries, &[]),
-        None => Err(RunError::NotARun {
-            path: folder.to_owned(),
-        }),
-    }
 }
 
 /// Writes those below one entry anew, which was made anew.
@@ -88,20 +68,12 @@ pub(super) fn renew(run: &Path, entry: &str) -> Result<(), RunError> {
     put(run, &sums)
 }
 
-/// The files below the given entries (all, if there are none) that are not as the run left them, and how many are;
-/// `None` for a run without checksums.
+/// The files of a folder, which may hold the files and folders `all`, that are below the given entries (all, if there
+/// are none) and not as the run left them, and how many are; `None` for a folder without checksums.
 ///
 /// # Errors
 /// [`RunError::Read`]; [`RunError::Checksums`] when the checksums are not readable themselves.
-pub(super) fn check(run: &Path, entries: &[&str]) -> Result<Option<Checked>, RunError> {
-    check_listed(run, Layout::SWEEP.entries, entries)
-}
-
-/// The same of another folder, which may hold the files and folders `all`.
-///
-/// # Errors
-/// As [`check`].
-pub(super) fn check_listed(
+pub(super) fn check(
     run: &Path,
     all: &[&str],
     entries: &[&str],
@@ -242,6 +214,8 @@ fn read(run: &Path) -> Result<Option<Sums>, RunError> {
 mod tests {
     use super::*;
 
+    const ENTRIES: &[&str] = &["run.json", NAME, "points.csv", "densities.zarr", "figures"];
+
     #[test]
     fn every_flipped_byte_and_every_missing_file_is_found() {
         let folder = tempfile::tempdir().unwrap();
@@ -257,9 +231,9 @@ mod tests {
         for name in files {
             std::fs::write(run.join(name), name).unwrap();
         }
-        assert_eq!(check(run, &[]).unwrap(), None);
-        write(run).unwrap();
-        assert_eq!(check(run, &[]).unwrap(), Some((4, Vec::new())));
+        assert_eq!(check(run, ENTRIES, &[]).unwrap(), None);
+        write(run, ENTRIES).unwrap();
+        assert_eq!(check(run, ENTRIES, &[]).unwrap(), Some((4, Vec::new())));
         for name in files {
             let path = run.join(name);
             let whole = std::fs::read(&path).unwrap();
@@ -267,11 +241,11 @@ mod tests {
                 let mut bytes = whole.clone();
                 bytes[place] ^= 1;
                 std::fs::write(&path, bytes).unwrap();
-                let (count, damaged) = check(run, &[]).unwrap().unwrap();
+                let (count, damaged) = check(run, ENTRIES, &[]).unwrap().unwrap();
                 assert_eq!((count, damaged), (3, vec![(path.clone(), Damage::Changed)]));
             }
             std::fs::remove_file(&path).unwrap();
-            let damaged = check(run, &[]).unwrap().unwrap().1;
+            let damaged = check(run, ENTRIES, &[]).unwrap().unwrap().1;
             assert_eq!(damaged, [(path.clone(), Damage::Missing)]);
             std::fs::write(&path, whole).unwrap();
         }
@@ -281,7 +255,7 @@ mod tests {
             let mut bytes = sums.clone();
             bytes[place] ^= 1;
             std::fs::write(run.join(NAME), bytes).unwrap();
-            let found = check(run, &[]);
+            let found = check(run, ENTRIES, &[]);
             assert!(
                 found.is_err() || !found.unwrap().unwrap().1.is_empty(),
                 "{place}"
@@ -292,11 +266,14 @@ mod tests {
         std::fs::write(run.join("figures/mine.svg"), "").unwrap();
         let added = (run.join("densities.zarr/p_x/c/1"), Damage::Added);
         assert_eq!(
-            check(run, &["densities.zarr"]).unwrap(),
+            check(run, ENTRIES, &["densities.zarr"]).unwrap(),
             Some((1, vec![added]))
         );
         std::fs::write(run.join("figures/a b.svg"), "drawn again").unwrap();
         renew(run, "figures").unwrap();
-        assert_eq!(check(run, &["figures"]).unwrap(), Some((2, Vec::new())));
+        assert_eq!(
+            check(run, ENTRIES, &["figures"]).unwrap(),
+            Some((2, Vec::new()))
+        );
     }
 }

@@ -150,7 +150,7 @@ mod tests {
         for name in ["run.json", "points.csv", "figures/a.svg", "figures/b.svg"] {
             std::fs::write(run.join(name), name).unwrap();
         }
-        checksums::write(&run).unwrap();
+        checksums::write(&run, Layout::SWEEP.entries).unwrap();
         for name in ["figures/a.svg", "figures/mine.svg", "notes.txt"] {
             std::fs::write(run.join(name), "mine").unwrap();
         }

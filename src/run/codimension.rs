@@ -1,17 +1,13 @@
 //! The tables of the points of codimension two, as CSV and for LaTeX, and the table of several curves.
 
-use super::RunError;
 use super::columns::{Columns, number, word};
-use super::curve::{self, CurveRow, rows};
-use super::latex;
+use super::curve::{self, CurveRow, curve_json, curve_name, rows};
 use super::number::{format_number, format_with_error};
-use crate::continuation::curve::{CodimensionTwo, Curve, Plane, codimension_two};
+use super::{RunError, latex, plane_file};
+use crate::continuation::curve::{
+    CodimensionTwo, Curve, CurveOrigin, CurveTree, Plane, codimension_two,
+};
 use crate::system::Family;
-
-/// What a curve is called, by its place among several.
-pub(crate) fn curve_name(index: usize) -> String {
-    format!("C{}", index + 1)
-}
 
 /// The table of several curves in a plane; the first column has the curve's name. `starts` are the labels of their
 /// starts; those without one are called `start`.
@@ -57,6 +53,33 @@ pub(super) fn several_columns<'a>(
     let mut all = vec![word("curve", move |_| curve_name(index))];
     all.extend(curve::columns(family, plane));
     Columns(all)
+}
+
+/// The files of curves in a plane by their names; `origin` is the row that the first was begun at, `sweep` the resolved
+/// sweep as TOML, `of` what describes the curves besides.
+///
+/// # Errors
+/// [`RunError`] when a file cannot be composed.
+pub fn curve_files(
+    family: &Family,
+    plane: &Plane,
+    tree: &CurveTree,
+    (origin, sweep, of): (&CurveOrigin, &str, &str),
+) -> Result<Vec<(String, String)>, RunError> {
+    let start = origin.label.as_str();
+    let curves = tree.curves.as_slice();
+    let mut files = plane_files(family, plane, curves, &[start])?;
+    files.extend([
+        (
+            "curve.json".to_owned(),
+            curve_json(family, plane, tree, start, (sweep, of))?,
+        ),
+        (
+            plane_file::NAME.to_owned(),
+            plane_file::of_curves(plane, curves, origin, sweep),
+        ),
+    ]);
+    Ok(files)
 }
 
 /// The table of the points of codimension two of curves.

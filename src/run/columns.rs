@@ -7,7 +7,6 @@ use serde_json::{Map, Value};
 
 use super::RunError;
 use super::cell::Cell;
-use super::names::Named;
 use super::number::format_number;
 
 /// What the cells of a column hold, for JSON.
@@ -282,4 +281,36 @@ fn compose<R: IntoIterator<Item = String>>(
     let bytes = writer.into_inner();
     let bytes = bytes.map_err(|error| csv::Error::from(error.into_error()))?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// A name that a run gives.
+pub(super) struct Named {
+    pub(super) name: String,
+    /// What has the name, in words; empty of a column.
+    pub(super) what: String,
+    /// Whether a number ends the name.
+    pub(super) is_numbered: bool,
+}
+
+impl Named {
+    pub(super) fn new(name: impl Into<String>, what: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            what: what.into(),
+            is_numbered: false,
+        }
+    }
+
+    /// The name that both would have.
+    pub(super) fn shared<'n>(&'n self, other: &'n Self) -> Option<&'n str> {
+        let begins =
+            |one: &Self, other: &Self| one.is_numbered && other.name.starts_with(&one.name);
+        if self.name == other.name || begins(self, other) {
+            Some(&other.name)
+        } else if begins(other, self) {
+            Some(&self.name)
+        } else {
+            None
+        }
+    }
 }

@@ -3,14 +3,17 @@
 use serde_json::json;
 
 use super::RunError;
-use super::codimension::{curve_name, plane_files};
 use super::columns::{Column, flag, number, word};
-use super::plane_file;
-use crate::continuation::curve::{Curve, CurveOrigin, CurvePoint, CurveTree, CurveWork, Plane};
+use crate::continuation::curve::{Curve, CurvePoint, CurveTree, CurveWork, Plane};
 use crate::system::Family;
 
 /// Folder of a run below which its curves have a folder each.
 pub const FOLDER: &str = "curves";
+
+/// What a curve is called, by its place among several.
+pub(crate) fn curve_name(index: usize) -> String {
+    format!("C{}", index + 1)
+}
 
 /// A point of a curve as a row of a table.
 pub(super) struct CurveRow<'a> {
@@ -89,7 +92,7 @@ pub(super) fn columns<'a>(family: &'a Family, plane: &Plane) -> Vec<Column<'a, C
 }
 
 /// What there is to know of curves beside their points, as JSON.
-fn curve_json(
+pub(super) fn curve_json(
     family: &Family,
     plane: &Plane,
     tree: &CurveTree,
@@ -162,31 +165,4 @@ fn ends_json(curve: &Curve) -> Vec<serde_json::Value> {
         })
     });
     ends.collect()
-}
-
-/// The files of curves in a plane by their names; `origin` is the row that the first was begun at, `sweep` the resolved
-/// sweep as TOML, `of` what describes the curves besides.
-///
-/// # Errors
-/// [`RunError`] when a file cannot be composed.
-pub fn curve_files(
-    family: &Family,
-    plane: &Plane,
-    tree: &CurveTree,
-    (origin, sweep, of): (&CurveOrigin, &str, &str),
-) -> Result<Vec<(String, String)>, RunError> {
-    let start = origin.label.as_str();
-    let curves = tree.curves.as_slice();
-    let mut files = plane_files(family, plane, curves, &[start])?;
-    files.extend([
-        (
-            "curve.json".to_owned(),
-            curve_json(family, plane, tree, start, (sweep, of))?,
-        ),
-        (
-            plane_file::NAME.to_owned(),
-            plane_file::of_curves(plane, curves, origin, sweep),
-        ),
-    ]);
-    Ok(files)
 }

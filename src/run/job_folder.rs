@@ -2,10 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use super::archive::Entries;
 use super::atomic::{clear_unfinished, sync_all, write_atomically};
+use super::checksums::Checked;
 use super::journal::differences;
 use super::lock::FolderLock;
-use super::staging::{Entries, Staging};
+use super::staging::Staging;
 use super::{Ending, Journal, RunError, checksums, curve, journal, plane_file, research_object};
 
 /// What a kind of job leaves in its folder.
@@ -149,6 +151,21 @@ impl Layout {
     }
 }
 
+/// How many files of whatever the program left in a folder (a run, a comparison, curves or a map) are as it left them,
+/// and those that are not; `None` for a folder without checksums.
+///
+/// # Errors
+/// [`RunError::NotARun`] where it left nothing; [`RunError::Read`]; [`RunError::Checksums`] when the checksums are not
+/// readable themselves.
+pub fn check_folder(folder: &Path) -> Result<Option<Checked>, RunError> {
+    match Layout::of(folder) {
+        Some(layout) => checksums::check(folder, layout.entries, &[]),
+        None => Err(RunError::NotARun {
+            path: folder.to_owned(),
+        }),
+    }
+}
+
 /// The folder of a job in the making, from which other writers are kept away. Dropped before it is closed, it leaves
 /// what was there, but for files that grow in their place.
 #[derive(Debug)]
@@ -269,14 +286,14 @@ impl JobFolder {
         let files = match self.place {
             Destination::Beside(staging) => {
                 if self.layout.entries.contains(&checksums::NAME) {
-                    checksums::write_listed(&path, self.layout.entries)?;
+                    checksums::write(&path, self.layout.entries)?;
                 }
                 sync_all(&[path])?;
                 staging.take_place(&[])?.files
             }
             Destination::There { .. } => {
                 research_object::write(&path)?;
-                checksums::write_listed(&path, self.layout.entries)?;
+                checksums::write(&path, self.layout.entries)?;
                 Vec::new()
             }
         };

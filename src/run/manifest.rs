@@ -1,8 +1,9 @@
 //! `run.json`: what was run, by which version, and how it ended.
 
 use serde::{Deserialize, Serialize};
+use sha2::{Digest as _, Sha256};
 
-use super::{Provenance, RunError, stored_run::hash};
+use super::{Provenance, RunError};
 use crate::sweep_file::SweepText;
 
 /// How a run ended.
@@ -141,4 +142,10 @@ impl Manifest {
             warnings: Vec::new(),
         })
     }
+}
+
+/// SHA-256 of a resolved sweep file, hexadecimal.
+pub(super) fn hash(resolved: &str) -> String {
+    let digest = Sha256::digest(resolved.as_bytes());
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -99,19 +99,20 @@ pub(crate) use bifurcations::{
     bifurcations_csv, bifurcations_json, bifurcations_markdown, bifurcations_tex,
 };
 pub(crate) use checksums::Checked;
-pub use checksums::{Damage, check_folder};
+pub use checksums::Damage;
 pub(crate) use clean::{Removable, removable_runs, remove_run};
-pub(crate) use codimension::curve_name;
+pub use codimension::curve_files;
 pub use compare::ComparedRun;
 pub(crate) use compare::{compare_files, compare_tables};
+pub use curve::FOLDER as CURVES;
+pub(crate) use curve::curve_name;
 pub(crate) use curve::point_labels;
-pub use curve::{FOLDER as CURVES, curve_files};
 pub(crate) use date::date_in_utc;
 pub use doubts::doubt_in_words;
 pub use export::{ExportFormat, export};
 pub(crate) use features_table::features_csv;
 pub(crate) use folder::{RunFolder, sweep_files};
-pub use job_folder::{JobFolder, Layout};
+pub use job_folder::{JobFolder, Layout, check_folder};
 pub use journal::{Journal, JournalledSource};
 pub(crate) use manifest::Manifest;
 pub use manifest::{Ending, PhaseSeconds};

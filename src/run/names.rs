@@ -1,44 +1,13 @@
 //! Names that a sweep file gives become names of columns and arrays, beside those of the program. No two columns of a
 //! table, and no two arrays of a store, may have one name: the later would take the place of the earlier.
 
+use super::columns::Named;
 use super::{arrays, checks, codimension, export, features_table, map, points_table};
 use crate::continuation::MeasureColumn;
 use crate::continuation::curve::Plane;
 use crate::density::Observable;
 use crate::sweep_file::{Diagnostic, Place, Report, Settings};
 use crate::system::Family;
-
-/// A name that a run gives.
-pub(super) struct Named {
-    pub(super) name: String,
-    /// What has the name, in words; empty of a column.
-    pub(super) what: String,
-    /// Whether a number ends the name.
-    pub(super) is_numbered: bool,
-}
-
-impl Named {
-    pub(super) fn new(name: impl Into<String>, what: impl Into<String>) -> Self {
-        Self {
-            name: name.into(),
-            what: what.into(),
-            is_numbered: false,
-        }
-    }
-
-    /// The name that both would have.
-    fn shared<'n>(&'n self, other: &'n Self) -> Option<&'n str> {
-        let begins =
-            |one: &Self, other: &Self| one.is_numbered && other.name.starts_with(&one.name);
-        if self.name == other.name || begins(self, other) {
-            Some(&other.name)
-        } else if begins(other, self) {
-            Some(&self.name)
-        } else {
-            None
-        }
-    }
-}
 
 /// Columns or arrays that stand together: what they are of, in words, and their names.
 type Together = (&'static str, Vec<Named>);

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::Layout;
 use super::lock::FolderLock;
 use super::{checksums, journal, research_object};
 
@@ -16,7 +17,8 @@ pub(super) fn seal_after_kill(run: &Path) {
         return;
     };
     let is_sealed = run.join(checksums::NAME).is_file();
-    let seal = || research_object::write(run).and_then(|()| checksums::write(run));
+    let seal =
+        || research_object::write(run).and_then(|()| checksums::write(run, Layout::SWEEP.entries));
     if is_sealed || seal().is_ok() {
         let _ = std::fs::remove_file(part);
     }

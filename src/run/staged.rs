@@ -85,7 +85,7 @@ impl StagedRun {
         }
         let placed = self.staging.take_place(&staying)?;
         research_object::write(&home)?;
-        checksums::write(&home)?;
+        checksums::write(&home, Layout::SWEEP.entries)?;
         Ok(placed.files)
     }
 }

@@ -4,14 +4,11 @@
 use std::path::{Path, PathBuf};
 
 use super::RunError;
-use super::archive;
+use super::archive::{self, Entries};
 use super::atomic::sync_folder;
 use super::lock::{FolderLock, holder_of};
 use super::tree::{make, rename};
 use crate::UNFINISHED;
-
-/// What a folder may hold by this program's doing: files and folders by name, the file that marks the folder first.
-pub(super) type Entries = &'static [&'static str];
 
 /// New files in the making. Dropped before they are in place, they leave the folder as it was. While it lives, no other
 /// process writes to the folder.

@@ -4,14 +4,13 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 use serde::Deserialize;
-use sha2::{Digest, Sha256};
 
 use super::checks::read_checks;
-use super::manifest::Typed;
+use super::manifest::{Typed, hash};
 use super::points_table::read_points;
 use super::sealing::seal_after_kill;
 use super::stored_densities::StoredDensities;
-use super::{Checked, Ending, PhaseSeconds, RunError, checksums, exchange, journal};
+use super::{Checked, Ending, Layout, PhaseSeconds, RunError, checksums, exchange, journal};
 use crate::continuation::measure::MEAN;
 use crate::continuation::{CheckedIndicator, Point, Shard, Subject};
 use crate::space::{Axis, CellSpace};
@@ -267,7 +266,7 @@ impl StoredRun {
     /// without.
     fn check_sums(&self) -> Result<(), RunError> {
         let entries = ["run.json", "points.csv", "checks.csv", "densities.zarr"];
-        let damaged = checksums::check(&self.path, &entries)?;
+        let damaged = checksums::check(&self.path, Layout::SWEEP.entries, &entries)?;
         match damaged.and_then(|(_, damaged)| damaged.into_iter().next()) {
             Some((path, damage)) => Err(RunError::Damaged { path, damage }),
             None => Ok(()),
@@ -280,7 +279,7 @@ impl StoredRun {
     /// # Errors
     /// [`RunError::Read`], [`RunError::Checksums`].
     pub fn damage(&self) -> Result<Option<Checked>, RunError> {
-        checksums::check(&self.path, &[])
+        checksums::check(&self.path, Layout::SWEEP.entries, &[])
     }
 
     /// Takes the figures that are there for those of the run: they were drawn again.
@@ -333,10 +332,4 @@ fn check_hash(file: &Path, text: &str, stored: &str) -> Result<(), RunError> {
     Err(RunError::Hash {
         path: file.to_owned(),
     })
-}
-
-/// SHA-256 of a resolved sweep file, hexadecimal.
-pub(super) fn hash(resolved: &str) -> String {
-    let digest = Sha256::digest(resolved.as_bytes());
-    digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }

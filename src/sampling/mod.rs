@@ -22,15 +22,17 @@ mod growth;
 mod integrator;
 mod jacobian;
 mod normal;
+mod options;
 mod pilot;
 mod random;
 mod slopes;
 mod starts;
 mod transition;
 
-pub use growth::{SamplingOptions, sample_transitions};
+pub use growth::sample_transitions;
 pub use integrator::Integrator;
 pub(crate) use integrator::Stepper;
+pub use options::SamplingOptions;
 pub use pilot::{Pilot, pilot};
 pub(crate) use random::{NormalStream, StreamKey, mix, unit};
 pub(crate) use slopes::cell_slopes;

@@ -97,6 +97,11 @@ impl Family {
         &self.averaged
     }
 
+    /// Whether a quantity changes along the path.
+    pub(crate) fn moves(&self, quantity: &Quantity) -> bool {
+        quantity.depends_on(self.path.moved())
+    }
+
     /// The quantity of a number among axes and quantities; `None` for an axis.
     pub(crate) fn quantity(&self, number: usize) -> Option<&Arc<Quantity>> {
         self.quantities

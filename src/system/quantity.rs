@@ -4,7 +4,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::{Family, LANES, Lanes, Model, SystemError};
+use super::{LANES, Lanes, Model, SystemError};
 use crate::formula::graph::{Expression, Symbol};
 use crate::formula::language::FormulaError;
 use crate::formula::scope::{DefinitionError, DefinitionFault, Scope, SymbolError, Symbols};
@@ -240,10 +240,9 @@ impl Quantity {
         &self.states
     }
 
-    /// Whether it changes along the path of a family.
-    pub(crate) fn moves_with(&self, family: &Family) -> bool {
-        let moved = family.path().moved();
-        self.parameters.iter().any(|name| moved.contains(name))
+    /// Whether it contains one of these parameters or definitions.
+    pub(super) fn depends_on(&self, names: &[String]) -> bool {
+        self.parameters.iter().any(|name| names.contains(name))
     }
 
     /// With values of all parameters of the model.
@@ -283,7 +282,7 @@ impl BoundQuantity {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::system::registry;
+    use crate::system::{Family, registry};
 
     fn faults(given: &[(&str, Option<&str>)]) -> Vec<String> {
         let model = registry::find("coulomb").unwrap();
@@ -310,6 +309,6 @@ mod tests {
         let fixed = [("kappa", 0.1), ("sigma2", 0.1), ("f_c", 0.0)];
         let path = crate::system::Path::parameter("alpha", 0.5, 1.0);
         let family = Family::new(model, &fixed, path).unwrap();
-        assert!(read[0].moves_with(&family));
+        assert!(family.moves(&read[0]));
     }
 }

@@ -1,16 +1,14 @@
 //! The detector by persistence: what is present of the components of superlevel and sublevel sets makes the signature.
 
-use std::cmp::Ordering;
-
 use super::candidate::{Candidate, judge};
-use super::exact;
+use super::exact::{self, by_kind_and_height, present_places};
 use super::indicator::{Counted, at_centre, correct, flanks_from_centre, put_right, shoulders};
 use super::persistence::{Grid, components};
 use super::significance::Limits;
 use super::surroundings::{contents, rims};
 use super::{
     DetectOptions, Detection, Detector, Feature, FeatureKind, Flank, Indicator, IndicatorKind,
-    Signature, Verdict,
+    Signature,
 };
 use crate::density::EstimatedDensity;
 
@@ -58,20 +56,6 @@ fn grid(estimated: &EstimatedDensity) -> Option<Grid<'_>> {
         columns,
         values,
     })
-}
-
-/// Places of the features of a kind that are present.
-pub(super) fn present_places(features: &[Feature], kind: FeatureKind) -> Vec<Vec<f64>> {
-    let present = features
-        .iter()
-        .filter(|feature| feature.kind == kind && feature.verdict == Verdict::Present);
-    present.map(|feature| feature.position.clone()).collect()
-}
-
-/// The order in which features are listed.
-pub(super) fn by_kind_and_height(a: &Feature, b: &Feature) -> Ordering {
-    let heights = b.persistence.total_cmp(&a.persistence);
-    a.kind.cmp(&b.kind).then(heights)
 }
 
 impl Detector for PersistenceDetector {
@@ -173,6 +157,7 @@ mod tests {
     use super::*;
     use crate::density::{Density, Observable};
     use crate::space::Axis;
+    use crate::topology::Verdict;
 
     fn estimated(values: Vec<f64>, errors: Vec<f64>) -> EstimatedDensity {
         let axis = Axis::uniform(0.0, 1.0, 8).unwrap();

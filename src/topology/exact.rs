@@ -1,10 +1,11 @@
 //! Features of a density over one axis whose extrema are known from its equations: however narrow they are, none is
 //! lost between cells.
 
-use super::detector::{by_kind_and_height, present_places};
+use std::cmp::Ordering;
+
 use super::indicator::{Counted, at_centre, correct};
 use super::significance::Limits;
-use super::{Detection, Feature, FeatureKind, Signature};
+use super::{Detection, Feature, FeatureKind, Signature, Verdict};
 use crate::density::{EstimatedDensity, Extremum, Profile};
 
 /// Relative error of a density computed from its logarithm.
@@ -142,6 +143,20 @@ fn highest(peak: &Extremum) -> Feature {
         verdict: super::Verdict::Present,
         partner: None,
     }
+}
+
+/// The order in which features are listed.
+pub(super) fn by_kind_and_height(a: &Feature, b: &Feature) -> Ordering {
+    let heights = b.persistence.total_cmp(&a.persistence);
+    a.kind.cmp(&b.kind).then(heights)
+}
+
+/// Places of the features of a kind that are present.
+pub(super) fn present_places(features: &[Feature], kind: FeatureKind) -> Vec<Vec<f64>> {
+    let present = features
+        .iter()
+        .filter(|feature| feature.kind == kind && feature.verdict == Verdict::Present);
+    present.map(|feature| feature.position.clone()).collect()
 }
 
 #[cfg(test)]

@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::Work;
-use crate::continuation::Shard;
 use crate::run::ExportFormat;
 
 pub(super) const MERGE_EXAMPLES: &str = "\
@@ -126,42 +125,4 @@ fn format(text: &str) -> Result<ExportFormat, String> {
             ExportFormat::ALL.map(ExportFormat::name).join(", ")
         )
     })
-}
-
-/// The shard that `K/N` names.
-pub(super) fn shard(text: &str) -> Result<Shard, String> {
-    let named = text.split_once('/').and_then(|(number, of)| {
-        let of = of.trim().parse().ok().filter(|&of| of <= MOST_SHARDS)?;
-        Shard::new(number.trim().parse().ok()?, of)
-    });
-    named.ok_or_else(|| {
-        format!("allowed: K/N, the K-th of N shards, such as 1/4, 2/4, 3/4, 4/4; N is at most {MOST_SHARDS}")
-    })
-}
-
-/// More shards than any sweep has values worth a process of their own.
-const MOST_SHARDS: usize = 100_000;
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn shards_are_named_by_number_and_count() {
-        assert_eq!(shard("2/4").unwrap(), Shard::new(2, 4).unwrap());
-        assert_eq!(shard(" 1 / 1 ").unwrap(), Shard::WHOLE);
-        for wrong in [
-            "",
-            "2",
-            "0/4",
-            "5/4",
-            "1/0",
-            "-1/4",
-            "1/4/2",
-            "a/b",
-            "1/1000000000000",
-        ] {
-            assert!(shard(wrong).unwrap_err().contains("such as 1/4"), "{wrong}");
-        }
-    }
 }

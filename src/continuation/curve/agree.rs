@@ -1,8 +1,8 @@
 //! What several curves say of one point of codimension two, brought together: an end is where the curve that knows it
 //! best has it.
 
-use super::codimension::{CodimensionTwo, CodimensionTwoKind, SAME, codimension_two, own};
-use super::found::{Curve, CurvePoint, EndReason};
+use super::codimension::{CodimensionTwo, SAME, codimension_two, own};
+use super::found::{CodimensionTwoKind, Curve, CurvePoint, EndReason};
 use super::walked::apart;
 use crate::continuation::ErrorParts;
 use crate::topology::IndicatorKind;

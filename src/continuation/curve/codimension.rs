@@ -1,7 +1,7 @@
 //! Points of codimension two of several curves: those that a curve knows of itself, each once for all curves that have
 //! it, and crossings.
 
-use super::found::{Curve, CurvePoint, EndReason};
+use super::found::{CodimensionTwoKind, Curve, CurvePoint, EndReason};
 use super::piece::Piece;
 use super::walked::apart;
 use crate::continuation::doubt::status_of;
@@ -10,54 +10,6 @@ use crate::density::Observable;
 
 /// Two points nearer than this, in sides of the box, are one.
 pub(super) const SAME: f64 = 0.01;
-
-/// What happens at a point of codimension two.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum CodimensionTwoKind {
-    /// Two folds meet and turn on the spot.
-    Cusp,
-    /// A split at a centre turns from births at the centre to births away from it.
-    DegenerateSplit,
-    /// Slope and curvature beside a kink vanish together: births at the kink turn into births away from it.
-    DegenerateKink,
-    /// The slopes on both sides of a kink vanish together, and the curves of both end.
-    KinkCorner,
-    /// Two curves cross.
-    Crossing,
-}
-
-impl CodimensionTwoKind {
-    /// All of them.
-    pub const ALL: [Self; 5] = [
-        Self::Cusp,
-        Self::DegenerateSplit,
-        Self::DegenerateKink,
-        Self::KinkCorner,
-        Self::Crossing,
-    ];
-
-    /// The letters of its label.
-    pub fn prefix(self) -> &'static str {
-        match self {
-            Self::Cusp => "CP",
-            Self::DegenerateSplit => "DS",
-            Self::DegenerateKink => "DK",
-            Self::KinkCorner => "KC",
-            Self::Crossing => "CX",
-        }
-    }
-
-    /// The words used in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Cusp => "cusp",
-            Self::DegenerateSplit => "degenerate split",
-            Self::DegenerateKink => "degenerate kink",
-            Self::KinkCorner => "corner at a kink",
-            Self::Crossing => "crossing",
-        }
-    }
-}
 
 /// A point of codimension two.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,9 +5,9 @@
 //! with it dθ/dx = 0. The indicator itself is no help there, since it is defined by the inflection between two extrema;
 //! the parameters as polynomials in x are.
 
-use super::fold_end::{Beyond, FAR, Tail};
 use super::found::EndReason;
 use super::polynomial::{evaluate, fit};
+use super::tail::{Beyond, FAR, Tail};
 use super::walked::apart;
 use crate::topology::IndicatorKind;
 

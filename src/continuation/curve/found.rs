@@ -1,6 +1,6 @@
 //! What following a curve gives: its points with their errors, its ends with their reasons, and the work it took.
 
-use super::{CodimensionTwoKind, CurveStart, Plane};
+use super::{CurveStart, Plane};
 use crate::continuation::doubt::status_of;
 use crate::continuation::measure::FACTORISATIONS;
 use crate::continuation::{BifurcationStatus, Doubt, ErrorParts, Located, SolveReport};
@@ -251,4 +251,52 @@ pub(super) fn label_ends(reasons: Vec<EndReason>, points: usize) -> Vec<CurveEnd
         });
     }
     ends
+}
+
+/// What happens at a point of codimension two.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CodimensionTwoKind {
+    /// Two folds meet and turn on the spot.
+    Cusp,
+    /// A split at a centre turns from births at the centre to births away from it.
+    DegenerateSplit,
+    /// Slope and curvature beside a kink vanish together: births at the kink turn into births away from it.
+    DegenerateKink,
+    /// The slopes on both sides of a kink vanish together, and the curves of both end.
+    KinkCorner,
+    /// Two curves cross.
+    Crossing,
+}
+
+impl CodimensionTwoKind {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Cusp,
+        Self::DegenerateSplit,
+        Self::DegenerateKink,
+        Self::KinkCorner,
+        Self::Crossing,
+    ];
+
+    /// The letters of its label.
+    pub fn prefix(self) -> &'static str {
+        match self {
+            Self::Cusp => "CP",
+            Self::DegenerateSplit => "DS",
+            Self::DegenerateKink => "DK",
+            Self::KinkCorner => "KC",
+            Self::Crossing => "CX",
+        }
+    }
+
+    /// The words used in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Cusp => "cusp",
+            Self::DegenerateSplit => "degenerate split",
+            Self::DegenerateKink => "degenerate kink",
+            Self::KinkCorner => "corner at a kink",
+            Self::Crossing => "crossing",
+        }
+    }
 }

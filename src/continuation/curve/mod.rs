@@ -30,14 +30,18 @@ mod piece;
 mod plane;
 mod polynomial;
 mod reading;
+mod tail;
 mod tree;
 mod walk;
 mod walked;
 
 pub(super) use agree::agree;
-pub use codimension::{CodimensionTwo, CodimensionTwoKind, codimension_two};
+pub use codimension::{CodimensionTwo, codimension_two};
 pub use crossed::{NotInPlane, RowInPlane, SweepInPlane};
-pub use found::{Curve, CurveEnd, CurveOrigin, CurvePoint, CurveWork, DegeneratePoint, EndReason};
+pub use found::{
+    CodimensionTwoKind, Curve, CurveEnd, CurveOrigin, CurvePoint, CurveWork, DegeneratePoint,
+    EndReason,
+};
 pub use plane::{Plane, PlaneSide};
 pub use tree::{CurveTree, MissedBranch, follow_all};
 pub(super) use tree::{ON_IT, distance};

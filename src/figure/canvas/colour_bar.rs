@@ -4,10 +4,10 @@ use plotters_backend::text_anchor::HPos;
 
 use super::frame::{self, Scale};
 use super::heat::Picture;
-use super::look::Look;
+use super::look::{Look, on_heat};
 use super::page::{Page, Rectangle, Shape, lettering};
 use super::render;
-use super::style::{self, Stroke, TEXT};
+use super::style::{Stroke, TEXT};
 use crate::figure::FigureError;
 
 /// Width of the bar, in pixels.
@@ -67,7 +67,7 @@ impl ColourBar {
         page.draw(&corners, Shape::Image(ramp));
         for &share in marks {
             let y = bar.bottom() - share * bar.height;
-            let stroke = Stroke::solid(style::on_heat(page.look(), share), 1.0);
+            let stroke = Stroke::solid(on_heat(page.look(), share), 1.0);
             page.draw(&[(bar.left, y), (bar.right(), y)], Shape::Line(stroke));
         }
         frame::border(page, bar);

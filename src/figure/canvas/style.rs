@@ -5,8 +5,6 @@
 //! of text asked for, a figure pixel is what makes the lettering of that size, and the layout has as many of them as
 //! the page is then wide.
 
-use super::look::Look;
-
 /// Sub-pixel units in a figure pixel: plotters places everything on whole units.
 pub(crate) const UNITS: f64 = 20.0;
 /// Pixels of an embedded heat map to a figure pixel, where cells are not pixels themselves.
@@ -136,13 +134,6 @@ impl Stroke {
     }
 }
 
-/// Black or white, whichever is seen better on the colour of a share (0 to 1) of the largest value.
-pub(crate) fn on_heat(look: &Look, share: f64) -> Colour {
-    let ground = luminance(look.colours.colour(share));
-    // Against white the contrast is 3.3 to one here; thin white lines are seen better than thin black ones.
-    if ground > 0.27 { BLACK } else { WHITE }
-}
-
 /// Relative luminance of an sRGB colour (WCAG 2).
 pub(super) fn luminance((r, g, b): (u8, u8, u8)) -> f64 {
     let linear = |value: u8| (f64::from(value) / 255.0).powf(2.2);
@@ -152,24 +143,6 @@ pub(super) fn luminance((r, g, b): (u8, u8, u8)) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::style::ColourMap;
-
-    #[test]
-    fn marks_on_heat_keep_a_contrast_of_three() {
-        for colours in ColourMap::ALL {
-            let look = Look {
-                colours,
-                ..Look::default()
-            };
-            for step in 0..=100 {
-                let share = f64::from(step) / 100.0;
-                let ground = luminance(colours.colour(share)) + 0.05;
-                let mark = luminance(on_heat(&look, share).light) + 0.05;
-                let contrast = (ground / mark).max(mark / ground);
-                assert!(contrast > 3.0, "{share}: {contrast}");
-            }
-        }
-    }
 
     #[test]
     fn lettering_is_read_on_both_grounds() {

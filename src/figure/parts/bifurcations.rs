@@ -7,11 +7,9 @@ use crate::density::Observable;
 
 use crate::figure::FigureError;
 use crate::figure::canvas::legend::Sample;
-use crate::figure::canvas::look::Look;
+use crate::figure::canvas::look::{Look, on_heat};
 use crate::figure::canvas::page::{Page, Panel, Rectangle, Shape, small};
-use crate::figure::canvas::style::{
-    self, BIFURCATION, Colour, GREY, PAPER, Stroke, TICK_TEXT, WHITE,
-};
+use crate::figure::canvas::style::{BIFURCATION, Colour, GREY, PAPER, Stroke, TICK_TEXT, WHITE};
 use crate::figure::canvas::{render, symbols};
 
 /// Height of a row of labels.
@@ -113,7 +111,7 @@ impl<'a> Labels<'a> {
             let point = label.point;
             let line = [(point.value, from), (point.value, to)];
             if !label.own {
-                let faint = Stroke::solid(style::on_heat(look, 0.0).at(0.7), 0.9);
+                let faint = Stroke::solid(on_heat(look, 0.0).at(0.7), 0.9);
                 panel.draw(&line, Shape::Line(faint.dashed(OTHERS)));
                 continue;
             }

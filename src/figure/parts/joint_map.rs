@@ -12,9 +12,9 @@ use crate::figure::canvas::contour::{Grid, thinned};
 use crate::figure::canvas::frame::{self, Scale};
 use crate::figure::canvas::heat::Picture;
 use crate::figure::canvas::legend::{self, Legend, Sample};
-use crate::figure::canvas::look::Look;
+use crate::figure::canvas::look::{Look, on_heat};
 use crate::figure::canvas::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
-use crate::figure::canvas::style::{self, MARGIN, Stroke, TEXT};
+use crate::figure::canvas::style::{MARGIN, Stroke, TEXT};
 use crate::figure::figures::Print;
 use crate::topology::{Feature, FeatureKind, Verdict};
 
@@ -229,7 +229,7 @@ fn draw_contours(
     let own = found.shown.largest;
     let place = |&point: &(f64, f64)| panel.place(point);
     for share in LEVELS {
-        let colour = style::on_heat(look, share * own / largest);
+        let colour = on_heat(look, share * own / largest);
         for line in grid.contour(share * own) {
             let line = thinned(&line, ALIKE, place);
             panel.draw(&line, Shape::Line(Stroke::solid(colour, 0.8)));

@@ -1,21 +1,8 @@
 //! Whether an expression is even or odd under a reflection of the state.
 
-use super::reflection::Reflection;
+use super::reflection::{Parity, Reflection};
 use crate::formula::arithmetic::{Binary, Unary, small_integer};
 use crate::formula::graph::{Evaluator, Expression, Graph, Node, PartMap, Point, Symbol, TooLarge};
-
-/// What a reflection does to an expression.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Parity {
-    /// It is zero everywhere.
-    Zero,
-    /// It keeps its value.
-    Even,
-    /// It changes its sign.
-    Odd,
-    /// Neither.
-    Neither,
-}
 
 /// The parity of an expression and how it is known.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,6 +1,5 @@
 //! Reflections that map a stochastic equation onto itself.
 
-use super::parity::Parity;
 use crate::formula::graph::{Expression, Graph, TooLarge};
 
 /// A reflection: marked coordinates change sign about the centre, the others stay.
@@ -10,6 +9,19 @@ pub(crate) struct Reflection {
     pub centre: Vec<f64>,
     /// Which states are reflected.
     pub reflected: Vec<bool>,
+}
+
+/// What a reflection does to an expression.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Parity {
+    /// It is zero everywhere.
+    Zero,
+    /// It keeps its value.
+    Even,
+    /// It changes its sign.
+    Odd,
+    /// Neither.
+    Neither,
 }
 
 /// Why a reflection does not map an equation onto itself.

@@ -2,7 +2,6 @@
 
 use super::fuse::Fused;
 use super::instruction::{Instruction, Source, Step};
-use super::program::BindError;
 use super::run::Tape;
 use super::values::{Operand, Values};
 use crate::formula::limits;
@@ -15,12 +14,12 @@ enum Place {
     Output(usize),
 }
 
-/// Makes the tape.
-pub(super) fn allocate(values: Values, fused: Fused, states: usize) -> Result<Tape, BindError> {
+/// Makes the tape; `None` where it keeps too many results at one time.
+pub(super) fn allocate(values: Values, fused: Fused, states: usize) -> Option<Tape> {
     let order = order(&values, &fused);
     let places = Places::new(&values, &fused, &order);
     if places.registers > limits::REGISTERS || values.outputs.len() > limits::REGISTERS {
-        return Err(BindError::TooWide);
+        return None;
     }
     let source = |operand: Operand| match operand {
         Operand::State(state) => Source::Lanes(state),
@@ -68,7 +67,7 @@ pub(super) fn allocate(values: Values, fused: Fused, states: usize) -> Result<Ta
         .map(|&output| values.fixed(output))
         .collect();
     let registers = places.registers;
-    Ok(Tape::new(
+    Some(Tape::new(
         steps,
         values.scalars,
         values.coefficients,

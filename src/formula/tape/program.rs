@@ -119,11 +119,11 @@ impl Program {
                 wanted: self.parameters,
             });
         }
-        Ok(Values::new(self, parameters))
+        Ok(Values::new(&self.nodes, &self.outputs, parameters))
     }
 
     fn tape(&self, values: Values) -> Result<Tape, BindError> {
         let fused = fuse(&values);
-        allocate(values, fused, self.states)
+        allocate(values, fused, self.states).ok_or(BindError::TooWide)
     }
 }

@@ -4,7 +4,6 @@
 
 use std::collections::HashMap;
 
-use super::program::Program;
 use crate::formula::arithmetic::{Binary, Unary, select, small_integer};
 use crate::formula::graph::{Node, Symbol};
 
@@ -86,11 +85,11 @@ pub(super) struct Values {
 }
 
 impl Values {
-    pub(super) fn new(program: &Program, parameters: &[f64]) -> Self {
+    pub(super) fn new(nodes: &[Node], outputs: &[usize], parameters: &[f64]) -> Self {
         let mut values = Self::default();
-        let mut made: Vec<Operand> = Vec::with_capacity(program.nodes.len());
+        let mut made: Vec<Operand> = Vec::with_capacity(nodes.len());
         let zero = values.number(0.0);
-        for node in &program.nodes {
+        for node in nodes {
             let of = |expression: crate::formula::graph::Expression| {
                 made.get(expression.position()).copied().unwrap_or(zero)
             };
@@ -114,7 +113,7 @@ impl Values {
             made.push(operand);
         }
         let output = |&position: &usize| made.get(position).copied().unwrap_or(zero);
-        values.outputs = program.outputs.iter().map(output).collect();
+        values.outputs = outputs.iter().map(output).collect();
         values
     }
 

@@ -2,7 +2,7 @@
 
 use crate::continuation::CellCheck;
 use crate::generator::AdvectiveScheme;
-use crate::method::options::ESCAPE_LIMIT;
+use crate::method::report::ESCAPE_LIMIT;
 use crate::space::{Axis, CellSpace};
 
 /// Settings of the generator method.

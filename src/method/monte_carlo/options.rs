@@ -2,7 +2,7 @@
 
 use crate::continuation::CellCheck;
 use crate::method::StepChoice;
-use crate::method::options::ESCAPE_LIMIT;
+use crate::method::report::ESCAPE_LIMIT;
 use crate::sampling::Integrator;
 
 /// How free trajectories make a density.

@@ -6,9 +6,10 @@ use crate::cancellation::Cancellation;
 use crate::continuation::measure::{ESCAPE_RATE, TIME_STEP_BIAS};
 use crate::continuation::{DensitySource, Finding, Session, Solution, Subject};
 use crate::density::{EstimatedDensity, Moments};
+use crate::method::problem::Maps;
 use crate::method::report::Reporter;
 use crate::method::structure::{closed_ends, kinked_surfaces};
-use crate::method::watched::{Maps, Masses};
+use crate::method::watched::Masses;
 use crate::method::{MethodError, Problem, has_densities};
 use crate::monte_carlo::{
     EnsembleRun, ErgodicRun, Estimate, MonteCarloError, Relaxation, ensemble, ergodic, relaxation,

@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use super::SgcmSource;
+use super::source::METHOD;
 #[cfg(feature = "serde")]
 use crate::bytes::{NotWhatWasWritten, from_bytes, to_bytes};
 use crate::cancellation::Cancellation;
-use crate::continuation::{Session, Solution, SourceError};
+use crate::continuation::{DensitySource, Session, Solution, SourceError, Subject};
 use crate::method::MethodError;
 use crate::method::neighbours::Neighbours;
 
@@ -72,5 +73,19 @@ impl Session for SgcmSession {
             self.keep(*value, mass);
         }
         Ok(())
+    }
+}
+
+impl DensitySource for SgcmSource {
+    fn method(&self) -> &'static str {
+        METHOD
+    }
+
+    fn subject(&self) -> &Subject {
+        self.subject()
+    }
+
+    fn open(&self, cancellation: &Cancellation) -> Box<dyn Session> {
+        Box::new(SgcmSession::new(self, cancellation))
     }
 }

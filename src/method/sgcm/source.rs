@@ -5,17 +5,17 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::session::SgcmSession;
 use super::slope_correction::{Corrected, solve_by};
 use super::steps::{Steps, choose_steps};
 use super::{Correction, SgcmOptions};
 use crate::MAX_DIMENSION;
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::continuation::measure::{ESCAPE_RATE, MAP_STEP, TIME_STEP_BIAS};
-use crate::continuation::{DensitySource, Finding, Session, Solution, Subject};
+use crate::continuation::{Finding, Solution, Subject};
 use crate::density::{EstimatedDensity, moments};
+use crate::method::problem::Maps;
 use crate::method::report::Reporter;
-use crate::method::watched::{Maps, Masses};
+use crate::method::watched::Masses;
 use crate::method::{MethodError, Problem};
 use crate::sampling::{
     SampledTransitions, SamplingError, SamplingOptions, TransitionMatrix, sample_transitions,
@@ -25,7 +25,7 @@ use crate::stationary::{Options, Outcome, SteadyState, second_eigenvalue};
 use crate::system::System;
 
 /// Name of the method in tables.
-const METHOD: &str = "sgcm";
+pub(super) const METHOD: &str = "sgcm";
 
 /// L1 error to which replicates are solved: far below any sampling error, which is all they are for.
 const REPLICATE_TOLERANCE: f64 = 1e-7;
@@ -79,6 +79,10 @@ impl SgcmSource {
             options: options.clone(),
             steps,
         })
+    }
+
+    pub(super) fn subject(&self) -> &Subject {
+        self.problem.subject()
     }
 
     /// Number of cells of the space.
@@ -349,20 +353,6 @@ impl SgcmSource {
                 Ok((Solution::without_density(reporter.report), None))
             }
         }
-    }
-}
-
-impl DensitySource for SgcmSource {
-    fn method(&self) -> &'static str {
-        METHOD
-    }
-
-    fn subject(&self) -> &Subject {
-        self.problem.subject()
-    }
-
-    fn open(&self, cancellation: &Cancellation) -> Box<dyn Session> {
-        Box::new(SgcmSession::new(self, cancellation))
     }
 }
 

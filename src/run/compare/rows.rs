@@ -14,7 +14,7 @@ use crate::continuation::measure::{
 use crate::density::EstimatedDensity;
 use crate::run::columns::{Column, Columns, count, digits, flag, number, optional, word};
 use crate::run::sentences::sentences;
-use crate::run::{RunError, format_number, stored_run::hash};
+use crate::run::{RunError, format_number, manifest::hash};
 
 /// A record that belongs to a parameter value.
 type At<'r, T> = (&'r ComparedValue, &'r T);

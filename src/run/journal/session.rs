@@ -4,14 +4,14 @@
 //! the hash of all of it. So whoever asks for the same is given what is there, in whatever order sessions are opened
 //! and on however many threads, and what is not there is solved from where an uninterrupted session would have stood.
 
+use std::collections::HashMap;
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Instant;
 
 use super::kept::{Kept, KeptSolution, Question, in_words};
-use super::source::Known;
 use super::{Journal, Key};
-use crate::continuation::{Sensitivity, Session, Solution, SourceError};
+use crate::continuation::{Point, Sensitivity, Session, Solution, SourceError};
 use crate::run::RunError;
 use crate::system::Family;
 
@@ -276,4 +276,17 @@ impl Sensitivity for Answers<'_> {
     fn along_path(&mut self) -> Result<Vec<Vec<f64>>, SourceError> {
         self.answer(Question::AlongPath)
     }
+}
+
+/// What sessions of one source share.
+#[derive(Debug, Default)]
+pub(super) struct Known {
+    /// Points that are known beside the journal, by the bits of their values.
+    pub(super) points: HashMap<u64, Point>,
+    /// Whether solutions are asked how they answer to parameters.
+    pub(super) is_asked: bool,
+    /// Values that were solved by this process.
+    pub(super) solves: AtomicUsize,
+    /// Whether the last solution came from the journal.
+    pub(super) is_stored: AtomicBool,
 }

@@ -1,10 +1,9 @@
 //! A source of densities that writes every solve into a journal, and gives those that are there already from it.
 
-use std::collections::HashMap;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::Ordering;
 
-use super::session::{Inner, JournalledSession};
+use super::session::{Inner, JournalledSession, Known};
 use super::{Journal, Key};
 use crate::cancellation::Cancellation;
 use crate::continuation::{DensitySource, Point, Session, SourceError, Subject, Want};
@@ -19,19 +18,6 @@ pub struct JournalledSource {
     /// Which of the sources of the work it is.
     key: Key,
     known: Arc<Known>,
-}
-
-/// What sessions of one source share.
-#[derive(Debug, Default)]
-pub(super) struct Known {
-    /// Points that are known beside the journal, by the bits of their values.
-    pub(super) points: HashMap<u64, Point>,
-    /// Whether solutions are asked how they answer to parameters.
-    pub(super) is_asked: bool,
-    /// Values that were solved by this process.
-    pub(super) solves: AtomicUsize,
-    /// Whether the last solution came from the journal.
-    pub(super) is_stored: AtomicBool,
 }
 
 impl JournalledSource {

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::cancellation::{Cancellation, Cancelled};
-use crate::sampling::{TransitionMatrix, pilot};
+use crate::sampling::{Integrator, TransitionMatrix, pilot};
 use crate::space::Axis;
 use crate::system::examples::OneState;
 use crate::system::registry;

@@ -17,6 +17,7 @@
 //! | `balance` | residual and Jacobian of the (quasi-)steady state |
 //! | `passes` | passes through the factors, which two iterations may share |
 //! | `krylov`, `newton` | GMRES, and Newton's method by it |
+//! | `question` | a change of the balance, and its answer |
 //! | `response` | how a steady state answers to a change |
 //! | `transposed` | functions of the state: Qᵀ x = b by the same factors |
 //! | `solver` | when to iterate, when to factorise |
@@ -34,6 +35,7 @@ mod newton;
 mod passes;
 mod preconditioner;
 mod prediction;
+mod question;
 mod response;
 mod solver;
 mod symbolic;

@@ -10,7 +10,7 @@ use super::balance::Balance;
 use super::newton::{Newton, Progress};
 use super::passes::{Seat, alone, together};
 use super::preconditioner::{Estimate, Preconditioner, Structure};
-use super::response::{Question, answer};
+use super::question::{Question, answer};
 use super::{RateError, RateInfo, RateMethod, RateOptions, RateSteadyState};
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::space::CellSpace;

@@ -15,7 +15,7 @@ use sprs::CsMat;
 use super::memory::SolverMemory;
 use super::narrowing;
 use super::preconditioner::{Estimate, Structure, estimate_of};
-use super::response::Question;
+use super::question::Question;
 use super::solver::DirectSolver;
 use super::transposed::TransposedSolution;
 use super::{RateError, RateOptions, RateSteadyState};

@@ -12,7 +12,7 @@ use super::RateError;
 use super::balance::{Balance, dot};
 use super::newton::{linear, norm};
 use super::passes::{Seat, alone};
-use super::response::Question;
+use super::question::Question;
 use super::solver::DirectSolver;
 
 /// A solution of Qᵀ x = b.

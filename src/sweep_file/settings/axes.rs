@@ -2,6 +2,7 @@
 //! later.
 
 use super::along::Along;
+use super::axis::{AxisSettings, Grade};
 use super::axis_checks::{check_modes, warn_of_few_cells, warn_of_idle_grade};
 use super::equations::model_in_words;
 use super::modes_of::ModesOf;
@@ -13,55 +14,6 @@ use crate::sweep_file::names::quotable;
 use crate::sweep_file::reader::Reader;
 use crate::sweep_file::value::Value;
 use crate::system::{AxisDescription, Family, Model};
-
-/// How one axis is cut into cells, or carried by modes.
-#[derive(Debug, Clone, PartialEq)]
-pub struct AxisSettings {
-    /// Lower and upper end; `None` where they are left to the program.
-    pub range: Option<(f64, f64)>,
-    /// Number of cells, at least 2; `None` where it is left to the program, and for an axis of modes alone.
-    pub count: Option<usize>,
-    /// Where the cells get narrower.
-    pub grade: Grade,
-    /// What modes of the axis are made of.
-    pub series: ModesOf,
-    /// Number of modes that carry it in place of cells, by methods that can (`MethodKind::takes_modes`).
-    pub modes: Option<Modes>,
-}
-
-/// Where the cells of an axis get narrower.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Grade {
-    /// Nowhere: they have equal widths.
-    Even,
-    /// Toward the model's switching surfaces, to a width that is left to the program.
-    Auto,
-    /// Toward some points.
-    Toward(Grading),
-}
-
-impl AxisSettings {
-    /// The number of modes that a method uses; `None` where it uses cells.
-    pub fn modes_by(&self, method: MethodKind) -> Option<Modes> {
-        self.modes.filter(|_| method.takes_modes())
-    }
-
-    /// The axis as a method uses it; `None` where something is left to the program.
-    fn axis(&self, method: MethodKind) -> Option<Result<Axis, SpaceError>> {
-        let (from, to) = self.range?;
-        match self.modes_by(method) {
-            Some(Modes::Auto) => return None,
-            Some(Modes::Number(count)) => return Some(self.series.axis((from, to), count)),
-            None => {}
-        }
-        let count = self.count?;
-        match &self.grade {
-            Grade::Even => Some(Axis::uniform(from, to, count)),
-            Grade::Toward(grading) => Some(Axis::graded(from, to, count, grading)),
-            Grade::Auto => None,
-        }
-    }
-}
 
 /// The key of `[cells]` that is no axis.
 const ACCURACY: &str = "accuracy";

@@ -44,13 +44,6 @@ impl MapSettings {
     }
 }
 
-/// The second parameter with a value in the middle of its range, for a file that does not say at which value a sweep of
-/// the first alone holds it.
-pub(super) fn held(draft: &Draft) -> Option<(&str, f64)> {
-    let (from, to) = (draft.map.from?, draft.map.to?);
-    Some((draft.map.parameter.as_deref()?, 0.5 * (from + to)))
-}
-
 /// Checks `[map]`; `None` where there is none, or something is wrong with it.
 pub(super) fn read(
     reader: &mut Reader<'_>,

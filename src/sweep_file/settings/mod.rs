@@ -2,6 +2,7 @@
 
 mod along;
 mod axes;
+mod axis;
 mod axis_checks;
 mod curve;
 mod draft_of;
@@ -26,8 +27,8 @@ use crate::system::Family;
 use crate::topology::DetectOptions;
 
 pub use super::draft::Modes;
-pub use axes::{AxisSettings, Grade};
 pub(super) use axes::{at_cells, cell_space};
+pub use axis::{AxisSettings, Grade};
 pub use curve::CurveSettings;
 pub(super) use equations::value_place as formula_place;
 pub use map::MapSettings;

@@ -9,6 +9,44 @@ use crate::MAX_DIMENSION;
 use crate::system::typed::statement::Statement;
 use crate::system::{AxisDescription, Model, System};
 
+impl Model {
+    /// The same model with coloured noise in place of white: each of its noises goes through a filter of this kind at
+    /// the same intensity. The states of the filter are axes (`noise`, of unit variance), and its parameters (`tau`)
+    /// those of the model. As its memory goes to 0 it becomes the white noise, in Stratonovich's reading: of a model in
+    /// Rust the drift is taken to be that of this reading.
+    ///
+    /// ```
+    /// use pbif::system::{Model, NoiseKind, registry};
+    ///
+    /// let white = registry::find("bistable").unwrap();
+    /// let model = Model::with_coloured_noise(&white, NoiseKind::OrnsteinUhlenbeck).unwrap();
+    /// let system = model.system_with(&[("a", -0.1), ("sigma2", 0.2), ("tau", 0.4)]).unwrap();
+    /// // x' = a x - x³ + σ η/√(2τ), η' = -η/τ.
+    /// let drift = system.drift_at(0.0, &[1.0, 2.0]);
+    /// assert!((drift[0] - (-1.1 + 0.2_f64.sqrt() / 0.8_f64.sqrt() * 2.0)).abs() < 1e-14);
+    /// assert!((drift[1] + 5.0).abs() < 1e-14);
+    /// ```
+    ///
+    /// # Errors
+    /// [`ColouredNoiseError`].
+    pub fn with_coloured_noise(
+        model: &Arc<Self>,
+        kind: NoiseKind,
+    ) -> Result<Arc<Self>, ColouredNoiseError> {
+        if let Some(typed) = model.typed() {
+            let coloured = typed.source().clone().with_coloured_noise(kind).build();
+            return coloured.map_err(|error| ColouredNoiseError::Equations(error.to_string()));
+        }
+        // Any values will do: how many noises there are does not depend on them.
+        let values = model
+            .parameters
+            .iter()
+            .map(|one| one.default.unwrap_or(1.0));
+        let noises = model.bound(&values.collect::<Vec<_>>()).noises().len();
+        coloured(model, kind, noises).map(Arc::new)
+    }
+}
+
 /// A model with coloured noise in place of each of `noises` white noises, with one set of parameters for all their
 /// filters.
 pub(in crate::system) fn coloured(

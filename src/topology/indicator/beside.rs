@@ -6,8 +6,8 @@
 
 use std::cmp::Ordering;
 
+use super::kind::Step;
 use super::kind::Traits;
-use super::words::Step;
 use super::{Indicator, IndicatorKind, exact, window};
 use crate::density::EstimatedDensity;
 use crate::topology::Feature;

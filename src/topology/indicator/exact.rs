@@ -1,7 +1,18 @@
 //! Indicators of a density over one axis that follow from its equations: no cells take part.
 
-use super::{Flank, Indicator, IndicatorKind};
+use super::{Indicator, IndicatorKind};
 use crate::density::Profile;
+
+/// An extremum of the slope of a marginal's logarithm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Flank {
+    /// Whether the density rises with the coordinate between valley and peak, when both are there.
+    pub rising: bool,
+    /// Where.
+    pub place: f64,
+    /// The slope, positive when both are there.
+    pub value: f64,
+}
 
 /// The slope at its extremum of the given kind nearest to a place; none at a jump, where the slope beside it tells.
 pub(super) fn shoulder(profile: &Profile, near: f64, rising: bool) -> Option<Indicator> {

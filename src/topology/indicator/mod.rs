@@ -34,20 +34,19 @@ mod smooth;
 #[cfg(test)]
 mod tests;
 mod window;
-mod words;
 #[cfg(feature = "serde")]
 mod written;
 
 pub(crate) use beside::born_at_kink;
 pub(super) use centre::at_centre;
 pub(super) use corrected::{Counted, correct};
+pub use exact::Flank;
 pub use kind::IndicatorKind;
 pub(super) use pair::put_right;
 pub(super) use section::flanks_from_centre;
-pub use shoulder::Flank;
 pub(super) use shoulder::shoulders;
-pub(crate) use words::Step;
 
+pub(crate) use kind::Step;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use crate::density::{EstimatedDensity, Variants};

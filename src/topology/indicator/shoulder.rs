@@ -6,7 +6,7 @@
 
 use std::cmp::Ordering;
 
-use super::exact;
+use super::exact::{self, Flank};
 use super::kind::Traits;
 use super::window::around;
 use super::{Indicator, IndicatorKind};
@@ -94,17 +94,6 @@ pub(super) fn shoulder(estimated: &EstimatedDensity, near: f64, rising: bool) ->
         |values| of(fine.jet(values)),
         |values| of(rough.jet(values)),
     )
-}
-
-/// An extremum of the slope of a marginal's logarithm.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Flank {
-    /// Whether the density rises with the coordinate between valley and peak, when both are there.
-    pub rising: bool,
-    /// Where.
-    pub place: f64,
-    /// The slope, positive when both are there.
-    pub value: f64,
 }
 
 /// A place where a slope, given on the faces, is largest, and the interval about it.

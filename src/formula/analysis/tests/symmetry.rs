@@ -2,8 +2,7 @@
 
 use super::{formula, scope};
 use crate::formula::analysis::Reflection;
-use crate::formula::analysis::parity::Parity;
-use crate::formula::analysis::reflection::ReflectionError;
+use crate::formula::analysis::reflection::{Parity, ReflectionError};
 use crate::formula::graph::{Expression, Point};
 
 fn parity(text: &str, reflected: [bool; 3], centre: [f64; 3]) -> (Parity, bool) {

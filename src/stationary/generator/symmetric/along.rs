@@ -3,7 +3,7 @@
 use sprs::CsMat;
 
 use super::folding::Folding;
-use crate::stationary::generator::response::Question;
+use crate::stationary::generator::question::Question;
 
 /// A change of the generator whose effect on the steady state is wanted along with a solve.
 #[derive(Debug, Clone, Copy)]

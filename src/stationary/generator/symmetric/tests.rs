@@ -2,7 +2,7 @@
 
 use crate::generator::{GeneratorOptions, assemble};
 use crate::space::{Axis, CellSpace};
-use crate::stationary::generator::response::Question;
+use crate::stationary::generator::question::Question;
 use crate::stationary::generator::solver::DirectSolver;
 use crate::stationary::generator::symmetric::folding::is_centrosymmetric;
 use crate::stationary::generator::{RateMethod, RateOptions, RateSolver};
