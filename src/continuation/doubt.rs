@@ -18,7 +18,7 @@ pub enum BifurcationStatus {
     /// the cells.
     Unconfirmed,
     /// Finer cells were not asked ([`LocateOptions::grid_check`](super::LocateOptions::grid_check) is off), so that its
-    /// error lacks what the cells do to it; or a check failed: [`Located::reason`] says which. The value may be right.
+    /// error lacks what the cells do to it; or a check failed: its [`Doubt`] says which. The value may be right.
     Unchecked,
 }
 

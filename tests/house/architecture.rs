@@ -47,7 +47,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ]),
 ];
 
-fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+pub(crate) fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
@@ -59,7 +59,7 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
 }
 
 /// The part of a file before its unit tests, without comments: tests may use anything.
-fn code(text: &str) -> String {
+pub(crate) fn code(text: &str) -> String {
     let body = text.split("#[cfg(test)]\nmod tests {").next().unwrap();
     body.lines()
         .filter(|line| !line.trim_start().starts_with("//"))

@@ -11,6 +11,7 @@
 mod common;
 
 mod architecture;
+mod circles;
 mod latex;
 mod readme;
 mod validation;

@@ -14,7 +14,7 @@ use crate::bytes::{NotWhatWasWritten, from_bytes, to_bytes};
 use crate::continuation::SourceError;
 use crate::generator::Generator;
 use crate::method::MethodError;
-use crate::stationary::generator::{RateSolver, SolverMemory};
+use crate::stationary::generator::SolverMemory;
 
 /// What a solve leaves in its session.
 #[derive(Serialize, Deserialize)]
@@ -25,11 +25,12 @@ struct Left<Trail> {
 }
 
 /// The solver as it is now, and the trail that the last solve has left.
-pub(super) fn write(solver: &RateSolver, stand: Stand, left: Option<&Trail>) -> Vec<u8> {
+pub(super) fn write(session: &GeneratorSession) -> Vec<u8> {
+    let left = session.trails.newest().filter(|_| session.has_left);
     to_bytes(&Left {
-        stand,
-        solver: solver.memory(),
-        trail: left.map(Trail::news),
+        stand: session.stand,
+        solver: session.solver.memory(),
+        trail: left.map(|(_, trail)| trail.news()),
     })
 }
 

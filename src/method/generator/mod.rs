@@ -8,6 +8,7 @@ mod jumps;
 mod memory;
 mod modes;
 mod one_axis;
+mod open;
 mod options;
 mod relaxation;
 mod sensitivity;

@@ -10,8 +10,6 @@ use std::sync::Arc;
 
 use super::GeneratorSource;
 use super::coarse::rough_relaxation;
-#[cfg(feature = "serde")]
-use super::memory;
 use super::one_axis;
 use super::relaxation::Relaxation;
 use super::sensitivity::GeneratorSensitivity;
@@ -19,8 +17,8 @@ use super::source::METHOD;
 use super::stand::Stand;
 use super::trail::{self, Trail};
 use crate::cancellation::Cancellation;
+use crate::continuation::Solution;
 use crate::continuation::measure::{ESCAPE_RATE, FACTORISATIONS, NEGATIVE_MASS};
-use crate::continuation::{Session, Solution, SourceError};
 use crate::density::{EstimatedDensity, Moments};
 use crate::generator::{
     AdvectiveScheme, Generator, GeneratorOptions, assemble_derivative, cell_masses, resolution,
@@ -52,7 +50,7 @@ pub(super) struct GeneratorSession {
     /// Where the solver stands.
     pub(super) stand: Stand,
     /// Whether the last solve has left a trail.
-    has_left: bool,
+    pub(super) has_left: bool,
     cancellation: Cancellation,
 }
 
@@ -71,23 +69,6 @@ struct Solved {
 /// A solution, and the trail that leads on from it where there is one.
 type Judged = (Solution<'static>, Option<Trail>);
 
-impl Session for GeneratorSession {
-    fn solve(&mut self, value: f64) -> Result<Solution<'_>, SourceError> {
-        Ok(self.solve_from_nearest(value)?)
-    }
-
-    #[cfg(feature = "serde")]
-    fn memory(&self) -> Vec<u8> {
-        let left = self.trails.newest().filter(|_| self.has_left);
-        memory::write(&self.solver, self.stand, left.map(|(_, trail)| trail))
-    }
-
-    #[cfg(feature = "serde")]
-    fn recall(&mut self, left: &[(f64, &[u8])]) -> Result<(), SourceError> {
-        memory::recall(self, left)
-    }
-}
-
 impl GeneratorSession {
     pub(super) fn new(source: &GeneratorSource, cancellation: &Cancellation) -> Self {
         Self {
@@ -100,7 +81,7 @@ impl GeneratorSession {
         }
     }
 
-    fn solve_from_nearest(&mut self, value: f64) -> Result<Solution<'_>, MethodError> {
+    pub(super) fn solve_from_nearest(&mut self, value: f64) -> Result<Solution<'_>, MethodError> {
         self.cancellation.check()?;
         self.has_left = false;
         let system = self.source.system_at(value)?;

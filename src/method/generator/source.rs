@@ -4,9 +4,8 @@ use std::sync::Arc;
 
 use super::GeneratorMethodOptions;
 use super::options::{finer_axes, finer_factor};
-use super::session::GeneratorSession;
 use crate::cancellation::Cancellation;
-use crate::continuation::{DensitySource, Session, SourceError, Subject, Want};
+use crate::continuation::Want;
 use crate::generator::{AdvectiveScheme, Generator, GeneratorError, GeneratorOptions, assemble};
 use crate::method::problem::Maps;
 use crate::method::structure::{all_kinked_surfaces, closed_ends};
@@ -83,7 +82,7 @@ impl GeneratorSource {
     }
 
     /// The same on finer cells.
-    fn refined(&self, want: &Want) -> Result<Self, MethodError> {
+    pub(super) fn refined(&self, want: &Want) -> Result<Self, MethodError> {
         let space = self.problem.space();
         let finer = CellSpace::new(finer_axes(space))?;
         let problem = self.problem.wanting(want).on(finer)?;
@@ -140,34 +139,5 @@ impl GeneratorSource {
             ..RateOptions::default()
         };
         RateSolver::new(self.problem.space().clone(), rates).cancelled_by(cancellation)
-    }
-}
-
-impl DensitySource for GeneratorSource {
-    fn method(&self) -> &'static str {
-        METHOD
-    }
-
-    fn subject(&self) -> &Subject {
-        self.problem.subject()
-    }
-
-    fn open(&self, cancellation: &Cancellation) -> Box<dyn Session> {
-        Box::new(GeneratorSession::new(self, cancellation))
-    }
-
-    fn finer(&self, want: &Want) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
-        Ok(Some(Box::new(self.refined(want)?)))
-    }
-
-    fn enclosed(&self, want: &Want) -> Option<Box<dyn DensitySource>> {
-        let closed_ends = vec![[true; 2]; self.closed_ends.len()];
-        Some(Box::new(Self {
-            enclosed: true,
-            checks: !want.errors,
-            closed_ends,
-            problem: self.problem.wanting(want),
-            ..self.clone()
-        }))
     }
 }

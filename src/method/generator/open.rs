@@ -1,0 +1,53 @@
+//! What a sweep sees of the generator: a source that opens sessions, and sessions that solve and remember.
+
+#[cfg(feature = "serde")]
+use super::memory;
+use super::session::GeneratorSession;
+use super::source::{GeneratorSource, METHOD};
+use crate::cancellation::Cancellation;
+use crate::continuation::{DensitySource, Session, Solution, SourceError, Subject, Want};
+
+impl DensitySource for GeneratorSource {
+    fn method(&self) -> &'static str {
+        METHOD
+    }
+
+    fn subject(&self) -> &Subject {
+        self.problem.subject()
+    }
+
+    fn open(&self, cancellation: &Cancellation) -> Box<dyn Session> {
+        Box::new(GeneratorSession::new(self, cancellation))
+    }
+
+    fn finer(&self, want: &Want) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
+        Ok(Some(Box::new(self.refined(want)?)))
+    }
+
+    fn enclosed(&self, want: &Want) -> Option<Box<dyn DensitySource>> {
+        let closed_ends = vec![[true; 2]; self.closed_ends.len()];
+        Some(Box::new(Self {
+            enclosed: true,
+            checks: !want.errors,
+            closed_ends,
+            problem: self.problem.wanting(want),
+            ..self.clone()
+        }))
+    }
+}
+
+impl Session for GeneratorSession {
+    fn solve(&mut self, value: f64) -> Result<Solution<'_>, SourceError> {
+        Ok(self.solve_from_nearest(value)?)
+    }
+
+    #[cfg(feature = "serde")]
+    fn memory(&self) -> Vec<u8> {
+        memory::write(self)
+    }
+
+    #[cfg(feature = "serde")]
+    fn recall(&mut self, left: &[(f64, &[u8])]) -> Result<(), SourceError> {
+        memory::recall(self, left)
+    }
+}

@@ -1,0 +1,203 @@
+//! Files of one room do not use each other in circles. A `mod.rs`, or a file with a folder of its own, holds what the
+//! files below it share: that these use it does not count.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use crate::architecture::{code, sources};
+
+/// Code of files without their unit tests, by the file's path below `src`.
+type Files = BTreeMap<String, String>;
+/// The files that each file uses.
+type Uses = BTreeMap<String, BTreeSet<String>>;
+
+/// The segments of the module that a file is.
+fn module(file: &str) -> Vec<String> {
+    let name = file.strip_suffix(".rs").unwrap_or(file);
+    let name = name.strip_suffix("/mod").unwrap_or(name);
+    name.split('/').map(str::to_owned).collect()
+}
+
+/// The parts of a list that commas part, those in braces left whole.
+fn parts(list: &str) -> Vec<&str> {
+    let (mut parts, mut depth, mut start) = (Vec::new(), 0, 0);
+    for (index, c) in list.char_indices() {
+        match c {
+            '{' => depth += 1,
+            '}' => depth -= 1,
+            ',' if depth == 0 => {
+                parts.push(list[start..index].trim());
+                start = index + 1;
+            }
+            _ => {}
+        }
+    }
+    parts.push(list[start..].trim());
+    parts.retain(|part| !part.is_empty());
+    parts
+}
+
+/// All paths of a tree of uses, each with the name that it gets.
+fn expand(prefix: &str, tree: &str, into: &mut Vec<(String, String)>) {
+    for part in parts(tree) {
+        if let Some((head, rest)) = part.split_once('{') {
+            let inner = rest.strip_suffix('}').unwrap();
+            expand(&format!("{prefix}{head}"), inner, into);
+        } else {
+            let (path, name) = part.split_once(" as ").unwrap_or((part, part));
+            let name = name.rsplit("::").next().unwrap();
+            into.push((format!("{prefix}{path}"), name.to_owned()));
+        }
+    }
+}
+
+/// What `use` names in a file, and the paths that it writes out elsewhere.
+fn paths(code: &str) -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    for statement in code.split(';') {
+        let tree = statement.rsplit_once("use ").map(|(_, tree)| tree);
+        if let Some(tree) = tree.filter(|tree| !tree.contains('(')) {
+            expand(
+                "",
+                &tree.split_whitespace().collect::<Vec<_>>().join(" "),
+                &mut found,
+            );
+        }
+    }
+    let is_name = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
+    for word in code.split(|c| !is_name(c)) {
+        if ["crate::", "super::", "self::"]
+            .iter()
+            .any(|from| word.starts_with(from))
+        {
+            found.push((word.trim_end_matches(':').to_owned(), String::new()));
+        }
+    }
+    found
+}
+
+/// A path as segments from the root of the crate.
+fn absolute(from: &[String], path: &str) -> Vec<String> {
+    let mut segments: Vec<&str> = path.split("::").collect();
+    let mut place = from.to_vec();
+    match segments[0] {
+        "crate" => {
+            place.clear();
+            segments.remove(0);
+        }
+        "self" => {
+            segments.remove(0);
+        }
+        _ => {}
+    }
+    while segments.first() == Some(&"super") {
+        place.pop();
+        segments.remove(0);
+    }
+    place.extend(segments.into_iter().map(str::to_owned));
+    place
+}
+
+/// The file in which a path ends, names that a `mod.rs` hands on followed to where they stand.
+fn resolve(files: &Files, path: &[String], depth: usize) -> Option<String> {
+    for length in (1..=path.len()).rev() {
+        let base = path[..length].join("/");
+        let names = [format!("{base}.rs"), format!("{base}/mod.rs")];
+        let Some(file) = names.into_iter().find(|name| files.contains_key(name)) else {
+            continue;
+        };
+        let handed_on = path.get(length).and_then(|wanted| {
+            let mut all = paths(&files[&file]).into_iter();
+            all.find(|(_, name)| name == wanted)
+        });
+        return match handed_on {
+            Some((to, _)) if depth < 6 => {
+                let mut next = absolute(&path[..length], &to);
+                next.extend_from_slice(&path[length + 1..]);
+                resolve(files, &next, depth + 1)
+            }
+            _ => Some(file),
+        };
+    }
+    None
+}
+
+fn uses(files: &Files) -> Uses {
+    let room = |file: &str| file.split('/').next().unwrap().to_owned();
+    let mut uses = Uses::new();
+    for (file, code) in files {
+        let own = module(file);
+        for (path, _) in paths(code) {
+            let to = resolve(files, &absolute(&own, &path), 0);
+            let to = to.filter(|to| to != file && room(to) == room(file));
+            let to = to.filter(|to| !to.ends_with("mod.rs") && !file.ends_with("mod.rs"));
+            let to = to.filter(|to| !own.starts_with(&module(to)));
+            uses.entry(file.clone()).or_default().extend(to);
+        }
+    }
+    uses
+}
+
+/// A circle of files, each of which uses the next.
+fn circle(uses: &Uses) -> Option<Vec<String>> {
+    fn follow(uses: &Uses, trail: &mut Vec<String>, done: &mut BTreeSet<String>) -> bool {
+        let file = trail.last().unwrap().clone();
+        for next in uses.get(&file).into_iter().flatten() {
+            if let Some(place) = trail.iter().position(|one| one == next) {
+                trail.drain(..place);
+                return true;
+            }
+            if !done.contains(next) {
+                trail.push(next.clone());
+                if follow(uses, trail, done) {
+                    return true;
+                }
+                trail.pop();
+            }
+        }
+        done.insert(file);
+        false
+    }
+    let mut done = BTreeSet::new();
+    uses.keys().find_map(|file| {
+        let mut trail = vec![file.clone()];
+        follow(uses, &mut trail, &mut done).then_some(trail)
+    })
+}
+
+#[test]
+fn files_of_a_room_do_not_use_each_other_in_circles() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut found = Vec::new();
+    sources(&root, &mut found);
+    let file = |path: &std::path::PathBuf| {
+        let name = path.strip_prefix(&root).unwrap().to_str().unwrap();
+        let is_test = name.contains("tests/") || name.contains("tests.rs");
+        let text = std::fs::read_to_string(path).unwrap();
+        (!is_test && name.contains('/')).then(|| (name.to_owned(), code(&text)))
+    };
+    let uses = uses(&found.iter().filter_map(file).collect());
+    assert!(uses["continuation/sweep.rs"].contains("continuation/point.rs"));
+    assert_eq!(circle(&uses), None);
+}
+
+#[test]
+fn the_reader_sees_circles() {
+    let files = |c: &str| -> Files {
+        let all = [
+            ("a/mod.rs", "mod b;\nmod c;\npub use b::{One as B, Two};"),
+            ("a/b.rs", "use super::c::{C, D};\npub struct One;"),
+            ("a/c.rs", c),
+        ];
+        all.map(|(name, text)| (name.to_owned(), text.to_owned()))
+            .into()
+    };
+    assert_eq!(circle(&uses(&files("use crate::x::Y;"))), None);
+    for c in [
+        "use super::B;",
+        "use crate::a::{B};",
+        "fn c() {\n    super::b::f()\n}",
+    ] {
+        assert_eq!(circle(&uses(&files(c))).unwrap().len(), 2, "{c}");
+    }
+}
