@@ -119,12 +119,13 @@ fn without_friction(model: &Model) -> Report {
         values.is_ok_and(|values| has_friction(model.system(&values).as_ref()))
     });
     let with: Vec<&str> = with.map(|model| model.name.as_str()).collect();
-    let title = match with.contains(&model.name.as_str()) {
-        true => format!(
+    let title = if with.contains(&model.name.as_str()) {
+        format!(
             "the friction of `{}` is zero with these values: nothing to draw",
             model.name
-        ),
-        false => format!("`{}` has no friction law: nothing to draw", model.name),
+        )
+    } else {
+        format!("`{}` has no friction law: nothing to draw", model.name)
     };
     let report = Diagnostic::new(title).allowed(format!("models with one: {}", list(&with)));
     let remedy = format!("`pbif systems {}` tells in words what it is", model.name);

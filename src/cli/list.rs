@@ -15,9 +15,10 @@ pub(super) fn run(arguments: &ListArguments) -> Result<Outcome, CommandError> {
     let folder = &arguments.folder;
     let runs = find_runs(folder);
     if runs.is_empty() {
-        let words = match folder.is_dir() {
-            true => "holds no runs",
-            false => "is not a folder",
+        let words = if folder.is_dir() {
+            "holds no runs"
+        } else {
+            "is not a folder"
         };
         let found = Diagnostic::new(format!("`{}` {words}", folder.display()))
             .remedy("give the folder that holds runs, as `pbif list DIR`; `pbif sweep FILE` makes one in output/");

@@ -50,11 +50,12 @@ pub(super) fn run(path: Option<&Path>, like: Option<&str>) -> Result<String, Com
     };
     let (title, name) = title;
     let diagnostic = Diagnostic::new(title);
-    Err(CommandError::Input(match is_known(name) {
-        true => diagnostic
+    Err(CommandError::Input(if is_known(name) {
+        diagnostic
             .remedy(format!("write `pbif new {name}.toml --like {name}`"))
-            .into(),
-        false => unknown(name).into(),
+            .into()
+    } else {
+        unknown(name).into()
     }))
 }
 
@@ -111,13 +112,15 @@ fn on_one_line(name: &str) -> String {
 /// A name as it is typed after a command.
 fn as_typed(name: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "._-/\\:+~".contains(c);
-    let shown = match name.starts_with('-') {
-        true => format!("./{name}"),
-        false => name.to_owned(),
+    let shown = if name.starts_with('-') {
+        format!("./{name}")
+    } else {
+        name.to_owned()
     };
-    match shown.chars().all(is_plain) {
-        true => shown,
-        false => format!("'{}'", shown.replace('\'', r"'\''")),
+    if shown.chars().all(is_plain) {
+        shown
+    } else {
+        format!("'{}'", shown.replace('\'', r"'\''"))
     }
 }
 

@@ -138,9 +138,10 @@ fn write_facts(text: &mut String, model: &Model) -> std::fmt::Result {
                 "  {}  from {low} to {high} at {}; a sweep takes it from its parameters{}",
                 axis.name,
                 shown.join(", "),
-                match axis.by_modes {
-                    true => ", and modes carry it unless `cells` cuts it",
-                    false => "",
+                if axis.by_modes {
+                    ", and modes carry it unless `cells` cuts it"
+                } else {
+                    ""
                 }
             )?,
             None => writeln!(

@@ -174,9 +174,10 @@ fn sgcm_on(
         SgcmSource::new(&problem, &options, cancellation)
     };
     let paper = source(PAPER_MAP_STEP)?;
-    Ok(match paper.time_step() > PAPER_MAP_STEP {
-        true => source(paper.time_step())?,
-        false => paper,
+    Ok(if paper.time_step() > PAPER_MAP_STEP {
+        source(paper.time_step())?
+    } else {
+        paper
     })
 }
 

@@ -51,9 +51,10 @@ pub(super) fn follow(
     };
     // From the side where the feature is, outward.
     let present = if event.above { right } else { left };
-    let outward: Vec<usize> = match event.above {
-        true => (0..right).rev().collect(),
-        false => (left + 1..points.len()).collect(),
+    let outward: Vec<usize> = if event.above {
+        (0..right).rev().collect()
+    } else {
+        (left + 1..points.len()).collect()
     };
     let mut last = at(present, near)?;
     let mut last_index = present;
@@ -100,9 +101,10 @@ fn deeper(
     above: bool,
     observable: usize,
 ) -> Option<Course> {
-    let inward: Vec<usize> = match above {
-        true => (present + 1..points.len()).collect(),
-        false => (0..present).rev().collect(),
+    let inward: Vec<usize> = if above {
+        (present + 1..points.len()).collect()
+    } else {
+        (0..present).rev().collect()
     };
     let (mut last, mut last_index) = (first, present);
     for index in inward {

@@ -104,9 +104,10 @@ fn slope(points: &[&Point], crossing: &Crossing) -> f64 {
                 if one.abs() < least.abs() { one } else { least }
             },
         );
-    match local.abs() > JUMP * gentlest.abs() {
-        true => gentlest,
-        false => local,
+    if local.abs() > JUMP * gentlest.abs() {
+        gentlest
+    } else {
+        local
     }
 }
 

@@ -78,9 +78,10 @@ fn is_one_doubt(first: &Located, second: &Located) -> bool {
     let is_zero =
         |row: &Located| row.zero.is_some() && row.status() != BifurcationStatus::Unconfirmed;
     let between = second.lower - first.upper;
-    let width = match is_zero(first) && is_zero(second) {
-        true => 0.0,
-        false => (first.upper - first.lower).max(second.upper - second.lower),
+    let width = if is_zero(first) && is_zero(second) {
+        0.0
+    } else {
+        (first.upper - first.lower).max(second.upper - second.lower)
     };
     first.observable == second.observable && in_doubt(first) && in_doubt(second) && between <= width
 }

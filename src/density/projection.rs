@@ -233,10 +233,7 @@ impl QuantityMoments {
         Ok(Moments {
             mean,
             // Rounding must not make a root of a negative number; what is no number must not become zero.
-            standard_deviation: match variance < 0.0 {
-                true => 0.0,
-                false => variance.sqrt(),
-            },
+            standard_deviation: if variance < 0.0 { 0.0 } else { variance.sqrt() },
         })
     }
 }

@@ -14,9 +14,10 @@ const LEFT_OUT: usize = 2;
 /// whatever their number.
 pub(crate) fn laid_out(axis: &Axis) -> Axis {
     let (from, to) = axis.series_range();
-    match axis.is_modes() {
-        true => Axis::uniform(from, to, BINS).unwrap_or_else(|_| axis.clone()),
-        false => axis.clone(),
+    if axis.is_modes() {
+        Axis::uniform(from, to, BINS).unwrap_or_else(|_| axis.clone())
+    } else {
+        axis.clone()
     }
 }
 
@@ -48,9 +49,10 @@ impl SeriesMap {
         let mut steps = Vec::new();
         for (place, axis) in axes.iter().enumerate().filter(|(_, axis)| axis.is_modes()) {
             let bins = laid_out(axis);
-            let used = match is_coarse {
-                true => axis.count().saturating_sub(LEFT_OUT).max(1),
-                false => axis.count(),
+            let used = if is_coarse {
+                axis.count().saturating_sub(LEFT_OUT).max(1)
+            } else {
+                axis.count()
             };
             steps.push(Step {
                 from: axis.count(),

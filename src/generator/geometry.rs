@@ -99,9 +99,10 @@ pub(super) fn surface_faces(system: &dyn System, index: usize, axis: &Axis) -> V
 /// Share of the upwind scheme's dissipation that the cells of a space need.
 fn damping(space: &CellSpace) -> f64 {
     let mut series = space.axes().iter().map(Axis::series);
-    match series.any(|series| matches!(series, Some(Series::Legendre))) {
-        true => DAMPING_BESIDE_MODES,
-        false => 1.0,
+    if series.any(|series| matches!(series, Some(Series::Legendre))) {
+        DAMPING_BESIDE_MODES
+    } else {
+        1.0
     }
 }
 

@@ -82,9 +82,10 @@ impl ModeAxis {
         // An axis without noise has no diffusion: a state that relaxes at a rate of its own, or one of a filter's.
         let first = diffusion.first().copied().unwrap_or(0.0);
         let length = nodes[nodes.len() - 1] - nodes[0];
-        let rate = match first > 0.0 {
-            true => first / deviation.powi(2),
-            false => (drift[0] - drift[drift.len() - 1]) / length,
+        let rate = if first > 0.0 {
+            first / deviation.powi(2)
+        } else {
+            (drift[0] - drift[drift.len() - 1]) / length
         };
         // Other states may add what is the same all along the line.
         let added = drift[0] + rate * (nodes[0] - mean);

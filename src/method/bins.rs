@@ -105,9 +105,10 @@ pub(crate) fn automatic_bins(
     let mut ranges: Vec<Option<Range>> = vec![None; family.quantities().len()];
     for value in [from, 0.5 * (from + to), to] {
         cancellation.check()?;
-        let masses = match open {
-            true => rough_masses(family, &rough, value, cancellation),
-            false => None,
+        let masses = if open {
+            rough_masses(family, &rough, value, cancellation)
+        } else {
+            None
         };
         cancellation.check()?;
         let values = family.values_at(value)?;

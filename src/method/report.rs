@@ -149,9 +149,10 @@ impl<'a> Reporter<'a> {
             self.tell(Finding::SmearedKink { axis, widths });
         }
         for &at in &judged.surfaces_off_faces {
-            self.tell(match judged.jumps_off_faces.contains(&at) {
-                true => Finding::JumpInsideCells { axis, at },
-                false => Finding::SurfaceOffFaces { axis, at },
+            self.tell(if judged.jumps_off_faces.contains(&at) {
+                Finding::JumpInsideCells { axis, at }
+            } else {
+                Finding::SurfaceOffFaces { axis, at }
             });
         }
     }

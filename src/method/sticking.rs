@@ -92,9 +92,10 @@ fn stuck_on(
         if holds(found) {
             return Some(middle);
         }
-        match found.1 > 0.0 {
-            true => up = middle,
-            false => down = middle,
+        if found.1 > 0.0 {
+            up = middle
+        } else {
+            down = middle
         }
     }
     None

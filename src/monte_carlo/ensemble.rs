@@ -63,9 +63,10 @@ pub fn ensemble(
         stepper: Stepper::new(system, run.integrator, run.time_step, cancellation),
         lookup: &CellLookup::new(space),
         limits: Limits::new(space),
-        starts: Starts::Box(match run.start.is_empty() {
-            true => whole(space),
-            false => run.start.clone(),
+        starts: Starts::Box(if run.start.is_empty() {
+            whole(space)
+        } else {
+            run.start.clone()
         }),
         purpose: Purpose::Ensemble,
         run: &as_ergodic,

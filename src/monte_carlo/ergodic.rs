@@ -108,9 +108,10 @@ pub fn ergodic(
         stepper: Stepper::new(system, run.integrator, run.time_step, cancellation),
         lookup: &lookup,
         limits: Limits::new(space),
-        starts: match starts.is_empty() {
-            true => Starts::Box(whole(space)),
-            false => Starts::Among(starts),
+        starts: if starts.is_empty() {
+            Starts::Box(whole(space))
+        } else {
+            Starts::Among(starts)
         },
         purpose: Purpose::Ergodic,
         run,

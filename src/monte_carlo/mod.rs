@@ -70,9 +70,10 @@ impl MonteCarloError {
     fn check(system: &dyn System, space: &CellSpace) -> Result<(), Self> {
         system.facts().autonomous()?;
         let (system, space) = (system.dimension(), space.dimension());
-        match system == space {
-            true => Ok(()),
-            false => Err(Self::Dimension { system, space }),
+        if system == space {
+            Ok(())
+        } else {
+            Err(Self::Dimension { system, space })
         }
     }
 }

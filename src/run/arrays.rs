@@ -198,9 +198,10 @@ impl Layout {
         let layout = layout
             .attribute(KINK_AXIS, axis.into())
             .attribute(KINK_AT, json!(kink.at));
-        match kink.is_bend() {
-            true => layout.attribute(KINK_BENDS, json!(true)),
-            false => layout,
+        if kink.is_bend() {
+            layout.attribute(KINK_BENDS, json!(true))
+        } else {
+            layout
         }
     }
 

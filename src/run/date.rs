@@ -24,9 +24,10 @@ fn civil(days: u64) -> (u64, u64, u64) {
     let day = day - (365 * year + year / 4 - year / 100);
     let month = (5 * day + 2) / 153;
     let date = day - (153 * month + 2) / 5 + 1;
-    let (month, next) = match month < 10 {
-        true => (month + 3, 0),
-        false => (month - 9, 1),
+    let (month, next) = if month < 10 {
+        (month + 3, 0)
+    } else {
+        (month - 9, 1)
     };
     (year + 400 * era + next, month, date)
 }

@@ -25,9 +25,10 @@ fn word(family: &Family, finding: &Finding) -> String {
     for number in numbers {
         word += ":";
         // An estimate that has overflowed is not a number, and is told so.
-        match number.is_finite() {
-            true => word += &format_number(number),
-            false => word += &number.to_string(),
+        if number.is_finite() {
+            word += &format_number(number)
+        } else {
+            word += &number.to_string()
         }
     }
     word

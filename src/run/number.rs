@@ -27,9 +27,10 @@ pub(crate) fn format_with_error(value: f64, error: f64) -> (String, String) {
     }
     if error >= LARGEST_IN_DIGITS || value.abs() >= LARGEST_IN_DIGITS * LARGEST_IN_DIGITS {
         let digits = (value.abs() / error).log10().floor() + 1.0;
-        let digits = match digits.is_finite() {
-            true => digits.clamp(0.0, 15.0) as usize,
-            false => 1,
+        let digits = if digits.is_finite() {
+            digits.clamp(0.0, 15.0) as usize
+        } else {
+            1
         };
         return (format!("{value:.digits$e}"), format!("{error:.1e}"));
     }

@@ -85,8 +85,9 @@ impl StoredRun {
 fn sampling(estimated: &EstimatedDensity) -> f64 {
     let volumes = estimated.density.volumes();
     let errors = estimated.standard_error.iter().zip(&volumes);
-    match estimated.is_noisy() {
-        true => errors.map(|(error, volume)| error * volume).sum(),
-        false => 0.0,
+    if estimated.is_noisy() {
+        errors.map(|(error, volume)| error * volume).sum()
+    } else {
+        0.0
     }
 }

@@ -87,9 +87,10 @@ fn cells_in_words(family: &Family, finding: &Finding) -> Option<String> {
             "the cells of {} are too wide for the noise (cell Péclet number of damping and friction {}): \
              use more cells",
             family.axis(axis),
-            match peclet < 1e5 {
-                true => format!("{peclet:.1}"),
-                false => format!("{peclet:.1e}"),
+            if peclet < 1e5 {
+                format!("{peclet:.1}")
+            } else {
+                format!("{peclet:.1e}")
             }
         ),
         Finding::UnresolvedSeries { axis, change } => {

@@ -215,12 +215,13 @@ impl Axis {
     }
 
     fn check_modes(count: usize) -> Result<(), SpaceError> {
-        match (2..=MOST_MODES).contains(&count) {
-            true => Ok(()),
-            false => Err(SpaceError::Modes {
+        if (2..=MOST_MODES).contains(&count) {
+            Ok(())
+        } else {
+            Err(SpaceError::Modes {
                 count,
                 most: MOST_MODES,
-            }),
+            })
         }
     }
 

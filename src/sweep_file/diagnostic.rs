@@ -178,9 +178,10 @@ impl Diagnostic {
         if let Some(remedy) = &self.remedy {
             elements.push(Level::HELP.message(remedy.as_str()).into());
         }
-        let level = match self.is_warning {
-            true => Level::WARNING,
-            false => Level::ERROR,
+        let level = if self.is_warning {
+            Level::WARNING
+        } else {
+            Level::ERROR
         };
         Group::with_title(level.primary_title(self.title.as_str())).elements(elements)
     }

@@ -34,9 +34,10 @@ impl Text {
     pub(super) fn beginning(text: &str) -> Self {
         let is_cut = text.len() > MOST_BYTES;
         let bytes = &text.as_bytes()[..text.len().min(MOST_BYTES)];
-        let end = match is_cut {
-            true => end_of_lines(bytes),
-            false => text.len(),
+        let end = if is_cut {
+            end_of_lines(bytes)
+        } else {
+            text.len()
         };
         Self {
             text: text[..end].to_owned(),

@@ -42,9 +42,10 @@ impl Settings {
                 found.push(self.not_finite(hazard, which));
             }
         }
-        match found.is_empty() {
-            true => Ok(()),
-            false => Err(Report::new(self.document.sources.clone(), found, 0)),
+        if found.is_empty() {
+            Ok(())
+        } else {
+            Err(Report::new(self.document.sources.clone(), found, 0))
         }
     }
 

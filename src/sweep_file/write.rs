@@ -108,9 +108,10 @@ fn write(text: &mut String, path: &str, entries: &[Entry]) {
 /// A key as TOML has it: in quotes where it has letters beyond ASCII.
 fn quoted(key: &str) -> String {
     let is_bare = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
-    match !key.is_empty() && key.chars().all(is_bare) {
-        true => key.to_owned(),
-        false => toml::Value::String(key.to_owned()).to_string(),
+    if !key.is_empty() && key.chars().all(is_bare) {
+        key.to_owned()
+    } else {
+        toml::Value::String(key.to_owned()).to_string()
     }
 }
 

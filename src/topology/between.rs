@@ -274,9 +274,10 @@ impl Face {
             };
             return outer.zip(inner).is_none_or(|(outer, inner)| outer >= inner);
         };
-        let (top, other, outer) = match below >= above {
-            true => (below, above, cells[0]),
-            false => (above, below, cells[3]),
+        let (top, other, outer) = if below >= above {
+            (below, above, cells[0])
+        } else {
+            (above, below, cells[3])
         };
         // The extremum of a smooth density lies on the side of the higher neighbour.
         outer.is_some_and(|outer| outer <= top && (self.is_kink || outer <= other))

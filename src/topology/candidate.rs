@@ -151,9 +151,10 @@ fn height(
     if saddle.is_extremum() {
         return None;
     }
-    let (height, error) = match is_crater {
-        true => height_above(&saddle, &extremum, estimated),
-        false => height_above(&extremum, &saddle, estimated),
+    let (height, error) = if is_crater {
+        height_above(&saddle, &extremum, estimated)
+    } else {
+        height_above(&extremum, &saddle, estimated)
     };
     // Else a cell that is the highest around it only because of how the cells lie.
     let is_of_kind =

@@ -48,16 +48,18 @@ fn features(profile: &Profile, limits: &Limits) -> Vec<Feature> {
     let mut features = Vec::new();
     while let Some((place, valley)) = highest_valley(&hills) {
         let (left, right) = (&hills[place].peak, &hills[place + 1].peak);
-        let lower = match left.density < right.density {
-            true => *left,
-            false => *right,
+        let lower = if left.density < right.density {
+            *left
+        } else {
+            *right
         };
         let [peak, valley] = pair(&lower, &valley, limits);
         let partner = higher_beside(&profile.extrema, &lower).map(|place| vec![place]);
         features.extend([Feature { partner, ..peak }, valley]);
-        let kept = match left.density < right.density {
-            true => hills[place + 1].peak,
-            false => hills[place].peak,
+        let kept = if left.density < right.density {
+            hills[place + 1].peak
+        } else {
+            hills[place].peak
         };
         let above = hills.remove(place + 1);
         hills[place] = Hill {

@@ -186,9 +186,10 @@ impl<'a> Forest<'a> {
                 (values[root as usize] - values[cell as usize]).abs()
             }
         };
-        let (elder, younger) = match self.is_reached_before(other, root) {
-            true => (other, root),
-            false => (root, other),
+        let (elder, younger) = if self.is_reached_before(other, root) {
+            (other, root)
+        } else {
+            (root, other)
         };
         self.parent[younger as usize] = elder;
         if age(younger) > 0.0 {

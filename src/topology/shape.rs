@@ -96,9 +96,10 @@ impl<'a> Shape<'a> {
         }
         // u^m has the average 1/(m + 1), and 1 - (1 - u)^m one minus that.
         let level = ((self.averages[cell] - lower) / rise).clamp(0.0, 1.0);
-        let risen = match level < 0.5 {
-            true => share.powf((1.0 - level) / level.max(f64::MIN_POSITIVE)),
-            false => 1.0 - (1.0 - share).powf(level / (1.0 - level).max(f64::MIN_POSITIVE)),
+        let risen = if level < 0.5 {
+            share.powf((1.0 - level) / level.max(f64::MIN_POSITIVE))
+        } else {
+            1.0 - (1.0 - share).powf(level / (1.0 - level).max(f64::MIN_POSITIVE))
         };
         lower + rise * risen
     }

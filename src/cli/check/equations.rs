@@ -20,10 +20,11 @@ pub(super) fn lines(spec: &Sweep) -> Vec<String> {
         .iter()
         .map(|surface| format!("{} = {}", family.axis(surface.axis), surface.at))
         .collect();
-    found.push(match surfaces.is_empty() {
-        true => "the drift is smooth, or not smooth in places that are no plane of one coordinate"
-            .to_owned(),
-        false => format!("the drift is not smooth where {}", surfaces.join(", ")),
+    found.push(if surfaces.is_empty() {
+        "the drift is smooth, or not smooth in places that are no plane of one coordinate"
+            .to_owned()
+    } else {
+        format!("the drift is not smooth where {}", surfaces.join(", "))
     });
     let reflected = facts.symmetry.as_ref().map(|symmetry| {
         let axes = symmetry.reflected.iter().enumerate();

@@ -48,9 +48,10 @@ pub(in crate::cli) fn text(result: &SweepResult, folder: &Path) -> String {
 pub(in crate::cli) fn nothing_to_draw(result: &SweepResult) -> &'static str {
     let unsolved = [PointStatus::NotConverged, PointStatus::Failed];
     let failed = |point: &Point| unsolved.contains(&point.report.status);
-    match result.points.iter().any(failed) {
-        true => "no density at any value: nothing to draw\n",
-        false => "no steady state in Ω at any value: nothing to draw\n",
+    if result.points.iter().any(failed) {
+        "no density at any value: nothing to draw\n"
+    } else {
+        "no steady state in Ω at any value: nothing to draw\n"
     }
 }
 

@@ -86,9 +86,10 @@ fn lengthen(curve: &mut Curve, known: &CodimensionTwo) {
         // What lies within a hair of the meeting is of the size of cells.
         let plane = curve.plane.clone();
         let is_beside = |point: &&CurvePoint| apart(plane.place(point.values), at) <= SAME;
-        let beside = match is_first {
-            true => curve.points.iter().take_while(is_beside).count(),
-            false => curve.points.iter().rev().take_while(is_beside).count(),
+        let beside = if is_first {
+            curve.points.iter().take_while(is_beside).count()
+        } else {
+            curve.points.iter().rev().take_while(is_beside).count()
         };
         let count = curve.points.len();
         let kept = if is_first {

@@ -136,9 +136,10 @@ impl Seeker<'_> {
         let axis = reading.density.axes.first()?.clone();
         let cell = axis.width(axis.find(kink)?);
         // Of a density with a centre the mirror image is as near.
-        let near = match side * (reading.indicator.place[0] - kink) > 0.0 {
-            true => reading,
-            false => reader.read(at, &[kink + side * AT_CENTRE * cell]).ok()?,
+        let near = if side * (reading.indicator.place[0] - kink) > 0.0 {
+            reading
+        } else {
+            reader.read(at, &[kink + side * AT_CENTRE * cell]).ok()?
         };
         let place = near.indicator.place[0];
         let away = side * (place - kink) / (axis.to() - axis.from());

@@ -88,9 +88,10 @@ pub(super) fn add_ends(
             EndReason::NotConverged | EndReason::FeatureLost | EndReason::Singular
         );
         let is_first = index == 0 && count > 1;
-        let inward: Vec<&CurvePoint> = match is_first {
-            true => points.iter().collect(),
-            false => points.iter().rev().collect(),
+        let inward: Vec<&CurvePoint> = if is_first {
+            points.iter().collect()
+        } else {
+            points.iter().rev().collect()
         };
         let unsure = inward.iter().take_while(|point| folds.is_unsure(point));
         let unsure = unsure.count();

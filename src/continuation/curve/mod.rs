@@ -220,9 +220,10 @@ pub fn follow(
         alone.doubts.insert(0, Doubt::NoCurve);
     }
     let found = seeker.search(&walked, &points, &mut check_work);
-    let (degenerate, mut branches) = match companion::ends_there(start.kind) {
-        true => (Vec::new(), degenerate::cut(&mut points, &mut walked, found)),
-        false => degenerate::add(&mut points, &mut walked.start, found),
+    let (degenerate, mut branches) = if companion::ends_there(start.kind) {
+        (Vec::new(), degenerate::cut(&mut points, &mut walked, found))
+    } else {
+        degenerate::add(&mut points, &mut walked.start, found)
     };
     let folds = fold_end::Folds {
         kind: start.kind,

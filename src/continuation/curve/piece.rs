@@ -114,9 +114,10 @@ impl Piece {
                 let (mut low, mut high) = (0.0, 1.0);
                 for _ in 0..HALVINGS {
                     let middle = 0.5 * (low + high);
-                    match beyond(middle) * begins > 0.0 {
-                        true => low = middle,
-                        false => high = middle,
+                    if beyond(middle) * begins > 0.0 {
+                        low = middle
+                    } else {
+                        high = middle
                     }
                 }
                 0.5 * (low + high)

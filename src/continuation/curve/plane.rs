@@ -84,17 +84,18 @@ impl Plane {
         let side = |(name, from, to): (&str, f64, f64)| {
             let parameter = name.to_owned();
             let length = to - from;
-            match length.is_finite() && length > 0.0 {
-                true => Ok(PlaneSide {
+            if length.is_finite() && length > 0.0 {
+                Ok(PlaneSide {
                     parameter,
                     from,
                     to,
-                }),
-                false => Err(CurveError::EmptySide {
+                })
+            } else {
+                Err(CurveError::EmptySide {
                     parameter,
                     from,
                     to,
-                }),
+                })
             }
         };
         if first.0 == second.0 {

@@ -169,9 +169,10 @@ impl Reader<'_> {
         let density = density.ok_or_else(|| Missing::Density("no density".to_owned()))?;
         let indicator = self.detector.indicator(density, self.kind, near);
         let has_centre = density.structure.centre.is_some() || !self.kind.traits().is_at_centre;
-        let indicator = indicator.ok_or(match has_centre {
-            true => Missing::Indicator,
-            false => Missing::Symmetry,
+        let indicator = indicator.ok_or(if has_centre {
+            Missing::Indicator
+        } else {
+            Missing::Symmetry
         })?;
         let mut gradient = [f64::NAN; 2];
         if let Some(sensitivity) = solution.sensitivity.as_mut().filter(|_| with_gradient) {

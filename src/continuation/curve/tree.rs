@@ -59,9 +59,10 @@ pub fn follow_all(
         )
     };
     let first = trace(start)?;
-    let mut open: VecDeque<CurveStart> = match options.branches {
-        true => first.branches.iter().cloned().collect(),
-        false => VecDeque::new(),
+    let mut open: VecDeque<CurveStart> = if options.branches {
+        first.branches.iter().cloned().collect()
+    } else {
+        VecDeque::new()
     };
     let mut curves = vec![first];
     let mut missed = Vec::new();
@@ -136,9 +137,10 @@ pub(in crate::continuation) fn distance(line: &[[f64; 2]], at: [f64; 2]) -> f64 
         let along = [b[0] - a[0], b[1] - a[1]];
         let gap = [at[0] - a[0], at[1] - a[1]];
         let length = along[0] * along[0] + along[1] * along[1];
-        let share = match length > 0.0 {
-            true => ((gap[0] * along[0] + gap[1] * along[1]) / length).clamp(0.0, 1.0),
-            false => 0.0,
+        let share = if length > 0.0 {
+            ((gap[0] * along[0] + gap[1] * along[1]) / length).clamp(0.0, 1.0)
+        } else {
+            0.0
         };
         (gap[0] - share * along[0]).hypot(gap[1] - share * along[1])
     });

@@ -269,9 +269,10 @@ fn correct(
 /// Why a curve was not met where this was read: where samples leave more open than a place on the curve may be off,
 /// they are to blame.
 fn not_met(reading: &Reading) -> EndReason {
-    match reading.indicator.sampling_error > CLOSE * reading.steepness() {
-        true => EndReason::Sampling,
-        false => EndReason::NotConverged,
+    if reading.indicator.sampling_error > CLOSE * reading.steepness() {
+        EndReason::Sampling
+    } else {
+        EndReason::NotConverged
     }
 }
 

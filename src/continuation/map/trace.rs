@@ -98,17 +98,16 @@ impl Tracer<'_> {
                 }
             }
         }
-        let untraced = match self.maker.cancellation.is_cancelled() {
-            true => Vec::new(),
-            false => {
-                let mut untraced = self.without_curve(&drawn, &open, &failures, &blurred);
-                untraced.extend(
-                    vague
-                        .iter()
-                        .map(|(start, reason)| self.vague(start, reason)),
-                );
-                untraced
-            }
+        let untraced = if self.maker.cancellation.is_cancelled() {
+            Vec::new()
+        } else {
+            let mut untraced = self.without_curve(&drawn, &open, &failures, &blurred);
+            untraced.extend(
+                vague
+                    .iter()
+                    .map(|(start, reason)| self.vague(start, reason)),
+            );
+            untraced
         };
         (curves, untraced)
     }

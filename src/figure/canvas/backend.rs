@@ -87,9 +87,10 @@ impl Canvas {
         let (width, height) = self.size;
         let length = |units: u32| {
             let pixels = f64::from(units) / UNITS;
-            match self.look.is_usual_size() {
-                true => pixels.to_string(),
-                false => format!("{:.4}mm", self.look.millimetres(pixels)),
+            if self.look.is_usual_size() {
+                pixels.to_string()
+            } else {
+                format!("{:.4}mm", self.look.millimetres(pixels))
             }
         };
         format!(
@@ -166,9 +167,10 @@ impl Canvas {
             .iter()
             .map(|&part| units(part).to_string())
             .collect();
-        let dash = match dash.is_empty() {
-            true => String::new(),
-            false => format!(" stroke-dasharray=\"{}\"", dash.join(" ")),
+        let dash = if dash.is_empty() {
+            String::new()
+        } else {
+            format!(" stroke-dasharray=\"{}\"", dash.join(" "))
         };
         self.push(&format!(
             "<polyline{} fill=\"none\"{} stroke-width=\"{}\" stroke-linejoin=\"round\"{dash}/>",
@@ -246,9 +248,10 @@ impl Canvas {
             HPos::Center => "middle",
             HPos::Right => "end",
         };
-        let turn = match text.upward {
-            true => format!(" transform=\"rotate(-90 {x} {y})\""),
-            false => String::new(),
+        let turn = if text.upward {
+            format!(" transform=\"rotate(-90 {x} {y})\"")
+        } else {
+            String::new()
         };
         let weight = if text.bold {
             " font-weight=\"bold\""

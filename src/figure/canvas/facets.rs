@@ -17,9 +17,10 @@ pub(super) fn parts(corners: [[f64; 3]; 4]) -> Vec<[[f64; 3]; 4]> {
     if bend.abs() < BENT {
         return vec![corners];
     }
-    match bend > 0.0 {
-        true => vec![[a, c, d, d], [a, b, c, c]],
-        false => vec![[b, c, d, d], [a, b, d, d]],
+    if bend > 0.0 {
+        vec![[a, c, d, d], [a, b, c, c]]
+    } else {
+        vec![[b, c, d, d], [a, b, d, d]]
     }
 }
 

@@ -167,9 +167,10 @@ pub(super) fn zero(of: impl Fn(f64) -> f64, (mut low, mut high): (f64, f64), ris
         if middle <= low || middle >= high {
             return middle;
         }
-        match (of(middle) > 0.0) == rises {
-            true => high = middle,
-            false => low = middle,
+        if (of(middle) > 0.0) == rises {
+            high = middle
+        } else {
+            low = middle
         }
     }
 }

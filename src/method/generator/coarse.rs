@@ -46,9 +46,10 @@ pub(super) fn rough_relaxation(
     cancellation: &Cancellation,
 ) -> Option<f64> {
     let space = source.problem.space();
-    let few = match space.axes().iter().any(Axis::is_modes) {
-        true => FEW_WITH_MODES,
-        false => FEW,
+    let few = if space.axes().iter().any(Axis::is_modes) {
+        FEW_WITH_MODES
+    } else {
+        FEW
     };
     if space.n_cells() <= few {
         return None;

@@ -253,9 +253,10 @@ impl<'a> Plane<'a> {
                 masses[low] / cells.width(from),
                 masses[high] / cells.width(to),
             );
-            let rise = match first > 0.0 && last > 0.0 && apart > 0.0 {
-                true => (last / first).ln() / apart,
-                false => 0.0,
+            let rise = if first > 0.0 && last > 0.0 && apart > 0.0 {
+                (last / first).ln() / apart
+            } else {
+                0.0
             };
             masses[cell].max(0.0) * self.jumps[cell][axis] * rise
         };

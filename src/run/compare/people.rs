@@ -24,17 +24,19 @@ fn short(value: f64) -> String {
     }
     let digits = format!("{value:.1e}");
     let number: f64 = digits.parse().unwrap_or(value);
-    match (1e-3..1e5).contains(&number.abs()) {
-        true => format_number(number),
-        false => digits,
+    if (1e-3..1e5).contains(&number.abs()) {
+        format_number(number)
+    } else {
+        digits
     }
 }
 
 /// A count as `1.2e8` when it is long.
 fn count(value: f64) -> String {
-    match value < 1e5 {
-        true => format!("{value:.0}"),
-        false => format!("{value:.1e}"),
+    if value < 1e5 {
+        format!("{value:.0}")
+    } else {
+        format!("{value:.1e}")
     }
 }
 
@@ -47,16 +49,16 @@ fn megabytes(bytes: f64) -> String {
 
 /// A distance with its error, and in brackets what noise alone would make; a star marks what exceeds all errors.
 fn distance(distance: &Distance) -> String {
-    let (value, error) = match distance.error > 0.0 {
-        true => {
-            let (value, error) = format_with_error(distance.value, distance.error);
-            (value, format!(" ± {error}"))
-        }
-        false => (short(distance.value), String::new()),
+    let (value, error) = if distance.error > 0.0 {
+        let (value, error) = format_with_error(distance.value, distance.error);
+        (value, format!(" ± {error}"))
+    } else {
+        (short(distance.value), String::new())
     };
-    let noise = match distance.noise > 0.0 {
-        true => format!(" ({})", short(distance.noise)),
-        false => String::new(),
+    let noise = if distance.noise > 0.0 {
+        format!(" ({})", short(distance.noise))
+    } else {
+        String::new()
     };
     let star = if distance.is_significant() { "*" } else { "" };
     format!("{value}{error}{noise}{star}")

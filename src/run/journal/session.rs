@@ -71,14 +71,13 @@ impl Session for JournalledSession {
             }
             None => {
                 self.known.solves.fetch_add(1, Ordering::Relaxed);
-                match self.known.is_asked {
-                    true => self.solve_now(key, value),
+                if self.known.is_asked {
+                    self.solve_now(key, value)
+                } else {
                     // Nothing will be asked of it: it is written before it is given.
-                    false => {
-                        let solution = self.solve_now(key, value)?.detached();
-                        self.settle()?;
-                        Ok(solution)
-                    }
+                    let solution = self.solve_now(key, value)?.detached();
+                    self.settle()?;
+                    Ok(solution)
                 }
             }
         }

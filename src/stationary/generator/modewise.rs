@@ -254,9 +254,10 @@ impl Mode {
         let largest = rates
             .iter()
             .fold(0.0_f64, |most, rate| most.max(rate.abs()));
-        let scale = match largest > 0.0 && largest.is_finite() {
-            true => largest.log2().round().exp2(),
-            false => 1.0,
+        let scale = if largest > 0.0 && largest.is_finite() {
+            largest.log2().round().exp2()
+        } else {
+            1.0
         };
         rates.iter_mut().for_each(|rate| *rate /= scale);
         let mut position = None;

@@ -42,9 +42,10 @@ pub struct RateSolver {
 
 /// Unknowns from which on half of them are worth having.
 fn worth_folding(space: &CellSpace) -> usize {
-    match space.axes().iter().any(Axis::is_modes) {
-        true => WORTH_FOLDING_WITH_MODES,
-        false => WORTH_FOLDING,
+    if space.axes().iter().any(Axis::is_modes) {
+        WORTH_FOLDING_WITH_MODES
+    } else {
+        WORTH_FOLDING
     }
 }
 

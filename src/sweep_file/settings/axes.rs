@@ -183,9 +183,10 @@ fn read_grade(reader: &mut Reader<'_>, axis: &AxisDraft, name: &str) -> Option<G
     reader.require(&["cells", name, "grade", "smallest"]);
     let at = axis.grade_at.clone()?;
     let smallest = axis.grade_smallest?;
-    Some(match at.is_empty() {
-        true => Grade::Even,
-        false => Grade::Toward(Grading { at, smallest }),
+    Some(if at.is_empty() {
+        Grade::Even
+    } else {
+        Grade::Toward(Grading { at, smallest })
     })
 }
 

@@ -45,9 +45,10 @@ pub(super) fn model(reader: &mut Reader<'_>, draft: &Draft) -> Option<Arc<Model>
             let diagnostic = Diagnostic::new(title)
                 .at(&given.key_place, "equations of your own")
                 .allowed("`system.model`, or equations in `system.equations`")
-                .remedy(match model.key_place.is_set() {
-                    true => "the equations of the file cannot be exchanged for a built-in model: write another file",
-                    false => "remove `model`, or the equations",
+                .remedy(if model.key_place.is_set() {
+"the equations of the file cannot be exchanged for a built-in model: write another file"
+                } else {
+"remove `model`, or the equations"
                 });
             reader.report(diagnostic);
             None

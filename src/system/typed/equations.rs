@@ -91,13 +91,11 @@ impl TypedEquations {
         let words = channels.map(|(process, (amplitudes, &axis))| {
             let amplitude = amplitudes[axis];
             let states = scope.graph().dependence(amplitude).states;
-            let kind = match states.is_empty() {
-                true => "additive".to_owned(),
-                false => {
-                    let names: Vec<String> =
-                        states.iter().map(|&s| typeset_name(&axes[s])).collect();
-                    format!("multiplicative in {}", names.join(", "))
-                }
+            let kind = if states.is_empty() {
+                "additive".to_owned()
+            } else {
+                let names: Vec<String> = states.iter().map(|&s| typeset_name(&axes[s])).collect();
+                format!("multiplicative in {}", names.join(", "))
             };
             let (number, axis) = (subscript(process + 1), typeset_name(&axes[axis]));
             format!(

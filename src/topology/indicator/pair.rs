@@ -140,9 +140,10 @@ impl<'a> Centre<'a> {
         let known = density_at(self.estimated, self.at);
         let density = known.unwrap_or_else(|| beside(self.estimated, self.at));
         let rise = self.rise(density, seen.offset);
-        let top = match self.distance(&seen.highest) <= self.reach {
-            true => seen.highest.persistence,
-            false => rise,
+        let top = if self.distance(&seen.highest) <= self.reach {
+            seen.highest.persistence
+        } else {
+            rise
         };
         if !split {
             return vec![feature(FeatureKind::Peak, self.at, density, top)];

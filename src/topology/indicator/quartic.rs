@@ -88,9 +88,10 @@ impl Joint {
         let both = [[xy, eigenvalue - xx], [eigenvalue - yy, xy]];
         let lengths = both.map(|[x, y]| x.hypot(y));
         let longer = usize::from(lengths[1] > lengths[0]);
-        match lengths[longer] > 0.0 {
-            true => both[longer].map(|part| part / lengths[longer]),
-            false => [1.0, 0.0],
+        if lengths[longer] > 0.0 {
+            both[longer].map(|part| part / lengths[longer])
+        } else {
+            [1.0, 0.0]
         }
     }
 

@@ -189,15 +189,16 @@ fn kinks<'a>(
         let jumps_up = slope(&above) > slope(&below);
         // The higher side is a maximum where the slope falls away from the jump, the lower one a minimum where it
         // rises.
-        let (highest, lowest) = match jumps_up {
-            true => (
+        let (highest, lowest) = if jumps_up {
+            (
                 falls(&above).then_some(&above),
                 falls(&below).then_some(&below),
-            ),
-            false => (
+            )
+        } else {
+            (
                 (!falls(&below)).then_some(&below),
                 (!falls(&above)).then_some(&above),
-            ),
+            )
         };
         let flank = |jet: &Jet, rising: bool| Flank {
             rising,

@@ -73,9 +73,10 @@ fn beside(axis: &Axis, at: f64, orders: usize) -> Option<Lines> {
 pub(super) fn one_sided(axis: &Axis, at: f64, above: bool) -> Option<Lines> {
     let (below, from) = sides(axis, at)?;
     let line = |reach: usize| {
-        let cells = match above {
-            true => from..from + reach,
-            false => below.checked_sub(reach)?..below,
+        let cells = if above {
+            from..from + reach
+        } else {
+            below.checked_sub(reach)?..below
         };
         let fits = cells.end <= axis.count();
         fits.then(|| interpolating(axis, cells, at, 3))?

@@ -72,9 +72,10 @@ impl DirectSolver {
     /// Iterations after which factors mode by mode are given up where others could be had.
     pub(super) fn patience(&self, plan: &Estimate) -> usize {
         let is_modewise = plan.method == RateMethod::Modewise;
-        match is_modewise && self.more_demanding(plan).is_some() {
-            true => PATIENCE,
-            false => usize::MAX,
+        if is_modewise && self.more_demanding(plan).is_some() {
+            PATIENCE
+        } else {
+            usize::MAX
         }
     }
 
