@@ -86,21 +86,21 @@ fn program(version: &str, commit: Option<&str>, year: Option<&str>) -> String {
 /// The entry of the model, with its equations.
 fn model(spec: &Sweep) -> String {
     let model = spec.problem.family().model();
-    let equations: Vec<String> = model.equations.iter().map(|one| escaped(one)).collect();
+    let equations: Vec<String> = model.equations.iter().map(|one| escape(one)).collect();
     let source = match model.source.as_str() {
         "" => "equations of the sweep file".to_owned(),
-        source => escaped(source),
+        source => escape(source),
     };
     format!(
         "@misc{{model-{},\n  title = {{{}}},\n  howpublished = {{{}}},\n  note = {{{source}}}\n}}\n",
         model.name,
-        escaped(&model.title),
+        escape(&model.title),
         equations.join("; ")
     )
 }
 
 /// Text that TeX prints as it is.
-fn escaped(text: &str) -> String {
+fn escape(text: &str) -> String {
     let mut escaped = String::new();
     for letter in text.chars() {
         match letter {
@@ -138,6 +138,6 @@ mod tests {
             entry.contains("version = {0.1.0},\n  year = {2026},\n  note = {commit abc}\n}"),
             "{entry}"
         );
-        assert_eq!(escaped("x^2 & 50 %"), "x\\^{}2 \\& 50 \\%");
+        assert_eq!(escape("x^2 & 50 %"), "x\\^{}2 \\& 50 \\%");
     }
 }

@@ -28,7 +28,7 @@ const SECTIONS: [&str; 4] = ["detect", "locate", "figures", "curve"];
 pub(super) fn run(arguments: &CurveArguments) -> Result<Outcome, CommandError> {
     let (threads, cancellation) = super::interruptible(arguments.work.threads)?;
     threads.install(|| {
-        let Some((spec, result, only)) = swept(arguments, &cancellation)? else {
+        let Some((spec, result, only)) = sweep_of(arguments, &cancellation)? else {
             super::print("interrupted: nothing was written\n")?;
             return Ok(Outcome::Interrupted);
         };
@@ -114,7 +114,7 @@ impl Following<'_> {
     fn all(&self, rows: &[&Located]) -> Result<Outcome, CommandError> {
         let mut worst = Outcome::Complete;
         for row in rows {
-            match self.one(row) {
+            match self.follow_row(row) {
                 Ok(Outcome::Interrupted) => return Ok(Outcome::Interrupted),
                 Ok(Outcome::Partial) => worst = Outcome::Partial,
                 Ok(Outcome::Complete) => {}
@@ -129,7 +129,7 @@ impl Following<'_> {
         Ok(worst)
     }
 
-    fn one(&self, row: &Located) -> Result<Outcome, CommandError> {
+    fn follow_row(&self, row: &Located) -> Result<Outcome, CommandError> {
         let mut job = CurveJob::new(self.spec, self.result, row)?;
         let second = &job.plane().sides()[1].parameter;
         let home = (self.home)(&format!("{}-{second}", row.label));
@@ -228,7 +228,7 @@ fn overrides(arguments: &CurveArguments) -> Vec<Override> {
 
 /// The sweep with its result, that of a run as it is stored, that of a sweep file solved now, and whether it is to the
 /// only row that can be followed that nothing has named; `None` when interrupted.
-fn swept(
+fn sweep_of(
     arguments: &CurveArguments,
     cancellation: &Cancellation,
 ) -> Result<Option<(Sweep, SweepResult, bool)>, CommandError> {

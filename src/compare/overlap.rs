@@ -126,12 +126,12 @@ pub(crate) fn rebin_density(
     };
     rebinned.observable = estimated.observable;
     let kinks = estimated.structure.kinks.iter();
-    rebinned.structure.kinks = kinks.map(|kink| moved(kink, from, to)).collect();
+    rebinned.structure.kinks = kinks.map(|kink| move_kink(kink, from, to)).collect();
     Ok(rebinned)
 }
 
 /// A kink with its jump at the cells of other axes.
-fn moved(kink: &Kink, from: &[Axis], to: &[Axis]) -> Kink {
+fn move_kink(kink: &Kink, from: &[Axis], to: &[Axis]) -> Kink {
     let jump = match (from, to, kink.jump.len()) {
         ([_, _], [_, _], 2..) => {
             let (old, new) = (&from[1 - kink.axis.min(1)], &to[1 - kink.axis.min(1)]);

@@ -40,7 +40,7 @@ pub(super) fn page(title: &str, scene: &[u8], blocks: &[Vec<u8>], live: bool) ->
         hash(STYLE),
         if live { "'self'" } else { "'none'" }
     );
-    let title = escaped(title);
+    let title = escape(title);
     let mut data = block("scene", scene);
     for (number, bytes) in blocks.iter().enumerate() {
         data += &block(&format!("block-{number}"), bytes);
@@ -79,7 +79,7 @@ fn block(id: &str, bytes: &[u8]) -> String {
     format!("<script type=\"application/octet-stream\" id=\"{id}\">{text}</script>\n")
 }
 
-fn escaped(text: &str) -> String {
+fn escape(text: &str) -> String {
     let letter = |c: char| match c {
         '&' => "&amp;".to_owned(),
         '<' => "&lt;".to_owned(),

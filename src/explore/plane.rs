@@ -244,7 +244,7 @@ pub(super) fn coarse_grid(nodes: &[MapNode], most: usize) -> [Vec<f64>; 2] {
         let mut values: Vec<f64> = coarse.clone().map(|node| node.values[side]).collect();
         values.sort_by(f64::total_cmp);
         values.dedup();
-        thinned(&values, most)
+        thin_out(&values, most)
     })
 }
 
@@ -264,7 +264,7 @@ pub(super) fn nodes_of(states: &[PlaneState]) -> Vec<MapNode> {
 }
 
 /// So many values at most, evenly over all, both ends among them.
-fn thinned(values: &[f64], most: usize) -> Vec<f64> {
+fn thin_out(values: &[f64], most: usize) -> Vec<f64> {
     let last = values.len().saturating_sub(1);
     let step = last.div_ceil(most.max(2) - 1).max(1);
     let mut kept: Vec<f64> = values.iter().copied().step_by(step).collect();
@@ -282,12 +282,12 @@ mod tests {
     fn both_ends_stay_when_values_are_thinned() {
         let values: Vec<f64> = (0..40).map(f64::from).collect();
         for most in [2, 3, 7, 21, 39, 40, 100, usize::MAX] {
-            let kept = thinned(&values, most);
+            let kept = thin_out(&values, most);
             assert!(kept.len() <= most && kept.first() == Some(&0.0) && kept.last() == Some(&39.0));
             assert!(kept.windows(2).all(|pair| pair[0] < pair[1]), "{kept:?}");
         }
-        assert_eq!(thinned(&values, usize::MAX), values);
-        assert_eq!(thinned(&[1.0], 5), [1.0]);
-        assert!(thinned(&[], 5).is_empty());
+        assert_eq!(thin_out(&values, usize::MAX), values);
+        assert_eq!(thin_out(&[1.0], 5), [1.0]);
+        assert!(thin_out(&[], 5).is_empty());
     }
 }

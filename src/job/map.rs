@@ -50,7 +50,7 @@ impl Job for MapJob<'_> {
             Some(shards) => maker.merged(shards).map(Some),
             None => maker.whole().map(Some),
         };
-        let map = made(self, (folder, goes_on), context, &wanted)?;
+        let map = make(self, (folder, goes_on), context, &wanted)?;
         Ok(map.filter(|map| !map.nodes.is_empty()))
     }
 
@@ -117,7 +117,7 @@ impl Job for MapShardJob<'_> {
         goes_on: bool,
         context: &Context<'_>,
     ) -> Result<Option<MapShard>, JobError> {
-        made(self, (folder, goes_on), context, &|maker| {
+        make(self, (folder, goes_on), context, &|maker| {
             maker.shard(self.shard)
         })
     }
@@ -166,7 +166,7 @@ pub(super) fn check_shard(
 
 /// What is wanted of a map; `None` where it was interrupted before there was anything. What is in the journal is not
 /// solved again.
-fn made<T>(
+fn make<T>(
     job: &impl Job,
     (folder, goes_on): (&JobFolder, bool),
     context: &Context<'_>,

@@ -121,7 +121,7 @@ pub(crate) fn automatic_bins(
                 quantity: &bound,
             };
             let found = look.range(masses.as_deref())?;
-            *range = Some(range.map_or(found, |known| known.joined(found)));
+            *range = Some(range.map_or(found, |known| known.join(found)));
         }
     }
     let ends = ranges.iter().zip(family.quantities());
@@ -185,7 +185,7 @@ struct Range {
 }
 
 impl Range {
-    fn joined(self, other: Self) -> Self {
+    fn join(self, other: Self) -> Self {
         let join = |a: (f64, f64), b: (f64, f64)| (a.0.min(b.0), a.1.max(b.1));
         Self {
             extremes: join(self.extremes, other.extremes),

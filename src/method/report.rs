@@ -2,7 +2,7 @@
 //! once.
 
 use super::Problem;
-use super::measures::derived;
+use super::measures::derive;
 use crate::continuation::measure::{
     DEVIATION, EDGE_MASS, ESCAPE_RATE, MEAN, NEGATIVE_MASS, NUMERICAL_DIFFUSION,
 };
@@ -72,7 +72,7 @@ impl<'a> Reporter<'a> {
 
     /// The solution with these densities, and with the measures that are derived from them.
     pub(super) fn solution(mut self, densities: Vec<EstimatedDensity>) -> Solution<'static> {
-        let measures = derived(self.problem.subject(), &densities);
+        let measures = derive(self.problem.subject(), &densities);
         self.report.measures.extend(measures);
         Solution {
             densities,

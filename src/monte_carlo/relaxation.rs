@@ -56,7 +56,7 @@ impl Relaxation {
     }
 
     /// States at the end of the trajectories that did not run away, d values each: draws from the steady state.
-    pub(crate) fn settled(&self) -> &[Vec<f64>] {
+    pub(crate) fn settled_states(&self) -> &[Vec<f64>] {
         &self.settled
     }
 
@@ -208,7 +208,7 @@ fn judge(watched: &[Watched], pilot: crate::sampling::Pilot, spacing: f64) -> Re
             .map(|axis| pilot.mean_square_width[axis].sqrt() / speed(axis))
             .collect(),
         runaways: 1.0 - alive as f64 / (watched.len() * LANES) as f64,
-        settled: settled(watched),
+        settled: settled_states(watched),
         mean: found.mean,
         variance: found.variance,
         pilot,
@@ -264,7 +264,7 @@ fn correlations(watched: &[Watched], dimension: usize, spacing: f64) -> Correlat
     }
 }
 
-fn settled(watched: &[Watched]) -> Vec<Vec<f64>> {
+fn settled_states(watched: &[Watched]) -> Vec<Vec<f64>> {
     let lanes = watched
         .iter()
         .flat_map(|one| (0..LANES).map(move |lane| (&one.batch, lane)));

@@ -79,7 +79,7 @@ pub(crate) fn bifurcations_json(family: &Family, labels: &[Label]) -> Result<Str
 const NO_DENSITY: &str = "no steady state or not converged";
 
 /// Value, error and bracket of a row, rounded to the error.
-fn rounded(row: &Label) -> [String; 4] {
+fn in_digits(row: &Label) -> [String; 4] {
     let (value, error) = format_with_error(row.value(), row.error());
     let (lower, upper) = row.bracket();
     let [lower, upper] = [lower, upper].map(|end| format_with_error(end, row.error()).0);
@@ -93,7 +93,7 @@ pub(crate) fn bifurcations_markdown(family: &Family, labels: &[Label]) -> String
         family.parameter()
     );
     for row in labels.iter().filter(|row| !row.is_end()) {
-        let [value, error, lower, upper] = rounded(row);
+        let [value, error, lower, upper] = in_digits(row);
         let cells = match row.bifurcation() {
             Some(one) => [
                 one.observable.name(family),
@@ -121,7 +121,7 @@ pub(crate) fn bifurcations_tex(family: &Family, labels: &[Label]) -> String {
     text += &latex::parameter(family);
     text += "$ & density & below & above & change & status \\\\\n\\midrule\n";
     for row in labels.iter().filter(|row| !row.is_end()) {
-        let [value, error, ..] = rounded(row);
+        let [value, error, ..] = in_digits(row);
         let of_none = || vec![String::new(); 5];
         let cells = row.bifurcation().map_or_else(of_none, |one| {
             let words = [

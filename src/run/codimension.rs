@@ -107,10 +107,10 @@ pub(super) fn columns<'a>(family: &'a Family, plane: &Plane) -> Columns<'a, Codi
             observables(family, one)
         }),
         word("place", |one: &CodimensionTwo| {
-            joined(one.place.iter().map(|&x| format_number(x)))
+            join(one.place.iter().map(|&x| format_number(x)))
         }),
         word("curves", |one: &CodimensionTwo| {
-            joined(one.curves.iter().map(|&index| curve_name(index)))
+            join(one.curves.iter().map(|&index| curve_name(index)))
         }),
     ])
 }
@@ -132,7 +132,7 @@ fn codimension_two_tex(family: &Family, plane: &Plane, curves: &[Curve]) -> Stri
             let (value, error) = format_with_error(one.values[k], error);
             format!("${value} \\pm {error}$")
         });
-        let curves = joined(one.curves.iter().map(|&index| curve_name(index)));
+        let curves = join(one.curves.iter().map(|&index| curve_name(index)));
         let observables = one.observables.iter();
         let observables: Vec<String> = observables
             .map(|&observable| latex::observable(family, observable))
@@ -154,13 +154,13 @@ fn parameters(plane: &Plane) -> [String; 2] {
 }
 
 fn observables(family: &Family, one: &CodimensionTwo) -> String {
-    joined(
+    join(
         one.observables
             .iter()
             .map(|observable| observable.name(family)),
     )
 }
 
-fn joined(words: impl Iterator<Item = String>) -> String {
+fn join(words: impl Iterator<Item = String>) -> String {
     words.collect::<Vec<_>>().join(" ")
 }

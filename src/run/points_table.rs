@@ -30,7 +30,7 @@ pub(super) fn columns<'a>(
 ) -> Columns<'a, Point> {
     let mut columns = Vec::from(of_solve(family, methods));
     for name in family.averages() {
-        columns.extend([measured(&MEAN, name), measured(&DEVIATION, name)]);
+        columns.extend([measure(&MEAN, name), measure(&DEVIATION, name)]);
     }
     columns.extend(of_detections(family, observables));
     columns.push(optional("distance", |point: &Point| point.distance));
@@ -38,14 +38,14 @@ pub(super) fn columns<'a>(
         digits("seconds", |point: &Point| format!("{:.3}", point.seconds))
             .read(|cell| cell.number(), |point, value| point.seconds = value),
     );
-    columns.push(measured(&MAP_STEP, ""));
+    columns.push(measure(&MAP_STEP, ""));
     columns.push(or_zero(&FACTORISATIONS));
     let axes = family.model().axes.iter();
-    columns.extend(axes.map(|axis| measured(&NUMERICAL_DIFFUSION, &axis.name)));
+    columns.extend(axes.map(|axis| measure(&NUMERICAL_DIFFUSION, &axis.name)));
     columns.extend(of_doubts(family));
     columns.extend(rings(family, observables));
     for column in measures {
-        columns.extend(derived(column));
+        columns.extend(derived_measure(column));
     }
     Columns(columns)
 }
@@ -84,7 +84,7 @@ fn of_solve<'a>(family: &'a Family, methods: &'a [&'static str]) -> [Column<'a, 
 }
 
 /// A measure that may be missing.
-fn measured<'a>(kind: &'static MeasureKind, of: &str) -> Column<'a, Point> {
+fn measure<'a>(kind: &'static MeasureKind, of: &str) -> Column<'a, Point> {
     let (name, of) = (kind.name(of), of.to_owned());
     optional(name.clone(), move |point: &Point| {
         point.report.measure(&name)
@@ -96,7 +96,7 @@ fn measured<'a>(kind: &'static MeasureKind, of: &str) -> Column<'a, Point> {
 }
 
 /// A derived measure and its error.
-fn derived<'a>(column: &MeasureColumn) -> [Column<'a, Point>; 2] {
+fn derived_measure<'a>(column: &MeasureColumn) -> [Column<'a, Point>; 2] {
     let name = column.kind.name(&column.of);
     let (own, of) = (name.clone(), column.clone());
     let find = move |point: &Point| {
@@ -205,7 +205,7 @@ fn of_doubts<'a>(family: &'a Family) -> [Column<'a, Point>; 4] {
                 |point, value| point.report.solver_error = value,
             )
             .newer(),
-        measured(&TIME_STEP_BIAS, "").newer(),
+        measure(&TIME_STEP_BIAS, "").newer(),
         word("warnings", move |point: &Point| {
             sentences(family, &point.report.findings)
         })

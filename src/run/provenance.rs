@@ -43,12 +43,12 @@ impl Provenance {
         Self {
             started: date_in_utc(SystemTime::now()),
             ended: None,
-            commit: known(option_env!("PBIF_COMMIT")),
-            compiler: known(option_env!("PBIF_COMPILER")),
-            target: known(option_env!("PBIF_TARGET")),
-            target_features: known(option_env!("PBIF_TARGET_FEATURES"))
+            commit: non_empty(option_env!("PBIF_COMMIT")),
+            compiler: non_empty(option_env!("PBIF_COMPILER")),
+            target: non_empty(option_env!("PBIF_TARGET")),
+            target_features: non_empty(option_env!("PBIF_TARGET_FEATURES"))
                 .map_or_else(Vec::new, |features| features.split(',').collect()),
-            optimisation: known(option_env!("PBIF_OPTIMISATION")),
+            optimisation: non_empty(option_env!("PBIF_OPTIMISATION")),
             system: std::env::consts::OS,
             architecture: std::env::consts::ARCH,
             instruction_sets: instruction_sets(),
@@ -62,7 +62,7 @@ impl Provenance {
 }
 
 /// What the build could not find out is empty.
-fn known(text: Option<&'static str>) -> Option<&'static str> {
+fn non_empty(text: Option<&'static str>) -> Option<&'static str> {
     text.filter(|text| !text.is_empty())
 }
 

@@ -25,7 +25,7 @@ impl Settings {
         let open = self.bins.iter().any(|bins| bins.range.is_none());
         let ranges = automatic_bins(&self.family, &space, open, cancellation)
             .and_then(|ranges| check_averaged(&self.family, &space).map(|()| ranges))
-            .map_err(|error| self.refuse(said(&self.document, &error)))?;
+            .map_err(|error| self.refuse(diagnostic(&self.document, &error)))?;
         for (number, range) in ranges.into_iter().enumerate() {
             match self.bins[number].range {
                 None => self.bins[number].range = Some(range.ends),
@@ -66,7 +66,7 @@ impl Settings {
 }
 
 /// What is wrong with a quantity, at its place in the file.
-fn said(document: &Document, error: &BinsError) -> Diagnostic {
+fn diagnostic(document: &Document, error: &BinsError) -> Diagnostic {
     let diagnostic = Diagnostic::new(error.to_string());
     let (quantity, remedy) = match error {
         BinsError::NotFinite { quantity, .. } => (

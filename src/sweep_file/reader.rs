@@ -179,14 +179,14 @@ fn unknown_key(entry: &Entry, path: &[&str]) -> Diagnostic {
         .iter()
         .find(|key| key.parts().last() == Some(&entry.key));
     let elsewhere = elsewhere.map(|key| key.path().to_owned());
-    match elsewhere.or_else(|| table_called(&entry.key)) {
+    match elsewhere.or_else(|| table_by_name(&entry.key)) {
         Some(path) => diagnostic.remedy(format!("did you mean `{path}`?")),
         None => diagnostic,
     }
 }
 
 /// The path of a table inside another that has a name.
-fn table_called(name: &str) -> Option<String> {
+fn table_by_name(name: &str) -> Option<String> {
     let prefix = |key: &Key| {
         let at = key.parts().position(|part| part == name)?;
         Some(key.parts().take(at + 1).collect::<Vec<_>>().join("."))
@@ -221,13 +221,15 @@ fn value_of(key: &Key, path: &[&str], node: &Node) -> Result<Plain, Box<Diagnost
             diagnostic.remedy(format!("write the number without quotes: `{number}`")),
         ));
     }
-    Err(Box::new(match (kind, &blamed.value, meant(kind, blamed)) {
-        (_, _, Some(words)) => diagnostic.remedy(format!("did you mean `{words}`?")),
-        (Kind::Printable, Value::Text(_), _) => diagnostic.remedy(
-            "a backslash between `\"` begins a code: write `\\\\`, or put the text between `'`",
-        ),
-        _ => diagnostic,
-    }))
+    Err(Box::new(
+        match (kind, &blamed.value, suggestion(kind, blamed)) {
+            (_, _, Some(words)) => diagnostic.remedy(format!("did you mean `{words}`?")),
+            (Kind::Printable, Value::Text(_), _) => diagnostic.remedy(
+                "a backslash between `\"` begins a code: write `\\\\`, or put the text between `'`",
+            ),
+            _ => diagnostic,
+        },
+    ))
 }
 
 /// A number between quotation marks that the key would take without them.
@@ -244,7 +246,7 @@ fn quoted_number(kind: Kind, node: &Node) -> Option<&str> {
 }
 
 /// What was perhaps meant by a value that is not of a kind.
-fn meant(kind: Kind, node: &Node) -> Option<String> {
+fn suggestion(kind: Kind, node: &Node) -> Option<String> {
     let is_switch = matches!(kind, Kind::Choice(names) if names().contains(&"off"));
     if is_switch && matches!(node.value, Value::Other("a boolean")) {
         return Some("\"on\"` or `\"off\"".to_owned());

@@ -9,7 +9,7 @@ use super::value::{Node, Value};
 use crate::formula::language::{canonical_name, check_name};
 
 /// The document with the names of its equations spelled alike everywhere.
-pub(super) fn respelled(document: &Document) -> Document {
+pub(super) fn respell(document: &Document) -> Document {
     let mut document = document.clone();
     let names = |path: &[&str]| -> Vec<String> {
         let entries = document.root.find(path).map(|entry| entry.node.entries());
@@ -50,7 +50,7 @@ fn for_node(node: &mut Node, path: &[&str], change: &mut dyn FnMut(&mut Node)) {
 }
 
 /// The name among `known` that is the same in another spelling.
-fn spelled<'n>(name: &str, known: &'n [String]) -> Option<&'n String> {
+fn same_name<'n>(name: &str, known: &'n [String]) -> Option<&'n String> {
     if known.iter().any(|known| known == name) || !check_name(name) {
         return None;
     }
@@ -63,7 +63,7 @@ fn spelled<'n>(name: &str, known: &'n [String]) -> Option<&'n String> {
 fn respell_keys(node: &mut Node, known: &[String]) {
     if let Value::Table(entries) = &mut node.value {
         for entry in entries {
-            if let Some(name) = spelled(&entry.key, known) {
+            if let Some(name) = same_name(&entry.key, known) {
                 entry.key.clone_from(name);
             }
         }
@@ -73,7 +73,7 @@ fn respell_keys(node: &mut Node, known: &[String]) {
 fn respell_texts(node: &mut Node, known: &[String]) {
     match &mut node.value {
         Value::Text(text) => {
-            if let Some(name) = spelled(text, known) {
+            if let Some(name) = same_name(text, known) {
                 text.clone_from(name);
             }
         }

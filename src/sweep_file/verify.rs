@@ -103,7 +103,7 @@ impl Settings {
             match tried {
                 Ok(()) | Err(ContractViolation::SmoothSurface { .. }) => {}
                 Err(violation) => {
-                    let found = vec![self.violated(&violation, end)];
+                    let found = vec![self.diagnostic(&violation, end)];
                     return Err(Report::new(self.document.sources.clone(), found, 0));
                 }
             }
@@ -114,7 +114,7 @@ impl Settings {
 
 impl Settings {
     /// What does not hold of a file's own equations, in the names of the file.
-    fn violated(&self, violation: &ContractViolation, end: f64) -> Diagnostic {
+    fn diagnostic(&self, violation: &ContractViolation, end: f64) -> Diagnostic {
         let swept = format!("{} = {}", self.family.parameter(), short(end));
         let at = |state: &[f64]| {
             let state = state.iter().enumerate();

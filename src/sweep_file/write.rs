@@ -86,9 +86,9 @@ fn put(entries: &mut Vec<Entry>, path: &[(&str, bool)], toml: String) {
 fn write(text: &mut String, path: &str, entries: &[Entry]) {
     for entry in entries {
         match &entry.value {
-            Value::Plain(toml) => *text += &format!("{} = {toml}\n", quoted(&entry.key)),
+            Value::Plain(toml) => *text += &format!("{} = {toml}\n", quote(&entry.key)),
             Value::Table(below, true) => {
-                *text += &format!("{} = {}\n", quoted(&entry.key), inline(below));
+                *text += &format!("{} = {}\n", quote(&entry.key), inline(below));
             }
             Value::Table(_, false) => {}
         }
@@ -106,7 +106,7 @@ fn write(text: &mut String, path: &str, entries: &[Entry]) {
 }
 
 /// A key as TOML has it: in quotes where it has letters beyond ASCII.
-fn quoted(key: &str) -> String {
+fn quote(key: &str) -> String {
     let is_bare = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
     if !key.is_empty() && key.chars().all(is_bare) {
         key.to_owned()

@@ -1,7 +1,7 @@
 //! What several curves say of one point of codimension two, brought together: an end is where the curve that knows it
 //! best has it.
 
-use super::codimension::{CodimensionTwo, SAME, codimension_two, own};
+use super::codimension::{CodimensionTwo, SAME, codimension_two, own_points};
 use super::found::{CodimensionTwoKind, Curve, CurvePoint, EndReason};
 use super::walked::apart;
 use crate::continuation::ErrorParts;
@@ -27,7 +27,7 @@ pub(in crate::continuation) fn agree(curves: &mut [Curve]) {
 
 fn move_ends(curve: &mut Curve, known: &CodimensionTwo) {
     let at = curve.plane.place(known.values);
-    let places: Vec<usize> = own(curve)
+    let places: Vec<usize> = own_points(curve)
         .filter(|(kind, _, point)| {
             let gap = apart(curve.plane.place(point.values), at);
             *kind == known.kind && point.error > known.error && gap <= SAME
@@ -36,13 +36,13 @@ fn move_ends(curve: &mut Curve, known: &CodimensionTwo) {
         .collect();
     for place in places {
         if let Some(point) = curve.points.get_mut(place) {
-            put(point, known);
+            adopt(point, known);
         }
     }
 }
 
 /// The point is what is known.
-fn put(point: &mut CurvePoint, known: &CodimensionTwo) {
+fn adopt(point: &mut CurvePoint, known: &CodimensionTwo) {
     let share = known.error / point.error;
     point.to_edge = point.to_edge.map(|part| share * part);
     point.values = known.values;
@@ -101,7 +101,7 @@ fn lengthen(curve: &mut Curve, known: &CodimensionTwo) {
             continue;
         };
         let gap = apart(plane.place(point.values), at);
-        put(&mut point, known);
+        adopt(&mut point, known);
         point.place.clone_from(&known.place);
         point.arclength += if is_first { -gap } else { gap };
         point.checked = false;

@@ -44,7 +44,7 @@ impl CodimensionTwo {
 pub fn codimension_two(curves: &[Curve]) -> Vec<CodimensionTwo> {
     let mut found: Vec<CodimensionTwo> = Vec::new();
     for (index, curve) in curves.iter().enumerate() {
-        for (kind, _, point) in own(curve) {
+        for (kind, _, point) in own_points(curve) {
             add(&mut found, curve, index, kind, point);
         }
     }
@@ -82,7 +82,9 @@ pub fn codimension_two(curves: &[Curve]) -> Vec<CodimensionTwo> {
 }
 
 /// The points of codimension two that a curve has by itself.
-pub(super) fn own(curve: &Curve) -> impl Iterator<Item = (CodimensionTwoKind, usize, &CurvePoint)> {
+pub(super) fn own_points(
+    curve: &Curve,
+) -> impl Iterator<Item = (CodimensionTwoKind, usize, &CurvePoint)> {
     let ends = curve.ends.iter().filter_map(|end| {
         let kind = match end.reason {
             EndReason::Cusp => CodimensionTwoKind::Cusp,

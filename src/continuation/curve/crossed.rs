@@ -125,7 +125,7 @@ impl SweepInPlane {
                 sides: sides.each_ref().map(|side| side.parameter.clone()),
             });
         };
-        let held = held_of(plane, 1 - side, family, swept)?;
+        let held = held_value(plane, 1 - side, family, swept)?;
         let (own, along, across) = (swept.range(), &sides[side], &sides[1 - side]);
         if !(across.from..=across.to).contains(&held) {
             return Err(NotInPlane::Outside {
@@ -161,7 +161,7 @@ impl SweepInPlane {
             label: row.label.clone(),
             values,
             error: row.error,
-            observable: watched(row.observable, family, swept),
+            observable: observable_in_plane(row.observable, family, swept),
             indicator: row.indicator(),
             status: row.status(),
         }
@@ -205,7 +205,12 @@ fn check_model(family: &Family, swept: &Family) -> Result<(), NotInPlane> {
 
 /// The value at which a sweep holds the parameter of a side of the plane; refuses one that holds others at other values
 /// than the plane.
-fn held_of(plane: &Plane, side: usize, family: &Family, swept: &Family) -> Result<f64, NotInPlane> {
+fn held_value(
+    plane: &Plane,
+    side: usize,
+    family: &Family,
+    swept: &Family,
+) -> Result<f64, NotInPlane> {
     let sides = plane.sides();
     let mut held = None;
     for (parameter, value) in swept.fixed() {
@@ -232,7 +237,11 @@ fn held_of(plane: &Plane, side: usize, family: &Family, swept: &Family) -> Resul
 }
 
 /// An observable of a sweep as the plane numbers it: quantities by their names and formulas.
-fn watched(observable: Observable, family: &Family, swept: &Family) -> Option<Observable> {
+fn observable_in_plane(
+    observable: Observable,
+    family: &Family,
+    swept: &Family,
+) -> Option<Observable> {
     let number = |axis: usize| match swept.quantity(axis) {
         None => Some(axis),
         Some(own) => {

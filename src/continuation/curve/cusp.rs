@@ -36,7 +36,7 @@ pub(super) fn cusp(tail: &Tail<'_>, rising: bool) -> Option<Beyond> {
         reason: EndReason::Cusp,
         at: found.at,
         place: found.place,
-        error: tail.known()
+        error: tail.largest_error()
             + 2.0 * (apart(found.at, lower.at) + apart(found.at, farther.at))
             + 3.0 * found.scatter,
         scatter: 0.0,

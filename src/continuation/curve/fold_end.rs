@@ -234,7 +234,7 @@ fn meeting(
         reason,
         at: found.at,
         place,
-        error: tail.known() + 2.0 * doubt + scatter,
+        error: tail.largest_error() + 2.0 * doubt + scatter,
         scatter,
         leaves: found.leaves,
         branch: (found.at, kind, place),

@@ -67,7 +67,7 @@ impl<'p> Tail<'p> {
     }
 
     /// The largest error of its points.
-    pub(super) fn known(&self) -> f64 {
+    pub(super) fn largest_error(&self) -> f64 {
         self.points
             .iter()
             .map(|point| point.error)

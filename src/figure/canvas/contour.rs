@@ -139,7 +139,7 @@ fn follow(start: usize, neighbours: &[[usize; 2]], visited: &mut [bool]) -> Vec<
 
 /// A line without the points that lie within `alike` pixels of the chord between those that are kept; `place` gives
 /// the pixels of a point.
-pub(crate) fn thinned(
+pub(crate) fn simplify(
     line: &[(f64, f64)],
     alike: f64,
     place: impl Fn(&(f64, f64)) -> (f64, f64),
@@ -220,7 +220,7 @@ mod tests {
     fn thinned_lines_stay_where_they_are() {
         let at = |k: usize| (0.01 * k as f64 * std::f64::consts::TAU).sin_cos();
         let circle: Vec<(f64, f64)> = (0..=100).map(at).collect();
-        let few = thinned(&circle, 0.01, |&point| point);
+        let few = simplify(&circle, 0.01, |&point| point);
         assert!(few.len() < 40, "{}", few.len());
         assert_eq!((few[0], few.last()), (circle[0], circle.last()));
         // A chord of a unit circle that is 0.01 away in the middle spans 2 acos(0.99) = 0.28.
@@ -230,8 +230,8 @@ mod tests {
             assert!((middle.0.hypot(middle.1) - 1.0).abs() < 0.011);
         }
         let back = [(0.0, 0.0), (2.0, 0.0), (1.0, 0.0)];
-        assert_eq!(thinned(&back, 0.01, |&point| point), back);
-        assert_eq!(thinned(&[], 0.01, |&point| point), []);
+        assert_eq!(simplify(&back, 0.01, |&point| point), back);
+        assert_eq!(simplify(&[], 0.01, |&point| point), []);
     }
 
     #[test]

@@ -42,7 +42,7 @@ pub(super) fn brightness(corners: &[[f64; 3]; 4]) -> f64 {
 }
 
 /// A colour under light; in 32 steps, so that neighbours share theirs.
-pub(super) fn shaded((r, g, b): (u8, u8, u8), brightness: f64) -> (u8, u8, u8) {
+pub(super) fn shade((r, g, b): (u8, u8, u8), brightness: f64) -> (u8, u8, u8) {
     let factor = AMBIENT + (1.0 - AMBIENT) * (32.0 * brightness).round() / 32.0;
     // A flat floor keeps its colour; what faces the light is lighter still.
     let flat = AMBIENT + (1.0 - AMBIENT) * 0.83;
@@ -57,7 +57,7 @@ const OVERLAP: f64 = 0.4;
 const SHARPEST: f64 = 2.0;
 
 /// The corners of a facet on the page, in pixels, moved outward; corners that coincide are one.
-pub(super) fn grown(corners: &[(f64, f64); 4]) -> Vec<(f64, f64)> {
+pub(super) fn grow(corners: &[(f64, f64); 4]) -> Vec<(f64, f64)> {
     let mut places: Vec<(f64, f64)> = Vec::with_capacity(4);
     for &(x, y) in corners {
         let is_new = |&(a, b): &(f64, f64)| (a - x).hypot(b - y) > 1e-6;
@@ -107,14 +107,14 @@ mod tests {
         let mut turned = square;
         turned.reverse();
         for facet in [square, turned] {
-            for (corner, grown) in facet.iter().zip(grown(&facet)) {
+            for (corner, grown) in facet.iter().zip(grow(&facet)) {
                 let wanted = |value: f64| if value > 5.0 { 10.4 } else { -0.4 };
                 assert!((grown.0 - wanted(corner.0)).abs() < 1e-12, "{grown:?}");
                 assert!((grown.1 - wanted(corner.1)).abs() < 1e-12, "{grown:?}");
             }
         }
         // A triangle has its last corner twice; a needle's tip stays near.
-        let needle = grown(&[(0.0, 0.0), (10.0, 0.01), (10.0, -0.01), (10.0, -0.01)]);
+        let needle = grow(&[(0.0, 0.0), (10.0, 0.01), (10.0, -0.01), (10.0, -0.01)]);
         assert_eq!(needle.len(), 3);
         assert!((needle[0].0 + 0.8).abs() < 1e-3, "{needle:?}");
         assert!(
@@ -122,7 +122,7 @@ mod tests {
                 .iter()
                 .all(|place| place.0.is_finite() && place.1.is_finite())
         );
-        assert_eq!(grown(&[(1.0, 1.0); 4]), [(1.0, 1.0)]);
+        assert_eq!(grow(&[(1.0, 1.0); 4]), [(1.0, 1.0)]);
     }
 
     #[test]

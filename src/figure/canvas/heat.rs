@@ -52,7 +52,7 @@ impl Picture {
         palette.extend([255, 255, 255]);
         let mut opacity = vec![255; COLOURS];
         opacity.push(0);
-        encoded((self.width, self.height), palette, opacity, &self.indices)
+        encode((self.width, self.height), palette, opacity, &self.indices)
     }
 }
 
@@ -73,11 +73,11 @@ pub(crate) fn patches(
     let indices: Vec<u8> = pixels
         .map(|(column, row)| number(column, row).min(last) as u8)
         .collect();
-    encoded((width, height), palette, vec![255; colours.len()], &indices)
+    encode((width, height), palette, vec![255; colours.len()], &indices)
 }
 
 /// Pixels that are places in a palette, rows from the upper one downward.
-fn encoded(
+fn encode(
     (width, height): (usize, usize),
     palette: Vec<u8>,
     opacity: Vec<u8>,

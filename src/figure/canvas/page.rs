@@ -8,7 +8,7 @@ use plotters_backend::text_anchor::HPos;
 
 use super::backend::Canvas;
 pub(crate) use super::backend::{Lettering, Shape};
-use super::facets::grown;
+use super::facets::grow;
 use super::look::Look;
 use super::render;
 use super::style::{Colour, GREY, INK, MARGIN, TEXT, TICK_TEXT, TITLE_TEXT, UNITS};
@@ -119,7 +119,7 @@ impl Page {
         for run in facets.chunk_by(|a, b| a.1 == b.1) {
             let corners: Vec<Vec<BackendCoord>> = run
                 .iter()
-                .map(|(corners, _)| grown(corners).into_iter().map(on_canvas).collect())
+                .map(|(corners, _)| grow(corners).into_iter().map(on_canvas).collect())
                 .collect();
             if let Some((_, colour)) = run.first() {
                 self.canvas.facets(&corners, *colour);

@@ -33,12 +33,12 @@ impl Scale {
         length: f64,
         title: &str,
     ) -> Result<Self, FigureError> {
-        let wide = Self::spaced(look, range, length, title, 14.0)?;
+        let wide = Self::with_gap(look, range, length, title, 14.0)?;
         if wide.ticks.major.len() >= FEW {
             return Ok(wide);
         }
         // A short axis is better with labels close to each other than with a single one.
-        let close = Self::spaced(look, range, length, title, 4.0)?;
+        let close = Self::with_gap(look, range, length, title, 4.0)?;
         Ok(if close.ticks.major.len() > wide.ticks.major.len() {
             close
         } else {
@@ -72,7 +72,7 @@ impl Scale {
     }
 
     /// Lays out a horizontal axis with as many labels as have that gap between them.
-    fn spaced(
+    fn with_gap(
         look: &Look,
         range: (f64, f64),
         length: f64,

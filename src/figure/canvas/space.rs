@@ -4,7 +4,7 @@
 use plotters_backend::text_anchor::HPos;
 
 use super::backend::Lettering;
-use super::facets::{HEIGHT, brightness, parts, shaded};
+use super::facets::{HEIGHT, brightness, parts, shade};
 use super::frame::Scale;
 use super::look::Look;
 use super::page::{Page, Rectangle, Shape, lettering};
@@ -223,7 +223,7 @@ impl Space {
                 ];
                 for facet in parts(corners) {
                     let height = facet.iter().map(|corner| corner[2]).sum::<f64>() / 4.0;
-                    let colour = shaded(colours.colour(height), brightness(&facet));
+                    let colour = shade(colours.colour(height), brightness(&facet));
                     let places = facet.map(|corner| self.place(corner));
                     facets.push((places, Colour::fixed(colour)));
                 }

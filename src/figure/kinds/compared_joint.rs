@@ -4,7 +4,7 @@ use crate::compare::{ComparedValue, Method};
 use crate::density::Observable;
 use crate::system::Family;
 
-use super::compared_marginals::{caption_of, densities, rows as table, shown};
+use super::compared_marginals::{caption_of, densities, rows as table, view_of};
 use super::{Drawn, Sketch};
 use crate::compare::Comparison;
 use crate::figure::canvas::colour_bar::ColourBar;
@@ -32,7 +32,7 @@ fn row(value: &ComparedValue, observable: Observable) -> Vec<(Method, JointPoint
         let found = JointPoint {
             value: value.value,
             estimated,
-            shown: shown(method, estimated),
+            shown: view_of(method, estimated),
             features: &[],
         };
         (method, found)

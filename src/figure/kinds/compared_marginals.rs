@@ -18,7 +18,7 @@ use crate::figure::canvas::page::{Heading, Page, Panel, Rectangle, Shape, letter
 use crate::figure::canvas::style::{ERROR_LINE, INK, MARGIN, Stroke, TEXT};
 use crate::figure::figures::{Figure, Print};
 use crate::figure::parts::caption;
-use crate::figure::parts::joint_map::lettered;
+use crate::figure::parts::joint_map::with_letter;
 use crate::figure::parts::names;
 use crate::figure::parts::table::{self, number};
 use crate::figure::parts::view;
@@ -44,7 +44,7 @@ pub(super) fn stroke(method: Method) -> Stroke {
 }
 
 /// What is shown of the density of a method: only that of the generator is followed between its cells.
-pub(super) fn shown(method: Method, estimated: &EstimatedDensity) -> View<'_> {
+pub(super) fn view_of(method: Method, estimated: &EstimatedDensity) -> View<'_> {
     match method {
         Method::Generator => View::new(estimated),
         _ => View::by_cells(estimated),
@@ -171,7 +171,7 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
     let first = Rectangle::new((MARGIN + room, top + ABOVE), (wide, PANEL.1));
     for (number, laid) in all.iter().enumerate() {
         let rect = first.tile(number, columns, step);
-        let above = lettered(look, number, names::at(family, laid.value.value));
+        let above = with_letter(look, number, names::at(family, laid.value.value));
         let place = (rect.left, rect.top - 0.7 * TEXT);
         page.text(place, lettering(above, HPos::Left));
         draw_panel(&page, laid, rect, labelled_below(number), family)?;
@@ -214,7 +214,7 @@ fn lay_out<'a>(
     let Some(window) = view::window(&all, 0) else {
         return Ok(None);
     };
-    let own = densities(value, observable).map(|(method, one)| shown(method, one).largest);
+    let own = densities(value, observable).map(|(method, one)| view_of(method, one).largest);
     let highest = own.fold(0.0, f64::max);
     if highest <= 0.0 {
         return Ok(None);
@@ -253,7 +253,7 @@ fn draw_panel(
     // Symbols lie over the lines, and the generator's line over those of SGCM.
     for method in [Method::Sgcm, Method::SgcmSlope, Method::Generator] {
         if let Some(estimated) = drawn(method) {
-            let line = within(shown(method, estimated).curve(laid.window), laid.up.range);
+            let line = within(view_of(method, estimated).curve(laid.window), laid.up.range);
             panel.draw(&line, Shape::Line(stroke(method)));
         }
     }

@@ -118,7 +118,7 @@ impl Scene<'_> {
 
     /// The start with its label and the signatures on both sides, and the ends with theirs.
     fn draw_marks(&self, page: &Page, panel: &Panel, rect: Rectangle) {
-        let place = |point: &CurvePoint| kept(self.curve, point.values[0], point.values[1]);
+        let place = |point: &CurvePoint| into_box(self.curve, point.values[0], point.values[1]);
         let rim = || Stroke::solid(INK, 1.2);
         for (number, curve) in self.curves.iter().enumerate() {
             let told = |reason: &EndReason| {
@@ -143,7 +143,7 @@ impl Scene<'_> {
         }
         for point in codimension_two(self.curves) {
             let [x, y] = point.values;
-            let at = kept(self.curve, x, y);
+            let at = into_box(self.curve, x, y);
             panel.draw(&[at], Shape::Dot(DOT, PAPER, rim()));
             let at = panel.place(at);
             write(page, rect, at, &point.label, INK, true);
@@ -278,7 +278,7 @@ pub(super) fn draw_line(panel: &Panel, curve: &Curve, stroke: Stroke) {
         let points = curve.points.iter();
         points.map(move |point| {
             let [x, y] = [0, 1].map(|k| point.values[k] + sign * point.to_edge[k]);
-            kept(curve, x, y)
+            into_box(curve, x, y)
         })
     };
     let mut outline: Vec<(f64, f64)> = edge(1.0).collect();
@@ -300,7 +300,7 @@ fn pieces(curve: &Curve) -> Vec<(Vec<(f64, f64)>, bool)> {
     for pair in curve.points.windows(2) {
         let mut both = pair.iter();
         let located = both.all(|point| point.status() == BifurcationStatus::Located);
-        let [a, b] = [0, 1].map(|k| kept(curve, pair[k].values[0], pair[k].values[1]));
+        let [a, b] = [0, 1].map(|k| into_box(curve, pair[k].values[0], pair[k].values[1]));
         match pieces.last_mut().filter(|piece| piece.1 == located) {
             Some((places, _)) => places.push(b),
             None => pieces.push((vec![a, b], located)),
@@ -310,7 +310,7 @@ fn pieces(curve: &Curve) -> Vec<(Vec<(f64, f64)>, bool)> {
 }
 
 /// A place moved into the box.
-fn kept(curve: &Curve, x: f64, y: f64) -> (f64, f64) {
+fn into_box(curve: &Curve, x: f64, y: f64) -> (f64, f64) {
     let [first, second] = curve.plane.sides();
     (
         x.clamp(first.from, first.to),

@@ -11,7 +11,7 @@ use crate::figure::canvas::page::{Heading, Page, Rectangle};
 use crate::figure::canvas::space::Space;
 use crate::figure::canvas::style::{MARGIN, TEXT};
 use crate::figure::figures::Print;
-use crate::figure::parts::joint_map::{Joint, JointPoint, draw_map, lettered, write_above};
+use crate::figure::parts::joint_map::{Joint, JointPoint, draw_map, with_letter, write_above};
 
 /// Width of a surface with its axes on a page of its own width, in pixels.
 const SURFACE: f64 = 330.0;
@@ -106,7 +106,7 @@ fn draw(joint: &Joint<'_>, print: &Print<'_>) -> Result<Option<Page>, FigureErro
     for (number, (found, bar)) in found.iter().zip(&bars).enumerate() {
         let from = heading.height() + ABOVE + number as f64 * (step + MARGIN);
         let surface = Rectangle::new((MARGIN, from), (row.surface, surface_high));
-        write_above(&page, surface, lettered(look, number, joint.at(found)));
+        write_above(&page, surface, with_letter(look, number, joint.at(found)));
         draw_surface(&page, surface, joint, (found, COARSE))?;
         let left = row.page - MARGIN - widest(&bars) - row.map.0;
         let top = from + 0.5 * (surface_high.max(map_high) - map_high);

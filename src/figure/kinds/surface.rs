@@ -12,7 +12,7 @@ use crate::figure::canvas::page::{Heading, Page, Rectangle};
 use crate::figure::canvas::space::{Heights, Ranges, Space};
 use crate::figure::canvas::style::{MARGIN, TEXT};
 use crate::figure::figures::Print;
-use crate::figure::parts::joint_map::{Joint, JointPoint, lettered, write_above};
+use crate::figure::parts::joint_map::{Joint, JointPoint, with_letter, write_above};
 
 /// Width of a single surface with its axes, in pixels.
 const SINGLE: f64 = 470.0;
@@ -108,7 +108,7 @@ fn draw_sheet(joint: &Joint<'_>, print: &Print<'_>) -> Result<Option<Page>, Figu
     let first = Rectangle::new((margin, heading.height() + ABOVE), (wide - MARGIN, high));
     for (number, found) in found.iter().enumerate() {
         let rect = first.tile(number, columns, (wide, step));
-        write_above(&page, rect, lettered(look, number, joint.at(found)));
+        write_above(&page, rect, with_letter(look, number, joint.at(found)));
         draw_surface(&page, rect, joint, (found, COARSE))?;
     }
     Ok(Some(page))

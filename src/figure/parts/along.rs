@@ -61,7 +61,7 @@ pub(crate) struct Track {
 
 impl Track {
     /// A value as it is drawn.
-    fn drawn(&self, value: f64) -> f64 {
+    fn place_of(&self, value: f64) -> f64 {
         if self.is_logarithmic {
             value.abs().max(SMALLEST).log10()
         } else {
@@ -73,7 +73,7 @@ impl Track {
     fn range(&self) -> Option<(f64, f64)> {
         let values = self.curves.iter().flat_map(|curve| &curve.places);
         let values = values
-            .map(|place| self.drawn(place.1))
+            .map(|place| self.place_of(place.1))
             .filter(|value| value.is_finite());
         let zero = self.has_zero.then_some(0.0);
         let join = |range: Option<(f64, f64)>, value: f64| {
@@ -204,7 +204,7 @@ fn draw_track(panel: &Panel, track: &Track, range: (f64, f64), (low, high): (f64
         panel.draw(&[(range.0, 0.0), (range.1, 0.0)], Shape::Line(zero));
     }
     for curve in &track.curves {
-        let on_axis = |value: f64| track.drawn(value).clamp(low, high);
+        let on_axis = |value: f64| track.place_of(value).clamp(low, high);
         let band = |sign: f64| {
             let pairs = curve.places.iter().zip(&curve.errors);
             pairs.map(move |(place, error)| (place.0, on_axis(place.1 + sign * error)))

@@ -50,7 +50,7 @@ pub(crate) fn at(family: &Family, values: impl Iterator<Item = f64>) -> String {
 }
 
 /// A value to the second digit of its error.
-fn located(value: f64, error: f64) -> String {
+fn to_digits_of_error(value: f64, error: f64) -> String {
     if !(error > 0.0 && error.is_finite()) {
         return number(value);
     }
@@ -143,7 +143,7 @@ pub(crate) fn bifurcations(result: &SweepResult) -> String {
         format!(
             "{} at {} ± {error} ({observable}{status})",
             row.label,
-            located(row.value, row.error)
+            to_digits_of_error(row.value, row.error)
         )
     };
     let rows: Vec<String> = result.bifurcations().map(words).collect();
@@ -160,9 +160,9 @@ mod tests {
 
     #[test]
     fn values_have_the_digits_of_their_errors() {
-        assert_eq!(located(-0.00284863, 2.7e-6), "-0.0028486");
-        assert_eq!(located(2.3e-17, 4.5e-11), "0");
-        assert_eq!(located(0.25, 0.0), "0.25");
-        assert_eq!(located(12.34, 30.0), "12");
+        assert_eq!(to_digits_of_error(-0.00284863, 2.7e-6), "-0.0028486");
+        assert_eq!(to_digits_of_error(2.3e-17, 4.5e-11), "0");
+        assert_eq!(to_digits_of_error(0.25, 0.0), "0.25");
+        assert_eq!(to_digits_of_error(12.34, 30.0), "12");
     }
 }

@@ -33,7 +33,7 @@ pub(crate) fn draw(
 }
 
 /// The cells of an axis in which a profile is not faint, first and last.
-fn seen(profile: &[f64]) -> (usize, usize) {
+fn visible_cells(profile: &[f64]) -> (usize, usize) {
     let highest = profile.iter().copied().fold(0.0, f64::max);
     let mut cells = (0..profile.len()).filter(|&cell| profile[cell] > FAINT * highest);
     let first = cells.next().unwrap_or(0);
@@ -41,7 +41,7 @@ fn seen(profile: &[f64]) -> (usize, usize) {
 }
 
 fn curve(page: &Page, rect: Rectangle, axis: &Axis, density: &Density) {
-    let (first, last) = seen(&density.values);
+    let (first, last) = visible_cells(&density.values);
     let range = (axis.edges()[first], axis.edges()[last + 1]);
     let panel = page.panel(rect, range, (0.0, 1.1 * density.maximum()));
     let points = (first..=last).map(|cell| (axis.centre(cell), density.values[cell].max(0.0)));
@@ -76,7 +76,7 @@ fn map(
         })
         .collect();
     let range = |axis: &Axis, profile: &[f64]| {
-        let (first, last) = seen(profile);
+        let (first, last) = visible_cells(profile);
         (axis.edges()[first], axis.edges()[last + 1])
     };
     let (x, y) = (range(first, &across), range(second, &up));

@@ -8,7 +8,7 @@ use crate::continuation::{Point, SweepResult};
 use crate::density::{Density, EstimatedDensity, Observable};
 use crate::figure::FigureError;
 use crate::figure::canvas::colour_bar::ColourBar;
-use crate::figure::canvas::contour::{Grid, thinned};
+use crate::figure::canvas::contour::{Grid, simplify};
 use crate::figure::canvas::frame::{self, Scale};
 use crate::figure::canvas::heat::Picture;
 use crate::figure::canvas::legend::{self, Legend, Sample};
@@ -135,7 +135,7 @@ pub(crate) fn open_page(
 }
 
 /// A line above a panel, with the panel's letter where panels have letters.
-pub(crate) fn lettered(look: &Look, number: usize, line: String) -> String {
+pub(crate) fn with_letter(look: &Look, number: usize, line: String) -> String {
     let letter = char::from(b'a' + (number % 26) as u8);
     if look.has_letters {
         format!("({letter})  {line}")
@@ -231,7 +231,7 @@ fn draw_contours(
     for share in LEVELS {
         let colour = on_heat(look, share * own / largest);
         for line in grid.contour(share * own) {
-            let line = thinned(&line, ALIKE, place);
+            let line = simplify(&line, ALIKE, place);
             panel.draw(&line, Shape::Line(Stroke::solid(colour, 0.8)));
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::figure::figures::Print;
 
-use super::joint_map::{Joint, JointPoint, LEVELS, draw_map, lettered, open_page, write_above};
+use super::joint_map::{Joint, JointPoint, LEVELS, draw_map, open_page, with_letter, write_above};
 use super::names;
 use crate::figure::FigureError;
 use crate::figure::canvas::colour_bar::ColourBar;
@@ -117,7 +117,7 @@ fn with_lines(
     let at = |found: &JointPoint<'_>| joint.at(found);
     let short = |found: &JointPoint<'_>| names::at(family, symbols::rounded_to(found.value, FEW));
     let numbered = found.iter().enumerate();
-    let lettered = numbered.map(|(number, found)| lettered(look, number, at(found)));
+    let lettered = numbered.map(|(number, found)| with_letter(look, number, at(found)));
     let lines: Vec<String> = lettered.collect();
     let sheet = arranged(widest(look, &lines)?)?;
     if sheet.columns > 1 || found.len() <= MOST_IN_A_TOWER {

@@ -40,7 +40,7 @@ impl Graph {
                         slope: one,
                     })
                 } else {
-                    combined(builder, part, &forms)
+                    combine(builder, part, &forms)
                 };
                 forms.set(part, form);
             }
@@ -50,7 +50,7 @@ impl Graph {
 }
 
 /// The form of an operation from those of its operands.
-fn combined(
+fn combine(
     builder: &mut Builder<'_>,
     part: Expression,
     forms: &PartMap<Option<Affine>>,

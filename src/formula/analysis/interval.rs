@@ -70,7 +70,7 @@ impl Interval {
     }
 
     /// Widened by the rounding of an operation that is accurate to a few units in the last place.
-    fn rounded(self) -> Self {
+    fn round_outward(self) -> Self {
         let (mut low, mut high) = (self.low, self.high);
         for _ in 0..3 {
             (low, high) = (low.next_down(), high.next_up());
@@ -88,7 +88,7 @@ impl Interval {
     }
 
     /// The part in which a function is defined; `None` if there is none.
-    fn clipped(self, low: f64, high: f64) -> Option<Self> {
+    fn clip(self, low: f64, high: f64) -> Option<Self> {
         let clipped = Self {
             low: self.low.max(low),
             high: self.high.min(high),
@@ -109,7 +109,7 @@ impl Interval {
 
     /// Values of a function that grows everywhere.
     fn growing(self, f: impl Fn(f64) -> f64) -> Self {
-        Self::new(f(self.low), f(self.high)).rounded()
+        Self::new(f(self.low), f(self.high)).round_outward()
     }
 
     /// All values of an operation on one number of this interval where it is defined.
@@ -143,7 +143,7 @@ impl Interval {
                 }
             }
             Unary::Sqrt => {
-                let defined = self.clipped(0.0, f64::INFINITY);
+                let defined = self.clip(0.0, f64::INFINITY);
                 let values = defined.map_or(Self::ALL, |defined| defined.growing(apply));
                 Self {
                     low: values.low.max(0.0),
@@ -151,18 +151,18 @@ impl Interval {
                 }
             }
             Unary::Log | Unary::Log10 => {
-                let defined = self.clipped(0.0, f64::INFINITY);
+                let defined = self.clip(0.0, f64::INFINITY);
                 defined.map_or(Self::ALL, |defined| defined.growing(apply))
             }
             Unary::Asin => {
-                let defined = self.clipped(-1.0, 1.0);
+                let defined = self.clip(-1.0, 1.0);
                 defined.map_or(Self::ALL, |defined| defined.growing(apply))
             }
             Unary::Acos => {
-                let defined = self.clipped(-1.0, 1.0);
+                let defined = self.clip(-1.0, 1.0);
                 let values =
                     defined.map(|defined| Self::new(apply(defined.low), apply(defined.high)));
-                values.map_or(Self::ALL, Self::rounded)
+                values.map_or(Self::ALL, Self::round_outward)
             }
             Unary::Sin => self.periodic(FRAC_PI_2, apply),
             Unary::Cos => self.periodic(0.0, apply),
@@ -190,7 +190,7 @@ impl Interval {
             let turns = |x: f64| (x - at) / TAU;
             turns(self.low - 1e-6).ceil() <= turns(self.high + 1e-6).floor()
         };
-        let ends = Self::new(f(self.low), f(self.high)).rounded();
+        let ends = Self::new(f(self.low), f(self.high)).round_outward();
         let low = if has(peak + PI) {
             -1.0
         } else {
@@ -209,12 +209,12 @@ impl Interval {
                 low: a.low + b.low,
                 high: a.high + b.high,
             }
-            .sum_rounded(),
+            .round_sum(),
             Binary::Subtract => Self {
                 low: a.low - b.high,
                 high: a.high - b.low,
             }
-            .sum_rounded(),
+            .round_sum(),
             Binary::Multiply => {
                 // Zero times an end that is infinite is zero: infinity stands for arbitrarily large numbers.
                 let times = |a: f64, b: f64| if a == 0.0 || b == 0.0 { 0.0 } else { a * b };
@@ -224,7 +224,7 @@ impl Interval {
                     times(a.high, b.low),
                     times(a.high, b.high),
                 ];
-                Self::of(&ends).rounded()
+                Self::of(&ends).round_outward()
             }
             Binary::Divide => {
                 if b.contains(0.0) {
@@ -237,7 +237,7 @@ impl Interval {
                     over(a.high, b.low),
                     over(a.high, b.high),
                 ];
-                Self::of(&ends).rounded()
+                Self::of(&ends).round_outward()
             }
             Binary::Power => a.power(b),
             Binary::Min | Binary::Max => Self {
@@ -250,9 +250,9 @@ impl Interval {
                     low: apply(a.low, b.low),
                     high: apply(a.high, b.high),
                 }
-                .rounded()
+                .round_outward()
             }
-            Binary::Atan2 => Self { low: -PI, high: PI }.rounded(),
+            Binary::Atan2 => Self { low: -PI, high: PI }.round_outward(),
             Binary::Less | Binary::LessOrEqual | Binary::Equal | Binary::NotEqual => {
                 let (sure, never) = match operation {
                     Binary::Less => (a.high < b.low, a.low >= b.high),
@@ -275,7 +275,7 @@ impl Interval {
         }
     }
 
-    fn sum_rounded(self) -> Self {
+    fn round_sum(self) -> Self {
         if self.low.is_nan() || self.high.is_nan() {
             return Self::ALL;
         }
@@ -303,7 +303,7 @@ impl Interval {
             return self.wide_growing(|x| apply(x, n));
         }
         // For a positive base the power grows or falls in each of both: its extremes are at the corners.
-        let Some(base) = self.clipped(0.0, f64::INFINITY) else {
+        let Some(base) = self.clip(0.0, f64::INFINITY) else {
             return Self::ALL;
         };
         let corners = [
@@ -312,7 +312,7 @@ impl Interval {
             apply(base.high, exponent.low),
             apply(base.high, exponent.high),
         ];
-        let values = Self::of(&corners).rounded();
+        let values = Self::of(&corners).round_outward();
         // 0⁰ = 1 beside 0ᵇ = 0.
         let values = if base.low == 0.0 {
             values.join(Self::point(0.0))

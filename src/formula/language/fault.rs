@@ -35,7 +35,7 @@ pub enum Fault {
     #[error("the formulas have too many different subexpressions")]
     TooLarge,
     /// A character that the language does not have.
-    #[error("unexpected character {}", shown(*.character))]
+    #[error("unexpected character {}", in_words(*.character))]
     Character {
         /// The character.
         character: char,
@@ -142,7 +142,7 @@ fn plural(count: usize) -> &'static str {
     if count == 1 { "" } else { "s" }
 }
 
-fn shown(character: char) -> String {
+fn in_words(character: char) -> String {
     if character.is_control() || is_invisible(character) {
         format!("U+{:04X}", character as u32)
     } else {

@@ -23,7 +23,7 @@ use super::syntax::{Operator, Syntax, SyntaxKind};
 use super::token::{Refusal, Token, TokenKind, tokens};
 use crate::formula::limits;
 use input::{
-    Input, Operand, Parsed, State, deeper, end, here, last_token, misplaced, next_token, take,
+    Input, Operand, Parsed, State, deeper, end, here, last_token, misplacement, next_token, take,
     take_one_of,
 };
 
@@ -63,7 +63,7 @@ fn whole(input: &mut Input<'_>) -> Parsed<()> {
     let Some(token) = next_token(input) else {
         return Ok(());
     };
-    Err(Refusal::at(token.span(), misplaced(input, token)))
+    Err(Refusal::at(token.span(), misplacement(input, token)))
 }
 
 const COMPARISONS: [(TokenKind, Operator); 6] = [
@@ -270,7 +270,7 @@ fn close(input: &mut Input<'_>, open: Token) -> Parsed<()> {
     }
     match next_token(input) {
         None => Err(Refusal::at(open.span(), Fault::Unclosed)),
-        Some(token) => Err(Refusal::at(token.span(), misplaced(input, token))),
+        Some(token) => Err(Refusal::at(token.span(), misplacement(input, token))),
     }
 }
 

@@ -83,10 +83,10 @@ impl Laid {
                     negative: sign,
                     ..plain(power)
                 };
-                let power = plain("10").raised(power);
+                let power = plain("10").raise(power);
                 match mantissa {
                     "1" => power,
-                    mantissa => plain(mantissa).joined("×", power),
+                    mantissa => plain(mantissa).join("×", power),
                 }
             }
             None => plain(&digits),
@@ -101,7 +101,7 @@ impl Laid {
         Self::new(Element::text("mtext", text), Level::Atom)
     }
 
-    fn fenced(self, open: &str, close: &str) -> Self {
+    fn fence(self, open: &str, close: &str) -> Self {
         let inner = Element::of("mrow", self.signed());
         // A fence that may stretch becomes taller than need be about every letter that hangs below the line.
         let stretchy = if inner.is_tall() { "true" } else { "false" };
@@ -120,7 +120,7 @@ impl Laid {
             Fence::Bars => ("|", "|"),
             Fence::Floor => ("⌊", "⌋"),
         };
-        self.fenced(open, close)
+        self.fence(open, close)
     }
 
     /// In parentheses where it holds together less tightly than asked.
@@ -157,7 +157,7 @@ impl Laid {
     }
 
     /// Beside another part, with a sign between them.
-    fn joined(mut self, sign: &str, other: Self) -> Self {
+    fn join(mut self, sign: &str, other: Self) -> Self {
         self.elements.push(operator(sign));
         self.elements.extend(other.elements);
         self.level = Level::Product;
@@ -173,14 +173,14 @@ impl Laid {
     }
 
     pub(super) fn plus(self, other: Self) -> Self {
-        self.added("+", other)
+        self.add("+", other)
     }
 
     pub(super) fn minus(self, other: Self) -> Self {
-        self.added("−", other)
+        self.add("−", other)
     }
 
-    fn added(self, sign: &str, other: Self) -> Self {
+    fn add(self, sign: &str, other: Self) -> Self {
         let left = if self.level < Level::Sum {
             self.between(Fence::Parentheses)
         } else {
@@ -208,7 +208,7 @@ impl Laid {
         };
         let right = other.at_least(Level::Product);
         let product = if right.begins_with_number() || left.is_mixed_with(&right) {
-            left.joined("·", right)
+            left.join("·", right)
         } else {
             let mut product = left;
             product
@@ -239,7 +239,7 @@ impl Laid {
         }
     }
 
-    pub(super) fn raised(self, exponent: Self) -> Self {
+    pub(super) fn raise(self, exponent: Self) -> Self {
         let base = self.at_least(Level::Atom);
         let parts = vec![Element::row(base.elements), Element::row(exponent.signed())];
         Self::new(Element::of("msup", parts), Level::Factor)
@@ -256,7 +256,7 @@ impl Laid {
     }
 
     /// Its derivative in time, of this order: with dots above.
-    pub(super) fn primed(self, order: usize) -> Self {
+    pub(super) fn derivative(self, order: usize) -> Self {
         let dots = match order {
             0 => return self,
             1 => "˙".to_owned(),
@@ -269,13 +269,13 @@ impl Laid {
     }
 
     /// A function at these arguments.
-    pub(super) fn called(self, arguments: Vec<Self>) -> Self {
-        let inside = Self::listed(arguments).between(Fence::Parentheses);
-        self.applied(inside)
+    pub(super) fn call(self, arguments: Vec<Self>) -> Self {
+        let inside = Self::list(arguments).between(Fence::Parentheses);
+        self.apply(inside)
     }
 
     /// A function beside what it is applied to, fences included.
-    pub(super) fn applied(self, inside: Self) -> Self {
+    pub(super) fn apply(self, inside: Self) -> Self {
         let mut elements = self.elements;
         elements.push(operator(APPLIED_TO));
         elements.extend(inside.elements);
@@ -283,7 +283,7 @@ impl Laid {
     }
 
     /// Parts with commas between them.
-    pub(super) fn listed(parts: Vec<Self>) -> Self {
+    pub(super) fn list(parts: Vec<Self>) -> Self {
         let mut elements = Vec::new();
         for (number, part) in parts.into_iter().enumerate() {
             if number > 0 {
@@ -309,7 +309,7 @@ impl Laid {
         }
     }
 
-    pub(super) fn related(self, sign: &str, other: Self) -> Self {
+    pub(super) fn relate(self, sign: &str, other: Self) -> Self {
         let mut elements = self.signed();
         elements.push(operator(sign));
         elements.extend(other.signed());

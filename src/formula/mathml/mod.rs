@@ -51,7 +51,7 @@ pub enum Content {
 /// # Errors
 /// What is wrong with it, and where.
 pub fn formula(text: &str) -> Result<Element, FormulaError> {
-    typed::laid(text, &parse(text)?).map(Laid::element)
+    typed::lay_out(text, &parse(text)?).map(Laid::element)
 }
 
 /// The layout of `left = right + amplitude noise(t) + …`, an equation with formulas as they are typed.
@@ -66,14 +66,14 @@ pub(crate) fn equation(
     right: &str,
     noises: &[(String, String)],
 ) -> Result<Element, FormulaError> {
-    let of = |text: &str| typed::laid(text, &parse(text)?);
+    let of = |text: &str| typed::lay_out(text, &parse(text)?);
     let mut sum = of(right)?;
     for (amplitude, noise) in noises {
         sum = sum.plus(of(amplitude)?.times(at(noise, Laid::name("t"))));
     }
     let name = left.trim_end_matches('\'');
-    let left = of(name)?.primed(left.len() - name.len());
-    Ok(left.related(relation, sum).element())
+    let left = of(name)?.derivative(left.len() - name.len());
+    Ok(left.relate(relation, sum).element())
 }
 
 /// The layout of `E[one(t) other(t+lag)] = factor δ(lag)`, with words behind it.
@@ -85,12 +85,12 @@ pub(crate) fn correlation(
 ) -> Element {
     let time = || Laid::name("t");
     let product = at(one, time()).times(at(other, time().plus(Laid::name(lag))));
-    let mean = Laid::name("E").applied(product.between(Fence::Brackets));
+    let mean = Laid::name("E").apply(product.between(Fence::Brackets));
     let mut delta = at("δ", Laid::name(lag));
     if !factor.is_empty() {
         delta = Laid::name(factor).times(delta);
     }
-    let whole = mean.related("=", delta);
+    let whole = mean.relate("=", delta);
     if words.is_empty() {
         return whole.element();
     }
@@ -104,7 +104,7 @@ pub(crate) fn words(text: &str) -> Element {
 
 /// A function of time.
 fn at(name: &str, time: Laid) -> Laid {
-    Laid::name(name).called(vec![time])
+    Laid::name(name).call(vec![time])
 }
 
 impl Element {

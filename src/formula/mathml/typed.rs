@@ -5,7 +5,7 @@ use super::laid::{Fence, Laid};
 use crate::formula::language::{FormulaError, Function, Operator, Syntax, SyntaxKind};
 
 /// Lays a parsed formula out; one that is very long or deep stays the text that it is.
-pub(super) fn laid(text: &str, syntax: &Syntax) -> Result<Laid, FormulaError> {
+pub(super) fn lay_out(text: &str, syntax: &Syntax) -> Result<Laid, FormulaError> {
     let as_it_is = || Laid::words(text.trim());
     if text.len() > LONGEST {
         return Ok(as_it_is());
@@ -13,7 +13,7 @@ pub(super) fn laid(text: &str, syntax: &Syntax) -> Result<Laid, FormulaError> {
     // Children stand before their parents, and each has one parent that takes it.
     let mut made: Vec<Option<Laid>> = Vec::with_capacity(syntax.nodes.len());
     for node in &syntax.nodes {
-        let part = one(text, syntax, node.kind, &mut made);
+        let part = lay_out_node(text, syntax, node.kind, &mut made);
         let Some(part) = part.filter(|part| !part.is_too_deep()) else {
             return Ok(as_it_is());
         };
@@ -22,7 +22,12 @@ pub(super) fn laid(text: &str, syntax: &Syntax) -> Result<Laid, FormulaError> {
     Ok(made.pop().flatten().unwrap_or_else(as_it_is))
 }
 
-fn one(text: &str, syntax: &Syntax, kind: SyntaxKind, made: &mut [Option<Laid>]) -> Option<Laid> {
+fn lay_out_node(
+    text: &str,
+    syntax: &Syntax,
+    kind: SyntaxKind,
+    made: &mut [Option<Laid>],
+) -> Option<Laid> {
     let mut of = |node: u32| made.get_mut(node as usize).and_then(Option::take);
     Some(match kind {
         SyntaxKind::Number(value) => Laid::number(value),
@@ -46,13 +51,13 @@ fn binary(operator: Operator, left: Laid, right: Laid) -> Laid {
         Operator::Subtract => left.minus(right),
         Operator::Multiply => left.times(right),
         Operator::Divide => left.over(right),
-        Operator::Power => left.raised(right),
-        Operator::Less => left.related("<", right),
-        Operator::LessOrEqual => left.related("≤", right),
-        Operator::Greater => left.related(">", right),
-        Operator::GreaterOrEqual => left.related("≥", right),
-        Operator::Equal => left.related("=", right),
-        Operator::NotEqual => left.related("≠", right),
+        Operator::Power => left.raise(right),
+        Operator::Less => left.relate("<", right),
+        Operator::LessOrEqual => left.relate("≤", right),
+        Operator::Greater => left.relate(">", right),
+        Operator::GreaterOrEqual => left.relate("≥", right),
+        Operator::Equal => left.relate("=", right),
+        Operator::NotEqual => left.relate("≠", right),
     }
 }
 
@@ -64,9 +69,9 @@ fn call(function: Function, arguments: Vec<Laid>) -> Option<Laid> {
         }
         Function::Pow | Function::Hypot => {
             let [a, b] = <[Laid; 2]>::try_from(arguments).ok()?;
-            let squared = |one: Laid| one.raised(Laid::number(2.0));
+            let squared = |one: Laid| one.raise(Laid::number(2.0));
             return Some(match function {
-                Function::Pow => a.raised(b),
+                Function::Pow => a.raise(b),
                 _ => squared(a).plus(squared(b)).root(None),
             });
         }
@@ -82,7 +87,7 @@ fn call(function: Function, arguments: Vec<Laid>) -> Option<Laid> {
         Function::Atan => "arctan",
         other => other.name(),
     };
-    Some(Laid::name(name).called(arguments))
+    Some(Laid::name(name).call(arguments))
 }
 
 fn sole(arguments: Vec<Laid>) -> Option<Laid> {

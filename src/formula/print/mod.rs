@@ -223,7 +223,7 @@ impl<'a> Printer<'a> {
                 self.push([Item::Node(a, left), Item::Joint, Item::Node(b, right)]);
             }
             Binary::Divide => self.push(infix(Level::Product, "/", Level::Power)),
-            Binary::Power => match self.raised(b) {
+            Binary::Power => match self.superscript(b) {
                 Some(exponent) => {
                     self.push([Item::Node(a, Level::Atom), Item::Text(exponent)]);
                 }
@@ -252,7 +252,7 @@ impl<'a> Printer<'a> {
     }
 
     /// The exponent as a superscript, if it is a small integer and people are to read it.
-    fn raised(&self, exponent: Expression) -> Option<&'static str> {
+    fn superscript(&self, exponent: Expression) -> Option<&'static str> {
         let value = self.graph.as_constant(exponent)?;
         (self.style == Style::Typeset)
             .then(|| style::superscript(value))

@@ -78,7 +78,7 @@ impl Definitions {
                     parsed.push(Some(Parsed { syntax, needs }));
                 }
                 Err(error) => {
-                    let fault = meanings.explained(error).into();
+                    let fault = meanings.explain(error).into();
                     errors.push(DefinitionError {
                         name: name.clone(),
                         fault,

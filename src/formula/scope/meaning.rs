@@ -156,7 +156,7 @@ impl Meanings {
     }
 
     /// A fault of the grammar, with what is known of names.
-    pub(super) fn explained(&self, error: FormulaError) -> FormulaError {
+    pub(super) fn explain(&self, error: FormulaError) -> FormulaError {
         let Fault::NotAFunction { name, .. } = error.fault else {
             return error;
         };

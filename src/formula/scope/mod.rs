@@ -57,7 +57,7 @@ impl Scope {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn formula(&mut self, text: &str) -> Result<Expression, FormulaError> {
-        let syntax = parse(text).map_err(|error| self.meanings.explained(error))?;
+        let syntax = parse(text).map_err(|error| self.meanings.explain(error))?;
         self.meanings.expression(&mut self.graph, &syntax, text)
     }
 

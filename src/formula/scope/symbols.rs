@@ -57,7 +57,7 @@ pub enum SymbolError {
         meaning: &'static str,
     },
     /// A name given twice.
-    #[error("`{name}` is already {}{}", .role.words(), spelled(.name, .first))]
+    #[error("`{name}` is already {}{}", .role.words(), spelling(.name, .first))]
     Taken {
         /// The name as given now.
         name: String,
@@ -82,7 +82,7 @@ pub enum SymbolError {
     LongDefinitions,
 }
 
-fn spelled(name: &str, first: &str) -> String {
+fn spelling(name: &str, first: &str) -> String {
     if name == first {
         String::new()
     } else {

@@ -55,7 +55,7 @@ struct Product {
 
 impl Fuser<'_> {
     /// The operation of a value that nothing else needs.
-    fn own(&self, operand: Operand) -> Option<Operation> {
+    fn sole(&self, operand: Operand) -> Option<Operation> {
         let Operand::Value(value) = operand else {
             return None;
         };
@@ -65,7 +65,7 @@ impl Fuser<'_> {
     fn instruction(&self, operation: Operation) -> Instruction<Operand> {
         match operation {
             Operation::Binary(Binary::Multiply, a, b) => {
-                let product = self.factored(a, b);
+                let product = self.factor(a, b);
                 Instruction::Product(product.factor, product.a, product.b)
             }
             Operation::Binary(Binary::Add, a, b) => self.sum(a, b, false),
@@ -112,7 +112,7 @@ impl Fuser<'_> {
 
     /// A term without its sign.
     fn unsigned(&self, operand: Operand) -> (Operand, bool) {
-        match self.own(operand) {
+        match self.sole(operand) {
             Some(Operation::Unary(Unary::Negate, inner)) => (inner, true),
             _ => (operand, false),
         }
@@ -121,16 +121,16 @@ impl Fuser<'_> {
     /// A product that nothing but one sum needs.
     fn product(&self, operand: Operand) -> Option<Product> {
         let (operand, negative) = self.unsigned(operand);
-        match self.own(operand)? {
+        match self.sole(operand)? {
             Operation::Binary(Binary::Multiply, a, b) => Some(Product {
                 negative,
-                ..self.factored(a, b)
+                ..self.factor(a, b)
             }),
             _ => None,
         }
     }
 
-    fn factored(&self, a: Operand, b: Operand) -> Product {
+    fn factor(&self, a: Operand, b: Operand) -> Product {
         for (first, second) in [(a, b), (b, a)] {
             if a != b
                 && let Some((factor, inner)) = self.function(first)
@@ -153,7 +153,7 @@ impl Fuser<'_> {
 
     /// A function that can be worked out inside a product.
     fn function(&self, operand: Operand) -> Option<(Factor, Operand)> {
-        match self.own(operand)? {
+        match self.sole(operand)? {
             Operation::Binary(Binary::Multiply, a, b) if a == b => Some((Factor::Square, a)),
             Operation::Unary(Unary::Sign, a) => Some((Factor::Sign, a)),
             Operation::Unary(Unary::Abs, a) => Some((Factor::Magnitude, a)),

@@ -56,10 +56,10 @@ pub(super) fn nest(values: Values) -> Values {
     if polynomials.iter().all(Option::is_none) {
         return values;
     }
-    rebuilt(values, &polynomials, &inside)
+    rebuild(values, &polynomials, &inside)
 }
 
-fn rebuilt(mut old: Values, polynomials: &[Option<Polynomial>], inside: &[bool]) -> Values {
+fn rebuild(mut old: Values, polynomials: &[Option<Polynomial>], inside: &[bool]) -> Values {
     let operations = old.take_operations();
     let mut new: Vec<Operand> = Vec::with_capacity(operations.len());
     for (value, operation) in operations.iter().enumerate() {
@@ -126,7 +126,7 @@ impl Polynomial {
         self.base.is_some() && self.terms.len() >= FEWEST && self.shape().2 <= 2 * self.terms.len()
     }
 
-    fn joined(mut self, other: Self, negative: bool) -> Option<Self> {
+    fn join(mut self, other: Self, negative: bool) -> Option<Self> {
         let base = match (self.base, other.base) {
             (Some(one), Some(other)) if one != other => return None,
             (base, None) | (_, base) => base,
@@ -211,7 +211,7 @@ impl<'a> Finder<'a> {
                 parts: Vec::new(),
             })
         };
-        part(a)?.joined(part(b)?, negative)
+        part(a)?.join(part(b)?, negative)
     }
 
     fn term(&self, operand: Operand, negative: bool) -> Option<(Option<Operand>, Term)> {

@@ -42,7 +42,7 @@ pub(crate) fn curve_rows<'r>(
         return Err(which_parameter(sweep));
     };
     if let Some(labels) = &curve.rows {
-        return labels.iter().map(|label| named(label, result)).collect();
+        return labels.iter().map(|label| by_label(label, result)).collect();
     }
     let mut rows = result.bifurcations().filter(|row| row.zero.is_some());
     if only {
@@ -64,7 +64,7 @@ pub(crate) fn curve_rows<'r>(
     Ok(rows.filter(is_wanted).collect())
 }
 
-fn named<'r>(label: &str, result: &'r SweepResult) -> Result<&'r Located, Report> {
+fn by_label<'r>(label: &str, result: &'r SweepResult) -> Result<&'r Located, Report> {
     let rows = || result.bifurcations();
     rows().find(|row| row.label == label).ok_or_else(|| {
         Diagnostic::new(format!("the sweep has no P-bifurcation `{label}`"))

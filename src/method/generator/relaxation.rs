@@ -46,7 +46,7 @@ pub(super) struct Relaxation {
 impl Relaxation {
     /// The neighbour's time where it tells for sure that less than `limit` of the mass leaves, at this escape rate,
     /// within it. (A share that is reported must be that of the point itself.)
-    pub(super) fn carried(neighbour: &Self, escape_rate: f64, limit: f64) -> Option<Self> {
+    pub(super) fn carry_over(neighbour: &Self, escape_rate: f64, limit: f64) -> Option<Self> {
         let age = neighbour.age + 1;
         let off = if neighbour.rough { ROUGHNESS } else { 1.0 };
         let largest_time = neighbour.time * off * neighbour.change.powi(age);
@@ -103,7 +103,7 @@ impl Relaxation {
     ) -> Option<Self> {
         let mut mode = neighbour.map_or_else(|| uneven(mass), |known| known.mode.clone());
         let mut growth: Vec<f64> = Vec::with_capacity(ITERATIONS);
-        while growth.len() < ITERATIONS && !settled(&growth) {
+        while growth.len() < ITERATIONS && !is_settled(&growth) {
             let size: f64 = mode.iter().map(|value| value.abs()).sum();
             if size == 0.0 || !size.is_finite() {
                 return None;
@@ -129,7 +129,7 @@ fn mean(values: &[f64]) -> f64 {
 }
 
 /// Whether the average over the last iterations is that of those before.
-fn settled(growth: &[f64]) -> bool {
+fn is_settled(growth: &[f64]) -> bool {
     let mut averages = growth.rchunks_exact(AVERAGED).map(mean);
     match (averages.next(), averages.next()) {
         (Some(last), Some(before)) => (last - before).abs() <= SETTLED,

@@ -239,7 +239,7 @@ impl GeneratorSession {
             return None;
         }
         let neighbour = before.and_then(|trail| trail.relaxation.as_deref());
-        let carried = |known: &Relaxation| Relaxation::carried(known, rate, QUIET_ESCAPE);
+        let carried = |known: &Relaxation| Relaxation::carry_over(known, rate, QUIET_ESCAPE);
         let of_fewer_cells = || {
             let time = rough_relaxation(&self.source, solved.value, &self.cancellation)?;
             Some(Relaxation::rough(time, mass, neighbour))

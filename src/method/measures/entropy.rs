@@ -52,7 +52,7 @@ fn entropy(estimated: &EstimatedDensity) -> Option<(f64, f64)> {
     };
     let (plain, below) = cells.plain(&density.values);
     let within = cells.within(&density.values);
-    let (coarse, merged) = cells.merged(&density.values);
+    let (coarse, merged) = cells.merge(&density.values);
     Some(match &estimated.variants {
         Variants::Jackknife(replicates) => {
             let groups = replicates.len() as f64;
@@ -128,7 +128,7 @@ impl Cells {
     }
 
     /// Cells twice as wide, and their averages.
-    fn merged(&self, values: &[f64]) -> (Self, Vec<f64>) {
+    fn merge(&self, values: &[f64]) -> (Self, Vec<f64>) {
         let wide = |widths: &Vec<f64>| widths.chunks(2).map(|pair| pair.iter().sum()).collect();
         let merged = Self {
             widths: self.widths.each_ref().map(wide),

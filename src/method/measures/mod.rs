@@ -48,7 +48,7 @@ impl DerivedMeasure {
 }
 
 /// The measures that a subject asks for.
-pub(super) fn derived(subject: &Subject, densities: &[EstimatedDensity]) -> Vec<Measure> {
+pub(super) fn derive(subject: &Subject, densities: &[EstimatedDensity]) -> Vec<Measure> {
     let solved = Solved {
         family: &subject.family,
         densities,

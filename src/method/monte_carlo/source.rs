@@ -53,7 +53,7 @@ impl MonteCarloSource {
             )?);
         }
         // Where everything runs away there is nothing to be planned for, unless it does so all along the sweep.
-        let stays = |relaxed: &Relaxation| !relaxed.settled().is_empty();
+        let stays = |relaxed: &Relaxation| !relaxed.settled_states().is_empty();
         let somewhere = relaxed.iter().any(stays);
         let (planned, relaxed): (Vec<_>, Vec<_>) = systems
             .iter()
@@ -68,7 +68,7 @@ impl MonteCarloSource {
             plan,
             starts: relaxed
                 .iter()
-                .flat_map(|relaxed| relaxed.settled().to_vec())
+                .flat_map(|relaxed| relaxed.settled_states().to_vec())
                 .collect(),
             closed_ends: closed_ends(&systems, space),
             kinked: kinked_surfaces(&systems, space),

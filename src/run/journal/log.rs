@@ -66,7 +66,7 @@ impl Log {
             source,
         };
         let broken = || RunError::Journal { path: path.clone() };
-        own(&path).map_err(unreadable)?;
+        take_own_copy(&path).map_err(unreadable)?;
         let mut file = match File::options().read(true).write(true).open(&path) {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
                 return Err(RunError::NoJournal {
@@ -123,10 +123,10 @@ impl Log {
     /// [`RunError::Write`], also where the disk did not take those before.
     pub(in crate::run) fn append(&mut self, content: &[u8]) -> Result<(), RunError> {
         let written = self.file.write_all(&frame(content));
-        written.map_err(|source| self.failed(source))?;
+        written.map_err(|source| self.error(source))?;
         let is_free = self.waiting.as_ref().is_none_or(JoinHandle::is_finished);
         if is_free && self.asked.elapsed() >= BETWEEN_WAITS {
-            self.ask().map_err(|source| self.failed(source))?;
+            self.ask().map_err(|source| self.error(source))?;
             self.asked = Instant::now();
         }
         Ok(())
@@ -149,7 +149,7 @@ impl Log {
         Ok(())
     }
 
-    fn failed(&self, source: std::io::Error) -> RunError {
+    fn error(&self, source: std::io::Error) -> RunError {
         RunError::Write {
             path: self.path.clone(),
             source,
@@ -166,7 +166,7 @@ fn frame(content: &[u8]) -> Vec<u8> {
 /// Gives a file that is linked elsewhere, in an earlier version of the run, a copy of its own, to which records can be
 /// added.
 #[cfg(unix)]
-fn own(path: &Path) -> std::io::Result<()> {
+fn take_own_copy(path: &Path) -> std::io::Result<()> {
     use std::os::unix::fs::MetadataExt as _;
     match path.metadata() {
         Ok(data) if data.nlink() > 1 => {
@@ -179,7 +179,7 @@ fn own(path: &Path) -> std::io::Result<()> {
 }
 
 #[cfg(not(unix))]
-fn own(_: &Path) -> std::io::Result<()> {
+fn take_own_copy(_: &Path) -> std::io::Result<()> {
     Ok(())
 }
 

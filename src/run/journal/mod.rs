@@ -102,7 +102,7 @@ impl Journal {
     /// # Errors
     /// [`RunError::Write`].
     pub(crate) fn keep<T: Serialize>(&self, name: &str, what: &T) -> Result<(), RunError> {
-        self.put(Key::of(name), what)
+        self.write(Key::of(name), what)
     }
 
     fn get<T: DeserializeOwned>(&self, key: Key) -> Result<Option<T>, RunError> {
@@ -117,7 +117,7 @@ impl Journal {
         Ok(Some(read.1))
     }
 
-    fn put<T: Serialize>(&self, key: Key, what: &T) -> Result<(), RunError> {
+    fn write<T: Serialize>(&self, key: Key, what: &T) -> Result<(), RunError> {
         let content = to_bytes(&(key, what));
         self.lock().log.append(&content)
     }

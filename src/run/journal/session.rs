@@ -166,7 +166,7 @@ impl JournalledSession {
         self.key = last.key.of_questions(&last.kept.answers);
         if last.is_new {
             last.kept.memory = self.inner.session.memory();
-            let written = self.journal.put(last.key, &last.kept);
+            let written = self.journal.write(last.key, &last.kept);
             return written.map_err(|error| self.journal.end(error));
         }
         self.inner.left.push((last.value, last.kept.memory));

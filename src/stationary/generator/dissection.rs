@@ -71,7 +71,7 @@ impl Grid {
     }
 
     /// The grid of the upper half along an axis.
-    pub(super) fn folded_at(self, axis: Option<usize>) -> Self {
+    pub(super) fn fold_at(self, axis: Option<usize>) -> Self {
         Self {
             folded: axis,
             ..self
@@ -231,7 +231,7 @@ mod tests {
     #[test]
     fn a_folded_grid_orders_every_cell_once_and_its_fold_last() {
         for shape in [[13, 9], [3, 9], [30, 4]] {
-            let grid = Grid::new(&shape, &[3, 2], 20).folded_at(Some(0));
+            let grid = Grid::new(&shape, &[3, 2], 20).fold_at(Some(0));
             let order = Dissection::new(&grid).order;
             let mut sorted = order.clone();
             sorted.sort_unstable();

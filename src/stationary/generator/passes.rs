@@ -23,20 +23,20 @@ fn take(place: &Mutex<Option<Vec<f64>>>) -> Option<Vec<f64>> {
     place.lock().unwrap_or_else(PoisonError::into_inner).take()
 }
 
-fn put(place: &Mutex<Option<Vec<f64>>>, vector: Vec<f64>) {
+fn store(place: &Mutex<Option<Vec<f64>>>, vector: Vec<f64>) {
     *place.lock().unwrap_or_else(PoisonError::into_inner) = Some(vector);
 }
 
 impl Seat {
     /// M⁻¹ of a residual, with the next pass.
     pub(super) async fn pass(&self, residual: Vec<f64>) -> Vec<f64> {
-        put(&self.left, residual);
+        store(&self.left, residual);
         poll_fn(|_| take(&self.given).map_or(Poll::Pending, Poll::Ready)).await
     }
 }
 
 /// Runs one iteration; `apply` is M⁻¹.
-pub(super) fn alone<T>(
+pub(super) fn run_alone<T>(
     apply: impl Fn(&[f64]) -> Vec<f64>,
     seat: &Seat,
     work: impl Future<Output = T>,
@@ -48,7 +48,7 @@ pub(super) fn alone<T>(
             return done;
         }
         if let Some(residual) = take(&seat.left) {
-            put(&seat.given, apply(&residual));
+            store(&seat.given, apply(&residual));
         }
     }
 }
@@ -71,16 +71,16 @@ pub(super) fn together<A: Send, B: Send>(
         match (take(&first.left), take(&second.left)) {
             (Some(one), Some(other)) => {
                 let [one, other] = kept.apply([&one, &other]);
-                put(&first.given, one);
-                put(&second.given, other);
+                store(&first.given, one);
+                store(&second.given, other);
             }
             (Some(one), None) => {
                 let [one] = kept.apply([&one]);
-                put(&first.given, one);
+                store(&first.given, one);
             }
             (None, Some(other)) => {
                 let [other] = kept.apply([&other]);
-                put(&second.given, other);
+                store(&second.given, other);
             }
             (None, None) => {}
         }

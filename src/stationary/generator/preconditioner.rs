@@ -115,7 +115,7 @@ fn grid(space: &CellSpace, structure: &Structure, method: RateMethod) -> Grid {
             },
         )
         .collect();
-    Grid::new(&space.shape(), &reach, LEAF).folded_at(structure.folded)
+    Grid::new(&space.shape(), &reach, LEAF).fold_at(structure.folded)
 }
 
 /// The grid of the places at which modes stand, that of all other axes; `None` where there are no Legendre modes.

@@ -5,7 +5,7 @@ use sprs::CsMat;
 
 use super::RateError;
 use super::balance::{Balance, add_product};
-use super::passes::{Seat, alone};
+use super::passes::{Seat, run_alone};
 use super::question::{Question, answer};
 use super::solver::{DirectSolver, shape};
 
@@ -70,7 +70,7 @@ impl DirectSolver {
         };
         let (seat, limit) = (Seat::default(), self.options.max_iterations);
         let asked = answer(&seat, &balance, mass, question, limit, &self.cancellation);
-        let found = alone(|rest| kept.apply_one(rest), &seat, asked)?;
+        let found = run_alone(|rest| kept.apply_one(rest), &seat, asked)?;
         let (response, used) = found.ok_or(RateError::Sensitivity)?;
         self.count_response(used);
         Ok(response)

@@ -8,7 +8,7 @@ use sprs::CsMat;
 
 use super::balance::Balance;
 use super::newton::{Newton, Progress};
-use super::passes::{Seat, alone, together};
+use super::passes::{Seat, run_alone, together};
 use super::preconditioner::{Estimate, Preconditioner, Structure};
 use super::question::{Question, answer};
 use super::{RateError, RateInfo, RateMethod, RateOptions, RateSteadyState};
@@ -113,7 +113,7 @@ impl DirectSolver {
         // At most: the old factorisation, a new one, one with a better cell held, a more demanding one.
         for _ in 0..4 {
             if fresh {
-                held = self.better_held(held, &mass);
+                held = self.cell_to_hold(held, &mass);
                 held = self.factorise(matrix, held, &plan)?;
                 progress.factorisations += 1;
             }
@@ -216,7 +216,7 @@ impl DirectSolver {
         let (used, passes, given) = match question {
             None => {
                 let run = newton.run(mass, progress);
-                let used = alone(|rest| kept.apply_one(rest), &seat, run)?;
+                let used = run_alone(|rest| kept.apply_one(rest), &seat, run)?;
                 (used, used, None)
             }
             Some(question) => {

@@ -87,7 +87,7 @@ impl Symbolic {
             let own = node.own.clone();
             let below = node.children.into_iter().flatten();
             let below = below.flat_map(|child| &boundaries[child]).copied();
-            let touched = touched(matrix, &rows, (&tree.order, &position), &own);
+            let touched = neighbours(matrix, &rows, (&tree.order, &position), &own);
             let mut boundary: Vec<u32> = Vec::new();
             for place in touched.into_iter().chain(below) {
                 if place as usize >= own.end && local[place as usize] == u32::MAX {
@@ -156,7 +156,7 @@ fn number(own: &std::ops::Range<usize>, boundary: &[u32], local: &mut [u32]) {
 }
 
 /// Places in the elimination order of all cells that rates join to the own cells, with repetitions.
-fn touched(
+fn neighbours(
     matrix: &CsMat<f64>,
     rows: &Rows,
     (order, position): (&[u32], &[u32]),

@@ -11,7 +11,7 @@ use sprs::CsMat;
 use super::RateError;
 use super::balance::{Balance, dot};
 use super::newton::{linear, norm};
-use super::passes::{Seat, alone};
+use super::passes::{Seat, run_alone};
 use super::question::Question;
 use super::solver::DirectSolver;
 
@@ -79,7 +79,7 @@ impl DirectSolver {
             effort,
             &self.cancellation,
         );
-        let found = alone(|rest| kept.apply_transposed(rest), &seat, work)?;
+        let found = run_alone(|rest| kept.apply_transposed(rest), &seat, work)?;
         let (mut values, iterations) = found.ok_or(RateError::Sensitivity)?;
         let lift = if leaks { -mean / rate } else { 0.0 };
         let shift = lift - dot(&values, mass) / total;

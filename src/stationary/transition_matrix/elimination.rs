@@ -44,7 +44,7 @@ impl Eliminated {
 
     /// Masses when everything that escapes comes back in proportion to `injected`: solves
     /// (1 - P) p ∝ injected, Σ p = 1; without escape `injected` does not matter.
-    fn reinjected(&self, injected: &[f64]) -> Vec<f64> {
+    fn reinject(&self, injected: &[f64]) -> Vec<f64> {
         let n = self.n;
         let mut arriving = injected.to_vec();
         for state in (1..n).rev() {
@@ -72,12 +72,12 @@ impl Eliminated {
     /// The (quasi-)steady state, Σ = 1, starting the re-injection from `guess`: inverse iteration for the
     /// eigenvalue of P nearest to 1. Exact at once without escape.
     pub(super) fn steady(&self, guess: &[f64]) -> Vec<f64> {
-        let mut mass = self.reinjected(guess);
+        let mut mass = self.reinject(guess);
         if self.leaving[0] == 0.0 {
             return mass;
         }
         for _ in 0..MOST_REINJECTIONS {
-            let next = self.reinjected(&mass);
+            let next = self.reinject(&mass);
             let change = super::chain::distance(&next, &mass);
             mass = next;
             if change < 1e-15 * self.n as f64 {

@@ -150,7 +150,7 @@ pub(super) fn find(names: &[&str]) -> Option<&'static Key> {
 }
 
 /// The key that has this name in a table where names such as `<axis>` are keys too.
-pub(super) fn named(stand_in: &str, name: &str) -> Option<&'static Key> {
+pub(super) fn by_name(stand_in: &str, name: &str) -> Option<&'static Key> {
     KEYS.iter().find(|key| {
         let at = key.parts().position(|part| part == name);
         at.is_some_and(|at| {

@@ -39,7 +39,7 @@ pub(super) fn model(reader: &mut Reader<'_>, draft: &Draft) -> Option<Arc<Model>
         (!only_kind).then_some(entry)
     });
     match (has_model, given) {
-        (Some(_), None) => built_in(reader, draft),
+        (Some(_), None) => built_in_model(reader, draft),
         (Some(model), Some(given)) => {
             let title = format!("a built-in model, and `system.{}` too", given.key);
             let diagnostic = Diagnostic::new(title)
@@ -53,7 +53,7 @@ pub(super) fn model(reader: &mut Reader<'_>, draft: &Draft) -> Option<Arc<Model>
             reader.report(diagnostic);
             None
         }
-        (None, Some(_)) => typed(reader, draft),
+        (None, Some(_)) => typed_model(reader, draft),
         (None, None) => {
             missing(reader);
             None
@@ -62,7 +62,7 @@ pub(super) fn model(reader: &mut Reader<'_>, draft: &Draft) -> Option<Arc<Model>
 }
 
 /// The built-in model, with the noise that the file means.
-fn built_in(reader: &mut Reader<'_>, draft: &Draft) -> Option<Arc<Model>> {
+fn built_in_model(reader: &mut Reader<'_>, draft: &Draft) -> Option<Arc<Model>> {
     let model = draft.model.as_ref()?;
     let kind = draft.noise_kind.unwrap_or_default();
     if !kind.is_coloured() {
@@ -124,7 +124,7 @@ fn missing(reader: &mut Reader<'_>) {
 }
 
 /// The model made of the file's equations.
-fn typed(reader: &mut Reader<'_>, draft: &Draft) -> Option<Arc<Model>> {
+fn typed_model(reader: &mut Reader<'_>, draft: &Draft) -> Option<Arc<Model>> {
     let equations = &draft.equations;
     if reader.entry(&["system", "equations"]).is_none() {
         let entry = reader.entry(&["system"])?;
@@ -174,7 +174,7 @@ fn typed(reader: &mut Reader<'_>, draft: &Draft) -> Option<Arc<Model>> {
 fn check_axis_names(reader: &mut Reader<'_>) {
     let axes = reader.entries(&["system", "equations"]).iter();
     let taken = axes.filter_map(|axis| {
-        let key = keys::named("<axis>", &axis.key)?;
+        let key = keys::by_name("<axis>", &axis.key)?;
         let title = format!(
             "an axis cannot be called `{}`: `{}` is a key",
             axis.key,

@@ -93,7 +93,7 @@ impl Settings {
         if let Some(broken) = document.broken() {
             return Err(broken);
         }
-        let document = &respell::respelled(document);
+        let document = &respell::respell(document);
         let (mut reader, draft) = Reader::new(document);
         method::check(&mut reader, &draft.method);
         let known = equations::model(&mut reader, &draft);

@@ -32,7 +32,7 @@ pub(super) fn read(reader: &mut Reader<'_>, draft: &Draft, model: &Arc<Model>) -
         nearest_name(name?, names.map(|parameter| parameter.name.as_str()))
     });
     let moved = (meant, swept.is_some());
-    let fixed = read_parameters(reader, draft, model, moved, held(draft));
+    let fixed = read_parameters(reader, draft, model, moved, middle_of_map(draft));
     let (from, to) = (
         read_end(reader, model, swept, "from", draft.from),
         read_end(reader, model, swept, "to", draft.to),
@@ -223,7 +223,7 @@ fn check_values(reader: &mut Reader<'_>, from: f64, to: f64, points: usize) -> b
 
 /// The second parameter with a value in the middle of its range, for a file that does not say at which value a sweep of
 /// the first alone holds it.
-pub(super) fn held(draft: &Draft) -> Option<(&str, f64)> {
+pub(super) fn middle_of_map(draft: &Draft) -> Option<(&str, f64)> {
     let (from, to) = (draft.map.from?, draft.map.to?);
     Some((draft.map.parameter.as_deref()?, 0.5 * (from + to)))
 }

@@ -39,12 +39,12 @@ impl Filtered {
             .retain(|&axis, _| !self.system.is_noisy(axis));
         let filters = self.own..self.dimension();
         facts.filtered_noise = filters.map(|axis| (axis, (0.0, 1.0))).collect();
-        facts.symmetry = facts.symmetry.and_then(|symmetry| self.extended(symmetry));
+        facts.symmetry = facts.symmetry.and_then(|symmetry| self.extend(symmetry));
         facts
     }
 
     /// The symmetry of the system with its filters: each goes with the axis that it drives.
-    fn extended(&self, mut symmetry: Symmetry) -> Option<Symmetry> {
+    fn extend(&self, mut symmetry: Symmetry) -> Option<Symmetry> {
         let noises = self.system.noises().iter();
         let filters = noises.map(|noise| {
             let odd = self.is_odd(noise, &symmetry)?;

@@ -22,7 +22,7 @@ macro_rules! slope {
     ($code:literal, $above:literal, $is_valley:literal) => {
         Traits {
             name: "slope beside the kink",
-            words: born_or_lost,
+            words: birth_or_loss,
             companions: |_| {
                 vec![
                     IndicatorKind::beside_kink(!$above, $is_valley),
@@ -52,7 +52,7 @@ pub(super) static SLOPES: [[Traits; 2]; 2] = [
     ],
 ];
 
-fn born_or_lost(step: &Step) -> Option<&'static str> {
+fn birth_or_loss(step: &Step) -> Option<&'static str> {
     Some(if step.peaks() == Ordering::Greater {
         "peak and valley are born at a kink"
     } else {

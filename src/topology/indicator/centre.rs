@@ -19,7 +19,7 @@ pub(super) const CURVATURE: Traits = Traits {
     companions: |_| vec![IndicatorKind::QUARTIC],
     is_at_centre: true,
     ..Traits::new("curvature at the centre", |density, _| {
-        one_of(density, IndicatorKind::CURVATURE)
+        read_one(density, IndicatorKind::CURVATURE)
     })
 };
 
@@ -29,7 +29,7 @@ pub(super) const LOWER: Traits = Traits {
     companions: |_| vec![IndicatorKind::QUARTIC],
     is_at_centre: true,
     ..Traits::new("lower curvature at the centre", |density, _| {
-        one_of(density, IndicatorKind::LOWER_CURVATURE)
+        read_one(density, IndicatorKind::LOWER_CURVATURE)
     })
 };
 
@@ -38,7 +38,7 @@ pub(super) const UPPER: Traits = Traits {
     code: "upper curvature at the centre",
     name: "upper curvature at the centre",
     title: "upper curvature",
-    read: |density, _| one_of(density, IndicatorKind::UPPER_CURVATURE),
+    read: |density, _| read_one(density, IndicatorKind::UPPER_CURVATURE),
     ..LOWER
 };
 
@@ -62,7 +62,7 @@ pub(super) const KINK_SLOPE: Traits = Traits {
     is_at_centre: true,
     is_exact: true,
     ..Traits::new("slope at the kink", |density, _| {
-        one_of(density, IndicatorKind::KINK_SLOPE)
+        read_one(density, IndicatorKind::KINK_SLOPE)
     })
 };
 
@@ -71,12 +71,12 @@ pub(super) const ALONG_KINK: Traits = Traits {
     companions: |_| vec![IndicatorKind::KINK_SLOPE],
     is_at_centre: true,
     ..Traits::new("curvature along the kink", |density, _| {
-        one_of(density, IndicatorKind::CURVATURE_ALONG_KINK)
+        read_one(density, IndicatorKind::CURVATURE_ALONG_KINK)
     })
 };
 
 /// One of those at the centre.
-fn one_of(density: &EstimatedDensity, kind: IndicatorKind) -> Option<Indicator> {
+fn read_one(density: &EstimatedDensity, kind: IndicatorKind) -> Option<Indicator> {
     let mut all = at_centre(density).into_iter();
     all.find(|one| one.kind == kind)
 }

@@ -109,7 +109,7 @@ pub(super) fn deeper<'a, T>(
 }
 
 /// The fault of a token where an operator or the end should be.
-pub(super) fn misplaced(input: &Input<'_>, token: Token) -> Fault {
+pub(super) fn misplacement(input: &Input<'_>, token: Token) -> Fault {
     match token.kind {
         TokenKind::Comma => {
             let before = matches!(

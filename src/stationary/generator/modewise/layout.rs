@@ -118,16 +118,16 @@ impl Layout {
 
     /// Moments of masses of cells, with another number in place of one of them.
     pub(super) fn moments(&self, masses: &[f64], given: (usize, f64)) -> Vec<f64> {
-        self.summed(&self.values, masses, given)
+        self.sum_over_nodes(&self.values, masses, given)
     }
 
     /// The transpose of [`Layout::masses`], with another number in place of one of the cells'.
     pub(super) fn moments_by_weights(&self, values: &[f64], given: (usize, f64)) -> Vec<f64> {
-        self.summed(&self.weighted, values, given)
+        self.sum_over_nodes(&self.weighted, values, given)
     }
 
     /// Sums over the nodes of a place, a column of `by` a mode.
-    fn summed(&self, by: &[f64], masses: &[f64], (cell, given): (usize, f64)) -> Vec<f64> {
+    fn sum_over_nodes(&self, by: &[f64], masses: &[f64], (cell, given): (usize, f64)) -> Vec<f64> {
         let mut moments = vec![0.0; masses.len()];
         let places = moments.par_chunks_exact_mut(self.modes).with_min_len(64);
         let cells = self.cells.par_chunks_exact(self.modes);

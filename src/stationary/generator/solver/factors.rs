@@ -39,7 +39,7 @@ impl DirectSolver {
         self.check(matrix, escape)?;
         shape(self.space.n_cells(), "mass", mass.len())?;
         let plan = self.plan(matrix)?;
-        let held = self.better_held(self.choose_held(matrix, mass), mass);
+        let held = self.cell_to_hold(self.choose_held(matrix, mass), mass);
         self.factorise(matrix, held, &plan)?;
         Ok(())
     }

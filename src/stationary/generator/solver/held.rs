@@ -29,7 +29,7 @@ impl DirectSolver {
 
     /// The cell to hold in new factors: the old one unless it carries little mass, which would be lost in the next
     /// points.
-    pub(super) fn better_held(&self, held: usize, mass: &[f64]) -> usize {
+    pub(super) fn cell_to_hold(&self, held: usize, mass: &[f64]) -> usize {
         if mass.is_empty() {
             return held;
         }
