@@ -9,6 +9,7 @@ mod accuracy;
 mod agreement;
 mod distance;
 mod exact;
+mod method;
 mod observer;
 mod overlap;
 mod solve;
@@ -18,6 +19,7 @@ pub use agreement::{Agreement, agreement};
 pub use distance::{Distance, Distances, distances};
 pub(crate) use exact::exact_density;
 pub use exact::exact_masses;
+pub use method::Method;
 pub use observer::CompareObserver;
 pub use solve::{Solved, Work};
 
@@ -37,64 +39,6 @@ const MODE_CELLS: usize = 16;
 
 /// Time one transition of the paper's cell map spans.
 pub(crate) const PAPER_MAP_STEP: f64 = 1.0;
-
-/// One of the methods that are compared.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Method {
-    /// The generator, on the cells of the file.
-    Generator,
-    /// Stochastic generalized cell mapping as the paper has it.
-    Sgcm,
-    /// The same samples with densities linear inside the cells.
-    SgcmSlope,
-    /// Free trajectories, averaged over time.
-    MonteCarlo,
-}
-
-impl Method {
-    /// All methods, in the order of every table.
-    pub const ALL: [Self; 4] = [
-        Self::Generator,
-        Self::Sgcm,
-        Self::SgcmSlope,
-        Self::MonteCarlo,
-    ];
-
-    /// Name used in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Generator => "generator",
-            Self::Sgcm => "sgcm",
-            Self::SgcmSlope => "sgcm-slope",
-            Self::MonteCarlo => "monte-carlo",
-        }
-    }
-
-    /// Name of the source of its densities.
-    pub(crate) fn source(self) -> &'static str {
-        match self {
-            Self::SgcmSlope => Self::Sgcm.name(),
-            other => other.name(),
-        }
-    }
-
-    /// Name used in figures.
-    pub(crate) fn title(self) -> &'static str {
-        match self {
-            Self::Generator => "generator",
-            Self::Sgcm => "SGCM",
-            Self::SgcmSlope => "SGCM, slope-corrected",
-            Self::MonteCarlo => "Monte Carlo",
-        }
-    }
-
-    /// Whether two methods use the same random numbers, so that their errors are not independent.
-    fn shares_samples(self, other: Self) -> bool {
-        let sgcm = |method| matches!(method, Self::Sgcm | Self::SgcmSlope);
-        sgcm(self) && sgcm(other)
-    }
-}
 
 /// What is compared.
 #[derive(Debug, Clone)]

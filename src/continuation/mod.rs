@@ -54,7 +54,7 @@ mod sweep;
 pub(crate) use again::detect_again;
 pub use doubt::{BifurcationStatus, CheckedBy, Doubt, WiderRange};
 #[cfg(test)]
-pub(crate) use finding::every_finding;
+pub(crate) use finding::tests::every_finding;
 pub use finding::{Finding, ShiftedQuantity, SteadyClass};
 pub use grid::CheckedIndicator;
 pub use label::{Label, Located, Zero};

@@ -3,7 +3,7 @@
 use multiversion::multiversion;
 
 use super::parameters::{GROWTH, SIGMA2, X};
-use super::typed::AMPLITUDE;
+use super::typed::statement::AMPLITUDE;
 use super::{Lanes, TypedModel};
 
 /// x' = ax - x³ + σ ξ.

@@ -6,7 +6,7 @@ use multiversion::multiversion;
 
 use super::friction::{FrictionLaw, Motion};
 use super::parameters::{ALPHA, KAPPA, MU, Parameter, SIGMA2, X, Y};
-use super::typed::AMPLITUDE;
+use super::typed::statement::AMPLITUDE;
 use super::{AxisDescription, CompiledDrift, LANES, Lanes, TypedModel};
 
 /// Axis of the displacement of an oscillator.

@@ -8,6 +8,7 @@
 //! `error` says what can be wrong. The language is described in [`crate::formula`].
 
 mod bound;
+mod compiled;
 mod equations;
 mod error;
 mod read;
@@ -17,10 +18,11 @@ pub(super) mod statement;
 use std::sync::Arc;
 
 use super::coloured::coloured;
-use super::{AxisDescription, Facts, Lanes, Model, NoiseKind, ParameterDescription};
+use super::{AxisDescription, Model, NoiseKind, ParameterDescription};
 use crate::formula::language::typeset_name;
-use statement::{Statement, equation, white, with_bars};
+use compiled::Extras;
 
+pub use compiled::CompiledDrift;
 pub(crate) use equations::FormulaHazard;
 pub use equations::TypedEquations;
 pub use error::{FormulaPlace, TypedModelError};
@@ -104,35 +106,6 @@ pub struct TypedModel {
     source: String,
     notes: Vec<String>,
     extras: Extras,
-}
-
-/// Drift of a batch: time and states in, slopes out.
-pub type CompiledDrift = Box<dyn Fn(f64, &[Lanes], &mut [Lanes]) + Send + Sync>;
-
-/// Makes a drift from values of the parameters.
-type BindDrift = dyn Fn(&[f64]) -> CompiledDrift + Send + Sync;
-
-/// Logarithm of a density at values of the parameters and a state.
-type LogDensity = fn(&[f64], &[f64]) -> Option<f64>;
-
-/// What a model may have beside its formulas.
-#[derive(Clone, Default)]
-struct Extras {
-    drift: Option<Arc<BindDrift>>,
-    log_density: Option<LogDensity>,
-    /// Mends what the formulas tell, given values of the parameters.
-    facts: Option<fn(&[f64], &mut Facts)>,
-    /// Formula of a friction force.
-    friction: Option<String>,
-}
-
-impl std::fmt::Debug for Extras {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let mut shown = f.debug_struct("Extras");
-        shown.field("drift", &self.drift.is_some());
-        shown.field("friction", &self.friction);
-        shown.finish_non_exhaustive()
-    }
 }
 
 /// How a model is typed.
@@ -264,60 +237,6 @@ impl TypedModel {
         self
     }
 
-    /// The model with a drift that is compiled: what its formulas say, but faster. Everything else still follows from
-    /// the formulas, and [`contract::verify_model`](super::contract::verify_model) tries whether both agree. Such a
-    /// model counts as compiled in, not as one of a sweep file: its formulas are no part of what a file says.
-    ///
-    /// ```
-    /// use pbif::system::{TypedModel, contract};
-    ///
-    /// let model = TypedModel::new("cubic", "Cubic damping", ["x"])
-    ///     .with_equation("x", "-a x^3")
-    ///     .with_noise("x", ["0.5"])
-    ///     .with_parameters(["a"])
-    ///     .with_compiled_drift(|values| {
-    ///         let a = values[0];
-    ///         Box::new(move |_, states, drift| drift[0] = states[0].map(|x| -a * x * x * x))
-    ///     })
-    ///     .build()?;
-    /// contract::verify_model(&model, &model.values(&[("a", 2.0)])?, &[(-2.0, 2.0)])?;
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    #[must_use]
-    pub fn with_compiled_drift(
-        mut self,
-        bind: impl Fn(&[f64]) -> CompiledDrift + Send + Sync + 'static,
-    ) -> Self {
-        self.extras.drift = Some(Arc::new(bind));
-        self
-    }
-
-    /// The model with the logarithm of its steady-state density at values of the parameters and a state, up to a
-    /// constant, where it is known exactly.
-    #[must_use]
-    pub fn with_exact_log_density(mut self, density: fn(&[f64], &[f64]) -> Option<f64>) -> Self {
-        self.extras.log_density = Some(density);
-        self
-    }
-
-    /// The model with what its formulas tell mended by values of the parameters, before a symmetry is looked for.
-    #[must_use]
-    pub(super) fn with_mended_facts(mut self, mend: fn(&[f64], &mut Facts)) -> Self {
-        self.extras.facts = Some(mend);
-        self
-    }
-
-    /// The model with a formula of its friction force, the viscous part left out.
-    #[must_use]
-    pub(super) fn with_friction(mut self, force: impl Into<String>) -> Self {
-        self.extras.friction = Some(force.into());
-        self
-    }
-
-    fn is_compiled(&self) -> bool {
-        self.extras.drift.is_some()
-    }
-
     /// Reads all formulas. Places where the drift is not smooth and that are no plane of one coordinate are named in
     /// the model's notes.
     ///
@@ -372,62 +291,7 @@ impl TypedModel {
         let coloured = coloured(&model, kind, noises);
         coloured.map(Arc::new).map_err(|error| vec![error.into()])
     }
-
-    /// The equations axis by axis, the definitions, and what the noises are.
-    fn statements(&self) -> Vec<Statement> {
-        let mut statements = Vec::new();
-        for axis in &self.axes {
-            let own = self.equations.iter().filter(|(name, _)| *name == axis.name);
-            for (name, drift) in own {
-                let left = format!("{name}'");
-                statements.push(equation(&left, "=", drift, &self.noises_of(name)));
-            }
-        }
-        for (name, formula) in &self.definitions {
-            if !self.is_compiled() || name != AMPLITUDE {
-                statements.push(equation(name, "=", formula, &[]));
-            }
-        }
-        if self.is_compiled() {
-            // Bounds that are alike on both sides.
-            let bounds = self.bounds.iter();
-            let alike = bounds.filter(|(_, lower, upper)| lower.strip_prefix('-') == Some(upper));
-            statements.extend(
-                alike.map(|(name, _, upper)| equation(&format!("abs({name})"), "≤", upper, &[])),
-            );
-            statements = statements.into_iter().map(with_bars).collect();
-        }
-        if !self.processes.is_empty() {
-            let read = match self.interpretation {
-                Some(Interpretation::Ito) => ", read as Itô",
-                Some(Interpretation::Stratonovich) => ", read as Stratonovich",
-                None => "",
-            };
-            statements.push(white("ξ", !self.is_compiled(), "τ", read));
-        }
-        statements
-    }
-
-    /// Amplitudes and names of the noises on an axis, as they are shown.
-    fn noises_of(&self, axis: &str) -> Vec<(String, String)> {
-        let processes = self.processes.iter().enumerate();
-        let noises = processes.flat_map(|(number, process)| {
-            let driven = process.iter().filter(|(driven, _)| driven == axis);
-            driven.map(move |(_, amplitude)| {
-                if self.is_compiled() {
-                    (amplitude.clone(), "ξ".to_owned())
-                } else {
-                    (format!("({amplitude})"), format!("ξ_{}", number + 1))
-                }
-            })
-        });
-        noises.collect()
-    }
 }
-
-/// Name of the amplitude of the noise of built-in models, the root of their parameter σ². That it is so goes without
-/// saying in what they show.
-pub(super) const AMPLITUDE: &str = "σ";
 
 /// Axes from this one on are internal states; those before it are the oscillator's, which are looked at.
 const FIRST_INTERNAL_AXIS: usize = 2;

@@ -1,0 +1,116 @@
+//! Every finding comes back from its parts.
+
+use super::*;
+
+/// One of every kind, for tests. The match makes a new kind appear here.
+pub(crate) fn every_finding() -> Vec<Finding> {
+    use Finding as F;
+    let class = |share| SteadyClass {
+        cells: 7,
+        share,
+        centre: vec![-1.5, 0.25],
+    };
+    let shifted = |quantity| F::StepBias {
+        quantity,
+        relative: -0.1 / 3.0,
+        standard_error: 1e-5,
+        time_step: 0.01,
+    };
+    let after = |finding: &F| match finding {
+        F::Escaping { .. } => Some(F::NoSteadyState {
+            rate: 0.1,
+            relaxation_time: 20.0,
+            limit: 0.5,
+        }),
+        F::NoSteadyState { .. } => Some(F::LeavesAtOnce { rate: 3.0 }),
+        F::LeavesAtOnce { .. } => Some(F::NothingStays {
+            runaways: 0.7,
+            outside: 0.1,
+            limit: 0.5,
+        }),
+        F::NothingStays { .. } => Some(F::Outside { share: 0.02 }),
+        F::Outside { .. } => Some(F::SeveralClasses {
+            classes: vec![class(0.75), class(0.25)],
+        }),
+        F::SeveralClasses { .. } => Some(F::NotConverged {
+            error: f64::INFINITY,
+        }),
+        F::NotConverged { .. } => Some(F::EdgeMass {
+            axis: 1,
+            mass: 0.003,
+            range: [-8.0, 8.0],
+        }),
+        F::EdgeMass { .. } => Some(F::NegativeDensity { mass: 0.004 }),
+        F::NegativeDensity { .. } => Some(F::NegativeCells {
+            mass: 0.08,
+            watched: 3e-8,
+        }),
+        F::NegativeCells { .. } => Some(F::WideCells {
+            axis: 0,
+            peclet: 1.25,
+        }),
+        F::WideCells { .. } => Some(F::SmearedKink {
+            axis: 1,
+            widths: 3.5,
+        }),
+        F::SmearedKink { .. } => Some(F::UnresolvedSeries {
+            axis: 1,
+            change: 0.03,
+        }),
+        F::UnresolvedSeries { .. } => Some(F::FewModes { change: 0.16 }),
+        F::FewModes { .. } => Some(F::SurfaceOffFaces { axis: 1, at: 0.1 }),
+        F::SurfaceOffFaces { .. } => Some(F::JumpInsideCells { axis: 1, at: 0.1 }),
+        F::JumpInsideCells { .. } => Some(F::NumericalDiffusion { share: 0.2 }),
+        F::NumericalDiffusion { .. } => Some(shifted(ShiftedQuantity::Variance(0))),
+        F::StepBias { quantity, .. } => Some(match quantity {
+            ShiftedQuantity::Variance(_) => shifted(ShiftedQuantity::Energy),
+            ShiftedQuantity::Energy => shifted(ShiftedQuantity::SurfaceMass(1)),
+            ShiftedQuantity::SurfaceMass(_) => F::UnresolvedRelaxation { time: 1e4 },
+        }),
+        F::UnresolvedRelaxation { .. } => Some(F::ShortBurnIn {
+            burn_in: 1.0,
+            time: 9.0,
+        }),
+        F::ShortBurnIn { .. } => Some(F::NoReplicates),
+        F::NoReplicates => Some(F::FewReplicates {
+            usable: 6,
+            wanted: 8,
+        }),
+        F::FewReplicates { .. } => Some(F::Told("as it was told; twice".to_owned())),
+        F::Told(_) => None,
+    };
+    let first = F::Escaping {
+        share: 0.012,
+        rate: 1e-4 / 3.0,
+    };
+    std::iter::successors(Some(first), after).collect()
+}
+
+#[test]
+fn every_finding_but_sentences_comes_back_from_its_parts() {
+    let mut kinds = Vec::new();
+    for finding in every_finding() {
+        let (code, axis, numbers) = finding.parts();
+        let back = Finding::from_parts(code, axis, &numbers);
+        match finding {
+            Finding::Told(_) => assert_eq!(back, None),
+            _ => assert_eq!(back, Some(finding)),
+        }
+        assert!(!kinds.contains(&(code, axis)), "{code} is two kinds");
+        kinds.push((code, axis));
+    }
+}
+
+#[test]
+fn parts_of_no_finding_are_refused() {
+    for (code, axis, numbers) in [
+        ("escaping", None, vec![0.1]),
+        ("escaping", Some(0), vec![0.1, 0.2]),
+        ("edge-mass", None, vec![0.1, -1.0, 1.0]),
+        ("several-classes", None, vec![2.0, 1.0, 1.0, 1.0]),
+        ("several-classes", None, vec![f64::NAN]),
+        ("magic", None, vec![1.0, 2.0, 3.0]),
+    ] {
+        assert_eq!(Finding::from_parts(code, axis, &numbers), None, "{code}");
+    }
+}
