@@ -28,6 +28,9 @@
 // What only a later module uses lies idle where features leave that module out; the whole build says what nobody uses.
 #![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
 
+#[macro_use]
+mod words;
+
 #[cfg(feature = "serde")]
 mod bytes;
 pub mod cancellation;

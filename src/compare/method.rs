@@ -14,25 +14,15 @@ pub enum Method {
     MonteCarlo,
 }
 
+words! {
+    Method, pub name:
+    Generator: "generator",
+    Sgcm: "sgcm",
+    SgcmSlope: "sgcm-slope",
+    MonteCarlo: "monte-carlo",
+}
+
 impl Method {
-    /// All methods, in the order of every table.
-    pub const ALL: [Self; 4] = [
-        Self::Generator,
-        Self::Sgcm,
-        Self::SgcmSlope,
-        Self::MonteCarlo,
-    ];
-
-    /// Name used in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Generator => "generator",
-            Self::Sgcm => "sgcm",
-            Self::SgcmSlope => "sgcm-slope",
-            Self::MonteCarlo => "monte-carlo",
-        }
-    }
-
     /// Name of the source of its densities.
     pub(crate) fn source(self) -> &'static str {
         match self {

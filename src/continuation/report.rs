@@ -22,29 +22,17 @@ pub enum PointStatus {
     Failed,
 }
 
+words! {
+    PointStatus, pub(crate) word:
+    Solved: "solved",
+    Escaping: "escaping",
+    NotConverged: "not-converged",
+    NoSteadyState: "no-steady-state",
+    SeveralClasses: "several-classes",
+    Failed: "failed",
+}
+
 impl PointStatus {
-    /// All of them.
-    pub const ALL: [Self; 6] = [
-        Self::Solved,
-        Self::Escaping,
-        Self::NotConverged,
-        Self::NoSteadyState,
-        Self::SeveralClasses,
-        Self::Failed,
-    ];
-
-    /// The word used in tables.
-    pub(crate) fn word(self) -> &'static str {
-        match self {
-            Self::Solved => "solved",
-            Self::Escaping => "escaping",
-            Self::NotConverged => "not-converged",
-            Self::NoSteadyState => "no-steady-state",
-            Self::SeveralClasses => "several-classes",
-            Self::Failed => "failed",
-        }
-    }
-
     /// Whether the point has a density that a user may rely on.
     pub fn is_resolved(self) -> bool {
         matches!(self, Self::Solved | Self::Escaping)

@@ -52,20 +52,9 @@ pub enum Format {
     Txt,
 }
 
+words! { Format, pub name: Svg: "svg", Png: "png", Pdf: "pdf", Csv: "csv", Txt: "txt" }
+
 impl Format {
-    /// All formats.
-    pub const ALL: [Self; 5] = [Self::Svg, Self::Png, Self::Pdf, Self::Csv, Self::Txt];
     /// Those that are written where none is named.
     pub const USUAL: [Self; 2] = [Self::Svg, Self::Png];
-
-    /// Name used in sweep files, and extension of the files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Svg => "svg",
-            Self::Png => "png",
-            Self::Pdf => "pdf",
-            Self::Csv => "csv",
-            Self::Txt => "txt",
-        }
-    }
 }

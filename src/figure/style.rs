@@ -83,18 +83,7 @@ pub enum Ground {
     Dark,
 }
 
-impl Ground {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Light, Self::Dark];
-
-    /// Name used in sweep files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Light => "light",
-            Self::Dark => "dark",
-        }
-    }
-}
+words! { Ground, pub name: Light: "light", Dark: "dark" }
 
 /// Colours for shares of a largest value: perceptually uniform, safe for colour-blind readers, and monotone in grey.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -110,20 +99,7 @@ pub enum ColourMap {
     Grey,
 }
 
-impl ColourMap {
-    /// All colour maps.
-    pub const ALL: [Self; 4] = [Self::Viridis, Self::Cividis, Self::Magma, Self::Grey];
-
-    /// Name used in sweep files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Viridis => "viridis",
-            Self::Cividis => "cividis",
-            Self::Magma => "magma",
-            Self::Grey => "grey",
-        }
-    }
-}
+words! { ColourMap, pub name: Viridis: "viridis", Cividis: "cividis", Magma: "magma", Grey: "grey" }
 
 /// The typeface: one family each, which comes with the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -135,18 +111,7 @@ pub enum Typeface {
     Serif,
 }
 
-impl Typeface {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Sans, Self::Serif];
-
-    /// Name used in sweep files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Sans => "sans",
-            Self::Serif => "serif",
-        }
-    }
-}
+words! { Typeface, pub name: Sans: "sans", Serif: "serif" }
 
 /// How figures look. The default is a figure for the screen; with a width it is one for a journal.
 ///

@@ -29,19 +29,9 @@ pub enum AdvectiveScheme {
     Central6,
 }
 
+words! { AdvectiveScheme, pub name: Upwind5: "upwind5", Central4: "central4", Central6: "central6" }
+
 impl AdvectiveScheme {
-    /// All schemes.
-    pub const ALL: [Self; 3] = [Self::Upwind5, Self::Central4, Self::Central6];
-
-    /// Name used in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Upwind5 => "upwind5",
-            Self::Central4 => "central4",
-            Self::Central6 => "central6",
-        }
-    }
-
     /// Cells on either side of a face that its full stencil uses.
     /// Cells that a flux stencil reaches along its axis.
     pub(crate) fn reach(self) -> usize {

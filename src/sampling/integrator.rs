@@ -20,18 +20,7 @@ pub enum Integrator {
     EulerMaruyama,
 }
 
-impl Integrator {
-    /// All integrators.
-    pub const ALL: [Self; 2] = [Self::StochasticHeun, Self::EulerMaruyama];
-
-    /// Name used in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::StochasticHeun => "heun",
-            Self::EulerMaruyama => "euler-maruyama",
-        }
-    }
-}
+words! { Integrator, pub name: StochasticHeun: "heun", EulerMaruyama: "euler-maruyama" }
 
 /// Rows of normals made at once: 8 KB, which stay in the first-level cache with everything else.
 const ROWS: usize = 16;

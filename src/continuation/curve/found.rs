@@ -268,16 +268,16 @@ pub enum CodimensionTwoKind {
     Crossing,
 }
 
-impl CodimensionTwoKind {
-    /// All of them.
-    pub const ALL: [Self; 5] = [
-        Self::Cusp,
-        Self::DegenerateSplit,
-        Self::DegenerateKink,
-        Self::KinkCorner,
-        Self::Crossing,
-    ];
+words! {
+    CodimensionTwoKind, pub name:
+    Cusp: "cusp",
+    DegenerateSplit: "degenerate split",
+    DegenerateKink: "degenerate kink",
+    KinkCorner: "corner at a kink",
+    Crossing: "crossing",
+}
 
+impl CodimensionTwoKind {
     /// The letters of its label.
     pub fn prefix(self) -> &'static str {
         match self {
@@ -286,17 +286,6 @@ impl CodimensionTwoKind {
             Self::DegenerateKink => "DK",
             Self::KinkCorner => "KC",
             Self::Crossing => "CX",
-        }
-    }
-
-    /// The words used in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Cusp => "cusp",
-            Self::DegenerateSplit => "degenerate split",
-            Self::DegenerateKink => "degenerate kink",
-            Self::KinkCorner => "corner at a kink",
-            Self::Crossing => "crossing",
         }
     }
 }

@@ -14,18 +14,7 @@ pub enum Estimator {
     Ensemble,
 }
 
-impl Estimator {
-    /// All estimators.
-    pub const ALL: [Self; 2] = [Self::Ergodic, Self::Ensemble];
-
-    /// Name used in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Ergodic => "ergodic",
-            Self::Ensemble => "ensemble",
-        }
-    }
-}
+words! { Estimator, pub name: Ergodic: "ergodic", Ensemble: "ensemble" }
 
 /// Settings of Monte Carlo.
 #[derive(Debug, Clone, PartialEq)]

@@ -15,18 +15,7 @@ pub enum Correction {
     None,
 }
 
-impl Correction {
-    /// All corrections.
-    pub const ALL: [Self; 2] = [Self::Slope, Self::None];
-
-    /// Name used in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Slope => "slope",
-            Self::None => "none",
-        }
-    }
-}
+words! { Correction, pub name: Slope: "slope", None: "none" }
 
 /// Settings of stochastic generalized cell mapping.
 #[derive(Debug, Clone, PartialEq)]

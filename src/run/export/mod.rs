@@ -21,18 +21,9 @@ pub enum ExportFormat {
     Csv,
 }
 
+words! { ExportFormat, pub name: NetCdf: "netcdf", Csv: "csv" }
+
 impl ExportFormat {
-    /// All of them.
-    pub const ALL: [Self; 2] = [Self::NetCdf, Self::Csv];
-
-    /// Name used on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::NetCdf => "netcdf",
-            Self::Csv => "csv",
-        }
-    }
-
     /// Ending of the name of its file or folder.
     pub(crate) fn ending(self) -> &'static str {
         match self {

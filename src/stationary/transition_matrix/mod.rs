@@ -36,18 +36,7 @@ pub enum Solver {
     PowerIteration,
 }
 
-impl Solver {
-    /// All solvers.
-    pub const ALL: [Self; 2] = [Self::MultilevelAggregation, Self::PowerIteration];
-
-    /// Name used in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::MultilevelAggregation => "multilevel",
-            Self::PowerIteration => "power",
-        }
-    }
-}
+words! { Solver, pub name: MultilevelAggregation: "multilevel", PowerIteration: "power" }
 
 /// Settings of [`solve`].
 #[derive(Debug, Clone)]

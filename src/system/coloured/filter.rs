@@ -16,19 +16,14 @@ pub enum NoiseKind {
     Harmonic,
 }
 
+words! {
+    NoiseKind, pub name:
+    White: "white",
+    OrnsteinUhlenbeck: "ornstein-uhlenbeck",
+    Harmonic: "harmonic",
+}
+
 impl NoiseKind {
-    /// All kinds.
-    pub const ALL: [Self; 3] = [Self::White, Self::OrnsteinUhlenbeck, Self::Harmonic];
-
-    /// Name used in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::White => "white",
-            Self::OrnsteinUhlenbeck => "ornstein-uhlenbeck",
-            Self::Harmonic => "harmonic",
-        }
-    }
-
     /// Whether noises have a memory.
     pub(crate) fn is_coloured(self) -> bool {
         self != Self::White

@@ -37,18 +37,7 @@ pub enum Interpretation {
     Stratonovich,
 }
 
-impl Interpretation {
-    /// Both readings.
-    pub const ALL: [Self; 2] = [Self::Ito, Self::Stratonovich];
-
-    /// Name used in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Ito => "ito",
-            Self::Stratonovich => "stratonovich",
-        }
-    }
-}
+words! { Interpretation, pub name: Ito: "ito", Stratonovich: "stratonovich" }
 
 /// A stochastic differential equation as text, from which [`TypedModel::build`] makes a [`Model`].
 ///
