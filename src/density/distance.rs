@@ -3,7 +3,8 @@
 use super::projection::check_length;
 use super::{Density, DensityError};
 
-/// Hellinger distance √(½ Σ (√p - √q)²) of two densities, 0 to 1. Negative values count as zero.
+/// Hellinger distance √(½ Σ (√p - √q)²) of two densities, 0 to 1. Negative values count as zero, and what is left is
+/// normalised again.
 ///
 /// # Errors
 /// [`DensityError::DifferentAxes`] unless both have the same axes; [`DensityError::Length`].
@@ -12,7 +13,7 @@ pub fn hellinger(first: &Density, second: &Density) -> Result<f64, DensityError>
     hellinger_of_masses(&first, &second)
 }
 
-/// Total-variation distance ½ ∫ |p - q| of two densities, 0 to 1.
+/// Total-variation distance ½ ∫ |p - q| of two densities, 0 to 1; negative values add to it.
 ///
 /// # Errors
 /// [`DensityError::DifferentAxes`] unless both have the same axes; [`DensityError::Length`].
@@ -21,17 +22,25 @@ pub fn total_variation(first: &Density, second: &Density) -> Result<f64, Density
     total_variation_of_masses(&first, &second)
 }
 
-/// Hellinger distance of two mass vectors over the same cells, each Σ = 1. Negative values count as zero.
+/// Hellinger distance of two mass vectors over the same cells, 0 to 1. Negative values count as zero, and what is left
+/// is normalised again: of masses that sum to more than one the distance could exceed one.
 ///
 /// # Errors
 /// [`DensityError::Length`] when they differ in length.
 pub fn hellinger_of_masses(first: &[f64], second: &[f64]) -> Result<f64, DensityError> {
     check_length(second, first.len())?;
     // The sum of squares, not 1 - Σ √(pq), which would lose half the digits of a small distance.
-    let root = |mass: f64| mass.max(0.0).sqrt();
-    let cells = first.iter().zip(second);
-    let sum: f64 = cells.map(|(&p, &q)| (root(p) - root(q)).powi(2)).sum();
-    Ok((0.5 * sum).sqrt())
+    let [first, second] = [first, second].map(roots);
+    let cells = first.iter().zip(&second);
+    let sum: f64 = cells.map(|(p, q)| (p - q).powi(2)).sum();
+    Ok((0.5 * sum).sqrt().min(1.0))
+}
+
+/// Square roots of the shares of all positive mass.
+fn roots(masses: &[f64]) -> Vec<f64> {
+    let positive = masses.iter().map(|mass| mass.max(0.0));
+    let sum: f64 = positive.clone().sum();
+    positive.map(|mass| (mass / sum).sqrt()).collect()
 }
 
 /// Total-variation distance ½ Σ |p - q| of two mass vectors over the same cells, each Σ = 1.
@@ -96,6 +105,10 @@ mod tests {
         assert_eq!(hellinger_of_masses(&p, &q), Ok(1.0));
         assert_eq!(total_variation_of_masses(&p, &q), Ok(1.0));
         assert_eq!(hellinger_of_masses(&p, &p), Ok(0.0));
+        // Negative masses leave more than one of positive ones.
+        let (over, under) = ([1.5, -0.5], [-0.5, 1.5]);
+        assert_eq!(hellinger_of_masses(&over, &under), Ok(1.0));
+        assert_eq!(hellinger_of_masses(&over, &[1.0, 0.0]), Ok(0.0));
         assert_eq!(total_variation_of_masses(&q, &q), Ok(0.0));
     }
 
