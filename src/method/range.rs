@@ -22,13 +22,32 @@ const FILLED: f64 = 0.2;
 const MARGIN: f64 = 1.5;
 /// Most times that the box is changed.
 const MOST_CHANGES: usize = 40;
+/// Most steps of each trajectory in all boxes together: those of ten that take the most that one box may.
+const MOST_STEPS: usize = 2_000_000;
 
 /// Why no ranges were found.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RangeError {
     /// However wide the box, trajectories leave it.
-    #[error("no range holds the density: free trajectories run away somewhere along the sweep")]
-    RunsAway,
+    #[error("no range holds the density: free trajectories leave every")]
+    RunsAway {
+        /// Number of the system among those that were given.
+        system: usize,
+        /// The axis along which most of them do.
+        axis: usize,
+    },
+    /// The effort that ranges are worth was spent.
+    #[error("no range was found within {steps} steps of each free trajectory")]
+    TooLong {
+        /// Number of the system among those that were given.
+        system: usize,
+        /// The axis along which most trajectories left the last box.
+        axis: usize,
+        /// Steps that were taken.
+        steps: usize,
+        /// The last box that was looked at, along that axis.
+        last: (f64, f64),
+    },
     /// The box got too large or too small for numbers.
     #[error(transparent)]
     Space(#[from] crate::space::SpaceError),
@@ -49,8 +68,8 @@ pub(crate) fn automatic_ranges(
     cancellation: &Cancellation,
 ) -> Result<Vec<(f64, f64)>, RangeError> {
     let mut hull: Option<Vec<(f64, f64)>> = None;
-    for system in systems {
-        let found = ranges_of(system.as_ref(), known, seed, cancellation)?;
+    for (number, system) in systems.iter().enumerate() {
+        let found = ranges_of((number, system.as_ref()), known, seed, cancellation)?;
         hull = Some(match hull {
             None => found,
             Some(hull) => hull
@@ -67,11 +86,12 @@ pub(crate) fn automatic_ranges(
 }
 
 fn ranges_of(
-    system: &dyn System,
+    (number, system): (usize, &dyn System),
     known: &[Option<(f64, f64)>],
     seed: u64,
     cancellation: &Cancellation,
 ) -> Result<Vec<(f64, f64)>, RangeError> {
+    let (mut steps, mut leaving) = (0, 0);
     let mut ranges: Vec<(f64, f64)> = known.iter().map(|k| k.unwrap_or(PILOT_BOX)).collect();
     for _ in 0..MOST_CHANGES {
         let axes: Result<Vec<Axis>, _> = ranges
@@ -79,8 +99,21 @@ fn ranges_of(
             .map(|&(from, to)| Axis::uniform(from, to, CELLS))
             .collect();
         let space = CellSpace::new(axes?)?;
-        let seen = pilot(system, &space, seed, cancellation)?;
         let free = || (0..ranges.len()).filter(|&axis| known[axis].is_none());
+        if steps >= MOST_STEPS {
+            return Err(RangeError::TooLong {
+                system: number,
+                axis: leaving,
+                steps,
+                last: ranges[leaving],
+            });
+        }
+        let seen = pilot(system, &space, seed, cancellation)?;
+        steps += seen.steps;
+        leaving = free()
+            .rev()
+            .max_by_key(|&axis| seen.outside[axis])
+            .unwrap_or(0);
         if seen.share_inside < INSIDE {
             for axis in free().collect::<Vec<_>>() {
                 let (from, to) = ranges[axis];
@@ -105,7 +138,10 @@ fn ranges_of(
             ranges[axis] = (from - 0.5 * half, to + 0.5 * half);
         }
     }
-    Err(RangeError::RunsAway)
+    Err(RangeError::RunsAway {
+        system: number,
+        axis: leaving,
+    })
 }
 
 /// What some cells span along each axis.
@@ -185,6 +221,21 @@ mod tests {
         let given = [("kappa", -0.05), ("f_c", 0.0), ("sigma2", 0.01)];
         let system = model.system_with(&given).unwrap();
         let found = automatic_ranges(&[system], &[None, None], 1, &Cancellation::new());
-        assert_eq!(found, Err(RangeError::RunsAway));
+        assert!(
+            matches!(found, Err(RangeError::RunsAway { system: 0, .. })),
+            "{found:?}"
+        );
+        // One axis alone has none: x' = -x + …, y' = 0.1 y + ….
+        let typed = crate::system::TypedModel::new("half", "Half stable", ["x", "y"])
+            .with_equation("x", "-x")
+            .with_equation("y", "0.1 y");
+        let typed = typed.with_noise("x", ["0.5"]).with_noise("y", ["0.5"]);
+        let model = typed.build().unwrap();
+        let system = model.system_with(&[]).unwrap();
+        let found = automatic_ranges(&[system], &[None, None], 1, &Cancellation::new());
+        assert!(
+            matches!(found, Err(RangeError::RunsAway { axis: 1, .. })),
+            "{found:?}"
+        );
     }
 }

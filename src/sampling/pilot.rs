@@ -44,6 +44,10 @@ const MOST_MAP_STEPS: f64 = 1e5;
 pub struct Pilot {
     /// Cells that were visited, ascending; where no trajectory stays in Ω, the cell of Ω's centre.
     pub cells: Vec<usize>,
+    /// Steps that each trajectory took.
+    pub(crate) steps: usize,
+    /// Recorded states beyond the range of each axis.
+    pub(crate) outside: Vec<usize>,
     /// Share of the recorded states that lie in Ω; without any, what follows is of Ω as a whole.
     pub share_inside: f64,
     /// Standard deviation, one value an axis.
@@ -193,9 +197,11 @@ pub fn pilot(
         record.join(of_batch);
     }
     if record.inside == 0 {
-        return Ok(nothing_stays(system, space, seed, scouted));
+        let outside = record.outside.clone();
+        let seen = nothing_stays(system, space, seed, (scouted, 2 * steps));
+        return Ok(Pilot { outside, ..seen });
     }
-    Ok(record.finish())
+    Ok(record.finish(2 * steps))
 }
 
 /// What is left to say where no trajectory stays in Ω: means over Ω itself.
@@ -203,7 +209,7 @@ fn nothing_stays(
     system: &dyn System,
     space: &CellSpace,
     seed: u64,
-    rates: Vec<LocalRates>,
+    (rates, steps): (Vec<LocalRates>, usize),
 ) -> Pilot {
     let mut record = Record::new(space);
     for scout in 0..SCOUTS {
@@ -214,7 +220,7 @@ fn nothing_stays(
     Pilot {
         cells: space.find(&centre).into_iter().collect(),
         share_inside: 0.0,
-        ..record.finish()
+        ..record.finish(steps)
     }
 }
 

@@ -9,13 +9,20 @@ use super::names::list;
 use super::report::Report;
 use super::settings::{Modes, Settings, at_cells, cell_space};
 use super::sweep::Sweep;
+use super::verify::short;
 use crate::cancellation::Cancellation;
 use crate::method::{
     PILOT_BOX, Problem, RangeError, SgcmOptions, automatic_modes, automatic_ranges,
     change_by_more_modes, check_sticking,
 };
 use crate::space::Axis;
+use crate::stationary::generator::RateError;
 use crate::system::{ParameterValues, System};
+
+/// Room that is tried for, in units of what a point takes: finer cells check what is located.
+const TRIED: f64 = 3.0;
+/// Bytes beside it: threads, and what is read and drawn.
+const BESIDE: f64 = 1e8;
 
 impl Settings {
     /// Finds the ranges and gradings that are left to the program, by free trajectories at both ends of the sweep, and
@@ -23,18 +30,36 @@ impl Settings {
     ///
     /// # Errors
     /// A report where it does not fit, where no range holds the density, or when cancelled.
-    pub fn prepare(mut self, cancellation: &Cancellation) -> Result<Sweep, Report> {
+    pub fn prepare(self, cancellation: &Cancellation) -> Result<Sweep, Report> {
+        self.prepare_telling(cancellation, &|_| ())
+    }
+
+    /// The same, telling of each part of the work when it begins.
+    ///
+    /// # Errors
+    /// As [`Settings::prepare`].
+    pub(crate) fn prepare_telling(
+        mut self,
+        cancellation: &Cancellation,
+        tell: &dyn Fn(&str),
+    ) -> Result<Sweep, Report> {
         self.check_memory()?;
+        tell("looking for ranges by free trajectories");
         let ends = self.find_open_ranges(cancellation)?;
+        tell("trying the equations on the domain");
         // Formulas that are not finite there would leave coarse grids without a density.
         self.check_equations()?;
         self.check_density()?;
+        tell("trying numbers of cells on coarse grids");
         self.find_counts(&ends, cancellation)?;
         self.find_gradings(&ends);
         // Now of the cells that were found.
         self.check_memory()?;
+        tell("trying numbers of modes on coarse grids");
         self.find_modes(cancellation)?;
+        tell("looking for ranges of quantities");
         self.find_bins(cancellation)?;
+        tell("laying out the cells");
         let sweep = self.fixed()?;
         sweep.settings.check_factors(&sweep)?;
         Ok(sweep)
@@ -159,7 +184,9 @@ impl Settings {
             return Ok(given);
         }
         let found = automatic_ranges(ends, &known, SgcmOptions::default().seed, cancellation);
-        if let (Err(RangeError::RunsAway), Some(typed)) = (&found, self.family.model().typed()) {
+        if let (Err(RangeError::RunsAway { .. }), Some(typed)) =
+            (&found, self.family.model().typed())
+        {
             let start: Vec<(f64, f64)> = known.iter().map(|one| one.unwrap_or(PILOT_BOX)).collect();
             self.check_finite(
                 typed,
@@ -167,13 +194,56 @@ impl Settings {
                 "where the trajectories that look for a range start",
             )?;
         }
-        found.map_err(|error| {
-            let diagnostic = Diagnostic::new(error.to_string());
-            self.refuse_cells(match error {
-                RangeError::Cancelled(_) => diagnostic,
-                _ => diagnostic.remedy("give `from` and `to` instead of `range = \"auto\"`"),
-            })
-        })
+        found.map_err(|error| self.refuse(self.no_range(&error)))
+    }
+
+    /// Why no ranges were found: along which axis, at which value, and what helps.
+    fn no_range(&self, error: &RangeError) -> Diagnostic {
+        let at = |system: &usize, axis: &usize| {
+            let (swept, axis) = (self.family.parameter(), self.family.axis(*axis));
+            let (model, corners) = (self.family.model(), self.corners());
+            let place = model.parameters.iter().position(|one| one.name == swept);
+            let value =
+                place.and_then(|place| corners.get(*system)?.as_slice().get(place).copied());
+            let value = value.map_or(String::new(), |value| {
+                format!(" at {swept} = {}", short(value))
+            });
+            let mut remedy = format!("give `cells.{axis}.from` and `to`");
+            if model.typed().is_some() {
+                remedy += &format!(
+                    "; where the equations themselves keep `{axis}` inside ends, name these in [system.bounds]"
+                );
+            }
+            (axis.to_owned(), value, remedy)
+        };
+        let found = |title: String, axis: &str, remedy: String| {
+            let found = Diagnostic::new(title).remedy(remedy);
+            match self.document.root.find(&["cells", axis]) {
+                Some(entry) => found.at(&entry.key_place, "its range is left to the program"),
+                None => at_cells(&self.document, found),
+            }
+        };
+        match error {
+            RangeError::RunsAway { system, axis } => {
+                let (axis, value, remedy) = at(system, axis);
+                found(format!("{error} range of `{axis}`{value}"), &axis, remedy)
+            }
+            RangeError::TooLong {
+                system, axis, last, ..
+            } => {
+                let (axis, value, remedy) = at(system, axis);
+                let (from, to) = (short(last.0), short(last.1));
+                let title =
+                    format!("{error}{value}: whether {from} to {to} holds `{axis}` was still open");
+                found(title, &axis, remedy)
+            }
+            RangeError::Cancelled(_) => Diagnostic::new(error.to_string()),
+            RangeError::Space(_) => {
+                let found = Diagnostic::new(error.to_string());
+                let remedy = "give `from` and `to` instead of `range = \"auto\"`";
+                at_cells(&self.document, found.remedy(remedy))
+            }
+        }
     }
 
     /// Replaces numbers of modes that are left to the program.
@@ -260,6 +330,23 @@ impl Settings {
         .collect()
     }
 
+    /// Refuses what the system would not give: a limit of the process (`ulimit -v`) shows when memory is asked for, and
+    /// in the middle of a solve it ends the program.
+    fn check_given(&self, bytes: f64) -> Result<(), Report> {
+        let bytes = TRIED * bytes + BESIDE;
+        // Nothing is written to it: only room among the addresses is asked for.
+        let mut room = Vec::<u8>::new();
+        if room.try_reserve_exact(bytes as usize).is_ok() {
+            return Ok(());
+        }
+        let title = format!(
+            "a point may take {} of memory, and the system gives this process less",
+            bytes_in_words(bytes)
+        );
+        let remedy = "use fewer cells, or a higher limit (`ulimit -v`, or that of the batch job)";
+        Err(self.refuse_cells(Diagnostic::new(title).remedy(remedy)))
+    }
+
     /// Refuses cells whose least need exceeds the machine's memory; runs before anything is laid out.
     fn check_memory(&self) -> Result<(), Report> {
         let is_open = |axis: &super::AxisSettings| {
@@ -288,15 +375,24 @@ impl Settings {
         Err(self.refuse_cells(diagnostic))
     }
 
-    /// Refuses cells whose factors exceed the memory that they may take.
+    /// Refuses cells whose factors exceed the memory that they may take, or that the system gives this process.
     fn check_factors(&self, sweep: &Sweep) -> Result<(), Report> {
-        let Err(error) = self.method.chosen().cost(sweep.problem.space()) else {
-            return Ok(());
+        let error = match self.method.chosen().cost(sweep.problem.space()) {
+            Ok(cost) => return self.check_given(cost.most_bytes()),
+            Err(error) => error,
         };
-        let mut remedy = "use fewer cells, or raise `method.memory_limit` (gigabytes)".to_owned();
-        if let Some(memory) = machine_memory() {
-            remedy += &format!("; this machine has {}", bytes_in_words(memory));
+        let memory = machine_memory();
+        let has = memory.map(|memory| format!("; this machine has {}", bytes_in_words(memory)));
+        // A limit beyond the machine's memory would only let it swap.
+        let fits = match (&error, memory) {
+            (RateError::Memory { needed, .. }, Some(memory)) => *needed as f64 <= memory,
+            _ => true,
+        };
+        let mut remedy = "use fewer cells".to_owned();
+        if fits {
+            remedy += ", or raise `method.memory_limit` (gigabytes)";
         }
+        remedy += &has.unwrap_or_default();
         Err(self.refuse_cells(Diagnostic::new(error.to_string()).remedy(remedy)))
     }
 }

@@ -18,6 +18,9 @@ const TRIED: [usize; 10] = [3, 4, 5, 6, 8, 10, 12, 16, 20, 24];
 /// Nodes of all axes together up to which numbers are tried for more than one axis: a solve takes their cube.
 const MOST_NODES: usize = 150;
 
+/// Iterations of a solve on coarse cells, which takes some tens where there is a steady state.
+const MOST_ITERATIONS: usize = 100;
+
 /// Change of a watched density, relative to its largest value, that more modes may still make.
 const CHANGE: f64 = 1e-4;
 
@@ -64,10 +67,11 @@ pub(crate) fn change_by_more_modes(
     if counts.is_empty() || nodes > MOST_NODES {
         return Ok(None);
     }
-    let solve = |count: &dyn Fn(usize) -> usize| {
+    let mut trials = Trials::giving_up_after(1);
+    let mut solve = |count: &dyn Fn(usize) -> usize| {
         let modes = |_: usize, axis: &Axis| count(axis.count());
         let source = GeneratorSource::new(&coarse(problem, COARSER, &modes)?, options)?;
-        all_densities(&source, cancellation)
+        trials.densities(&source, cancellation)
     };
     let both = solve(&|count| count).and_then(|as_given| Ok((as_given, solve(&more)?)));
     match both {
@@ -90,6 +94,7 @@ pub(crate) fn automatic_modes(
     cancellation: &Cancellation,
 ) -> Result<ModesFound, MethodError> {
     let mut before: Option<Vec<Option<Densities>>> = None;
+    let mut trials = Trials::giving_up_after(2);
     let mut found = ModesFound {
         count: TRIED[0],
         change: f64::INFINITY,
@@ -103,7 +108,7 @@ pub(crate) fn automatic_modes(
             false => axis.count(),
         };
         let source = GeneratorSource::new(&coarse(problem, COARSE, &modes)?, options)?;
-        let now = all_densities(&source, cancellation)?;
+        let now = trials.densities(&source, cancellation)?;
         if let Some(before) = before {
             let earlier = std::mem::replace(&mut found.change, change(&before, &now));
             // Where more modes stop telling, what is left is the coarse cells' doing.
@@ -140,16 +145,38 @@ fn coarse(
     problem.on(CellSpace::new(axes?)?)
 }
 
-/// The watched densities at both ends and in the middle of the path.
-fn all_densities(
-    source: &GeneratorSource,
-    cancellation: &Cancellation,
-) -> Result<Vec<Option<Densities>>, MethodError> {
-    let (from, to) = source.problem.family().ends();
-    let values = [from, 0.5 * (from + to), to].into_iter();
-    values
-        .map(|value| densities(source, value, cancellation))
-        .collect()
+/// Solves at both ends and in the middle of the path. A value without a steady state takes the most iterations: after
+/// some numbers of modes in turn without one it is given up.
+struct Trials {
+    failed: [usize; 3],
+    most: usize,
+}
+
+impl Trials {
+    fn giving_up_after(most: usize) -> Self {
+        let failed = [0; 3];
+        Self { failed, most }
+    }
+
+    /// The watched densities at each value.
+    fn densities(
+        &mut self,
+        source: &GeneratorSource,
+        cancellation: &Cancellation,
+    ) -> Result<Vec<Option<Densities>>, MethodError> {
+        let (from, to) = source.problem.family().ends();
+        let values = [from, 0.5 * (from + to), to].into_iter();
+        let mut found = Vec::new();
+        for (value, failed) in values.zip(&mut self.failed) {
+            let solved = match *failed < self.most {
+                true => densities(source, value, cancellation)?,
+                false => None,
+            };
+            *failed = if solved.is_some() { 0 } else { *failed + 1 };
+            found.push(solved);
+        }
+        Ok(found)
+    }
 }
 
 /// The watched densities at a value; `None` where there is no steady state on these cells.
@@ -160,7 +187,7 @@ fn densities(
 ) -> Result<Option<Densities>, MethodError> {
     let (problem, system) = (&source.problem, source.problem.family().at(value)?);
     let generator = source.assemble(system.as_ref(), source.options.scheme)?;
-    let mut solver = source.solver(cancellation);
+    let mut solver = source.solver_within(MOST_ITERATIONS, cancellation);
     let steady = solver.solve(&generator.matrix, &generator.escape, None)?;
     if !steady.info.converged {
         return Ok(None);

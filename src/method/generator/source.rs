@@ -133,7 +133,18 @@ impl GeneratorSource {
 
     /// A solver without a factorisation yet.
     pub(super) fn solver(&self, cancellation: &Cancellation) -> RateSolver {
+        let most = RateOptions::default().max_iterations;
+        self.solver_within(most, cancellation)
+    }
+
+    /// A solver that gives up after so many iterations.
+    pub(super) fn solver_within(
+        &self,
+        max_iterations: usize,
+        cancellation: &Cancellation,
+    ) -> RateSolver {
         let rates = RateOptions {
+            max_iterations,
             tolerance: self.options.solver_tolerance,
             memory_limit_bytes: (self.options.memory_limit * 1e9) as u64,
             ..RateOptions::default()

@@ -14,6 +14,8 @@ pub(super) struct Record {
     pub(super) rates: Vec<LocalRates>,
     visits: usize,
     axes: Vec<AxisSums>,
+    /// States beyond the range of each axis, or no numbers.
+    pub(super) outside: Vec<usize>,
 }
 
 #[derive(Clone, Copy, Default)]
@@ -38,6 +40,7 @@ impl Record {
             rates: Vec::new(),
             visits: 0,
             axes: space.axes().iter().map(middle).collect(),
+            outside: vec![0; space.dimension()],
         }
     }
 
@@ -59,9 +62,12 @@ impl Record {
         self.visits += LANES;
     }
 
-    /// Records a state if it is in Ω.
+    /// Records a state if it is in Ω, and along which axes it is not.
     pub(super) fn visit(&mut self, system: &dyn System, space: &CellSpace, state: &[f64]) {
         let Some(cell) = space.find(state) else {
+            for ((outside, axis), &place) in self.outside.iter_mut().zip(space.axes()).zip(state) {
+                *outside += usize::from(!(axis.from()..=axis.to()).contains(&place));
+            }
             return;
         };
         self.cells.push(cell);
@@ -83,6 +89,9 @@ impl Record {
         self.rates.extend(&other.rates);
         self.inside += other.inside;
         self.visits += other.visits;
+        for (outside, more) in self.outside.iter_mut().zip(&other.outside) {
+            *outside += more;
+        }
         for (sums, more) in self.axes.iter_mut().zip(&other.axes) {
             sums.first += more.first;
             sums.second += more.second;
@@ -92,13 +101,15 @@ impl Record {
     }
 
     /// Means of the sums.
-    pub(super) fn finish(mut self) -> Pilot {
+    pub(super) fn finish(mut self, steps: usize) -> Pilot {
         self.cells.sort_unstable();
         self.cells.dedup();
         let count = self.inside.max(1) as f64;
         let axis = |value: &dyn Fn(&AxisSums) -> f64| self.axes.iter().map(value).collect();
         let (frequency, damping) = summary(&self.rates, 0.99);
         Pilot {
+            steps,
+            outside: self.outside,
             share_inside: self.inside as f64 / self.visits.max(1) as f64,
             standard_deviation: axis(&|sums| {
                 let mean = sums.first / count;
