@@ -8,7 +8,6 @@ use super::args::{ExploreArguments, SweepInput};
 use super::progress::Progress;
 use super::stored::{Stored, set};
 use super::{CommandError, Outcome, tell};
-use crate::cancellation::Cancellation;
 use crate::explore::{ExploreError, LiveServer, StoredPage};
 use crate::job;
 use crate::run::{CURVES, StoredPlane, StoredPlaneContent, write_atomically};
@@ -139,7 +138,7 @@ fn serve(arguments: &ExploreArguments) -> Result<Outcome, CommandError> {
         file: arguments.target.clone(),
         overrides: arguments.overrides.clone(),
     };
-    let sweep = super::given(&input, arguments.quiet)?.prepare(&Cancellation::new())?;
+    let sweep = super::prepared(super::given(&input, arguments.quiet)?, arguments.quiet)?;
     let server = LiveServer::bind(&sweep, arguments.port.unwrap_or(0))?;
     let (_, cancellation) = super::interruptible(None)?;
     super::print(&format!("{}\n", server.address()))?;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::args::ExportArguments;
 use super::stored::Stored;
 use super::{CommandError, Outcome, conclude};
-use crate::run::{RunError, export};
+use crate::run::{RunError, check_place, export};
 use crate::sweep_file::Diagnostic;
 
 /// Writes the file, or the folder of tables, and says what is in it.
@@ -24,6 +24,7 @@ pub(super) fn run(arguments: &ExportArguments) -> Result<Outcome, CommandError> 
             Diagnostic::new(title).remedy("give another place with `--out PATH`, or remove it");
         return Err(CommandError::Input(found.into()));
     }
+    check_place(&out)?;
     let stored = Stored::read(&arguments.run, &[], &[], true)?;
     let result = &stored.result;
     if let Some(parent) = out.parent() {

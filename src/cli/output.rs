@@ -2,16 +2,20 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::run::{RunError, check_place};
+
 /// Why results cannot be written.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum OutputError {
-    /// The path, or a part of it, is a file.
-    #[error("the output `{}` is not a folder: `{}` is a file", path.display(), file.display())]
+    /// The path, or a part of it, is a file, or a link that leads nowhere.
+    #[error("the output `{}` is not a folder: `{}` is {what}", path.display(), file.display())]
     NotAFolder {
         /// The wanted folder.
         path: PathBuf,
-        /// The file in its way.
+        /// What is in its way.
         file: PathBuf,
+        /// What that is.
+        what: &'static str,
     },
     /// A folder cannot be made.
     #[error("the output folder `{}` cannot be made: {source}", path.display())]
@@ -29,6 +33,9 @@ pub(crate) enum OutputError {
         /// The system's reason.
         source: std::io::Error,
     },
+    /// No results can stand there.
+    #[error(transparent)]
+    Place(#[from] RunError),
 }
 
 /// A folder that can be written to. Folders that were made for it are removed again when it is dropped while
@@ -46,6 +53,7 @@ impl OutputFolder {
     /// # Errors
     /// [`OutputError`]; whatever was made is then removed.
     pub(crate) fn prepare(path: &Path) -> Result<Self, OutputError> {
+        check_place(path)?;
         let mut missing = Vec::new();
         for ancestor in path.ancestors().filter(|part| !part.as_os_str().is_empty()) {
             if ancestor.is_dir() {
@@ -56,6 +64,10 @@ impl OutputFolder {
                 return Err(OutputError::NotAFolder {
                     path: path.to_owned(),
                     file: ancestor.to_owned(),
+                    what: match ancestor.exists() {
+                        true => "a file",
+                        false => "a link that leads nowhere",
+                    },
                 });
             }
             missing.push(ancestor.to_owned());
@@ -137,6 +149,13 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let file = root.path().join("file");
         std::fs::write(&file, "").unwrap();
+        #[cfg(unix)]
+        {
+            let link = root.path().join("link");
+            std::os::unix::fs::symlink("nowhere", &link).unwrap();
+            let error = OutputFolder::prepare(&link).unwrap_err().to_string();
+            assert!(error.contains("is a link that leads nowhere"), "{error}");
+        }
         for path in [file.clone(), file.join("a/b")] {
             let error = OutputFolder::prepare(&path).unwrap_err();
             assert!(

@@ -39,8 +39,8 @@ pub(super) fn run(arguments: &PlotArguments) -> Result<Outcome, CommandError> {
         check_values(&stored.result, &stored.spec.settings.figures.at)?;
     }
     check_names(&stored)?;
-    let figures = arguments.run.join("figures");
-    let output = OutputFolder::prepare(arguments.out.as_deref().unwrap_or(&figures))?;
+    let figures = stored.run.figures();
+    let output = OutputFolder::prepare(&arguments.out.clone().map_or(figures, Ok)?)?;
     let drawn = draw_sweep(&stored.spec, &stored.result)?;
     let formats = &stored.spec.settings.figures.formats;
     let files = write_figures(&drawn, formats, output.path())?;

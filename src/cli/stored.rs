@@ -108,7 +108,12 @@ pub(super) fn diagnostic(error: &RunError) -> Diagnostic {
         RunError::InUse { .. } => {
             finding.remedy("wait until it has ended, or give another folder with `--out DIR`")
         }
-        RunError::NotOurs { .. } => finding.remedy("give another folder with `--out DIR`"),
+        RunError::NotOurs { .. } | RunError::Elsewhere { .. } => {
+            finding.remedy("give another folder with `--out DIR`")
+        }
+        RunError::Place { .. } => {
+            finding.remedy("give another folder with `--out DIR`, or rename the one that is read")
+        }
         RunError::NoJournal { .. } | RunError::Journal { .. } => {
             finding.remedy("leave `--resume` out: the run begins anew, and what is there is kept in its folder previous/")
         }

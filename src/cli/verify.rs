@@ -6,7 +6,7 @@ use super::args::VerifyArguments;
 use super::{CommandError, Outcome, conclude, interruptible};
 use crate::cancellation::Cancellation;
 use crate::continuation::Point;
-use crate::run::{Checked, Damage, StoredRun, check_folder, format_number};
+use crate::run::{Checked, Damage, RunError, StoredRun, check_folder, format_number};
 
 /// Checks every file against its checksum and prints those that are not as they were; solves some points again where
 /// that is asked for.
@@ -20,7 +20,14 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<Outcome, CommandError> 
         let (text, outcome) = files(check_folder(folder)?);
         return conclude(&text, outcome, folder);
     }
-    let run = StoredRun::open(folder)?;
+    let run = match StoredRun::open(folder) {
+        // Which files, is what is asked.
+        Err(RunError::Damaged { .. }) => {
+            let (text, outcome) = files(check_folder(folder)?);
+            return conclude(&text, outcome, folder);
+        }
+        run => run?,
+    };
     let (mut text, mut outcome) = files(run.damage()?);
     if arguments.recompute > 0 && outcome_allows(&run, outcome)? {
         let (threads, cancellation) = interruptible(None)?;

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use sha2::{Digest as _, Sha256};
 
 use super::atomic::write_durably;
+use super::place::read_text;
 use super::{RunError, journal, research_object};
 
 /// Name of the file.
@@ -39,7 +40,7 @@ impl Damage {
 pub(crate) type Checked = (usize, Vec<(PathBuf, Damage)>);
 
 /// Checksums by the names of files below a run's folder, with `/` between folders.
-type Sums = BTreeMap<String, String>;
+pub(super) type Sums = BTreeMap<String, String>;
 
 /// Writes the checksums of all files of a folder that holds these files and folders. A journal is not one of them: it
 /// grows.
@@ -105,6 +106,19 @@ pub(super) fn check(
     Ok(Some((whole, damaged)))
 }
 
+/// Refuses a folder in which one of these files, or folders with all that they hold, is not as the program left it;
+/// nothing is known of one without checksums.
+///
+/// # Errors
+/// [`RunError::Damaged`] with the first; as [`check`].
+pub(super) fn require(run: &Path, entries: &[&str]) -> Result<(), RunError> {
+    let checked = check(run, entries, entries)?;
+    match checked.and_then(|(_, damaged)| damaged.into_iter().next()) {
+        Some((path, damage)) => Err(RunError::Damaged { path, damage }),
+        None => Ok(()),
+    }
+}
+
 /// Removes the checksums of an ended run that goes on, and its figures as far as they are as the run left them: the run
 /// that goes on draws at other values.
 pub(super) fn reopen(run: &Path) {
@@ -115,9 +129,9 @@ pub(super) fn reopen(run: &Path) {
         if !is_below(name, "figures") || name.split('/').any(|part| part == "..") {
             continue;
         }
-        let mut found = Sums::new();
-        if add(run, name, &mut found).is_ok() && found.get(name) == Some(sum) {
-            let _ = std::fs::remove_file(run.join(name));
+        let path = run.join(name);
+        if is_whole(&path, sum) {
+            let _ = std::fs::remove_file(path);
         }
     }
     for name in [NAME, research_object::NAME] {
@@ -188,9 +202,19 @@ fn put(run: &Path, sums: &Sums) -> Result<(), RunError> {
     write_durably(&run.join(NAME), lines.collect::<String>().as_bytes())
 }
 
-fn read(run: &Path) -> Result<Option<Sums>, RunError> {
+/// Whether a file is there and has this checksum.
+pub(super) fn is_whole(path: &Path, wanted: &str) -> bool {
+    let is_file = path.metadata().is_ok_and(|found| found.is_file());
+    is_file && std::fs::read(path).is_ok_and(|bytes| sum(&bytes) == wanted)
+}
+
+/// The checksums of a folder; `None` where it has none.
+///
+/// # Errors
+/// [`RunError::Read`], [`RunError::Checksums`].
+pub(super) fn read(run: &Path) -> Result<Option<Sums>, RunError> {
     let path = run.join(NAME);
-    let text = match std::fs::read_to_string(&path) {
+    let text = match read_text(&path) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         text => text.map_err(|source| RunError::Read {
             path: path.clone(),

@@ -200,7 +200,7 @@ impl<T> Columns<'_, T> {
             source,
         };
         let broken = |error: csv::Error| unreadable(std::io::Error::other(error.to_string()));
-        let bytes = std::fs::read(path).map_err(unreadable)?;
+        let bytes = super::place::read(path).map_err(unreadable)?;
         let end = bytes.iter().rposition(|&byte| byte == b'\n');
         let whole = match complete {
             true => &bytes[..],

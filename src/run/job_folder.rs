@@ -7,6 +7,7 @@ use super::atomic::{clear_unfinished, sync_all, write_atomically};
 use super::checksums::Checked;
 use super::journal::differences;
 use super::lock::FolderLock;
+use super::place::{self, FIGURES, folder_in, read_text};
 use super::staging::Staging;
 use super::{Ending, Journal, RunError, checksums, curve, journal, plane_file, research_object};
 
@@ -70,7 +71,7 @@ impl Layout {
 
     /// A shard of a map.
     pub(crate) const MAP_SHARD: Self = Self {
-        entries: &["map.shard.json"],
+        entries: &["map.shard.json", checksums::NAME],
         ..Self::MAP
     };
 
@@ -111,7 +112,8 @@ impl Layout {
 
     /// That of the job whose files are in a folder.
     pub(super) fn of(folder: &Path) -> Option<Self> {
-        let all = [Self::SWEEP, Self::COMPARISON, Self::CURVES, Self::MAP];
+        let (sweep, comparison) = (Self::SWEEP, Self::COMPARISON);
+        let all = [sweep, comparison, Self::CURVES, Self::MAP, Self::MAP_SHARD];
         let mut all = all.into_iter();
         all.find(|layout| folder.join(layout.manifest()).is_file())
     }
@@ -129,11 +131,13 @@ impl Layout {
     /// Whether a folder holds a job that came to its end, and is of what `of` describes as TOML.
     ///
     /// # Errors
-    /// [`RunError::OtherSweep`], with every difference, where it is of something else; [`RunError::Json`].
+    /// [`RunError::OtherSweep`], with every difference, where it is of something else; [`RunError::Json`];
+    /// [`RunError::Damaged`] by its checksums.
     pub(crate) fn is_complete(&self, folder: &Path, of: &str) -> Result<bool, RunError> {
-        let Ok(text) = std::fs::read_to_string(folder.join(self.manifest())) else {
+        let Ok(text) = read_text(&folder.join(self.manifest())) else {
             return Ok(false);
         };
+        checksums::require(folder, &[self.manifest()])?;
         let there: serde_json::Value = serde_json::from_str(&text)?;
         let word = |key: &str| there[key].as_str();
         let made_of = word("made_of").or_else(|| word("sweep_file"));
@@ -166,6 +170,16 @@ pub fn check_folder(folder: &Path) -> Result<Option<Checked>, RunError> {
     }
 }
 
+/// Refuses a place at which no job's files can stand: the root of the file system, the inside of what another job has
+/// left, and a name that is not UTF-8, which no array store can have.
+///
+/// # Errors
+/// [`RunError::Place`].
+pub(crate) fn check_place(home: &Path) -> Result<(), RunError> {
+    let entries_of = |folder: &Path| Layout::of(folder).map(|layout| layout.entries);
+    place::check(home, &entries_of)
+}
+
 /// The folder of a job in the making, from which other writers are kept away. Dropped before it is closed, it leaves
 /// what was there, but for files that grow in their place.
 #[derive(Debug)]
@@ -182,7 +196,7 @@ enum Destination {
     /// Beside their place.
     Beside(Staging),
     /// There.
-    There { _lock: FolderLock },
+    There { lock: FolderLock },
 }
 
 impl JobFolder {
@@ -191,9 +205,10 @@ impl JobFolder {
     /// their place, of unfinished work when another one begins. Files that are not the job's are left alone.
     ///
     /// # Errors
-    /// [`RunError::InUse`], [`RunError::NotOurs`], [`RunError::Read`], [`RunError::Write`]; then the folder is as it
-    /// was.
+    /// [`RunError::Place`], [`RunError::InUse`], [`RunError::NotOurs`], [`RunError::Read`], [`RunError::Write`]; then
+    /// the folder is as it was.
     pub fn open(home: &Path, layout: Layout, goes_on: bool) -> Result<Self, RunError> {
+        check_place(home)?;
         std::fs::create_dir_all(home).map_err(|source| RunError::Write {
             path: home.to_owned(),
             source,
@@ -203,13 +218,13 @@ impl JobFolder {
             let lock = FolderLock::take(home)?;
             checksums::reopen(home);
             clear_unfinished(home, &["densities.zarr", "figures"]);
-            Destination::There { _lock: lock }
+            Destination::There { lock }
         } else {
             let staging = Staging::new(home, layout.entries)?.with(layout.about)?;
             if layout.grows {
                 let placed = staging.take_place(&[])?;
                 kept = placed.kept;
-                Destination::There { _lock: placed.lock }
+                Destination::There { lock: placed.lock }
             } else {
                 if !goes_on {
                     staging.keep_aside(&[layout.part])?;
@@ -248,11 +263,38 @@ impl JobFolder {
         }
     }
 
+    /// Where figures are drawn.
+    ///
+    /// # Errors
+    /// [`RunError::Elsewhere`].
+    pub(crate) fn figures(&self) -> Result<PathBuf, RunError> {
+        folder_in(&self.path(), FIGURES)
+    }
+
+    /// Refuses to go on where the folder was removed or moved meanwhile: what is written by names would be put
+    /// together of parts, or in another's place.
+    ///
+    /// # Errors
+    /// [`RunError::Gone`].
+    pub(crate) fn check(&self) -> Result<(), RunError> {
+        let lock = match &self.place {
+            Destination::Beside(staging) => staging.lock(),
+            Destination::There { lock } => lock,
+        };
+        match lock.holds() {
+            true => Ok(()),
+            false => Err(RunError::Gone {
+                path: self.home.clone(),
+            }),
+        }
+    }
+
     /// Writes files by their names.
     ///
     /// # Errors
-    /// [`RunError::Write`].
+    /// [`RunError::Gone`], [`RunError::Write`].
     pub(crate) fn write(&self, files: &[(String, String)]) -> Result<(), RunError> {
+        self.check()?;
         let path = self.path();
         let mut files = files.iter();
         files.try_for_each(|(name, text)| write_atomically(&path.join(name), text.as_bytes()))
@@ -274,14 +316,18 @@ impl JobFolder {
     pub(crate) fn give_up(self) {
         // One that cannot be removed can be gone on with.
         let _ = std::fs::remove_file(self.part());
+        if self.layout.grows {
+            let _ = std::fs::remove_file(self.home.join(self.layout.manifest()));
+        }
     }
 
     /// Writes the checksums, puts the files in their place and returns those that were not there yet; what an earlier
     /// job left goes below `previous/`. What was solved goes where the job is complete.
     ///
     /// # Errors
-    /// [`RunError::Read`], [`RunError::Manifest`] or [`RunError::Write`].
+    /// [`RunError::Gone`], [`RunError::Read`], [`RunError::Manifest`] or [`RunError::Write`].
     pub(crate) fn close(self, ending: Ending) -> Result<Vec<PathBuf>, RunError> {
+        self.check()?;
         let (part, path) = (self.part(), self.path());
         let files = match self.place {
             Destination::Beside(staging) => {

@@ -17,7 +17,7 @@ const TRIES: usize = 8;
 pub(super) struct FolderLock {
     path: PathBuf,
     /// The system's lock hangs on the open file: the process may be killed, and no stale lock is left.
-    _file: File,
+    file: File,
 }
 
 impl FolderLock {
@@ -47,7 +47,7 @@ impl FolderLock {
             // The holder before removes the file when it ends: a lock on a file without a name is none.
             if is_there(&file, &path) {
                 sign(&mut file).map_err(failed)?;
-                return Ok(Self { path, _file: file });
+                return Ok(Self { path, file });
             }
         }
         Err(RunError::InUse {
@@ -59,17 +59,27 @@ impl FolderLock {
 
 /// Who writes to a folder now; `None` where nobody does, or there is no telling.
 pub(super) fn holder_of(folder: &Path) -> Option<String> {
-    let mut file = File::open(folder.join(NAME)).ok()?;
+    let path = folder.join(NAME);
+    let mut file = path.is_file().then(|| File::open(path).ok())??;
     match file.try_lock_shared() {
         Err(TryLockError::WouldBlock) => Some(holder(&mut file)),
         _ => None,
     }
 }
 
+impl FolderLock {
+    /// Whether the folder is still the one whose lock was taken.
+    pub(super) fn holds(&self) -> bool {
+        is_there(&self.file, &self.path)
+    }
+}
+
 impl Drop for FolderLock {
     fn drop(&mut self) {
         // Removed while it is still held, so that nobody else's file is.
-        let _ = std::fs::remove_file(&self.path);
+        if self.holds() {
+            let _ = std::fs::remove_file(&self.path);
+        }
     }
 }
 

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::journal::differences;
+use super::place::read_text;
 use super::shards::{count, shard_folder};
-use super::{Layout, RunError};
+use super::{Layout, RunError, checksums};
 use crate::continuation::Shard;
 use crate::continuation::map::{MapChange, MapNode, MapShard};
 
@@ -108,13 +109,14 @@ fn is_of_map(folder: &Path) -> bool {
 /// The file of a shard; `None` where it is not there.
 fn read(folder: &Path) -> Result<Option<Content>, RunError> {
     let path = folder.join(FILE);
-    let Ok(text) = std::fs::read_to_string(&path) else {
+    let Ok(text) = read_text(&path) else {
         return Ok(None);
     };
     let content = serde_json::from_str(&text).map_err(|error| RunError::Plane {
         path,
         message: error.to_string(),
     })?;
+    checksums::require(folder, &[FILE])?;
     Ok(Some(content))
 }
 

@@ -71,6 +71,7 @@ mod map;
 mod map_shards;
 mod names;
 mod number;
+mod place;
 mod plane_file;
 mod points_table;
 mod provenance;
@@ -100,7 +101,7 @@ pub(crate) use bifurcations::{
 };
 pub(crate) use checksums::Checked;
 pub use checksums::Damage;
-pub(crate) use clean::{Removable, removable_runs, remove_run};
+pub(crate) use clean::{Removable, Stays, removable_runs, remove_run};
 pub use codimension::curve_files;
 pub use compare::ComparedRun;
 pub(crate) use compare::{compare_files, compare_tables};
@@ -112,6 +113,7 @@ pub use doubts::doubt_in_words;
 pub use export::{ExportFormat, export};
 pub(crate) use features_table::features_csv;
 pub(crate) use folder::{RunFolder, sweep_files};
+pub(crate) use job_folder::check_place;
 pub use job_folder::{JobFolder, Layout, check_folder};
 pub use journal::{Journal, JournalledSource};
 pub(crate) use manifest::Manifest;
@@ -120,6 +122,7 @@ pub use map::map_files;
 pub(crate) use map_shards::{MapShards, map_shard_file};
 pub use names::check_names;
 pub(crate) use number::{format_number, format_with_error};
+
 pub use plane_file::{StoredPlane, StoredPlaneContent};
 pub(crate) use points_table::points_csv;
 pub(crate) use provenance::Provenance;
@@ -174,12 +177,34 @@ pub enum RunError {
         holder: String,
     },
     /// A file or folder stands where a run's would, without the file that marks a run.
-    #[error("`{}` is there, but no {mark} beside it: it was not left by pbif, and is not touched", path.display())]
+    #[error("`{}` is there, but no {mark} beside it: whose it is cannot be told, and it is not touched", path.display())]
     NotOurs {
         /// What stands there.
         path: PathBuf,
         /// The file that would mark it.
         mark: &'static str,
+    },
+    /// A place at which no run can stand.
+    #[error("`{}` is no place for results: {why}", path.display())]
+    Place {
+        /// The place.
+        path: PathBuf,
+        /// Why not.
+        why: String,
+    },
+    /// A folder of a run that is a link out of it.
+    #[error("`{}` is a link to `{}`, out of the run: nothing is written there", path.display(), target.display())]
+    Elsewhere {
+        /// The link.
+        path: PathBuf,
+        /// Where it leads.
+        target: PathBuf,
+    },
+    /// A folder that was removed while it was written to.
+    #[error("`{}` was removed or moved while it was written to: what was solved since then has no place", path.display())]
+    Gone {
+        /// The folder.
+        path: PathBuf,
     },
     /// A line of the checksums that is none.
     #[error("{}, line {line}: not a checksum and a name", path.display())]

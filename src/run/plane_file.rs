@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use super::RunError;
-use super::checksums;
+use super::place::{FIGURES, folder_in, read_text};
+use super::{RunError, checksums};
 use crate::continuation::curve::{
     CodimensionTwoKind, Curve, CurveEnd, CurveOrigin, CurvePoint, CurveWork, DegeneratePoint,
     EndReason, Plane,
@@ -167,14 +167,15 @@ impl StoredPlane {
     /// Opens the file of a folder; `None` where the folder is of no map and of no curves.
     ///
     /// # Errors
-    /// [`RunError::Read`], [`RunError::Plane`], and [`RunError::Version`] where it is of another version.
+    /// [`RunError::Read`], [`RunError::Plane`], [`RunError::Version`] where it is of another version, and
+    /// [`RunError::Damaged`] by the checksums of the folder.
     pub fn open(folder: &Path) -> Result<Option<Self>, RunError> {
-        let is_of = |mark: &str| folder.join(mark).is_file();
-        if !is_of("map.json") && !is_of("curve.json") {
+        let marks = ["map.json", "curve.json"].into_iter();
+        let Some(mark) = marks.into_iter().find(|mark| folder.join(mark).is_file()) else {
             return Ok(None);
-        }
+        };
         let path = folder.join(NAME);
-        let text = std::fs::read_to_string(&path);
+        let text = read_text(&path);
         let text = text.map_err(|source| RunError::Read {
             path: path.clone(),
             source,
@@ -194,7 +195,16 @@ impl StoredPlane {
                 wanted,
             });
         }
+        checksums::require(folder, &[mark, NAME])?;
         Ok(Some(Self { path, all }))
+    }
+
+    /// Where its figures are drawn.
+    ///
+    /// # Errors
+    /// [`RunError::Elsewhere`].
+    pub(crate) fn figures(&self) -> Result<PathBuf, RunError> {
+        folder_in(self.path.parent().unwrap_or(&self.path), FIGURES)
     }
 
     /// Notes in the checksums of the folder that its figures were drawn again.

@@ -65,7 +65,7 @@ const PARTS: [(&str, &str, &str); 10] = [
 /// [`RunError::Read`], [`RunError::Manifest`] or [`RunError::Write`].
 pub(super) fn write(run: &Path) -> Result<(), RunError> {
     let file = run.join("run.json");
-    let bytes = std::fs::read(&file).map_err(|source| RunError::Read {
+    let bytes = super::place::read(&file).map_err(|source| RunError::Read {
         path: file.clone(),
         source,
     })?;

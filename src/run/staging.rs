@@ -70,6 +70,11 @@ impl Staging {
         &self.home
     }
 
+    /// What keeps other writers away.
+    pub(super) fn lock(&self) -> &FolderLock {
+        &self.lock
+    }
+
     /// The folder to write the new files to.
     pub(super) fn fresh(&self) -> PathBuf {
         self.room.path().join("fresh")

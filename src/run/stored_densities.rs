@@ -7,6 +7,7 @@ use serde_json::Value;
 use zarrs::array::{Array, ArraySubset};
 use zarrs::filesystem::FilesystemStore;
 
+use super::place::check_files;
 use super::{RunError, arrays};
 use crate::continuation::Subject;
 use crate::density::{
@@ -216,6 +217,14 @@ struct Opened {
 
 impl Opened {
     fn new(path: &Path) -> Result<Self, RunError> {
+        // The library waits for pipes, and knows no other names.
+        check_files(path)?;
+        if path.to_str().is_none() {
+            return Err(RunError::Place {
+                path: path.to_owned(),
+                why: "its name is not UTF-8, which array stores must have".to_owned(),
+            });
+        }
         let store = FilesystemStore::new(path).map_err(|error| unreadable(path, error))?;
         let entries = std::fs::read_dir(path).map_err(|error| unreadable(path, error))?;
         let mut names: Vec<String> = entries

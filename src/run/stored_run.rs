@@ -7,6 +7,7 @@ use serde::Deserialize;
 
 use super::checks::read_checks;
 use super::manifest::{Typed, hash};
+use super::place::{FIGURES, folder_in, read};
 use super::points_table::read_points;
 use super::sealing::seal_after_kill;
 use super::stored_densities::StoredDensities;
@@ -60,7 +61,7 @@ impl StoredRun {
     ///
     /// # Errors
     /// [`RunError::NotARun`], [`RunError::Read`], [`RunError::Manifest`], [`RunError::Version`],
-    /// [`RunError::Hash`].
+    /// [`RunError::Hash`]; [`RunError::Damaged`] by its checksums.
     pub fn open(path: &Path) -> Result<Self, RunError> {
         let file = path.join("run.json");
         if !file.is_file() {
@@ -72,7 +73,7 @@ impl StoredRun {
             path: file.clone(),
             message,
         };
-        let bytes = std::fs::read(&file).map_err(|source| RunError::Read {
+        let bytes = read(&file).map_err(|source| RunError::Read {
             path: file.clone(),
             source,
         })?;
@@ -96,6 +97,7 @@ impl StoredRun {
         if manifest.ending == Ending::Complete {
             seal_after_kill(path);
         }
+        checksums::require(path, &["run.json"])?;
         Ok(Self {
             path: path.to_owned(),
             resolved,
@@ -266,11 +268,7 @@ impl StoredRun {
     /// without.
     fn check_sums(&self) -> Result<(), RunError> {
         let entries = ["run.json", "points.csv", "checks.csv", "densities.zarr"];
-        let damaged = checksums::check(&self.path, Layout::SWEEP.entries, &entries)?;
-        match damaged.and_then(|(_, damaged)| damaged.into_iter().next()) {
-            Some((path, damage)) => Err(RunError::Damaged { path, damage }),
-            None => Ok(()),
-        }
+        checksums::require(&self.path, &entries)
     }
 
     /// How many files are as the run left them, and those that are not; `None` for a run without checksums: one that is
@@ -280,6 +278,14 @@ impl StoredRun {
     /// [`RunError::Read`], [`RunError::Checksums`].
     pub fn damage(&self) -> Result<Option<Checked>, RunError> {
         checksums::check(&self.path, Layout::SWEEP.entries, &[])
+    }
+
+    /// Where its figures are drawn.
+    ///
+    /// # Errors
+    /// [`RunError::Elsewhere`].
+    pub(crate) fn figures(&self) -> Result<PathBuf, RunError> {
+        folder_in(&self.path, FIGURES)
     }
 
     /// Takes the figures that are there for those of the run: they were drawn again.

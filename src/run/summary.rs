@@ -5,7 +5,8 @@ use std::time::SystemTime;
 
 use serde::Deserialize;
 
-use super::{Ending, RunError, StoredRun, curve, lock};
+use super::place::read;
+use super::{Ending, RunError, StoredRun, checksums, curve, lock};
 
 /// Folders below one another that are looked into: `output/NAME/shards/1-of-4/previous/2` is five deep.
 const DEEPEST: usize = 6;
@@ -62,6 +63,7 @@ impl RunSummary {
     /// As [`StoredRun::open`]; [`RunError::Manifest`] when the sweep in it lacks what every sweep has.
     pub fn read(path: &Path) -> Result<Self, RunError> {
         let run = StoredRun::open(path)?;
+        checksums::require(path, &["bifurcations.json"])?;
         let file = path.join("run.json");
         let sweep = run.sweep();
         let text = |table: &str, key: &str| sweep[table][key].as_str().map(str::to_owned);
@@ -117,7 +119,7 @@ impl RunSummary {
 
 /// The rows of a run but its end points; nothing where they are not there or cannot be read.
 fn rows(path: &Path) -> Option<Vec<FoundRow>> {
-    let bytes = std::fs::read(path).ok()?;
+    let bytes = read(path).ok()?;
     let mut rows: Vec<FoundRow> = serde_json::from_slice(&bytes).ok()?;
     rows.retain(|row| !row.label.starts_with("EP"));
     Some(rows)

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::RunError;
+use super::place::read;
 
 /// Gives a file or folder a second place: files are linked, and copied where the file system cannot link. What stands
 /// in the two places is then never changed, only replaced, so either may be rewritten or removed. Nothing where `from`
@@ -60,8 +61,7 @@ pub(super) fn is_part(part: &Path, whole: &Path) -> bool {
     if sizes[0].is_none() || sizes[0] != sizes[1] {
         return false;
     }
-    is_same_file(part, whole)
-        || matches!((std::fs::read(part), std::fs::read(whole)), (Ok(a), Ok(b)) if a == b)
+    is_same_file(part, whole) || matches!((read(part), read(whole)), (Ok(a), Ok(b)) if a == b)
 }
 
 /// Whether two names are of one file.

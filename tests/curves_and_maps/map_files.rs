@@ -20,6 +20,11 @@ fn a_map_in_shards_is_the_map_in_one_piece() {
     shard("1/3");
     shard("2/3");
     shard("2/3").says(&["the shard is complete"]);
+    let file = "out/shards/1-of-3/map.shard.json";
+    let whole = room.read(file);
+    room.write(file, format!("{whole}\n"));
+    room.refused("merge out --quiet", &[file, "is changed"]);
+    room.write(file, whole);
     room.solved("merge out --quiet");
 
     // The nodes are the same, and so are the curves, to the tolerance of the solver.
@@ -74,6 +79,18 @@ fn the_program_makes_maps_and_says_what_is_wrong_with_them() {
         ("cells.x.count=9", "cannot be set for a stored run"),
     ] {
         room.refused(&format!("plot out --quiet {more}"), &[words]);
+    }
+    // What was altered is not drawn.
+    for file in ["out/plane.json", "out/map.json"] {
+        let whole = room.read(file);
+        room.write(file, format!("{whole}\n"));
+        for line in [
+            "plot out --quiet --out more",
+            "explore out --html more.html",
+        ] {
+            room.refused(line, &[file, "is changed"]);
+        }
+        room.write(file, whole);
     }
     // Complete, there is nothing to go on with; of another sweep it is refused.
     room.done(&format!("{sweep} --resume"))

@@ -137,6 +137,7 @@ fn a_run_that_was_killed_before_its_journal_was_there_begins() {
     // Where points are there, a missing journal is told.
     let mut killed = manifest(&room, "run");
     killed["ending"] = "running".into();
+    std::fs::remove_file(room.path("run/checksums.sha256")).unwrap();
     room.write("run/run.json", killed.to_string());
     room.refused(&line(sweep, "run", "--resume"), &["journal.bin"]);
 }

@@ -6,15 +6,17 @@ use std::path::Path;
 
 use super::CommandError;
 use crate::PAGE;
+use crate::run::check_place;
 use crate::sweep_file::Diagnostic;
 
 /// Refuses a place at which something else than a page of this program stands; `force` lets any other regular file be
 /// replaced.
 ///
 /// # Errors
-/// [`CommandError::Input`] with what stands there.
+/// [`CommandError::Input`] with what stands there; [`CommandError::Run`] where no results can.
 pub(super) fn check(file: &Path, force: bool) -> Result<(), CommandError> {
     // What a link leads to would be somebody else's: the link itself is what is judged.
+    check_place(file)?;
     let Ok(found) = file.symlink_metadata() else {
         return Ok(());
     };

@@ -61,8 +61,8 @@ pub(super) fn run(
         [] => figures.draw_all()?,
         words => figures.draw_named(words)?,
     };
-    let beside = arguments.run.join("figures");
-    let output = OutputFolder::prepare(arguments.out.as_deref().unwrap_or(&beside))?;
+    let beside = stored.figures();
+    let output = OutputFolder::prepare(&arguments.out.clone().map_or(beside, Ok)?)?;
     let files = write_figures(&figures, &settings.figures.formats, output.path())?;
     if files.is_empty() {
         return super::super::print("`figures.formats` is an empty list: nothing to draw\n");
