@@ -1,16 +1,21 @@
 //! `pbif clean`: removes earlier versions, unfinished runs and merged shards, after asking.
 
 use std::io::{self, BufRead as _, IsTerminal as _, Write as _};
+use std::path::PathBuf;
 
 use super::args::CleanArguments;
 use super::{CommandError, Outcome, print};
-use crate::run::{Removable, find_runs, removable_runs, remove_run};
+use crate::run::{Removable, Stays, find_runs, removable_runs, remove_run};
 use crate::sweep_file::{Diagnostic, bytes_in_words};
 
-/// Lists what may go, asks, and removes it.
+/// Files that are named one by one where they stay.
+const NAMED: usize = 20;
+
+/// Lists what may go, asks, and removes it; names what stays.
 ///
 /// # Errors
-/// [`CommandError::Input`] when there is no run, or nobody to ask; [`CommandError::Run`] when a file cannot be removed.
+/// [`CommandError::Input`] when there is no run, or nobody to ask; [`CommandError::Run`] when a run cannot be read, or
+/// is written to.
 pub(super) fn run(arguments: &CleanArguments) -> Result<Outcome, CommandError> {
     let folder = &arguments.folder;
     if find_runs(folder).is_empty() {
@@ -35,12 +40,34 @@ pub(super) fn run(arguments: &CleanArguments) -> Result<Outcome, CommandError> {
     }
     // Earlier versions of an unfinished run stand in its folder: the innermost go first.
     going.reverse();
+    let mut stays = Vec::new();
     for (done, one) in going.iter().enumerate() {
-        remove_run(&one.path).map_err(|error| {
-            CommandError::from(error).after(format!("{done} of {} runs were removed", going.len()))
+        let removal = remove_run(&one.path).map_err(|error| {
+            let others = count(going.len());
+            CommandError::from(error).after(format!("{done} of {others} were removed"))
         })?;
+        stays.extend(removal.stays);
     }
-    print(&format!("{} removed\n", count(going.len())))
+    let is_done = |(_, why): &(PathBuf, Stays)| !matches!(why, Stays::Refused(_));
+    print(&format!("{} removed\n{}", count(going.len()), kept(&stays)))?;
+    Ok(match stays.iter().all(is_done) {
+        true => Outcome::Complete,
+        false => Outcome::Partial,
+    })
+}
+
+/// What stays, and why.
+fn kept(stays: &[(PathBuf, Stays)]) -> String {
+    if stays.is_empty() {
+        return String::new();
+    }
+    let named = stays.iter().take(NAMED);
+    let lines = named.map(|(path, why)| format!("  {}: {why}\n", path.display()));
+    let mut text = format!("what stays\n{}", lines.collect::<String>());
+    if stays.len() > NAMED {
+        text += &format!("  and {} others\n", stays.len() - NAMED);
+    }
+    text
 }
 
 fn count(runs: usize) -> String {

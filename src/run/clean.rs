@@ -3,11 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use super::archive::PREVIOUS;
+use super::atomic::clear_unfinished;
 use super::lock::FolderLock;
 use super::{Ending, Layout, RunError, RunSummary, checksums, curve, find_runs};
+use crate::UNFINISHED;
 
-/// The folder of figures, in which users put their own.
-const FIGURES: &str = "figures";
+/// Folders of a run that hold runs.
+const OF_RUNS: [&str; 2] = [PREVIOUS, "shards"];
 
 /// A run that may go.
 #[derive(Debug)]
@@ -68,48 +70,82 @@ fn size(path: &Path) -> u64 {
     entries.map(|entry| size(&entry.path())).sum()
 }
 
-/// Removes what a run has left in its folder, and the folder itself where nothing else is in it. The file that marks
-/// the run goes last, so that one whose removal was cut short can be removed again.
+/// What became of the files of a run that was removed.
+#[derive(Debug, Default)]
+pub(crate) struct Removal {
+    /// How many files are gone.
+    pub(crate) files: usize,
+    /// What is still there, and why.
+    pub(crate) stays: Vec<(PathBuf, Stays)>,
+}
+
+/// Why a file stays where a run is removed.
+#[derive(Debug)]
+pub(crate) enum Stays {
+    /// The run has not left it.
+    Foreign,
+    /// It holds something else than the run left.
+    Changed,
+    /// The system does not let it go.
+    Refused(std::io::Error),
+}
+
+impl std::fmt::Display for Stays {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Foreign => formatter.write_str("not of the run"),
+            Self::Changed => formatter.write_str("changed since the run ended"),
+            Self::Refused(error) => write!(formatter, "cannot be removed: {error}"),
+        }
+    }
+}
+
+/// Removes what a run has left in its folder and nobody has changed, and the folder itself where nothing else is in it.
+/// The file that marks the run goes last, so that one whose removal was cut short can be removed again.
 ///
 /// # Errors
-/// [`RunError::NotARun`], [`RunError::InUse`], [`RunError::Write`].
-pub(crate) fn remove_run(path: &Path) -> Result<(), RunError> {
+/// [`RunError::NotARun`], [`RunError::InUse`], [`RunError::Write`] of the lock, [`RunError::Read`] and
+/// [`RunError::Checksums`]; then nothing was removed.
+pub(crate) fn remove_run(path: &Path) -> Result<Removal, RunError> {
     if !path.join(Layout::SWEEP.manifest()).is_file() {
         return Err(RunError::NotARun {
             path: path.to_owned(),
         });
     }
     let lock = FolderLock::take(path)?;
-    remove_curves(&path.join(curve::FOLDER))?;
-    remove_entries(path, Layout::SWEEP.entries)?;
+    let mut removal = Removal::default();
+    remove_left(path, Layout::SWEEP, &mut removal)?;
+    remove_curves(&path.join(curve::FOLDER), &mut removal)?;
+    clear_unfinished(path, &[]);
     drop(lock);
+    removal.keep_foreign(path);
     // Only empty folders can be removed so.
     let mut empty = Some(path);
     for _ in 0..2 {
         empty = empty.filter(|folder| std::fs::remove_dir(folder).is_ok());
         let parent = empty.and_then(Path::parent);
-        let ours = [PREVIOUS, "shards"];
         empty = parent.filter(|folder| {
-            folder
-                .file_name()
-                .is_some_and(|name| ours.iter().any(|our| name == *our))
+            let name = folder.file_name();
+            name.is_some_and(|name| OF_RUNS.iter().any(|our| name == *our))
         });
     }
-    Ok(())
+    removal.stays.sort_by(|one, other| one.0.cmp(&other.0));
+    Ok(removal)
 }
 
 /// Removes the curves that were followed from a run, with the earlier ones in their folders.
-fn remove_curves(folder: &Path) -> Result<(), RunError> {
+fn remove_curves(folder: &Path, removal: &mut Removal) -> Result<(), RunError> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     for path in entries.map(|entry| entry.path()) {
         let ours = Layout::CURVES;
         let is_ours = path.join(ours.manifest()).is_file() || ours.has_part(&path);
-        if !path.is_dir() || !is_ours {
+        if !path.is_dir() || path.is_symlink() || !is_ours {
             continue;
         }
         let lock = FolderLock::take(&path)?;
-        remove_curves(&path.join(PREVIOUS))?;
-        remove_entries(&path, &[ours.entries, &[ours.part]].concat())?;
+        remove_curves(&path.join(PREVIOUS), removal)?;
+        remove_left(&path, ours, removal)?;
+        clear_unfinished(&path, &[]);
         drop(lock);
         // Only empty folders can be removed so.
         let _ = std::fs::remove_dir(&path);
@@ -118,24 +154,116 @@ fn remove_curves(folder: &Path) -> Result<(), RunError> {
     Ok(())
 }
 
-/// Removes files and folders from the last to the first, which marks the folder; of the figures those that are as the
-/// program left them: an annotated one is somebody's work.
-fn remove_entries(path: &Path, entries: &[&str]) -> Result<(), RunError> {
-    checksums::reopen(path);
-    let _ = std::fs::remove_dir(path.join(FIGURES));
-    for entry in entries.iter().rev().filter(|entry| **entry != FIGURES) {
-        let place = path.join(entry);
-        let removed = match place.symlink_metadata() {
-            Ok(data) if data.is_dir() => std::fs::remove_dir_all(&place),
-            Ok(_) => std::fs::remove_file(&place),
-            Err(_) => continue,
-        };
-        removed.map_err(|source| RunError::Write {
-            path: place,
-            source,
-        })?;
+/// Removes the files of a job, those that its checksums name first, the one that marks the folder last. A job that was
+/// killed has no checksums: of it go tables, journal, and what is named as parts of an array store are.
+fn remove_left(folder: &Path, layout: Layout, removal: &mut Removal) -> Result<(), RunError> {
+    let sums = checksums::read(folder)?;
+    let manifest = layout.manifest();
+    let mut files = Vec::new();
+    for entry in layout.entries.iter().rev() {
+        list(folder, entry, &mut files);
     }
+    for name in files
+        .iter()
+        .filter(|name| *name != manifest && *name != checksums::NAME)
+    {
+        let path = folder.join(name);
+        let sum = sums.as_ref().map(|sums| sums.get(name));
+        match sum {
+            _ if name == layout.part || is_unfinished(name) => removal.remove(path),
+            Some(Some(sum)) if checksums::is_whole(&path, sum) => removal.remove(path),
+            Some(Some(_)) => removal.stays.push((path, Stays::Changed)),
+            None if layout.entries.contains(&name.as_str()) || is_of_store(name) => {
+                removal.remove(path);
+            }
+            _ => {}
+        }
+    }
+    removal.remove(folder.join(layout.part));
+    let marks = folder.join(manifest);
+    let is_left = |sum: &String| checksums::is_whole(&marks, sum);
+    let sum = sums.as_ref().and_then(|sums| sums.get(manifest));
+    match sum.is_none_or(is_left) {
+        true => {
+            removal.remove(folder.join(checksums::NAME));
+            removal.remove(marks);
+        }
+        // It is known to be changed as long as its checksum is there.
+        false => removal.stays.push((marks, Stays::Changed)),
+    }
+    let folders = layout.entries.iter().map(|entry| folder.join(entry));
+    folders.for_each(|entry| remove_empty(&entry));
     Ok(())
+}
+
+/// Names of a file, or of the files below a folder, without following links.
+fn list(folder: &Path, name: &str, names: &mut Vec<String>) {
+    let path = folder.join(name);
+    let Ok(found) = path.symlink_metadata() else {
+        return;
+    };
+    if !found.is_dir() {
+        names.push(name.to_owned());
+        return;
+    }
+    let entries = std::fs::read_dir(path).into_iter().flatten().flatten();
+    for entry in entries.filter_map(|entry| entry.file_name().into_string().ok()) {
+        list(folder, &format!("{name}/{entry}"), names);
+    }
+}
+
+/// Whether a file is one in the making that a kill left.
+fn is_unfinished(name: &str) -> bool {
+    let last = name.rsplit('/').next();
+    last.is_some_and(|last| last.starts_with(UNFINISHED))
+}
+
+/// Whether a name is that of metadata or a chunk in an array store.
+fn is_of_store(name: &str) -> bool {
+    let parts: Vec<&str> = name.split('/').collect();
+    let is_store = parts[0].starts_with("densities.zarr");
+    let is_number = |part: &&str| part.bytes().all(|byte| byte.is_ascii_digit());
+    let is_chunk = parts.get(2) == Some(&"c") && parts.iter().skip(3).all(is_number);
+    is_store && (parts.last() == Some(&"zarr.json") || is_chunk)
+}
+
+/// Removes the empty folders below a folder, and itself where nothing is left in it.
+fn remove_empty(folder: &Path) {
+    if folder.symlink_metadata().is_ok_and(|found| found.is_dir()) {
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        entries.for_each(|entry| remove_empty(&entry.path()));
+        let _ = std::fs::remove_dir(folder);
+    }
+}
+
+impl Removal {
+    /// Removes a file that is there.
+    fn remove(&mut self, path: PathBuf) {
+        match std::fs::remove_file(&path) {
+            Ok(()) => self.files += 1,
+            Err(_) if path.symlink_metadata().is_err() => {}
+            Err(error) => self.stays.push((path, Stays::Refused(error))),
+        }
+    }
+
+    /// Adds what stands in the folder of a run and is not told of yet; runs below it are not of it.
+    fn keep_foreign(&mut self, run: &Path) {
+        let mut open = vec![run.to_owned()];
+        while let Some(folder) = open.pop() {
+            for entry in std::fs::read_dir(&folder).into_iter().flatten().flatten() {
+                let path = entry.path();
+                let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
+                let holds_runs =
+                    folder == run && OF_RUNS.iter().any(|our| entry.file_name() == *our);
+                match is_folder {
+                    true if holds_runs => {}
+                    true => open.push(path),
+                    false if self.stays.iter().any(|(known, _)| *known == path) => {}
+                    false => self.stays.push((path, Stays::Foreign)),
+                }
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -147,25 +275,61 @@ mod tests {
         let home = tempfile::tempdir().unwrap();
         let run = home.path().join("previous/1");
         std::fs::create_dir_all(run.join("figures")).unwrap();
-        for name in ["run.json", "points.csv", "figures/a.svg", "figures/b.svg"] {
+        std::fs::create_dir_all(run.join("densities.zarr/p_x/c/0")).unwrap();
+        let left = [
+            "run.json",
+            "points.csv",
+            "checks.csv",
+            "figures/a.svg",
+            "figures/b.svg",
+        ];
+        let store = ["densities.zarr/zarr.json", "densities.zarr/p_x/c/0/0"];
+        for name in left.iter().chain(&store) {
             std::fs::write(run.join(name), name).unwrap();
         }
         checksums::write(&run, Layout::SWEEP.entries).unwrap();
-        for name in ["figures/a.svg", "figures/mine.svg", "notes.txt"] {
+        let changed = ["figures/a.svg", "points.csv"];
+        let foreign = ["densities.zarr/notes.txt", "figures/mine.svg", "notes.txt"];
+        for name in changed.iter().chain(&foreign) {
             std::fs::write(run.join(name), "mine").unwrap();
         }
-        remove_run(&run).unwrap();
+        let removal = remove_run(&run).unwrap();
+        let told = |(path, why): &(PathBuf, Stays)| {
+            let name = path.strip_prefix(&run).unwrap().to_str().unwrap();
+            (name.to_owned(), matches!(why, Stays::Changed))
+        };
+        let told: Vec<_> = removal.stays.iter().map(told).collect();
+        let mut wanted: Vec<_> = changed
+            .iter()
+            .map(|name| (name.to_string(), true))
+            .collect();
+        wanted.extend(foreign.iter().map(|name| (name.to_string(), false)));
+        wanted.sort();
+        // Six files, one of them that of the checksums.
+        assert_eq!((told, removal.files), (wanted, 6));
         let names = |folder: &Path| {
             let entries = std::fs::read_dir(folder).unwrap().flatten();
             let mut names: Vec<_> = entries.map(|entry| entry.file_name()).collect();
             names.sort();
             names
         };
-        assert_eq!(names(&run), ["figures", "notes.txt"]);
+        let all = ["densities.zarr", "figures", "notes.txt", "points.csv"];
+        assert_eq!(names(&run), all);
+        assert_eq!(names(&run.join("densities.zarr")), ["notes.txt"]);
         assert_eq!(names(&run.join("figures")), ["a.svg", "mine.svg"]);
-        std::fs::remove_dir_all(run.join("figures")).unwrap();
+        for name in ["figures", "densities.zarr"] {
+            std::fs::remove_dir_all(run.join(name)).unwrap();
+        }
+        std::fs::remove_file(run.join("points.csv")).unwrap();
         assert!(matches!(remove_run(&run), Err(RunError::NotARun { .. })));
-        // Without notes nothing is left, the folder of earlier runs neither.
+        // Without notes nothing is left of a run that was killed, the folder of earlier runs neither.
+        for name in store
+            .iter()
+            .chain(&["points.csv", "densities.zarr/.pbif-x"])
+        {
+            std::fs::create_dir_all(run.join(name).parent().unwrap()).unwrap();
+            std::fs::write(run.join(name), "").unwrap();
+        }
         std::fs::remove_file(run.join("notes.txt")).unwrap();
         std::fs::write(run.join("run.json"), "{}").unwrap();
         remove_run(&run).unwrap();

@@ -73,14 +73,20 @@ fn earlier_and_unfinished_runs_are_removed_when_asked_and_nothing_else() {
     sweep(&room, "--out b");
     unfinish(&room, "b");
     room.write("a/previous/1/notes.txt", "mine");
+    room.write("a/previous/1/densities.zarr/notes.txt", "mine");
+    room.write("a/previous/1/points.csv", "by hand");
     // Without a terminal nobody can be asked.
     let words = ["earlier", "a/previous/1", "unfinished", "2 runs", "--yes"];
     room.refused("clean .", &words);
     assert!(room.holds("a/previous/1/run.json") && room.holds("b/run.json"));
     room.done("clean . --unfinished --yes");
     assert!(!room.holds("b") && room.holds("a/previous/1/run.json"));
-    room.done("clean . --yes");
-    assert_eq!(room.files("a/previous/1", &[]).len(), 1);
+    room.done("clean . --yes").says(&[
+        "1 run removed",
+        "a/previous/1/densities.zarr/notes.txt: not of the run",
+        "a/previous/1/points.csv: changed since the run ended",
+    ]);
+    assert_eq!(room.files("a/previous/1", &[]).len(), 3);
     room.done("verify a").says(&["as the run left them"]);
     room.refused("clean nowhere", &["holds no runs"]);
 }

@@ -52,10 +52,10 @@ Examples:
   pbif clean output/coulomb_fc              lists what may go, and asks
   pbif clean output --earlier --yes         every earlier version below output/, without asking
 
-What may go: earlier versions (previous/), unfinished runs, and shards that were merged. Only files that pbif wrote are removed: notes
-and figures that were changed stay.
+What may go: earlier versions (previous/), unfinished runs, and shards that were merged. Only files that pbif wrote and nobody has changed
+since are removed: notes, tables and figures that were changed stay, and are named.
 
-Exit status: 0 removed, or nothing to remove; 1 not removed because the answer was no; 2 cannot ask or remove.";
+Exit status: 0 removed, or nothing to remove; 1 the answer was no, or a file cannot be removed; 2 cannot ask, or not a run.";
 
 pub(super) const EXPORT_EXAMPLES: &str = "\
 Examples:
