@@ -54,7 +54,7 @@ pub use curve::CurveJob;
 pub(crate) use curve::{check_curves, curve_rows};
 pub use map::{MapJob, MapShardJob};
 pub use sweep::SweepJob;
-pub(crate) use sweep::{draw_sweep, sweep_outcome};
+pub(crate) use sweep::{QUICK_POINTS, draw_sweep, sweep_outcome};
 
 /// Work that a sweep file asks for.
 pub trait Job {
@@ -143,6 +143,13 @@ pub trait Job {
         seconds: f64,
     ) -> Result<(), RunError> {
         folder.write(&self.files(found, seconds)?)
+    }
+
+    /// Whether there is time for all of its files. An interrupted job ends within two seconds: what takes longer is
+    /// left out, and can be made from what is there.
+    fn has_time(&self, found: &Self::Found) -> bool {
+        let _ = found;
+        true
     }
 
     /// What is written last.
@@ -296,11 +303,14 @@ pub fn carry_out<J: Job>(
         context.say(&format!("the earlier run is kept in {}", kept.display()));
     }
     let clock = Instant::now();
-    let Some(found) = job.solve(&folder, goes_on, &context)? else {
-        if job.kept() == 0 && !goes_on {
-            folder.give_up();
+    let found = match job.solve(&folder, goes_on, &context) {
+        Ok(Some(found)) => found,
+        ended => {
+            if job.kept() == 0 && !goes_on {
+                folder.give_up();
+            }
+            return ended.map(|_| None);
         }
-        return Ok(None);
     };
     let mut seconds = PhaseSeconds {
         sweep: clock.elapsed().as_secs_f64(),
@@ -310,16 +320,20 @@ pub fn carry_out<J: Job>(
     job.write(&found, &folder, seconds.sweep)?;
     seconds.tables = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
-    let formats = &job.sweep().settings.figures.formats;
-    write_figures(
-        &job.figures(&found, &context)?,
-        formats,
-        &folder.path().join("figures"),
-    )?;
+    let has_time = job.has_time(&found);
+    if has_time {
+        let formats = &job.sweep().settings.figures.formats;
+        let figures = job.figures(&found, &context)?;
+        folder.check()?;
+        write_figures(&figures, formats, &folder.figures()?)?;
+    }
     seconds.figures = clock.elapsed().as_secs_f64();
     job.seal(&found, seconds)?;
     let outcome = job.outcome(&found);
-    let files = folder.close(outcome.ending())?;
+    let files = match has_time {
+        true => folder.close(outcome.ending())?,
+        false => Vec::new(),
+    };
     Ok(Some(Done {
         found,
         outcome,

@@ -17,6 +17,9 @@ use crate::run::{
 use crate::sweep_file::{Report, Sweep};
 use recorder::Recorder;
 
+/// Points of an interrupted sweep up to which its store is put in order, summed and drawn.
+pub(crate) const QUICK_POINTS: usize = 200;
+
 /// A sweep that is to be run.
 pub struct SweepJob<'a> {
     sweep: &'a Sweep,
@@ -192,6 +195,7 @@ impl Job for SweepJob<'_> {
         let source = JournalledSource::of_sweep(source, &journal, points);
         let mut recorder = Recorder {
             sweep: self.sweep,
+            folder,
             run,
             manifest,
             context,
@@ -258,9 +262,19 @@ impl Job for SweepJob<'_> {
         }
     }
 
-    fn write(&mut self, found: &SweepResult, _: &JobFolder, _: f64) -> Result<(), RunError> {
-        let begun = self.begun.as_mut();
-        begun.map_or(Ok(()), |(run, _)| run.finish(found))
+    fn write(&mut self, found: &SweepResult, folder: &JobFolder, _: f64) -> Result<(), RunError> {
+        folder.check()?;
+        let has_time = self.has_time(found);
+        match &mut self.begun {
+            Some((run, _)) if has_time => run.finish(found),
+            Some((run, _)) => run.break_off(found),
+            None => Ok(()),
+        }
+    }
+
+    fn has_time(&self, found: &SweepResult) -> bool {
+        let is_stopped = found.interrupted && !matches!(self.part, Part::Gathered(..));
+        !is_stopped || found.points.len() <= QUICK_POINTS
     }
 
     fn seal(&mut self, found: &SweepResult, seconds: PhaseSeconds) -> Result<(), RunError> {

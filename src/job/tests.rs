@@ -100,6 +100,31 @@ fn done(sweep: &Sweep, home: &Path) -> SweepResult {
 }
 
 #[test]
+fn a_sweep_that_panics_goes_on_to_the_same_bytes() {
+    let room = tempfile::tempdir().unwrap();
+    let (whole, cut) = (room.path().join("whole"), room.path().join("cut"));
+    let (sweep, _) = exact();
+    done(&sweep, &whole);
+    let (never, mut job) = (Cancellation::new(), SweepJob::new(&sweep));
+    #[allow(clippy::panic)]
+    let observer = |step: &Progress<'_>| {
+        if matches!(step, Progress::Done { done: 4, .. }) {
+            panic!("on purpose");
+        }
+    };
+    let carried = std::panic::AssertUnwindSafe(|| {
+        let _ = carry_out(&mut job, &cut, Start::Anew, &never, &observer);
+    });
+    assert!(std::panic::catch_unwind(carried).is_err());
+    assert_eq!(SweepJob::new(&sweep).start(&cut).unwrap(), Start::GoOn);
+    done(&sweep, &cut);
+    for file in ["bifurcations.csv", "features.csv", "checks.csv"] {
+        let [one, other] = [&whole, &cut].map(|home| std::fs::read(home.join(file)).ok());
+        assert!(one == other, "{file}");
+    }
+}
+
+#[test]
 fn a_method_of_ones_own_sweeps_is_interrupted_and_goes_on_to_the_same_bytes() {
     let room = tempfile::tempdir().unwrap();
     let (whole, cut) = (room.path().join("whole"), room.path().join("cut"));

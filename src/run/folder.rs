@@ -59,6 +59,9 @@ impl RunFolder {
             if let Some(settling) = settling {
                 settling.end()?;
                 done.push(STORE);
+            } else if manifest.ending == Ending::Interrupted {
+                // One that was broken off is as it grew, and its journal has what it lacks.
+                done.push(STORE);
             }
             let kept = Layout::SWEEP.entries.iter();
             let kept = kept.filter(|entry| !done.contains(entry));
@@ -136,17 +139,27 @@ impl RunFolder {
         self.added
     }
 
+    /// Writes the tables of a sweep that ends at once. Its stored densities stay in the order in which they came, as a
+    /// kill leaves them.
+    ///
+    /// # Errors
+    /// [`RunError`] when a file cannot be composed or written.
+    pub(crate) fn break_off(&mut self, result: &SweepResult) -> Result<(), RunError> {
+        self.points.close();
+        self.features.close();
+        for (name, text) in sweep_files(result)? {
+            write_atomically(&self.path.join(name), text.as_bytes())?;
+        }
+        Ok(())
+    }
+
     /// Writes all files of a finished sweep and puts the stored densities in ascending order. They are brought to the
     /// disk while the caller goes on, to the figures for example, until the manifest is written.
     ///
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.
     pub(crate) fn finish(&mut self, result: &SweepResult) -> Result<(), RunError> {
-        self.points.close();
-        self.features.close();
-        for (name, text) in sweep_files(result)? {
-            write_atomically(&self.path.join(name), text.as_bytes())?;
-        }
+        self.break_off(result)?;
         let densities = with_densities(&result.points);
         let before = self.store.replaced(&result.subject.family, &densities)?;
         self.settling = Some(Settling::begin(self.store.path(), before)).into();

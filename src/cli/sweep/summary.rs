@@ -5,6 +5,7 @@ use std::path::Path;
 use comfy_table::{Table, presets};
 
 use crate::continuation::{Label, Located, Point, PointStatus, SweepResult};
+use crate::job::QUICK_POINTS;
 use crate::run::{doubt_in_words, format_number, format_with_error};
 use crate::system::Family;
 
@@ -36,6 +37,10 @@ pub(in crate::cli) fn text(result: &SweepResult, folder: &Path) -> String {
             0 => "interrupted before the first point was done\n".to_owned(),
             points => format!("interrupted: the tables hold the {points} points that were done\n"),
         };
+        if result.points.len() > QUICK_POINTS {
+            let folder = folder.display();
+            text += &format!("to end at once no figures were drawn: `pbif plot {folder}` does\n");
+        }
     }
     text += "\nfiles\n";
     for name in files(folder) {
@@ -97,7 +102,7 @@ fn ends(result: &SweepResult) -> String {
         result
             .points
             .iter()
-            .filter(|point| !point.detections.is_empty())
+            .filter(|point| !point.detections.is_empty() && point.report.status.is_resolved())
     };
     for point in [solved().next(), solved().next_back()]
         .into_iter()

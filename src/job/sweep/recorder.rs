@@ -2,7 +2,7 @@
 
 use crate::continuation::{CheckedIndicator, Observer, Point};
 use crate::job::{Context, Progress};
-use crate::run::{JournalledSource, Manifest, RunError, RunFolder};
+use crate::run::{JobFolder, JournalledSource, Manifest, RunError, RunFolder};
 use crate::sweep_file::Sweep;
 
 /// Failures as observers hand them on.
@@ -11,6 +11,7 @@ type Failure = Box<dyn std::error::Error + Send + Sync>;
 /// What a sweep tells its points.
 pub(super) struct Recorder<'a> {
     pub(super) sweep: &'a Sweep,
+    pub(super) folder: &'a JobFolder,
     pub(super) run: RunFolder,
     pub(super) manifest: Manifest,
     pub(super) context: &'a Context<'a>,
@@ -36,10 +37,16 @@ impl Recorder<'_> {
         let subject = self.sweep.problem.subject();
         let family = &subject.family;
         let mut words = format!("{} = {:.6}", family.parameter(), point.value);
-        if point.detections.is_empty() {
-            words += &format!(": {}", point.report.status.word());
+        let status = point.report.status;
+        // What is detected in a density that did not converge is of nothing.
+        let found = match status.is_resolved() {
+            true => point.detections.as_slice(),
+            false => &[],
+        };
+        if found.is_empty() {
+            words += &format!(": {}", status.word());
         }
-        for (&observable, detection) in subject.observables.iter().zip(&point.detections) {
+        for (&observable, detection) in subject.observables.iter().zip(found) {
             let name = observable.name(family);
             words += &format!("  {name}: {}", detection.signature);
         }
@@ -58,6 +65,7 @@ impl Observer for Recorder<'_> {
             self.given.push(point.clone());
             return Ok(());
         }
+        self.folder.check()?;
         self.write_given()?;
         self.run.add_point(self.sweep.problem.subject(), point)?;
         self.say(point, done, done + remaining);
