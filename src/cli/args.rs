@@ -5,7 +5,7 @@ mod examples;
 mod looking;
 mod runs;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand};
 
@@ -172,6 +172,32 @@ pub(super) enum Command {
         #[command(flatten)]
         drawn: FrictionPlotArguments,
     },
+}
+
+impl Command {
+    /// The file or folder that a command is about.
+    pub(super) fn target(&self) -> Option<&Path> {
+        match self {
+            Self::Sweep { input, .. } | Self::Check { input } | Self::Compare { input, .. } => {
+                Some(&input.file)
+            }
+            Self::Curve { run } => Some(&run.target),
+            Self::Detect { run } => Some(&run.run),
+            Self::Plot { run } => Some(&run.run),
+            Self::Explore { run } => Some(&run.target),
+            Self::Merge { run } => Some(&run.run),
+            Self::Verify { run } => Some(&run.run),
+            Self::Cite { run } => run.as_deref(),
+            Self::List { run } => Some(&run.folder),
+            Self::Show { run } => Some(&run.run),
+            Self::Clean { run } => Some(&run.folder),
+            Self::Export { run } => Some(&run.run),
+            Self::New { .. }
+            | Self::Completions { .. }
+            | Self::Man { .. }
+            | Self::Systems { .. } => None,
+        }
+    }
 }
 
 #[cfg(test)]

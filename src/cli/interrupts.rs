@@ -42,6 +42,19 @@ pub(super) fn cancel(cancellation: &Cancellation) -> std::io::Result<()> {
     ctrlc::set_handler(heard).map_err(std::io::Error::other)
 }
 
+/// Lets a write beyond the largest file that a user may have (`ulimit -f`) fail with an error, which is told, instead
+/// of ending the program.
+#[cfg(unix)]
+pub(super) fn hear_of_full_files() {
+    let heard = std::sync::Arc::default();
+    // Where it cannot be heard of, it ends the program as before.
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, heard);
+}
+
+/// See above.
+#[cfg(not(unix))]
+pub(super) fn hear_of_full_files() {}
+
 fn ask(asked: &Cancellation) {
     if asked.is_cancelled() {
         // Nothing is half-written: files are put in place by renaming.

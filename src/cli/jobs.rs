@@ -5,9 +5,10 @@ use std::path::Path;
 use super::args::Work;
 use super::output::OutputFolder;
 use super::progress::Progress;
-use super::{CommandError, conclude, interruptible, print};
+use super::{CommandError, conclude, fault, interruptible, print};
 use crate::cancellation::Cancellation;
-use crate::job::{self, Done, Job, Outcome, Start};
+use crate::job::{self, Done, Job, JobError, Outcome, Start};
+use crate::run::RunError;
 
 /// What is printed of a job.
 pub(super) trait Printed: Job {
@@ -68,6 +69,7 @@ pub(super) fn carry_out<J: Printed>(
 ) -> Result<Outcome, CommandError> {
     let output = OutputFolder::prepare(home)?;
     let home = output.path();
+    fault::at_work(home, job.layout());
     if start == Start::Complete {
         let (text, outcome) = job.complete(home)?;
         return conclude(&text, outcome, home);
@@ -77,6 +79,10 @@ pub(super) fn carry_out<J: Printed>(
     progress.finish();
     let kept = || kept(&*job, home);
     match done {
+        Err(error @ JobError::Run(RunError::Gone { .. })) => {
+            let written = "what was written is gone with it".to_owned();
+            Err(CommandError::from(error).after(written))
+        }
         Err(error) if job.kept() > 0 => Err(CommandError::from(error).after(kept())),
         Err(error) => Err(error.into()),
         Ok(Some(done)) => {

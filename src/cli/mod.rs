@@ -9,6 +9,7 @@ mod curve;
 mod detect;
 mod explore;
 mod export;
+mod fault;
 mod friction;
 mod interrupts;
 mod jobs;
@@ -24,11 +25,14 @@ mod show;
 mod stored;
 mod sweep;
 mod systems;
+mod terminal;
 mod verify;
 
 use std::io::{self, IsTerminal as _, Write as _};
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::Duration;
 
 use clap::Parser as _;
 
@@ -38,6 +42,7 @@ use crate::run::check_names;
 use crate::sweep_file::{Diagnostic, Report, Settings, Sweep, SweepFile};
 use args::{Arguments, Command};
 use output::OutputError;
+use terminal::harmless;
 
 /// Why a command was not carried out.
 #[derive(Debug, thiserror::Error)]
@@ -118,7 +123,7 @@ impl From<Report> for CommandError {
 }
 
 /// Reads the command line, does what it says, and gives the exit code: 0 done, 1 finished with something
-/// unresolved, 2 bad usage or input, 130 interrupted.
+/// unresolved, 2 bad usage or input, 70 a fault of the program itself, 130 interrupted.
 pub fn run() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
@@ -128,15 +133,19 @@ pub fn run() -> ExitCode {
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
-    match dispatch(&arguments.command) {
+    interrupts::hear_of_full_files();
+    let command = &arguments.command;
+    let Some(ended) = fault::guard(command.target(), || dispatch(command)) else {
+        return ExitCode::from(fault::STATUS);
+    };
+    match ended {
         Ok(outcome) => ExitCode::from(exit_code(outcome)),
         // The reader of a pipe may stop early, as `head` does.
         Err(CommandError::Print(error)) if error.kind() == io::ErrorKind::BrokenPipe => {
             ExitCode::SUCCESS
         }
         Err(error) => {
-            let text = render(error, is_styled());
-            let _ = io::stderr().lock().write_all(text.as_bytes());
+            tell_styled(&render(error, is_styled()));
             ExitCode::from(2)
         }
     }
@@ -157,7 +166,7 @@ fn dispatch(command: &Command) -> Result<Outcome, CommandError> {
             sweep::run(&spec, &input.name(), run)
         }
         Command::Check { input } => {
-            let spec = given(input, false)?.prepare(&Cancellation::new())?;
+            let spec = prepared(given(input, false)?, false)?;
             print(&check::text(&input.file, &spec)?)
         }
         Command::Compare { input, run } => {
@@ -213,8 +222,8 @@ fn load(
     }
     let settings = file.validate()?;
     check_names(&settings)?;
-    if !settings.warnings.is_empty() {
-        tell(quiet, &settings.warnings.render(is_styled()));
+    if !settings.warnings.is_empty() && !quiet {
+        tell_styled(&settings.warnings.render(is_styled()));
     }
     Ok(settings)
 }
@@ -231,19 +240,60 @@ fn given(input: &args::SweepInput, quiet: bool) -> Result<Settings, Report> {
 
 /// The sweep that was given; says on stderr what was chosen for the program's part. `pbif check` has it on stdout.
 fn chosen(input: &args::SweepInput, quiet: bool) -> Result<Sweep, Report> {
-    let spec = given(input, quiet)?.prepare(&Cancellation::new())?;
+    let spec = prepared(given(input, quiet)?, quiet)?;
     for line in &spec.settings.chosen {
         tell(quiet, &format!("{line}\n"));
     }
     Ok(spec)
 }
 
+/// How long a part of the preparation takes before it is told.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// A sweep that is ready to run; says on stderr which part of its preparation takes longer than a second.
+fn prepared(settings: Settings, quiet: bool) -> Result<Sweep, Report> {
+    let (part, parts) = mpsc::channel::<String>();
+    let told = move || {
+        let mut words = String::new();
+        loop {
+            match parts.recv_timeout(PATIENCE) {
+                Ok(next) => words = next,
+                Err(RecvTimeoutError::Timeout) if words.is_empty() => {}
+                Err(RecvTimeoutError::Timeout) => {
+                    tell(quiet, &format!("{words}\n"));
+                    words.clear();
+                }
+                Err(RecvTimeoutError::Disconnected) => break,
+            }
+        }
+    };
+    // Where there is no thread to be had, nothing is told.
+    let teller = std::thread::Builder::new().spawn(told);
+    let tells = |words: &str| {
+        let _ = part.send(words.to_owned());
+    };
+    let sweep = settings.prepare_telling(&Cancellation::new(), &tells);
+    drop(part);
+    // What is told of the sweep comes after it.
+    let _ = teller.map(std::thread::JoinHandle::join);
+    sweep
+}
+
 /// Says something on stderr, unless it is to be quiet.
 fn tell(quiet: bool, text: &str) {
     if !quiet {
-        // Without a reader of stderr there is nobody to tell.
-        let _ = io::stderr().lock().write_all(text.as_bytes());
+        put(&harmless(text, false));
     }
+}
+
+/// Says what was drawn for the terminal at hand.
+fn tell_styled(text: &str) {
+    put(&harmless(text, is_styled()));
+}
+
+fn put(text: &str) {
+    // Without a reader of stderr there is nobody to tell.
+    let _ = io::stderr().lock().write_all(text.as_bytes());
 }
 
 /// Whether stderr takes colours.
@@ -253,6 +303,18 @@ fn is_styled() -> bool {
 }
 
 fn print(text: &str) -> Result<Outcome, CommandError> {
+    print_exact(&harmless(text, false))
+}
+
+/// Prints a text word for word, as another file; on a terminal as any other.
+fn print_file(text: &str) -> Result<Outcome, CommandError> {
+    match io::stdout().is_terminal() {
+        true => print(text),
+        false => print_exact(text),
+    }
+}
+
+fn print_exact(text: &str) -> Result<Outcome, CommandError> {
     let mut stdout = io::stdout().lock();
     stdout.write_all(text.as_bytes())?;
     stdout.flush()?;

@@ -1,10 +1,12 @@
 //! Progress on stderr: a bar with the time left on a terminal, a line a point elsewhere, nothing when quiet.
 
-use std::io::{IsTerminal as _, Write as _};
+use std::io::IsTerminal as _;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::tell;
+use super::terminal::harmless;
 use crate::job;
 
 /// Shows how far a job is.
@@ -51,7 +53,7 @@ impl Progress {
                     bar.set_length(wanted as u64);
                     bar.set_position(done as u64);
                 }
-                bar.set_message(words.to_owned());
+                bar.set_message(harmless(words, false));
             }
             (None, Some((_, number, wanted))) => {
                 self.line(&format!("{number:4} of {wanted:4}  {words}"));
@@ -76,8 +78,7 @@ impl Progress {
 
     fn line(&self, text: &str) {
         if !self.quiet {
-            // Without a reader of stderr there is nobody to tell.
-            let _ = writeln!(std::io::stderr().lock(), "{text}");
+            tell(false, &format!("{text}\n"));
         }
     }
 }

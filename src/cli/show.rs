@@ -3,7 +3,7 @@
 use comfy_table::{Table, presets};
 
 use super::args::ShowArguments;
-use super::{CommandError, Outcome, print};
+use super::{CommandError, Outcome, print, print_file};
 use crate::run::{FoundRow, RunSummary, find_runs, format_number, format_with_error};
 use crate::sweep_file::{Diagnostic, SweepText};
 
@@ -14,12 +14,12 @@ use crate::sweep_file::{Diagnostic, SweepText};
 pub(super) fn run(arguments: &ShowArguments) -> Result<Outcome, CommandError> {
     let summary = RunSummary::read(&arguments.run)?;
     if arguments.sweep {
-        return print(summary.run.resolved());
+        return print_file(summary.run.resolved());
     }
     if arguments.typed {
         let typed = summary.run.typed();
         return match typed {
-            Some(typed) => print(&as_typed(&typed)),
+            Some(typed) => print_file(&as_typed(&typed)),
             None => Err(super::CommandError::Input(
                 Diagnostic::new(
                     "the run does not say how its sweep file was typed: it is of an early version",

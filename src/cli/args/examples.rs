@@ -19,7 +19,7 @@ Examples:
   pbif explore sweeps/coulomb_fc.toml --open                   the same page, solving live
 
 Exit status: 0 done; 1 finished, but some row is unresolved, did not converge or has no steady state;
-2 bad usage or input, or a folder that cannot be written to; 130 interrupted.
+2 bad usage or input, or a folder that cannot be written to; 70 a fault of pbif itself; 130 interrupted.
 
 Results are never overwritten: an earlier run in the same folder is kept in its folder previous/1,
 previous/2, and so on.";

@@ -20,11 +20,12 @@ pub(super) fn lines(spec: &Sweep) -> Vec<String> {
         .iter()
         .map(|surface| format!("{} = {}", family.axis(surface.axis), surface.at))
         .collect();
-    found.push(if surfaces.is_empty() {
-        "the drift is smooth, or not smooth in places that are no plane of one coordinate"
-            .to_owned()
-    } else {
+    found.push(if !surfaces.is_empty() {
         format!("the drift is not smooth where {}", surfaces.join(", "))
+    } else if typed.is_smooth() {
+        "drift and noise are smooth".to_owned()
+    } else {
+        "drift or noise is not smooth in places that are no plane of one coordinate".to_owned()
     });
     let reflected = facts.symmetry.as_ref().map(|symmetry| {
         let axes = symmetry.reflected.iter().enumerate();
