@@ -17,7 +17,7 @@ use crate::common::sweeps::prepared;
 /// A live server of a small sweep, which ends with the test.
 pub(super) struct Served {
     address: String,
-    port: u16,
+    pub(super) port: u16,
     sweep: pbif::sweep_file::Sweep,
     cancellation: Cancellation,
     thread: Option<std::thread::JoinHandle<()>>,
@@ -63,14 +63,18 @@ impl Served {
         self.address.split_once(&self.port.to_string()).unwrap().1
     }
 
-    pub(super) fn post(&self, name: &str, body: &str) -> (u16, serde_json::Value) {
+    /// A request as the page sends it.
+    pub(super) fn request(&self, name: &str, body: &str) -> String {
         let (port, path) = (self.port, self.path());
         let length = body.len();
-        let request = format!(
+        format!(
             "POST {path}{name} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nOrigin: http://127.0.0.1:{port}\r\n\
              Content-Type: application/json\r\nContent-Length: {length}\r\n\r\n{body}"
-        );
-        let answer = self.raw(request.as_bytes());
+        )
+    }
+
+    pub(super) fn post(&self, name: &str, body: &str) -> (u16, serde_json::Value) {
+        let answer = self.raw(self.request(name, body).as_bytes());
         let (head, body) = answer.split_once("\r\n\r\n").unwrap();
         (status(head), serde_json::from_str(body).unwrap_or_default())
     }
@@ -92,6 +96,23 @@ fn status(answer: &str) -> u16 {
 pub(super) fn decoded(packed: &serde_json::Value) -> Vec<u8> {
     let engine = base64::engine::general_purpose::STANDARD;
     engine.decode(packed.as_str().unwrap()).unwrap()
+}
+
+#[test]
+fn clients_that_say_nothing_do_not_keep_the_page_from_being_served() {
+    let served = Served::new();
+    let slow: Vec<TcpStream> = (0..80)
+        .map(|_| {
+            let mut stream = TcpStream::connect(("127.0.0.1", served.port)).unwrap();
+            let _ = stream.write_all(b"GET ");
+            stream
+        })
+        .collect();
+    let clock = std::time::Instant::now();
+    let body = r#"{"lane":"a","ticket":1,"moving":"f_c","values":{"f_c":0.0}}"#;
+    assert_eq!(served.post("solve", body).0, 200);
+    // They are dismissed after three seconds.
+    assert!(clock.elapsed().as_secs_f64() < 2.5 && slow.len() == 80);
 }
 
 #[test]

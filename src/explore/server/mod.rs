@@ -6,6 +6,7 @@ mod http;
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use super::ExploreError;
@@ -14,7 +15,8 @@ use crate::cancellation::Cancellation;
 use guard::Guard;
 use http::{Request, Response};
 
-/// Connections that are served side by side; further ones are closed at once.
+/// Connections that are served side by side. A further one takes the place of that which has been without a token for
+/// longest; where all have shown theirs, it is closed at once.
 const MOST_CONNECTIONS: usize = 64;
 /// How long the server sleeps when nobody asks.
 const NAP: Duration = Duration::from_millis(4);
@@ -71,21 +73,27 @@ impl LiveServer {
     /// Answers requests, each on a thread of its own, until it is cancelled.
     pub fn serve(&self, cancellation: &Cancellation) {
         let active = AtomicUsize::new(0);
+        let strangers = Strangers::default();
         std::thread::scope(|scope| {
+            let mut number = 0;
             while !cancellation.is_cancelled() {
                 let Ok((mut stream, _)) = self.listener.accept() else {
                     // Nobody asks, or the machine is out of something for a moment.
                     std::thread::sleep(NAP);
                     continue;
                 };
-                if active.load(Ordering::SeqCst) >= MOST_CONNECTIONS {
+                if active.load(Ordering::SeqCst) >= MOST_CONNECTIONS && !strangers.dismiss() {
                     continue;
                 }
                 active.fetch_add(1, Ordering::SeqCst);
-                let active = &active;
+                number += 1;
+                strangers.meet(number, &stream);
+                let (active, strangers) = (&active, &strangers);
                 let started = std::thread::Builder::new().spawn_scoped(scope, move || {
                     // A panic of one conversation must not end the others: unwound, it would end the scope.
-                    let _ = catch_unwind(AssertUnwindSafe(|| self.converse(&mut stream)));
+                    let known = || strangers.forget(number);
+                    let _ = catch_unwind(AssertUnwindSafe(|| self.converse(&mut stream, &known)));
+                    strangers.forget(number);
                     active.fetch_sub(1, Ordering::SeqCst);
                 });
                 if started.is_err() {
@@ -96,21 +104,26 @@ impl LiveServer {
         });
     }
 
-    fn converse(&self, stream: &mut TcpStream) {
+    /// Answers one request; `known` is called when it has shown the token.
+    fn converse(&self, stream: &mut TcpStream, known: &dyn Fn()) {
         // A stream that was accepted takes after its listener on some systems.
         if stream.set_nonblocking(false).is_err() {
             return;
         }
         let response = match http::read(stream) {
-            Ok(request) => self.respond(&request).unwrap_or_else(|refusal| refusal),
+            Ok(request) => {
+                let answer = self.respond(&request, known);
+                answer.unwrap_or_else(|refusal| refusal)
+            }
             Err(refusal) => refusal,
         };
         // Without a reader there is nobody to tell.
         let _ = response.send(stream);
     }
 
-    fn respond(&self, request: &Request) -> Result<Response, Response> {
+    fn respond(&self, request: &Request, known: &dyn Fn()) -> Result<Response, Response> {
         let asked = self.guard.admit(request)?;
+        known();
         let answer: fn(&Live, &[u8]) -> Vec<u8> = match (request.method.as_str(), asked) {
             ("GET", "") => return Ok(Response::html(&self.page)),
             (_, "solve") => Live::solve,
@@ -129,5 +142,37 @@ impl LiveServer {
             return Err(Response::refused(400, "this takes JSON"));
         }
         Ok(Response::json(answer(&self.live, &request.body)))
+    }
+}
+
+/// Connections that have not shown the token yet, by their numbers, the oldest first.
+#[derive(Default)]
+struct Strangers(Mutex<Vec<(u64, TcpStream)>>);
+
+impl Strangers {
+    fn all(&self) -> std::sync::MutexGuard<'_, Vec<(u64, TcpStream)>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn meet(&self, number: u64, stream: &TcpStream) {
+        // One that cannot be held twice is not dismissed.
+        self.all()
+            .extend(stream.try_clone().map(|stream| (number, stream)));
+    }
+
+    fn forget(&self, number: u64) {
+        self.all().retain(|(known, _)| *known != number);
+    }
+
+    /// Closes the oldest; `false` where there is none.
+    fn dismiss(&self) -> bool {
+        let mut all = self.all();
+        if all.is_empty() {
+            return false;
+        }
+        let (_, stream) = all.remove(0);
+        // Whoever waits for it to say something then waits no longer.
+        let _ = stream.shutdown(std::net::Shutdown::Both);
+        true
     }
 }
