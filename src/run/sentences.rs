@@ -3,6 +3,9 @@
 use crate::continuation::{Finding, ShiftedQuantity, SteadyClass};
 use crate::system::Family;
 
+/// Steady states that are named one by one.
+const CLASSES_NAMED: usize = 4;
+
 /// What a finding says, in a sentence without a full stop.
 pub fn finding_in_words(family: &Family, finding: &Finding) -> String {
     escape_in_words(finding)
@@ -138,11 +141,14 @@ fn solve_in_words(family: &Family, finding: &Finding) -> String {
             "the solver stopped before its tolerance, with an estimated error of {error:.1e}"
         ),
         Finding::SeveralClasses { ref classes } => {
-            let words: Vec<String> = classes.iter().map(class_in_words).collect();
+            let named = classes.iter().take(CLASSES_NAMED).map(class_in_words);
+            let mut words = named.collect::<Vec<_>>().join("; ");
+            if classes.len() > CLASSES_NAMED {
+                words += &format!("; and {} others", classes.len() - CLASSES_NAMED);
+            }
             format!(
-                "{} separate steady states, so which one is reached depends on the start: {}",
+                "{} separate steady states, so which one is reached depends on the start: {words}",
                 classes.len(),
-                words.join("; ")
             )
         }
         Finding::StepBias {
@@ -197,5 +203,27 @@ fn quantity_in_words(family: &Family, quantity: ShiftedQuantity) -> String {
                 family.axis(axis)
             )
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::system::examples::coulomb;
+
+    #[test]
+    fn many_steady_states_are_counted_and_the_first_named() {
+        let class = SteadyClass {
+            cells: 3,
+            share: 0.001,
+            centre: vec![0.5, -0.25],
+        };
+        let classes = vec![class; 900];
+        let words = finding_in_words(&coulomb(), &Finding::SeveralClasses { classes });
+        assert!(words.starts_with("900 separate steady states"));
+        assert!(
+            words.ends_with("; and 896 others") && words.len() < 400,
+            "{words}"
+        );
     }
 }

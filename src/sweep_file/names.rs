@@ -87,6 +87,14 @@ pub(super) fn ascii_name(c: char) -> Option<&'static str> {
     DIGITS.get(digit).copied()
 }
 
+/// The letter of the keyboard that a letter of another alphabet looks like.
+pub(super) fn lookalike(c: char) -> Option<char> {
+    const CYRILLIC: &str = "аеорсухіѕјԁһӏАВЕКМНОРСТХІЅЈ";
+    const LATIN: &str = "aeopcyxisjdhlABEKMHOPCTXISJ";
+    let place = CYRILLIC.chars().position(|known| known == c)?;
+    LATIN.chars().nth(place)
+}
+
 /// Whether a character takes no room or turns the direction of writing.
 pub(super) fn is_invisible(c: char) -> bool {
     matches!(c, '\u{ad}' | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')

@@ -209,7 +209,8 @@ fn value_of(key: &Key, path: &[&str], node: &Node) -> Result<Plain, Box<Diagnost
     let shown = match &blamed.value {
         Value::Text(text) => format!("`{}`", quotable(text)),
         Value::Integer(value) => format!("`{value}`"),
-        Value::Float(value) => format!("`{value}`"),
+        Value::Float(value) if value.is_infinite() => "as large as that".to_owned(),
+        Value::Float(value) => format!("`{value:?}`"),
         other => other.kind().to_owned(),
     };
     let title = format!("`{}` cannot be {shown}", quotable(&path.join(".")));

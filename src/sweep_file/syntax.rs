@@ -6,7 +6,7 @@ use std::ops::Range;
 use toml::de::Error;
 
 use super::diagnostic::{Diagnostic, Place};
-use super::names::{ascii_name, is_invisible, quotable};
+use super::names::{ascii_name, is_invisible, lookalike, quotable};
 use super::report::MOST_SHOWN;
 
 /// A slip: what stands there, and what to write.
@@ -79,6 +79,7 @@ impl<'t> Spot<'t> {
             Self::punctuation,
             Self::backslash,
             Self::structure,
+            Self::nothing,
             Self::computation,
             Self::word,
         ];
@@ -125,7 +126,18 @@ impl<'t> Spot<'t> {
                 let before = before.unwrap_or_default();
                 (
                     format!("`{c}` cannot stand in a key"),
-                    format!("names are in ASCII: did you mean `{before}{spelt}`?"),
+                    format!(
+                        "names are in ASCII: did you mean `{before}{spelt}`? Formulas read `{c}` so, too"
+                    ),
+                )
+            }
+            c if lookalike(c).is_some() => {
+                let letter = lookalike(c).unwrap_or(c);
+                (
+                    format!(
+                        "`{c}` ({code}) looks like `{letter}`, and is a letter of another alphabet"
+                    ),
+                    format!("write the `{letter}` of the keyboard"),
                 )
             }
             c => (
@@ -203,6 +215,19 @@ impl<'t> Spot<'t> {
         let value = format!("{}{}", &self.before[start..], &self.rest[..end]);
         let value = value.trim();
         (!value.contains('=')).then(|| value.to_owned())
+    }
+
+    /// A key without a value.
+    fn nothing(&self, _: &str) -> Option<Slip> {
+        let is_empty = self.value()?.is_empty() && !self.before.trim_end().ends_with([',', '[']);
+        is_empty.then(|| {
+            let key = self.before.split('=').next().unwrap_or_default();
+            let key = key.rsplit(['{', ',']).next().unwrap_or_default();
+            (
+                format!("`{}` has no value", quotable(key.trim())),
+                "write it behind the `=`".to_owned(),
+            )
+        })
     }
 
     /// `1/3` or `2*pi`.
@@ -300,6 +325,13 @@ mod tests {
             ("points\u{a0}= 7", "an invisible character (U+00A0)"),
             ("\u{200b}points = 7", "an invisible character (U+200B)"),
             ("α = 1", "did you mean `alpha`?"),
+            ("θ = 1", "did you mean `theta`? Formulas read `θ` so, too"),
+            (
+                "kapp\u{430} = 1",
+                "`а` (U+0430) looks like `a`, and is a letter of another alphabet",
+            ),
+            ("kappa =", "`kappa` has no value"),
+            ("p = { from = , to = 1 }", "`from` has no value"),
             ("sigma² = 1", "did you mean `sigma2`?"),
             ("p = { µ = 1 }", "did you mean `mu`?"),
             ("points = １１", "can stand in a string only"),

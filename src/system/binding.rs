@@ -15,8 +15,8 @@ impl ParameterValues {
     }
 }
 
-/// Why a system could not be made.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+/// Why a system could not be made. [`Debug`](std::fmt::Debug) shows it in words too, for a `main` that returns it.
+#[derive(Clone, PartialEq, thiserror::Error)]
 pub enum SystemError {
     /// No model of that name.
     #[error("unknown model `{name}`")]
@@ -66,6 +66,12 @@ pub enum SystemError {
         /// The quantity.
         quantity: String,
     },
+}
+
+impl std::fmt::Debug for SystemError {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(formatter, "{self}")
+    }
 }
 
 /// How values become systems.

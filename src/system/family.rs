@@ -257,6 +257,11 @@ mod tests {
         assert!(matches!(error, SystemError::Moved { .. }), "{error}");
         let error = new(&FIXED, Path::parameter("friction", 0.0, 1.0));
         assert!(matches!(error, SystemError::UnknownParameter { .. }));
+        // A `main` that returns it shows words.
+        assert_eq!(
+            format!("{error:?}"),
+            "model `coulomb` has no parameter `friction`"
+        );
         let error = new(&FIXED[..1], Path::parameter("f_c", 0.0, 1.0));
         assert!(matches!(error, SystemError::MissingParameter { .. }));
         let error = new(

@@ -84,6 +84,27 @@ fn missing_files_and_files_that_no_sweep_file_is_like() {
 }
 
 #[test]
+#[rustfmt::skip]
+fn causes_are_those_of_what_was_typed() {
+    let auto = TYPED.replace("y = { from = -3, to = 3, count = 10 }", "y = { range = \"auto\" }");
+    let away = auto.replace("-(c + x^2) y - x", "0.1 y + c");
+    for (text, set, words) in [
+        (GOOD, "sweep.to=1e309", &["`sweep.to` cannot be as large as that"][..]),
+        (GOOD, "cells.x={from=-1e308,to=1e308,count=10}", &["from -1e308 to 1e308", "longer than the largest number"]),
+        (TYPED, "system.noise.rate=2", &["no equation is of that name", "amplitude of the noise on an axis"]),
+        (&away, "sweep.points=3", &["range of `y` at c = 0.5", "`cells.y.from` and `to`", "[system.bounds]", "a.toml:18:1"]),
+    ] {
+        refused(text, &format!("a.toml {set}"), words);
+    }
+}
+
+#[test]
+fn a_run_that_fails_at_its_first_value_leaves_nothing() {
+    let line = "a.toml system.parameters.mu=-1e308 --quiet --out o";
+    refused(GOOD, line, &["nothing was run or written"]);
+}
+
+#[test]
 fn characters_that_only_look_right() {
     #[rustfmt::skip]
     let cases = [

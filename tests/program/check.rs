@@ -33,6 +33,23 @@ fn shipped_sweeps_are_sound_and_their_resolved_files_give_the_same() {
 }
 
 #[test]
+fn what_takes_long_is_told_while_it_does() {
+    // Without the cubic stiffness there is no steady state, which the trials of modes look for at length.
+    let room = Room::new();
+    let text = std::fs::read_to_string(shipped("sweeps/gallery/bliman_sorine.toml")).unwrap();
+    let lines = text.lines().filter(|line| !line.starts_with("mu = "));
+    room.write("a.toml", lines.collect::<Vec<_>>().join("\n"));
+    let told = room.done("check a.toml");
+    assert_says(&told.err, &["trying numbers of modes on coarse grids"]);
+}
+
+#[test]
+fn equations_without_kinks_are_smooth() {
+    let text = checked("gallery/vanderpol", "");
+    assert_says(&text, &["drift and noise are smooth"]);
+}
+
+#[test]
 fn the_cost_is_counted() {
     let cells = "cells.x.count=30 cells.y.count=20";
     let steps = "method.kind=sgcm method.samples=100 method.map_step=1 method.time_step=0.01";

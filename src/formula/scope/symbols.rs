@@ -18,6 +18,14 @@ pub enum Role {
 }
 
 impl Role {
+    fn plural(self) -> &'static str {
+        match self {
+            Self::State => "states",
+            Self::Parameter => "parameters",
+            Self::Definition => "definitions",
+        }
+    }
+
     /// The role in words, with its article.
     pub(crate) fn words(self) -> &'static str {
         match self {
@@ -67,7 +75,7 @@ pub enum SymbolError {
         role: Role,
     },
     /// More names of one kind than allowed.
-    #[error("more than {most} names are {}", .role.words())]
+    #[error("there are more than {most} {}", .role.plural())]
     TooMany {
         /// What they are.
         role: Role,

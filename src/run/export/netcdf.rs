@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use netcdf3::error::WriteError;
 use netcdf3::{DataSet as Definition, FileWriter, Version};
 
 use super::super::RunError;
@@ -25,7 +26,10 @@ pub(super) fn write(data: &DataSet, path: &Path) -> Result<(), RunError> {
     let room = tempfile::Builder::new().prefix(".pbif-").tempdir_in(folder);
     let room = room.map_err(written)?;
     let file = room.path().join("export.nc");
-    fill(data, &definition, &file).map_err(|error| failed(format!("{error:?}")))?;
+    fill(data, &definition, &file).map_err(|error| match error {
+        WriteError::IOErrorKind(kind) => written(kind.into()),
+        error => failed(format!("{error:?}")),
+    })?;
     std::fs::rename(&file, path).map_err(written)
 }
 
@@ -47,11 +51,7 @@ fn define(data: &DataSet) -> Result<Definition, netcdf3::error::InvalidDataSet> 
     Ok(definition)
 }
 
-fn fill(
-    data: &DataSet,
-    definition: &Definition,
-    file: &Path,
-) -> Result<(), netcdf3::error::WriteError> {
+fn fill(data: &DataSet, definition: &Definition, file: &Path) -> Result<(), WriteError> {
     let mut writer = FileWriter::create_new(file)?;
     writer.set_def(definition, Version::Offset64Bit, 0)?;
     for array in &data.arrays {

@@ -161,7 +161,16 @@ fn read_range(
     if from < to && (to - from).is_finite() {
         return Some((from, to));
     }
-    let title = format!("the range of axis `{name}`, from {from} to {to}, is empty or reversed");
+    let what = match from < to {
+        true => "longer than the largest number",
+        false => "empty or reversed",
+    };
+    // Plain numbers would have hundreds of digits.
+    let [from, to] = [from, to].map(|end| match end.abs() < 1e15 {
+        true => end.to_string(),
+        false => format!("{end:e}"),
+    });
+    let title = format!("the range of axis `{name}`, from {from} to {to}, is {what}");
     let diagnostic = Diagnostic::new(title).allowed("finite numbers with `from` below `to`");
     let places = ["to", "from"].map(|key| reader.place(&["cells", name, key]));
     reader.report(match places.into_iter().flatten().next() {

@@ -54,6 +54,11 @@ impl TypedEquations {
         &self.model
     }
 
+    /// Whether drift and noise are smooth everywhere, as polynomials are.
+    pub(crate) fn is_smooth(&self) -> bool {
+        self.reading.is_smooth
+    }
+
     /// The equations in Unicode for people, one a line, with their noises `ξ₁`, `ξ₂` …; then the definitions, and the
     /// Itô drift where it is not what was typed.
     pub fn typeset(&self) -> Vec<String> {

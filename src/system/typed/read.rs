@@ -32,6 +32,8 @@ pub(super) struct Reading {
     pub(super) noise_axes: Vec<usize>,
     /// Axis and coordinate of planes where the drift may not be smooth; not a number where there is no such plane.
     pub(super) surfaces: Planes,
+    /// Whether drift and noise are smooth everywhere.
+    pub(super) is_smooth: bool,
     /// Lower and upper bound of each axis.
     pub(super) bounds: Vec<Option<(Expression, Expression)>>,
     /// `None` where nothing depends on time.

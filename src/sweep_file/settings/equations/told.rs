@@ -67,11 +67,14 @@ pub(super) fn diagnostic(
                 "`system.{table}.{}`: no equation is of that name",
                 quotable(axis)
             );
+            let remedy = match table {
+                "noise" => "a line of [system.noise] is the amplitude of the noise on an axis; numbers that formulas use \
+                            stand in [system.parameters]"
+                    .to_owned(),
+                _ => format!("add a line `{} = …` to [system.equations]", quotable(axis)),
+            };
             let diagnostic = Diagnostic::new(title)
-                .remedy(format!(
-                    "add a line `{} = …` to [system.equations]",
-                    quotable(axis)
-                ))
+                .remedy(remedy)
                 .nearest(axis, known.iter().map(String::as_str));
             match key {
                 Some(key) => diagnostic.at(&key, "unknown axis"),

@@ -45,6 +45,7 @@ impl Reader<'_> {
             drift,
             amplitudes,
             noise_axes,
+            is_smooth: surfaces.is_empty() && notes.is_empty(),
             surfaces,
             bounds,
             period,
