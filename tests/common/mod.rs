@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "a program uses a part of it")]
 
 pub(crate) mod closed_forms;
+pub(crate) mod damage;
 pub(crate) mod numbers;
 pub(crate) mod room;
 pub(crate) mod steady;

@@ -2,12 +2,9 @@
 //! run has. Whatever is read of them is read or refused with a file's name, without a panic, a hang, or memory that
 //! grows.
 
-use std::path::Path;
 use std::time::{Duration, Instant};
 
-use pbif::run::{RunError, RunSummary, StoredRun, check_folder};
-use pbif::sweep_file::Report;
-
+use crate::common::damage::{damaged, read_all};
 use crate::common::numbers::Numbers;
 use crate::common::room::Room;
 
@@ -17,103 +14,10 @@ const LONGEST: Duration = Duration::from_secs(20);
 /// What is read of a run, by its checksums.
 const SUMMED: [&str; 4] = ["run.json", "points.csv", "checks.csv", "densities.zarr"];
 
-/// What stands in tables for numbers, and in JSON for values, that no run writes.
-#[rustfmt::skip]
-const STRANGE: [&str; 12] = [
-    "1e999", "-1e308", "NaN", "inf", "", "99999999999999999999", "-1", "null", "[[[[", "\"", "π", "0x1p3",
-];
-
-fn damaged(whole: &[u8], numbers: &mut Numbers) -> Vec<u8> {
-    let mut bytes = whole.to_vec();
-    let place = numbers.below(bytes.len());
-    match numbers.below(8) {
-        0 if !bytes.is_empty() => bytes[place] ^= 1 << numbers.below(8),
-        1 => bytes.truncate(place),
-        2 => bytes.extend_from_slice(whole),
-        3 => bytes.extend_from_slice(&whole[place..]),
-        4 => bytes.clear(),
-        5 => {
-            // A number of a text by something else.
-            let is_digit = |byte: &u8| byte.is_ascii_digit();
-            if let Some(start) = whole[place..].iter().position(is_digit) {
-                let start = place + start;
-                let length = whole[start..]
-                    .iter()
-                    .take_while(|byte| is_digit(byte))
-                    .count();
-                let strange = STRANGE[numbers.below(STRANGE.len())];
-                bytes.splice(start..start + length, strange.bytes());
-            }
-        }
-        6 => {
-            // A line twice, or away.
-            let lines: Vec<&[u8]> = whole.split_inclusive(|&byte| byte == b'\n').collect();
-            let line = numbers.below(lines.len());
-            let times = 2 * numbers.below(2);
-            let kept = lines.iter().enumerate();
-            bytes = kept
-                .flat_map(|(index, text)| vec![*text; if index == line { times } else { 1 }])
-                .flatten()
-                .copied()
-                .collect();
-        }
-        _ => {
-            for _ in 0..8 {
-                let place = numbers.below(bytes.len());
-                if let Some(byte) = bytes.get_mut(place) {
-                    *byte = numbers.next() as u8;
-                }
-            }
-        }
-    }
-    bytes
-}
-
-/// Reads all there is to read of a run; what is refused names a file, or a place in one.
-fn read_all(run: &Path) -> bool {
-    let mut whole = true;
-    let mut refused = |error: Option<RunError>| {
-        if let Some(error) = error {
-            assert!(error.to_string().len() < 20_000, "{error}");
-            whole = false;
-        }
-    };
-    refused(check_folder(run).err());
-    refused(RunSummary::read(run).err());
-    match StoredRun::open(run) {
-        Err(error) => refused(Some(error)),
-        Ok(stored) => {
-            let settings = stored.sweep_file().validate();
-            match settings.and_then(|settings| settings.fixed()) {
-                Err(report) => {
-                    assert!(Report::render(&report, false).len() < 60_000);
-                    whole = false;
-                }
-                Ok(sweep) => {
-                    refused(stored.detect(&sweep).err());
-                    refused(stored.damage().err());
-                }
-            }
-        }
-    }
-    whole
-}
-
 #[test]
 fn damaged_runs_are_read_or_refused() {
     let (read, refused) = damaged_runs(400);
     assert!(read > 20 && refused > 100, "{read} read, {refused} refused");
-}
-
-/// Half a minute: `cargo test --release --test files stored_fuzz:: -- --ignored`.
-#[test]
-#[ignore = "takes half a minute"]
-fn five_thousand_damaged_runs_are_read_or_refused() {
-    let (read, refused) = damaged_runs(5_000);
-    assert!(
-        read > 200 && refused > 1000,
-        "{read} read, {refused} refused"
-    );
 }
 
 /// So many damaged files, each read and mended again: how many runs could be read, and how many were refused.
