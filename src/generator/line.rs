@@ -1,9 +1,11 @@
 //! The flux through every face of one grid line, as weights on the cells around the face.
 //!
-//! Along a noisy axis y the drift is split into its mean over the line, c, and the rest, r. The rest (damping,
-//! friction) is *fitted*: with φ' = -r/D the flux r p - ∂(D p)/∂y is -e^{-φ} ∂(e^{φ} D p)/∂y, exact for the
-//! equilibrium D p ∝ e^{-φ}, and the derivative of the smooth product is taken to fourth order. The mean, and
-//! whatever of r is too strong against diffusion for the grid, is advected.
+//! Along a noisy axis y the drift is split into a smooth part, which the grid resolves, and the rest, r: the jumps of
+//! friction, and whatever else bends within a few cells. The smooth part is *advected*. The rest is *fitted*: with
+//! φ' = -r/D the flux r p - ∂(D p)/∂y is -e^{-φ} ∂(e^{φ} D p)/∂y, exact for the equilibrium D p ∝ e^{-φ}, and the
+//! derivative of the smooth product is taken to fourth order. What of r is too strong against diffusion for the grid is
+//! advected too. (Damping was fitted once, as far as the grid allows. Where that bends along a line, the error is of
+//! second order and far above what schemes differ by: docs/accuracy.md.)
 //!
 //! At a switching surface r jumps and φ has a kink. Density and flux are continuous there, hence D p e^{φ} is
 //! smooth to first order and its stencils may cross the surface: the kink of the density sits in φ, exactly,
@@ -12,8 +14,9 @@
 
 use super::geometry::{AxisGeometry, End};
 use super::scheme::{REACH, Window};
+use super::smooth::SmoothPart;
 
-/// Largest change of φ over a cell that is fitted; the rest is advected. Below half of it nothing is held back.
+/// Largest change of φ over a cell that is fitted; what is left is advected. Below half of it nothing is held back.
 const FITTED_LIMIT: f64 = 2.0;
 
 /// Drift and diffusion along a line. Each cell has four quadrature points, two Gauss points a half-cell.
@@ -27,7 +30,10 @@ pub(super) struct Line {
     pub(super) diffusion: Vec<f64>,
     /// Diffusion at the quadrature points.
     pub(super) inner_diffusion: Vec<f64>,
+    smooth: SmoothPart,
     advected: Vec<f64>,
+    /// By what the advected density is damped.
+    speed: Vec<f64>,
     potential: Vec<f64>,
     face_potential: Vec<f64>,
     gradient: Vec<Window>,
@@ -58,11 +64,14 @@ impl Line {
     /// the unknown of cell `face + k - 3`. At an open end the flux is what leaves, never what comes in.
     pub(super) fn fluxes(&mut self, axis: &AxisGeometry, fluxes: &mut [Window]) {
         let noisy = !self.diffusion.is_empty();
+        self.speed.clear();
         if noisy {
             self.split(axis);
+            self.damp(axis);
         } else {
-            self.advected.clear();
-            self.advected.extend_from_slice(&self.drift);
+            self.advected.clone_from(&self.drift);
+            self.speed
+                .extend(self.drift.iter().map(|drift| drift.abs()));
         }
         for (face, flux) in fluxes.iter_mut().enumerate() {
             *flux = self.advective(axis, face);
@@ -80,37 +89,40 @@ impl Line {
 
     /// Splits the drift, and integrates the potential from the lower end.
     fn split(&mut self, axis: &AxisGeometry) {
-        let count = axis.count();
-        let half = |face: usize, cell: usize| (axis.nodes[cell] - axis.edges[face]).abs();
-        let mut mean = 0.0;
-        for cell in 0..count {
-            let drift = &self.inner_drift[4 * cell..4 * cell + 4];
-            mean += 0.5 * half(cell, cell) * (drift[0] + drift[1]);
-            mean += 0.5 * half(cell + 1, cell) * (drift[2] + drift[3]);
-        }
-        mean /= axis.edges[count] - axis.edges[0];
+        self.smooth.follow(&self.inner_drift);
         self.advected.clear();
         self.potential.clear();
         self.face_potential.clear();
         let mut potential = 0.0;
         self.face_potential.push(potential);
-        for cell in 0..count {
-            let width = axis.widths[cell];
+        for cell in 0..axis.count() {
+            let (node, width) = (axis.nodes[cell], axis.widths[cell]);
+            let smooth = self.smooth.inside(cell);
             let rate = |point: usize| {
-                fitted_rate(
-                    self.inner_drift[4 * cell + point] - mean,
-                    self.inner_diffusion[4 * cell + point],
-                    width,
-                )
+                let rest = self.inner_drift[4 * cell + point] - smooth[point];
+                fitted_rate(rest, self.inner_diffusion[4 * cell + point], width)
             };
-            potential -= 0.5 * half(cell, cell) * (rate(0) + rate(1));
+            potential -= 0.5 * (node - axis.edges[cell]) * (rate(0) + rate(1));
             self.potential.push(potential);
-            potential -= 0.5 * half(cell + 1, cell) * (rate(2) + rate(3));
+            potential -= 0.5 * (axis.edges[cell + 1] - node) * (rate(2) + rate(3));
             self.face_potential.push(potential);
-            let (rest, diffusion) = (self.drift[cell] - mean, self.diffusion[cell]);
-            let fitted = diffusion * fitted_rate(rest, diffusion, width);
-            self.advected.push(mean + (rest - fitted));
+            let (drift, diffusion) = (self.drift[cell], self.diffusion[cell]);
+            let fitted =
+                diffusion * fitted_rate(drift - self.smooth.at_node(cell), diffusion, width);
+            self.advected.push(drift - fitted);
         }
+    }
+
+    /// Speed |a| of damping, less where diffusion damps a cell anyway: a P/√(P² + 1) with P = a h/D. It is analytic in
+    /// the drift, so that Q has a derivative by a parameter at which the drift changes its sign in a cell.
+    fn damp(&mut self, axis: &AxisGeometry) {
+        let noise = self.diffusion.iter().zip(&axis.widths);
+        let noise = noise.map(|(diffusion, width)| diffusion / width);
+        let speeds = self.advected.iter().zip(noise);
+        self.speed.extend(speeds.map(|(drift, noise)| {
+            let scale = drift.hypot(noise).max(f64::MIN_POSITIVE);
+            drift * (drift / scale)
+        }));
     }
 
     /// Central flux of the drift times the density, less dissipation.
@@ -120,7 +132,7 @@ impl Line {
         if face == 0 || face == axis.count() {
             return flux;
         }
-        let speed = 0.5 * (self.advected[face - 1] + self.advected[face]).abs();
+        let speed = 0.5 * (self.speed[face - 1] + self.speed[face]);
         for (k, weight) in flux.iter_mut().enumerate() {
             let (central, dissipation) = (stencil.central[k], stencil.dissipation[k]);
             if central != 0.0 || dissipation != 0.0 {
@@ -172,7 +184,8 @@ impl Line {
         }
     }
 
-    /// Flux through the lower or upper end.
+    /// Flux through the lower or upper end: nothing through a wall, else what drifts and diffuses through half a cell
+    /// to where the density is zero.
     fn end_flux(&self, axis: &AxisGeometry, upper: bool) -> Window {
         let mut flux = [0.0; 2 * REACH];
         if axis.ends[usize::from(upper)] == End::Wall {
@@ -183,12 +196,23 @@ impl Line {
         } else {
             (0, 0, REACH, -1.0)
         };
-        let mut rate = (outward * self.advected[cell]).max(0.0) / axis.widths[cell];
-        if !self.diffusion.is_empty() {
-            // The density is zero in the sink, half a cell from the node.
-            rate += 2.0 * self.fitted_density(axis, face, cell) / axis.face_widths[face];
-        }
-        flux[place] = outward * rate;
+        let drift = outward * self.drift[cell];
+        let diffusion = self.diffusion.get(cell).copied().unwrap_or(0.0);
+        let speed = 2.0 * diffusion / axis.face_widths[face];
+        flux[place] = outward * outflow(drift, speed) / axis.widths[cell];
         flux
     }
+}
+
+/// Rate at which a density leaves across a layer beyond which there is none, for the drift and the diffusion over the
+/// thickness of the layer: P/(1 - e^{-P}) times the latter, P their ratio.
+fn outflow(drift: f64, diffusion: f64) -> f64 {
+    let ratio = drift / diffusion;
+    if ratio.abs() < f64::EPSILON {
+        return diffusion;
+    }
+    if !ratio.is_finite() {
+        return drift.max(0.0);
+    }
+    drift / -(-ratio).exp_m1()
 }

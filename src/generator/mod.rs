@@ -11,7 +11,7 @@
 //! | --- | --- |
 //! | schemes and stencils | `scheme.rs`, `geometry.rs` |
 //! | drift and diffusion along a grid line | `sampler.rs` |
-//! | fluxes along a grid line: fitted and advected drift | `line.rs` |
+//! | fluxes along a grid line: fitted and advected drift | `line.rs`, `smooth.rs` |
 //! | rates along an axis of modes | `modes.rs` |
 //! | the matrix | `assemble.rs`, `columns.rs` |
 //! | masses of cells and moments from the unknowns | `masses.rs` |
@@ -36,6 +36,7 @@ mod one_axis;
 mod resolution;
 mod sampler;
 mod scheme;
+mod smooth;
 
 pub use assemble::assemble;
 pub use derivative::assemble_derivative;

@@ -8,6 +8,7 @@
 )]
 
 mod agreement;
+mod damping;
 mod generator_against_monte_carlo;
 mod generator_refinement;
 mod generator_sensitivity;
