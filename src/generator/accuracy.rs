@@ -190,7 +190,7 @@ impl System for Multiplicative {
 
 #[test]
 fn noise_that_depends_on_the_state_is_exact() {
-    let axis = Axis::uniform(-8.0, 8.0, 250).unwrap();
+    let axis = Axis::uniform(-8.0, 8.0, 400).unwrap();
     let space = CellSpace::new(vec![axis]).unwrap();
     let amplitude = |_, states: &[Lanes], amplitude: &mut Lanes| {
         *amplitude = states[0].map(|x| 0.5 * (1.0 + x * x).sqrt());

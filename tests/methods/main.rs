@@ -8,6 +8,7 @@
 )]
 
 mod agreement;
+mod calibration;
 mod damping;
 mod generator_against_monte_carlo;
 mod generator_refinement;
