@@ -62,7 +62,8 @@ fn space(covariances: &DMatrix<f64>, cells: usize, modes: usize, width: f64) -> 
 
 #[test]
 fn second_moments_of_a_linear_oscillator_with_circuits_are_exact_with_three_modes() {
-    // Three modes are closed for second moments, however wide: what is left is the cells', of fourth order.
+    // Three modes are closed for second moments, however wide: what is left is the cells', of fourth order, or nothing but
+    // what the solver leaves, as a linear drift that is advected gives them exactly.
     let worst = |system: &dyn System, cells: usize, width: f64| {
         let exact = covariances(system);
         let space = space(&exact, cells, 3, width);
@@ -81,7 +82,7 @@ fn second_moments_of_a_linear_oscillator_with_circuits_are_exact_with_three_mode
             let order = (few as f64 / more as f64).powi(4);
             let words = format!("{axes} {width} {errors:?}");
             assert!(
-                errors[0] < 3e-5 && errors[1] < 1.1 * order * errors[0],
+                errors[0] < 3e-5 && errors[1] < f64::max(1.1 * order * errors[0], 1e-8),
                 "{words}"
             );
         }
