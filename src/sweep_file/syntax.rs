@@ -219,10 +219,9 @@ impl<'t> Spot<'t> {
 
     /// A key without a value.
     fn nothing(&self, _: &str) -> Option<Slip> {
-        let is_empty = self.value()?.is_empty() && !self.before.trim_end().ends_with([',', '[']);
-        is_empty.then(|| {
-            let key = self.before.split('=').next().unwrap_or_default();
-            let key = key.rsplit(['{', ',']).next().unwrap_or_default();
+        let before = self.before.trim_end().strip_suffix('=')?;
+        let key = before.rsplit(['{', ',', '=']).next().unwrap_or_default();
+        self.value()?.is_empty().then(|| {
             (
                 format!("`{}` has no value", quotable(key.trim())),
                 "write it behind the `=`".to_owned(),

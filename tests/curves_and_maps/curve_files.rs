@@ -45,7 +45,11 @@ fn the_program_follows_a_row_of_a_run_and_says_what_is_wrong() {
         ),
         (
             "--second a --from 1.2 --to 2",
-            "the sweep holds `a` at 1, and the box of the curves goes from 1.2 to 2",
+            "the sweep holds `a` at 1, and the box of the curves goes from 1.2 to 2.0",
+        ),
+        (
+            "--second a --from 0.2 --to 1e308",
+            "from 0.2 to 1e308: so long a side leaves no digits",
         ),
         (
             "--second a --from 1 --to 1",

@@ -93,6 +93,9 @@ pub(super) fn read(
     })
 }
 
+/// Longest side of the box, in units of the value that the sweep holds: nine digits of that are then left.
+const LONGEST: f64 = 1e7;
+
 /// Refuses a side of the box without length; the key is that of its upper end.
 fn check_side(
     reader: &mut Reader<'_>,
@@ -123,12 +126,17 @@ fn check_held(
     (from, to): (f64, f64),
 ) -> Option<()> {
     let (_, held) = family.fixed().find(|(known, _)| *known == name)?;
-    if (from..=to).contains(&held) {
+    // Places in the box are shares of its sides.
+    let is_lost = held != 0.0 && to - from > LONGEST * held.abs();
+    if (from..=to).contains(&held) && !is_lost {
         return Some(());
     }
-    let title = format!(
-        "the sweep holds `{name}` at {held}, and the box of the curves goes from {from} to {to}"
+    let mut title = format!(
+        "the sweep holds `{name}` at {held}, and the box of the curves goes from {from:?} to {to:?}"
     );
+    if is_lost {
+        title += ": so long a side leaves no digits of that value";
+    }
     let diagnostic = Diagnostic::new(title)
         .allowed(format!("ends on either side of {held}"))
         .remedy(
@@ -136,7 +144,8 @@ fn check_held(
         );
     // Of both ends the one that would have to be moved.
     let ends = [("from", draft.curve.from), ("to", draft.curve.to)];
-    let short = if held < from { from } else { to };
+    let is_first = held < from || is_lost && from.abs() > to.abs();
+    let short = if is_first { from } else { to };
     let key = ends.iter().find(|(_, end)| *end == Some(short));
     let place = key.and_then(|(key, _)| reader.place(&["curve", key]));
     reader.report(match place {
