@@ -21,6 +21,8 @@ use crate::system::{ParameterValues, System};
 
 /// Room that is tried for, in units of what a point takes: finer cells check what is located.
 const TRIED: f64 = 3.0;
+/// Bytes of half a machine whose memory is not known.
+const SMALL_MACHINE: f64 = 2e9;
 /// Bytes beside it: threads, and what is read and drawn.
 const BESIDE: f64 = 1e8;
 
@@ -333,14 +335,16 @@ impl Settings {
     /// Refuses what the system would not give: a limit of the process (`ulimit -v`) shows when memory is asked for, and
     /// in the middle of a solve it ends the program.
     fn check_given(&self, bytes: f64) -> Result<(), Report> {
-        let bytes = TRIED * bytes + BESIDE;
+        // What is more than the machine has is told elsewhere, and may be a bound that is never reached.
+        let most = machine_memory().map_or(SMALL_MACHINE, |memory| 0.5 * memory);
+        let bytes = (TRIED * bytes).min(most) + BESIDE;
         // Nothing is written to it: only room among the addresses is asked for.
         let mut room = Vec::<u8>::new();
         if room.try_reserve_exact(bytes as usize).is_ok() {
             return Ok(());
         }
         let title = format!(
-            "a point may take {} of memory, and the system gives this process less",
+            "a sweep may take {} of memory, and the system gives this process less",
             bytes_in_words(bytes)
         );
         let remedy = "use fewer cells, or a higher limit (`ulimit -v`, or that of the batch job)";
