@@ -39,9 +39,6 @@ pub(super) struct Line {
     gradient: Vec<Window>,
 }
 
-/// Places of the quadrature points in a cell, as a share of its lower and then its upper half.
-pub(super) const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
-
 /// The identity below half of `FITTED_LIMIT`, then bending to it with two continuous derivatives.
 fn limited(change: f64) -> f64 {
     let free = 0.5 * FITTED_LIMIT;

@@ -2,7 +2,8 @@
 
 use super::GeneratorError;
 use super::geometry::AxisGeometry;
-use super::line::{GAUSS, Line};
+use super::line::Line;
+use super::smooth::GAUSS;
 use crate::MAX_DIMENSION;
 use crate::system::{LANES, Lanes, System};
 

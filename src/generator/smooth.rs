@@ -6,7 +6,8 @@
 //! width, and makes a slope over some four cells of a jump. It need not follow the drift more closely than that, as
 //! what is left of the drift at any point is fitted.
 
-use super::line::GAUSS;
+/// Places of the quadrature points in a cell, as a share of its lower and then its upper half.
+pub(super) const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 
 /// Passes of smoothing. With half or twice as many, densities with friction differ by a fraction of their errors
 /// (docs/accuracy.md).

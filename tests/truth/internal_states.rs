@@ -62,8 +62,8 @@ fn space(covariances: &DMatrix<f64>, cells: usize, modes: usize, width: f64) -> 
 
 #[test]
 fn second_moments_of_a_linear_oscillator_with_circuits_are_exact_with_three_modes() {
-    // Three modes are closed for second moments, however wide: what is left is the cells', of fourth order, or nothing but
-    // what the solver leaves, as a linear drift that is advected gives them exactly.
+    // Three modes are closed for second moments, however wide: what is left is the cells', of fourth order, or nothing
+    // but what the solver leaves, as a linear drift that is advected gives them exactly.
     let worst = |system: &dyn System, cells: usize, width: f64| {
         let exact = covariances(system);
         let space = space(&exact, cells, 3, width);
