@@ -68,13 +68,13 @@ struct Repeated<'a> {
 }
 
 impl Checks for Repeated<'_> {
-    fn on_finer_cells(&mut self, checked: &Checked<'_>) -> Option<Result<f64, Doubt>> {
-        let seen = self.seen?;
-        let mut evaluate = |value: f64| known(seen, CheckedBy::FinerCells, checked, value);
+    fn on_finer_cells(&mut self, checked: &Checked<'_>, times: u8) -> Option<Result<f64, Doubt>> {
+        let (seen, by) = (self.seen?, CheckedBy::FinerCells(times));
+        let mut evaluate = |value: f64| known(seen, by, checked, value);
         let same = check(&mut evaluate, checked, self.span, self.options.tolerance);
-        same.or_else(|| {
-            let zero = nearest_zero(seen, CheckedBy::FinerCells, checked, self.span);
-            Some(zero.ok_or(Doubt::NotOnFinerCells))
+        same.or_else(|| match nearest_zero(seen, by, checked, self.span) {
+            Some(zero) => Some(Ok(zero)),
+            None => (times == 1).then_some(Err(Doubt::NotOnFinerCells)),
         })
     }
 

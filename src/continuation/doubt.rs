@@ -45,20 +45,30 @@ impl BifurcationStatus {
 /// What a located value is checked by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum CheckedBy {
-    /// The same source on finer cells.
-    FinerCells,
+    /// The same source on cells that were refined so many times, one to [`MOST_TIMES`].
+    FinerCells(u8),
     /// The same source between ends of Ω that let nothing out.
     ClosedEnds,
 }
 
+/// How often cells are refined at most to locate a value.
+pub(super) const MOST_TIMES: u8 = 3;
+
 impl CheckedBy {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::FinerCells, Self::ClosedEnds];
+    /// All of them.
+    pub const ALL: [Self; MOST_TIMES as usize + 1] = [
+        Self::FinerCells(1),
+        Self::FinerCells(2),
+        Self::FinerCells(MOST_TIMES),
+        Self::ClosedEnds,
+    ];
 
     /// The words used in tables.
     pub fn name(self) -> &'static str {
         match self {
-            Self::FinerCells => "finer cells",
+            Self::FinerCells(..=1) => "finer cells",
+            Self::FinerCells(2) => "finer cells, twice refined",
+            Self::FinerCells(_) => "finer cells, three times refined",
             Self::ClosedEnds => "closed ends",
         }
     }
@@ -215,6 +225,8 @@ pub(super) struct Evidence<'a> {
     /// Why no finer cells tell where it is; `None` where they do, or where no cells take part.
     pub(super) unchecked: Option<Doubt>,
     pub(super) cell_check: CellCheck,
+    /// How often the cells were refined that it comes from.
+    pub(super) refined: u8,
     /// Whether the cells add diffusion of their own.
     pub(super) is_diffused: bool,
     pub(super) parts: ErrorParts,
@@ -264,7 +276,12 @@ impl Evidence<'_> {
         let axes = self.density.axes.iter();
         let cells = axes.map(Axis::count).max().unwrap_or(0) as f64;
         let is_near = times > 1.0 && times <= FARTHEST_GUESS;
-        is_near.then(|| (0.1 * cells * times).ceil() * 10.0)
+        // The error is the distance to cells that were refined once less.
+        let finer = match self.cell_check {
+            CellCheck::OnFinerCells { ratio } => ratio.powi(i32::from(self.refined.max(1)) - 1),
+            CellCheck::Impossible | CellCheck::Needless => 1.0,
+        };
+        is_near.then(|| (0.1 * cells * finer * times).ceil() * 10.0)
     }
 }
 
@@ -296,6 +313,7 @@ mod tests {
                 densities: Vec::new(),
                 unchecked: None,
                 cell_check: CellCheck::OnFinerCells { ratio: 1.5 },
+                refined: 1,
                 is_diffused: false,
                 parts: ErrorParts::default(),
                 width: 1e-3,

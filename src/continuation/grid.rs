@@ -3,7 +3,8 @@
 //! The indicator's zero on the finer grid is found by a secant that starts with the slope known from the coarser one.
 //! The finer value is the better one and is kept, where the indicator changes its sign about it on the finer grid too.
 //! With r times as many cells an axis and order p its error is 1/(rᵖ - 1) of the distance between both: what order two
-//! gives is stated, and never less than the distance itself.
+//! gives is stated, and never less than the distance itself. Where that error exceeds the tolerance, still finer cells
+//! are asked in the same way.
 
 use super::doubt::{CheckedBy, Doubt};
 use super::root::Root;
@@ -30,8 +31,9 @@ const BEYOND: f64 = 0.5;
 /// How located values are checked: by solves, or by what earlier solves saw. `None` where there is nothing to check
 /// with, or the sweep is to end.
 pub(super) trait Checks {
-    /// Where the change lies on finer cells.
-    fn on_finer_cells(&mut self, checked: &Checked<'_>) -> Option<Result<f64, Doubt>>;
+    /// Where the change lies on cells that were refined so many times; `None` too where more than once costs more than
+    /// [`super::LocateOptions::effort`] allows.
+    fn on_finer_cells(&mut self, checked: &Checked<'_>, times: u8) -> Option<Result<f64, Doubt>>;
     /// How far the mass that leaves Ω moves it: between closed ends nothing does.
     fn between_closed_ends(&mut self, checked: &Checked<'_>) -> Option<Result<f64, Doubt>>;
 }
@@ -200,7 +202,7 @@ fn indicator_at(evaluate: &mut dyn FnMut(f64) -> Seen, value: f64) -> Result<f64
     match evaluate(value) {
         Seen::Value(indicator) => Ok(indicator),
         Seen::Absent => Err(Some(Doubt::NotOnFinerCells)),
-        Seen::Failed(reason) => Err(Some(Doubt::CheckFailed(CheckedBy::FinerCells, reason))),
+        Seen::Failed(reason) => Err(Some(Doubt::CheckFailed(CheckedBy::FinerCells(1), reason))),
         Seen::Unknown => Err(None),
     }
 }

@@ -1,10 +1,9 @@
 //! The checks of located values by solves: on finer cells, and between ends of Ω that let nothing out.
 
-use super::doubt::CheckedBy;
-use super::doubt::Doubt;
+use super::doubt::{CheckedBy, Doubt, MOST_TIMES};
 use super::grid::{Checked, CheckedIndicator, Checks, Seen, check, known, leak, solve};
 use super::span::Span;
-use super::{DensitySource, Session, SourceError, Want};
+use super::{CellCheck, DensitySource, Session, SourceError, Want};
 use crate::cancellation::Cancellation;
 use crate::topology::Detector;
 
@@ -29,9 +28,12 @@ pub(super) struct Live<'a> {
     known: Vec<CheckedIndicator>,
     span: Span,
     tolerance: f64,
-    finer: Opened,
+    /// On cells refined once, twice, and so on.
+    finer: [Opened; MOST_TIMES as usize],
     enclosed: Opened,
     seen: Vec<CheckedIndicator>,
+    /// Work left for cells that are refined more than once, in solves of the sweep.
+    effort: f64,
 }
 
 impl<'a> Live<'a> {
@@ -39,7 +41,7 @@ impl<'a> Live<'a> {
         source: Option<&'a dyn DensitySource>,
         detector: &'a dyn Detector,
         (cancellation, known): (&'a Cancellation, Vec<CheckedIndicator>),
-        (span, tolerance): (Span, f64),
+        (span, tolerance, effort): (Span, f64, f64),
     ) -> Self {
         Self {
             source,
@@ -48,15 +50,16 @@ impl<'a> Live<'a> {
             known,
             span,
             tolerance,
-            finer: Opened::default(),
+            finer: Default::default(),
             enclosed: Opened::default(),
             seen: Vec::new(),
+            effort,
         }
     }
 
     /// What was seen; `None` where there was nothing to check with.
     pub(super) fn seen(self) -> Option<Vec<CheckedIndicator>> {
-        let wanted = self.source.is_some() && !matches!(self.finer, Opened::None);
+        let wanted = self.source.is_some() && !matches!(self.finer[0], Opened::None);
         wanted.then_some(self.seen)
     }
 
@@ -67,7 +70,7 @@ impl<'a> Live<'a> {
         // One session checks what is found in all of them.
         let want = Want::densities(&source.subject().observables);
         let found = match by {
-            CheckedBy::FinerCells => source.finer(&want),
+            CheckedBy::FinerCells(times) => refined(source, &want, times),
             CheckedBy::ClosedEnds => Ok(source.enclosed(&want)),
         };
         match found {
@@ -79,7 +82,10 @@ impl<'a> Live<'a> {
 
     fn check(&mut self, by: CheckedBy) -> &mut Opened {
         match by {
-            CheckedBy::FinerCells => &mut self.finer,
+            CheckedBy::FinerCells(times) => {
+                let place = usize::from(times.clamp(1, MOST_TIMES)) - 1;
+                &mut self.finer[place]
+            }
             CheckedBy::ClosedEnds => &mut self.enclosed,
         }
     }
@@ -105,15 +111,54 @@ impl<'a> Live<'a> {
             };
         }
         self.seen.extend(found.record(by, checked, value));
+        self.effort -= self.work(by);
         Some(found)
+    }
+
+    /// What a solve of a check costs beyond the first refinement, in solves of the sweep.
+    fn work(&self, by: CheckedBy) -> f64 {
+        let Some(subject) = self.source.map(DensitySource::subject) else {
+            return 0.0;
+        };
+        match (by, subject.cell_check) {
+            (CheckedBy::FinerCells(times @ 2..), CellCheck::OnFinerCells { ratio }) => {
+                // A factorisation by nested dissection takes n^(3(d - 1)) operations with n cells on each of d axes.
+                let axes = subject.family.model().axes.len().max(2) as i32;
+                ratio.powi(3 * (axes - 1) * i32::from(times))
+            }
+            _ => 0.0,
+        }
     }
 }
 
+/// The source whose cells are refined so many times.
+fn refined(
+    source: &dyn DensitySource,
+    want: &Want,
+    times: u8,
+) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
+    let mut found = source.finer(want)?;
+    for _ in 1..times {
+        found = match found {
+            Some(source) => source.finer(want)?,
+            None => None,
+        };
+    }
+    Ok(found)
+}
+
+/// Solves that a value takes at least: one at the zero, and one that shows the change of sign.
+const SOLVES: f64 = 2.0;
+
 impl Checks for Live<'_> {
-    fn on_finer_cells(&mut self, checked: &Checked<'_>) -> Option<Result<f64, Doubt>> {
+    fn on_finer_cells(&mut self, checked: &Checked<'_>, times: u8) -> Option<Result<f64, Doubt>> {
         let (span, tolerance) = (self.span, self.tolerance);
+        let by = CheckedBy::FinerCells(times);
+        if SOLVES * self.work(by) > self.effort.max(0.0) {
+            return None;
+        }
         let mut evaluate = |value: f64| {
-            let seen = self.evaluate(CheckedBy::FinerCells, checked, value);
+            let seen = self.evaluate(by, checked, value);
             seen.unwrap_or(Seen::Unknown)
         };
         check(&mut evaluate, checked, span, tolerance)

@@ -3,13 +3,14 @@
 use super::change::{Change, changes};
 use super::doubt::{Doubt, Evidence, WiderRange};
 use super::follow::{Course, Crossing};
+use super::doubt::MOST_TIMES;
 use super::grid::{Checked, Checks, share_of_distance};
 use super::jump::instead_of_zero;
 use super::label::{self, Label, Located, Zero};
 use super::measure::NUMERICAL_DIFFUSION;
 use super::root::{Root, root};
 use super::rows::{doubt_what_does_not_continue, in_order, inseparable, merge, without_flicker};
-use super::{Goal, Point, Subject, persistence};
+use super::{ErrorParts, Goal, Point, Subject, persistence};
 use crate::density::{EstimatedDensity, Kink, Observable};
 use crate::topology::{Detector, Indicator};
 
@@ -154,19 +155,15 @@ fn by_indicator(
         place: &crossing.ends[0].place,
         root: zero,
     };
-    let on_finer = depends_on_cells.then(|| checks.on_finer_cells(&checked));
+    let on_finer = depends_on_cells.then(|| {
+        let share = share_of_distance(subject.cell_check);
+        on_finer_cells(&mut zero, &checked, (density, share), options, checks)
+    });
     let on_finer = on_finer.flatten();
     let leaks = depends_on_cells && edge_mass(a).max(edge_mass(b)) > QUIET;
     let leak = leaks
         .then(|| checks.between_closed_ends(&checked))
         .flatten();
-    if let Some(Ok(value)) = on_finer {
-        let chance = by_chance(density, checked.place);
-        let share = share_of_distance(subject.cell_check) * chance;
-        let distance = share * (value - zero.value).abs();
-        zero.error.grid = at_least(distance, zero.error.grid, chance, density, options);
-        zero.value = value;
-    }
     if let Some(Ok(distance)) = leak {
         zero.error.leak = distance;
     }
@@ -176,6 +173,10 @@ fn by_indicator(
         Doubt::GridCheckOff
     };
     let is_unchecked = on_finer.is_none() && depends_on_cells;
+    let refined = match on_finer {
+        Some(Ok(times)) => times,
+        _ => 0,
+    };
     let mut densities = Vec::from_iter(instead_of_zero(points, crossing, detector));
     densities.extend(against(
         [a, b],
@@ -183,10 +184,13 @@ fn by_indicator(
         depends_on_cells,
     ));
     let evidence = Evidence {
-        check: [on_finer, leak].into_iter().flatten().find_map(Result::err),
+        check: on_finer
+            .and_then(Result::err)
+            .or_else(|| leak.and_then(Result::err)),
         densities,
         unchecked: is_unchecked.then_some(unchecked),
         cell_check: subject.cell_check,
+        refined,
         is_diffused: a.report.all(&NUMERICAL_DIFFUSION).next().is_some(),
         parts: zero.error,
         width: b.value - a.value,
@@ -210,6 +214,43 @@ fn by_indicator(
         doubts: evidence.doubts(),
         ..band(&subject.observables, change, (0.0, 0.0, 0.0), None)
     }
+}
+
+/// Moves a zero to where finer cells have it, and finer ones again where their error exceeds the tolerance; returns how
+/// often they were refined, or what they say against it.
+fn on_finer_cells(
+    zero: &mut Root,
+    checked: &Checked<'_>,
+    (density, share): (&EstimatedDensity, f64),
+    options: &Goal,
+    checks: &mut dyn Checks,
+) -> Option<Result<u8, Doubt>> {
+    let chance = by_chance(density, checked.place);
+    let before = zero.error.grid;
+    let mut found = None;
+    for times in 1..=MOST_TIMES {
+        let again = Checked {
+            root: *zero,
+            ..*checked
+        };
+        match checks.on_finer_cells(&again, times) {
+            Some(Ok(value)) => {
+                let distance = share * chance * (value - zero.value).abs();
+                zero.error.grid = at_least(distance, before, chance, density, options);
+                zero.value = value;
+                found = Some(Ok(times));
+            }
+            // What cannot be solved on so many cells says nothing against fewer.
+            Some(Err(Doubt::CheckFailed(..))) if times > 1 => break,
+            Some(Err(doubt)) => return Some(Err(doubt)),
+            None => break,
+        }
+        let ErrorParts { grid, .. } = zero.error;
+        if zero.error.total() <= options.tolerance || grid < 0.5 * zero.error.total() {
+            break;
+        }
+    }
+    found
 }
 
 /// What speaks against the densities on either side of a zero. What holds of one that leaks away, or has not converged,
@@ -247,7 +288,8 @@ fn against(
 }
 
 /// The error that cells are said to make, of the distance to finer ones. Two grids may agree by chance: where a bend
-/// lies in its cell is chance, and both may be off by what a scheme makes of it.
+/// lies in its cell is chance, and both may be off by what a scheme makes of it; how level lines of a formula run
+/// through cells is chance too.
 fn at_least(
     distance: f64,
     before: f64,
@@ -262,7 +304,8 @@ fn at_least(
         return distance;
     }
     let least = distance.max(LEAST_CLAIM * options.tolerance);
-    if is_blurred { least.max(before) } else { least }
+    let by_chance = is_blurred || density.structure.is_spread;
+    if by_chance { least.max(before) } else { least }
 }
 
 /// Share of the tolerance below which no error is claimed where a scheme takes part: two grids may agree that well by

@@ -88,6 +88,9 @@ pub struct LocateOptions {
     /// Whether located values are checked on a finer grid, where the source has one; those that could be, and are not,
     /// are [`BifurcationStatus::Unchecked`].
     pub grid_check: bool,
+    /// Work for values whose error exceeds the tolerance after that check, on cells that are refined again: as a
+    /// multiple of the work of the sweep, counted in solves on its cells.
+    pub effort: f64,
 }
 
 impl Default for LocateOptions {
@@ -97,6 +100,7 @@ impl Default for LocateOptions {
             relative_tolerance: 1e-4,
             largest_distance: 0.2,
             grid_check: true,
+            effort: 1.0,
         }
     }
 }
@@ -120,6 +124,7 @@ impl LocateOptions {
                 .unwrap_or(self.relative_tolerance * length.abs()),
             largest_distance: self.largest_distance,
             grid_check: self.grid_check,
+            effort: self.effort,
         }
     }
 }
@@ -130,6 +135,7 @@ struct Goal {
     tolerance: f64,
     largest_distance: f64,
     grid_check: bool,
+    effort: f64,
 }
 
 /// A finished (or interrupted) sweep.

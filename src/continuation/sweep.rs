@@ -314,11 +314,12 @@ impl Run<'_> {
     /// The rows, each checked where the source can be, and what was seen in the checks.
     fn labels(&mut self) -> Labelled {
         let wanted = self.options.grid_check && !self.interrupted;
+        let effort = self.options.effort * self.points.len() as f64;
         let mut checks = Live::new(
             wanted.then_some(self.source),
             self.detector,
             (self.cancellation, self.observer.known_checks()),
-            (self.span, self.options.tolerance),
+            (self.span, self.options.tolerance, effort),
         );
         let labels = label_points(
             &self.points,

@@ -23,6 +23,7 @@ mod projection;
 mod series_map;
 mod spread;
 mod structure;
+mod sub_cell_values;
 mod sub_cells;
 mod uncertainty;
 

@@ -1,11 +1,12 @@
 //! How the masses of cells spread over the bins of a quantity: its density, and its mean.
 //!
-//! Inside a sub-cell the quantity is taken as linear and the density too. The values of a linear function over a box
-//! have a trapezoid for their density, whose integral over each bin is known, so that no mass jumps from bin to bin as
-//! a point would: the counts of neighbouring bins differ by what the density does. The first moment is exact to fourth
-//! order in the sub-cell; what is left is the bend of the level lines inside sub-cells that a bin's edge crosses, and
-//! has no sign. A second map with coarser sub-cells and polynomials of lower degree shows how much that is.
+//! Inside a sub-cell the quantity is taken as quadratic and the density as linear, so that no mass jumps from bin to bin
+//! as a point would: the counts of neighbouring bins differ by what the density does. The first moment is exact to
+//! fourth order in the sub-cell; what is left is how level lines bend inside the pieces of sub-cells that a bin's edge
+//! crosses. Where level lines run along the cells those errors agree from sub-cell to sub-cell, elsewhere they cancel. A
+//! second map with coarser sub-cells and polynomials of lower degree shows how much that is.
 
+use super::sub_cell_values::{PerAxis, Share, SubCellValues};
 use super::sub_cells::SubCells;
 use crate::space::{Axis, CellSpace};
 use crate::system::{BoundQuantity, LANES, Lanes};
@@ -55,6 +56,9 @@ impl Detail {
         }
     }
 }
+
+/// The four corners of two axes: whether the first one is at its upper end, and whether the second is.
+const CORNERS: [[bool; 2]; 4] = [[false, false], [true, false], [false, true], [true, true]];
 
 /// The axes that some coordinates depend on, cut into sub-cells.
 #[derive(Debug, Clone)]
@@ -108,11 +112,14 @@ impl Cut {
     }
 
     /// Looks at a quantity in every sub-cell, in the order of their numbers.
-    fn look(&self, quantity: &BoundQuantity, mut see: impl FnMut(usize, &Seen)) {
+    fn look(&self, quantity: &BoundQuantity, mut see: impl FnMut(usize, &SubCellValues)) {
         let count = self.sub_cells.count();
         let mut edges = vec![[(0.0, 0.0); LANES]; self.axes.len()];
         let mut own = vec![(0.0, 0.0); self.axes.len()];
         let mut states: Vec<Lanes> = vec![[0.0; LANES]; self.dimension];
+        let varied = self.axes.iter().enumerate();
+        let varied = varied.filter(|&(_, &axis)| quantity.states()[axis]);
+        let varied: Vec<usize> = varied.map(|(index, _)| index).collect();
         for start in (0..count).step_by(LANES) {
             for lane in 0..LANES {
                 self.sub_cells
@@ -123,25 +130,26 @@ impl Cut {
                 }
             }
             let centre = quantity.values(&states);
-            let mut seen: Vec<Seen> = centre
-                .iter()
-                .map(|&value| Seen::new(value, self.axes.len()))
-                .collect();
-            for (index, &axis) in self.axes.iter().enumerate() {
-                if !quantity.states()[axis] {
-                    continue;
+            let mut seen = centre.map(|value| SubCellValues::new(value, self.axes.len()));
+            let mut at = |ends: &[(usize, bool)]| {
+                let kept = states.clone();
+                for &(index, is_high) in ends {
+                    let lanes = edges[index].iter().zip(&mut states[self.axes[index]]);
+                    lanes.for_each(|(ends, state)| *state = if is_high { ends.1 } else { ends.0 });
                 }
-                let kept = states[axis];
-                let [low, high] = [0, 1].map(|end| {
-                    for lane in 0..LANES {
-                        let ends = edges[index][lane];
-                        states[axis][lane] = if end == 0 { ends.0 } else { ends.1 };
+                let values = quantity.values(&states);
+                states = kept;
+                values
+            };
+            for &one in &varied {
+                let ends = [false, true].map(|end| at(&[(one, end)]));
+                let lanes = seen.iter_mut().enumerate();
+                lanes.for_each(|(lane, seen)| seen.add_ends(one, ends[0][lane], ends[1][lane]));
+                for &other in varied.iter().filter(|&&other| other > one) {
+                    let corners = CORNERS.map(|[a, b]| at(&[(one, a), (other, b)]));
+                    for (lane, seen) in seen.iter_mut().enumerate() {
+                        seen.add_corners((one, other), corners.map(|values| values[lane]));
                     }
-                    quantity.values(&states)
-                });
-                states[axis] = kept;
-                for (lane, seen) in seen.iter_mut().enumerate() {
-                    seen.add(index, centre[lane], low[lane], high[lane]);
                 }
             }
             for (lane, seen) in seen.iter().enumerate().take(count - start) {
@@ -151,108 +159,12 @@ impl Cut {
     }
 }
 
-/// A quantity in a sub-cell.
-#[derive(Debug, Clone)]
-struct Seen {
-    /// Its mean, to fourth order.
-    mean: f64,
-    /// Its change from end to end along each axis.
-    change: Vec<f64>,
-    lowest: f64,
-    highest: f64,
-}
-
-impl Seen {
-    fn new(centre: f64, axes: usize) -> Self {
-        Self {
-            mean: centre,
-            change: vec![0.0; axes],
-            lowest: centre,
-            highest: centre,
-        }
-    }
-
-    fn add(&mut self, axis: usize, centre: f64, low: f64, high: f64) {
-        self.mean += (low + high - 2.0 * centre) / 6.0;
-        self.change[axis] = high - low;
-        self.lowest = self.lowest.min(low).min(high);
-        self.highest = self.highest.max(low).max(high);
-    }
-
-    /// The widths of the trapezoid, the larger first: those of the largest change, and of all others together.
-    fn widths(&self) -> (f64, f64) {
-        let largest = self.change.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
-        let squares: f64 = self.change.iter().map(|change| change * change).sum();
-        let rest = (squares - largest * largest).max(0.0).sqrt();
-        (largest.max(rest), largest.min(rest))
-    }
-}
-
-/// Mass below, and density at, an offset from the mean of the sum of two uniform variables of widths `a` ≥ `b`.
-fn trapezoid(offset: f64, a: f64, b: f64) -> (f64, f64) {
-    let t = offset.abs();
-    let (inner, outer) = (0.5 * (a - b), 0.5 * (a + b));
-    let (above, density) = if t >= outer {
-        (0.0, 0.0)
-    } else if t > inner {
-        let left = outer - t;
-        (left * left / (2.0 * a * b), left / (a * b))
-    } else {
-        (0.5 - t / a, 1.0 / a)
-    };
-    (if offset > 0.0 { 1.0 - above } else { above }, density)
-}
-
-/// Share of a bin's width below which a sub-cell has one value.
-const POINT: f64 = 1e-9;
-/// Share of a bin's width by which a value may lie beyond the end of the bins from rounding.
-const ROUNDING: f64 = 1e-6;
-
-/// A share of a sub-cell's mass: bin, share, and the share's change by a shift of the quantity.
-type Share = (usize, f64, f64);
-
-/// The bins that a sub-cell's values fall into. Where none of the values that were looked at lies beyond an end,
-/// nothing does.
-fn shares(bins: &Axis, seen: &Seen, shares: &mut Vec<Share>) {
-    shares.clear();
-    let (a, b) = seen.widths();
-    if !(seen.mean.is_finite() && a.is_finite()) {
-        return;
-    }
-    let ends = (bins.from(), bins.to());
-    let last = bins.count() - 1;
-    let within = (
-        seen.lowest >= ends.0 - ROUNDING * bins.width(0),
-        seen.highest <= ends.1 + ROUNDING * bins.width(last),
-    );
-    let mean = match within {
-        (true, true) => seen.mean.clamp(ends.0, ends.1),
-        (true, false) => seen.mean.max(ends.0),
-        (false, true) => seen.mean.min(ends.1),
-        (false, false) => seen.mean,
-    };
-    let reach = 0.5 * (a + b);
-    let (low, high) = ((mean - reach).max(ends.0), (mean + reach).min(ends.1));
-    let (Some(first), true) = (bins.find(low), low <= high) else {
-        return;
-    };
-    if a <= POINT * bins.width(first) {
-        shares.push((first, 1.0, 0.0));
-        return;
-    }
-    let at = |edge: usize| match edge {
-        0 if within.0 => (0.0, 0.0),
-        edge if edge > last && within.1 => (1.0, 0.0),
-        edge => trapezoid(bins.edges()[edge] - mean, a, b),
-    };
-    let mut below = at(first);
-    for bin in first..=last {
-        let above = at(bin + 1);
-        shares.push((bin, above.0 - below.0, below.1 - above.1));
-        below = above;
-        if bins.edges()[bin + 1] >= high {
-            break;
-        }
+/// A sub-cell whose mass falls into one bin.
+fn whole(bin: usize) -> Share {
+    Share {
+        bin,
+        mass: 1.0,
+        of_change: PerAxis::default(),
     }
 }
 
@@ -279,18 +191,20 @@ impl Spread {
         let cut = Cut::new(space, coordinates, detail, planes);
         let count = cut.sub_cells.count();
         let seen = |coordinate: &Coordinate| {
-            let mut found: Vec<(Vec<Share>, Vec<f64>)> = Vec::with_capacity(count);
+            let mut found: Vec<Vec<Share>> = Vec::with_capacity(count);
             match coordinate {
                 Coordinate::Axis(axis) => {
                     let place = cut.axes.iter().position(|own| own == axis).unwrap_or(0);
-                    let cell = |number| vec![(cut.sub_cells.cell(number, place), 1.0, 0.0)];
-                    found.extend((0..count).map(|number| (cell(number), Vec::new())));
+                    found.extend((0..count).map(|number| {
+                        let bin = cut.sub_cells.cell(number, place);
+                        vec![whole(bin)]
+                    }));
                 }
                 Coordinate::Quantity(quantity, bins) => {
                     let mut own = Vec::new();
                     cut.look(quantity, |_, seen| {
-                        shares(bins, seen, &mut own);
-                        found.push((own.clone(), seen.change.clone()));
+                        seen.shares(bins, &mut own);
+                        found.push(own.clone());
                     });
                 }
             }
@@ -309,30 +223,23 @@ impl Spread {
             weights: Vec::new(),
             cut,
         };
-        let whole = (vec![(0, 1.0, 0.0)], Vec::new());
+        let only = vec![whole(0)];
         for (number, one) in first.iter().enumerate() {
-            let other = second.as_ref().map_or(&whole, |second| &second[number]);
+            let other = second.as_ref().map_or(&only, |second| &second[number]);
             spread.add(one, other, columns);
         }
         spread
     }
 
     /// Adds the entries of the next sub-cell.
-    fn add(
-        &mut self,
-        one: &(Vec<Share>, Vec<f64>),
-        other: &(Vec<Share>, Vec<f64>),
-        columns: usize,
-    ) {
-        let change = |of: &Vec<f64>, axis: usize| of.get(axis).copied().unwrap_or(0.0) / 12.0;
-        for &(row, a, shifted_a) in &one.0 {
-            for &(column, b, shifted_b) in &other.0 {
-                self.bins.push((row * columns + column) as u32);
-                self.weights.push(a * b);
+    fn add(&mut self, one: &[Share], other: &[Share], columns: usize) {
+        for first in one {
+            for second in other {
+                self.bins.push((first.bin * columns + second.bin) as u32);
+                self.weights.push(first.mass * second.mass);
                 for axis in 0..self.cut.axes.len() {
-                    let shift = change(&one.1, axis) * shifted_a * b
-                        + change(&other.1, axis) * shifted_b * a;
-                    self.weights.push(shift);
+                    let [a, b] = [first, second].map(|share| share.of_change[axis]);
+                    self.weights.push(a * second.mass + b * first.mass);
                 }
             }
         }
@@ -385,16 +292,18 @@ impl Averages {
         let mut weights = [Vec::new(), Vec::new()];
         let mut undefined = None;
         cut.look(quantity, |number, seen| {
-            let squares: f64 = seen.change.iter().map(|change| change * change).sum();
-            weights[0].push(seen.mean);
-            let square = seen.mean * seen.mean + squares / 12.0;
+            let change = &seen.change[..cut.axes.len()];
+            let squares: f64 = change.iter().map(|change| change * change).sum();
+            let mean = seen.mean();
+            weights[0].push(mean);
+            let square = mean * mean + squares / 12.0;
             weights[1].push(square);
             if !square.is_finite() && undefined.is_none() {
                 undefined = Some(cut.centre(number, space));
             }
-            for change in &seen.change {
+            for change in change {
                 weights[0].push(change / 12.0);
-                weights[1].push(2.0 * seen.mean * change / 12.0);
+                weights[1].push(2.0 * mean * change / 12.0);
             }
         });
         Self {

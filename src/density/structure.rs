@@ -15,6 +15,9 @@ pub struct Structure {
     /// Of the density of a system with one axis that is known by quadrature: its extrema, free of the cells.
     #[cfg_attr(feature = "serde", serde(with = "crate::bytes"))]
     pub profile: Option<Arc<Profile>>,
+    /// Whether masses of cells are spread over bins of a formula: what that does to bins has no order in the cells, and
+    /// differs from bin to bin.
+    pub is_spread: bool,
 }
 
 /// A plane on which the derivative of the density jumps, or bends: drift or noise across it does, or a force along it

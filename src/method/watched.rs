@@ -199,6 +199,7 @@ impl Maps {
         }
         Structure {
             centre: self.centre(system, problem, &axes, kinked),
+            is_spread: true,
             ..Structure::default()
         }
     }

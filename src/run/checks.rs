@@ -95,7 +95,7 @@ pub(super) fn read_checks(
     let blank = || CheckedIndicator {
         value: f64::NAN,
         observable: observables.len(),
-        by: CheckedBy::FinerCells,
+        by: CheckedBy::FinerCells(1),
         kind: IndicatorKind::CURVATURE,
         place: Vec::new(),
         indicator: None,

@@ -7,7 +7,7 @@ use crate::system::Family;
 pub fn doubt_in_words(family: &Family, doubt: &Doubt) -> String {
     match doubt {
         Doubt::NotOnFinerCells => "finer cells show no such change near it".to_owned(),
-        Doubt::CheckFailed(CheckedBy::FinerCells, reason) => format!("on finer cells: {reason}"),
+        Doubt::CheckFailed(CheckedBy::FinerCells(_), reason) => format!("on finer cells: {reason}"),
         Doubt::CheckFailed(CheckedBy::ClosedEnds, reason) => format!("with closed ends: {reason}"),
         Doubt::NotBetweenClosedEnds => {
             "with closed ends: no such indicator when nothing leaves".to_owned()

@@ -104,6 +104,8 @@ impl StoredDensities {
             .map(|observed| {
                 let mut estimate =
                     observed.estimate(&self.path, index as u64, symmetry.as_ref())?;
+                let mut axes = observed.observable.axes().into_iter();
+                estimate.structure.is_spread = axes.any(|axis| axis >= self.ends.len());
                 // Which of its values were solved by quadrature, the store does not say; only the generator has a
                 // second scheme.
                 let is_solved = estimate.variants.second_scheme().is_some();
@@ -155,7 +157,7 @@ impl Observed {
             structure: Structure {
                 centre,
                 kinks,
-                profile: None,
+                ..Structure::default()
             },
             negligible: self.negligible,
         })

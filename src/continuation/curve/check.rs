@@ -43,7 +43,7 @@ impl Check {
         let failed = |by: CheckedBy, reason: &String| Some(Doubt::CheckFailed(by, reason.clone()));
         match (&self.finer, &self.enclosed) {
             (Some(Shown::Nothing), _) => Some(Doubt::NotOnFinerCells),
-            (Some(Shown::Failed(reason)), _) => failed(CheckedBy::FinerCells, reason),
+            (Some(Shown::Failed(reason)), _) => failed(CheckedBy::FinerCells(1), reason),
             (_, Some(Shown::Nothing)) => Some(Doubt::NotBetweenClosedEnds),
             (_, Some(Shown::Failed(reason))) => failed(CheckedBy::ClosedEnds, reason),
             _ => None,
@@ -196,6 +196,7 @@ impl Checks<'_> {
             densities: reading.against(depends_on_cells),
             unchecked: is_unchecked.then_some(unchecked),
             cell_check: self.0.source.subject().cell_check,
+            refined: 1,
             is_diffused: reading.is_diffused,
             parts,
             width: 0.0,

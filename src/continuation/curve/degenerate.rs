@@ -215,6 +215,7 @@ impl Seeker<'_> {
             densities: coarse.companion_reading.against(true),
             unchecked,
             cell_check: self.0.source.subject().cell_check,
+            refined: 1,
             is_diffused: reading.is_diffused,
             parts,
             width: 0.0,
@@ -254,9 +255,10 @@ impl Seeker<'_> {
                 .newton(source.as_ref(), kind, near, work)
                 .ok_or(Doubt::NotOnFinerCells),
             Ok(None) | Err(SourceError::Interrupted) => Err(Doubt::CheckMissing),
-            Err(SourceError::Method(error)) => {
-                Err(Doubt::CheckFailed(CheckedBy::FinerCells, error.to_string()))
-            }
+            Err(SourceError::Method(error)) => Err(Doubt::CheckFailed(
+                CheckedBy::FinerCells(1),
+                error.to_string(),
+            )),
         }
     }
 

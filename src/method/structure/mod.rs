@@ -131,7 +131,7 @@ pub(super) fn structure(
     Structure {
         centre,
         kinks,
-        profile: None,
+        ..Structure::default()
     }
 }
 

@@ -68,6 +68,7 @@ fn density(observable: Observable, variants: fn(Vec<f64>) -> Variants) -> Estima
                 jump: vec![0.3],
             }],
             profile: Some(Arc::new(profile())),
+            is_spread: true,
         },
         negligible: 1e-9,
     }

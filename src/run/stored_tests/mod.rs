@@ -82,7 +82,7 @@ fn point(value: f64, replicates: Option<usize>, kinks: usize) -> Point {
             structure: Structure {
                 centre: Some(vec![0.1 + 0.2; observable.axes().len()]),
                 kinks: (0..kinks).map(kink).collect(),
-                profile: None,
+                ..Structure::default()
             },
             negligible: 0.25,
         }

@@ -22,6 +22,10 @@ pub(super) const POSITIVE: Condition = Condition {
     words: " greater than zero",
     holds: |value| value > 0.0,
 };
+pub(super) const NOT_NEGATIVE: Condition = Condition {
+    words: " that is not negative",
+    holds: |value| value >= 0.0,
+};
 pub(super) const OPEN_UNIT: Condition = Condition {
     words: " between 0 and 1, both excluded",
     holds: |value| value > 0.0 && value < 1.0,

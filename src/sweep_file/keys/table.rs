@@ -3,7 +3,9 @@
 use super::field::{
     Field, InFile, Named, SWITCH, always, formulas, of_axis, of_bins, of_methods, optional,
 };
-use super::kind::{ANY, DPI, Kind, LINE, OPEN_UNIT, POSITIVE, SHARE, STEP, TEXT, UP_TO_ONE};
+use super::kind::{
+    ANY, DPI, Kind, LINE, NOT_NEGATIVE, OPEN_UNIT, POSITIVE, SHARE, STEP, TEXT, UP_TO_ONE,
+};
 use super::{Key, KeyDefault};
 use crate::continuation::curve::CurveOptions;
 use crate::continuation::map::MapOptions;
@@ -187,6 +189,8 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
         "Hellinger distance between neighbouring densities above which a value between them is solved too."),
     key("locate.grid_check", Kind::Choice(switch), OfOptions, always!(locate.grid_check),
         "Whether located values are checked on a finer grid (by methods without sampling). With `off` they are `unchecked`, and their errors lack what the cells do."),
+    key("locate.effort", Kind::Number(NOT_NEGATIVE), OfOptions, always!(locate.effort),
+        "Work for values that are less certain than wanted after that check: finer cells are asked again, while that costs no more than so many times the solves of the sweep."),
     key("figures.at", Kind::List(&Kind::Number(ANY)), Rule("both ends of the sweep and two points between"), optional!(figures_at),
         "Parameter values at which joint densities and marginals are drawn, inside the sweep."),
     key("figures.formats", Kind::List(&Kind::Choice(Format::words)), OfOptions, always!(figures.formats),

@@ -116,7 +116,9 @@ impl Indicator {
         let values = &estimated.density.values;
         let variants = &estimated.variants;
         let value = function(values);
-        let sensitivity = sensitivity(estimated, &place, value, &function);
+        let responses = responses(estimated, &place, value, &function);
+        let sensitivity = responses.iter().map(|(_, change)| change * change);
+        let sensitivity = sensitivity.sum::<f64>().sqrt();
         // What follows from the equations has no pole where the density is small.
         if sensitivity > 0.0 && !is_clear(estimated, &place) {
             return None;
@@ -129,7 +131,16 @@ impl Indicator {
         let noise = variants.sampling_error(gap);
         let rough = (gap(values).abs() - noise).max(0.0);
         let scheme = variants.second_scheme();
-        let scheme = scheme.map_or(0.0, |values| (function(values) - value).abs());
+        let scheme = scheme.map_or(0.0, |second| {
+            let change = (function(second) - value).abs();
+            // Errors that differ from bin to bin cancel by chance.
+            let is_spread = estimated.structure.is_spread;
+            change.max(if is_spread {
+                independent(values, second, &responses)
+            } else {
+                0.0
+            })
+        });
         let sampling_error = variants.sampling_error(&function);
         let finite = [value, sampling_error, rough, scheme];
         finite
@@ -209,14 +220,14 @@ const NEIGHBOURHOOD: usize = 4;
 /// Relative step of the differences that give a sensitivity.
 const RELATIVE_STEP: f64 = 1e-6;
 
-/// Root of the sum of squares of what relative errors of one in the cells near the place change: relative errors of
-/// size ε, independent of each other, change the number by ε times this.
-fn sensitivity(
+/// What a relative error of one in each cell near the place changes. The root of the sum of their squares is the
+/// sensitivity: relative errors of size ε, independent of each other, change the number by ε times that.
+fn responses(
     estimated: &EstimatedDensity,
     place: &[f64],
     value: f64,
     function: &impl Fn(&[f64]) -> f64,
-) -> f64 {
+) -> Vec<(usize, f64)> {
     let axes = &estimated.density.axes;
     let near = |k: usize| near(&axes[k], place[k], NEIGHBOURHOOD);
     let cells: Vec<usize> = match axes.get(1) {
@@ -226,14 +237,23 @@ fn sensitivity(
             .collect(),
     };
     let mut values = estimated.density.values.clone();
-    let mut square = |cell: usize| {
+    let mut response = |cell: usize| {
         let kept = values[cell];
         values[cell] *= 1.0 + RELATIVE_STEP;
         let change = (function(&values) - value) / RELATIVE_STEP;
         values[cell] = kept;
-        change * change
+        (cell, change)
     };
-    cells.into_iter().map(&mut square).sum::<f64>().sqrt()
+    cells.into_iter().map(&mut response).collect()
+}
+
+/// What the differences of two densities change, as if they were independent of each other.
+fn independent(values: &[f64], second: &[f64], responses: &[(usize, f64)]) -> f64 {
+    let squares = responses.iter().map(|&(cell, change)| {
+        let relative = (second[cell] - values[cell]) / values[cell];
+        (change * relative).powi(2)
+    });
+    squares.sum::<f64>().sqrt()
 }
 
 /// Standard errors that a Student variable exceeds in magnitude with probability `doubt`.
