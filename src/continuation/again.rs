@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::doubt::CheckedBy;
 use super::doubt::Doubt;
-use super::grid::{Checked, CheckedIndicator, Checks, Seen, check, known, leak};
+use super::grid::{Checked, CheckedIndicator, Checks, FinerZero, Seen, check, known, leak};
 use super::span::Span;
 use super::sweep::distance_between;
 use super::{Goal, LocateOptions, Point, Subject, SweepResult, locate::label_points};
@@ -68,7 +68,11 @@ struct Repeated<'a> {
 }
 
 impl Checks for Repeated<'_> {
-    fn on_finer_cells(&mut self, checked: &Checked<'_>, times: u8) -> Option<Result<f64, Doubt>> {
+    fn on_finer_cells(
+        &mut self,
+        checked: &Checked<'_>,
+        times: u8,
+    ) -> Option<Result<FinerZero, Doubt>> {
         let (seen, by) = (self.seen?, CheckedBy::FinerCells(times));
         let mut evaluate = |value: f64| known(seen, by, checked, value);
         let same = check(&mut evaluate, checked, self.span, self.options.tolerance);
@@ -84,7 +88,7 @@ impl Checks for Repeated<'_> {
         match same {
             Seen::Unknown => {
                 let zero = nearest_zero(seen, CheckedBy::ClosedEnds, checked, self.span);
-                zero.map(|zero| Ok((zero - checked.root.value).abs()))
+                zero.map(|zero| Ok((zero.value - checked.root.value).abs()))
             }
             same => leak(same, checked),
         }
@@ -97,17 +101,21 @@ fn nearest_zero(
     by: CheckedBy,
     checked: &Checked<'_>,
     span: Span,
-) -> Option<f64> {
+) -> Option<FinerZero> {
     let alike = seen.iter().filter(|one| {
         one.by == by && one.observable == checked.observable && one.kind == checked.kind
     });
-    let known = alike.filter_map(|one| Some((one.value, one.indicator?)));
+    let known = alike.filter_map(|one| Some((one.value, one.indicator?, one.error)));
     let sought = checked.root.value;
     // The nearer a value to its zero, the less the slope matters, which is the one at the zero sought.
-    let zeros = known.map(|(value, indicator)| {
-        let zero = value - indicator / checked.root.slope;
-        ((zero - value).abs(), zero)
+    let zeros = known.map(|(at, indicator, error)| {
+        let [step, error] = [indicator, error].map(|one| one / checked.root.slope);
+        let zero = FinerZero {
+            value: at - step,
+            error: error.abs(),
+        };
+        (step.abs(), zero)
     });
-    let near = zeros.filter(|(_, zero)| (zero - sought).abs() <= span.step);
+    let near = zeros.filter(|(_, zero)| (zero.value - sought).abs() <= span.step);
     near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|best| best.1)
 }

@@ -138,7 +138,7 @@ fn between(
     found
 }
 
-/// What follows an event. Where counts follow from the equations, a change of sign at which the count stays is another
+/// What follows an event. A critical point that stays, on a line of symmetry, goes before a fold. Where counts follow from the equations, a change of sign at which the count stays is another
 /// event's: a peak that was born on a flank before it reaches a kink. Then its inflection is followed in place of the
 /// kink.
 fn decisive(
@@ -148,6 +148,12 @@ fn decisive(
     gap: (usize, usize),
     event: &Event,
 ) -> Option<Course> {
+    for event in event.at_symmetry() {
+        let course = follow(points, detector, observable, gap, &event);
+        if let Some(Course::Crossing(_)) = course {
+            return course;
+        }
+    }
     let first = follow(points, detector, observable, gap, event);
     let is_exact = |index: usize| {
         let density = &points[index].densities[observable];

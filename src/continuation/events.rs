@@ -43,6 +43,29 @@ impl Event {
             ..self.clone()
         })
     }
+
+    /// The same as a critical point that stays and changes its type, where the density is symmetric about it: the peak
+    /// or crater itself, or the saddle that it grows from.
+    pub(super) fn at_symmetry(&self) -> Vec<Self> {
+        let is_peak = match self.feature {
+            FeatureKind::Peak => true,
+            FeatureKind::Crater => false,
+            FeatureKind::Ring | FeatureKind::Valley => return Vec::new(),
+        };
+        let Some((_, between)) =
+            (self.indicator.as_ref()).filter(|one| one.0 == IndicatorKind::FOLD)
+        else {
+            return Vec::new();
+        };
+        let pairs = self.place.iter().zip(between);
+        let saddle: Vec<f64> = pairs.map(|(own, between)| 2.0 * between - own).collect();
+        [(true, self.place.clone()), (false, saddle)]
+            .map(|(is_it, place)| Self {
+                indicator: Some((IndicatorKind::split(is_peak, is_it), place)),
+                ..self.clone()
+            })
+            .into()
+    }
 }
 
 /// All of them for one observable.

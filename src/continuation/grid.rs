@@ -33,16 +33,28 @@ const BEYOND: f64 = 0.5;
 pub(super) trait Checks {
     /// Where the change lies on cells that were refined so many times; `None` too where more than once costs more than
     /// [`super::LocateOptions::effort`] allows.
-    fn on_finer_cells(&mut self, checked: &Checked<'_>, times: u8) -> Option<Result<f64, Doubt>>;
+    fn on_finer_cells(
+        &mut self,
+        checked: &Checked<'_>,
+        times: u8,
+    ) -> Option<Result<FinerZero, Doubt>>;
     /// How far the mass that leaves Ω moves it: between closed ends nothing does.
     fn between_closed_ends(&mut self, checked: &Checked<'_>) -> Option<Result<f64, Doubt>>;
+}
+
+/// A zero of an indicator on finer cells.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct FinerZero {
+    pub(super) value: f64,
+    /// What these cells themselves leave uncertain, by a second discretisation and a rougher reconstruction.
+    pub(super) error: f64,
 }
 
 /// The indicator of a check at one value.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Seen {
-    /// Its value.
-    Value(f64),
+    /// Its value, and its error by a second discretisation and a rougher reconstruction.
+    Value(f64, f64),
     /// There is no such indicator.
     Absent,
     /// The solve failed, for this reason.
@@ -59,10 +71,10 @@ impl Seen {
         checked: &Checked<'_>,
         value: f64,
     ) -> Option<CheckedIndicator> {
-        let (indicator, failure) = match self {
-            Self::Value(indicator) => (Some(*indicator), None),
-            Self::Absent => (None, None),
-            Self::Failed(reason) => (None, Some(reason.clone())),
+        let (indicator, error, failure) = match self {
+            Self::Value(indicator, error) => (Some(*indicator), *error, None),
+            Self::Absent => (None, 0.0, None),
+            Self::Failed(reason) => (None, 0.0, Some(reason.clone())),
             Self::Unknown => return None,
         };
         Some(CheckedIndicator {
@@ -72,6 +84,7 @@ impl Seen {
             kind: checked.kind,
             place: checked.place.to_vec(),
             indicator,
+            error,
             failure,
         })
     }
@@ -92,6 +105,8 @@ pub struct CheckedIndicator {
     pub place: Vec<f64>,
     /// Its value; `None` if there was none.
     pub indicator: Option<f64>,
+    /// Its error by a second discretisation and a rougher reconstruction; zero where that is not known.
+    pub error: f64,
     /// Why the solve failed; `None` if it did not.
     pub failure: Option<String>,
 }
@@ -125,7 +140,7 @@ pub(super) fn known(
     };
     match (&one.failure, one.indicator) {
         (Some(reason), _) => Seen::Failed(reason.clone()),
-        (None, Some(indicator)) => Seen::Value(indicator),
+        (None, Some(indicator)) => Seen::Value(indicator, one.error),
         (None, None) => Seen::Absent,
     }
 }
@@ -149,13 +164,15 @@ pub(super) fn solve(
     let density = solution.densities.get(checked.observable);
     let indicator =
         density.and_then(|density| detector.indicator(density, checked.kind, checked.place));
-    indicator.map_or(Seen::Absent, |indicator| Seen::Value(indicator.value))
+    indicator.map_or(Seen::Absent, |one| {
+        Seen::Value(one.value, one.systematic_error)
+    })
 }
 
 /// How far the mass that leaves Ω moves a value: the indicator at the zero, when nothing leaves, over its slope.
 pub(super) fn leak(seen: Seen, checked: &Checked<'_>) -> Option<Result<f64, Doubt>> {
     match seen {
-        Seen::Value(indicator) => Some(Ok((indicator / checked.root.slope).abs())),
+        Seen::Value(indicator, _) => Some(Ok((indicator / checked.root.slope).abs())),
         Seen::Absent => Some(Err(Doubt::NotBetweenClosedEnds)),
         Seen::Failed(reason) => Some(Err(Doubt::CheckFailed(CheckedBy::ClosedEnds, reason))),
         Seen::Unknown => None,
@@ -171,13 +188,13 @@ pub(super) fn check(
     checked: &Checked<'_>,
     span: Span,
     tolerance: f64,
-) -> Option<Result<f64, Doubt>> {
+) -> Option<Result<FinerZero, Doubt>> {
     let mut value = checked.root.value;
     let mut slope = checked.root.slope;
     let mut seen: Vec<(f64, f64)> = Vec::new();
     for _ in 0..MOST_SOLVES {
-        let indicator = match indicator_at(evaluate, value) {
-            Ok(indicator) => indicator,
+        let (indicator, error) = match indicator_at(evaluate, value) {
+            Ok(seen) => seen,
             Err(ended) => return ended.map(Err),
         };
         if let Some((before, then)) = seen.last() {
@@ -190,17 +207,24 @@ pub(super) fn check(
         }
         seen.push((value, indicator));
         if step.abs() <= SMALL * tolerance {
-            return changes_sign(evaluate, &seen, next, span, tolerance);
+            let zero = FinerZero {
+                value: next,
+                error: (error / slope).abs(),
+            };
+            return changes_sign(evaluate, &seen, zero, span, tolerance);
         }
         value = next;
     }
     Some(Err(Doubt::NotOnFinerCells))
 }
 
-/// The indicator at a value, or how the check ends without one.
-fn indicator_at(evaluate: &mut dyn FnMut(f64) -> Seen, value: f64) -> Result<f64, Option<Doubt>> {
+/// The indicator at a value and its error, or how the check ends without one.
+fn indicator_at(
+    evaluate: &mut dyn FnMut(f64) -> Seen,
+    value: f64,
+) -> Result<(f64, f64), Option<Doubt>> {
     match evaluate(value) {
-        Seen::Value(indicator) => Ok(indicator),
+        Seen::Value(indicator, error) => Ok((indicator, error)),
         Seen::Absent => Err(Some(Doubt::NotOnFinerCells)),
         Seen::Failed(reason) => Err(Some(Doubt::CheckFailed(CheckedBy::FinerCells(1), reason))),
         Seen::Unknown => Err(None),
@@ -212,11 +236,12 @@ fn indicator_at(evaluate: &mut dyn FnMut(f64) -> Seen, value: f64) -> Result<f64
 fn changes_sign(
     evaluate: &mut dyn FnMut(f64) -> Seen,
     seen: &[(f64, f64)],
-    zero: f64,
+    zero: FinerZero,
     span: Span,
     tolerance: f64,
-) -> Option<Result<f64, Doubt>> {
+) -> Option<Result<FinerZero, Doubt>> {
     let confirmed = Some(Ok(zero));
+    let zero = zero.value;
     let Some(&(last, indicator)) = seen.last().filter(|(_, indicator)| *indicator != 0.0) else {
         return confirmed;
     };
@@ -227,7 +252,7 @@ fn changes_sign(
     }
     let beyond = zero + (zero - last).signum() * BEYOND * tolerance;
     match indicator_at(evaluate, span.nearest(beyond)) {
-        Ok(one) if is_other(one) => confirmed,
+        Ok((one, _)) if is_other(one) => confirmed,
         Ok(_) => Some(Err(Doubt::NotOnFinerCells)),
         Err(ended) => ended.map(Err),
     }
@@ -243,7 +268,7 @@ mod tests {
     fn checked_by(
         function: impl Fn(f64) -> f64,
         slope: f64,
-    ) -> (Option<Result<f64, Doubt>>, usize) {
+    ) -> (Option<Result<FinerZero, Doubt>>, usize) {
         let root = Root {
             value: 0.5,
             slope,
@@ -258,7 +283,7 @@ mod tests {
         let mut solves = 0;
         let mut evaluate = |value: f64| {
             solves += 1;
-            Seen::Value(function(value))
+            Seen::Value(function(value), 0.0)
         };
         let subject = Subject {
             family: bistable(0.0, 1.0),
@@ -276,7 +301,7 @@ mod tests {
         // The secant of a straight line is exact; its last value lies on the zero but for rounding, or before it.
         for (zero, most) in [(0.5 + 1e-7, 2), (0.51, 3), (0.4, 3)] {
             let (found, solves) = checked_by(|value| 3.0 * (value - zero), 3.0);
-            let Some(Ok(value)) = found else {
+            let Some(Ok(FinerZero { value, .. })) = found else {
                 panic!("{found:?}");
             };
             assert!(

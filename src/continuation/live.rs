@@ -1,7 +1,6 @@
 //! The checks of located values by solves: on finer cells, and between ends of Ω that let nothing out.
 
-use super::doubt::{CheckedBy, Doubt, MOST_TIMES};
-use super::grid::{Checked, CheckedIndicator, Checks, Seen, check, known, leak, solve};
+use super::grid::{Checked, CheckedIndicator, Checks, FinerZero, Seen, check, known, leak, solve};
 use super::span::Span;
 use super::{CellCheck, DensitySource, Session, SourceError, Want};
 use crate::cancellation::Cancellation;
@@ -151,7 +150,11 @@ fn refined(
 const SOLVES: f64 = 2.0;
 
 impl Checks for Live<'_> {
-    fn on_finer_cells(&mut self, checked: &Checked<'_>, times: u8) -> Option<Result<f64, Doubt>> {
+    fn on_finer_cells(
+        &mut self,
+        checked: &Checked<'_>,
+        times: u8,
+    ) -> Option<Result<FinerZero, Doubt>> {
         let (span, tolerance) = (self.span, self.tolerance);
         let by = CheckedBy::FinerCells(times);
         if SOLVES * self.work(by) > self.effort.max(0.0) {

@@ -226,7 +226,7 @@ fn on_finer_cells(
     checks: &mut dyn Checks,
 ) -> Option<Result<u8, Doubt>> {
     let chance = by_chance(density, checked.place);
-    let before = zero.error.grid;
+    let mut own = zero.error.grid;
     let mut found = None;
     for times in 1..=MOST_TIMES {
         let again = Checked {
@@ -234,10 +234,12 @@ fn on_finer_cells(
             ..*checked
         };
         match checks.on_finer_cells(&again, times) {
-            Some(Ok(value)) => {
-                let distance = share * chance * (value - zero.value).abs();
-                zero.error.grid = at_least(distance, before, chance, density, options);
-                zero.value = value;
+            Some(Ok(finer)) => {
+                let distance = share * chance * (finer.value - zero.value).abs();
+                let least = own.max(finer.error);
+                zero.error.grid = at_least(distance, (own, least), chance, density, options);
+                zero.value = finer.value;
+                own = finer.error;
                 found = Some(Ok(times));
             }
             // What cannot be solved on so many cells says nothing against fewer.
@@ -292,7 +294,7 @@ fn against(
 /// through cells is chance too.
 fn at_least(
     distance: f64,
-    before: f64,
+    (before, both): (f64, f64),
     chance: f64,
     density: &EstimatedDensity,
     options: &Goal,
@@ -304,8 +306,11 @@ fn at_least(
         return distance;
     }
     let least = distance.max(LEAST_CLAIM * options.tolerance);
-    let by_chance = is_blurred || density.structure.is_spread;
-    if by_chance { least.max(before) } else { least }
+    match density.structure.is_spread {
+        true => least.max(both),
+        false if is_blurred => least.max(before),
+        false => least,
+    }
 }
 
 /// Share of the tolerance below which no error is claimed where a scheme takes part: two grids may agree that well by

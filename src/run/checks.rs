@@ -55,6 +55,14 @@ pub(super) fn columns<'a>(
             .read(|cell| cell.optional(), |one, value| one.place.extend(value)),
         optional("value", |one: &CheckedIndicator| one.indicator)
             .read(|cell| cell.optional(), |one, value| one.indicator = value),
+        optional("error", |one: &CheckedIndicator| {
+            one.indicator.map(|_| one.error)
+        })
+        .read(
+            |cell| cell.optional(),
+            |one, error| one.error = error.unwrap_or(0.0),
+        )
+        .newer(),
         word("failure", |one: &CheckedIndicator| {
             one.failure.clone().unwrap_or_default()
         })
@@ -99,6 +107,7 @@ pub(super) fn read_checks(
         kind: IndicatorKind::CURVATURE,
         place: Vec::new(),
         indicator: None,
+        error: 0.0,
         failure: None,
     };
     let mut seen = columns(family, observables).read(path, true, blank)?;

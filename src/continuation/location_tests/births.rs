@@ -1,6 +1,7 @@
 //! Pairs that are born on a flank, at a kink or in the plane.
 
 use super::*;
+use crate::topology::IndicatorKind;
 
 /// A main peak at -1 and, from θ = 0 on, a pair born at 0.5: (log p)' = -(x + 1)(2 (x - 0.5)² - θ); mirrored for sign
 /// -1.
@@ -180,4 +181,48 @@ fn a_split_that_is_not_quite_symmetric_is_located_where_its_pair_is_born() {
     assert_eq!(found.len(), 1, "{found:#?}");
     let row = rows(&result)[0];
     assert!((row.value - truth).abs() <= row.error, "{found:#?}");
+}
+
+/// Two bistable units coupled by θ: where θ = 1/3 the peaks on the line x₁ = -x₂ become saddles, both at once.
+fn coupled(tilt: f64) -> Exact<impl Formula> {
+    Exact::new(
+        2,
+        60,
+        |_| Structure::default(),
+        move |theta: f64, at: &[f64]| {
+            let well = |x: f64| 0.25 * x.powi(4) - 0.5 * x * x;
+            let potential = well(at[0]) + well(at[1]) + 0.5 * theta * (at[0] - at[1]).powi(2);
+            (-5.0 * (potential - tilt * (at[0] + at[1]))).exp()
+        },
+    )
+}
+
+#[test]
+fn a_pitchfork_off_the_centre_is_told_from_a_fold() {
+    let result = run(&coupled(0.0), (0.26, 0.40, 8), 1e-4);
+    let rows = rows(&result);
+    assert_eq!(rows.len(), 1, "{:?}", lines(&result));
+    let row = rows[0];
+    assert!(
+        words(row).ends_with("peak becomes a saddle"),
+        "{}",
+        words(row)
+    );
+    assert_eq!(row.status(), BifurcationStatus::Located, "{row:?}");
+    assert!(
+        (row.value - 1.0 / 3.0).abs() <= row.error && row.error < 2e-5,
+        "{row:?}"
+    );
+}
+
+#[test]
+fn a_broken_pitchfork_is_a_fold() {
+    // On the line across, V' = -h + (2 - 6θ) s + s³ with higher terms: folds lie below 1/3 by the power 2/3 of the tilt.
+    let result = run(&coupled(0.02), (0.20, 0.34, 8), 1e-4);
+    let rows = rows(&result);
+    assert!(!rows.is_empty(), "{:?}", lines(&result));
+    for row in rows {
+        assert_eq!(row.indicator(), Some(IndicatorKind::FOLD), "{row:?}");
+        assert!(row.upper < 0.33, "{row:?}");
+    }
 }

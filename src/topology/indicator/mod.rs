@@ -12,6 +12,7 @@
 //! | where slope and curvature beside a kink are zero: births at the kink, or away from it | (log p)'' on one side of the kink |
 //! | joint density, smooth centre | the two curvatures of p/p along its principal directions |
 //! | joint density, centre on a kink | slope across the kink; curvature along it |
+//! | joint density, a peak becomes a saddle, or a saddle a peak, on a line of symmetry away from a centre | curvature across the line |
 //! | joint density, a peak opens to a ring away from a centre, or two rings merge | curvature along an axis there |
 //! | where one peak splits, and curvature is zero: at the centre or away from it | p''''/p at the centre |
 //!
@@ -31,6 +32,7 @@ mod ring;
 mod section;
 mod shoulder;
 mod smooth;
+mod split;
 #[cfg(test)]
 mod tests;
 mod window;
@@ -116,9 +118,7 @@ impl Indicator {
         let values = &estimated.density.values;
         let variants = &estimated.variants;
         let value = function(values);
-        let responses = responses(estimated, &place, value, &function);
-        let sensitivity = responses.iter().map(|(_, change)| change * change);
-        let sensitivity = sensitivity.sum::<f64>().sqrt();
+        let sensitivity = sensitivity(estimated, &place, value, &function);
         // What follows from the equations has no pole where the density is small.
         if sensitivity > 0.0 && !is_clear(estimated, &place) {
             return None;
@@ -131,16 +131,7 @@ impl Indicator {
         let noise = variants.sampling_error(gap);
         let rough = (gap(values).abs() - noise).max(0.0);
         let scheme = variants.second_scheme();
-        let scheme = scheme.map_or(0.0, |second| {
-            let change = (function(second) - value).abs();
-            // Errors that differ from bin to bin cancel by chance.
-            let is_spread = estimated.structure.is_spread;
-            change.max(if is_spread {
-                independent(values, second, &responses)
-            } else {
-                0.0
-            })
-        });
+        let scheme = scheme.map_or(0.0, |values| (function(values) - value).abs());
         let sampling_error = variants.sampling_error(&function);
         let finite = [value, sampling_error, rough, scheme];
         finite
@@ -220,14 +211,14 @@ const NEIGHBOURHOOD: usize = 4;
 /// Relative step of the differences that give a sensitivity.
 const RELATIVE_STEP: f64 = 1e-6;
 
-/// What a relative error of one in each cell near the place changes. The root of the sum of their squares is the
-/// sensitivity: relative errors of size ε, independent of each other, change the number by ε times that.
-fn responses(
+/// Root of the sum of squares of what relative errors of one in the cells near the place change: relative errors of
+/// size ε, independent of each other, change the number by ε times this.
+fn sensitivity(
     estimated: &EstimatedDensity,
     place: &[f64],
     value: f64,
     function: &impl Fn(&[f64]) -> f64,
-) -> Vec<(usize, f64)> {
+) -> f64 {
     let axes = &estimated.density.axes;
     let near = |k: usize| near(&axes[k], place[k], NEIGHBOURHOOD);
     let cells: Vec<usize> = match axes.get(1) {
@@ -237,23 +228,14 @@ fn responses(
             .collect(),
     };
     let mut values = estimated.density.values.clone();
-    let mut response = |cell: usize| {
+    let mut square = |cell: usize| {
         let kept = values[cell];
         values[cell] *= 1.0 + RELATIVE_STEP;
         let change = (function(&values) - value) / RELATIVE_STEP;
         values[cell] = kept;
-        (cell, change)
+        change * change
     };
-    cells.into_iter().map(&mut response).collect()
-}
-
-/// What the differences of two densities change, as if they were independent of each other.
-fn independent(values: &[f64], second: &[f64], responses: &[(usize, f64)]) -> f64 {
-    let squares = responses.iter().map(|&(cell, change)| {
-        let relative = (second[cell] - values[cell]) / values[cell];
-        (change * relative).powi(2)
-    });
-    squares.sum::<f64>().sqrt()
+    cells.into_iter().map(&mut square).sum::<f64>().sqrt()
 }
 
 /// Standard errors that a Student variable exceeds in magnitude with probability `doubt`.

@@ -1,7 +1,7 @@
 //! The registry of indicators: a name each, and the list of those that are stored.
 
 use super::IndicatorKind;
-use super::{beside, centre, fold, level, quartic, ring, shoulder};
+use super::{beside, centre, fold, level, quartic, ring, shoulder, split};
 
 impl IndicatorKind {
     /// p''/p of a marginal at its centre of symmetry.
@@ -24,7 +24,7 @@ impl IndicatorKind {
     pub(crate) const QUARTIC: Self = Self(&quartic::QUARTIC);
 
     /// All but test functions, which are not stored.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 19] = [
         Self::CURVATURE,
         Self::KINK_SLOPE,
         Self::CURVATURE_ALONG_KINK,
@@ -40,6 +40,10 @@ impl IndicatorKind {
         Self::RING,
         Self::level(false),
         Self::level(true),
+        Self::split(false, false),
+        Self::split(false, true),
+        Self::split(true, false),
+        Self::split(true, true),
     ];
 
     /// Slope at the inflection between a valley and a peak of a marginal, positive when both are there; `rising` where
@@ -59,6 +63,13 @@ impl IndicatorKind {
     /// together.
     pub const fn level(along_second: bool) -> Self {
         Self(&level::BOTH[along_second as usize])
+    }
+
+    /// Curvature of a joint density across a line on which it is its own mirror image, at a critical point on that line:
+    /// positive when an extremum is there, a peak if `is_peak`, else a crater, and `is_it`; otherwise when a saddle is
+    /// there, which becomes that extremum.
+    pub const fn split(is_peak: bool, is_it: bool) -> Self {
+        Self(&split::ALL[is_peak as usize][is_it as usize])
     }
 
     /// A test function: curvature of the logarithm of a marginal on one side of a kink.

@@ -365,3 +365,34 @@ fn nothing_is_read_where_a_density_is_no_clear_multiple_of_its_error() {
     estimated.negligible = 1.0;
     assert!(at_centre(&estimated).is_empty());
 }
+
+/// Two bistable units coupled by k, exp(-V/T) with V = Σ (x⁴/4 - x²/2) + k (x₁ - x₂)²/2, T = 0.2, tilted by `tilt`
+/// across the line x₁ = -x₂. Its peaks on that line, at x₁² = 1 - 2k, have V'' = 2 - 6k across it.
+fn coupled(k: f64, tilt: f64) -> EstimatedDensity {
+    joint(&axis(60), &axis(60), |x, y| {
+        let well = |x: f64| 0.25 * x.powi(4) - 0.5 * x * x;
+        let potential = well(x) + well(y) + 0.5 * k * (x - y).powi(2) - tilt * (x + y);
+        (-5.0 * potential).exp()
+    })
+}
+
+#[test]
+fn the_curvature_across_a_line_of_symmetry_tells_when_a_peak_becomes_a_saddle() {
+    for k in [0.3f64, 1.0 / 3.0, 0.35] {
+        let at = (1.0 - 2.0 * k).sqrt();
+        // Axes of length 4: curvatures are 16 times those in units of x, and p''/p = -V''/T.
+        let exact = 5.0 * 16.0 * (2.0 - 6.0 * k);
+        for (is_it, sign) in [(true, 1.0), (false, -1.0)] {
+            let kind = IndicatorKind::split(true, is_it);
+            let near = [at + 0.03, -at + 0.05];
+            let found = kind.traits().read;
+            let found = found(&coupled(k, 0.0), &near).unwrap();
+            assert!((found.value - sign * exact).abs() <= found.systematic_error + 1e-6);
+            assert!(found.systematic_error < 1e-2, "{found:?}");
+            assert!((found.place[0] - at).abs() < 1e-5 && (found.place[1] + at).abs() < 1e-5);
+        }
+    }
+    // Without the mirror image the pitchfork breaks.
+    let broken = IndicatorKind::split(true, true).traits().read;
+    assert!(broken(&coupled(0.33, 1e-3), &[0.58, -0.58]).is_none());
+}
