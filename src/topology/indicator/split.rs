@@ -128,18 +128,47 @@ fn directions(jet: &Jet, is_peak: bool) -> ([f64; 2], [f64; 2]) {
     }
 }
 
-/// The place on the line where the slope along it is zero: third derivatives across the line vanish on it.
+/// The place on the line where the slope along it is zero. Newton's method for the critical point comes near to it, but
+/// slowly where the curvature across is nearly zero; third derivatives across the line, which vanish on it, tell the
+/// rest.
 fn settle(field: &Field<'_>, near: &[f64], is_peak: bool) -> Option<Vec<f64>> {
-    let mut place = near.to_vec();
-    let cell = [0, 1].map(|k| field.cell_width(k, near[k]));
-    for _ in 0..MOST_STEPS {
-        let jet = field.jet(&place)?;
+    let to_critical_point = |place: &[f64]| {
+        let jet = field.jet(place)?;
+        let frame = directions(&jet, is_peak);
+        let step = |direction| -jet.slope(direction) / jet.curvature(direction);
+        Some((frame, [step(frame.0), step(frame.1)]))
+    };
+    let to_line = |place: &[f64]| {
+        let jet = field.jet(place)?;
         let (across, along) = directions(&jet, is_peak);
+        let sideways = -jet.bend(across, across) / fourth(field, place, across)?;
         let onward = -jet.slope(along) / jet.curvature(along);
-        let sideways = -jet.bend(across, across) / fourth(field, &place, across)?;
-        let mut longest: f64 = 0.0;
+        Some(((across, along), [sideways, onward]))
+    };
+    let (critical, _) = steps(field, near, near, &to_critical_point)?;
+    let (place, last) = steps(field, &critical, near, &to_line)?;
+    (last < SETTLED).then_some(place)
+}
+
+/// A frame of two directions, and a step along each.
+type Moves = (([f64; 2], [f64; 2]), [f64; 2]);
+
+/// Goes on by steps until they are short, or for so many; returns the place and the last step, in cells. `None` where
+/// it leads away from where the search began.
+fn steps(
+    field: &Field<'_>,
+    from: &[f64],
+    near: &[f64],
+    step: &dyn Fn(&[f64]) -> Option<Moves>,
+) -> Option<(Vec<f64>, f64)> {
+    let cell = [0, 1].map(|k| field.cell_width(k, near[k]));
+    let mut place = from.to_vec();
+    let mut longest = f64::INFINITY;
+    for _ in 0..MOST_STEPS {
+        let ((first, second), [a, b]) = step(&place)?;
+        longest = 0.0;
         for k in 0..2 {
-            let step = (onward * along[k] + sideways * across[k]).clamp(-cell[k], cell[k]);
+            let step = (a * first[k] + b * second[k]).clamp(-cell[k], cell[k]);
             place[k] += step * field.unit(k);
             let away = (place[k] - near[k]).abs();
             if away.is_nan() || away > FARTHEST * cell[k] * field.unit(k) {
@@ -148,10 +177,10 @@ fn settle(field: &Field<'_>, near: &[f64], is_peak: bool) -> Option<Vec<f64>> {
             longest = longest.max((step / cell[k]).abs());
         }
         if longest < SETTLED {
-            return Some(place);
+            break;
         }
     }
-    None
+    Some((place, longest))
 }
 
 /// The fourth derivative across the line.

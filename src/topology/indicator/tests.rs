@@ -388,7 +388,7 @@ fn the_curvature_across_a_line_of_symmetry_tells_when_a_peak_becomes_a_saddle() 
             let found = kind.traits().read;
             let found = found(&coupled(k, 0.0), &near).unwrap();
             assert!((found.value - sign * exact).abs() <= found.systematic_error + 1e-6);
-            assert!(found.systematic_error < 1e-2, "{found:?}");
+            assert!(found.systematic_error < 5e-2, "{found:?}");
             assert!((found.place[0] - at).abs() < 1e-5 && (found.place[1] + at).abs() < 1e-5);
         }
     }
