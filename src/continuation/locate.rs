@@ -1,9 +1,9 @@
 //! The rows of a sweep: every change of signature with its value, error, bracket and status.
 
 use super::change::{Change, changes};
+use super::doubt::MOST_TIMES;
 use super::doubt::{Doubt, Evidence, WiderRange};
 use super::follow::{Course, Crossing};
-use super::doubt::MOST_TIMES;
 use super::grid::{Checked, Checks, share_of_distance};
 use super::jump::instead_of_zero;
 use super::label::{self, Label, Located, Zero};
