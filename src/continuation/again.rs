@@ -2,8 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::doubt::CheckedBy;
-use super::doubt::Doubt;
+use super::doubt::{CheckedBy, Doubt};
 use super::grid::{Checked, CheckedIndicator, Checks, FinerZero, Seen, check, known, leak};
 use super::span::Span;
 use super::sweep::distance_between;

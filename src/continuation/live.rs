@@ -1,5 +1,6 @@
 //! The checks of located values by solves: on finer cells, and between ends of Ω that let nothing out.
 
+use super::doubt::{CheckedBy, Doubt, MOST_TIMES};
 use super::grid::{Checked, CheckedIndicator, Checks, FinerZero, Seen, check, known, leak, solve};
 use super::span::Span;
 use super::{CellCheck, DensitySource, Session, SourceError, Want};
