@@ -5,7 +5,7 @@
 //! That is a pitchfork. It happens on a line on which the density is its own mirror image: the curvature across that
 //! line passes zero linearly. The slope at the shoulder between the two ([`super::fold`]) goes there like the power 3/2
 //! of the distance, so that its zero says little. Without the mirror image a pitchfork breaks into a fold and a point
-//! that stays: the indicator is read only where the slope across the line is zero within its own error.
+//! that stays: the indicator is read only where third derivatives across the line are zero within their own error.
 
 use super::kind::Traits;
 use super::{Indicator, IndicatorKind};
@@ -14,17 +14,19 @@ use crate::topology::Step;
 use crate::topology::field::{Field, Jet};
 
 /// Most steps of Newton's method.
-const MOST_STEPS: usize = 20;
+const MOST_STEPS: usize = 30;
 /// Farthest from where the search began, in cells.
 const FARTHEST: f64 = 6.0;
 /// A step that is a smaller share of a cell ends the search.
 const SETTLED: f64 = 1e-9;
+/// The shortest step must be a smaller share of a cell.
+const LONGEST_LAST: f64 = 1e-3;
 /// Half the distance over which fourth derivatives are taken, in cells.
 const ASIDE: f64 = 0.5;
-/// Times its own error that the slope across the line may be.
+/// Times their own error that third derivatives across the line may be.
 const MIRRORED: f64 = 2.0;
-/// Relative slope over a range that rounding leaves.
-const ROUNDING: f64 = 1e-8;
+/// Share of a range by which the place of the critical point may lie beside the line, where the curvature is nearly zero.
+const BESIDE: f64 = 3e-4;
 
 /// By whether the extremum is a peak, then by whether it is the one that is there when the indicator is positive.
 pub(super) static ALL: [[Traits; 2]; 2] = [
@@ -91,12 +93,14 @@ fn split(
     let (fine, rough) = (field.stencil(&place, 0)?, field.stencil(&place, 1)?);
     let values = &estimated.density.values;
     let (across, _) = directions(&fine.jet(values), is_peak);
-    let slope = |jet: Jet| jet.slope(across) / jet.value;
-    let own = slope(fine.jet(values));
-    let second = field.second_scheme().map(|second| slope(fine.jet(second)));
-    let error = (slope(rough.jet(values)) - own).abs()
+    // On the line third derivatives across it vanish. Where they are nothing but errors, so is the rest of the mirror.
+    let third = |jet: Jet| jet.bend(across, across) / jet.value;
+    let fourth = fourth(&field, &place, across)? / fine.jet(values).value;
+    let own = third(fine.jet(values));
+    let second = field.second_scheme().map(|second| third(fine.jet(second)));
+    let error = (third(rough.jet(values)) - own).abs()
         + second.map_or(0.0, |second| (second - own).abs())
-        + ROUNDING;
+        + BESIDE * fourth.abs();
     if own.abs() > MIRRORED * error {
         return None;
     }
@@ -110,10 +114,9 @@ fn split(
         |values| curvature(fine.jet(values)),
         |values| curvature(rough.jet(values)),
     )?;
-    // With slope h at the line and -h + μ u + a u³ across it, extrema meet at μ = 3 ∛(a h²/4) in place of 0.
-    let cubic = fourth(&field, &place, across)? / (6.0 * fine.jet(values).value);
-    let imperfect = if own.abs() <= ROUNDING { 0.0 } else { error };
-    found.systematic_error += 3.0 * (0.25 * cubic.abs() * imperfect * imperfect).cbrt();
+    // With a slope of μ u + b u² + a u³ across the line, b of the size of its error, extrema meet at μ = b²/(4 a) in
+    // place of 0.
+    found.systematic_error += 0.375 * own * own / fourth.abs();
     Some(found)
 }
 
@@ -128,59 +131,31 @@ fn directions(jet: &Jet, is_peak: bool) -> ([f64; 2], [f64; 2]) {
     }
 }
 
-/// The place on the line where the slope along it is zero. Newton's method for the critical point comes near to it, but
-/// slowly where the curvature across is nearly zero; third derivatives across the line, which vanish on it, tell the
-/// rest.
+/// The critical point, by Newton's method. Where the curvature across is nearly zero, what rounding leaves makes steps
+/// grow again: the place of the shortest step is kept, which the curvature hardly depends on, as it has an extremum there.
 fn settle(field: &Field<'_>, near: &[f64], is_peak: bool) -> Option<Vec<f64>> {
-    let to_critical_point = |place: &[f64]| {
-        let jet = field.jet(place)?;
-        let frame = directions(&jet, is_peak);
-        let step = |direction| -jet.slope(direction) / jet.curvature(direction);
-        Some((frame, [step(frame.0), step(frame.1)]))
-    };
-    let to_line = |place: &[f64]| {
-        let jet = field.jet(place)?;
-        let (across, along) = directions(&jet, is_peak);
-        let sideways = -jet.bend(across, across) / fourth(field, place, across)?;
-        let onward = -jet.slope(along) / jet.curvature(along);
-        Some(((across, along), [sideways, onward]))
-    };
-    let (critical, _) = steps(field, near, near, &to_critical_point)?;
-    let (place, last) = steps(field, &critical, near, &to_line)?;
-    (last < SETTLED).then_some(place)
-}
-
-/// A frame of two directions, and a step along each.
-type Moves = (([f64; 2], [f64; 2]), [f64; 2]);
-
-/// Goes on by steps until they are short, or for so many; returns the place and the last step, in cells. `None` where
-/// it leads away from where the search began.
-fn steps(
-    field: &Field<'_>,
-    from: &[f64],
-    near: &[f64],
-    step: &dyn Fn(&[f64]) -> Option<Moves>,
-) -> Option<(Vec<f64>, f64)> {
     let cell = [0, 1].map(|k| field.cell_width(k, near[k]));
-    let mut place = from.to_vec();
-    let mut longest = f64::INFINITY;
+    let mut place = near.to_vec();
+    let mut best = (LONGEST_LAST, None);
     for _ in 0..MOST_STEPS {
-        let ((first, second), [a, b]) = step(&place)?;
-        longest = 0.0;
-        for k in 0..2 {
-            let step = (a * first[k] + b * second[k]).clamp(-cell[k], cell[k]);
-            place[k] += step * field.unit(k);
-            let away = (place[k] - near[k]).abs();
-            if away.is_nan() || away > FARTHEST * cell[k] * field.unit(k) {
-                return None;
-            }
-            longest = longest.max((step / cell[k]).abs());
+        let jet = field.jet(&place)?;
+        let (across, along) = directions(&jet, is_peak);
+        let [a, b] = [across, along].map(|one| -jet.slope(one) / jet.curvature(one));
+        let step = [0, 1].map(|k| (a * across[k] + b * along[k]).clamp(-cell[k], cell[k]));
+        let length = (step[0] / cell[0]).abs().max((step[1] / cell[1]).abs());
+        if length < best.0 {
+            best = (length, Some(place.clone()));
         }
-        if longest < SETTLED {
+        for k in 0..2 {
+            place[k] += step[k] * field.unit(k);
+        }
+        let away = |k: usize| (place[k] - near[k]).abs() / (cell[k] * field.unit(k));
+        let farthest = away(0).max(away(1));
+        if length < SETTLED || farthest.is_nan() || farthest > FARTHEST {
             break;
         }
     }
-    Some((place, longest))
+    best.1
 }
 
 /// The fourth derivative across the line.
