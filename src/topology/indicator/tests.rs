@@ -384,7 +384,7 @@ fn the_curvature_across_a_line_of_symmetry_tells_when_a_peak_becomes_a_saddle() 
         let exact = 5.0 * 16.0 * (2.0 - 6.0 * k);
         for (is_it, sign) in [(true, 1.0), (false, -1.0)] {
             let kind = IndicatorKind::split(true, is_it);
-            let near = [at + 0.03, -at + 0.05];
+            let near = [at + 0.02, -at + 0.01];
             let found = kind.traits().read;
             let found = found(&coupled(k, 0.0), &near).unwrap();
             assert!((found.value - sign * exact).abs() <= found.systematic_error + 1e-6);
