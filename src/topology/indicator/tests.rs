@@ -378,7 +378,7 @@ fn coupled(k: f64, tilt: f64) -> EstimatedDensity {
 
 #[test]
 fn the_curvature_across_a_line_of_symmetry_tells_when_a_peak_becomes_a_saddle() {
-    for k in [0.3f64, 1.0 / 3.0, 0.35] {
+    for k in [0.3f64, 0.333, 0.35] {
         let at = (1.0 - 2.0 * k).sqrt();
         // Axes of length 4: curvatures are 16 times those in units of x, and p''/p = -V''/T.
         let exact = 5.0 * 16.0 * (2.0 - 6.0 * k);
