@@ -246,14 +246,14 @@ fn the_program_tells_and_draws_what_starts_from_a_degenerate_split() {
     );
     assert_says(&room.read("out/figures/curve.svg"), &["DS1"]);
     assert_drawn_again(&room, "out", "curve.svg");
-    // Of another version, and cut off, it is refused.
+    // Of another version, cut off, and altered, it is refused.
     let whole = room.read("out/plane.json");
     let half = whole[..whole.len() / 2].to_owned();
     let sorted = whole.replace("\"C", "\"X").replace("\"kind\"", "\"sort\"");
     for (text, words) in [
         (whole.replace("\"pbif\"", "\"other\""), "is of other"),
         (half, "does not hold the curves of a plane"),
-        (sorted, "a curve cannot be understood"),
+        (sorted, "is changed: it is not what the run left"),
     ] {
         room.write("out/plane.json", text);
         room.refused("plot out --quiet --out again", &[words]);
