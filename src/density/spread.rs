@@ -1,10 +1,10 @@
 //! How the masses of cells spread over the bins of a quantity: its density, and its mean.
 //!
-//! Inside a sub-cell the quantity is taken as quadratic and the density as linear, so that no mass jumps from bin to bin
-//! as a point would: the counts of neighbouring bins differ by what the density does. The first moment is exact to
+//! Inside a sub-cell the quantity is taken as quadratic and the density as linear, so that no mass jumps from bin to
+//! bin as a point would: the counts of neighbouring bins differ by what the density does. The first moment is exact to
 //! fourth order in the sub-cell; what is left is how level lines bend inside the pieces of sub-cells that a bin's edge
-//! crosses. Where level lines run along the cells those errors agree from sub-cell to sub-cell, elsewhere they cancel. A
-//! second map with coarser sub-cells and polynomials of lower degree shows how much that is.
+//! crosses. Where level lines run along the cells those errors agree from sub-cell to sub-cell, elsewhere they cancel.
+//! A second map with coarser sub-cells and polynomials of lower degree shows how much that is.
 
 use super::sub_cell_values::{PerAxis, Share, SubCellValues};
 use super::sub_cells::SubCells;

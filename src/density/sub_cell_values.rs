@@ -71,8 +71,8 @@ impl SubCellValues {
         )
     }
 
-    /// The shares of the sub-cell's mass in the bins that its values fall into, those of one bin together. Where none of
-    /// the values that were looked at lies beyond an end, nothing does.
+    /// The shares of the sub-cell's mass in the bins that its values fall into, those of one bin together. Where none
+    /// of the values that were looked at lies beyond an end, nothing does.
     pub(super) fn shares(&self, bins: &Axis, shares: &mut Vec<Share>) {
         shares.clear();
         let within = self.is_within(bins);

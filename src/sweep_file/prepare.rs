@@ -186,7 +186,7 @@ impl Settings {
             return Ok(given);
         }
         let found = automatic_ranges(ends, &known, SgcmOptions::default().seed, cancellation);
-        if let (Err(RangeError::RunsAway { .. }), Some(typed)) =
+        if let (Err(RangeError::RunsAway { .. } | RangeError::TooLong { .. }), Some(typed)) =
             (&found, self.family.model().typed())
         {
             let start: Vec<(f64, f64)> = known.iter().map(|one| one.unwrap_or(PILOT_BOX)).collect();

@@ -61,7 +61,8 @@ fn normal(x: f64) -> f64 {
 
 #[test]
 fn energy_and_amplitude_of_a_linear_oscillator_have_their_exact_densities() {
-    let solution = by_generator(&linear(48));
+    // On 48 cells both schemes are off by what their common stencil of the diffusion does to so weak a damping.
+    let solution = by_generator(&linear(64));
     let exact: [&dyn Fn(f64) -> f64; 3] =
         [&|h| -(-h).exp(), &|r| -(-0.5 * r * r).exp(), &|u| normal(u)];
     for (found, exact) in solution.densities.iter().zip(exact) {

@@ -217,7 +217,8 @@ fn a_pitchfork_off_the_centre_is_told_from_a_fold() {
 
 #[test]
 fn a_broken_pitchfork_is_a_fold() {
-    // On the line across, V' = -h + (2 - 6θ) s + s³ with higher terms: folds lie below 1/3 by the power 2/3 of the tilt.
+    // On the line across, V' = -h + (2 - 6θ) s + s³ with higher terms: folds lie below 1/3 by the power 2/3 of the
+    // tilt.
     let result = run(&coupled(0.02), (0.20, 0.34, 8), 1e-4);
     let rows = rows(&result);
     assert!(!rows.is_empty(), "{:?}", lines(&result));

@@ -25,7 +25,8 @@ const LONGEST_LAST: f64 = 1e-3;
 const ASIDE: f64 = 0.5;
 /// Times their own error that third derivatives across the line may be.
 const MIRRORED: f64 = 2.0;
-/// Share of a range by which the place of the critical point may lie beside the line, where the curvature is nearly zero.
+/// Share of a range by which the place of the critical point may lie beside the line, where the curvature is nearly
+/// zero.
 const BESIDE: f64 = 3e-4;
 
 /// By whether the extremum is a peak, then by whether it is the one that is there when the indicator is positive.
@@ -132,7 +133,8 @@ fn directions(jet: &Jet, is_peak: bool) -> ([f64; 2], [f64; 2]) {
 }
 
 /// The critical point, by Newton's method. Where the curvature across is nearly zero, what rounding leaves makes steps
-/// grow again: the place of the shortest step is kept, which the curvature hardly depends on, as it has an extremum there.
+/// grow again: the place of the shortest step is kept, which the curvature hardly depends on, as it has an extremum
+/// there.
 fn settle(field: &Field<'_>, near: &[f64], is_peak: bool) -> Option<Vec<f64>> {
     let cell = [0, 1].map(|k| field.cell_width(k, near[k]));
     let mut place = near.to_vec();
