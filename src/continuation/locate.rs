@@ -10,7 +10,7 @@ use super::label::{self, Label, Located, Zero};
 use super::measure::NUMERICAL_DIFFUSION;
 use super::root::{Root, root};
 use super::rows::{doubt_what_does_not_continue, in_order, inseparable, merge, without_flicker};
-use super::{ErrorParts, Goal, Point, Subject, persistence};
+use super::{CellCheck, ErrorParts, Goal, Point, Subject, persistence};
 use crate::density::{EstimatedDensity, Kink, Observable};
 use crate::topology::{Detector, Indicator};
 
@@ -156,8 +156,8 @@ fn by_indicator(
         root: zero,
     };
     let on_finer = depends_on_cells.then(|| {
-        let share = share_of_distance(subject.cell_check);
-        on_finer_cells(&mut zero, &checked, (density, share), options, checks)
+        let cells = (density, subject.cell_check);
+        on_finer_cells(&mut zero, &checked, cells, options, checks)
     });
     let on_finer = on_finer.flatten();
     let leaks = depends_on_cells && edge_mass(a).max(edge_mass(b)) > QUIET;
@@ -216,17 +216,30 @@ fn by_indicator(
     }
 }
 
+/// The highest order of a scheme.
+const ORDER: i32 = 5;
+
+/// By how much a distance to finer cells may fall when these are refined once more. Values that agree better do so by
+/// chance.
+fn fall(check: CellCheck) -> f64 {
+    match check {
+        CellCheck::OnFinerCells { ratio } => ratio.powi(ORDER),
+        CellCheck::Impossible | CellCheck::Needless => 1.0,
+    }
+}
+
 /// Moves a zero to where finer cells have it, and finer ones again where their error exceeds the tolerance; returns how
 /// often they were refined, or what they say against it.
 fn on_finer_cells(
     zero: &mut Root,
     checked: &Checked<'_>,
-    (density, share): (&EstimatedDensity, f64),
+    (density, check): (&EstimatedDensity, CellCheck),
     options: &Goal,
     checks: &mut dyn Checks,
 ) -> Option<Result<u8, Doubt>> {
     let chance = by_chance(density, checked.place);
-    let mut own = zero.error.grid;
+    let share = share_of_distance(check);
+    let (mut own, mut expected) = (zero.error.grid, 0.0);
     let mut found = None;
     for times in 1..=MOST_TIMES {
         let again = Checked {
@@ -237,9 +250,10 @@ fn on_finer_cells(
             Some(Ok(finer)) => {
                 let distance = share * chance * (finer.value - zero.value).abs();
                 let least = own.max(finer.error);
-                zero.error.grid = at_least(distance, (own, least), chance, density, options);
+                let grid = distance.max(expected);
+                zero.error.grid = at_least(grid, (own, least), chance, density, options);
                 zero.value = finer.value;
-                own = finer.error;
+                (own, expected) = (finer.error, distance / fall(check));
                 found = Some(Ok(times));
             }
             // What cannot be solved on so many cells says nothing against fewer.
