@@ -45,7 +45,7 @@ impl BifurcationStatus {
 /// What a located value is checked by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum CheckedBy {
-    /// The same source on cells that were refined so many times, one to [`MOST_TIMES`].
+    /// The same source on cells that were refined so many times, one to three.
     FinerCells(u8),
     /// The same source between ends of Ω that let nothing out.
     ClosedEnds,
