@@ -33,7 +33,6 @@ words! { AdvectiveScheme, pub name: Upwind5: "upwind5", Central4: "central4", Ce
 
 impl AdvectiveScheme {
     /// Cells on either side of a face that its full stencil uses.
-    /// Cells that a flux stencil reaches along its axis.
     pub(crate) fn reach(self) -> usize {
         match self {
             Self::Upwind5 | Self::Central6 => 3,
