@@ -190,7 +190,8 @@ impl System for Multiplicative {
 
 #[test]
 fn noise_that_depends_on_the_state_is_exact() {
-    // The linear drift is advected, with the order of the scheme; quadrature, which such systems get, is not asked here.
+    // The linear drift is advected, with the order of the scheme; quadrature, which such systems get, is not asked
+    // here.
     let axis = Axis::uniform(-8.0, 8.0, 400).unwrap();
     let space = CellSpace::new(vec![axis]).unwrap();
     let amplitude = |_, states: &[Lanes], amplitude: &mut Lanes| {
