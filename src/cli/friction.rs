@@ -36,7 +36,7 @@ pub(super) fn run(
         .collect();
     let values = shown_values(model, &given).map_err(|error| refused(model, &error))?;
     let figures = Figures::of_friction(model, &values, &model.title).with_style(&style);
-    let figures = figures.draw_all()?;
+    let figures = figures.draw_all();
     if figures.is_empty() {
         return Err(without_friction(model).into());
     }

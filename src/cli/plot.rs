@@ -41,7 +41,7 @@ pub(super) fn run(arguments: &PlotArguments) -> Result<Outcome, CommandError> {
     check_names(&stored)?;
     let figures = stored.run.figures();
     let output = OutputFolder::prepare(&arguments.out.clone().map_or(figures, Ok)?)?;
-    let drawn = draw_sweep(&stored.spec, &stored.result)?;
+    let drawn = draw_sweep(&stored.spec, &stored.result);
     let formats = &stored.spec.settings.figures.formats;
     let files = write_figures(&drawn, formats, output.path())?;
     if files.is_empty() {

@@ -98,7 +98,7 @@ impl Shown<'_> {
                 .collect(),
             arrays,
         };
-        let told = deflate(&serde_json::to_vec(&told)?)?;
+        let told = deflate(&serde_json::to_vec(&told)?);
         Ok(html::page(&sweep.settings.title, &told, &blocks, false))
     }
 }
@@ -117,7 +117,7 @@ fn pack<'a>(
             .filter_map(|point| point.densities.get(observable))
     };
     let mut add = |frames: &[&[f64]], scale: Scale, bits: u32| -> Result<Stated, ExploreError> {
-        let packed = Packed::new(frames, &at, scale, bits)?;
+        let packed = Packed::new(frames, &at, scale, bits);
         blocks.push(packed.bytes);
         Ok(Stated {
             block: blocks.len() - 1,

@@ -52,9 +52,6 @@ pub use stored::StoredPage;
 /// Why a page could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum ExploreError {
-    /// Values cannot be packed.
-    #[error("the packed values are damaged: {0}")]
-    Pack(#[from] std::io::Error),
     /// What the page is told cannot be written.
     #[error("cannot compose the page: {0}")]
     Compose(#[from] serde_json::Error),

@@ -4,10 +4,7 @@
 //! the line through the two before it, in whole steps of the quantisation. `page/unpack.js` undoes it with the same
 //! arithmetic: every operation is one that IEEE 754 rounds exactly, in the same order.
 
-use std::io::Write as _;
-
-use flate2::Compression;
-use flate2::write::ZlibEncoder;
+use miniz_oxide::deflate::compress_to_vec_zlib;
 use serde::Serialize;
 
 /// How values lie on the steps of a quantisation.
@@ -47,10 +44,7 @@ impl Packed {
     /// Packs frames that belong to the parameter values `at`, with steps of the largest magnitude over 2^`bits` - 1;
     /// `bits` from 1 to 28. What is not finite becomes zero. Frames that are longer than the first are cut, shorter
     /// ones filled with zeros.
-    ///
-    /// # Errors
-    /// The bytes cannot be deflated.
-    pub fn new(frames: &[&[f64]], at: &[f64], scale: Scale, bits: u32) -> std::io::Result<Self> {
+    pub fn new(frames: &[&[f64]], at: &[f64], scale: Scale, bits: u32) -> Self {
         let cells = frames.first().map_or(0, |frame| frame.len());
         let finite = |value: f64| if value.is_finite() { value } else { 0.0 };
         let values = frames.iter().flat_map(|frame| frame.iter());
@@ -75,8 +69,8 @@ impl Packed {
             distances.extend((0..cells).map(|cell| zigzag(now[cell] - guessed(cell))));
             steps.push(now);
         }
-        packed.bytes = deflate(&planes(&distances, packed.width()))?;
-        Ok(packed)
+        packed.bytes = deflate(&planes(&distances, packed.width()));
+        packed
     }
 
     /// The step of a value.
@@ -151,25 +145,20 @@ fn planes(numbers: &[u32], width: usize) -> Vec<u8> {
 }
 
 /// A zlib stream.
-pub(super) fn deflate(bytes: &[u8]) -> std::io::Result<Vec<u8>> {
-    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::best());
-    encoder.write_all(bytes)?;
-    encoder.finish()
+pub(super) fn deflate(bytes: &[u8]) -> Vec<u8> {
+    compress_to_vec_zlib(bytes, 9)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::io::Read as _;
 
-    use flate2::read::ZlibDecoder;
+    use miniz_oxide::inflate::decompress_to_vec_zlib;
 
     impl Packed {
         /// The values again, each within [`Packed::error_at`] of what was packed, as `page/unpack.js` reads them.
         pub(crate) fn unpack(&self, at: &[f64]) -> Vec<Vec<f64>> {
-            let mut bytes = Vec::new();
-            let mut decoder = ZlibDecoder::new(self.bytes.as_slice());
-            decoder.read_to_end(&mut bytes).unwrap();
+            let bytes = decompress_to_vec_zlib(&self.bytes).unwrap();
             let count = self.frames * self.cells;
             assert_eq!(bytes.len(), count * self.width());
             let distance = |index: usize| {
@@ -240,7 +229,7 @@ mod tests {
             (Scale::Linear, 28),
             (Scale::Root, 1),
         ] {
-            let packed = Packed::new(&views, &at, scale, bits).unwrap();
+            let packed = Packed::new(&views, &at, scale, bits);
             let back = packed.unpack(&at);
             assert_eq!((back.len(), back[0].len()), (40, 200));
             let mut largest = 0.0f64;
@@ -263,18 +252,18 @@ mod tests {
     fn a_smooth_sweep_takes_less_than_a_byte_a_value() {
         let (at, frames) = frames();
         let views: Vec<&[f64]> = frames.iter().map(Vec::as_slice).collect();
-        let packed = Packed::new(&views, &at, Scale::Root, 12).unwrap();
+        let packed = Packed::new(&views, &at, Scale::Root, 12);
         assert!(packed.bytes.len() < 40 * 200, "{}", packed.bytes.len());
     }
 
     #[test]
     fn nothing_and_what_is_not_finite_can_be_packed() {
-        let none = Packed::new(&[], &[], Scale::Root, 14).unwrap();
+        let none = Packed::new(&[], &[], Scale::Root, 14);
         assert_eq!(none.unpack(&[]), Vec::<Vec<f64>>::new());
         let odd: &[f64] = &[f64::NAN, f64::INFINITY, -1.0, 1.0];
-        let packed = Packed::new(&[odd], &[0.0], Scale::Root, 14).unwrap();
+        let packed = Packed::new(&[odd], &[0.0], Scale::Root, 14);
         assert_eq!(packed.unpack(&[0.0]), [[0.0, 0.0, -1.0, 1.0]]);
-        let zeros = Packed::new(&[&[0.0; 3]], &[0.0], Scale::Linear, 14).unwrap();
+        let zeros = Packed::new(&[&[0.0; 3]], &[0.0], Scale::Linear, 14);
         assert_eq!(zeros.unpack(&[0.0]), [[0.0; 3]]);
         // Alternating extremes at even steps are as far from the line as can be.
         let (up, down) = (&[1.0][..], &[-1.0][..]);
@@ -284,7 +273,7 @@ mod tests {
             Scale::Linear,
             28,
         );
-        let back = wild.unwrap().unpack(&[0.0, 1.0, 3.0, 7.0]);
+        let back = wild.unpack(&[0.0, 1.0, 3.0, 7.0]);
         assert_eq!(back, [[1.0], [-1.0], [1.0], [-1.0]]);
     }
 }

@@ -160,7 +160,6 @@ mod tests {
     use crate::sweep_file::SweepFile;
     use base64::Engine as _;
     use serde_json::Value;
-    use std::io::Read as _;
 
     fn swept(settings: &[(&str, &str)]) -> (Sweep, SweepResult) {
         let text = include_str!("../../sweeps/coulomb_fc.toml");
@@ -192,11 +191,7 @@ mod tests {
     }
 
     fn told(html: &str) -> Value {
-        let mut json = Vec::new();
-        let bytes = block(html, "scene");
-        flate2::read::ZlibDecoder::new(bytes.as_slice())
-            .read_to_end(&mut json)
-            .unwrap();
+        let json = miniz_oxide::inflate::decompress_to_vec_zlib(&block(html, "scene")).unwrap();
         serde_json::from_slice(&json).unwrap()
     }
 

@@ -5,9 +5,6 @@ use std::path::PathBuf;
 /// Why a figure could not be made or written.
 #[derive(Debug, thiserror::Error)]
 pub enum FigureError {
-    /// The SVG could not be read back to measure or render it.
-    #[error("cannot render a figure: {0}")]
-    Svg(#[from] resvg::usvg::Error),
     /// A picture of that size cannot be made.
     #[error("cannot make a picture of {width} × {height} pixels")]
     Raster {
@@ -16,12 +13,6 @@ pub enum FigureError {
         /// Height in pixels.
         height: u32,
     },
-    /// A PNG could not be encoded.
-    #[error("cannot encode a PNG: {0}")]
-    Png(#[from] png::EncodingError),
-    /// A PDF could not be written.
-    #[error("cannot write a PDF: {0}")]
-    Pdf(String),
     /// There is no figure of that name.
     #[error("there is no figure `{name}`, only {}", known.join(", "))]
     Unknown {

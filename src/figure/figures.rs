@@ -2,7 +2,8 @@
 //! all.
 
 use super::FigureError;
-use super::canvas::{pdf, render};
+use super::canvas::drawing::Drawing;
+use super::canvas::{pdf, raster, svg};
 use super::kinds::{self, Sketch, Sweep};
 use super::parts::names;
 use super::style::FigureStyle;
@@ -14,7 +15,7 @@ use crate::figure::canvas::look::Look;
 use crate::figure::canvas::page::Page;
 use crate::system::{Family, Model, ParameterValues};
 
-/// A figure: an SVG document with a name.
+/// A figure: a drawing with a name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
     /// Name of its file without the extension, such as `diagram_x`.
@@ -23,9 +24,7 @@ pub struct Figure {
     pub caption: String,
     /// The numbers it was drawn from, as CSV with a header.
     pub data: String,
-    svg: String,
-    /// Pixels of a PNG to the inch.
-    dpi: f64,
+    drawing: Drawing,
 }
 
 impl Figure {
@@ -35,31 +34,28 @@ impl Figure {
             name: String::new(),
             caption,
             data,
-            svg: page.svg(),
-            dpi: page.look().dpi,
+            drawing: page.drawing(),
         }
     }
 
     /// The figure as an SVG document. Heat maps are embedded pictures; equal results give equal bytes.
-    pub fn svg(&self) -> &str {
-        &self.svg
+    pub fn svg(&self) -> String {
+        svg::svg(&self.drawing)
     }
 
     /// The figure as a PNG: 8-bit RGB, with as many pixels to the inch as its style says, which is written into it.
     ///
     /// # Errors
-    /// [`FigureError`].
+    /// [`FigureError::Raster`] where that are more than memory holds.
     pub fn png(&self) -> Result<Vec<u8>, FigureError> {
-        render::png(&self.svg, self.dpi)
+        raster::png(&self.drawing)
     }
 
-    /// The figure as a PDF of one page, in its size, with its fonts embedded and its text as text; equal figures give
+    /// The figure as a PDF of one page, in its size, with its fonts embedded and its text as text; its name is the
+    /// title, its caption the subject and what stands for the figure where a program reads it aloud. Equal figures give
     /// equal bytes.
-    ///
-    /// # Errors
-    /// [`FigureError`].
-    pub fn pdf(&self) -> Result<Vec<u8>, FigureError> {
-        pdf::pdf(&self.svg, &self.name)
+    pub fn pdf(&self) -> Vec<u8> {
+        pdf::pdf(&self.drawing, &self.name, &self.caption)
     }
 }
 
@@ -157,10 +153,10 @@ impl<'a> Figures<'a> {
     /// Draws the figure of that name and no other; `None` where no density is there to draw.
     ///
     /// # Errors
-    /// [`FigureError`], for a name that is not one of [`Figures::names`] too.
+    /// [`FigureError::Unknown`] for a name that is not one of [`Figures::names`].
     pub fn draw(&self, name: &str) -> Result<Option<Figure>, FigureError> {
         match self.sketches.iter().find(|sketch| sketch.name == name) {
-            Some(sketch) => sketch.draw(&self.print),
+            Some(sketch) => Ok(sketch.draw(&self.print)),
             None => Err(FigureError::Unknown {
                 name: name.to_owned(),
                 known: self.names(),
@@ -190,24 +186,19 @@ impl<'a> Figures<'a> {
     /// Draws the figures that some words name, in their order: a word is a whole name, the beginning of names up to a
     /// `_` (`joint` names `joint_xy_0.5`), or `all`. Those without any density are left out, and words that name none
     /// are passed over.
-    ///
-    /// # Errors
-    /// [`FigureError`].
-    pub fn draw_named<S: AsRef<str>>(&self, words: &[S]) -> Result<Vec<Figure>, FigureError> {
+    pub fn draw_named<S: AsRef<str>>(&self, words: &[S]) -> Vec<Figure> {
         let is_wanted = |sketch: &&Sketch<'_>| {
             let mut words = words.iter().map(AsRef::as_ref);
             words.any(|word| names::matches(word, &sketch.name))
         };
         let wanted = self.sketches.iter().filter(is_wanted);
-        let drawn = wanted.map(|sketch| sketch.draw(&self.print));
-        drawn.filter_map(Result::transpose).collect()
+        wanted
+            .filter_map(|sketch| sketch.draw(&self.print))
+            .collect()
     }
 
     /// Draws all figures, in their order; those without any density are left out.
-    ///
-    /// # Errors
-    /// [`FigureError`].
-    pub fn draw_all(&self) -> Result<Vec<Figure>, FigureError> {
+    pub fn draw_all(&self) -> Vec<Figure> {
         self.draw_named(&["all"])
     }
 }

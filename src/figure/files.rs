@@ -31,9 +31,9 @@ pub fn write_figures(
 fn write(figure: &Figure, format: Format, folder: &Path) -> Result<Option<PathBuf>, FigureError> {
     let path = folder.join(format!("{}.{}", figure.name, format.name()));
     let bytes = match format {
-        Format::Svg => figure.svg().as_bytes().to_vec(),
+        Format::Svg => figure.svg().into_bytes(),
         Format::Png => figure.png()?,
-        Format::Pdf => figure.pdf()?,
+        Format::Pdf => figure.pdf(),
         Format::Csv => figure.data.as_bytes().to_vec(),
         Format::Txt => figure.caption.as_bytes().to_vec(),
     };

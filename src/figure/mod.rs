@@ -1,4 +1,4 @@
-//! Figures of a sweep as a journal prints them: SVG, and PNG and PDF made from the same SVG.
+//! Figures of a sweep as a journal prints them: SVG, PDF and PNG of the same drawing.
 //!
 //! Drawing gives [`Figure`]s as values, all or one by name; writing them to files is another step:
 //!
@@ -11,7 +11,7 @@
 //! if let Some(diagram) = figures.draw("diagram_x")? {
 //!     println!("{}", diagram.svg());
 //! }
-//! write_figures(&figures.draw_all()?, &Format::ALL, "figures".as_ref())?;
+//! write_figures(&figures.draw_all(), &Format::ALL, "figures".as_ref())?;
 //! # Ok(())
 //! # }
 //! ```
@@ -29,8 +29,12 @@
 //!
 //! **A style is laid out, not scaled.** Lengths of a figure are in pixels of its lettering: a style says how many
 //! points such a pixel has, and so how many of them the page is wide. Panels, ticks and legends take what is left, text
-//! keeps its size. PDF is written by krilla from the tree that resvg reads of our SVG; its own SVG crate brings a
-//! second, older resvg.
+//! keeps its size.
+//!
+//! **A drawing is written three times, and laid out once.** What is on a page is a list of elements in whole units
+//! (`canvas::drawing`). SVG, PDF and PNG are three small writers of that list, and lettering is laid out from the
+//! font's own advances and pairs (`canvas::letters`), as browsers do. Rendering our SVG through a library of SVG
+//! brought whole shapers and font writers, several versions of each, for the few elements that it has.
 
 mod settings;
 mod style;

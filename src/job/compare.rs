@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use super::{Context, Job, JobError, Outcome, Progress};
 use crate::compare::{self, CompareError, CompareObserver, Comparison, Solved, Task};
-use crate::figure::{Figure, FigureError, Figures};
+use crate::figure::{Figure, Figures};
 use crate::run::{ComparedRun, JobFolder, Journal, Layout, RunError, compare_files};
 use crate::sweep_file::{Diagnostic, MethodKind, Report, Sweep};
 
@@ -133,11 +133,7 @@ impl Job for CompareJob<'_> {
         compare_files(&self.run(found))
     }
 
-    fn figures(
-        &self,
-        found: &Comparison,
-        context: &Context<'_>,
-    ) -> Result<Vec<Figure>, FigureError> {
+    fn figures(&self, found: &Comparison, context: &Context<'_>) -> Vec<Figure> {
         context.say("drawing");
         let settings = &self.sweep.settings;
         Figures::of_comparison(found, &settings.title)

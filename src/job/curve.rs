@@ -9,7 +9,7 @@ use crate::continuation::curve::{
     Curve, CurveError, CurveOptions, CurveOrigin, CurveStart, CurveTree, Plane, follow_all,
 };
 use crate::continuation::{DensitySource, Located, SourceError, SweepResult};
-use crate::figure::{Figure, FigureError, Figures};
+use crate::figure::{Figure, Figures};
 use crate::run::{JobFolder, JournalledSource, Layout, RunError, curve_files, format_number};
 use crate::sweep_file::{CurveSettings, Diagnostic, Report, Sweep};
 use refusals::{check_corners, no_indicator, plane, refused, refused_plane, which_parameter};
@@ -194,7 +194,7 @@ impl Job for CurveJob<'_> {
         )
     }
 
-    fn figures(&self, found: &CurveTree, _: &Context<'_>) -> Result<Vec<Figure>, FigureError> {
+    fn figures(&self, found: &CurveTree, _: &Context<'_>) -> Vec<Figure> {
         let (family, settings) = (self.sweep.problem.family(), &self.sweep.settings);
         let origin = CurveOrigin::from(self.row);
         Figures::of_curves(&found.curves, (&origin, &[]), family, &settings.title)

@@ -4,7 +4,7 @@ use super::{Context, Job, JobError, Outcome, Progress};
 use crate::continuation::curve::Curve;
 use crate::continuation::map::{MapMaker, MapProgress, MapShard, RegimeMap};
 use crate::continuation::{DensitySource, Shard, SourceError, SweepError};
-use crate::figure::{Figure, FigureError, Figures};
+use crate::figure::{Figure, Figures};
 use crate::run::{JobFolder, JournalledSource, Layout, RunError, map_files, map_shard_file};
 use crate::sweep_file::{Diagnostic, Report, Sweep};
 
@@ -74,7 +74,7 @@ impl Job for MapJob<'_> {
         map_files(found, &self.made_of(), seconds)
     }
 
-    fn figures(&self, found: &RegimeMap, _: &Context<'_>) -> Result<Vec<Figure>, FigureError> {
+    fn figures(&self, found: &RegimeMap, _: &Context<'_>) -> Vec<Figure> {
         let settings = &self.sweep.settings;
         Figures::of_map(found, &[], &settings.title)
             .with_style(&settings.figures.style)
@@ -138,8 +138,8 @@ impl Job for MapShardJob<'_> {
         Ok(vec![map_shard_file(&self.made_of(), found)?])
     }
 
-    fn figures(&self, _: &MapShard, _: &Context<'_>) -> Result<Vec<Figure>, FigureError> {
-        Ok(Vec::new())
+    fn figures(&self, _: &MapShard, _: &Context<'_>) -> Vec<Figure> {
+        Vec::new()
     }
 }
 

@@ -123,14 +123,7 @@ pub trait Job {
     fn files(&self, found: &Self::Found, seconds: f64) -> Result<Vec<(String, String)>, RunError>;
 
     /// Its figures.
-    ///
-    /// # Errors
-    /// [`FigureError`].
-    fn figures(
-        &self,
-        found: &Self::Found,
-        context: &Context<'_>,
-    ) -> Result<Vec<Figure>, FigureError>;
+    fn figures(&self, found: &Self::Found, context: &Context<'_>) -> Vec<Figure>;
 
     /// Writes the files.
     ///
@@ -323,7 +316,7 @@ pub fn carry_out<J: Job>(
     let has_time = job.has_time(&found);
     if has_time {
         let formats = &job.sweep().settings.figures.formats;
-        let figures = job.figures(&found, &context)?;
+        let figures = job.figures(&found, &context);
         folder.check()?;
         write_figures(&figures, formats, &folder.figures()?)?;
     }

@@ -9,7 +9,7 @@ use crate::continuation::{
     DensitySource, LocateOptions, Shard, SourceError, SweepError, SweepResult, detect_again,
     sweep_shard,
 };
-use crate::figure::{Figure, FigureError, Figures};
+use crate::figure::{Figure, Figures};
 use crate::run::{
     Ending, Gathered, JobFolder, JournalledSource, Layout, Manifest, PhaseSeconds, RunError,
     RunFolder, StoredRun, sweep_files, warnings_of_points,
@@ -247,14 +247,10 @@ impl Job for SweepJob<'_> {
         sweep_files(found)
     }
 
-    fn figures(
-        &self,
-        found: &SweepResult,
-        context: &Context<'_>,
-    ) -> Result<Vec<Figure>, FigureError> {
+    fn figures(&self, found: &SweepResult, context: &Context<'_>) -> Vec<Figure> {
         // Those of a shard are those of the whole.
         match self.number() {
-            Some(_) => Ok(Vec::new()),
+            Some(_) => Vec::new(),
             None => {
                 context.say("drawing");
                 draw_sweep(self.sweep, found)
@@ -305,10 +301,7 @@ impl From<SweepError> for JobError {
 }
 
 /// The figures of a sweep that its file names.
-///
-/// # Errors
-/// [`FigureError`].
-pub(crate) fn draw_sweep(sweep: &Sweep, found: &SweepResult) -> Result<Vec<Figure>, FigureError> {
+pub(crate) fn draw_sweep(sweep: &Sweep, found: &SweepResult) -> Vec<Figure> {
     let settings = &sweep.settings;
     Figures::of_sweep(found, &settings.title, &settings.figures.at)
         .with_style(&settings.figures.style)

@@ -1,87 +1,43 @@
 //! Figures in every style: as wide as asked for, nothing cut off, no two texts on each other; PDF with its text and its
 //! fonts.
 
-use std::sync::{Arc, OnceLock};
-
 use proptest::prelude::*;
-use resvg::usvg::{self, fontdb};
+use roxmltree::Document;
 
 use pbif::continuation::{Label, Located, SweepResult};
 use pbif::figure::{ColourMap, Figure, FigureStyle, FigureWidth, Figures, Ground, Typeface};
 
 use crate::common::closed_forms::{bistable, rayleigh, uniform};
+use crate::texts::{size, texts};
 
 const TITLE: &str = "Duffing oscillator with Coulomb friction, sweep of the friction level";
 
 fn drawn(result: &SweepResult, style: &FigureStyle) -> Vec<Figure> {
     let figures = Figures::of_sweep(result, TITLE, &[-0.5, 0.25, 1.0]);
-    figures.with_style(style).draw_all().unwrap()
-}
-
-/// A figure read back with the fonts it was laid out with.
-fn tree(svg: &str) -> usvg::Tree {
-    static FONTS: OnceLock<Arc<fontdb::Database>> = OnceLock::new();
-    let fonts = FONTS.get_or_init(|| {
-        let mut fonts = fontdb::Database::new();
-        let faces = [
-            dejavu::sans::regular(),
-            dejavu::sans::oblique(),
-            dejavu::sans::bold(),
-            dejavu::serif::regular(),
-            dejavu::serif::italic(),
-            dejavu::serif::bold(),
-        ];
-        for face in faces {
-            fonts.load_font_data(face.to_vec());
-        }
-        Arc::new(fonts)
-    });
-    let options = usvg::Options {
-        fontdb: Arc::clone(fonts),
-        ..usvg::Options::default()
-    };
-    usvg::Tree::from_str(svg, &options).unwrap()
-}
-
-/// The texts of a figure with their boxes, in lengths of 1/96 inch.
-fn texts(tree: &usvg::Tree) -> Vec<(String, usvg::Rect)> {
-    fn gather(group: &usvg::Group, found: &mut Vec<(String, usvg::Rect)>) {
-        for node in group.children() {
-            match node {
-                usvg::Node::Group(group) => gather(group, found),
-                usvg::Node::Text(text) => {
-                    let letters = text.chunks().iter().map(usvg::TextChunk::text);
-                    found.push((letters.collect(), text.abs_bounding_box()));
-                }
-                _ => {}
-            }
-        }
-    }
-    let mut found = Vec::new();
-    gather(tree.root(), &mut found);
-    found
+    figures.with_style(style).draw_all()
 }
 
 /// No text leaves the page or touches another. Boxes reach from the lowest to the highest place of any letter of the
 /// font: half of what they overlap in height is air.
 fn assert_readable(figure: &Figure, style: &FigureStyle) {
-    let tree = tree(figure.svg());
-    let texts = texts(&tree);
-    let unit = style.text_points() as f32 / 10.5;
-    let (name, page) = (&figure.name, tree.size());
+    let svg = figure.svg();
+    let svg = Document::parse(&svg).unwrap();
+    let texts = texts(&svg);
+    let unit = style.text_points() / 10.5;
+    let (name, (page, _)) = (&figure.name, size(&svg));
     assert!(!texts.is_empty(), "{name} has no text");
-    for (number, (text, one)) in texts.iter().enumerate() {
-        let inside = one.left() > -0.5 && one.right() < page.width() + 0.5;
+    for (number, one) in texts.iter().enumerate() {
+        let inside = one.left > -0.5 && one.right < page[0] + 0.5;
         assert!(
-            inside && one.top() > -0.5 && one.bottom() < page.height() + 0.5,
-            "{name}: `{text}` leaves the page of {page:?}: {one:?} in {style:?}"
+            inside && one.top > -0.5 && one.bottom < page[1] + 0.5,
+            "{name}: {one:?} leaves the page of {page:?} in {style:?}"
         );
-        for (other_text, other) in &texts[..number] {
-            let across = one.right().min(other.right()) - one.left().max(other.left());
-            let down = one.bottom().min(other.bottom()) - one.top().max(other.top());
+        for other in &texts[..number] {
+            let across = one.right.min(other.right) - one.left.max(other.left);
+            let down = one.bottom.min(other.bottom) - one.top.max(other.top);
             assert!(
                 across < unit || down < 6.0 * unit,
-                "{name}: `{text}` on `{other_text}`, {across} by {down} in {style:?}"
+                "{name}: {one:?} on {other:?}, {across} by {down} in {style:?}"
             );
         }
     }
@@ -102,7 +58,8 @@ fn every_figure_reads_in_every_named_width() {
             for figure in drawn(result, &style) {
                 assert_readable(&figure, &style);
                 if let Some(width) = width.millimetres() {
-                    let given = f64::from(tree(figure.svg()).size().width()) * 25.4 / 96.0;
+                    let svg = figure.svg();
+                    let given = size(&Document::parse(&svg).unwrap()).0[0] * 25.4 / 96.0;
                     // A canvas counts in twentieths of a figure pixel.
                     assert!((given - width).abs() < 0.05, "{}: {given}", figure.name);
                 }
@@ -173,8 +130,8 @@ fn a_pdf_has_the_size_its_fonts_and_is_the_same_each_time() {
         {
             continue;
         }
-        let pdf = figure.pdf().unwrap();
-        assert_eq!(pdf, figure.pdf().unwrap());
+        let pdf = figure.pdf();
+        assert_eq!(pdf, figure.pdf());
         assert!(pdf.starts_with(b"%PDF-") && pdf.len() < 1_000_000);
         let text = String::from_utf8_lossy(&pdf);
         assert!(
@@ -222,7 +179,7 @@ fn the_text_of_a_pdf_is_found() {
             .find(|one| one.name.starts_with(figure))
             .unwrap();
         let file = folder.path().join("figure.pdf");
-        std::fs::write(&file, one.pdf().unwrap()).unwrap();
+        std::fs::write(&file, one.pdf()).unwrap();
         let output = std::process::Command::new("pdftotext")
             .arg(&file)
             .arg("-")

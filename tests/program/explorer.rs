@@ -1,7 +1,6 @@
 //! The explorer through the real binary: the page of a stored run, read back by the page's own code where Node.js is
 //! installed and shown by a browser where Chromium is. Both tests say when they skip.
 
-use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -157,9 +156,7 @@ pub(super) fn scene(html: &str) -> serde_json::Value {
     let packed = packed.split("</script>").next().unwrap();
     let engine = base64::engine::general_purpose::STANDARD;
     let packed = engine.decode(packed).unwrap();
-    let mut told = Vec::new();
-    let mut reader = flate2::read::ZlibDecoder::new(packed.as_slice());
-    reader.read_to_end(&mut told).unwrap();
+    let told = miniz_oxide::inflate::decompress_to_vec_zlib(&packed).unwrap();
     serde_json::from_slice(&told).unwrap()
 }
 

@@ -58,8 +58,8 @@ pub(super) fn run(
     let words: Vec<&str> = arguments.only.iter().map(|word| word.trim()).collect();
     figures.check(&words)?;
     let figures = match words.as_slice() {
-        [] => figures.draw_all()?,
-        words => figures.draw_named(words)?,
+        [] => figures.draw_all(),
+        words => figures.draw_named(words),
     };
     let beside = stored.figures();
     let output = OutputFolder::prepare(&arguments.out.clone().map_or(beside, Ok)?)?;

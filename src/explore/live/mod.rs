@@ -142,7 +142,7 @@ impl Live {
                 })
                 .collect(),
         };
-        let told = deflate(&serde_json::to_vec(&told)?)?;
+        let told = deflate(&serde_json::to_vec(&told)?);
         Ok(html::page(&sweep.settings.title, &told, &[], true))
     }
 

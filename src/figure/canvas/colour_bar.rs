@@ -4,11 +4,10 @@ use plotters_backend::text_anchor::HPos;
 
 use super::frame::{self, Scale};
 use super::heat::Picture;
+use super::letters;
 use super::look::{Look, on_heat};
 use super::page::{Page, Rectangle, Shape, lettering};
-use super::render;
 use super::style::{Stroke, TEXT};
-use crate::figure::FigureError;
 
 /// Width of the bar, in pixels.
 const WIDTH: f64 = 13.0;
@@ -23,18 +22,10 @@ pub(crate) struct ColourBar {
 
 impl ColourBar {
     /// Lays out a bar of the given height; the title (markup) stands above it.
-    ///
-    /// # Errors
-    /// [`FigureError::Svg`].
-    pub(crate) fn new(
-        look: &Look,
-        largest: f64,
-        height: f64,
-        title: &str,
-    ) -> Result<Self, FigureError> {
-        let scale = Scale::vertical(look, (0.0, largest), height, title)?;
-        let title_width = render::text_width(look, scale.title(), TEXT, false)?;
-        Ok(Self { scale, title_width })
+    pub(crate) fn new(look: &Look, largest: f64, height: f64, title: &str) -> Self {
+        let scale = Scale::vertical(look, (0.0, largest), height, title);
+        let title_width = letters::text_width(look, scale.title(), TEXT, false);
+        Self { scale, title_width }
     }
 
     /// Room it takes to the right of a map.
@@ -48,21 +39,13 @@ impl ColourBar {
     }
 
     /// Draws it right of `map`, with marks at some shares (0 to 1) of the largest value.
-    ///
-    /// # Errors
-    /// [`FigureError::Png`].
-    pub(crate) fn draw(
-        &self,
-        page: &Page,
-        map: Rectangle,
-        marks: &[f64],
-    ) -> Result<(), FigureError> {
+    pub(crate) fn draw(&self, page: &Page, map: Rectangle, marks: &[f64]) {
         let bar = Rectangle {
             left: map.right() + GAP,
             width: WIDTH,
             ..map
         };
-        let ramp = Picture::new((1, 255), |_, row| Some(row as f64 / 254.0)).png(page.look())?;
+        let ramp = Picture::new(page.look(), (1, 255), |_, row| Some(row as f64 / 254.0));
         let corners = [(bar.left, bar.top), (bar.right(), bar.bottom())];
         page.draw(&corners, Shape::Image(ramp));
         for &share in marks {
@@ -74,6 +57,5 @@ impl ColourBar {
         self.scale.draw_right(page, bar);
         let above = (bar.left, bar.top - 1.15 * TEXT);
         page.text(above, lettering(self.scale.title(), HPos::Left));
-        Ok(())
     }
 }

@@ -2,100 +2,76 @@
 //! 500² cells stays small. Resampled by nearest cell where cells differ in width.
 
 use super::look::Look;
-use crate::figure::FigureError;
+use super::png::{self, Pixels};
 
 /// Palette entry of places without a value; it is transparent.
 const NOTHING: u8 = 255;
 /// Colours of the scale.
 const COLOURS: usize = 255;
 
-/// A picture of values: `width × height`, from the upper left, rows downward.
+/// A picture of a few colours, rows from the upper one downward.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Picture {
-    width: usize,
-    height: usize,
-    indices: Vec<u8>,
+    /// Columns and rows.
+    pub(super) size: (usize, usize),
+    /// Red, green, blue and opacity, which is none or all, of each number.
+    pub(super) palette: Vec<[u8; 4]>,
+    /// The number of each pixel's colour.
+    pub(super) numbers: Vec<u8>,
 }
 
 impl Picture {
-    /// A picture whose pixel `(column, row)`, counted from the **lower** left, has the share (0 to 1) of the
-    /// largest value that `share` gives; `None` and NaN are left transparent.
+    /// A picture of values, in the colours of a look: its pixel `(column, row)`, counted from the **lower** left, has
+    /// the share (0 to 1) of the largest value that `share` gives; `None` and NaN are left transparent.
     pub(crate) fn new(
-        (width, height): (usize, usize),
+        look: &Look,
+        size: (usize, usize),
         share: impl Fn(usize, usize) -> Option<f64>,
     ) -> Self {
-        let index = |column: usize, row: usize| match share(column, row) {
+        let colours = (0..COLOURS).map(|number| {
+            let (r, g, b) = look.colours.colour(number as f64 / (COLOURS - 1) as f64);
+            [r, g, b, 255]
+        });
+        let number = |column: usize, row: usize| match share(column, row) {
             Some(share) if !share.is_nan() => {
                 (share.clamp(0.0, 1.0) * (COLOURS - 1) as f64).round() as u8
             }
             _ => NOTHING,
         };
-        let rows = (0..height).rev();
-        let indices = rows.flat_map(|row| (0..width).map(move |column| (column, row)));
         Self {
-            width,
-            height,
-            indices: indices.map(|(column, row)| index(column, row)).collect(),
+            size,
+            palette: colours.chain([[255, 255, 255, 0]]).collect(),
+            numbers: pixels(size, number),
+        }
+    }
+
+    /// A picture of areas, each of one colour: the pixel `(column, row)`, counted from the **lower** left, has the
+    /// colour with the number that `number` gives, of at most 256.
+    pub(crate) fn patches(
+        size: (usize, usize),
+        colours: &[(u8, u8, u8)],
+        number: impl Fn(usize, usize) -> usize,
+    ) -> Self {
+        let last = colours.len().saturating_sub(1);
+        Self {
+            size,
+            palette: colours.iter().map(|&(r, g, b)| [r, g, b, 255]).collect(),
+            numbers: pixels(size, |column, row| number(column, row).min(last) as u8),
         }
     }
 
     /// The picture as an indexed PNG.
-    ///
-    /// # Errors
-    /// [`FigureError::Png`].
-    pub(crate) fn png(&self, look: &Look) -> Result<Vec<u8>, FigureError> {
-        let mut palette = Vec::with_capacity(3 * COLOURS + 3);
-        for colour in 0..COLOURS {
-            let (r, g, b) = look.colours.colour(colour as f64 / (COLOURS - 1) as f64);
-            palette.extend([r, g, b]);
-        }
-        palette.extend([255, 255, 255]);
-        let mut opacity = vec![255; COLOURS];
-        opacity.push(0);
-        encode((self.width, self.height), palette, opacity, &self.indices)
+    pub(super) fn png(&self) -> Vec<u8> {
+        let size = (self.size.0 as u32, self.size.1 as u32);
+        png::encode(size, &Pixels::Palette(&self.palette), &self.numbers)
     }
 }
 
-/// A picture of areas, each of one colour, as an indexed PNG: the pixel `(column, row)`, counted from the **lower**
-/// left, has the colour with the number that `number` gives, of at most 256.
-///
-/// # Errors
-/// [`FigureError::Png`].
-pub(crate) fn patches(
-    (width, height): (usize, usize),
-    colours: &[(u8, u8, u8)],
-    number: impl Fn(usize, usize) -> usize,
-) -> Result<Vec<u8>, FigureError> {
-    let palette = colours.iter().flat_map(|&(r, g, b)| [r, g, b]).collect();
+/// The numbers of all pixels, rows from the upper one downward.
+fn pixels((width, height): (usize, usize), number: impl Fn(usize, usize) -> u8) -> Vec<u8> {
     let rows = (0..height).rev();
-    let pixels = rows.flat_map(|row| (0..width).map(move |column| (column, row)));
-    let last = colours.len().saturating_sub(1);
-    let indices: Vec<u8> = pixels
-        .map(|(column, row)| number(column, row).min(last) as u8)
-        .collect();
-    encode((width, height), palette, vec![255; colours.len()], &indices)
-}
-
-/// Pixels that are places in a palette, rows from the upper one downward.
-fn encode(
-    (width, height): (usize, usize),
-    palette: Vec<u8>,
-    opacity: Vec<u8>,
-    indices: &[u8],
-) -> Result<Vec<u8>, FigureError> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
-    encoder.set_color(png::ColorType::Indexed);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_palette(palette);
-    encoder.set_trns(opacity);
-    encoder.set_compression(png::Compression::High);
-    // Rows of a map repeat: the filter `up` turns them into zeros.
-    encoder.set_filter(png::Filter::Up);
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(indices)?;
-    writer.finish()?;
-    Ok(bytes)
+    let places = rows.flat_map(|row| (0..width).map(move |column| (column, row)));
+    places.map(|(column, row)| number(column, row)).collect()
 }
 
 /// For each of `count` pixels over `from..to`, the interval of `edges` (ascending) that holds its middle.
@@ -122,12 +98,12 @@ mod tests {
             (1, 0) => Some(f64::NAN),
             _ => None,
         };
-        let picture = Picture::new((2, 2), share);
-        assert_eq!(picture.indices, [NOTHING, 254, 0, NOTHING]);
         let look = Look::default();
-        let png = picture.png(&look).unwrap();
-        let mut decoder = png::Decoder::new(std::io::Cursor::new(&png));
-        decoder.set_transformations(png::Transformations::EXPAND);
+        let picture = Picture::new(&look, (2, 2), share);
+        assert_eq!(picture.numbers, [NOTHING, 254, 0, NOTHING]);
+        let file = picture.png();
+        let mut decoder = ::png::Decoder::new(std::io::Cursor::new(&file));
+        decoder.set_transformations(::png::Transformations::EXPAND);
         let mut reader = decoder.read_info().unwrap();
         let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
         reader.next_frame(&mut pixels).unwrap();

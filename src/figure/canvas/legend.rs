@@ -2,13 +2,12 @@
 
 use plotters_backend::text_anchor::HPos;
 
+use super::letters;
 use super::look::Look;
 use super::page::{Page, Rectangle, Shape, small};
-use super::render;
 use super::style::{
     BLACK, CURVE_LINE, Colour, ERROR_LINE, INK, MARGIN, PAPER, Stroke, TEXT, TICK_TEXT, WHITE,
 };
-use crate::figure::FigureError;
 
 /// Length of a sample, in pixels.
 const SAMPLE: f64 = 30.0;
@@ -51,18 +50,11 @@ pub(crate) struct Legend {
 
 impl Legend {
     /// Lays out entries (texts are markup) in rows no wider than `width`.
-    ///
-    /// # Errors
-    /// [`FigureError::Svg`].
-    pub(crate) fn new(
-        look: &Look,
-        entries: Vec<(Sample, String)>,
-        width: f64,
-    ) -> Result<Self, FigureError> {
+    pub(crate) fn new(look: &Look, entries: Vec<(Sample, String)>, width: f64) -> Self {
         let mut rows: Vec<f64> = Vec::new();
         let mut placed = Vec::new();
         for (sample, text) in entries {
-            let entry = SAMPLE + GAP + render::text_width(look, &text, TICK_TEXT, false)?;
+            let entry = SAMPLE + GAP + letters::text_width(look, &text, TICK_TEXT, false);
             let left = match rows.last_mut() {
                 Some(row) if *row + BETWEEN + entry <= width => {
                     let left = *row + BETWEEN;
@@ -76,10 +68,10 @@ impl Legend {
             };
             placed.push((sample, text, left, rows.len() - 1));
         }
-        Ok(Self {
+        Self {
             entries: placed,
             rows,
-        })
+        }
     }
 
     /// Height of all rows.

@@ -8,12 +8,12 @@ use plotters_backend::text_anchor::HPos;
 
 use super::backend::Canvas;
 pub(crate) use super::backend::{Lettering, Shape};
+use super::drawing::Drawing;
 use super::facets::grow;
+use super::letters;
 use super::look::Look;
-use super::render;
 use super::style::{Colour, GREY, INK, MARGIN, TEXT, TICK_TEXT, TITLE_TEXT, UNITS};
 use super::symbols;
-use crate::figure::FigureError;
 
 /// A rectangle on the page, in pixels from the upper left.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -122,7 +122,7 @@ impl Page {
                 .map(|(corners, _)| grow(corners).into_iter().map(on_canvas).collect())
                 .collect();
             if let Some((_, colour)) = run.first() {
-                self.canvas.facets(&corners, *colour);
+                self.canvas.facets(corners, *colour);
             }
         }
     }
@@ -144,9 +144,9 @@ impl Page {
         }
     }
 
-    /// The page as SVG.
-    pub(crate) fn svg(&self) -> String {
-        self.canvas.document()
+    /// What is on it.
+    pub(crate) fn drawing(&self) -> Drawing {
+        self.canvas.drawing()
     }
 }
 
@@ -199,18 +199,15 @@ pub(crate) struct Heading {
 
 impl Heading {
     /// Cuts a title (plain text, may be empty) for a page of the given width.
-    ///
-    /// # Errors
-    /// [`FigureError::Svg`].
-    pub(crate) fn new(look: &Look, title: &str, width: f64) -> Result<Self, FigureError> {
+    pub(crate) fn new(look: &Look, title: &str, width: f64) -> Self {
         let title = if look.has_title { title } else { "" };
-        let lines = render::wrap(
+        let lines = letters::wrap(
             look,
             &symbols::plain(title),
             TITLE_TEXT,
             width - 2.0 * MARGIN,
-        )?;
-        Ok(Self { lines })
+        );
+        Self { lines }
     }
 
     /// Height it takes, the upper margin included.

@@ -1,10 +1,9 @@
 //! Axes laid out on a given length: which ticks have labels, and the room that these take. The frame draws them.
 
+use super::letters;
 use super::look::Look;
-use super::render;
 use super::style::{TEXT, TICK, TICK_TEXT};
 use super::ticks::{Ticks, decades, ticks};
-use crate::figure::FigureError;
 
 /// Gap between ticks, labels and titles, in pixels.
 pub(super) const GAP: f64 = 4.0;
@@ -24,64 +23,47 @@ pub(crate) struct Scale {
 
 impl Scale {
     /// Lays out a horizontal axis: as many labels as stand apart.
-    ///
-    /// # Errors
-    /// [`FigureError::Svg`].
-    pub(crate) fn horizontal(
-        look: &Look,
-        range: (f64, f64),
-        length: f64,
-        title: &str,
-    ) -> Result<Self, FigureError> {
-        let wide = Self::with_gap(look, range, length, title, 14.0)?;
+    pub(crate) fn horizontal(look: &Look, range: (f64, f64), length: f64, title: &str) -> Self {
+        let wide = Self::with_gap(look, range, length, title, 14.0);
         if wide.ticks.major.len() >= FEW {
-            return Ok(wide);
+            return wide;
         }
         // A short axis is better with labels close to each other than with a single one.
-        let close = Self::with_gap(look, range, length, title, 4.0)?;
-        Ok(if close.ticks.major.len() > wide.ticks.major.len() {
+        let close = Self::with_gap(look, range, length, title, 4.0);
+        if close.ticks.major.len() > wide.ticks.major.len() {
             close
         } else {
             wide
-        })
+        }
     }
 
     /// Lays out an axis that runs aslant, so far across and so far down: labels stand beside or below each other.
-    ///
-    /// # Errors
-    /// [`FigureError::Svg`].
     pub(super) fn slanted(
         look: &Look,
         range: (f64, f64),
         (across, down): (f64, f64),
         title: &str,
-    ) -> Result<Self, FigureError> {
+    ) -> Self {
         let mut most = 7;
         loop {
-            let scale = Self::with(look, range, most, title)?;
+            let scale = Self::with(look, range, most, title);
             let step = match &scale.ticks.major[..] {
                 [first, second, ..] => (second.value - first.value) / (range.1 - range.0),
                 _ => 1.0,
             };
             let is_apart = step * down >= 1.15 * TICK_TEXT || step * across >= scale.widest + 6.0;
             if is_apart || most <= 2 {
-                return Ok(scale);
+                return scale;
             }
             most -= 1;
         }
     }
 
     /// Lays out a horizontal axis with as many labels as have that gap between them.
-    fn with_gap(
-        look: &Look,
-        range: (f64, f64),
-        length: f64,
-        title: &str,
-        gap: f64,
-    ) -> Result<Self, FigureError> {
+    fn with_gap(look: &Look, range: (f64, f64), length: f64, title: &str, gap: f64) -> Self {
         let mut most = 7;
         loop {
-            let scale = Self::with(look, range, most, title)?;
+            let scale = Self::with(look, range, most, title);
             let apart = match &scale.ticks.major[..] {
                 [first, .., last] => {
                     let span = (last.value - first.value) / (range.1 - range.0) * length;
@@ -90,26 +72,18 @@ impl Scale {
                 _ => length,
             };
             if apart >= scale.widest + gap || most <= 2 {
-                return Ok(scale);
+                return scale;
             }
             most -= 1;
         }
     }
 
     /// Lays out a vertical axis.
-    ///
-    /// # Errors
-    /// [`FigureError::Svg`].
-    pub(crate) fn vertical(
-        look: &Look,
-        range: (f64, f64),
-        length: f64,
-        title: &str,
-    ) -> Result<Self, FigureError> {
+    pub(crate) fn vertical(look: &Look, range: (f64, f64), length: f64, title: &str) -> Self {
         let most = |apart: f64| ((length / (apart * TICK_TEXT)) as usize).clamp(2, 7);
-        let scale = Self::with(look, range, most(2.6), title)?;
+        let scale = Self::with(look, range, most(2.6), title);
         if scale.ticks.major.len() >= FEW {
-            return Ok(scale);
+            return scale;
         }
         // Three labels stand on anything longer than three lines.
         let least = if length >= 3.2 * TICK_TEXT { 3 } else { 2 };
@@ -118,27 +92,19 @@ impl Scale {
 
     /// Lays out an axis of logarithms to base ten, labelled at as many powers of ten as its length has room for:
     /// `range` and what is drawn are exponents.
-    ///
-    /// # Errors
-    /// [`FigureError::Svg`].
-    pub(crate) fn logarithmic(
-        look: &Look,
-        range: (f64, f64),
-        length: f64,
-        title: &str,
-    ) -> Result<Self, FigureError> {
+    pub(crate) fn logarithmic(look: &Look, range: (f64, f64), length: f64, title: &str) -> Self {
         let most = ((length / (2.2 * TICK_TEXT)) as usize).clamp(2, 9);
         Self::of(look, range, decades(range.0, range.1, most), title)
     }
 
-    fn with(look: &Look, range: (f64, f64), most: usize, title: &str) -> Result<Self, FigureError> {
+    fn with(look: &Look, range: (f64, f64), most: usize, title: &str) -> Self {
         Self::of(look, range, ticks(range.0, range.1, most), title)
     }
 
-    fn of(look: &Look, range: (f64, f64), ticks: Ticks, title: &str) -> Result<Self, FigureError> {
+    fn of(look: &Look, range: (f64, f64), ticks: Ticks, title: &str) -> Self {
         let mut widest: f64 = 0.0;
         for tick in &ticks.major {
-            widest = widest.max(render::text_width(look, &tick.label, TICK_TEXT, false)?);
+            widest = widest.max(letters::text_width(look, &tick.label, TICK_TEXT, false));
         }
         let power = format!(
             "10^{{{}}}",
@@ -149,12 +115,12 @@ impl Scale {
             (_, true) => power,
             (_, false) => format!("{title} ({power})"),
         };
-        Ok(Self {
+        Self {
             range,
             ticks,
             title,
             widest,
-        })
+        }
     }
 
     /// The title, with the power of ten that the labels leave out.
@@ -228,7 +194,7 @@ mod tests {
     #[test]
     fn labels_of_a_short_axis_stand_apart() {
         for length in [60.0, 100.0, 200.0, 400.0] {
-            let scale = Scale::horizontal(&Look::default(), (-0.02, 0.01), length, "x").unwrap();
+            let scale = Scale::horizontal(&Look::default(), (-0.02, 0.01), length, "x");
             let places: Vec<f64> = scale
                 .ticks
                 .major
@@ -251,12 +217,10 @@ mod tests {
 
     #[test]
     fn a_power_of_ten_goes_into_the_title() {
-        let scale = Scale::vertical(&Look::default(), (0.0, 4e-7), 200.0, "$D$").unwrap();
+        let scale = Scale::vertical(&Look::default(), (0.0, 4e-7), 200.0, "$D$");
         assert_eq!(scale.title(), "$D$ (10^{−7})");
         assert_eq!(
-            Scale::vertical(&Look::default(), (0.0, 4.0), 200.0, "$D$")
-                .unwrap()
-                .title(),
+            Scale::vertical(&Look::default(), (0.0, 4.0), 200.0, "$D$").title(),
             "$D$"
         );
     }

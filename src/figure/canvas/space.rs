@@ -6,11 +6,10 @@ use plotters_backend::text_anchor::HPos;
 use super::backend::Lettering;
 use super::facets::{HEIGHT, brightness, parts, shade};
 use super::frame::Scale;
+use super::letters;
 use super::look::Look;
 use super::page::{Page, Rectangle, Shape, lettering};
-use super::render;
 use super::style::{Colour, FRAME_LINE, GREY, INK, Stroke, TEXT, TICK, TICK_TEXT};
-use crate::figure::FigureError;
 
 /// Angle between the abscissa and the picture plane, in degrees: MATLAB's habit.
 const AZIMUTH: f64 = 37.5;
@@ -73,9 +72,9 @@ fn project([x, y, z]: [f64; 3]) -> (f64, f64) {
 
 impl Space {
     /// Height of what a box with its labels takes on `width` pixels, when its axes have these labels' widths beside it.
-    pub(crate) fn height(look: &Look, width: f64, ranges: Ranges<'_>) -> Result<f64, FigureError> {
-        let (side, _) = Self::lay_out(look, width, ranges)?;
-        Ok(Self::above(side) + side * project([1.0, 0.0, 0.0]).1 + Self::below())
+    pub(crate) fn height(look: &Look, width: f64, ranges: Ranges<'_>) -> f64 {
+        let (side, _) = Self::lay_out(look, width, ranges);
+        Self::above(side) + side * project([1.0, 0.0, 0.0]).1 + Self::below()
     }
 
     /// Room from the top to the middle of the floor.
@@ -89,17 +88,13 @@ impl Space {
     }
 
     /// Room left of the box: labels of the heights, and their title, which ends above the axis.
-    fn left(look: &Look, axes: &[Scale; 3]) -> Result<f64, FigureError> {
-        let title = render::text_width(look, axes[2].title(), TEXT, false)?;
-        Ok((axes[2].label_width() + GAP).max(title - TITLE_BEYOND))
+    fn left(look: &Look, axes: &[Scale; 3]) -> f64 {
+        let title = letters::text_width(look, axes[2].title(), TEXT, false);
+        (axes[2].label_width() + GAP).max(title - TITLE_BEYOND)
     }
 
     /// Side of the box, and its axes.
-    fn lay_out(
-        look: &Look,
-        width: f64,
-        ranges: Ranges<'_>,
-    ) -> Result<(f64, [Scale; 3]), FigureError> {
+    fn lay_out(look: &Look, width: f64, ranges: Ranges<'_>) -> (f64, [Scale; 3]) {
         let wide = project([1.0, 1.0, 0.0]).0 - project([0.0, 0.0, 0.0]).0;
         // Labels take about a fifth.
         let rough = 0.8 * width / wide;
@@ -108,34 +103,27 @@ impl Space {
             let (across, down) = ((to.0 - from.0).abs(), (to.1 - from.1).abs());
             Scale::slanted(look, range, (rough * across, rough * down), title)
         };
-        let high = Scale::vertical(look, ranges.z.0, 0.52 * rough, ranges.z.1)?;
+        let high = Scale::vertical(look, ranges.z.0, 0.52 * rough, ranges.z.1);
         let axes = [
-            floor(ranges.x, [1.0, 0.0, 0.0])?,
-            floor(ranges.y, [0.0, 1.0, 0.0])?,
+            floor(ranges.x, [1.0, 0.0, 0.0]),
+            floor(ranges.y, [0.0, 1.0, 0.0]),
             high,
         ];
         let right = 0.5 * axes[1].label_width();
-        let left = Self::left(look, &axes)?;
-        Ok((((width - left - right) / wide).max(30.0), axes))
+        let left = Self::left(look, &axes);
+        (((width - left - right) / wide).max(30.0), axes)
     }
 
     /// Lays a box out in a rectangle that is [`Space::height`] high.
-    ///
-    /// # Errors
-    /// [`FigureError::Svg`].
-    pub(crate) fn new(
-        look: &Look,
-        rect: Rectangle,
-        ranges: Ranges<'_>,
-    ) -> Result<Self, FigureError> {
-        let (side, axes) = Self::lay_out(look, rect.width, ranges)?;
-        let left = Self::left(look, &axes)?;
+    pub(crate) fn new(look: &Look, rect: Rectangle, ranges: Ranges<'_>) -> Self {
+        let (side, axes) = Self::lay_out(look, rect.width, ranges);
+        let left = Self::left(look, &axes);
         let middle = rect.left + left - side * project([0.0, 0.0, 0.0]).0;
-        Ok(Self {
+        Self {
             middle: (middle, rect.top + Self::above(side)),
             side,
             axes,
-        })
+        }
     }
 
     /// Place of a point of the unit box on the page, in pixels.

@@ -63,7 +63,7 @@ fn draw(comparison: &Comparison, observable: Observable, print: &Print<'_>) -> D
         .filter(|row| !row.is_empty())
         .collect();
     let (Observable::Joint(first, second), false) = (observable, rows.is_empty()) else {
-        return Ok(None);
+        return None;
     };
     let mut window: Option<((f64, f64), (f64, f64))> = None;
     for (_, found) in rows.iter().flatten() {
@@ -72,21 +72,19 @@ fn draw(comparison: &Comparison, observable: Observable, print: &Print<'_>) -> D
             window = Some(window.map_or((x, y), |(a, b)| (join(a, x), join(b, y))));
         }
     }
-    let Some((x, y)) = window else {
-        return Ok(None);
-    };
+    let (x, y) = window?;
     let density = names::density(family, observable);
-    let rough = ColourBar::new(look, 1.0, SIDE, &density)?;
-    let left = MARGIN + Scale::vertical(look, y, SIDE, &names::axis(family, second))?.left();
+    let rough = ColourBar::new(look, 1.0, SIDE, &density);
+    let left = MARGIN + Scale::vertical(look, y, SIDE, &names::axis(family, second)).left();
     let most = rows.iter().map(Vec::len).max().unwrap_or(1);
     let (columns, side) = arrangement(look, most, left + rough.width() + 12.0 + MARGIN);
-    let across = Scale::horizontal(look, x, side, &names::axis(family, first))?;
-    let up = Scale::vertical(look, y, side, &names::axis(family, second))?;
+    let across = Scale::horizontal(look, x, side, &names::axis(family, first));
+    let up = Scale::vertical(look, y, side, &names::axis(family, second));
     let mut bars = Vec::new();
     for row in &rows {
         let largest = row.iter().map(|(_, found)| found.shown.largest);
         let largest = largest.fold(0.0, f64::max);
-        bars.push((largest, ColourBar::new(look, largest, side, &density)?));
+        bars.push((largest, ColourBar::new(look, largest, side, &density)));
     }
     let widest = bars.iter().map(|(_, bar)| bar.width()).fold(0.0, f64::max);
     // On a narrow page the value has a line of its own.
@@ -98,7 +96,7 @@ fn draw(comparison: &Comparison, observable: Observable, print: &Print<'_>) -> D
     let step = (side + BETWEEN.0, above + side + BETWEEN.1);
     let own = left + columns as f64 * step.0 - BETWEEN.0 + widest + MARGIN;
     let width = look.page.unwrap_or(own);
-    let heading = Heading::new(look, print.title, width)?;
+    let heading = Heading::new(look, print.title, width);
     let lines: usize = rows.iter().map(|row| row.len().div_ceil(columns)).sum();
     let height = heading.height() + lines as f64 * step.1 + Scale::below() + MARGIN;
     let page = Page::new(look, width, height);
@@ -111,11 +109,11 @@ fn draw(comparison: &Comparison, observable: Observable, print: &Print<'_>) -> D
                 let map = Rectangle::new((left + column as f64 * step.0, top), (side, side));
                 let is_first = column == 0 && part == 0;
                 write_lines(&page, map, (*method, is_first), found.value, family);
-                draw_map(&page, map, found, (x, y), *largest)?;
+                draw_map(&page, map, found, (x, y), *largest);
                 across.draw_below(&page, map, line + 1 == lines);
                 up.draw_left(&page, map, column == 0);
                 if column + 1 == maps.len() {
-                    bar.draw(&page, map, &[])?;
+                    bar.draw(&page, map, &[]);
                 }
             }
             line += 1;
@@ -126,7 +124,7 @@ fn draw(comparison: &Comparison, observable: Observable, print: &Print<'_>) -> D
     let how = "of the generator followed between the cells by parabolas with their averages.";
     let table = table(comparison, |one| *one == observable);
     let caption = caption_of(comparison, &what, how);
-    Ok(Some(Figure::new(&page, caption, table)))
+    Some(Figure::new(&page, caption, table))
 }
 
 /// Columns, and the side of a map: all methods side by side, as far as they fit on a given page.

@@ -10,7 +10,6 @@ use crate::system::Family;
 use super::marginals::{cells, within};
 use super::{Drawn, Sketch};
 use crate::compare::Comparison;
-use crate::figure::FigureError;
 use crate::figure::canvas::frame::{self, Scale};
 use crate::figure::canvas::legend::{self, Legend, Sample};
 use crate::figure::canvas::look::Look;
@@ -138,11 +137,11 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
     let mut all: Vec<Laid<'_>> = Vec::new();
     for &value in &values {
         for &observable in &watched {
-            all.extend(lay_out((comparison, print), value, observable)?);
+            all.extend(lay_out((comparison, print), value, observable));
         }
     }
     if all.is_empty() {
-        return Ok(None);
+        return None;
     }
     let room = all.iter().map(|laid| laid.up.left()).fold(0.0, f64::max);
     let width = |columns: usize| {
@@ -154,8 +153,8 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
     let rows = all.len().div_ceil(columns);
     let step = (room + wide + BETWEEN.0, ABOVE + PANEL.1 + BETWEEN.1);
     let page_width = 2.0 * MARGIN + columns as f64 * step.0 - BETWEEN.0 + BESIDE;
-    let heading = Heading::new(look, print.title, page_width)?;
-    let legend = Legend::new(look, entries(), page_width - 2.0 * MARGIN)?;
+    let heading = Heading::new(look, print.title, page_width);
+    let legend = Legend::new(look, entries(), page_width - 2.0 * MARGIN);
     let top = heading.height() + legend.height();
     // Panels of one axis stand below each other only where every axis has a column.
     let labelled_below = |number: usize| columns < watched.len() || number + columns >= all.len();
@@ -174,16 +173,16 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
         let above = with_letter(look, number, names::at(family, laid.value.value));
         let place = (rect.left, rect.top - 0.7 * TEXT);
         page.text(place, lettering(above, HPos::Left));
-        draw_panel(&page, laid, rect, labelled_below(number), family)?;
+        draw_panel(&page, laid, rect, labelled_below(number), family);
     }
     let how = "of Monte Carlo with two standard errors, of the generator followed between the cells by parabolas with \
                their averages.";
     let caption = caption_of(comparison, "Steady-state marginal densities", how);
-    Ok(Some(Figure::new(
+    Some(Figure::new(
         &page,
         caption,
         self::rows(comparison, is_marginal),
-    )))
+    ))
 }
 
 fn entries() -> Vec<(Sample, String)> {
@@ -202,31 +201,29 @@ fn lay_out<'a>(
     (comparison, print): (&'a Comparison, &Print<'_>),
     value: &'a ComparedValue,
     observable: Observable,
-) -> Result<Option<Laid<'a>>, FigureError> {
+) -> Option<Laid<'a>> {
     let Observable::Marginal(axis) = observable else {
-        return Ok(None);
+        return None;
     };
     let all: Vec<&Density> = comparison
         .values
         .iter()
         .flat_map(|value| densities(value, observable).map(|(_, one)| &one.density))
         .collect();
-    let Some(window) = view::window(&all, 0) else {
-        return Ok(None);
-    };
+    let window = view::window(&all, 0)?;
     let own = densities(value, observable).map(|(method, one)| view_of(method, one).largest);
     let highest = own.fold(0.0, f64::max);
     if highest <= 0.0 {
-        return Ok(None);
+        return None;
     }
     let title = names::density(&comparison.subject.family, observable);
-    Ok(Some(Laid {
+    Some(Laid {
         value,
         observable,
         axis,
         window,
-        up: Scale::vertical(&print.look, (0.0, 1.08 * highest), PANEL.1, &title)?,
-    }))
+        up: Scale::vertical(&print.look, (0.0, 1.08 * highest), PANEL.1, &title),
+    })
 }
 
 /// The densities of one observable, with their methods.
@@ -239,15 +236,9 @@ pub(super) fn densities(
         .filter_map(move |method| Some((method, value.density(method, observable)?)))
 }
 
-fn draw_panel(
-    page: &Page,
-    laid: &Laid<'_>,
-    rect: Rectangle,
-    labels: bool,
-    family: &Family,
-) -> Result<(), FigureError> {
+fn draw_panel(page: &Page, laid: &Laid<'_>, rect: Rectangle, labels: bool, family: &Family) {
     let title = names::axis(family, laid.axis);
-    let across = Scale::horizontal(page.look(), laid.window, rect.width, &title)?;
+    let across = Scale::horizontal(page.look(), laid.window, rect.width, &title);
     let panel = page.panel(rect, laid.window, laid.up.range);
     let drawn = |method: Method| laid.value.density(method, laid.observable);
     // Symbols lie over the lines, and the generator's line over those of SGCM.
@@ -263,7 +254,6 @@ fn draw_panel(
     frame::border(page, rect);
     across.draw_below(page, rect, labels);
     laid.up.draw_left(page, rect, true);
-    Ok(())
 }
 
 /// A symbol with an error bar at every cell in the window.

@@ -9,7 +9,6 @@ use crate::continuation::curve::{
     Curve, CurveOrigin, CurvePoint, EndReason, SweepInPlane, codimension_two,
 };
 use crate::density::Observable;
-use crate::figure::FigureError;
 use crate::figure::canvas::frame::{self, Scale};
 use crate::figure::canvas::legend::{Legend, Sample};
 use crate::figure::canvas::page::{Heading, Lettering, Page, Panel, Rectangle, Shape, small};
@@ -62,8 +61,8 @@ pub(in crate::figure) fn sketches<'a>(
             crossed,
             family,
         };
-        let page = scene.draw(print)?;
-        Ok(Some(Figure::new(&page, scene.caption(), scene.data())))
+        let page = scene.draw(print);
+        Some(Figure::new(&page, scene.caption(), scene.data()))
     };
     vec![Sketch::new("curve", draw)]
 }
@@ -84,23 +83,23 @@ impl Scene<'_> {
         symbol_of(self.family, &self.curve.plane.sides()[side].parameter)
     }
 
-    fn draw(&self, print: &Print<'_>) -> Result<Page, FigureError> {
+    fn draw(&self, print: &Print<'_>) -> Page {
         let look = &print.look;
         let [x, y] = self.curve.plane.sides();
         let (x, y) = ((x.from, x.to), (y.from, y.to));
         let high = look.height(PANEL.1, USUAL);
-        let up = Scale::vertical(look, y, high, &self.symbol(1))?;
+        let up = Scale::vertical(look, y, high, &self.symbol(1));
         let left = MARGIN + up.left();
         let wide = look.fill(PANEL.0, left + BESIDE + MARGIN);
         let width = left + wide + BESIDE + MARGIN;
-        let across = Scale::horizontal(look, x, wide, &self.symbol(0))?;
-        let heading = Heading::new(look, print.title, width)?;
+        let across = Scale::horizontal(look, x, wide, &self.symbol(0));
+        let heading = Heading::new(look, print.title, width);
         let top = heading.height() + 6.0;
         let rect = Rectangle::new((left, top), (wide, high));
         let below = rect.bottom() + Scale::below();
         let mut entries = entries(self.curves, self.family, rect);
         entries.extend(self.crossed.entries());
-        let legend = Legend::new(look, entries, width - 2.0 * MARGIN)?;
+        let legend = Legend::new(look, entries, width - 2.0 * MARGIN);
         let page = Page::new(look, width, below + legend.height() + MARGIN);
         heading.draw(&page);
         let panel = page.panel(rect, x, y);
@@ -113,7 +112,7 @@ impl Scene<'_> {
         up.draw_left(&page, rect, true);
         self.draw_marks(&page, &panel, rect);
         legend.draw(&page, left + 0.5 * wide, below);
-        Ok(page)
+        page
     }
 
     /// The start with its label and the signatures on both sides, and the ends with theirs.

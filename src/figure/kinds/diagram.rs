@@ -7,7 +7,6 @@ use crate::space::Axis;
 use crate::topology::FeatureKind;
 
 use super::{Drawn, Kind};
-use crate::figure::FigureError;
 use crate::figure::canvas::colour_bar::ColourBar;
 use crate::figure::canvas::frame::{self, Scale};
 use crate::figure::canvas::hatch;
@@ -42,39 +41,37 @@ fn draw(result: &SweepResult, (observable, axis): (usize, usize), print: &Print<
     let (family, look) = (&result.subject.family, &print.look);
     let (watched, points) = (result.subject.observables[observable], &result.points);
     let columns = Columns::new(points, observable);
-    let Some(window) = view::window(&columns.densities(), 0) else {
-        return Ok(None);
-    };
+    let window = view::window(&columns.densities(), 0)?;
     let largest = columns.shown.iter().flatten().map(|shown| shown.largest);
     let largest = largest.fold(0.0, f64::max);
     let range = parameter_range(points);
     let high = look.height(MAP.1, USUAL);
-    let up = Scale::vertical(look, window, high, &names::axis(family, axis))?;
-    let bar = ColourBar::new(look, largest, high, &names::density(family, watched))?;
+    let up = Scale::vertical(look, window, high, &names::axis(family, axis));
+    let bar = ColourBar::new(look, largest, high, &names::density(family, watched));
     let left = MARGIN + up.left();
     let wide = look.fill(MAP.0, left + bar.width() + MARGIN);
-    let across = Scale::horizontal(look, range, wide, &names::parameter(family))?;
+    let across = Scale::horizontal(look, range, wide, &names::parameter(family));
     let width = left + wide + bar.width() + MARGIN;
-    let heading = Heading::new(look, print.title, width)?;
-    let labels = Labels::new(look, result, Some(watched), range, (left, wide))?;
+    let heading = Heading::new(look, print.title, width);
+    let labels = Labels::new(look, result, Some(watched), range, (left, wide));
     let above = labels.height().max(ColourBar::above());
     let map = Rectangle::new((left, heading.height() + above), (wide, high));
     let kinds = [FeatureKind::Peak, FeatureKind::Valley];
     let followed = kinds.map(|kind| branches(points, observable, kind, window));
     let entries = entries(points, observable, &followed, &labels);
-    let legend = Legend::new(look, entries, width - 2.0 * MARGIN)?;
+    let legend = Legend::new(look, entries, width - 2.0 * MARGIN);
     let below = map.bottom() + Scale::below();
     let page = Page::new(look, width, below + legend.height() + MARGIN);
     heading.draw(&page);
     let panel = page.panel(map, range, window);
-    columns.draw(&page, (&panel, map), (range, window, largest))?;
+    columns.draw(&page, (&panel, map), (range, window, largest));
     labels.draw_lines(look, &panel, window);
     draw_branches(&panel, &followed, window);
     frame::border(&page, map);
     labels.draw_texts(&page, map);
     across.draw_below(&page, map, true);
     up.draw_left(&page, map, true);
-    bar.draw(&page, map, &[])?;
+    bar.draw(&page, map, &[]);
     legend.draw(&page, map.left + 0.5 * map.width, below);
     let seen = format!(
         "Steady-state marginal density {} over {} (colours), with its peaks (solid) and valleys (dashed).",
@@ -85,7 +82,7 @@ fn draw(result: &SweepResult, (observable, axis): (usize, usize), print: &Print<
     let caption = caption::of_sweep(result, seen, &[between, caption::bifurcations(result)]);
     let points: Vec<&Point> = points.iter().collect();
     let table = table::of_marginals(result, (&[observable], &points), |one, _| table::cells(one));
-    Ok(Some(Figure::new(&page, caption, table)))
+    Some(Figure::new(&page, caption, table))
 }
 
 /// Ends of the columns: half-way between neighbouring values, and the ends of the range.
@@ -133,7 +130,7 @@ impl<'a> Columns<'a> {
         page: &Page,
         (panel, map): (&Panel, Rectangle),
         (range, window, largest): ((f64, f64), (f64, f64), f64),
-    ) -> Result<(), FigureError> {
+    ) {
         let edges = column_edges(self.points, range);
         for (column, shown) in self.shown.iter().enumerate() {
             if shown.is_none() {
@@ -150,12 +147,11 @@ impl<'a> Columns<'a> {
             ((map.width * PNG_SCALE).round() as usize, pixels)
         };
         let values = self.values(&edges, (range, window), size);
-        let picture = Picture::new(size, |column, row| {
+        let picture = Picture::new(page.look(), size, |column, row| {
             Some(values[column].as_ref()?[row] / largest)
         });
         let corners = [(range.0, window.0), (range.1, window.1)];
-        panel.draw(&corners, Shape::Image(picture.png(page.look())?));
-        Ok(())
+        panel.draw(&corners, Shape::Image(picture));
     }
 
     /// The values in each column of pixels, from the lowest one up: those of the point whose column it is, and linear

@@ -2,7 +2,6 @@
 //! to and fro.
 
 use super::Sketch;
-use crate::figure::FigureError;
 use crate::figure::canvas::frame::{self, Scale};
 use crate::figure::canvas::legend::{Legend, Sample};
 use crate::figure::canvas::page::{Heading, Page, Rectangle, Shape};
@@ -41,8 +40,8 @@ pub(in crate::figure) fn sketches<'a>(
     }
     let draw = move |print: &Print<'_>| {
         let bench = Bench::new(model, values, model.system(values).as_ref());
-        let page = bench.draw(print)?;
-        Ok(Some(Figure::new(&page, bench.caption(), bench.data())))
+        let page = bench.draw(print);
+        Some(Figure::new(&page, bench.caption(), bench.data()))
     };
     vec![Sketch::new(format!("friction_{}", model.name), draw)]
 }
@@ -88,7 +87,7 @@ impl<'a> Bench<'a> {
         words.join(", ")
     }
 
-    fn draw(&self, print: &Print<'_>) -> Result<Page, FigureError> {
+    fn draw(&self, print: &Print<'_>) -> Page {
         let look = &print.look;
         let cycles = || self.loops.iter().flat_map(|(_, cycle)| cycle);
         let forces = cycles().map(|one| one.force);
@@ -96,7 +95,7 @@ impl<'a> Bench<'a> {
         let velocities = range([-self.fastest, self.fastest].into_iter());
         let places = range(cycles().map(|one| one.displacement));
         let high = look.height(PANEL.1, USUAL);
-        let up = Scale::vertical(look, forces, high, "friction force $F$")?;
+        let up = Scale::vertical(look, forces, high, "friction force $F$");
         let left = MARGIN + up.left();
         let wide = 0.5 * look.fill(2.0 * PANEL.0, left + 2.0 * BESIDE + MARGIN);
         let width = left + 2.0 * (wide + BESIDE) + MARGIN;
@@ -106,9 +105,9 @@ impl<'a> Bench<'a> {
             let title = format!("{} {}", symbols::plain(words), symbols::variable(symbol));
             Scale::horizontal(look, range, wide, &title)
         };
-        let scales = [across(velocities, VELOCITY)?, across(places, DISPLACEMENT)?];
-        let heading = Heading::new(look, print.title, width)?;
-        let legend = Legend::new(look, self.entries(), width - 2.0 * MARGIN)?;
+        let scales = [across(velocities, VELOCITY), across(places, DISPLACEMENT)];
+        let heading = Heading::new(look, print.title, width);
+        let legend = Legend::new(look, self.entries(), width - 2.0 * MARGIN);
         let top = heading.height() + legend.height() + 6.0;
         let page = Page::new(look, width, top + high + Scale::below() + MARGIN);
         heading.draw(&page);
@@ -135,7 +134,7 @@ impl<'a> Bench<'a> {
             scale.draw_below(&page, rect, true);
             up.draw_left(&page, rect, number == 0);
         }
-        Ok(page)
+        page
     }
 
     fn entries(&self) -> Vec<(Sample, String)> {
@@ -240,7 +239,7 @@ mod tests {
         let model = registry::find(name).unwrap();
         let values = shown_values(&model, &[]).unwrap();
         let figures = Figures::of_friction(&model, &values, &model.title);
-        figures.draw_all().unwrap().pop()
+        figures.draw_all().pop()
     }
 
     #[test]

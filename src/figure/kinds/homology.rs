@@ -8,9 +8,8 @@ use crate::topology::{Feature, FeatureKind, Verdict};
 use super::diagram::{column_edges, hatch_column};
 use super::{Drawn, Kind};
 use crate::continuation::SweepResult;
-use crate::figure::FigureError;
 use crate::figure::canvas::frame::{self, Scale};
-use crate::figure::canvas::heat;
+use crate::figure::canvas::heat::{self, Picture};
 use crate::figure::canvas::legend::{Legend, Sample};
 use crate::figure::canvas::look::Look;
 use crate::figure::canvas::page::{Heading, Page, Panel, Rectangle, Shape};
@@ -156,29 +155,29 @@ fn draw(result: &SweepResult, number: usize, print: &Print<'_>) -> Drawn {
         .collect();
     let kinds = Kinds::of(look, &columns);
     if kinds.numbers.is_empty() {
-        return Ok(None);
+        return None;
     }
     let range = parameter_range(&result.points);
     let high = look.height(MAP.1, USUAL);
     let title = format!("level / max {}", names::density(family, watched));
-    let up = Scale::vertical(look, (0.0, 1.0), high, &title)?;
+    let up = Scale::vertical(look, (0.0, 1.0), high, &title);
     let left = MARGIN + up.left();
     let wide = look.fill(MAP.0, left + BESIDE + MARGIN);
     let width = left + wide + BESIDE + MARGIN;
-    let across = Scale::horizontal(look, range, wide, &names::parameter(family))?;
-    let heading = Heading::new(look, print.title, width)?;
-    let labels = Labels::new(look, result, Some(watched), range, (left, wide))?;
+    let across = Scale::horizontal(look, range, wide, &names::parameter(family));
+    let heading = Heading::new(look, print.title, width);
+    let labels = Labels::new(look, result, Some(watched), range, (left, wide));
     let map = Rectangle::new((left, heading.height() + labels.height()), (wide, high));
     let entries = kinds.numbers.iter().zip(&kinds.colours);
     let entries = entries.map(|(&kind, &colour)| (Sample::Box(Colour::fixed(colour)), words(kind)));
     let entries: Vec<_> = entries.chain(labels.entries()).collect();
-    let legend = Legend::new(look, entries, width - 2.0 * MARGIN)?;
+    let legend = Legend::new(look, entries, width - 2.0 * MARGIN);
     let below = map.bottom() + Scale::below();
     let page = Page::new(look, width, below + legend.height() + MARGIN);
     heading.draw(&page);
     let panel = page.panel(map, range, (0.0, 1.0));
     let edges = column_edges(&result.points, range);
-    draw_areas((&panel, map), &columns, &kinds, (&edges, range))?;
+    draw_areas((&panel, map), &columns, &kinds, (&edges, range));
     for (column, _) in columns
         .iter()
         .enumerate()
@@ -199,7 +198,7 @@ fn draw(result: &SweepResult, number: usize, print: &Print<'_>) -> Drawn {
         family.parameter()
     );
     let caption = caption::of_sweep(result, seen, &[caption::bifurcations(result)]);
-    Ok(Some(Figure::new(&page, caption, rows(result, &columns))))
+    Some(Figure::new(&page, caption, rows(result, &columns)))
 }
 
 /// The table, a row a slab. Levels are shares of the highest peak, as they are drawn.
@@ -222,19 +221,18 @@ fn draw_areas(
     columns: &[Vec<Slab>],
     kinds: &Kinds,
     (edges, range): (&[f64], (f64, f64)),
-) -> Result<(), FigureError> {
+) {
     let size = [map.width, map.height].map(|length| (PNG_SCALE * length).round() as usize);
     let point_of = heat::nearest(edges, range, size[0]);
-    let picture = heat::patches((size[0], size[1]), &kinds.colours, |column, row| {
+    let picture = Picture::patches((size[0], size[1]), &kinds.colours, |column, row| {
         let level = (row as f64 + 0.5) / size[1] as f64;
         let slabs = &columns[point_of[column]];
         let slab = slabs.iter().find(|slab| level <= slab.to);
         let kind = slab.map(|slab| (slab.pieces, slab.holes));
         let known = kinds.numbers.iter().position(|one| Some(*one) == kind);
         known.unwrap_or(0)
-    })?;
+    });
     panel.draw(&[(range.0, 1.0), (range.1, 0.0)], Shape::Image(picture));
-    Ok(())
 }
 
 #[cfg(test)]

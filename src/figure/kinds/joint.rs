@@ -3,7 +3,6 @@
 
 use super::{Kind, Sketch, Sweep};
 use crate::continuation::{Point, SweepResult, evenly_spaced};
-use crate::figure::FigureError;
 use crate::figure::canvas::colour_bar::ColourBar;
 use crate::figure::canvas::frame::Scale;
 use crate::figure::canvas::page::Page;
@@ -46,7 +45,7 @@ fn sketches<'a>(sweep: &Sweep<'a>) -> Vec<Sketch<'a>> {
 }
 
 /// Draws a page of joint densities.
-pub(super) type DrawJoint = fn(&Joint<'_>, &Print<'_>) -> Result<Option<Page>, FigureError>;
+pub(super) type DrawJoint = fn(&Joint<'_>, &Print<'_>) -> Option<Page>;
 
 impl<'a> Sweep<'a> {
     /// A figure of a joint density, by its number, at some points, in the way that the words of its caption say.
@@ -59,11 +58,9 @@ impl<'a> Sweep<'a> {
     ) -> Sketch<'a> {
         let (result, points) = (self.result, points.to_vec());
         Sketch::new(name, move |print| {
-            let Some(joint) = Joint::new(result, number, &points) else {
-                return Ok(None);
-            };
-            let page = draw(&joint, print)?;
-            Ok(page.map(|page| figure(&joint, way, &page)))
+            let joint = Joint::new(result, number, &points)?;
+            let page = draw(&joint, print);
+            page.map(|page| figure(&joint, way, &page))
         })
     }
 
@@ -117,23 +114,23 @@ fn several(result: &SweepResult, observable: usize) -> Vec<&Point> {
 }
 
 /// One map at one point.
-fn draw_single(joint: &Joint<'_>, print: &Print<'_>) -> Result<Option<Page>, FigureError> {
+fn draw_single(joint: &Joint<'_>, print: &Print<'_>) -> Option<Page> {
     let (look, found, (x, y)) = (&print.look, &joint.found[0], joint.window);
     let [first, second, density] = &joint.titles;
     let largest = found.shown.largest;
     let own = |page: f64| (0.68 * page).clamp(170.0, TALLEST);
     let high = look.page.map_or(SINGLE, own);
-    let up = Scale::vertical(look, y, high, second)?;
-    let bar = ColourBar::new(look, largest, high, density)?;
+    let up = Scale::vertical(look, y, high, second);
+    let bar = ColourBar::new(look, largest, high, density);
     let left = MARGIN + up.left();
     let wide = look.fill(SINGLE, left + bar.width() + MARGIN);
-    let across = Scale::horizontal(look, x, wide, first)?;
+    let across = Scale::horizontal(look, x, wide, first);
     let width = left + wide + bar.width() + MARGIN;
-    let (page, map) = open_page(print, &joint.found, (left, width), (wide, high))?;
+    let (page, map) = open_page(print, &joint.found, (left, width), (wide, high));
     write_above(&page, map, joint.at(found));
-    draw_map(&page, map, found, (x, y), largest)?;
+    draw_map(&page, map, found, (x, y), largest);
     across.draw_below(&page, map, true);
     up.draw_left(&page, map, true);
-    bar.draw(&page, map, &LEVELS)?;
-    Ok(Some(page))
+    bar.draw(&page, map, &LEVELS);
+    Some(page)
 }

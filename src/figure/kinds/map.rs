@@ -8,13 +8,12 @@ use super::curve::{draw_line, entries, stroke_of};
 use crate::continuation::curve::{Curve, EndReason, SweepInPlane};
 use crate::continuation::map::{RegimeMap, RegionPicture, RegionSample};
 use crate::density::Observable;
-use crate::figure::FigureError;
 use crate::figure::canvas::frame::{self, Scale};
-use crate::figure::canvas::heat::patches;
+use crate::figure::canvas::heat::Picture;
 use crate::figure::canvas::legend::{Legend, Sample};
+use crate::figure::canvas::letters;
 use crate::figure::canvas::look::Look;
 use crate::figure::canvas::page::{Heading, Page, Panel, Rectangle, Shape, small};
-use crate::figure::canvas::render;
 use crate::figure::canvas::style::{BLANK, Colour, INK, MARGIN, PAPER, Stroke, TICK_TEXT};
 use crate::figure::canvas::symbols;
 use crate::figure::figures::{Figure, Print};
@@ -64,12 +63,8 @@ pub(in crate::figure) fn sketches<'a>(
                 family,
                 look: &print.look,
             };
-            let (page, words) = scene.draw(print.title)?;
-            Ok(Some(Figure::new(
-                &page,
-                scene.caption(&words),
-                scene.data(),
-            )))
+            let (page, words) = scene.draw(print.title);
+            Some(Figure::new(&page, scene.caption(&words), scene.data()))
         };
         Sketch::new(format!("map_{}", names::file(family, *observable)), draw)
     };
@@ -106,31 +101,31 @@ fn words(signature: Option<Signature>) -> String {
 }
 
 impl Scene<'_> {
-    fn draw(&self, title: &str) -> Result<(Page, Vec<String>), FigureError> {
+    fn draw(&self, title: &str) -> (Page, Vec<String>) {
         let look = self.look;
         let [first, second] = self.map.plane.sides();
         let (x, y) = ((first.from, first.to), (second.from, second.to));
         let high = look.height(PANEL.1, USUAL);
-        let up = Scale::vertical(look, y, high, &symbol_of(self.family, &second.parameter))?;
+        let up = Scale::vertical(look, y, high, &symbol_of(self.family, &second.parameter));
         let left = MARGIN + up.left();
         let wide = look.fill(PANEL.0, left + BESIDE + MARGIN);
         let width = left + wide + BESIDE + MARGIN;
-        let across = Scale::horizontal(look, x, wide, &symbol_of(self.family, &first.parameter))?;
-        let heading = Heading::new(look, title, width)?;
+        let across = Scale::horizontal(look, x, wide, &symbol_of(self.family, &first.parameter));
+        let heading = Heading::new(look, title, width);
         let rect = Rectangle::new((left, heading.height() + 6.0), (wide, high));
         let ground = self.ground(rect);
         let places = match &ground {
-            Some(ground) => self.word_places(ground, rect)?,
+            Some(ground) => self.word_places(ground, rect),
             None => Vec::new(),
         };
-        let legend = self.legend(ground.as_ref(), &places, rect)?;
+        let legend = self.legend(ground.as_ref(), &places, rect);
         let below = rect.bottom() + Scale::below();
         let page = Page::new(look, width, below + legend.height() + MARGIN);
         heading.draw(&page);
         let panel = page.panel(rect, x, y);
         if let Some(ground) = &ground {
-            let png = self.picture(ground)?;
-            panel.draw(&[(x.0, y.1), (x.1, y.0)], Shape::Image(png));
+            let picture = self.picture(ground);
+            panel.draw(&[(x.0, y.1), (x.1, y.0)], Shape::Image(picture));
         }
         for curve in &self.curves {
             let stroke = stroke_of(self.curves.iter().copied(), curve.kind);
@@ -142,11 +137,11 @@ impl Scene<'_> {
         across.draw_below(&page, rect, true);
         up.draw_left(&page, rect, true);
         for placed in &places {
-            placed.draw(&page, look)?;
+            placed.draw(&page, look);
         }
         legend.draw(&page, left + 0.5 * wide, below);
         let kinds = ground.map(|ground| ground.kinds).unwrap_or_default();
-        Ok((page, kinds.into_iter().map(words).collect()))
+        (page, kinds.into_iter().map(words).collect())
     }
 
     fn ground(&self, rect: Rectangle) -> Option<Ground> {
@@ -169,27 +164,23 @@ impl Scene<'_> {
         self.look.tint(TINT, kind)
     }
 
-    fn picture(&self, ground: &Ground) -> Result<Vec<u8>, FigureError> {
+    fn picture(&self, ground: &Ground) -> Picture {
         let colours: Vec<(u8, u8, u8)> = (0..ground.kinds.len())
             .map(|kind| self.tint(ground, kind))
             .collect();
         let [width, height] = ground.picture.size;
-        patches((width, height), &colours, |column, row| {
+        Picture::patches((width, height), &colours, |column, row| {
             ground.kind_of(ground.picture.pixels[row * width + column])
         })
     }
 
     /// Where each region's words stand, on the page, with the words; `None` where they have no room.
-    fn word_places(
-        &self,
-        ground: &Ground,
-        rect: Rectangle,
-    ) -> Result<Vec<Placed<'_>>, FigureError> {
+    fn word_places(&self, ground: &Ground, rect: Rectangle) -> Vec<Placed<'_>> {
         let room = Room::new(&ground.picture);
         let mut places: Vec<Placed<'_>> = Vec::new();
         for (number, region) in ground.picture.regions.iter().enumerate() {
             let text = words(region.signature);
-            let wide = render::text_width(self.look, &symbols::plain(&text), TICK_TEXT, false)?;
+            let wide = letters::text_width(self.look, &symbols::plain(&text), TICK_TEXT, false);
             let half = [0.5 * wide + 6.0, 0.5 * TICK_TEXT + 5.0];
             let (across, high) = inset::SIZE;
             let both = [
@@ -210,7 +201,7 @@ impl Scene<'_> {
                 sample,
             }));
         }
-        Ok(places)
+        places
     }
 
     /// A density in a region of the picture.
@@ -225,12 +216,7 @@ impl Scene<'_> {
         })
     }
 
-    fn legend(
-        &self,
-        ground: Option<&Ground>,
-        places: &[Placed<'_>],
-        rect: Rectangle,
-    ) -> Result<Legend, FigureError> {
+    fn legend(&self, ground: Option<&Ground>, places: &[Placed<'_>], rect: Rectangle) -> Legend {
         let mut entries = entries(self.curves.iter().copied(), self.family, rect);
         entries.extend(self.crossed.entries());
         if let Some(ground) = ground {
@@ -326,12 +312,12 @@ struct Placed<'m> {
 
 impl Placed<'_> {
     /// The words above, the density below, both together in the middle.
-    fn draw(&self, page: &Page, look: &Look) -> Result<(), FigureError> {
+    fn draw(&self, page: &Page, look: &Look) {
         let (x, y) = self.at;
         let text = small(symbols::plain(&self.words), HPos::Center, INK);
         let Some(sample) = self.sample else {
             page.text((x, y), text);
-            return Ok(());
+            return;
         };
         let (width, height) = inset::SIZE;
         let top = y - 0.5 * (height + TICK_TEXT + GAP);

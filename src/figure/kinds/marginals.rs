@@ -6,7 +6,6 @@ use crate::continuation::{Point, SweepResult};
 use crate::density::{Density, EstimatedDensity, Observable};
 
 use super::{Drawn, Kind, Sketch};
-use crate::figure::FigureError;
 use crate::figure::canvas::frame::{self, Scale};
 use crate::figure::canvas::legend::{Legend, Sample};
 use crate::figure::canvas::look::Look;
@@ -71,11 +70,9 @@ fn arrangement(look: &Look, panels: usize, room: f64) -> (usize, f64) {
 fn draw(result: &SweepResult, chosen: &[&Point], print: &Print<'_>) -> Drawn {
     let mut all = Vec::new();
     for number in 0..result.subject.observables.len() {
-        all.extend(marginal(result, chosen, number, print)?);
+        all.extend(marginal(result, chosen, number, print));
     }
-    let Some(page) = draw_overlaid(&result.subject.family, chosen, &all, print)? else {
-        return Ok(None);
-    };
+    let page = draw_overlaid(&result.subject.family, chosen, &all, print)?;
     let values = chosen.iter().map(|point| point.value);
     let at = caption::at(&result.subject.family, values);
     let seen = format!("Steady-state marginal densities{at}.");
@@ -89,11 +86,11 @@ fn draw(result: &SweepResult, chosen: &[&Point], print: &Print<'_>) -> Drawn {
         let all: Vec<&Density> = all.map(|one| &one.density).collect();
         as_drawn(estimated, view::window(&all, 0))
     };
-    Ok(Some(Figure::new(
+    Some(Figure::new(
         &page,
         caption::of_sweep(result, seen, &[between]),
         table::of_marginals(result, (&observables, chosen), rows),
-    )))
+    ))
 }
 
 /// The points of a marginal's curve; with sampling noise its cells.
@@ -117,11 +114,11 @@ pub(super) fn draw_overlaid(
     chosen: &[&Point],
     all: &[Overlaid<'_>],
     print: &Print<'_>,
-) -> Result<Option<Page>, FigureError> {
+) -> Option<Page> {
     let look = &print.look;
     let high = look.height(HEIGHT, USUAL);
     if all.is_empty() {
-        return Ok(None);
+        return None;
     }
     let room = all.iter().map(|one| one.up.left()).fold(0.0, f64::max);
     let (columns, wide) = arrangement(look, all.len(), room);
@@ -136,12 +133,12 @@ pub(super) fn draw_overlaid(
     let page_width = look.page.unwrap_or(together + gaps);
     // What rooms of their own leave over goes to the panels.
     let wide = (page_width - gaps - lefts.iter().sum::<f64>()) / columns as f64;
-    let heading = Heading::new(look, print.title, page_width)?;
+    let heading = Heading::new(look, print.title, page_width);
     let entries = chosen.iter().enumerate().map(|(number, point)| {
         let sample = Sample::Curve(Stroke::curve(number));
         (sample, names::at(family, point.value))
     });
-    let legend = Legend::new(look, entries.collect(), page_width - 2.0 * MARGIN)?;
+    let legend = Legend::new(look, entries.collect(), page_width - 2.0 * MARGIN);
     let top = heading.height() + legend.height() + 6.0;
     let step = high + Scale::below() + MARGIN;
     let page = Page::new(look, page_width, top + rows as f64 * step);
@@ -152,10 +149,10 @@ pub(super) fn draw_overlaid(
         let before: f64 = lefts[..=column].iter().sum();
         let left = MARGIN + before + column as f64 * (wide + BETWEEN);
         let rect = Rectangle::new((left, top + row as f64 * step), (wide, high));
-        let across = Scale::horizontal(look, one.window, wide, &one.axis)?;
+        let across = Scale::horizontal(look, one.window, wide, &one.axis);
         draw_panel(&page, (one, &across), rect);
     }
-    Ok(Some(page))
+    Some(page)
 }
 
 /// The densities of one marginal at the chosen points.
@@ -164,10 +161,10 @@ fn marginal<'a>(
     chosen: &[&'a Point],
     number: usize,
     print: &Print<'_>,
-) -> Result<Option<Overlaid<'a>>, FigureError> {
+) -> Option<Overlaid<'a>> {
     let observable = result.subject.observables[number];
     let Observable::Marginal(axis) = observable else {
-        return Ok(None);
+        return None;
     };
     let drawable = |(place, point): (usize, &&'a Point)| {
         Some((place, Cow::Borrowed(view::density(point, number)?)))
@@ -189,21 +186,19 @@ impl<'a> Overlaid<'a> {
         axis: &str,
         densities: Vec<(usize, Cow<'a, EstimatedDensity>)>,
         title: &str,
-    ) -> Result<Option<Self>, FigureError> {
+    ) -> Option<Self> {
         let all = densities.iter().map(|(_, estimated)| estimated);
         let bare: Vec<&Density> = all.clone().map(|one| &one.density).collect();
-        let Some(window) = view::window(&bare, 0) else {
-            return Ok(None);
-        };
+        let window = view::window(&bare, 0)?;
         let highest = all.map(|one| View::new(one).largest).fold(0.0, f64::max);
         let high = print.look.height(HEIGHT, USUAL);
-        let up = Scale::vertical(&print.look, (0.0, 1.06 * highest), high, title)?;
-        Ok(Some(Self {
+        let up = Scale::vertical(&print.look, (0.0, 1.06 * highest), high, title);
+        Some(Self {
             axis: axis.to_owned(),
             densities,
             window,
             up,
-        }))
+        })
     }
 }
 

@@ -19,7 +19,6 @@ mod section;
 mod surface;
 mod time_to_accuracy;
 
-use super::FigureError;
 use super::figures::{Figure, Print};
 use super::parts::{names, view};
 use crate::compare::Comparison;
@@ -137,7 +136,7 @@ impl<'a> Sweep<'a> {
 }
 
 /// A figure; `None` where there is nothing to see.
-pub(super) type Drawn = Result<Option<Figure>, FigureError>;
+pub(super) type Drawn = Option<Figure>;
 
 /// A figure that is not drawn yet.
 pub(super) struct Sketch<'a> {
@@ -156,14 +155,9 @@ impl<'a> Sketch<'a> {
     }
 
     /// Draws it; `None` where there is nothing to see.
-    ///
-    /// # Errors
-    /// [`FigureError`].
     pub(super) fn draw(&self, print: &Print<'_>) -> Drawn {
         let mut figure = (self.draw)(print)?;
-        if let Some(figure) = &mut figure {
-            figure.name.clone_from(&self.name);
-        }
-        Ok(figure)
+        figure.name.clone_from(&self.name);
+        Some(figure)
     }
 }

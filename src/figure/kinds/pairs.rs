@@ -3,7 +3,6 @@
 
 use super::Kind;
 use super::surface::{COARSE, draw_surface, ranges};
-use crate::figure::FigureError;
 use crate::figure::canvas::colour_bar::ColourBar;
 use crate::figure::canvas::frame::Scale;
 use crate::figure::canvas::look::Look;
@@ -67,12 +66,12 @@ impl Row {
 }
 
 /// The figure.
-fn draw(joint: &Joint<'_>, print: &Print<'_>) -> Result<Option<Page>, FigureError> {
+fn draw(joint: &Joint<'_>, print: &Print<'_>) -> Option<Page> {
     let (look, found, (x, y)) = (&print.look, &joint.found, joint.window);
     let [first, second, density] = &joint.titles;
     let bars = |high: f64| {
         let bar = |found: &JointPoint<'_>| ColourBar::new(look, found.shown.largest, high, density);
-        found.iter().map(bar).collect::<Result<Vec<_>, _>>()
+        found.iter().map(bar).collect::<Vec<_>>()
     };
     let vertical = |high: f64| Scale::vertical(look, y, high, second);
     let has_bars = look.page.is_none_or(|page| page >= NARROW);
@@ -85,21 +84,21 @@ fn draw(joint: &Joint<'_>, print: &Print<'_>) -> Result<Option<Page>, FigureErro
         }
     };
     // What stands beside the map hardly depends on its height: a first round measures it.
-    let row = Row::new(look, vertical(MAP)?.left(), widest(&bars(MAP)?));
-    let (up, bars) = (vertical(row.map.1)?, bars(row.map.1)?);
+    let row = Row::new(look, vertical(MAP).left(), widest(&bars(MAP)));
+    let (up, bars) = (vertical(row.map.1), bars(row.map.1));
     let row = Row {
         map: (Row::new(look, up.left(), widest(&bars)).map.0, row.map.1),
         ..row
     };
-    let across = Scale::horizontal(look, x, row.map.0, first)?;
+    let across = Scale::horizontal(look, x, row.map.0, first);
     let mut surface_high: f64 = 0.0;
     for one in found {
         let ranges = ranges(joint, one.shown.largest);
-        surface_high = surface_high.max(Space::height(look, row.surface, ranges)?);
+        surface_high = surface_high.max(Space::height(look, row.surface, ranges));
     }
     let map_high = row.map.1 + Scale::below();
     let step = ABOVE + surface_high.max(map_high);
-    let heading = Heading::new(look, print.title, row.page)?;
+    let heading = Heading::new(look, print.title, row.page);
     let height = heading.height() + found.len() as f64 * (step + MARGIN);
     let page = Page::new(look, row.page, height);
     heading.draw(&page);
@@ -107,16 +106,16 @@ fn draw(joint: &Joint<'_>, print: &Print<'_>) -> Result<Option<Page>, FigureErro
         let from = heading.height() + ABOVE + number as f64 * (step + MARGIN);
         let surface = Rectangle::new((MARGIN, from), (row.surface, surface_high));
         write_above(&page, surface, with_letter(look, number, joint.at(found)));
-        draw_surface(&page, surface, joint, (found, COARSE))?;
+        draw_surface(&page, surface, joint, (found, COARSE));
         let left = row.page - MARGIN - widest(&bars) - row.map.0;
         let top = from + 0.5 * (surface_high.max(map_high) - map_high);
         let map = Rectangle::new((left, top), row.map);
-        draw_map(&page, map, found, (x, y), found.shown.largest)?;
+        draw_map(&page, map, found, (x, y), found.shown.largest);
         across.draw_below(&page, map, true);
         up.draw_left(&page, map, true);
         if has_bars {
-            bar.draw(&page, map, &[])?;
+            bar.draw(&page, map, &[]);
         }
     }
-    Ok(Some(page))
+    Some(page)
 }

@@ -34,9 +34,7 @@ fn draw(result: &SweepResult, (number, axis): (usize, usize), print: &Print<'_>)
     let densities: Vec<_> = densities
         .filter_map(|point| Some(&view::density(point, number)?.density))
         .collect();
-    let Some(window) = view::window(&densities, 0) else {
-        return Ok(None);
-    };
+    let window = view::window(&densities, 0)?;
     let kinds = [
         (FeatureKind::Peak, "peak", 0),
         (FeatureKind::Valley, "valley", 1),

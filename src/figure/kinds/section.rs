@@ -10,7 +10,6 @@ use crate::topology::Between;
 use super::joint::DrawJoint;
 use super::marginals::{Overlaid, draw_overlaid};
 use super::{Kind, Sketch, Sweep};
-use crate::figure::FigureError;
 use crate::figure::canvas::page::Page;
 use crate::figure::canvas::symbols;
 use crate::figure::figures::Print;
@@ -43,18 +42,12 @@ fn sketches<'a>(sweep: &Sweep<'a>) -> Vec<Sketch<'a>> {
 }
 
 /// The figure; `None` without a density.
-fn draw(
-    joint: &Joint<'_>,
-    is_conditional: bool,
-    print: &Print<'_>,
-) -> Result<Option<Page>, FigureError> {
+fn draw(joint: &Joint<'_>, is_conditional: bool, print: &Print<'_>) -> Option<Page> {
     let points = joint.points.iter().enumerate();
     let found: Vec<(usize, &EstimatedDensity)> = points
         .filter_map(|(place, point)| Some((place, view::density(point, joint.number)?)))
         .collect();
-    let Some(centre) = found.first().and_then(|(_, estimated)| centre(estimated)) else {
-        return Ok(None);
-    };
+    let centre = found.first().and_then(|(_, estimated)| centre(estimated))?;
     let [first, second, _] = &joint.titles;
     let mut panels = Vec::new();
     for (along, own, other) in [(0, first, second), (1, second, first)] {
@@ -69,7 +62,7 @@ fn draw(
             (false, 0) => symbols::density_of(&[own.clone(), value]),
             (false, _) => symbols::density_of(&[value, own.clone()]),
         };
-        panels.extend(Overlaid::new(print, own, sections.collect(), &title)?);
+        panels.extend(Overlaid::new(print, own, sections.collect(), &title));
     }
     draw_overlaid(&joint.result.subject.family, joint.points, &panels, print)
 }

@@ -6,7 +6,6 @@
 use crate::space::Axis;
 
 use super::{Kind, Sketch, Sweep};
-use crate::figure::FigureError;
 use crate::figure::canvas::look::Look;
 use crate::figure::canvas::page::{Heading, Page, Rectangle};
 use crate::figure::canvas::space::{Heights, Ranges, Space};
@@ -60,46 +59,45 @@ pub(super) fn draw_surface(
     rect: Rectangle,
     joint: &Joint<'_>,
     (found, most): (&JointPoint<'_>, usize),
-) -> Result<(), FigureError> {
+) {
     let top = found.shown.largest;
-    let space = Space::new(page.look(), rect, ranges(joint, top))?;
+    let space = Space::new(page.look(), rect, ranges(joint, top));
     if let Some(heights) = heights(found, joint.window, top, most) {
         space.draw(page, &heights);
     }
-    Ok(())
 }
 
 /// One surface at one point.
-fn draw_single(joint: &Joint<'_>, print: &Print<'_>) -> Result<Option<Page>, FigureError> {
+fn draw_single(joint: &Joint<'_>, print: &Print<'_>) -> Option<Page> {
     let (look, found) = (&print.look, &joint.found[0]);
     let width = look.page.unwrap_or(SINGLE + 2.0 * MARGIN);
     let wide = (width - 2.0 * MARGIN).min(WIDEST);
-    let high = Space::height(look, wide, ranges(joint, found.shown.largest))?;
-    let heading = Heading::new(look, print.title, width)?;
+    let high = Space::height(look, wide, ranges(joint, found.shown.largest));
+    let heading = Heading::new(look, print.title, width);
     let page = Page::new(look, width, heading.height() + ABOVE + high + MARGIN);
     heading.draw(&page);
     let corner = (0.5 * (width - wide), heading.height() + ABOVE);
     let rect = Rectangle::new(corner, (wide, high));
     write_above(&page, rect, joint.at(found));
-    draw_surface(&page, rect, joint, (found, FINE))?;
-    Ok(Some(page))
+    draw_surface(&page, rect, joint, (found, FINE));
+    Some(page)
 }
 
 /// All surfaces of a pair on one sheet, with the same windows, each with heights of its own; `None` for fewer than two
 /// densities.
-fn draw_sheet(joint: &Joint<'_>, print: &Print<'_>) -> Result<Option<Page>, FigureError> {
+fn draw_sheet(joint: &Joint<'_>, print: &Print<'_>) -> Option<Page> {
     let (look, found) = (&print.look, &joint.found);
     if found.len() < 2 {
-        return Ok(None);
+        return None;
     }
     let (columns, wide) = arrangement(look, found.len());
     let width = look.page.unwrap_or(columns as f64 * wide + 2.0 * MARGIN);
     let mut high: f64 = 0.0;
     for one in found {
         let ranges = ranges(joint, one.shown.largest);
-        high = high.max(Space::height(look, wide - MARGIN, ranges)?);
+        high = high.max(Space::height(look, wide - MARGIN, ranges));
     }
-    let heading = Heading::new(look, print.title, width)?;
+    let heading = Heading::new(look, print.title, width);
     let rows = found.len().div_ceil(columns);
     let step = ABOVE + high + MARGIN;
     let page = Page::new(look, width, heading.height() + rows as f64 * step);
@@ -109,9 +107,9 @@ fn draw_sheet(joint: &Joint<'_>, print: &Print<'_>) -> Result<Option<Page>, Figu
     for (number, found) in found.iter().enumerate() {
         let rect = first.tile(number, columns, (wide, step));
         write_above(&page, rect, with_letter(look, number, joint.at(found)));
-        draw_surface(&page, rect, joint, (found, COARSE))?;
+        draw_surface(&page, rect, joint, (found, COARSE));
     }
-    Ok(Some(page))
+    Some(page)
 }
 
 /// Columns of a sheet, and the width of each.

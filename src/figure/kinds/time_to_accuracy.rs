@@ -47,11 +47,9 @@ pub(super) fn sketches(comparison: &Comparison) -> Vec<Sketch<'_>> {
 /// The figure; `None` if nothing was measured.
 fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
     let (family, title, look) = (&comparison.subject.family, print.title, &print.look);
-    let Some(accuracy) = &comparison.accuracy else {
-        return Ok(None);
-    };
+    let accuracy = comparison.accuracy.as_ref()?;
     if accuracy.points.is_empty() {
-        return Ok(None);
+        return None;
     }
     let place = |point: &AccuracyPoint| (exponent(point.seconds), exponent(point.error.value));
     let x = range(accuracy.points.iter().map(|point| place(point).0));
@@ -62,17 +60,17 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
         Reference::Generator(_) => ("finest", "that of the generator on its finest cells"),
     };
     let ordinate = format!("total variation to {by} {density}");
-    let up = Scale::logarithmic(look, y, PANEL.1, &ordinate)?;
+    let up = Scale::logarithmic(look, y, PANEL.1, &ordinate);
     let left = MARGIN + up.left();
     let wide = look.fill(PANEL.0, left + 12.0 + MARGIN);
-    let across = Scale::logarithmic(look, x, wide, "seconds")?;
+    let across = Scale::logarithmic(look, x, wide, "seconds");
     let width = left + wide + 12.0 + MARGIN;
     let separator = if title.is_empty() { "" } else { "; " };
     let value = symbols::rounded(accuracy.value)
         .to_string()
         .replace('-', "−");
     let title = format!("{title}{separator}at {} = {value}", family.parameter());
-    let heading = Heading::new(look, &title, width)?;
+    let heading = Heading::new(look, &title, width);
     let shown = |method: &Method| accuracy.points.iter().any(|one| one.method == *method);
     let methods = Method::ALL.into_iter().enumerate();
     let methods = methods.filter(|(_, method)| shown(method));
@@ -81,7 +79,7 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
         let sample = Sample::Marked(line(method), number);
         (sample, method.title().to_owned())
     });
-    let legend = Legend::new(look, entries.collect(), width - 2.0 * MARGIN)?;
+    let legend = Legend::new(look, entries.collect(), width - 2.0 * MARGIN);
     let top = heading.height() + legend.height() + 6.0;
     let rect = Rectangle::new((left, top), (wide, PANEL.1));
     let page = Page::new(look, width, rect.bottom() + Scale::below() + MARGIN);
@@ -119,11 +117,7 @@ fn draw(comparison: &Comparison, print: &Print<'_>) -> Drawn {
     });
     let columns = ["method", "seconds", "total_variation", "standard_error"];
     let caption = caption_with(comparison, &seen);
-    Ok(Some(Figure::new(
-        &page,
-        caption,
-        table::table(&columns, rows),
-    )))
+    Some(Figure::new(&page, caption, table::table(&columns, rows)))
 }
 
 /// The line of a method; Monte Carlo's is black, as its symbols elsewhere.

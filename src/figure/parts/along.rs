@@ -10,11 +10,10 @@ use crate::topology::Detection;
 use super::bifurcations::Labels;
 use super::caption;
 use super::names;
-use crate::figure::FigureError;
 use crate::figure::canvas::frame::{self, Scale};
 use crate::figure::canvas::legend::{self, Legend, Sample};
+use crate::figure::canvas::letters;
 use crate::figure::canvas::page::{Heading, Page, Panel, Rectangle, Shape, lettering};
-use crate::figure::canvas::render;
 use crate::figure::canvas::style::{GREY, MARGIN, Stroke, TEXT};
 use crate::figure::figures::{Figure, Print};
 
@@ -112,7 +111,7 @@ pub(crate) fn draw(
     own: Option<Observable>,
     (tracks, height): (&[Track], f64),
     (seen, table): (String, String),
-) -> Result<Option<Figure>, FigureError> {
+) -> Option<Figure> {
     let look = &print.look;
     let mut panels = Vec::new();
     for track in tracks {
@@ -123,17 +122,17 @@ pub(crate) fn draw(
             } else {
                 Scale::vertical
             };
-            panels.push((track, scale(look, range, high, &track.title)?, high));
+            panels.push((track, scale(look, range, high, &track.title), high));
         }
     }
     if panels.is_empty() {
-        return Ok(None);
+        return None;
     }
     let range = parameter_range(&result.points);
     // Titles that are longer than their panels are high stand above them all, and not beside.
     let mut is_above = false;
     for (_, up, high) in &panels {
-        let long = render::text_width(look, up.title(), TEXT, false)?;
+        let long = letters::text_width(look, up.title(), TEXT, false);
         is_above |= long > high + BETWEEN;
     }
     let above = if is_above { 1.3 * TEXT } else { 0.0 };
@@ -149,9 +148,9 @@ pub(crate) fn draw(
     let left = MARGIN + room;
     let wide = look.fill(WIDTH, left + BESIDE + MARGIN);
     let width = left + wide + BESIDE + MARGIN;
-    let across = Scale::horizontal(look, range, wide, &names::parameter(&result.subject.family))?;
-    let heading = Heading::new(look, print.title, width)?;
-    let labels = Labels::new(look, result, own, range, (left, wide))?;
+    let across = Scale::horizontal(look, range, wide, &names::parameter(&result.subject.family));
+    let heading = Heading::new(look, print.title, width);
+    let labels = Labels::new(look, result, own, range, (left, wide));
     let mut entries: Vec<(Sample, String)> = Vec::new();
     for curve in tracks.iter().flat_map(|track| &track.curves) {
         let is_new = entries.iter().all(|(_, known)| *known != curve.name);
@@ -160,7 +159,7 @@ pub(crate) fn draw(
         }
     }
     entries.extend(labels.entries());
-    let legend = Legend::new(look, entries, width - 2.0 * MARGIN)?;
+    let legend = Legend::new(look, entries, width - 2.0 * MARGIN);
     let top = heading.height() + labels.height() + above;
     let step = |high: &f64| high + BETWEEN + above;
     let high = panels.iter().map(|(_, _, high)| step(high));
@@ -195,7 +194,7 @@ pub(crate) fn draw(
     legend.draw(&page, left + 0.5 * wide, below);
     let marked = [caption::bifurcations(result)];
     let caption = caption::of_sweep(result, seen, &marked);
-    Ok(Some(Figure::new(&page, caption, table)))
+    Some(Figure::new(&page, caption, table))
 }
 
 fn draw_track(panel: &Panel, track: &Track, range: (f64, f64), (low, high): (f64, f64)) {

@@ -5,12 +5,11 @@ use plotters_backend::text_anchor::HPos;
 use crate::continuation::{BifurcationStatus, Located, SweepResult};
 use crate::density::Observable;
 
-use crate::figure::FigureError;
 use crate::figure::canvas::legend::Sample;
 use crate::figure::canvas::look::{Look, on_heat};
 use crate::figure::canvas::page::{Page, Panel, Rectangle, Shape, small};
 use crate::figure::canvas::style::{BIFURCATION, Colour, GREY, PAPER, Stroke, TICK_TEXT, WHITE};
-use crate::figure::canvas::{render, symbols};
+use crate::figure::canvas::{letters, symbols};
 
 /// Height of a row of labels.
 const ROW: f64 = 16.0;
@@ -56,16 +55,13 @@ impl<'a> Labels<'a> {
     /// Places labels in as few rows as keep them apart, the diagram's own ones lowest.
     ///
     /// `range` is that of the parameter; the map begins `map.0` pixels from the left and is `map.1` wide.
-    ///
-    /// # Errors
-    /// [`FigureError::Svg`].
     pub(crate) fn new(
         look: &Look,
         result: &'a SweepResult,
         watched: Option<Observable>,
         range: (f64, f64),
         (left, width): (f64, f64),
-    ) -> Result<Self, FigureError> {
+    ) -> Self {
         let inside = |point: &&Located| point.value >= range.0 && point.value <= range.1;
         let mut points: Vec<&Located> = result.bifurcations().filter(inside).collect();
         let is_own = |point: &Located| watched == Some(point.observable);
@@ -74,7 +70,7 @@ impl<'a> Labels<'a> {
         let mut rows: Vec<Vec<(f64, f64)>> = Vec::new();
         for point in points {
             let own = is_own(point);
-            let half = 0.5 * render::text_width(look, &point.label, TICK_TEXT, own)?;
+            let half = 0.5 * letters::text_width(look, &point.label, TICK_TEXT, own);
             let share = (point.value - range.0) / (range.1 - range.0);
             let middle = (left + share * width).clamp(left + half, left + width - half);
             let (from, to) = (middle - half - 3.0, middle + half + 3.0);
@@ -93,11 +89,11 @@ impl<'a> Labels<'a> {
                 row,
             });
         }
-        Ok(Self {
+        Self {
             placed,
             rows: rows.len(),
             range,
-        })
+        }
     }
 
     /// Room above the map.

@@ -1,7 +1,6 @@
 //! Small densities of one state of each regime, drawn into the regions of a map.
 
 use crate::density::Density;
-use crate::figure::FigureError;
 use crate::figure::canvas::heat::Picture;
 use crate::figure::canvas::look::Look;
 use crate::figure::canvas::page::{Page, Rectangle, Shape};
@@ -16,20 +15,14 @@ const FAINT: f64 = 2e-3;
 const FINE: f64 = 2.0;
 
 /// Draws a density into a rectangle.
-pub(crate) fn draw(
-    page: &Page,
-    look: &Look,
-    rect: Rectangle,
-    density: &Density,
-) -> Result<(), FigureError> {
+pub(crate) fn draw(page: &Page, look: &Look, rect: Rectangle, density: &Density) {
     page.draw(&rect.corners(), Shape::Area(PAPER));
     match density.axes.as_slice() {
         [axis] => curve(page, rect, axis, density),
-        [first, second] => map(page, look, rect, [first, second], density)?,
+        [first, second] => map(page, look, rect, [first, second], density),
         _ => {}
     }
     page.draw(&rect.rim(), Shape::Line(Stroke::solid(GREY, 0.6)));
-    Ok(())
 }
 
 /// The cells of an axis in which a profile is not faint, first and last.
@@ -51,13 +44,7 @@ fn curve(page: &Page, rect: Rectangle, axis: &Axis, density: &Density) {
     );
 }
 
-fn map(
-    page: &Page,
-    look: &Look,
-    rect: Rectangle,
-    [first, second]: [&Axis; 2],
-    density: &Density,
-) -> Result<(), FigureError> {
+fn map(page: &Page, look: &Look, rect: Rectangle, [first, second]: [&Axis; 2], density: &Density) {
     let columns = second.count();
     let across: Vec<f64> = density
         .values
@@ -82,7 +69,7 @@ fn map(
     let (x, y) = (range(first, &across), range(second, &up));
     let size = [rect.width, rect.height].map(|length| (FINE * length).round().max(1.0) as usize);
     let highest = density.maximum();
-    let picture = Picture::new((size[0], size[1]), |column, row| {
+    let picture = Picture::new(look, (size[0], size[1]), |column, row| {
         let at = |(from, to): (f64, f64), pixel: usize, count: usize| {
             from + (to - from) * (pixel as f64 + 0.5) / count as f64
         };
@@ -93,6 +80,5 @@ fn map(
         Some(density.values[i * columns + j] / highest)
     });
     let panel = page.panel(rect, x, y);
-    panel.draw(&[(x.0, y.1), (x.1, y.0)], Shape::Image(picture.png(look)?));
-    Ok(())
+    panel.draw(&[(x.0, y.1), (x.1, y.0)], Shape::Image(picture));
 }

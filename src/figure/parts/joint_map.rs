@@ -6,7 +6,6 @@ use super::names;
 use super::view::{self, View, middles};
 use crate::continuation::{Point, SweepResult};
 use crate::density::{Density, EstimatedDensity, Observable};
-use crate::figure::FigureError;
 use crate::figure::canvas::colour_bar::ColourBar;
 use crate::figure::canvas::contour::{Grid, simplify};
 use crate::figure::canvas::frame::{self, Scale};
@@ -119,10 +118,10 @@ pub(crate) fn open_page(
     found: &[JointPoint<'_>],
     (left, page_width): (f64, f64),
     (width, height): (f64, f64),
-) -> Result<(Page, Rectangle), FigureError> {
+) -> (Page, Rectangle) {
     let look = &print.look;
-    let heading = Heading::new(look, print.title, page_width)?;
-    let legend = Legend::new(look, entries(found), page_width - 2.0 * MARGIN)?;
+    let heading = Heading::new(look, print.title, page_width);
+    let legend = Legend::new(look, entries(found), page_width - 2.0 * MARGIN);
     let maps = Rectangle::new(
         (left, heading.height() + ColourBar::above()),
         (width, height),
@@ -131,14 +130,15 @@ pub(crate) fn open_page(
     let page = Page::new(look, page_width, below + legend.height() + MARGIN);
     heading.draw(&page);
     legend.draw(&page, left + 0.5 * width, below);
-    Ok((page, maps))
+    (page, maps)
 }
 
 /// A line above a panel, with the panel's letter where panels have letters.
 pub(crate) fn with_letter(look: &Look, number: usize, line: String) -> String {
     let letter = char::from(b'a' + (number % 26) as u8);
     if look.has_letters {
-        format!("({letter})  {line}")
+        // Browsers make one of two plain spaces.
+        format!("({letter})\u{a0} {line}")
     } else {
         line
     }
@@ -174,23 +174,20 @@ pub(crate) fn draw_map(
     found: &JointPoint<'_>,
     (x, y): ((f64, f64), (f64, f64)),
     largest: f64,
-) -> Result<(), FigureError> {
+) {
     let panel = page.panel(map, x, y);
     if found.density().axes.len() != 2 {
-        return Ok(());
+        return;
     }
     let size = (
         found.shown.resolution(0, x, map.width),
         found.shown.resolution(1, y, map.height),
     );
     let values = found.shown.sheet(&middles(x, size.0), &middles(y, size.1));
-    let picture = Picture::new(size, |column, row| {
+    let picture = Picture::new(page.look(), size, |column, row| {
         Some(values[column * size.1 + row] / largest)
     });
-    panel.draw(
-        &[(x.0, y.0), (x.1, y.1)],
-        Shape::Image(picture.png(page.look())?),
-    );
+    panel.draw(&[(x.0, y.0), (x.1, y.1)], Shape::Image(picture));
     draw_contours(page.look(), (&panel, map), found, (x, y), largest);
     let inside = |&(px, py): &(f64, f64)| px >= x.0 && px <= x.1 && py >= y.0 && py <= y.1;
     for place in found.present(FeatureKind::Peak).filter(inside) {
@@ -200,7 +197,6 @@ pub(crate) fn draw_map(
         panel.mark(&[place], legend::ring());
     }
     frame::border(page, map);
-    Ok(())
 }
 
 /// Draws the contours at [`LEVELS`] of the density's own maximum: through the centres of cells in the window, or

@@ -4,12 +4,11 @@ use crate::figure::figures::Print;
 
 use super::joint_map::{Joint, JointPoint, LEVELS, draw_map, open_page, with_letter, write_above};
 use super::names;
-use crate::figure::FigureError;
 use crate::figure::canvas::colour_bar::ColourBar;
 use crate::figure::canvas::frame::Scale;
+use crate::figure::canvas::letters;
 use crate::figure::canvas::look::Look;
 use crate::figure::canvas::page::{Page, Rectangle};
-use crate::figure::canvas::render;
 use crate::figure::canvas::style::{MARGIN, TEXT};
 use crate::figure::canvas::symbols;
 
@@ -89,7 +88,7 @@ impl Sheet {
     }
 
     /// The colour bar of all maps.
-    fn bar(&self, look: &Look, density: &str) -> Result<ColourBar, FigureError> {
+    fn bar(&self, look: &Look, density: &str) -> ColourBar {
         match self.common {
             Some(largest) => ColourBar::new(look, largest, self.whole.1, density),
             None => ColourBar::new(look, 1.0, self.whole.1, &format!("{density} / max")),
@@ -98,12 +97,12 @@ impl Sheet {
 }
 
 /// Narrowest map whose line does not touch that of its neighbour.
-fn widest(look: &Look, lines: &[String]) -> Result<f64, FigureError> {
+fn widest(look: &Look, lines: &[String]) -> f64 {
     let mut least: f64 = 0.0;
     for line in lines {
-        least = least.max(render::text_width(look, line, TEXT, false)? + 4.0 - BETWEEN / 2.0);
+        least = least.max(letters::text_width(look, line, TEXT, false) + 4.0 - BETWEEN / 2.0);
     }
-    Ok(least)
+    least
 }
 
 /// The sheet with the lines above its maps; `arranged` gives the sheet whose maps are so wide at least. Many maps below
@@ -111,17 +110,17 @@ fn widest(look: &Look, lines: &[String]) -> Result<f64, FigureError> {
 /// second column.
 fn with_lines(
     (look, joint): (&Look, &Joint<'_>),
-    arranged: &dyn Fn(f64) -> Result<Sheet, FigureError>,
-) -> Result<(Sheet, Vec<String>), FigureError> {
+    arranged: &dyn Fn(f64) -> Sheet,
+) -> (Sheet, Vec<String>) {
     let (found, family) = (&joint.found, &joint.result.subject.family);
     let at = |found: &JointPoint<'_>| joint.at(found);
     let short = |found: &JointPoint<'_>| names::at(family, symbols::rounded_to(found.value, FEW));
     let numbered = found.iter().enumerate();
     let lettered = numbered.map(|(number, found)| with_letter(look, number, at(found)));
     let lines: Vec<String> = lettered.collect();
-    let sheet = arranged(widest(look, &lines)?)?;
+    let sheet = arranged(widest(look, &lines));
     if sheet.columns > 1 || found.len() <= MOST_IN_A_TOWER {
-        return Ok((sheet, lines));
+        return (sheet, lines);
     }
     let barer: [Vec<String>; 2] = [
         found.iter().map(at).collect(),
@@ -129,51 +128,51 @@ fn with_lines(
     ];
     for words in barer {
         let is_told_apart = words.windows(2).all(|pair| pair[0] != pair[1]);
-        let wider = arranged(widest(look, &words)?)?;
+        let wider = arranged(widest(look, &words));
         if wider.columns > 1 && is_told_apart {
-            return Ok((wider, words));
+            return (wider, words);
         }
     }
-    Ok((sheet, lines))
+    (sheet, lines)
 }
 
 /// All maps of a pair on one sheet, with the same windows; `None` for fewer than two densities.
-pub(crate) fn draw(joint: &Joint<'_>, print: &Print<'_>) -> Result<Option<Page>, FigureError> {
+pub(crate) fn draw(joint: &Joint<'_>, print: &Print<'_>) -> Option<Page> {
     let (look, found, (x, y)) = (&print.look, &joint.found, joint.window);
     if found.len() < 2 {
-        return Ok(None);
+        return None;
     }
     let [first, second, density] = &joint.titles;
     let vertical = |high: f64| Scale::vertical(look, y, high, second);
     let horizontal = |long: f64| Scale::horizontal(look, x, long, first);
-    let arranged = |least: f64| -> Result<Sheet, FigureError> {
+    let arranged = |least: f64| -> Sheet {
         // The bar and the labels of the ordinate hardly depend on how high the maps are: a first sheet measures them.
         let rough = Sheet::new(look, found, (140.0, BETWEEN), least);
-        let bar_width = rough.bar(look, density)?.width();
-        let left = MARGIN + vertical(rough.side.1)?.left();
-        let beyond = horizontal(rough.side.0)?.beyond(rough.side.0);
+        let bar_width = rough.bar(look, density).width();
+        let left = MARGIN + vertical(rough.side.1).left();
+        let beyond = horizontal(rough.side.0).beyond(rough.side.0);
         let between = BETWEEN.max(beyond + BETWEEN_LABELS);
         let beside = left + bar_width + MARGIN;
-        Ok(Sheet::new(look, found, (beside, between), least))
+        Sheet::new(look, found, (beside, between), least)
     };
-    let (sheet, lines) = with_lines((look, joint), &arranged)?;
-    let bar = sheet.bar(look, density)?;
-    let (across, up) = (horizontal(sheet.side.0)?, vertical(sheet.side.1)?);
+    let (sheet, lines) = with_lines((look, joint), &arranged);
+    let bar = sheet.bar(look, density);
+    let (across, up) = (horizontal(sheet.side.0), vertical(sheet.side.1));
     let left = MARGIN + up.left();
     let own = left + sheet.whole.0 + bar.width() + MARGIN;
     let width = look.page.unwrap_or(own);
-    let (page, all) = open_page(print, found, (left, width), sheet.whole)?;
+    let (page, all) = open_page(print, found, (left, width), sheet.whole);
     let first = Rectangle::new((all.left, all.top), sheet.side);
     for (number, (found, line)) in found.iter().zip(lines).enumerate() {
         let map = first.tile(number, sheet.columns, sheet.step);
         write_above(&page, map, line);
         let top = sheet.common.unwrap_or(found.shown.largest);
-        draw_map(&page, map, found, (x, y), top)?;
+        draw_map(&page, map, found, (x, y), top);
         // A map with none below it carries the labels of its column.
         across.draw_below(&page, map, number + sheet.columns >= joint.found.len());
         up.draw_left(&page, map, number % sheet.columns == 0);
     }
     let marks: &[f64] = if sheet.common.is_some() { &[] } else { &LEVELS };
-    bar.draw(&page, all, marks)?;
-    Ok(Some(page))
+    bar.draw(&page, all, marks);
+    Some(page)
 }
