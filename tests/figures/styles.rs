@@ -30,14 +30,17 @@ fn assert_readable(figure: &Figure, style: &FigureStyle) {
         let inside = one.left > -0.5 && one.right < page[0] + 0.5;
         assert!(
             inside && one.top > -0.5 && one.bottom < page[1] + 0.5,
-            "{name}: {one:?} leaves the page of {page:?} in {style:?}"
+            "{name}: `{}` leaves the page of {page:?}: {one:?} in {style:?}",
+            one.letters
         );
         for other in &texts[..number] {
             let across = one.right.min(other.right) - one.left.max(other.left);
             let down = one.bottom.min(other.bottom) - one.top.max(other.top);
             assert!(
                 across < unit || down < 6.0 * unit,
-                "{name}: {one:?} on {other:?}, {across} by {down} in {style:?}"
+                "{name}: `{}` on `{}`, {across} by {down} in {style:?}",
+                one.letters,
+                other.letters
             );
         }
     }
