@@ -8,7 +8,7 @@ use super::progress::Progress;
 use super::{CommandError, conclude, fault, interruptible, print};
 use crate::cancellation::Cancellation;
 use crate::job::{self, Done, Job, JobError, Outcome, Start};
-use crate::run::RunError;
+use crate::run::{RunError, clear_after_kill};
 
 /// What is printed of a job.
 pub(super) trait Printed: Job {
@@ -71,6 +71,7 @@ pub(super) fn carry_out<J: Printed>(
     let home = output.path();
     fault::at_work(home, job.layout());
     if start == Start::Complete {
+        clear_after_kill(home);
         let (text, outcome) = job.complete(home)?;
         return conclude(&text, outcome, home);
     }

@@ -46,7 +46,7 @@ use std::time::Instant;
 use crate::cancellation::Cancellation;
 use crate::continuation::{SourceError, SweepError};
 use crate::figure::{Figure, FigureError, write_figures};
-use crate::run::{Ending, JobFolder, Layout, PhaseSeconds, RunError};
+use crate::run::{Ending, JobFolder, Layout, PhaseSeconds, RunError, clear_after_kill};
 use crate::sweep_file::{Report, Sweep};
 
 pub use compare::CompareJob;
@@ -287,7 +287,11 @@ pub fn carry_out<J: Job>(
         cancellation,
         observer,
     };
-    if start == Start::Complete || !job.plan(&context)? {
+    if start == Start::Complete {
+        clear_after_kill(home);
+        return Ok(None);
+    }
+    if !job.plan(&context)? {
         return Ok(None);
     }
     let goes_on = start == Start::GoOn;

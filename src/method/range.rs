@@ -238,4 +238,26 @@ mod tests {
             "{found:?}"
         );
     }
+
+    #[test]
+    fn the_search_for_a_range_ends_after_steps_that_are_worth_it() {
+        // A lightly damped oscillator takes the longest trajectories there are, and z leaves every box.
+        let typed = crate::system::TypedModel::new("light", "Light damping", ["x", "y", "z"]);
+        let typed = typed
+            .with_equation("x", "y")
+            .with_equation("y", "-x - 1e-4 y");
+        let typed = typed.with_equation("z", "0.01 z").with_noise("y", ["0.01"]);
+        let model = typed.with_noise("z", ["0.5"]).build().unwrap();
+        let system = model.system_with(&[]).unwrap();
+        let known = [Some((-9.0, 9.0)), Some((-9.0, 9.0)), None];
+        let found = automatic_ranges(&[system], &known, 1, &Cancellation::new());
+        let Err(RangeError::TooLong {
+            axis, steps, last, ..
+        }) = found
+        else {
+            panic!("{found:?}");
+        };
+        assert!(axis == 2 && last.1 > 100.0, "{axis} {last:?}");
+        assert!(steps < MOST_STEPS + MOST_STEPS / 5, "{steps}");
+    }
 }

@@ -50,8 +50,9 @@ fn write(path: &Path, bytes: &[u8], durably: bool) -> Result<File, RunError> {
     file.persist(path).map_err(|error| failed(error.error))
 }
 
-/// Removes the files in the making that a killed process has left in a run, which nobody else writes to: in its folder,
-/// and below its folders `own`. Other folders are a user's.
+/// Removes what a killed process has left in the making in a run, which nobody else writes to: files in its folder and
+/// below its folders `own`, and rooms in its folder, in which nothing has its only place (`Staging::take_place`). Other
+/// folders are a user's.
 pub(super) fn clear_unfinished(run: &Path, own: &[&str]) {
     let mut open = vec![run.to_owned()];
     while let Some(folder) = open.pop() {
@@ -60,11 +61,14 @@ pub(super) fn clear_unfinished(run: &Path, own: &[&str]) {
             let name = name.to_string_lossy();
             let is_unfinished = name.starts_with(UNFINISHED);
             match entry.file_type() {
+                // What cannot be removed is in nobody's way.
+                Ok(kind) if kind.is_dir() && folder == run && is_unfinished => {
+                    let _ = std::fs::remove_dir_all(entry.path());
+                }
                 Ok(kind) if kind.is_dir() && (folder != run || own.contains(&&*name)) => {
                     open.push(entry.path());
                 }
                 Ok(kind) if kind.is_file() && is_unfinished => {
-                    // One that cannot be removed is in nobody's way.
                     let _ = std::fs::remove_file(entry.path());
                 }
                 _ => {}
@@ -209,6 +213,7 @@ mod tests {
         };
         let left = [
             ".pbif-a1",
+            ".pbif-room/kept/points.csv",
             "densities.zarr/p_x/c/.pbif-b2",
             "figures/.pbif-c3",
         ];

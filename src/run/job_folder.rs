@@ -11,6 +11,9 @@ use super::place::{self, FIGURES, folder_in, read_text};
 use super::staging::Staging;
 use super::{Ending, Journal, RunError, checksums, curve, journal, plane_file, research_object};
 
+/// Folders in which files grow.
+const OWN: [&str; 2] = ["densities.zarr", FIGURES];
+
 /// What a kind of job leaves in its folder.
 #[derive(Debug, Clone, Copy)]
 pub struct Layout {
@@ -199,6 +202,13 @@ enum Destination {
     There { lock: FolderLock },
 }
 
+/// Removes what a kill left in the making beside a complete job, unless another process is at work there.
+pub(crate) fn clear_after_kill(home: &Path) {
+    if let Ok(_lock) = FolderLock::take(home) {
+        clear_unfinished(home, &OWN);
+    }
+}
+
 impl JobFolder {
     /// Prepares the folder `home` for a job that begins, or goes on with what is there. What an earlier one left, and
     /// what was followed from it, is kept below `previous/`: of files that grow at once, of others when new ones take
@@ -217,7 +227,7 @@ impl JobFolder {
         let place = if layout.grows && goes_on {
             let lock = FolderLock::take(home)?;
             checksums::reopen(home);
-            clear_unfinished(home, &["densities.zarr", "figures"]);
+            clear_unfinished(home, &OWN);
             Destination::There { lock }
         } else {
             let staging = Staging::new(home, layout.entries)?.with(layout.about)?;

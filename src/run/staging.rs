@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::RunError;
 use super::archive::{self, Entries};
-use super::atomic::sync_folder;
+use super::atomic::{clear_unfinished, sync_folder};
 use super::lock::{FolderLock, holder_of};
 use super::tree::{make, rename};
 use crate::UNFINISHED;
@@ -31,7 +31,7 @@ impl Staging {
     /// without the first, which marks the folder; [`RunError::Read`] and [`RunError::Write`].
     pub(super) fn new(home: &Path, entries: Entries) -> Result<Self, RunError> {
         let lock = FolderLock::take(home)?;
-        clear_rooms(home);
+        clear_unfinished(home, &[]);
         archive::check_ours(home, entries)?;
         let room = tempfile::Builder::new().prefix(UNFINISHED).tempdir_in(home);
         let room = room.map_err(|source| RunError::Write {
@@ -156,17 +156,6 @@ pub(super) struct Placed {
     pub(super) kept: Option<PathBuf>,
     /// Whoever goes on writing holds on to it.
     pub(super) lock: FolderLock,
-}
-
-/// Removes rooms that killed processes left. Nothing in them has its only place there, see [`Staging::take_place`].
-fn clear_rooms(home: &Path) {
-    for entry in std::fs::read_dir(home).into_iter().flatten().flatten() {
-        let is_room = entry.file_name().to_string_lossy().starts_with(UNFINISHED);
-        if is_room && entry.path().is_dir() {
-            // One that cannot be removed is in nobody's way.
-            let _ = std::fs::remove_dir_all(entry.path());
-        }
-    }
 }
 
 /// A file, or the files of a folder by name.

@@ -8,6 +8,7 @@ use std::ops::Range;
 use annotate_snippets::{AnnotationKind, Element, Group, Level, Origin, Snippet};
 
 use super::names::{list, nearest_name};
+use crate::formula::language::foreign_letter;
 
 /// A span of bytes in one of the [`Sources`].
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -138,7 +139,9 @@ impl Diagnostic {
     ) -> Self {
         let names: Vec<&str> = names.into_iter().collect();
         if let Some(name) = nearest_name(given, names.iter().copied()) {
-            self.remedy = Some(format!("did you mean `{name}`?"));
+            let foreign = foreign_letter(given).map(|(words, _)| format!(" {words}"));
+            let foreign = foreign.unwrap_or_default();
+            self.remedy = Some(format!("did you mean `{name}`?{foreign}"));
         }
         self.allowed = (!names.is_empty()).then(|| list(&names));
         self

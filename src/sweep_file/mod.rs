@@ -43,6 +43,7 @@ mod diagnostic;
 mod document;
 mod draft;
 mod file;
+mod fit;
 mod formula_place;
 mod gallery;
 mod given;

@@ -1,5 +1,7 @@
 //! Names as people type them: the nearest known one, Greek letters by their names.
 
+use crate::formula::language::{ascii_spelling, is_invisible, lookalike};
+
 /// The name nearest to `given`, if one is near enough to be a slip of the pen.
 pub(super) fn nearest_name<'n>(
     given: &str,
@@ -22,82 +24,13 @@ fn plain(name: &str) -> String {
             '-' | ' ' => text.push('_'),
             '^' | '{' | '}' | '"' | '\'' => {}
             c if is_invisible(c) => {}
-            c => match ascii_name(c) {
+            c => match ascii_spelling(c) {
                 Some(name) => text += name,
-                None => text.push(c),
+                None => text.push(lookalike(c).unwrap_or(c)),
             },
         }
     }
     text
-}
-
-/// Names of the lower-case Greek letters.
-const GREEK: [(char, &str); 25] = [
-    ('α', "alpha"),
-    ('β', "beta"),
-    ('γ', "gamma"),
-    ('δ', "delta"),
-    ('ε', "epsilon"),
-    ('ζ', "zeta"),
-    ('η', "eta"),
-    ('θ', "theta"),
-    ('ι', "iota"),
-    ('κ', "kappa"),
-    ('λ', "lambda"),
-    ('μ', "mu"),
-    ('ν', "nu"),
-    ('ξ', "xi"),
-    ('ο', "omicron"),
-    ('π', "pi"),
-    ('ρ', "rho"),
-    ('σ', "sigma"),
-    ('ς', "sigma"),
-    ('τ', "tau"),
-    ('υ', "upsilon"),
-    ('φ', "phi"),
-    ('χ', "chi"),
-    ('ψ', "psi"),
-    ('ω', "omega"),
-];
-
-/// How a letter or digit that is not ASCII is spelt, where pbif's names spell it: Greek letters, the micro sign, raised
-/// and lowered digits.
-pub(super) fn ascii_name(c: char) -> Option<&'static str> {
-    const DIGITS: [&str; 10] = ["0", "1", "2", "3", "4", "5", "6", "7", "8", "9"];
-    let digit = match c {
-        '⁰' => 0,
-        '¹' => 1,
-        '²' => 2,
-        '³' => 3,
-        '⁴'..='⁹' => c as usize - '⁰' as usize,
-        '₀'..='₉' => c as usize - '₀' as usize,
-        // Micro sign, and forms of epsilon, theta, kappa, rho and phi.
-        'µ' => return Some("mu"),
-        'ϵ' => return Some("epsilon"),
-        'ϑ' => return Some("theta"),
-        'ϰ' => return Some("kappa"),
-        'ϱ' => return Some("rho"),
-        'ϕ' => return Some("phi"),
-        _ => {
-            let lower = c.to_lowercase().next()?;
-            let letter = GREEK.iter().find(|(letter, _)| *letter == lower);
-            return letter.map(|(_, name)| *name);
-        }
-    };
-    DIGITS.get(digit).copied()
-}
-
-/// The letter of the keyboard that a letter of another alphabet looks like.
-pub(super) fn lookalike(c: char) -> Option<char> {
-    const CYRILLIC: &str = "аеорсухіѕјԁһӏАВЕКМНОРСТХІЅЈ";
-    const LATIN: &str = "aeopcyxisjdhlABEKMHOPCTXISJ";
-    let place = CYRILLIC.chars().position(|known| known == c)?;
-    LATIN.chars().nth(place)
-}
-
-/// Whether a character takes no room or turns the direction of writing.
-pub(super) fn is_invisible(c: char) -> bool {
-    matches!(c, '\u{ad}' | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')
 }
 
 /// Names in backquotes, separated by commas.
@@ -141,6 +74,8 @@ mod tests {
             ("\u{b5}", Some("mu")),
             ("mu\u{200b}", Some("mu")),
             ("σ²", Some("sigma2")),
+            // Cyrillic letters.
+            ("k\u{430}pp\u{430}", Some("kappa")),
             ("sigma^2", Some("sigma2")),
             ("f_{c}", Some("f_c")),
             ("zzzz", None),
@@ -151,13 +86,6 @@ mod tests {
             nearest_name("map-step", ["map_step", "samples"]),
             Some("map_step")
         );
-    }
-
-    #[test]
-    fn raised_and_lowered_digits_are_digits() {
-        let spelt: String = "⁰¹²³⁴⁹₀₁₉".chars().filter_map(ascii_name).collect();
-        assert_eq!(spelt, "012349019");
-        assert_eq!(ascii_name('a'), None);
     }
 
     #[test]

@@ -6,8 +6,9 @@ use std::ops::Range;
 use toml::de::Error;
 
 use super::diagnostic::{Diagnostic, Place};
-use super::names::{ascii_name, is_invisible, lookalike, quotable};
+use super::names::quotable;
 use super::report::MOST_SHOWN;
+use crate::formula::language::{ascii_spelling, foreign_letter, is_invisible};
 
 /// A slip: what stands there, and what to write.
 type Slip = (String, String);
@@ -115,12 +116,12 @@ impl<'t> Spot<'t> {
                 format!("an invisible character ({code}) stands here"),
                 "delete it, or write a plain space".to_owned(),
             ),
-            c if ascii_name(c).is_some() && self.is_key() => {
+            c if ascii_spelling(c).is_some() && self.is_key() => {
                 let word = self.rest.split(['=', '.', ' ', '\t', ']']).next();
                 let word = word.unwrap_or_default();
                 let spelt: String = word
                     .chars()
-                    .map(|c| ascii_name(c).map_or(c.to_string(), str::to_owned))
+                    .map(|c| ascii_spelling(c).map_or(c.to_string(), str::to_owned))
                     .collect();
                 let before = self.before.rsplit(['{', '[', ',', '.', ' ', '\t']).next();
                 let before = before.unwrap_or_default();
@@ -131,19 +132,10 @@ impl<'t> Spot<'t> {
                     ),
                 )
             }
-            c if lookalike(c).is_some() => {
-                let letter = lookalike(c).unwrap_or(c);
-                (
-                    format!(
-                        "`{c}` ({code}) looks like `{letter}`, and is a letter of another alphabet"
-                    ),
-                    format!("write the `{letter}` of the keyboard"),
-                )
-            }
-            c => (
+            c => foreign_letter(&c.to_string()).unwrap_or((
                 format!("`{c}` ({code}) can stand in a string only"),
                 "write names and numbers with the letters and digits of ASCII".to_owned(),
-            ),
+            )),
         })
     }
 

@@ -1,9 +1,10 @@
 //! The text of a sweep file: read no further than a sweep file can reach, and told from what is no text.
 
 use std::io::Read as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::diagnostic::{Diagnostic, Place, Sources};
+use super::names::nearest_name;
 use super::report::Report;
 
 /// Largest sweep file, in bytes. The shipped ones have about a thousand.
@@ -76,8 +77,12 @@ pub(super) fn read(file: &Path) -> Result<Text, Report> {
             .map(drop)
     });
     read.map_err(|error| {
-        Diagnostic::new(format!("cannot read the sweep file `{name}`: {error}"))
-            .remedy("check the path; `sweeps/` holds examples")
+        let title = format!("cannot read the sweep file `{name}`: {error}");
+        let remedy = match nearest_file(file) {
+            Some(near) => format!("did you mean `{}`?", near.display()),
+            None => "check the path; `sweeps/` holds examples".to_owned(),
+        };
+        Diagnostic::new(title).remedy(remedy)
     })?;
     let is_cut = bytes.len() > MOST_BYTES;
     if is_cut {
@@ -99,6 +104,28 @@ pub(super) fn read(file: &Path) -> Result<Text, Report> {
             error.as_bytes(),
             error.utf8_error().valid_up_to(),
         )),
+    }
+}
+
+/// The sweep file beside one that is not there whose name is nearest, or the one of that name in `sweeps/`.
+fn nearest_file(file: &Path) -> Option<PathBuf> {
+    /// A folder with more entries than these is no folder of sweep files.
+    const MOST_ENTRIES: usize = 1000;
+    let name = file.file_name()?.to_str()?;
+    let folder = file.parent()?;
+    let looked_in = match folder.as_os_str().is_empty() {
+        true => Path::new("."),
+        false => folder,
+    };
+    let entries = std::fs::read_dir(looked_in).into_iter().flatten().flatten();
+    let names = entries.take(MOST_ENTRIES);
+    let names = names.filter_map(|entry| entry.file_name().into_string().ok());
+    let names: Vec<String> = names.filter(|name| name.ends_with(".toml")).collect();
+    let sweeps = Path::new("sweeps").join(name);
+    match nearest_name(name, names.iter().map(String::as_str)) {
+        Some(near) if near != name => Some(folder.join(near)),
+        None if sweeps.is_file() => Some(sweeps),
+        _ => None,
     }
 }
 

@@ -17,3 +17,9 @@ impl Numbers {
         (self.next() % end.max(1) as u64) as usize
     }
 }
+
+/// A number of the environment.
+pub(crate) fn given(name: &str, otherwise: u64) -> u64 {
+    let text = std::env::var(name).ok();
+    text.and_then(|text| text.parse().ok()).unwrap_or(otherwise)
+}

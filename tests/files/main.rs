@@ -11,6 +11,7 @@
 mod common;
 
 mod killing;
+mod kills;
 mod places;
 mod resume;
 mod resume_others;

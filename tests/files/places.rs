@@ -8,7 +8,7 @@ use std::os::unix::ffi::OsStrExt as _;
 use std::process::Command;
 
 use super::killing::{size, started, stopped_at, wait_until};
-use crate::common::room::{Printed, Room};
+use crate::common::room::{Printed, Room, assert_says};
 
 const SWEEP: &str = "sweep sweeps/bistable.toml --quiet sweep.points=5 figures.formats=[\"svg\"]";
 
@@ -136,6 +136,15 @@ fn results_go_to_places_of_their_own() {
 }
 
 #[test]
+fn a_link_that_leads_nowhere_is_told_as_one() {
+    let room = Room::new();
+    std::os::unix::fs::symlink("nowhere", room.path("a")).unwrap();
+    let words = ["`a` is a link that leads nowhere", "--out DIR"];
+    room.refused(&format!("{SWEEP} --out a"), &words);
+    assert_eq!(room.names(), ["a"]);
+}
+
+#[test]
 fn figures_are_not_drawn_through_a_link_out_of_the_run() {
     let room = swept();
     std::fs::rename(room.path("a/figures"), room.path("mine")).unwrap();
@@ -225,6 +234,31 @@ fn limits_of_a_process_are_told() {
     ] {
         limited(&room, limit, &line).ends(2).says(&words);
     }
+}
+
+#[test]
+fn whatever_memory_a_process_is_given_it_ends_with_a_sentence() {
+    let room = Room::new();
+    let sweep =
+        "sweep sweeps/coulomb_fc.toml sweep.points=3 figures.formats=[] --threads 2 --quiet";
+    let mut refused = 0;
+    for megabytes in [60, 150, 250, 300, 350, 400, 450, 600] {
+        let limit = format!("-v {}", 1_000 * megabytes);
+        let told = limited(&room, &limit, &format!("{sweep} --out o{megabytes}"));
+        assert!(matches!(told.code, Some(0..=2)), "{megabytes} MB: {told:?}");
+        if told.code == Some(2) {
+            refused += 1;
+            assert_says(
+                &told.err,
+                &[
+                    "of memory, and the system gives this process less",
+                    "--threads",
+                ],
+            );
+            assert!(!room.holds(&format!("o{megabytes}")));
+        }
+    }
+    assert!(refused > 2 && refused < 8, "{refused}");
 }
 
 #[test]

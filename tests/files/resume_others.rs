@@ -5,28 +5,25 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::process::Command;
 
 use super::killing::{killed_at, send, size, started, wait_until};
 use crate::common::room::Room;
 use crate::common::table::Row;
 
 /// Columns of tables that hold times, and those that follow from them.
-const TIMES: [&str; 4] = [
+pub(super) const TIMES: [&str; 4] = [
     "seconds",
     "sampling_seconds",
     "solve_seconds",
     "preparation_seconds",
 ];
 
-const COMPARISON: &str = "compare sweeps/coulomb_fc.toml figures.at=[0.005,-0.01] figures.formats=[\"svg\"] \
+pub(super) const COMPARISON: &str = "compare sweeps/coulomb_fc.toml figures.at=[0.005,-0.01] figures.formats=[\"svg\"] \
                           method.error=0.05 method.samples=40 cells.x.count=24 cells.y.count=24";
-const SWEEP: &str = "sweep sweeps/coulomb_fc.toml cells.x.count=24 cells.y.count=24 sweep.points=9 \
-                     locate.tolerance=1e-3 figures.formats=[\"svg\"]";
-const MAP: &str = "sweep cusp.toml map.parameter=a map.from=0.7 map.to=1.3 map.points=5 map.depth=1 sweep.points=7";
+pub(super) const MAP: &str = "sweep cusp.toml map.parameter=a map.from=0.7 map.to=1.3 map.points=5 map.depth=1 sweep.points=7";
 const CURVE: &str = "curve run --row PB1 --second a --from 0.7 --to 1.3";
 
-const CUSP: &str = r#"
+pub(super) const CUSP: &str = r#"
 system.equations = { x = "y", y = "-0.5 y + h + a x - x^3" }
 system.noise = { y = "sqrt(0.2)" }
 system.parameters = { a = 1.0, h = 0.3 }
@@ -141,83 +138,6 @@ fn an_interrupted_comparison_leaves_what_is_done() {
         assert_eq!(room.json("run/compare.json")["ending"], "interrupted");
         assert!(!tables(&room, "run")["compare.csv"].is_empty());
     }
-}
-
-/// Kills at moments spread over the whole time of a command, that of its figures and of its renames included, each gone
-/// on with: the tables are those of an uninterrupted one every time, and the earlier one in the folder is whole.
-fn kills(count: u32, line: &str) -> u32 {
-    let room = Room::new();
-    room.write("cusp.toml", CUSP);
-    let clock = std::time::Instant::now();
-    room.solved(&format!("{line} --out whole --quiet"));
-    let time = clock.elapsed();
-    let wanted = tables(&room, "whole");
-    // Those of the complete version below `previous/`, or of the one in its place where nothing has taken it yet.
-    let assert_earlier = |number: u32| {
-        let is_kept = room.path("run/previous/1").is_dir();
-        let earlier = if is_kept { "run/previous/1" } else { "run" };
-        assert_eq!(
-            tables(&room, earlier),
-            wanted,
-            "kill {number}: the earlier one"
-        );
-    };
-    let mut killed = 0;
-    for number in 0..count {
-        let _ = std::fs::remove_dir_all(room.path("run"));
-        // An earlier one as good as one that was made there.
-        let both = [room.path("whole"), room.path("run")];
-        assert!(
-            Command::new("cp")
-                .arg("-r")
-                .args(both)
-                .status()
-                .unwrap()
-                .success()
-        );
-        let mut child = started(&room, &format!("{line} --out run --quiet"));
-        // The golden ratio spreads them evenly, in no order.
-        let share = (0.618_034 * f64::from(number)).fract();
-        std::thread::sleep(time.mul_f64(share));
-        killed += u32::from(child.try_wait().unwrap().is_none());
-        let _ = child.kill();
-        child.wait().unwrap();
-        assert_earlier(number);
-        room.solved(&format!("{line} --out run --quiet --resume"));
-        assert_eq!(tables(&room, "run"), wanted, "kill {number}");
-        assert_earlier(number);
-        assert!(room.holds("run/checksums.sha256"), "kill {number}");
-        room.solved("verify run");
-    }
-    killed
-}
-
-#[test]
-fn kills_at_any_moment_lose_nothing() {
-    assert!(kills(2, SWEEP) > 0);
-    assert!(kills(2, MAP) > 0);
-}
-
-/// A few minutes each: `cargo test --release --test files resume_others:: -- --ignored`.
-#[test]
-#[ignore = "takes minutes"]
-fn forty_kills_of_a_sweep_at_any_moment_lose_nothing() {
-    let killed = kills(40, SWEEP);
-    assert!(killed >= 30, "{killed}");
-}
-
-#[test]
-#[ignore = "takes minutes"]
-fn forty_kills_of_a_comparison_at_any_moment_lose_nothing() {
-    let killed = kills(40, COMPARISON);
-    assert!(killed >= 30, "{killed}");
-}
-
-#[test]
-#[ignore = "takes minutes"]
-fn forty_kills_of_a_map_at_any_moment_lose_nothing() {
-    let killed = kills(40, MAP);
-    assert!(killed >= 30, "{killed}");
 }
 
 #[test]

@@ -68,7 +68,20 @@ fn assert_refused(good: &str, old: &str, new: &str, words: &[&str]) {
 
 #[test]
 fn missing_files_and_files_that_no_sweep_file_is_like() {
-    refused(GOOD, "b.toml", &["cannot read the sweep file `b.toml`"]);
+    let words = [
+        "cannot read the sweep file `a.tml`",
+        "did you mean `a.toml`?",
+    ];
+    refused(GOOD, "a.tml", &words);
+    let words = [
+        "cannot read the sweep file `other`",
+        "`sweeps/` holds examples",
+    ];
+    refused(GOOD, "other", &words);
+    let room = Room::new();
+    std::fs::create_dir(room.path("sweeps")).unwrap();
+    room.write("sweeps/a.toml", GOOD);
+    refused_in(&room, "a.toml", &["did you mean `sweeps/a.toml`?"]);
     refused([0xff_u8, 0xfe], "a.toml", &["not UTF-8"]);
     // Too long: what its beginning shows is told too, and no more than fits a screen or two.
     let many = |line: &str| format!("{GOOD}{}", line.repeat(100_000));
@@ -96,6 +109,51 @@ fn causes_are_those_of_what_was_typed() {
     ] {
         refused(text, &format!("a.toml {set}"), words);
     }
+    // Too many names are shown where they stand, and no other name is asked for.
+    let many: String = (0..1100).map(|number| format!("d{number} = \"x\"\n")).collect();
+    let words = ["more than 1024 definitions", "a.toml:19:9", "write some of them out"];
+    refused(format!("{TYPED}[system.define]\n{many}"), "a.toml", &words);
+}
+
+#[test]
+fn advice_on_memory_fits_the_machine() {
+    // Factors that the machine has not the memory for are no reason to raise a limit.
+    let gigabytes = |text: &str, before: &str| -> Option<f64> {
+        text.split_once(before)?.1.split_once(" GB")?.0.parse().ok()
+    };
+    let advice = |count: usize| -> Option<(f64, f64)> {
+        let cells = format!("{{from=-5,to=5,count={count}}}");
+        let room = Room::new();
+        room.write("a.toml", GOOD);
+        let told = room.run(&format!("check a.toml cells.x={cells} cells.y={cells}"));
+        let need = gigabytes(&told.err, "factors need ");
+        let (need, has) = need.zip(gigabytes(&told.err, "this machine has "))?;
+        let is_advised = told.err.contains("raise `method.memory_limit`");
+        assert_eq!(is_advised, need <= has, "{told:?}");
+        Some((need, has))
+    };
+    // The matrices of a cell take 832 bytes, and what cannot hold them is refused before.
+    if let Some((_, has)) = advice(4_000) {
+        advice((0.995 * has * 1e9 / 832.0).sqrt() as usize);
+    }
+}
+
+#[test]
+fn points_that_did_not_converge_are_told_without_peaks() {
+    let room = Room::new();
+    room.write("a.toml", GOOD);
+    let told = room.run("sweep a.toml method.solver_tolerance=1e-30 --out o figures.formats=[]");
+    let lines: Vec<&str> = told
+        .err
+        .lines()
+        .filter(|line| line.contains(" of "))
+        .collect();
+    assert!(
+        lines.iter().any(|line| line.ends_with(": not-converged")),
+        "{told:?}"
+    );
+    let is_silent = |line: &&str| !line.contains("not-converged") || !line.contains("peak");
+    assert!(lines.iter().all(is_silent), "{told:?}");
 }
 
 #[test]
@@ -120,9 +178,28 @@ fn characters_that_only_look_right() {
         ("points = 3", "points: 3", "write `=` between key and value"),
         ("to = 0.01", "to = 1/100", "`1/100` is a computation"),
         ("\"coulomb\"", "coulomb", "must be quoted"),
+        ("kappa = 0.01", "kappa =", "`kappa` has no value"),
+        // Cyrillic letters: in a key, in a name of the model, in one that is swept.
+        ("kappa = 0.01", "k\u{430}ppa = 0.01", "`\u{430}` (U+0430) looks like `a`"),
+        ("kappa = 0.01", "\"k\u{430}ppa\" = 0.01", "did you mean `kappa`? `\u{430}` (U+0430) looks like `a`"),
+        ("parameter = \"f_c\"", "parameter = \"f_\u{441}\"", "did you mean `f_c`? `\u{441}` (U+0441) looks like `c`"),
     ];
     for (old, new, words) in cases {
         refused(GOOD.replacen(old, new, 1), "a.toml", &[words, "a.toml:"]);
+    }
+    for (old, new, place) in [
+        ("c + x^2", "\u{441} + x^2", "a.toml:5:8"),
+        ("y - x\"", "y - \u{445}\"", "a.toml:5:21"),
+        ("c = 0.0", "c = 0.0\n\"\u{441}1\" = 0.0", "a.toml:10:1"),
+        (
+            "parameter = \"c\"",
+            "parameter = \"\u{441}\"",
+            "a.toml:12:13",
+        ),
+    ] {
+        assert_eq!(TYPED.matches(old).count(), 1, "{old}");
+        let words = [place, "looks like", "and is a letter of another alphabet"];
+        refused(TYPED.replace(old, new), "a.toml", &words);
     }
 }
 

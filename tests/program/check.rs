@@ -44,6 +44,12 @@ fn what_takes_long_is_told_while_it_does() {
 }
 
 #[test]
+fn a_system_far_from_its_steady_state_is_judged_without_long_trials() {
+    let text = checked("gallery/harvester", "system.parameters.g=1e6");
+    assert_says(&text, &["what more change is not known", "no steady state"]);
+}
+
+#[test]
 fn equations_without_kinks_are_smooth() {
     let text = checked("gallery/vanderpol", "");
     assert_says(&text, &["drift and noise are smooth"]);

@@ -16,18 +16,12 @@ use pbif::sweep_file::{Sweep, SweepFile};
 
 use super::live::Served;
 use crate::common::damage::{damaged, read_all};
-use crate::common::numbers::Numbers;
+use crate::common::numbers::{Numbers, given};
 use crate::common::room::{Room, shipped};
 use crate::common::sweeps::prepared;
 
 /// No case takes as long, on however busy a machine.
 const LONGEST: Duration = Duration::from_secs(20);
-
-/// A number of the environment.
-fn given(name: &str, otherwise: u64) -> u64 {
-    let text = std::env::var(name).ok();
-    text.and_then(|text| text.parse().ok()).unwrap_or(otherwise)
-}
 
 /// Tries cases until the time is over. One that panics or hangs is named by its seed and number.
 fn fuzz(what: &str, mut case: impl FnMut(&mut Numbers)) {

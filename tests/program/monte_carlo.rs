@@ -79,6 +79,22 @@ fn a_time_step_that_eats_the_damping_is_told_by_every_trajectory_method() {
 }
 
 #[test]
+fn warnings_of_every_value_are_told_once() {
+    let room = Room::new();
+    let few =
+        "method.kind=sgcm method.samples=20 sweep.points=31 cells.x.count=14 cells.y.count=14";
+    let line = format!("sweep sweeps/coulomb_fc.toml --out run --quiet figures.formats=[] {few}");
+    let text = room.solved(&line).text();
+    assert!(text.len() < 3_000, "{} bytes: {text}", text.len());
+    assert!(
+        room.table("run/points.csv")
+            .column("warnings")
+            .iter()
+            .any(|one| !one.is_empty())
+    );
+}
+
+#[test]
 fn an_ensemble_sweeps_too() {
     let ensemble = "method.estimator=ensemble method.trajectories=20000 method.time_step=0.1 method.burn_in=500";
     let found = points(

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::function::Function;
-use super::spelling::is_superscript_digit;
+use super::spelling::{foreign_letter, is_invisible, is_superscript_digit};
 use crate::formula::limits;
 
 /// A fault of a formula and its place in the text.
@@ -150,11 +150,6 @@ fn in_words(character: char) -> String {
     }
 }
 
-/// Whether a character takes no room, or turns the direction of writing.
-fn is_invisible(character: char) -> bool {
-    matches!(character, '\u{ad}' | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')
-}
-
 impl FormulaError {
     pub(crate) fn new(span: Range<usize>, fault: Fault) -> Self {
         Self { span, fault }
@@ -286,6 +281,9 @@ fn is_no_number(name: &str) -> bool {
 }
 
 fn character_remedy(character: char) -> Option<String> {
+    if let Some((words, remedy)) = foreign_letter(&character.to_string()) {
+        return Some(format!("{words}: {remedy}"));
+    }
     let words = match character {
         '=' => "write `==` to compare; an equation's left side is its key",
         '|' => "write abs(x) for |x|",

@@ -16,5 +16,7 @@ pub(crate) use spelling::{canonical_name, typeset_name};
 
 pub(crate) use grammar::parse;
 pub(crate) use spelling::check_name;
+#[cfg(feature = "store")]
+pub(crate) use spelling::{ascii_spelling, foreign_letter, is_invisible, lookalike};
 pub(crate) use suggest::{Known, nearest};
 pub(crate) use syntax::{Operator, Syntax, SyntaxKind};

@@ -73,6 +73,46 @@ pub(crate) fn is_superscript_digit(character: char) -> Option<i32> {
     Some(digit as i32)
 }
 
+/// How a letter or digit that is not ASCII is spelt, where pbif's names spell it: Greek letters in either case, the
+/// micro sign, raised and lowered digits.
+#[cfg(feature = "store")]
+pub(crate) fn ascii_spelling(character: char) -> Option<&'static str> {
+    const DIGITS: [&str; 10] = ["0", "1", "2", "3", "4", "5", "6", "7", "8", "9"];
+    let digit = |of: &[char]| of.iter().position(|&known| known == character);
+    let digit = digit(&SUBSCRIPTS).or_else(|| digit(&SUPERSCRIPTS));
+    digit
+        .and_then(|digit| DIGITS.get(digit).copied())
+        .or_else(|| {
+            let lower = character.to_lowercase().next()?;
+            greek_name(lower)
+        })
+}
+
+/// The letter of the keyboard that a letter of another alphabet looks like.
+pub(crate) fn lookalike(character: char) -> Option<char> {
+    const CYRILLIC: &str = "аеорсухіѕјԁһӏАВЕКМНОРСТХІЅЈ";
+    const LATIN: &str = "aeopcyxisjdhlABEKMHOPCTXISJ";
+    let place = CYRILLIC.chars().position(|known| known == character)?;
+    LATIN.chars().nth(place)
+}
+
+/// The first letter of another alphabet that looks like one of the keyboard, in words, and what to write.
+pub(crate) fn foreign_letter(text: &str) -> Option<(String, String)> {
+    let (found, letter) = text.chars().find_map(|c| Some((c, lookalike(c)?)))?;
+    let code = found as u32;
+    Some((
+        format!(
+            "`{found}` (U+{code:04X}) looks like `{letter}`, and is a letter of another alphabet"
+        ),
+        format!("write the `{letter}` of the keyboard"),
+    ))
+}
+
+/// Whether a character takes no room, or turns the direction of writing.
+pub(crate) fn is_invisible(character: char) -> bool {
+    matches!(character, '\u{ad}' | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')
+}
+
 /// Whether a name may begin with this character.
 pub(crate) fn begins_name(character: char) -> bool {
     character.is_ascii_alphabetic() || greek_name(character).is_some()
@@ -160,6 +200,23 @@ mod tests {
         ] {
             assert_eq!(canonical_name(spelling), name);
         }
+    }
+
+    #[cfg(feature = "store")]
+    #[test]
+    fn raised_and_lowered_digits_are_digits_and_letters_that_look_alike_are_told() {
+        let spelt: String = "⁰¹²³⁴⁹₀₁₉".chars().filter_map(ascii_spelling).collect();
+        assert_eq!(spelt, "012349019");
+        assert_eq!(
+            (ascii_spelling('a'), ascii_spelling('Α')),
+            (None, Some("alpha"))
+        );
+        let (words, remedy) = foreign_letter("\u{430}lph\u{430}").unwrap();
+        assert!(
+            words.contains("U+0430") && remedy.contains("`a`"),
+            "{words} {remedy}"
+        );
+        assert_eq!(foreign_letter("alphaα"), None);
     }
 
     #[test]

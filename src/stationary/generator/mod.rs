@@ -139,12 +139,24 @@ pub enum RateError {
     #[error("the initial guess has no positive finite sum")]
     Guess,
     /// Not even the smallest factorisation fits.
-    #[error("factors need {needed} bytes, more than the {limit} that are allowed")]
+    #[error(
+        "factors need {:.1} GB, more than the {:.1} GB that are allowed",
+        *.needed as f64 / 1e9, *.limit as f64 / 1e9
+    )]
     Memory {
         /// Bytes of the smallest factorisation.
         needed: u64,
         /// The limit in the options.
         limit: u64,
+    },
+    /// The system gives less memory than a factorisation needs.
+    #[error(
+        "factors need {:.2} GB of memory, and the system gives this process less (`ulimit -v`, or the limit of a batch job)",
+        *.needed as f64 / 1e9
+    )]
+    NoRoom {
+        /// Bytes of the factorisation at its peak.
+        needed: u64,
     },
     /// The factorisation at hand did not solve for the sensitivity within the iterations allowed.
     #[error("the sensitivity did not converge")]

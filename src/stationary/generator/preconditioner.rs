@@ -9,7 +9,7 @@ use super::dissection::Grid;
 use super::modewise::{Layout, ModeFactors, others};
 use super::narrowing::narrow;
 use super::prediction::{Prediction, predict};
-use crate::cancellation::{Cancellation, Cancelled};
+use crate::cancellation::Cancellation;
 use crate::space::CellSpace;
 use whole::WholeFactors;
 
@@ -23,6 +23,25 @@ pub(super) const LARGE: u64 = 16 << 20;
 /// How many times the work of factors mode by mode those of all modes together may take: these need fewer iterations,
 /// and warm starts last longer with them. It is about four for two modes, and rises with the square of their number.
 const MUCH_MORE: f64 = 4.0;
+
+/// Copies of a matrix that are made on the way to its factors: scaled, in the order of elimination, by fronts.
+const COPIES: u64 = 4;
+
+/// Bytes of copies of a matrix.
+fn copies(matrix: &CsMat<f64>) -> u64 {
+    COPIES * matrix.nnz() as u64 * (size_of::<f64>() + size_of::<usize>()) as u64
+}
+
+/// Asks the system for so many bytes and gives them back. A limit of the process (`ulimit -v`) shows here; in the
+/// middle of a factorisation it would end the program.
+fn check_room(needed: u64) -> Result<(), RateError> {
+    // Nothing is written to it: only room among the addresses is asked for.
+    let mut room = Vec::<u8>::new();
+    match usize::try_from(needed).map(|bytes| room.try_reserve_exact(bytes)) {
+        Ok(Ok(())) => Ok(()),
+        _ => Err(RateError::NoRoom { needed }),
+    }
+}
 
 /// The factorisation that solves or preconditions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -239,7 +258,7 @@ impl Preconditioner {
     /// hold another cell than the one asked for.
     ///
     /// # Errors
-    /// [`Cancelled`].
+    /// [`RateError::NoRoom`], [`RateError::Cancelled`].
     pub(super) fn new(
         space: &CellSpace,
         structure: &Structure,
@@ -248,7 +267,11 @@ impl Preconditioner {
         held: usize,
         old: Option<Self>,
         cancellation: &Cancellation,
-    ) -> Result<Self, Cancelled> {
+    ) -> Result<Self, RateError> {
+        if old.is_none() {
+            let plan = estimate_of(space, structure, u64::MAX, Some(method))?;
+            check_room(plan.peak_bytes + copies(matrix))?;
+        }
         if method == RateMethod::Modewise
             && let Some(grid) = grid_of_places(space, structure)
             && let Some(layout) = Layout::new(space, grid)

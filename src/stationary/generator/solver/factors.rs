@@ -3,7 +3,6 @@
 use sprs::CsMat;
 
 use super::{DirectSolver, shape};
-use crate::cancellation::Cancelled;
 use crate::stationary::generator::preconditioner::{
     Estimate, Preconditioner, Structure, estimate_of,
 };
@@ -114,20 +113,22 @@ impl DirectSolver {
     /// Factorises a matrix with a cell held; gives the cell that is.
     ///
     /// # Errors
-    /// [`Cancelled`].
+    /// [`RateError::NoRoom`], [`RateError::Cancelled`].
     pub(super) fn factorise(
         &mut self,
         matrix: &CsMat<f64>,
         held: usize,
         plan: &Estimate,
-    ) -> Result<usize, Cancelled> {
+    ) -> Result<usize, RateError> {
         let unplanned = Structure::default();
         let structure = self
             .plan
             .as_ref()
             .map_or(&unplanned, |(structure, _)| structure);
-        let old = self.preconditioner.take();
         let (space, method, cancellation) = (&self.space, plan.method, &self.cancellation);
+        // The memory of factors of another kind is given back before more is asked for.
+        let last = self.factorised.as_ref().map(|(_, method)| *method);
+        let old = self.preconditioner.take().filter(|_| last == Some(method));
         let new = Preconditioner::new(space, structure, method, matrix, held, old, cancellation)?;
         self.factorised = Some((structure.reach.clone(), method));
         let held = new.held;

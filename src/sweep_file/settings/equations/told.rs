@@ -1,7 +1,8 @@
 //! What is wrong with the equations of a file, shown where it stands: the model says what, and here is found where.
 
 use super::{KIND, coloured_remedy};
-use crate::formula::scope::SymbolError;
+use crate::formula::language::foreign_letter;
+use crate::formula::scope::{Role, SymbolError};
 use crate::sweep_file::diagnostic::{Diagnostic, Place};
 use crate::sweep_file::document::Document;
 use crate::sweep_file::draft::EquationsDraft;
@@ -82,8 +83,16 @@ pub(super) fn diagnostic(
             }
         }
         TypedModelError::Name(error) => {
-            let place = name_entry(reader, error).map(|entry| entry.key_place.clone());
-            plain("this name", place).remedy("give it another name")
+            let diagnostic = plain("this name", name_place(reader, error));
+            match error {
+                SymbolError::Malformed { name } => match foreign_letter(name) {
+                    Some((words, remedy)) => diagnostic.remedy(format!("{words}: {remedy}")),
+                    None => diagnostic.remedy("give it another name"),
+                },
+                SymbolError::TooMany { .. } | SymbolError::LongDefinitions => plain("these", name_place(reader, error))
+                    .remedy("write some of them out in the formulas that use them, or leave out what none uses"),
+                _ => diagnostic.remedy("give it another name"),
+            }
         }
         TypedModelError::Doubled { place } => plain("a second time", value(place)),
         TypedModelError::Interpretation { axis } => {
@@ -164,16 +173,31 @@ pub(in crate::sweep_file) fn value_place(
     Some(node.place.clone())
 }
 
-/// The key that a name that is refused was given by: the last of those that have it.
-fn name_entry<'d>(reader: &Reader<'d>, error: &SymbolError) -> Option<&'d Entry> {
-    let (SymbolError::Malformed { name }
-    | SymbolError::Reserved { name, .. }
-    | SymbolError::Taken { name, .. }) = error
-    else {
-        return None;
+/// Where a name that is refused was given, the last of its places; the table of those that are too many.
+fn name_place(reader: &Reader<'_>, error: &SymbolError) -> Option<Place> {
+    let is_meant = |entry: &&Entry| match error {
+        SymbolError::Malformed { name }
+        | SymbolError::Reserved { name, .. }
+        | SymbolError::Taken { name, .. } => entry.key == *name,
+        SymbolError::Long { length } => entry.key.chars().count() == *length,
+        SymbolError::TooMany { .. } | SymbolError::LongDefinitions => false,
     };
-    let tables = ["define", "parameters", "equations"];
-    tables
-        .iter()
-        .find_map(|table| reader.entry(&["system", table, name]))
+    let table = match error {
+        SymbolError::TooMany {
+            role: Role::State, ..
+        } => "equations",
+        SymbolError::TooMany {
+            role: Role::Parameter,
+            ..
+        } => "parameters",
+        SymbolError::TooMany { .. } | SymbolError::LongDefinitions => "define",
+        _ => {
+            let tables = ["define", "parameters", "equations"].into_iter();
+            let mut entries = tables.filter_map(|table| reader.entry(&["system", table]));
+            let key = entries.find_map(|table| table.node.entries().iter().find(is_meant));
+            let swept = || reader.place(&["sweep", "parameter"]).cloned();
+            return key.map(|entry| entry.key_place.clone()).or_else(swept);
+        }
+    };
+    table_place(reader, table)
 }

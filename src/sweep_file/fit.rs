@@ -1,0 +1,99 @@
+//! Whether a sweep fits into the memory of the machine, and into what the system gives this process.
+
+use super::diagnostic::Diagnostic;
+use super::memory::{bytes_in_words, machine_memory};
+use super::names::list;
+use super::report::Report;
+use super::settings::{AxisSettings, Modes, Settings};
+use super::sweep::Sweep;
+use crate::stationary::generator::RateError;
+
+/// Room that is tried for, in units of what a point takes: finer cells check what is located.
+const TRIED: f64 = 3.0;
+/// Bytes of half a machine whose memory is not known.
+const SMALL_MACHINE: f64 = 2e9;
+/// Bytes beside it: what is read and drawn.
+const BESIDE: f64 = 1e8;
+/// Bytes that each thread takes: room for products of matrices (64 MiB), a heap of its own (as much), its stack.
+const A_THREAD: f64 = 1.5e8;
+
+impl Settings {
+    /// Unknowns along each axis as the method has it; a few modes where their number is left to the program.
+    fn unknowns(&self) -> Vec<usize> {
+        let axes = self.axes.iter();
+        axes.map(|axis| match axis.modes_by(self.method.kind) {
+            Some(Modes::Number(count)) => count,
+            Some(Modes::Auto) => 4,
+            None => axis.count.unwrap_or(1),
+        })
+        .collect()
+    }
+
+    /// Refuses what the system would not give: a limit of the process (`ulimit -v`) shows when memory is asked for, and
+    /// in the middle of a solve it ends the program.
+    fn check_given(&self, bytes: f64) -> Result<(), Report> {
+        // What is more than the machine has is told elsewhere, and may be a bound that is never reached.
+        let most = machine_memory().map_or(SMALL_MACHINE, |memory| 0.5 * memory);
+        let beside = BESIDE + A_THREAD * rayon::current_num_threads() as f64;
+        let bytes = (TRIED * bytes + beside).min(most);
+        // Nothing is written to it: only room among the addresses is asked for.
+        let mut room = Vec::<u8>::new();
+        if room.try_reserve_exact(bytes as usize).is_ok() {
+            return Ok(());
+        }
+        let title = format!(
+            "a sweep may take {} of memory, and the system gives this process less",
+            bytes_in_words(bytes)
+        );
+        let remedy = "use fewer cells or `--threads`, or a higher limit (`ulimit -v`, or that of the batch job)";
+        Err(self.refuse_cells(Diagnostic::new(title).remedy(remedy)))
+    }
+
+    /// Refuses cells whose least need exceeds the machine's memory; runs before anything is laid out.
+    pub(super) fn check_memory(&self) -> Result<(), Report> {
+        let is_open =
+            |axis: &AxisSettings| axis.count.is_none() && axis.modes_by(self.method.kind).is_none();
+        if self.axes.iter().any(is_open) {
+            return Ok(());
+        }
+        let unknowns = self.unknowns();
+        let n_cells: f64 = unknowns.iter().map(|&count| count as f64).product();
+        let least = self.method.chosen().least_bytes(n_cells, self.axes.len());
+        let Some(memory) = machine_memory().filter(|&memory| least > memory) else {
+            return Ok(());
+        };
+        let counts: Vec<String> = unknowns.iter().map(usize::to_string).collect();
+        let title = format!(
+            "{} cells need at least {} of memory; this machine has {}",
+            counts.join(" × "),
+            bytes_in_words(least),
+            bytes_in_words(memory)
+        );
+        let axes =
+            (0..self.axes.len()).map(|axis| format!("cells.{}.count", self.family.axis(axis)));
+        let keys: Vec<String> = axes.collect();
+        let diagnostic = Diagnostic::new(title).remedy(format!("lower one of {}", list(&keys)));
+        Err(self.refuse_cells(diagnostic))
+    }
+
+    /// Refuses cells whose factors exceed the memory that they may take, or that the system gives this process.
+    pub(super) fn check_factors(&self, sweep: &Sweep) -> Result<(), Report> {
+        let error = match self.method.chosen().cost(sweep.problem.space()) {
+            Ok(cost) => return self.check_given(cost.most_bytes()),
+            Err(error) => error,
+        };
+        let memory = machine_memory();
+        let has = memory.map(|memory| format!("; this machine has {}", bytes_in_words(memory)));
+        // A limit beyond the machine's memory would only let it swap.
+        let fits = match (&error, memory) {
+            (RateError::Memory { needed, .. }, Some(memory)) => *needed as f64 <= memory,
+            _ => true,
+        };
+        let mut remedy = "use fewer cells".to_owned();
+        if fits {
+            remedy += ", or raise `method.memory_limit` (gigabytes)";
+        }
+        remedy += &has.unwrap_or_default();
+        Err(self.refuse_cells(Diagnostic::new(error.to_string()).remedy(remedy)))
+    }
+}
