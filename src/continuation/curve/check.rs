@@ -7,7 +7,6 @@
 use super::reading::{Missing, Reader};
 use super::walked::{Node, Walked};
 use super::{CurvePoint, CurveWork, Task};
-use crate::continuation::doubt::Evidence;
 use crate::continuation::grid::share_of_distance;
 use crate::continuation::locate::QUIET;
 use crate::continuation::{CheckedBy, DensitySource, Doubt, ErrorParts, SourceError, Want};
@@ -191,20 +190,8 @@ impl Checks<'_> {
             Doubt::CheckMissing
         };
         let is_unchecked = check.grid.is_none() && depends_on_cells;
-        let evidence = Evidence {
-            check: check.doubt.clone(),
-            densities: reading.against(depends_on_cells),
-            unchecked: is_unchecked.then_some(unchecked),
-            cell_check: self.0.source.subject().cell_check,
-            refined: 1,
-            is_diffused: reading.is_diffused,
-            parts,
-            width: 0.0,
-            tolerance: self.0.options.tolerance,
-            density: &reading.density,
-            is_noisy: indicator.sampling_error > 0.0,
-            wider: None,
-        };
+        let known = (check.doubt.clone(), is_unchecked.then_some(unchecked));
+        let against = reading.against(depends_on_cells);
         CurvePoint {
             values: self.0.plane.values(foot),
             error,
@@ -216,7 +203,7 @@ impl Checks<'_> {
             arclength: node.arclength,
             tangent: [0, 1].map(|k| node.tangent[k] * sides[k].length()),
             checked: check.is_own,
-            doubts: evidence.doubts(),
+            doubts: reading.doubts(&self.0, known, against, parts),
         }
     }
 }

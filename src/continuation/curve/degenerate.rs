@@ -11,7 +11,6 @@ use super::found::DegeneratePoint;
 use super::reading::{Reader, Reading};
 use super::walked::{Node, Walked, apart, within};
 use super::{CodimensionTwoKind, CurvePoint, CurveStart, CurveWork, EndReason, Task};
-use crate::continuation::doubt::Evidence;
 use crate::continuation::grid::share_of_distance;
 use crate::continuation::locate::QUIET;
 use crate::continuation::{CheckedBy, DensitySource, Doubt, ErrorParts, SourceError, Want};
@@ -210,20 +209,7 @@ impl Seeker<'_> {
             Err(doubt @ (Doubt::GridCheckOff | Doubt::CheckMissing)) => (None, Some(doubt)),
             Err(doubt) => (Some(doubt), None),
         };
-        let evidence = Evidence {
-            check,
-            densities: coarse.companion_reading.against(true),
-            unchecked,
-            cell_check: self.0.source.subject().cell_check,
-            refined: 1,
-            is_diffused: reading.is_diffused,
-            parts,
-            width: 0.0,
-            tolerance: self.0.options.tolerance,
-            density: &reading.density,
-            is_noisy: reading.indicator.sampling_error > 0.0,
-            wider: None,
-        };
+        let against = coarse.companion_reading.against(true);
         let point = CurvePoint {
             values: self.0.plane.values(at),
             error,
@@ -235,7 +221,7 @@ impl Seeker<'_> {
             arclength: from.arclength + apart(coarse.at, from.foot),
             tangent: [0, 1].map(|k| tangent[k] * sides[k].length()),
             checked,
-            doubts: evidence.doubts(),
+            doubts: reading.doubts(&self.0, (check, unchecked), against, parts),
         };
         Some((point, coarse))
     }

@@ -4,10 +4,13 @@
 //! the density moved a little along dp/dθ, and of what the equations imply at its kinks: exact to the digits of dp/dθ.
 //! Elsewhere two more solves beside the place give it by differences.
 
-use super::{CurveStart, CurveWork, Plane, companion};
+use super::{CurveStart, CurveWork, Plane, Task, companion};
 use crate::cancellation::Cancellation;
+use crate::continuation::doubt::Evidence;
 use crate::continuation::measure::NUMERICAL_DIFFUSION;
-use crate::continuation::{DensitySource, Doubt, PointStatus, Sensitivity, Session, SourceError};
+use crate::continuation::{
+    DensitySource, Doubt, ErrorParts, PointStatus, Sensitivity, Session, SourceError,
+};
 use crate::density::{Density, EstimatedDensity};
 use crate::topology::{Detector, Indicator, IndicatorKind};
 
@@ -71,6 +74,32 @@ impl Reading {
             .chain(negative)
             .chain(self.blurs.iter().cloned())
             .collect()
+    }
+
+    /// The doubts about a point of a curve that is read here, by what a check says against it, why none was made, and
+    /// what speaks against the densities.
+    pub(super) fn doubts(
+        &self,
+        task: &Task<'_>,
+        (check, unchecked): (Option<Doubt>, Option<Doubt>),
+        densities: Vec<Doubt>,
+        parts: ErrorParts,
+    ) -> Vec<Doubt> {
+        let evidence = Evidence {
+            check,
+            densities,
+            unchecked,
+            cell_check: task.source.subject().cell_check,
+            refined: 1,
+            is_diffused: self.is_diffused,
+            parts,
+            width: 0.0,
+            tolerance: task.options.tolerance,
+            density: &self.density,
+            is_noisy: self.indicator.sampling_error > 0.0,
+            wider: None,
+        };
+        evidence.doubts()
     }
 
     /// How far uphill the curve is, by the gradient.

@@ -17,6 +17,19 @@ use crate::topology::reconstruction::Line;
 /// Distance from the kink at which its sides are told apart, as a share of the range.
 const ASIDE: f64 = 1e-9;
 
+impl IndicatorKind {
+    /// Slope of a marginal on one side of a kink, away from it, `above` where that is the side of larger coordinates;
+    /// positive when the kink is an extremum, of the two the valley if `is_valley`, and another one lies on that side.
+    pub(crate) const fn beside_kink(above: bool, is_valley: bool) -> Self {
+        Self(&SLOPES[above as usize][is_valley as usize])
+    }
+
+    /// A test function: curvature of the logarithm of a marginal on one side of a kink.
+    pub(super) const fn curvature_beside_kink(above: bool) -> Self {
+        Self(&CURVATURES[above as usize])
+    }
+}
+
 /// Defines what the slope on one side of a kink is, that of a peak or that of a valley.
 macro_rules! slope {
     ($code:literal, $above:literal, $is_valley:literal) => {
@@ -41,7 +54,7 @@ macro_rules! slope {
 }
 
 /// The slopes below a kink, of a peak and of a valley, and those above it.
-pub(super) static SLOPES: [[Traits; 2]; 2] = [
+static SLOPES: [[Traits; 2]; 2] = [
     [
         slope!("slope below the kink of a peak", false, false),
         slope!("slope below the kink of a valley", false, true),
@@ -61,7 +74,7 @@ fn birth_or_loss(step: &Step) -> Option<&'static str> {
 }
 
 /// The curvatures below a kink and above it, test functions.
-pub(super) static CURVATURES: [Traits; 2] = [
+static CURVATURES: [Traits; 2] = [
     Traits {
         is_bifurcation: false,
         side_of_kink: Some(false),
@@ -87,7 +100,12 @@ fn beside_kink(
     is_valley: bool,
 ) -> Option<Indicator> {
     if let Some(profile) = &estimated.structure.profile {
-        return exact::beside_kink(profile, near, above, is_valley);
+        return exact::beside_kink(
+            profile,
+            near,
+            (above, is_valley),
+            IndicatorKind::beside_kink(above, is_valley),
+        );
     }
     let at = nearest(estimated, near)?;
     let field = Field::new(estimated).filter(|_| !estimated.is_noisy())?;

@@ -12,8 +12,20 @@ use crate::density::{EstimatedDensity, Kink, Variants};
 use crate::space::Axis;
 use crate::topology::reconstruction::Line;
 
-/// p''/p of a marginal.
-pub(super) const CURVATURE: Traits = Traits {
+impl IndicatorKind {
+    /// p''/p of a marginal at its centre of symmetry.
+    pub const CURVATURE: Self = Self(&CURVATURE);
+    /// Slope of log p on the upper side of a kink at the centre of symmetry; in a symmetric density half its jump.
+    pub const KINK_SLOPE: Self = Self(&KINK_SLOPE);
+    /// Curvature of a joint density along a kink through the centre of symmetry.
+    pub const CURVATURE_ALONG_KINK: Self = Self(&ALONG_KINK);
+    /// The lower of the two principal curvatures of a joint density at its centre, axes scaled to their ranges.
+    pub const LOWER_CURVATURE: Self = Self(&LOWER);
+    /// The upper one.
+    pub const UPPER_CURVATURE: Self = Self(&UPPER);
+}
+
+const CURVATURE: Traits = Traits {
     title: "$p$″ / $p$",
     words: |step| Some(step.of_centre()),
     companions: |_| vec![IndicatorKind::QUARTIC],
@@ -23,8 +35,7 @@ pub(super) const CURVATURE: Traits = Traits {
     })
 };
 
-/// The lower principal curvature of a joint density.
-pub(super) const LOWER: Traits = Traits {
+const LOWER: Traits = Traits {
     title: "lower curvature",
     companions: |_| vec![IndicatorKind::QUARTIC],
     is_at_centre: true,
@@ -33,8 +44,7 @@ pub(super) const LOWER: Traits = Traits {
     })
 };
 
-/// The upper one.
-pub(super) const UPPER: Traits = Traits {
+const UPPER: Traits = Traits {
     code: "upper curvature at the centre",
     name: "upper curvature at the centre",
     title: "upper curvature",
@@ -42,8 +52,7 @@ pub(super) const UPPER: Traits = Traits {
     ..LOWER
 };
 
-/// The slope on the upper side of a kink.
-pub(super) const KINK_SLOPE: Traits = Traits {
+const KINK_SLOPE: Traits = Traits {
     title: "$p$′ / $p$",
     words: |step| {
         let words = if step.rises {
@@ -66,8 +75,7 @@ pub(super) const KINK_SLOPE: Traits = Traits {
     })
 };
 
-/// The curvature of a joint density along a kink.
-pub(super) const ALONG_KINK: Traits = Traits {
+const ALONG_KINK: Traits = Traits {
     companions: |_| vec![IndicatorKind::KINK_SLOPE],
     is_at_centre: true,
     ..Traits::new("curvature along the kink", |density, _| {
@@ -137,7 +145,9 @@ fn kink_at(estimated: &EstimatedDensity, k: usize, at: f64) -> Option<&Kink> {
 /// p''/p of a marginal.
 fn curvature(estimated: &EstimatedDensity, at: f64) -> Option<Indicator> {
     let profile = estimated.structure.profile.as_ref();
-    if let Some(found) = profile.and_then(|profile| exact::curvature(profile, at)) {
+    if let Some(found) =
+        profile.and_then(|profile| exact::curvature(profile, at, IndicatorKind::CURVATURE))
+    {
         return Some(found);
     }
     if is_sampled(estimated) {

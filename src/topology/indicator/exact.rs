@@ -15,27 +15,27 @@ pub struct Flank {
 }
 
 /// The slope at its extremum of the given kind nearest to a place; none at a jump, where the slope beside it tells.
-pub(super) fn shoulder(profile: &Profile, near: f64, rising: bool) -> Option<Indicator> {
+pub(super) fn shoulder(
+    profile: &Profile,
+    near: f64,
+    rising: bool,
+    kind: IndicatorKind,
+) -> Option<Indicator> {
     let distance = |place: f64| (place - near).abs();
     let is_jump = |place: f64| profile.jumps.iter().any(|jump| jump.place == place);
     let turns = profile.turns.iter();
     let alike = turns.filter(|one| one.is_largest == rising && !is_jump(one.place));
     let turn = alike.min_by(|a, b| distance(a.place).total_cmp(&distance(b.place)))?;
     let value = if rising { turn.slope } else { -turn.slope };
-    Indicator::known(
-        IndicatorKind::shoulder(rising),
-        turn.place,
-        value,
-        turn.error,
-    )
+    Indicator::known(kind, turn.place, value, turn.error)
 }
 
 /// The slope on one side of the jump nearest to a place.
 pub(super) fn beside_kink(
     profile: &Profile,
     near: f64,
-    above: bool,
-    is_valley: bool,
+    (above, is_valley): (bool, bool),
+    kind: IndicatorKind,
 ) -> Option<Indicator> {
     let distance = |place: f64| (place - near).abs();
     let jumps = profile.jumps.iter();
@@ -43,7 +43,7 @@ pub(super) fn beside_kink(
     // Uphill is away from a valley.
     let sign = if above == is_valley { 1.0 } else { -1.0 };
     Indicator::known(
-        IndicatorKind::beside_kink(above, is_valley),
+        kind,
         jump.place,
         sign * jump.slopes[usize::from(above)],
         jump.error,
@@ -51,9 +51,9 @@ pub(super) fn beside_kink(
 }
 
 /// The curvature at the centre of symmetry.
-pub(super) fn curvature(profile: &Profile, centre: f64) -> Option<Indicator> {
+pub(super) fn curvature(profile: &Profile, centre: f64, kind: IndicatorKind) -> Option<Indicator> {
     let (value, error) = profile.curvature?;
-    Indicator::known(IndicatorKind::CURVATURE, centre, value, error)
+    Indicator::known(kind, centre, value, error)
 }
 
 /// All extrema of the slope.

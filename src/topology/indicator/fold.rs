@@ -25,8 +25,13 @@ const FARTHEST: f64 = 25.0;
 /// A step that is a smaller share of a cell ends the search.
 const SETTLED: f64 = 1e-7;
 
-/// The slope at the shoulder.
-pub(super) const FOLD: Traits = Traits {
+impl IndicatorKind {
+    /// Slope along a ridge or trench of a joint density where it is nearest to level, positive when a peak and a saddle
+    /// (a saddle and a crater) are there.
+    pub const FOLD: Self = Self(&FOLD);
+}
+
+const FOLD: Traits = Traits {
     words: |step| {
         let words = if step.peaks() == Ordering::Greater {
             "peak and saddle are born"

@@ -6,6 +6,9 @@ use super::Indicator;
 use crate::density::EstimatedDensity;
 use crate::topology::Signature;
 
+/// Reads an indicator off a density, nearest to a place, one coordinate an axis; `None` where there is none.
+pub(super) type Read = fn(&EstimatedDensity, &[f64]) -> Option<Indicator>;
+
 /// What an indicator is.
 pub(crate) struct Traits {
     /// Words that no other indicator has, for files that are read again.
@@ -14,8 +17,8 @@ pub(crate) struct Traits {
     pub(super) name: &'static str,
     /// The title of its panel in figures.
     pub(crate) title: &'static str,
-    /// Reads it off a density, nearest to a place, one coordinate an axis; `None` where there is none.
-    pub(crate) read: fn(&EstimatedDensity, &[f64]) -> Option<Indicator>,
+    /// How it is read.
+    pub(crate) read: Read,
     /// What happens where it passes zero; `None` where the counts alone tell.
     pub(super) words: fn(&Step) -> Option<&'static str>,
     /// Those that may vanish on its curve in a density with so many axes: what it leads to differs from there on.
@@ -39,10 +42,7 @@ pub(crate) struct Traits {
 
 impl Traits {
     /// Those of an indicator without further meaning that is called and read so.
-    pub(super) const fn new(
-        code: &'static str,
-        read: fn(&EstimatedDensity, &[f64]) -> Option<Indicator>,
-    ) -> Self {
+    pub(super) const fn new(code: &'static str, read: Read) -> Self {
         Self {
             code,
             name: code,

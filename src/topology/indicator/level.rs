@@ -10,7 +10,7 @@
 //! is nowhere in particular. With log p = c (H - H₀)² third derivatives vanish at the state of rest, and fourth ones do
 //! not: there it is.
 
-use super::kind::Traits;
+use super::kind::{Read, Traits};
 use super::{Indicator, IndicatorKind};
 use crate::density::EstimatedDensity;
 use crate::topology::field::{Field, Jet};
@@ -22,23 +22,34 @@ const FARTHEST: f64 = 2.0;
 /// Half the distance over which fourth derivatives are taken, in cells.
 const ASIDE: f64 = 0.5;
 
+impl IndicatorKind {
+    /// Curvature of a joint density along one axis at a place that turns from a peak to the bottom within a ring, or at
+    /// the saddle between two rings: positive when the ring is there. Both principal curvatures pass zero there
+    /// together.
+    pub const fn level(along_second: bool) -> Self {
+        Self(&BOTH[along_second as usize])
+    }
+}
+
 /// The curvature along the first axis at such a place, and along the second.
-pub(super) static BOTH: [Traits; 2] = [
-    Traits {
-        name: "curvature at a state of rest",
-        ..Traits::new(
-            "curvature along the first axis at a state of rest",
-            |density, near| level(density, near, false),
-        )
-    },
-    Traits {
-        name: "curvature at a state of rest",
-        ..Traits::new(
-            "curvature along the second axis at a state of rest",
-            |density, near| level(density, near, true),
-        )
-    },
+static BOTH: [Traits; 2] = [
+    along(
+        "curvature along the first axis at a state of rest",
+        |density, near| level(density, near, false),
+    ),
+    along(
+        "curvature along the second axis at a state of rest",
+        |density, near| level(density, near, true),
+    ),
 ];
+
+/// One of them, by its code and how it is read.
+const fn along(code: &'static str, read: Read) -> Traits {
+    Traits {
+        name: "curvature at a state of rest",
+        ..Traits::new(code, read)
+    }
+}
 
 /// The curvature along an axis at the state of rest near a place; `None` for marginals and sampled densities.
 fn level(estimated: &EstimatedDensity, near: &[f64], along_second: bool) -> Option<Indicator> {

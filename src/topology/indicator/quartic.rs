@@ -16,8 +16,13 @@ const ORDERS: usize = 5;
 /// 4 over k.
 const BINOMIAL: [f64; 5] = [1.0, 4.0, 6.0, 4.0, 1.0];
 
-/// p''''/p at the centre, a test function.
-pub(super) const QUARTIC: Traits = Traits {
+impl IndicatorKind {
+    /// A test function: p''''/p at the centre, along the flattest direction of a joint density; negative where peaks
+    /// are born at the centre as it splits, positive where they are born away from it.
+    pub(crate) const QUARTIC: Self = Self(&QUARTIC);
+}
+
+const QUARTIC: Traits = Traits {
     is_bifurcation: false,
     is_at_centre: true,
     ..Traits::new("fourth derivative at the centre", |density, _| {

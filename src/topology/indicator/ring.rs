@@ -22,8 +22,12 @@ const UNSURE: f64 = 0.1;
 /// Most steps of Newton's method.
 const MOST_STEPS: usize = 8;
 
-/// The outward slope between moat and ring.
-pub(super) const RING: Traits = Traits::new("slope to the ring", ring_slope);
+impl IndicatorKind {
+    /// Outward slope of a joint density between a moat and the ring around it, positive when both are there.
+    pub const RING: Self = Self(&RING);
+}
+
+const RING: Traits = Traits::new("slope to the ring", ring_slope);
 
 /// Where the outward slope on a ray is largest.
 struct Shoulder {

@@ -27,8 +27,16 @@ const ASIDE: f64 = 1e-9;
 /// A step that is a smaller share of a cell ends the search.
 const SETTLED: f64 = 1e-6;
 
+impl IndicatorKind {
+    /// Slope at the inflection between a valley and a peak of a marginal, positive when both are there; `rising` where
+    /// the density rises with the coordinate between the two.
+    pub const fn shoulder(rising: bool) -> Self {
+        Self(&BOTH[rising as usize])
+    }
+}
+
 /// The slope at the inflection where the density falls from valley to peak, and where it rises.
-pub(super) static BOTH: [Traits; 2] = [
+static BOTH: [Traits; 2] = [
     Traits {
         rising: Some(false),
         mirror: || Some(IndicatorKind::shoulder(true)),
@@ -66,7 +74,7 @@ pub(super) fn shoulder(estimated: &EstimatedDensity, near: f64, rising: bool) ->
         return None;
     };
     if let Some(profile) = &estimated.structure.profile {
-        return exact::shoulder(profile, near, rising);
+        return exact::shoulder(profile, near, rising, IndicatorKind::shoulder(rising));
     }
     let sign = if rising { 1.0 } else { -1.0 };
     let kind = IndicatorKind::shoulder(rising);

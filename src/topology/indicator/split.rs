@@ -7,7 +7,7 @@
 //! of the distance, so that its zero says little. Without the mirror image a pitchfork breaks into a fold and a point
 //! that stays: the indicator is read only where third derivatives across the line are zero within their own error.
 
-use super::kind::Traits;
+use super::kind::{Read, Traits};
 use super::{Indicator, IndicatorKind};
 use crate::density::EstimatedDensity;
 use crate::topology::Step;
@@ -29,48 +29,57 @@ const MIRRORED: f64 = 2.0;
 /// zero.
 const BESIDE: f64 = 3e-4;
 
+impl IndicatorKind {
+    /// Curvature of a joint density across a line on which it is its own mirror image, at a critical point on that
+    /// line: positive when an extremum is there, a peak if `is_peak`, else a crater, and `is_it`; otherwise when a
+    /// saddle is there, which becomes that extremum.
+    pub const fn split(is_peak: bool, is_it: bool) -> Self {
+        Self(&ALL[is_peak as usize][is_it as usize])
+    }
+}
+
 /// By whether the extremum is a peak, then by whether it is the one that is there when the indicator is positive.
-pub(super) static ALL: [[Traits; 2]; 2] = [
+static ALL: [[Traits; 2]; 2] = [
     [
-        Traits {
-            name: "curvature across a line of symmetry",
-            ..Traits::new(
-                "curvature of a saddle that becomes a crater",
-                |density, near| split(density, near, (false, false)),
-            )
-        },
-        Traits {
-            name: "curvature across a line of symmetry",
-            ..Traits::new(
-                "curvature of a crater that becomes a saddle",
-                |density, near| split(density, near, (false, true)),
-            )
-        },
+        across(
+            "curvature of a saddle that becomes a crater",
+            |density, near| split(density, near, (false, false)),
+        ),
+        across(
+            "curvature of a crater that becomes a saddle",
+            |density, near| split(density, near, (false, true)),
+        ),
     ],
     [
         Traits {
-            name: "curvature across a line of symmetry",
             words: |step| {
                 words(
                     step,
                     ["peaks merge off the centre", "peak splits off the centre"],
                 )
             },
-            ..Traits::new(
+            ..across(
                 "curvature of a saddle that becomes a peak",
                 |density, near| split(density, near, (true, false)),
             )
         },
         Traits {
-            name: "curvature across a line of symmetry",
             words: |step| words(step, ["peak becomes a saddle", "saddle becomes a peak"]),
-            ..Traits::new(
+            ..across(
                 "curvature of a peak that becomes a saddle",
                 |density, near| split(density, near, (true, true)),
             )
         },
     ],
 ];
+
+/// One of them, by its code and how it is read.
+const fn across(code: &'static str, read: Read) -> Traits {
+    Traits {
+        name: "curvature across a line of symmetry",
+        ..Traits::new(code, read)
+    }
+}
 
 /// What happens to peaks: fewer of them, more of them.
 fn words(step: &Step, [fewer, more]: [&'static str; 2]) -> Option<&'static str> {
