@@ -5,7 +5,7 @@ mod place;
 use std::path::{Path, PathBuf};
 
 use super::args::{ExploreArguments, SweepInput};
-use super::progress::Progress;
+use super::progress::Meter;
 use super::stored::{Stored, set};
 use super::{CommandError, Outcome, tell};
 use crate::explore::{ExploreError, LiveServer, StoredPage};
@@ -69,7 +69,7 @@ fn of_plane(stored: &StoredPlane, arguments: &ExploreArguments) -> Result<Outcom
     let sweep = sweep.validate()?.fixed()?;
     let content = stored.content(&sweep.problem)?;
     let (threads, cancellation) = super::interruptible(None)?;
-    let progress = Progress::new(Some(0), arguments.quiet);
+    let progress = Meter::new(Some(0), arguments.quiet);
     // Without a terminal every one would be a line.
     let count = |solved: usize, all: usize| {
         if solved.is_multiple_of(EVERY) || solved == all {

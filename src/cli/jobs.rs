@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::args::Work;
 use super::output::OutputFolder;
-use super::progress::Progress;
+use super::progress::Meter;
 use super::{CommandError, conclude, fault, interruptible, print};
 use crate::cancellation::Cancellation;
 use crate::job::{self, Done, Job, JobError, Outcome, Start};
@@ -75,7 +75,7 @@ pub(super) fn carry_out<J: Printed>(
         let (text, outcome) = job.complete(home)?;
         return conclude(&text, outcome, home);
     }
-    let progress = Progress::new(job.planned(), work.quiet);
+    let progress = Meter::new(job.planned(), work.quiet);
     let done = job::carry_out(job, home, start, cancellation, &|step| progress.show(step));
     progress.finish();
     let kept = || kept(&*job, home);

@@ -10,12 +10,12 @@ use super::terminal::harmless;
 use crate::job;
 
 /// Shows how far a job is.
-pub(super) struct Progress {
+pub(super) struct Meter {
     bar: Option<ProgressBar>,
     quiet: bool,
 }
 
-impl Progress {
+impl Meter {
     /// Of so many solves; where nobody knows how many, there are lines alone.
     pub(super) fn new(planned: Option<usize>, quiet: bool) -> Self {
         let planned = planned.filter(|_| !quiet && std::io::stderr().is_terminal());

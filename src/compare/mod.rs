@@ -168,7 +168,7 @@ impl Comparison {
 
 /// How far a comparison is.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Progress {
+pub struct CompareStep {
     /// Steps that are done.
     pub done: usize,
     /// Steps in all.

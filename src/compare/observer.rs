@@ -1,7 +1,7 @@
 //! Who watches a comparison: told how far it is, and keeper of what is solved, so that one that was ended early can be
 //! gone on with.
 
-use super::{CompareError, Progress, Solved};
+use super::{CompareError, CompareStep, Solved};
 use crate::cancellation::{Cancellation, Cancelled};
 
 /// What a keeper may say instead of keeping.
@@ -10,7 +10,7 @@ type Failure = Box<dyn std::error::Error + Send + Sync>;
 /// Whoever watches a comparison. A closure is told how far it is, and keeps nothing.
 pub trait CompareObserver {
     /// A step is about to begin.
-    fn step(&mut self, progress: &Progress);
+    fn step(&mut self, progress: &CompareStep);
 
     /// What the next solve gave before, in the order in which solves were [kept](CompareObserver::keep); `None` where
     /// it is still to be made.
@@ -31,8 +31,8 @@ pub trait CompareObserver {
     }
 }
 
-impl<F: FnMut(&Progress)> CompareObserver for F {
-    fn step(&mut self, progress: &Progress) {
+impl<F: FnMut(&CompareStep)> CompareObserver for F {
+    fn step(&mut self, progress: &CompareStep) {
         self(progress);
     }
 }
@@ -62,7 +62,7 @@ impl<'a> Steps<'a> {
     /// Tells of the next step, unless it is to be the last.
     pub(super) fn next(&mut self, next: String) -> Result<(), CompareError> {
         let (done, total) = (self.done, self.total);
-        self.observer.step(&Progress { done, total, next });
+        self.observer.step(&CompareStep { done, total, next });
         self.done += 1;
         self.cancellation
             .check()

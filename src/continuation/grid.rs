@@ -262,7 +262,7 @@ fn changes_sign(
 mod tests {
     use super::*;
     use crate::continuation::{ErrorParts, Subject};
-    use crate::system::examples::bistable;
+    use crate::system::test_families::bistable;
 
     /// What the check says of a function whose zero the coarser grid saw at 0.5 with a slope, and the values asked for.
     fn checked_by(

@@ -4,7 +4,7 @@ use super::*;
 use crate::cancellation::Cancellation;
 use crate::density::{Density, EstimatedDensity, Observable};
 use crate::space::Axis;
-use crate::system::examples::bistable;
+use crate::system::test_families::bistable;
 use crate::topology::{Detection, Detector, Feature, FeatureKind, Signature, Verdict};
 
 /// A source that hands the parameter to the detector, and fails where asked.

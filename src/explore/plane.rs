@@ -52,12 +52,12 @@ struct Regions {
     size: [usize; 2],
     /// The kind of every pixel, a byte each, in base64; rows from the lower end of the second parameter upward.
     pixels: String,
-    places: Vec<Place>,
+    places: Vec<Anchor>,
 }
 
 /// Where there is room for the words of a region.
 #[derive(Debug, Serialize)]
-struct Place {
+struct Anchor {
     kind: usize,
     /// In the box with sides of length one.
     at: [f64; 2],
@@ -186,7 +186,7 @@ impl PlaneScene {
             region.map_or(0, |one| one.kind.min(255) as u8)
         };
         let pixels: Vec<u8> = found.pixels.iter().map(kind).collect();
-        let place = |region: &FloodedRegion| Place {
+        let place = |region: &FloodedRegion| Anchor {
             kind: region.kind,
             at: region.inside,
             share: region.share,

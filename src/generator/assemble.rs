@@ -164,8 +164,8 @@ fn line_start(
 mod tests {
     use super::*;
     use crate::space::{Axis, Grading};
-    use crate::system::examples::OneState;
     use crate::system::registry;
+    use crate::system::test_families::OneState;
 
     fn dahl() -> std::sync::Arc<dyn System> {
         let values = [

@@ -81,11 +81,11 @@ pub(super) fn columns(
 }
 
 /// Positions of a cell along all axes.
-type Place = [usize; MAX_DIMENSION];
+type Coordinates = [usize; MAX_DIMENSION];
 
 impl Columns<'_> {
     /// The place of a cell.
-    fn place(&self, cell: usize) -> Place {
+    fn place(&self, cell: usize) -> Coordinates {
         let mut place = [0; MAX_DIMENSION];
         for ((position, geometry), stride) in place.iter_mut().zip(self.axes).zip(self.strides) {
             *position = cell / stride % geometry.count();
@@ -94,7 +94,7 @@ impl Columns<'_> {
     }
 
     /// Goes on to the next cell, without the divisions of [`Columns::place`].
-    fn step(&self, place: &mut Place) {
+    fn step(&self, place: &mut Coordinates) {
         for (position, geometry) in place.iter_mut().zip(self.axes).rev() {
             *position += 1;
             if *position < geometry.count() {
@@ -105,7 +105,7 @@ impl Columns<'_> {
     }
 
     /// Number of entries of a column.
-    fn entries(&self, place: &Place) -> usize {
+    fn entries(&self, place: &Coordinates) -> usize {
         let along = |(geometry, &position): (&AxisGeometry, &usize)| {
             position.min(geometry.reach) + (geometry.count() - 1 - position).min(geometry.reach)
         };
@@ -113,7 +113,13 @@ impl Columns<'_> {
     }
 
     /// Writes a column, rows ascending, and returns its escape rate.
-    fn fill(&self, cell: usize, place: &Place, rows: &mut [usize], values: &mut [f64]) -> f64 {
+    fn fill(
+        &self,
+        cell: usize,
+        place: &Coordinates,
+        rows: &mut [usize],
+        values: &mut [f64],
+    ) -> f64 {
         let (mut diagonal, mut escape, mut next) = (0.0, 0.0, 0);
         let mut put = |row: usize, entry: f64, next: &mut usize| {
             (rows[*next], values[*next]) = (row, entry);
@@ -147,7 +153,7 @@ impl Columns<'_> {
     /// through the axis's ends.
     fn each_rate(
         &self,
-        place: &Place,
+        place: &Coordinates,
         axis: usize,
         positions: std::ops::Range<usize>,
         mut tell: impl FnMut(usize, f64),

@@ -21,10 +21,10 @@
 //! | is the grid fine enough for the noise | `resolution.rs` |
 
 #[cfg(test)]
-mod accuracy;
+mod accuracy_tests;
 mod assemble;
 #[cfg(test)]
-mod banded;
+mod banded_tests;
 mod columns;
 mod derivative;
 mod geometry;

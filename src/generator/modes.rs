@@ -130,7 +130,7 @@ fn block(differentiation: &[f64], drift: &[f64], rates: &mut [f64]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generator::banded::null_vector;
+    use crate::generator::banded_tests::null_vector;
     use crate::generator::{GeneratorError, GeneratorOptions, assemble, unknown_moments};
     use crate::space::{Axis, CellSpace};
     use crate::system::registry;

@@ -166,7 +166,7 @@ struct Keeper<'a> {
 }
 
 impl CompareObserver for Keeper<'_> {
-    fn step(&mut self, step: &compare::Progress) {
+    fn step(&mut self, step: &compare::CompareStep) {
         (self.context.observer)(&Progress::Next {
             words: &step.next,
             done: step.done,

@@ -10,7 +10,7 @@ use crate::generator::{GeneratorError, GeneratorOptions, assemble};
 use crate::monte_carlo::{EnsembleRun, ErgodicRun, MonteCarloError, ensemble, ergodic};
 use crate::sampling::{Integrator, SamplingError, SamplingOptions, sample_transitions};
 use crate::space::{Axis, CellSpace};
-use crate::system::examples::coulomb;
+use crate::system::test_families::coulomb;
 use crate::system::{
     AxisDescription, Facts, Family, Lanes, Model, Noise, ParameterDescription, Path, PeriodicDrift,
     System,

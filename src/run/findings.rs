@@ -59,7 +59,7 @@ mod tests {
     use super::*;
     use crate::continuation::every_finding;
     use crate::run::finding_in_words;
-    use crate::system::examples::coulomb;
+    use crate::system::test_families::coulomb;
 
     #[test]
     fn findings_are_read_back_bit_for_bit() {

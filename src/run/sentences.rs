@@ -209,7 +209,7 @@ fn quantity_in_words(family: &Family, quantity: ShiftedQuantity) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::system::examples::coulomb;
+    use crate::system::test_families::coulomb;
 
     #[test]
     fn many_steady_states_are_counted_and_the_first_named() {

@@ -17,7 +17,7 @@ use crate::continuation::{
 use crate::density::{Density, EstimatedDensity, Observable};
 use crate::method::DerivedMeasure;
 use crate::space::Axis;
-use crate::system::examples::coulomb;
+use crate::system::test_families::coulomb;
 use crate::topology::{Detection, Feature, FeatureKind, Signature, Verdict};
 
 fn subject() -> Subject {

@@ -84,7 +84,7 @@ pub(crate) fn warnings_of_comparison(family: &Family, comparison: &Comparison) -
 mod tests {
     use super::*;
     use crate::continuation::SolveReport;
-    use crate::system::examples::coulomb;
+    use crate::system::test_families::coulomb;
 
     #[test]
     fn each_kind_is_told_once_whatever_its_numbers() {

@@ -16,7 +16,7 @@
 //! reported, not averaged.
 
 #[cfg(test)]
-mod accuracy;
+mod accuracy_tests;
 mod column;
 mod growth;
 mod integrator;

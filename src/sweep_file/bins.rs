@@ -5,7 +5,7 @@ use super::diagnostic::{Diagnostic, Place};
 use super::document::Document;
 use super::report::Report;
 use super::settings::{Settings, cell_space, quantity_name};
-use super::value::{Node, Value};
+use super::value::{SpannedValue, Value};
 use super::verify::short;
 use crate::cancellation::Cancellation;
 use crate::method::{BinsError, QuantityRange, automatic_bins, check_averaged};
@@ -103,7 +103,7 @@ pub(super) fn quantity_place(document: &Document, name: &str) -> Option<Place> {
 }
 
 /// The first text of a list, or of lists in it, that gives a formula this name.
-fn text_that_names(node: &Node, name: &str) -> Option<Place> {
+fn text_that_names(node: &SpannedValue, name: &str) -> Option<Place> {
     match &node.value {
         Value::Text(text) if quantity_name(text) == Some(name) => Some(node.place.clone()),
         _ => node

@@ -9,7 +9,7 @@ use super::names::quotable;
 use super::report::Report;
 use super::syntax;
 use super::text::{SweepText, Text, too_large};
-use super::value::{Entry, Node, Value};
+use super::value::{Entry, SpannedValue, Value};
 use crate::formula::language::canonical_name;
 
 /// Most parts of a key that is set; no key has as many.
@@ -21,7 +21,7 @@ pub(super) struct Document {
     /// The texts; the file is number 0.
     pub(super) sources: Sources,
     /// The table at the top.
-    pub(super) root: Node,
+    pub(super) root: SpannedValue,
     /// That the text is too long and was cut; its beginning can still be examined.
     pub(super) cut: Option<Diagnostic>,
     /// What a person typed, where the text is not that.
@@ -39,7 +39,7 @@ impl Document {
         let source = sources.add(name, &text.text);
         let (table, errors) = DeTable::parse_recoverable(&text.text);
         let (broken, further) = syntax::findings(&text.text, &errors, source, 0);
-        let root = Node {
+        let root = SpannedValue {
             value: Value::Table(convert_table(table.get_ref(), source, 0)),
             place: Place { source, span: 0..0 },
         };
@@ -94,7 +94,7 @@ impl Document {
 }
 
 /// Copies a parsed value; `offset` moves its spans (a value that is set stands behind its key).
-fn convert(value: &DeValue<'_>, span: Range<usize>, source: usize, offset: usize) -> Node {
+fn convert(value: &DeValue<'_>, span: Range<usize>, source: usize, offset: usize) -> SpannedValue {
     let child =
         |node: &toml::Spanned<DeValue<'_>>| convert(node.get_ref(), node.span(), source, offset);
     let converted = match value {
@@ -117,7 +117,7 @@ fn convert(value: &DeValue<'_>, span: Range<usize>, source: usize, offset: usize
         source,
         span: span.start + offset..span.end + offset,
     };
-    Node {
+    SpannedValue {
         value: converted,
         place,
     }
@@ -138,7 +138,7 @@ fn convert_table(table: &DeTable<'_>, source: usize, offset: usize) -> Vec<Entry
 }
 
 /// Puts a value at a path, making tables on the way; what stood there is replaced.
-fn put(node: &mut Node, path: &[(String, Place)], value: Node) {
+fn put(node: &mut SpannedValue, path: &[(String, Place)], value: SpannedValue) {
     let Some(((key, key_place), rest)) = path.split_first() else {
         *node = value;
         return;
@@ -161,7 +161,7 @@ fn put(node: &mut Node, path: &[(String, Place)], value: Node) {
         entries.push(Entry {
             key: key.clone(),
             key_place: key_place.clone(),
-            node: Node {
+            node: SpannedValue {
                 value: Value::Table(Vec::new()),
                 place: key_place.clone(),
             },
@@ -181,7 +181,7 @@ fn parse_setting(
     name: &str,
     argument: &str,
     source: usize,
-) -> Result<(KeyPath, Node), Vec<Diagnostic>> {
+) -> Result<(KeyPath, SpannedValue), Vec<Diagnostic>> {
     let whole = Place {
         source,
         span: 0..argument.len(),
@@ -216,7 +216,7 @@ fn parse_setting(
         span: offset..offset + text.len(),
     };
     let value = Value::Text(text.to_owned());
-    Ok((path, Node { value, place }))
+    Ok((path, SpannedValue { value, place }))
 }
 
 /// Splits `key.path`, or says what is wrong with it.

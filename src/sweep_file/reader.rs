@@ -9,7 +9,7 @@ use super::draft::Draft;
 use super::keys::{self, KEYS, Key, KeyDefault, Kind};
 use super::names::{nearest_name, quotable};
 use super::report::Report;
-use super::value::{Entry, Node, Plain, Value};
+use super::value::{Entry, Plain, SpannedValue, Value};
 use crate::figure::FigureWidth;
 
 /// A document under examination and what was found so far.
@@ -109,14 +109,14 @@ impl<'d> Reader<'d> {
     }
 
     /// The items of a list, with their places.
-    pub(super) fn items(&self, path: &[&str]) -> &'d [Node] {
+    pub(super) fn items(&self, path: &[&str]) -> &'d [SpannedValue] {
         self.entry(path).map_or(&[], |entry| entry.node.items())
     }
 }
 
 /// Walks a table; `path` holds the names above it.
 fn check_table<'n>(
-    node: &'n Node,
+    node: &'n SpannedValue,
     path: &mut Vec<&'n str>,
     draft: &mut Draft,
     found: &mut Vec<Diagnostic>,
@@ -195,13 +195,14 @@ fn table_by_name(name: &str) -> Option<String> {
 }
 
 /// The value of a key, or what is wrong with its kind or range; of a list, with its first wrong item.
-fn value_of(key: &Key, path: &[&str], node: &Node) -> Result<Plain, Box<Diagnostic>> {
+fn value_of(key: &Key, path: &[&str], node: &SpannedValue) -> Result<Plain, Box<Diagnostic>> {
     if let Some(plain) = node.plain().filter(|plain| key.kind.holds(plain)) {
         return Ok(plain);
     }
     let (kind, blamed) = match (key.kind, &node.value) {
         (Kind::List(kind), Value::Array(items)) => {
-            let is_wrong = |item: &&Node| item.plain().is_none_or(|plain| !kind.holds(&plain));
+            let is_wrong =
+                |item: &&SpannedValue| item.plain().is_none_or(|plain| !kind.holds(&plain));
             (*kind, items.iter().find(is_wrong).unwrap_or(node))
         }
         (kind, _) => (kind, node),
@@ -234,7 +235,7 @@ fn value_of(key: &Key, path: &[&str], node: &Node) -> Result<Plain, Box<Diagnost
 }
 
 /// A number between quotation marks that the key would take without them.
-fn quoted_number(kind: Kind, node: &Node) -> Option<&str> {
+fn quoted_number(kind: Kind, node: &SpannedValue) -> Option<&str> {
     let Value::Text(text) = &node.value else {
         return None;
     };
@@ -247,7 +248,7 @@ fn quoted_number(kind: Kind, node: &Node) -> Option<&str> {
 }
 
 /// What was perhaps meant by a value that is not of a kind.
-fn suggestion(kind: Kind, node: &Node) -> Option<String> {
+fn suggestion(kind: Kind, node: &SpannedValue) -> Option<String> {
     let is_switch = matches!(kind, Kind::Choice(names) if names().contains(&"off"));
     if is_switch && matches!(node.value, Value::Other("a boolean")) {
         return Some("\"on\"` or `\"off\"".to_owned());

@@ -5,7 +5,7 @@
 //! as they are.
 
 use super::document::Document;
-use super::value::{Node, Value};
+use super::value::{SpannedValue, Value};
 use crate::formula::language::{canonical_name, check_name};
 
 /// The document with the names of its equations spelled alike everywhere.
@@ -38,7 +38,7 @@ pub(super) fn respell(document: &Document) -> Document {
     document
 }
 
-fn for_node(node: &mut Node, path: &[&str], change: &mut dyn FnMut(&mut Node)) {
+fn for_node(node: &mut SpannedValue, path: &[&str], change: &mut dyn FnMut(&mut SpannedValue)) {
     let Some((first, rest)) = path.split_first() else {
         return change(node);
     };
@@ -60,7 +60,7 @@ fn same_name<'n>(name: &str, known: &'n [String]) -> Option<&'n String> {
         .find(|known| canonical_name(known) == canonical)
 }
 
-fn respell_keys(node: &mut Node, known: &[String]) {
+fn respell_keys(node: &mut SpannedValue, known: &[String]) {
     if let Value::Table(entries) = &mut node.value {
         for entry in entries {
             if let Some(name) = same_name(&entry.key, known) {
@@ -70,7 +70,7 @@ fn respell_keys(node: &mut Node, known: &[String]) {
     }
 }
 
-fn respell_texts(node: &mut Node, known: &[String]) {
+fn respell_texts(node: &mut SpannedValue, known: &[String]) {
     match &mut node.value {
         Value::Text(text) => {
             if let Some(name) = same_name(text, known) {

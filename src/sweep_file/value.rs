@@ -12,7 +12,7 @@ pub(super) enum Value {
     /// A float, possibly not finite.
     Float(f64),
     /// An array.
-    Array(Vec<Node>),
+    Array(Vec<SpannedValue>),
     /// A table.
     Table(Vec<Entry>),
     /// Booleans, dates, and numbers too large for a number: nothing in a sweep file is one.
@@ -35,7 +35,7 @@ impl Value {
 
 /// A value and its place.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Node {
+pub(super) struct SpannedValue {
     /// The value.
     pub(super) value: Value,
     /// Where it stands.
@@ -50,10 +50,10 @@ pub(super) struct Entry {
     /// Where the key stands.
     pub(super) key_place: Place,
     /// The value.
-    pub(super) node: Node,
+    pub(super) node: SpannedValue,
 }
 
-impl Node {
+impl SpannedValue {
     /// The entries of a table; none for anything else.
     pub(super) fn entries(&self) -> &[Entry] {
         match &self.value {

@@ -28,8 +28,6 @@ mod coloured;
 pub mod contract;
 mod description;
 mod enclosed;
-#[cfg(test)]
-pub(crate) mod examples;
 mod facts;
 mod family;
 pub mod friction;
@@ -42,6 +40,8 @@ mod quantity;
 mod rayleigh;
 pub mod registry;
 mod symmetry;
+#[cfg(test)]
+pub(crate) mod test_families;
 mod typed;
 
 pub use crate::formula::{LANES, Lanes};

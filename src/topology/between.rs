@@ -9,7 +9,7 @@
 //! along the second axis, then along the first.
 
 use super::field::Field;
-use super::reconstruction::{Line, interpolating};
+use super::reconstruction::{Weights, interpolating};
 use super::shape::{Shape, Spot};
 use crate::density::EstimatedDensity;
 use crate::space::Axis;
@@ -40,9 +40,9 @@ struct Faces<'a> {
 #[derive(Debug, Clone)]
 struct Face {
     /// By the polynomials of either side, which are the same but at a kink.
-    sides: [Line; 2],
+    sides: [Weights; 2],
     /// By parabolas, the rough measure of how far a face may exceed the cells beside it.
-    rough: Vec<Line>,
+    rough: Vec<Weights>,
     is_kink: bool,
 }
 

@@ -3,7 +3,7 @@
 use super::candidate::{Candidate, judge};
 use super::exact::{self, by_kind_and_height, present_places};
 use super::indicator::{Counted, at_centre, correct, flanks_from_centre, put_right, shoulders};
-use super::persistence::{Grid, components};
+use super::persistence::{CellValues, components};
 use super::significance::Limits;
 use super::surroundings::{contents, rims};
 use super::{
@@ -41,7 +41,7 @@ impl PersistenceDetector {
 }
 
 /// The grid of a density, unless it cannot have features.
-fn grid(estimated: &EstimatedDensity) -> Option<Grid<'_>> {
+fn grid(estimated: &EstimatedDensity) -> Option<CellValues<'_>> {
     let values = &estimated.density.values;
     let (rows, columns) = match estimated.density.axes.as_slice() {
         [axis] => (1, axis.count()),
@@ -51,7 +51,7 @@ fn grid(estimated: &EstimatedDensity) -> Option<Grid<'_>> {
     let is_whole = values.len() == rows * columns && estimated.standard_error.len() == values.len();
     let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
     let usable = is_whole && finite(values) && finite(&estimated.standard_error);
-    (usable && estimated.density.maximum() > 0.0).then_some(Grid {
+    (usable && estimated.density.maximum() > 0.0).then_some(CellValues {
         rows,
         columns,
         values,

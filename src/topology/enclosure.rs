@@ -4,7 +4,7 @@
 //! together with it are its *rim*. Where the highest point of the rim is no higher than the saddle, within the errors
 //! of both, the maximum lies along a closed curve: a *ring*, which has no peak of its own.
 
-use super::persistence::Grid;
+use super::persistence::CellValues;
 use crate::space::Axis;
 
 /// The rim of a basin.
@@ -26,7 +26,7 @@ enum Side {
 
 impl Enclosure {
     /// The rim that closes at a saddle of the grid.
-    pub(super) fn at(grid: Grid<'_>, saddle: usize) -> Self {
+    pub(super) fn at(grid: CellValues<'_>, saddle: usize) -> Self {
         let level = grid.values[saddle];
         let mut sides = vec![Side::Inside; grid.values.len()];
         let mut top = saddle;
@@ -96,7 +96,7 @@ impl Enclosure {
 
 /// Cells beside a cell: across its faces, or also across its corners. Rims are connected across corners, what lies on
 /// either side of them only across faces.
-fn neighbours(grid: Grid<'_>, cell: usize, corners: bool) -> impl Iterator<Item = usize> {
+fn neighbours(grid: CellValues<'_>, cell: usize, corners: bool) -> impl Iterator<Item = usize> {
     let (row, column) = (cell / grid.columns, cell % grid.columns);
     let rows = row.saturating_sub(1)..(row + 2).min(grid.rows);
     rows.flat_map(move |r| {
@@ -125,7 +125,7 @@ mod tests {
         }
         let (gap, tower, middle) = (63 + 4, 80, 9 * 4 + 4);
         (values[gap], values[tower], values[middle]) = (1.0, 4.0, 5.0);
-        let grid = Grid {
+        let grid = CellValues {
             rows: 9,
             columns: 9,
             values: &values,

@@ -27,7 +27,7 @@ const LOOKS: usize = 8;
 
 /// A refined place.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Place {
+pub(super) struct Vertex {
     /// One coordinate an axis.
     pub(super) position: Vec<f64>,
     /// Density there.
@@ -41,7 +41,7 @@ pub(super) fn extremum(
     cell: usize,
     guess: f64,
     kind: FeatureKind,
-) -> Option<Place> {
+) -> Option<Vertex> {
     let axis = without_noise(estimated)?;
     let kinks = kinks(estimated, axis);
     // Of a cell that a jump cuts, the side of the guess.
@@ -78,7 +78,7 @@ pub(super) fn extremum(
         .or_else(|| at_kink(axis, values, &kinks, cell, kind))?;
     // A polynomial that misses the cell it is about does not describe the density.
     let above = sign(kind) * (place.1 - values[cell]);
-    (above >= -1e-9 * values[cell].abs()).then(|| Place {
+    (above >= -1e-9 * values[cell].abs()).then(|| Vertex {
         position: vec![place.0],
         density: place.1,
     })
@@ -235,7 +235,7 @@ mod tests {
     }
 
     /// The peak about the cell that holds `near`.
-    fn peak(estimated: &EstimatedDensity, near: f64) -> Option<Place> {
+    fn peak(estimated: &EstimatedDensity, near: f64) -> Option<Vertex> {
         let cell = estimated.density.axes[0].find(near).unwrap();
         extremum(estimated, cell, near, FeatureKind::Peak)
     }

@@ -7,7 +7,7 @@
 
 use std::ops::Range;
 
-use super::reconstruction::{Line, interpolating};
+use super::reconstruction::{Weights, interpolating};
 use crate::density::{EstimatedDensity, Kink};
 use crate::space::Axis;
 
@@ -32,7 +32,7 @@ pub(super) struct Jet {
 /// Weights that give a [`Jet`] at one point from the values of any variant of a density.
 #[derive(Debug, Clone)]
 pub(super) struct Stencil {
-    lines: Vec<Vec<Line>>,
+    lines: Vec<Vec<Weights>>,
     units: [f64; 2],
     columns: usize,
 }

@@ -26,7 +26,7 @@ pub(super) struct Component {
 
 /// Values on a grid of `rows × columns` cells, the last axis fastest; one row for a marginal.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Grid<'a> {
+pub(super) struct CellValues<'a> {
     pub(super) rows: usize,
     pub(super) columns: usize,
     pub(super) values: &'a [f64],
@@ -48,7 +48,7 @@ const STEPS: [(isize, isize); 8] = [
 const UNREACHED: u32 = u32::MAX;
 
 /// Peaks and craters of a grid, each in the order of death, the highest peak last. All values finite.
-pub(super) fn components(grid: Grid<'_>) -> (Vec<Component>, Vec<Component>) {
+pub(super) fn components(grid: CellValues<'_>) -> (Vec<Component>, Vec<Component>) {
     let order = descending(grid.values);
     let value = |cell: u32| grid.values[cell as usize];
     let mut peaks = Forest::new(grid, &STEPS, false).grow(order.iter().copied());
@@ -90,14 +90,14 @@ fn descending(values: &[f64]) -> Vec<u32> {
 /// Union-find over the cells that the level has reached. The root of a tree is the cell of its birth; the
 /// outside is one more node, elder than all cells.
 struct Forest<'a> {
-    grid: Grid<'a>,
+    grid: CellValues<'a>,
     steps: &'static [(isize, isize)],
     outside_joined: bool,
     parent: Vec<u32>,
 }
 
 impl<'a> Forest<'a> {
-    fn new(grid: Grid<'a>, steps: &'static [(isize, isize)], outside_joined: bool) -> Self {
+    fn new(grid: CellValues<'a>, steps: &'static [(isize, isize)], outside_joined: bool) -> Self {
         let outside = grid.values.len();
         let mut parent = vec![UNREACHED; outside + 1];
         parent[outside] = outside as u32;
@@ -218,7 +218,7 @@ mod tests {
             for [left, right] in [[0.495_5, next], [next, 0.495_5], [next, next]] {
                 let row = [0.1, left, valley, valley, right, 0.1];
                 for (rows, columns) in [(1, 6), (6, 1)] {
-                    let grid = Grid {
+                    let grid = CellValues {
                         rows,
                         columns,
                         values: &row,
@@ -237,7 +237,7 @@ mod tests {
             0.0, 0.9, 0.4, 0.2, //
             0.0, 0.0, 0.0, 0.0,
         ];
-        let grid = Grid {
+        let grid = CellValues {
             rows: 4,
             columns: 4,
             values: &values,
@@ -274,7 +274,7 @@ mod tests {
 
     /// Components and holes of {p ≥ level}: holes are regions of the rest that a frame of outside cells does
     /// not reach.
-    fn count_at(grid: Grid<'_>, level: f64) -> (usize, usize) {
+    fn count_at(grid: CellValues<'_>, level: f64) -> (usize, usize) {
         let above: Vec<bool> = grid.values.iter().map(|&value| value >= level).collect();
         let width = grid.columns + 2;
         let mut below = vec![true; (grid.rows + 2) * width];
@@ -285,7 +285,7 @@ mod tests {
         (regions(&above, grid.columns, &STEPS), holes)
     }
 
-    fn check_against_flooding(grid: Grid<'_>) -> Result<(), TestCaseError> {
+    fn check_against_flooding(grid: CellValues<'_>) -> Result<(), TestCaseError> {
         let (peaks, craters) = components(grid);
         let value = |cell: usize| grid.values[cell];
         for &level in grid.values {
@@ -326,7 +326,7 @@ mod tests {
             raw in prop::collection::vec(any::<u32>(), 64),
         ) {
             let values: Vec<f64> = raw[..rows * columns].iter().map(|v| (v % distinct) as f64).collect();
-            check_against_flooding(Grid { rows, columns, values: &values })?;
+            check_against_flooding(CellValues { rows, columns, values: &values })?;
         }
 
         #[test]
@@ -337,9 +337,9 @@ mod tests {
             let values: Vec<f64> = raw[..rows * columns].iter().map(|v| (v % distinct) as f64).collect();
             let mirrored: Vec<f64> = values.chunks(columns).flat_map(|row| row.iter().rev().copied()).collect();
             let transposed: Vec<f64> = (0..rows * columns).map(|i| values[i % rows * columns + i / rows]).collect();
-            let (peaks, craters) = components(Grid { rows, columns, values: &values });
+            let (peaks, craters) = components(CellValues { rows, columns, values: &values });
             for (rows, columns, values) in [(rows, columns, &mirrored), (columns, rows, &transposed)] {
-                let (other_peaks, other_craters) = components(Grid { rows, columns, values });
+                let (other_peaks, other_craters) = components(CellValues { rows, columns, values });
                 prop_assert_eq!(sorted(&peaks), sorted(&other_peaks));
                 prop_assert_eq!(sorted(&craters), sorted(&other_craters));
             }

@@ -4,7 +4,7 @@
 //! of the one through F at n + 1 edges, so the k-th derivative of p is a weighted sum of F, hence of the averages: with
 //! n cells it is exact for polynomials of degree n - 1, whatever the widths. Sampled densities are noisy, and get
 //! a polynomial of low degree nearest to many averages instead. Either way the result is linear in the
-//! averages: a [`Line`] of weights, which serves every variant of a density alike.
+//! averages: a [`Weights`] of weights, which serves every variant of a density alike.
 
 use std::ops::Range;
 
@@ -14,13 +14,13 @@ use crate::space::Axis;
 
 /// Weights of the averages over neighbouring cells of one axis.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Line {
+pub(super) struct Weights {
     /// Cell of the first weight.
     pub(super) first: usize,
     pub(super) weights: Vec<f64>,
 }
 
-impl Line {
+impl Weights {
     /// Weighted sum of the values of a marginal.
     pub(super) fn apply(&self, values: &[f64]) -> f64 {
         let cells = &values[self.first..self.first + self.weights.len()];
@@ -58,7 +58,7 @@ pub(super) fn interpolating(
     cells: Range<usize>,
     at: f64,
     orders: usize,
-) -> Option<Vec<Line>> {
+) -> Option<Vec<Weights>> {
     if cells.len() < orders || cells.end > axis.count() {
         return None;
     }
@@ -72,7 +72,7 @@ pub(super) fn interpolating(
             above += weights[cell + 1];
             line[cell] = above * (edges[cell + 1] - edges[cell]);
         }
-        Line {
+        Weights {
             first: cells.start,
             weights: line,
         }
@@ -87,7 +87,7 @@ pub(super) fn smoothing(
     at: f64,
     degree: usize,
     orders: usize,
-) -> Option<Vec<Line>> {
+) -> Option<Vec<Weights>> {
     if cells.len() <= degree || degree + 1 < orders || cells.end > axis.count() {
         return None;
     }
@@ -105,7 +105,7 @@ pub(super) fn smoothing(
     for k in 0..orders {
         let row = inverse.row(k);
         let weights = row.iter().map(|weight| weight * factor);
-        lines.push(Line {
+        lines.push(Weights {
             first: cells.start,
             weights: weights.collect(),
         });

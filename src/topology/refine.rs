@@ -12,7 +12,7 @@
 use std::ops::Range;
 
 use super::FeatureKind;
-use super::extremum::{Place, extremum};
+use super::extremum::{Vertex, extremum};
 use super::quadratic::{Scale, basis, fit, principal_directions};
 use crate::density::EstimatedDensity;
 use crate::space::Axis;
@@ -27,7 +27,7 @@ const LARGEST_REACH: usize = 8;
 const FARTHEST: f64 = 1.5;
 
 /// Refines the feature whose cell is given. One or two axes; one value and one error a cell.
-pub(super) fn refine(estimated: &EstimatedDensity, cell: usize, kind: FeatureKind) -> Place {
+pub(super) fn refine(estimated: &EstimatedDensity, cell: usize, kind: FeatureKind) -> Vertex {
     let axes = &estimated.density.axes;
     let columns = axes.last().map_or(1, Axis::count);
     let at: Vec<usize> = match axes.len() {
@@ -37,7 +37,7 @@ pub(super) fn refine(estimated: &EstimatedDensity, cell: usize, kind: FeatureKin
     let windows: Vec<Range<usize>> = (0..axes.len())
         .map(|axis| window(estimated, &at, axis))
         .collect();
-    let place = stationary_point(estimated, &at, &windows, kind).unwrap_or_else(|| Place {
+    let place = stationary_point(estimated, &at, &windows, kind).unwrap_or_else(|| Vertex {
         position: axes
             .iter()
             .zip(&at)
@@ -87,7 +87,7 @@ fn stationary_point(
     at: &[usize],
     windows: &[Range<usize>],
     kind: FeatureKind,
-) -> Option<Place> {
+) -> Option<Vertex> {
     let axes = &estimated.density.axes;
     let scales: Vec<Scale> = (0..axes.len())
         .map(|k| Scale::new(&axes[k], at[k], &windows[k]))
@@ -108,7 +108,7 @@ fn stationary_point(
         .iter()
         .zip(&scales)
         .map(|(u, scale)| scale.origin + u * scale.unit);
-    Some(Place {
+    Some(Vertex {
         position: position.collect(),
         density,
     })

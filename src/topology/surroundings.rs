@@ -4,7 +4,7 @@ use super::candidate::{Candidate, is_smooth};
 use super::critical::{Critical, height_above};
 use super::enclosure::Enclosure;
 use super::field::Field;
-use super::persistence::Grid;
+use super::persistence::CellValues;
 use super::rim::{RimPeak, Summits, summits};
 use super::significance::{Judgement, Limits};
 use super::{Feature, FeatureKind, Signature, Verdict};
@@ -112,7 +112,7 @@ impl Rim {
 /// The rims of the craters that are present. Basins that spill over into each other before they spill over a common rim
 /// share it.
 pub(super) fn rims(
-    grid: Grid<'_>,
+    grid: CellValues<'_>,
     estimated: &EstimatedDensity,
     craters: &[Candidate],
     limits: &Limits,

@@ -5,7 +5,7 @@
 //! points show, interpolated along it, and the error of that is stated from the distance between coarse and fine.
 
 use super::reading::{Missing, Reader};
-use super::walked::{Node, Walked};
+use super::walked::{WalkPoint, Walked};
 use super::{CurvePoint, CurveWork, Task};
 use crate::continuation::grid::share_of_distance;
 use crate::continuation::locate::QUIET;
@@ -157,7 +157,7 @@ impl Checks<'_> {
         shown
     }
 
-    fn point(&self, node: &Node, check: &Interpolated) -> CurvePoint {
+    fn point(&self, node: &WalkPoint, check: &Interpolated) -> CurvePoint {
         let reading = &node.reading;
         let (indicator, steepness) = (&reading.indicator, reading.steepness());
         let sampling = match indicator.sampling_error > 0.0 {
@@ -223,7 +223,7 @@ struct Interpolated {
 }
 
 /// Between the nearest checked points on either side.
-fn between(checks: &[Check], nodes: &[Node], index: usize, of_distance: f64) -> Interpolated {
+fn between(checks: &[Check], nodes: &[WalkPoint], index: usize, of_distance: f64) -> Interpolated {
     let after = checks.partition_point(|check| check.index < index);
     let above = checks.get(after);
     let below = match above {

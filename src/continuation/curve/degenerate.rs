@@ -9,7 +9,7 @@
 use super::companion::meeting;
 use super::found::DegeneratePoint;
 use super::reading::{Reader, Reading};
-use super::walked::{Node, Walked, apart, within};
+use super::walked::{WalkPoint, Walked, apart, within};
 use super::{CodimensionTwoKind, CurvePoint, CurveStart, CurveWork, EndReason, Task};
 use crate::continuation::grid::share_of_distance;
 use crate::continuation::locate::QUIET;
@@ -173,7 +173,7 @@ impl Seeker<'_> {
         &self,
         kind: IndicatorKind,
         near: [f64; 2],
-        from: &Node,
+        from: &WalkPoint,
         judged: &CurvePoint,
         work: &mut CurveWork,
     ) -> Option<(CurvePoint, Both)> {

@@ -2,7 +2,7 @@
 //! curve allows.
 
 use super::reading::{Missing, Reader, Reading};
-use super::walked::{Node, Walked, apart, within};
+use super::walked::{WalkPoint, Walked, apart, within};
 use super::{CurveError, EndReason, Task, companion};
 use crate::continuation::SourceError;
 use crate::density::hellinger;
@@ -73,7 +73,7 @@ impl<'a> Follower<'a> {
             node.tangent = node.tangent.map(|part| -part);
         }
         let before = back.len();
-        let mut points: Vec<Node> = back.into_iter().rev().collect();
+        let mut points: Vec<WalkPoint> = back.into_iter().rev().collect();
         points.push(start);
         points.append(&mut onward);
         Ok(Walked {
@@ -85,7 +85,7 @@ impl<'a> Follower<'a> {
     }
 
     /// The point of the curve at its start, the tangent toward larger values of the second parameter.
-    fn begin(&self, reader: &mut Reader<'_>) -> Result<Node, CurveError> {
+    fn begin(&self, reader: &mut Reader<'_>) -> Result<WalkPoint, CurveError> {
         let at = self.0.plane.place(self.0.start.values);
         self.0.plane.begin(at);
         let border = (0..2).find(|&k| at[k] <= 0.0 || at[k] >= 1.0);
@@ -113,10 +113,10 @@ impl<'a> Follower<'a> {
     fn one_way(
         &self,
         reader: &mut Reader<'_>,
-        start: &Node,
+        start: &WalkPoint,
         observer: &mut dyn FnMut([f64; 2]),
-    ) -> (Vec<Node>, EndReason) {
-        let mut nodes: Vec<Node> = Vec::new();
+    ) -> (Vec<WalkPoint>, EndReason) {
+        let mut nodes: Vec<WalkPoint> = Vec::new();
         let mut bend = [0.0; 2];
         let mut known = start.reading.companions.clone();
         let longest = self.0.options.largest_step;
@@ -151,7 +151,7 @@ impl<'a> Follower<'a> {
                     observer(self.0.plane.values(node.foot));
                     if nodes.len() >= FEWEST_CLOSED && passes(here.foot, node.foot, start.foot) {
                         let arclength = here.arclength + apart(here.foot, start.foot);
-                        nodes.push(Node {
+                        nodes.push(WalkPoint {
                             arclength,
                             ..start.clone()
                         });
@@ -179,7 +179,7 @@ impl<'a> Follower<'a> {
     }
 
     /// The node as the next one of a curve, or why it is not.
-    fn follows(&self, here: &Node, mut node: Node) -> Result<Node, EndReason> {
+    fn follows(&self, here: &WalkPoint, mut node: WalkPoint) -> Result<WalkPoint, EndReason> {
         let axes = &node.reading.density.axes;
         let places = here.reading.indicator.place.iter();
         let moved = places.zip(&node.reading.indicator.place).zip(axes);
@@ -210,7 +210,7 @@ struct Sought<'a> {
     /// Longest correction.
     farthest: f64,
     /// The point before.
-    before: Option<&'a Node>,
+    before: Option<&'a WalkPoint>,
 }
 
 /// The point of the curve near a place, and the number of corrections.
@@ -218,7 +218,7 @@ fn correct(
     reader: &mut Reader<'_>,
     mut at: [f64; 2],
     sought: &Sought<'_>,
-) -> Result<(Node, usize), EndReason> {
+) -> Result<(WalkPoint, usize), EndReason> {
     let mut last = f64::INFINITY;
     for corrections in 0..MOST_CORRECTIONS {
         let reading = reader
@@ -245,7 +245,7 @@ fn correct(
         let noise = reading.indicator.sampling_error / steepness;
         if size <= CLOSE.max(WITHIN_NOISE * noise) {
             let remainder = remainder(&reading, size, sought.before);
-            let node = Node {
+            let node = WalkPoint {
                 foot,
                 tangent: reading.tangent(),
                 remainder,
@@ -278,7 +278,7 @@ fn not_met(reading: &Reading) -> EndReason {
 
 /// What the straight line to the foot may leave: half the curvature of the indicator times the square of the distance.
 /// By how much the gradient changed since the point before tells it along the curve; across, it may be as much again.
-fn remainder(reading: &Reading, size: f64, before: Option<&Node>) -> f64 {
+fn remainder(reading: &Reading, size: f64, before: Option<&WalkPoint>) -> f64 {
     let bend = before.map_or(1.0, |before| {
         let change = apart(reading.gradient, before.reading.gradient);
         ACROSS * change / (reading.steepness() * apart(reading.at, before.reading.at))
@@ -288,7 +288,7 @@ fn remainder(reading: &Reading, size: f64, before: Option<&Node>) -> f64 {
 
 /// Where the next point is expected, and the side of the box at whose end it lies, if the step leads out; `None` where
 /// nothing of the box is left in this direction.
-fn predict(here: &Node, bend: [f64; 2], step: f64) -> Option<([f64; 2], Option<usize>)> {
+fn predict(here: &WalkPoint, bend: [f64; 2], step: f64) -> Option<([f64; 2], Option<usize>)> {
     let at = |step: f64| {
         [0, 1].map(|k| here.foot[k] + step * here.tangent[k] + 0.5 * step * step * bend[k])
     };

@@ -5,7 +5,7 @@ use super::{CurveWork, EndReason};
 
 /// A point as it was met.
 #[derive(Debug, Clone)]
-pub(super) struct Node {
+pub(super) struct WalkPoint {
     pub(super) reading: Reading,
     /// The point of the curve, in the box with sides of length one.
     pub(super) foot: [f64; 2],
@@ -20,7 +20,7 @@ pub(super) struct Node {
 
 /// A curve as it was met, without checks.
 pub(super) struct Walked {
-    pub(super) points: Vec<Node>,
+    pub(super) points: Vec<WalkPoint>,
     pub(super) start: usize,
     pub(super) ends: Vec<EndReason>,
     pub(super) work: CurveWork,
@@ -62,7 +62,7 @@ pub(super) struct KinkAtEnd {
 }
 
 impl KinkAtEnd {
-    fn all_of(node: &Node) -> Vec<Self> {
+    fn all_of(node: &WalkPoint) -> Vec<Self> {
         let density = &node.reading.density;
         let Some(axis) = density.axes.first() else {
             return Vec::new();

@@ -7,7 +7,7 @@ use super::*;
 use crate::cancellation::Cancellation;
 use crate::density::{Density, EstimatedDensity, Kink, Observable, Structure, Variants};
 use crate::space::Axis;
-use crate::system::examples::bistable;
+use crate::system::test_families::bistable;
 use crate::topology::{DetectOptions, PersistenceDetector};
 
 /// p(x; θ), not normalised.

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use super::lattice::{At, Lattice};
-use super::node::{Grid, SolvedNode};
+use super::node::{SolvedNode, SolvedNodes};
 use crate::continuation::Point;
 use crate::continuation::change::{Change, changes};
 use crate::continuation::root::between;
@@ -30,11 +30,11 @@ pub(super) struct Blurred {
 }
 
 /// A row or a column: its nodes in order, with their places along it.
-type Line<'g> = Vec<(usize, At, &'g SolvedNode)>;
+type NodeRow<'g> = Vec<(usize, At, &'g SolvedNode)>;
 
 /// All changes along rows and columns.
 pub(super) fn crossings(
-    grid: &Grid,
+    grid: &SolvedNodes,
     lattice: &Lattice,
     detector: &dyn Detector,
 ) -> (Vec<Crossing>, Vec<Blurred>) {
@@ -80,8 +80,8 @@ pub(super) fn in_order(
         .then(of_a.cmp(&of_b))
 }
 
-fn lines<'g>(grid: &'g Grid, lattice: &Lattice, side: usize) -> Vec<Line<'g>> {
-    let mut lines: Vec<Line<'g>> = vec![Vec::new(); lattice.last(1 - side) + 1];
+fn lines<'g>(grid: &'g SolvedNodes, lattice: &Lattice, side: usize) -> Vec<NodeRow<'g>> {
+    let mut lines: Vec<NodeRow<'g>> = vec![Vec::new(); lattice.last(1 - side) + 1];
     for (at, solved) in grid.all() {
         lines[at[1 - side]].push((at[side], at, solved));
     }

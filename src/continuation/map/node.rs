@@ -21,9 +21,9 @@ pub(super) struct SolvedNode {
 
 /// All solved nodes, row by row.
 #[derive(Debug, Default)]
-pub(super) struct Grid(BTreeMap<(usize, usize), SolvedNode>);
+pub(super) struct SolvedNodes(BTreeMap<(usize, usize), SolvedNode>);
 
-impl Grid {
+impl SolvedNodes {
     pub(super) fn get(&self, [column, row]: At) -> Option<&SolvedNode> {
         self.0.get(&(row, column))
     }

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::found::MapNode;
 use super::lattice::{At, Lattice, Leaf};
-use super::node::{Grid, SolvedNode};
+use super::node::{SolvedNode, SolvedNodes};
 use super::{MapMaker, MapProgress};
 use crate::continuation::curve::CurveWork;
 use crate::continuation::{Point, Session, SourceError};
@@ -23,7 +23,7 @@ const PART: usize = 16;
 pub(super) struct Solver<'a> {
     maker: &'a MapMaker<'a>,
     lattice: &'a Lattice,
-    grid: Mutex<Grid>,
+    grid: Mutex<SolvedNodes>,
     work: Mutex<CurveWork>,
     done: AtomicUsize,
     wanted: AtomicUsize,
@@ -42,7 +42,7 @@ impl<'a> Solver<'a> {
     }
 
     /// What is solved. A poisoned lock holds nodes as whole as any other.
-    pub(super) fn grid(&self) -> MutexGuard<'_, Grid> {
+    pub(super) fn grid(&self) -> MutexGuard<'_, SolvedNodes> {
         self.grid.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

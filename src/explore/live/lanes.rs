@@ -25,7 +25,7 @@ struct Newest {
 
 /// A request's place in its lane.
 #[derive(Debug)]
-pub(super) struct Place<'l> {
+pub(super) struct Slot<'l> {
     lanes: &'l Lanes,
     name: &'l str,
     ticket: u64,
@@ -38,7 +38,7 @@ impl Lanes {
 
     /// Takes the place of the older requests of a lane and cancels what is being solved of them; `None` where there is
     /// a newer one.
-    pub(super) fn enter<'l>(&'l self, name: &'l str, ticket: u64) -> Option<Place<'l>> {
+    pub(super) fn enter<'l>(&'l self, name: &'l str, ticket: u64) -> Option<Slot<'l>> {
         if name.len() > LONGEST_NAME {
             return None;
         }
@@ -56,7 +56,7 @@ impl Lanes {
         }
         let running = None;
         newest.insert(name.to_owned(), Newest { ticket, running });
-        Some(Place {
+        Some(Slot {
             lanes: self,
             name,
             ticket,
@@ -70,7 +70,7 @@ impl Lanes {
     }
 }
 
-impl Place<'_> {
+impl Slot<'_> {
     /// Says what stops the solve that begins; false where a newer request has come.
     pub(super) fn begin(&self, cancellation: &Cancellation) -> bool {
         self.set(Some(cancellation.clone()))

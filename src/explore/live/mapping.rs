@@ -15,12 +15,12 @@ use crate::explore::plane::{PlaneFound, PlaneScene};
 /// How far the maps in the making are, by their lanes.
 #[derive(Debug, Default)]
 pub(super) struct Mapping {
-    lanes: Mutex<BTreeMap<String, Progress>>,
+    lanes: Mutex<BTreeMap<String, MappingState>>,
 }
 
 /// How far a map is.
 #[derive(Debug, Default, Clone, Copy, Serialize)]
-struct Progress {
+struct MappingState {
     /// Nodes that are solved.
     nodes: usize,
     /// Nodes that are known to be wanted.
@@ -30,7 +30,7 @@ struct Progress {
 }
 
 impl Mapping {
-    fn lock(&self) -> MutexGuard<'_, BTreeMap<String, Progress>> {
+    fn lock(&self) -> MutexGuard<'_, BTreeMap<String, MappingState>> {
         self.lanes.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -64,7 +64,7 @@ impl Live {
             }
             self.mapping
                 .lock()
-                .insert(ask.lane.clone(), Progress::default());
+                .insert(ask.lane.clone(), MappingState::default());
             let made = sweep.map(&cancellation, &|told| self.mapping.tell(&ask.lane, told));
             if cancellation.is_cancelled() {
                 return Err(Stop::Stale);
@@ -91,7 +91,7 @@ impl Live {
     pub(in crate::explore) fn map_progress(&self, body: &[u8]) -> Vec<u8> {
         answer(|| {
             let ask: AskMapProgress = read(body)?;
-            Ok::<Option<Progress>, Stop>(self.mapping.lock().get(&ask.lane).copied())
+            Ok::<Option<MappingState>, Stop>(self.mapping.lock().get(&ask.lane).copied())
         })
     }
 }

@@ -81,21 +81,21 @@ struct Told<'a> {
     scene: &'a Scene,
     plane: Option<PlaneScene>,
     frames: [(); 0],
-    arrays: Vec<Grid>,
+    arrays: Vec<PackedArray>,
 }
 
 #[derive(Debug, Serialize)]
-struct Solved {
+struct SolveAnswer {
     ticket: u64,
     frame: Frame,
-    arrays: Vec<Grid>,
+    arrays: Vec<PackedArray>,
     milliseconds: f64,
 }
 
 /// The cells of a watched density, with its values and band as little-endian doubles in base64; `None` where they were
 /// not asked for.
 #[derive(Debug, Serialize)]
-struct Grid {
+struct PackedArray {
     edges: Vec<Vec<f64>>,
     values: Option<String>,
     band: Option<String>,
@@ -134,7 +134,7 @@ impl Live {
             plane: PlaneScene::new(sweep),
             frames: [],
             arrays: (sweep.problem.observables().iter())
-                .map(|observable| Grid {
+                .map(|observable| PackedArray {
                     edges: edges(observable),
                     values: None,
                     band: None,
@@ -175,7 +175,7 @@ impl Live {
                 .densities
                 .iter()
                 .map(|density| grid(density, ask.marginals_only));
-            Ok(Solved {
+            Ok(SolveAnswer {
                 ticket: ask.ticket,
                 arrays: grids.collect(),
                 frame: Frame::new(&point, &bound.sweep.settings.family),
@@ -259,11 +259,11 @@ fn read<'b, T: serde::Deserialize<'b>>(body: &'b [u8]) -> Result<T, Stop> {
     serde_json::from_slice(body).map_err(|error| Stop::Refused(error.to_string()))
 }
 
-fn grid(estimated: &EstimatedDensity, marginals_only: bool) -> Grid {
+fn grid(estimated: &EstimatedDensity, marginals_only: bool) -> PackedArray {
     let is_marginal = matches!(estimated.observable, Observable::Marginal(_));
     let band = is_marginal.then(|| band(estimated)).flatten();
     let edges = estimated.density.axes.iter();
-    Grid {
+    PackedArray {
         edges: edges.map(|axis| axis.edges().to_vec()).collect(),
         values: (is_marginal || !marginals_only).then(|| doubles(&estimated.density.values)),
         band_is: band.as_ref().map(|band| band.1),

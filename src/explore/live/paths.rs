@@ -43,12 +43,12 @@ struct Followed {
     steps: usize,
     /// Coordinates of a state, which follow one another.
     dimension: usize,
-    paths: Vec<Line>,
+    paths: Vec<FreePath>,
 }
 
 /// One path.
 #[derive(Debug, Serialize)]
-struct Line {
+struct FreePath {
     /// States as little-endian single-precision numbers in base64: finer than any screen.
     states: String,
     ran_away: bool,
@@ -122,10 +122,10 @@ impl Live {
             }
         };
         let starts = ask.starts.par_iter();
-        let paths: Result<Vec<Line>, MonteCarloError> = starts
+        let paths: Result<Vec<FreePath>, MonteCarloError> = starts
             .map(|Start { state, seed }| {
                 let path = sample_path(system, space, state, *seed, &run, cancellation)?;
-                Ok(Line {
+                Ok(FreePath {
                     states: singles(path.states.iter().flatten()),
                     ran_away: path.ran_away,
                 })

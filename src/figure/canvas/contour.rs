@@ -5,7 +5,7 @@
 
 /// Values at the points of a rectilinear grid.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Grid<'a> {
+pub(crate) struct GridValues<'a> {
     /// Abscissas, ascending; length `n`.
     pub(crate) x: &'a [f64],
     /// Ordinates, ascending; length `m`.
@@ -20,7 +20,7 @@ const MOST_SKIPPED: usize = 64;
 /// Marks an end of a contour piece that nothing joins.
 const NONE: usize = usize::MAX;
 
-impl Grid<'_> {
+impl GridValues<'_> {
     fn value(&self, i: usize, j: usize) -> f64 {
         self.values[i * self.y.len() + j]
     }
@@ -188,7 +188,7 @@ mod tests {
     /// Largest distance of the contour exp(-r²) = exp(-1) from the unit circle.
     fn circle_error(count: usize) -> f64 {
         let (axis, values) = grid_of(count, |x, y| (-x * x - y * y).exp());
-        let grid = Grid {
+        let grid = GridValues {
             x: &axis,
             y: &axis,
             values: &values,
@@ -237,7 +237,7 @@ mod tests {
     #[test]
     fn a_saddle_is_cut_by_its_mean_and_open_lines_end_at_the_border() {
         let (axis, values) = grid_of(2, |x, y| x * y);
-        let grid = Grid {
+        let grid = GridValues {
             x: &axis,
             y: &axis,
             values: &values,
@@ -256,7 +256,7 @@ mod tests {
     fn a_ring_has_two_closed_contours_and_gaps_have_none() {
         let ring = |x: f64, y: f64| (-(x.hypot(y) - 1.0).powi(2) / 0.05).exp();
         let (axis, mut values) = grid_of(61, ring);
-        let grid = Grid {
+        let grid = GridValues {
             x: &axis,
             y: &axis,
             values: &values,
@@ -265,9 +265,9 @@ mod tests {
         assert_eq!(lines.len(), 2);
         assert!(lines.iter().all(|line| line.first() == line.last()));
         values.fill(f64::NAN);
-        let empty = Grid {
+        let empty = GridValues {
             values: &values,
-            ..Grid {
+            ..GridValues {
                 x: &axis,
                 y: &axis,
                 values: &values,

@@ -7,7 +7,7 @@ use super::view::{self, View, middles};
 use crate::continuation::{Point, SweepResult};
 use crate::density::{Density, EstimatedDensity, Observable};
 use crate::figure::canvas::colour_bar::ColourBar;
-use crate::figure::canvas::contour::{Grid, simplify};
+use crate::figure::canvas::contour::{GridValues, simplify};
 use crate::figure::canvas::frame::{self, Scale};
 use crate::figure::canvas::heat::Picture;
 use crate::figure::canvas::legend::{self, Legend, Sample};
@@ -217,7 +217,7 @@ fn draw_contours(
         }
     };
     let (across, up) = (lines(0, x, map.width), lines(1, y, map.height));
-    let grid = Grid {
+    let grid = GridValues {
         x: &across,
         y: &up,
         values: &found.shown.sheet(&across, &up),

@@ -1,8 +1,8 @@
 //! Whether an expression is even or odd under a reflection of the state.
 
-mod line;
+mod linear_form;
 
-use line::Line;
+use linear_form::LinearForm;
 
 use super::reflection::{Parity, Reflection};
 use crate::formula::arithmetic::{Binary, Unary, small_integer};
@@ -64,7 +64,7 @@ impl Graph {
     /// The parity that the form of an expression without parameters shows.
     fn parity_by_form(&self, expression: Expression, reflection: &Reflection) -> Option<Parity> {
         let parts = self.parts(&[expression]);
-        let mut lines: Vec<Option<Line>> = Vec::with_capacity(parts.len());
+        let mut lines: Vec<Option<LinearForm>> = Vec::with_capacity(parts.len());
         let mut parities: PartMap<Option<Parity>> = PartMap::new(&parts, None);
         for &part in &parts {
             let line = |operand: Expression| {
@@ -72,7 +72,7 @@ impl Graph {
                 lines.get(position)?.clone()
             };
             let of = |operand: Expression| parities.get(operand).flatten();
-            let own = Line::of(self.node(part), &line, reflection.reflected.len());
+            let own = LinearForm::of(self.node(part), &line, reflection.reflected.len());
             let parity = own
                 .as_ref()
                 .and_then(|line| line.parity(reflection))

@@ -151,7 +151,7 @@ fn needs(
 
 /// How far a definition has been looked at.
 #[derive(Clone, Copy, PartialEq)]
-enum Progress {
+enum Visit {
     Unseen,
     OnPath,
     Done,
@@ -163,7 +163,7 @@ fn order(
     parsed: &[Option<Parsed>],
     errors: &mut Vec<DefinitionError>,
 ) -> Vec<usize> {
-    let mut progress = vec![Progress::Unseen; parsed.len()];
+    let mut progress = vec![Visit::Unseen; parsed.len()];
     let mut order = Vec::with_capacity(parsed.len());
     let needs_of = |number: usize| {
         parsed
@@ -172,28 +172,28 @@ fn order(
             .map_or(&[][..], |parsed| &parsed.needs[..])
     };
     for start in 0..parsed.len() {
-        if progress[start] != Progress::Unseen {
+        if progress[start] != Visit::Unseen {
             continue;
         }
         // The path of definitions that are being looked at, each with the number of its next need.
         let mut path = vec![(start, 0)];
-        progress[start] = Progress::OnPath;
+        progress[start] = Visit::OnPath;
         while let Some((number, next)) = path.last_mut() {
             let (number, needs) = (*number, needs_of(*number));
             let Some((needed, _)) = needs.get(*next) else {
-                progress[number] = Progress::Done;
+                progress[number] = Visit::Done;
                 order.push(number);
                 path.pop();
                 continue;
             };
             *next += 1;
             match progress[*needed] {
-                Progress::Unseen => {
-                    progress[*needed] = Progress::OnPath;
+                Visit::Unseen => {
+                    progress[*needed] = Visit::OnPath;
                     path.push((*needed, 0));
                 }
-                Progress::OnPath => errors.push(circle(symbols, parsed, &path, *needed)),
-                Progress::Done => {}
+                Visit::OnPath => errors.push(circle(symbols, parsed, &path, *needed)),
+                Visit::Done => {}
             }
         }
     }

@@ -8,7 +8,7 @@ use crate::formula::limits;
 
 /// Where a value is kept.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Place {
+enum Storage {
     Register(usize),
     /// An output that no other value needs.
     Output(usize),
@@ -25,7 +25,7 @@ pub(super) fn allocate(values: Values, fused: Fused, states: usize) -> Option<Ta
         Operand::State(state) => Source::Lanes(state),
         Operand::Scalar(place) => Source::Scalar(place),
         Operand::Value(value) => match places.of[value as usize] {
-            Some(Place::Register(register)) => Source::Lanes((states + register) as u16),
+            Some(Storage::Register(register)) => Source::Lanes((states + register) as u16),
             _ => Source::Lanes(u16::MAX),
         },
     };
@@ -41,8 +41,8 @@ pub(super) fn allocate(values: Values, fused: Fused, states: usize) -> Option<Ta
         };
         let instruction = instruction.map(source);
         match places.of[value] {
-            Some(Place::Output(output)) => steps.push(to_output(instruction, output)),
-            Some(Place::Register(register)) => {
+            Some(Storage::Output(output)) => steps.push(to_output(instruction, output)),
+            Some(Storage::Register(register)) => {
                 steps.push(Step {
                     instruction,
                     target: register as u16,
@@ -79,7 +79,7 @@ pub(super) fn allocate(values: Values, fused: Fused, states: usize) -> Option<Ta
 
 /// Where all values are kept.
 struct Places {
-    of: Vec<Option<Place>>,
+    of: Vec<Option<Storage>>,
     /// The outputs that each value is.
     outputs: Vec<Vec<usize>>,
     registers: usize,
@@ -109,8 +109,8 @@ impl Places {
             // The result's register is taken before those of the operands are given back, so that no instruction
             // writes what it reads.
             let place = match (&places.outputs[value][..], last_use[value]) {
-                (&[output], None) => Place::Output(output),
-                _ => Place::Register(free.pop().unwrap_or_else(|| {
+                (&[output], None) => Storage::Output(output),
+                _ => Storage::Register(free.pop().unwrap_or_else(|| {
                     places.registers += 1;
                     places.registers - 1
                 })),
@@ -124,7 +124,7 @@ impl Places {
             done.sort_unstable();
             done.dedup();
             for value in done {
-                if let Some(Place::Register(register)) = places.of[value] {
+                if let Some(Storage::Register(register)) = places.of[value] {
                     free.push(register);
                 }
             }

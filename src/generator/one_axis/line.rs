@@ -40,7 +40,7 @@ pub(super) struct Part {
 }
 
 /// The axis in parts.
-pub(super) struct Line {
+pub(super) struct Partition {
     pub(super) parts: Vec<Part>,
 }
 
@@ -53,7 +53,7 @@ pub(super) struct Sample {
     pub(super) size: f64,
 }
 
-impl Line {
+impl Partition {
     /// All of an axis; `None` where drift or noise are not finite, or the noise vanishes.
     pub(super) fn new(system: &dyn System, axis: &Axis) -> Option<Self> {
         let rule = Rule::new();

@@ -215,7 +215,7 @@ fn integrate(system: &dyn System, axis: &Axis, rule: &Rule, panels: usize) -> Op
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::system::examples::OneState;
+    use crate::system::test_families::OneState;
 
     #[test]
     fn cells_of_a_shallow_well_have_all_their_digits_beside_a_deep_one() {

@@ -4,7 +4,7 @@
 //! extrema of the density, however narrow, and its own extrema are where the next peak and valley are born.
 
 use super::OneAxis;
-use super::line::{Line, Part, STEEPEST, Sample, zero};
+use super::line::{Part, Partition, STEEPEST, Sample, zero};
 use crate::density::{Extremum, Profile, SlopeJump, Turn};
 use crate::space::Axis;
 use crate::system::System;
@@ -24,7 +24,7 @@ pub fn profile(
     found: &OneAxis,
     centre: Option<f64>,
 ) -> Option<Profile> {
-    let line = Line::new(system, axis)?;
+    let line = Partition::new(system, axis)?;
     let samples = line.samples();
     Some(Profile {
         extrema: line.extrema(&samples, found.log_integral),
@@ -34,7 +34,7 @@ pub fn profile(
     })
 }
 
-impl Line {
+impl Partition {
     /// Peaks and valleys; `log_integral` is the logarithm of what the density is divided by.
     fn extrema(&self, samples: &[Sample], log_integral: f64) -> Vec<Extremum> {
         let slope = |place: f64| self.part(place).map_or(0.0, |part| part.slope.at(place));

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::relaxation::Relaxation;
 use super::session::GeneratorSession;
 use super::stand::Stand;
-use super::trail::{News, Solved, Trail};
+use super::trail::{News, Trail, TrailPoint};
 use crate::bytes::{NotWhatWasWritten, from_bytes, to_bytes};
 use crate::continuation::SourceError;
 use crate::generator::Generator;
@@ -39,10 +39,10 @@ pub(super) fn recall(
     session: &mut GeneratorSession,
     left: &[(f64, &[u8])],
 ) -> Result<(), SourceError> {
-    let mut known: Vec<Arc<Solved>> = Vec::new();
+    let mut known: Vec<Arc<TrailPoint>> = Vec::new();
     let mut last = None;
     for (value, bytes) in left.iter().filter(|(_, bytes)| !bytes.is_empty()) {
-        let left: Left<News<Solved, Vec<f64>, Relaxation>> = from_bytes(bytes)?;
+        let left: Left<News<TrailPoint, Vec<f64>, Relaxation>> = from_bytes(bytes)?;
         if let Some(news) = left.trail {
             let trail = Trail::of_news(news, &known).ok_or(NotWhatWasWritten)?;
             check(session, &trail)?;

@@ -16,6 +16,7 @@ mod session;
 mod source;
 mod stand;
 mod trail;
+mod unknowns;
 
 pub(super) use coarse::rough_masses;
 pub use cost::GeneratorCost;

@@ -16,18 +16,17 @@ use super::sensitivity::GeneratorSensitivity;
 use super::source::METHOD;
 use super::stand::Stand;
 use super::trail::{self, Trail};
+use super::unknowns::{distance, moments_of, negative_mass, summed_over_modes};
 use crate::cancellation::Cancellation;
 use crate::continuation::Solution;
 use crate::continuation::measure::{ESCAPE_RATE, FACTORISATIONS, NEGATIVE_MASS};
-use crate::density::{EstimatedDensity, Moments};
+use crate::density::EstimatedDensity;
 use crate::generator::{
     AdvectiveScheme, Generator, GeneratorOptions, assemble_derivative, cell_masses, resolution,
-    unknown_moments,
 };
 use crate::method::neighbours::Neighbours;
 use crate::method::report::{QUIET_ESCAPE, Reporter};
 use crate::method::{MethodError, Problem};
-use crate::space::CellSpace;
 use crate::stationary::generator::{Along, RateError, RateInfo, RateSolver, RateSteadyState};
 use crate::system::System;
 
@@ -55,7 +54,7 @@ pub(super) struct GeneratorSession {
 }
 
 /// What was solved at one point.
-struct Solved {
+struct PointSolve {
     value: f64,
     system: Arc<dyn System>,
     steady: RateSteadyState,
@@ -153,7 +152,7 @@ impl GeneratorSession {
         system: Arc<dyn System>,
         guess: Option<&[f64]>,
         expected: Option<&[f64]>,
-    ) -> Result<Solved, MethodError> {
+    ) -> Result<PointSolve, MethodError> {
         let (source, solver) = (&self.source, &mut self.solver);
         let (generator, second) = rayon::join(
             || source.assemble(system.as_ref(), source.options.scheme),
@@ -178,7 +177,7 @@ impl GeneratorSession {
         let (steady, answer) = steady?;
         self.stand.solved = Some(value);
         let near = guess.is_some_and(|guess| distance(guess, &steady.mass) <= NEAR);
-        Ok(Solved {
+        Ok(PointSolve {
             value,
             system,
             steady,
@@ -188,7 +187,11 @@ impl GeneratorSession {
     }
 
     /// Judges a solution and turns it into densities.
-    fn judge(&mut self, solved: &Solved, before: Option<&Trail>) -> Result<Judged, MethodError> {
+    fn judge(
+        &mut self,
+        solved: &PointSolve,
+        before: Option<&Trail>,
+    ) -> Result<Judged, MethodError> {
         let info = &solved.steady.info;
         let unknowns = &solved.steady.mass;
         let problem = self.source.problem.clone();
@@ -233,7 +236,7 @@ impl GeneratorSession {
 
     /// The time in which deviations die out, where mass escapes: a neighbour's, or that of fewer cells, where it will
     /// do.
-    fn relaxation(&mut self, solved: &Solved, before: Option<&Trail>) -> Option<Relaxation> {
+    fn relaxation(&mut self, solved: &PointSolve, before: Option<&Trail>) -> Option<Relaxation> {
         let (rate, mass) = (solved.steady.info.escape_rate, &solved.steady.mass);
         if self.source.checks || rate <= NO_ESCAPE {
             return None;
@@ -255,7 +258,7 @@ impl GeneratorSession {
     /// Densities with the difference to the second scheme as their error, and that difference of the unknowns.
     fn densities(
         &mut self,
-        solved: &Solved,
+        solved: &PointSolve,
         masses: &[f64],
     ) -> Result<(Vec<EstimatedDensity>, Vec<f64>), MethodError> {
         let problem = &self.source.problem;
@@ -324,12 +327,12 @@ fn reporter<'a>(problem: &'a Problem, info: &RateInfo) -> Reporter<'a> {
 
 /// What a point leaves for its neighbour, with the points before.
 fn trail_after(
-    solved: &Solved,
+    solved: &PointSolve,
     difference: Vec<f64>,
     relaxation: Option<Relaxation>,
     before: Option<&Trail>,
 ) -> Trail {
-    let point = trail::Solved {
+    let point = trail::TrailPoint {
         value: solved.value,
         mass: solved.steady.mass.clone(),
         difference,
@@ -339,46 +342,6 @@ fn trail_after(
     trail
         .unwrap_or_default()
         .with(point, relaxation.map(Arc::new))
-}
-
-/// Masses of the cells of the other axes. The values at the nodes of a series, which may be negative where the density
-/// is nothing, are the masses of no cells.
-fn summed_over_modes(space: &CellSpace, masses: &[f64]) -> Vec<f64> {
-    let mut summed = masses.to_vec();
-    let mut stride = 1;
-    for axis in space.axes().iter().rev() {
-        if axis.is_modes() {
-            let blocks = summed.chunks_exact(stride * axis.count());
-            let sum = |block: &[f64], inner| block.iter().skip(inner).step_by(stride).sum::<f64>();
-            summed = blocks
-                .flat_map(|block| (0..stride).map(move |inner| sum(block, inner)))
-                .collect();
-        } else {
-            stride *= axis.count();
-        }
-    }
-    summed
-}
-
-/// Σ |a - b|.
-fn distance(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum()
-}
-
-/// Σ |min(mass, 0)|.
-fn negative_mass(masses: &[f64]) -> f64 {
-    masses.iter().map(|mass| (-mass).max(0.0)).sum()
-}
-
-/// Moments from the unknowns, which are free of the h²/6 that moments of cell masses have.
-fn moments_of(space: &CellSpace, unknowns: &[f64]) -> Vec<Moments> {
-    unknown_moments(space, unknowns)
-        .into_iter()
-        .map(|(mean, variance)| Moments {
-            mean,
-            standard_deviation: variance.max(0.0).sqrt(),
-        })
-        .collect()
 }
 
 /// The scheme whose difference to the given one stands for its error.

@@ -20,7 +20,7 @@ const FALLING: f64 = 0.5;
 /// A solved point.
 #[derive(Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Solved {
+pub(super) struct TrailPoint {
     /// The parameter's value.
     pub(super) value: f64,
     /// The generator's unknowns, Σ = 1.
@@ -32,7 +32,7 @@ pub(super) struct Solved {
 /// The last points along the sweep, newest first, and what else changes slowly from one to the next.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(in crate::method) struct Trail {
-    points: Vec<Arc<Solved>>,
+    points: Vec<Arc<TrailPoint>>,
     /// Derivative of the unknowns by the parameter at the only point, Σ = 0: predicts the second one.
     pub(super) slope: Option<Arc<Vec<f64>>>,
     /// How fast deviations die out, where it was needed.
@@ -51,7 +51,7 @@ pub(super) struct News<Point, Unknowns, Time> {
 
 impl Trail {
     /// The trail with one more point; the oldest one is forgotten.
-    pub(super) fn with(&self, point: Solved, relaxation: Option<Arc<Relaxation>>) -> Self {
+    pub(super) fn with(&self, point: TrailPoint, relaxation: Option<Arc<Relaxation>>) -> Self {
         let mut points = vec![Arc::new(point)];
         let older = self.points.iter();
         let older = older.filter(|older| older.value != points[0].value);
@@ -66,7 +66,7 @@ impl Trail {
 
     /// What is new in it, and the values of the older points.
     #[cfg(feature = "serde")]
-    pub(super) fn news(&self) -> News<&Solved, &Vec<f64>, &Relaxation> {
+    pub(super) fn news(&self) -> News<&TrailPoint, &Vec<f64>, &Relaxation> {
         News {
             newest: self.newest().map(AsRef::as_ref),
             older: self
@@ -83,8 +83,8 @@ impl Trail {
     /// The trail with this news, its older points among those that are `known`; `None` where one is not.
     #[cfg(feature = "serde")]
     pub(super) fn of_news(
-        news: News<Solved, Vec<f64>, Relaxation>,
-        known: &[Arc<Solved>],
+        news: News<TrailPoint, Vec<f64>, Relaxation>,
+        known: &[Arc<TrailPoint>],
     ) -> Option<Self> {
         let find = |value| known.iter().rev().find(|point| point.value == value);
         let older = news.older.into_iter().take(POINTS - 1);
@@ -110,12 +110,12 @@ impl Trail {
     }
 
     /// The newest point.
-    pub(super) fn newest(&self) -> Option<&Arc<Solved>> {
+    pub(super) fn newest(&self) -> Option<&Arc<TrailPoint>> {
         self.points.first()
     }
 
     /// The point, where there is no other.
-    pub(super) fn only(&self) -> Option<&Arc<Solved>> {
+    pub(super) fn only(&self) -> Option<&Arc<TrailPoint>> {
         match self.points.as_slice() {
             [only] => Some(only),
             _ => None,
@@ -144,9 +144,9 @@ impl Trail {
         &self,
         value: f64,
         most: usize,
-        part: impl Fn(&Solved) -> &[f64],
+        part: impl Fn(&TrailPoint) -> &[f64],
     ) -> Option<Vec<f64>> {
-        let mut nearest: Vec<&Solved> = self.points.iter().map(AsRef::as_ref).collect();
+        let mut nearest: Vec<&TrailPoint> = self.points.iter().map(AsRef::as_ref).collect();
         nearest.sort_by(|a, b| (a.value - value).abs().total_cmp(&(b.value - value).abs()));
         let first = nearest.first()?;
         let mut sum = part(first).to_vec();
@@ -167,9 +167,9 @@ impl Trail {
 /// The term of highest degree in Newton's form at a value: the divided difference of all points times the distances to
 /// all but the last.
 fn term<'a>(
-    points: &[&'a Solved],
+    points: &[&'a TrailPoint],
     value: f64,
-    part: &impl Fn(&'a Solved) -> &'a [f64],
+    part: &impl Fn(&'a TrailPoint) -> &'a [f64],
 ) -> Vec<f64> {
     let (_, before) = points.split_last().unwrap_or((&points[0], &[]));
     let distances: f64 = before.iter().map(|point| value - point.value).product();
@@ -200,7 +200,7 @@ mod tests {
         values.iter().fold(Trail::default(), |trail, &value| {
             let mass = curve(value);
             let difference = curve(2.0 * value);
-            let point = Solved {
+            let point = TrailPoint {
                 value,
                 mass,
                 difference,

@@ -6,7 +6,7 @@
 //! faces, which are (h²/4) (p')²/p. That is taken off, and what it leaves is judged by the same from cells twice as
 //! wide. Samples make entropies small and steps large: there the first is stated with all of the second.
 
-use super::{DerivedMeasure, Solved};
+use super::{DerivedMeasure, MeasureInput};
 use crate::continuation::{Measure, MeasureKind};
 use crate::density::{EstimatedDensity, Observable, Variants};
 use crate::system::Family;
@@ -26,7 +26,7 @@ fn names(family: &Family, observables: &[Observable]) -> Vec<String> {
     joint.map(|one| one.name(family)).collect()
 }
 
-fn derive(measure: &DerivedMeasure, solved: &Solved<'_>) -> Vec<Measure> {
+fn derive(measure: &DerivedMeasure, solved: &MeasureInput<'_>) -> Vec<Measure> {
     let densities = solved.densities.iter();
     let found = densities.filter_map(|one| Some((one, entropy(one)?)));
     found

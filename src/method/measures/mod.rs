@@ -14,11 +14,11 @@ pub struct DerivedMeasure {
     /// What its numbers are of, a name each.
     of: fn(&Family, &[Observable]) -> Vec<String>,
     /// The numbers that can be told.
-    derive: fn(&DerivedMeasure, &Solved<'_>) -> Vec<Measure>,
+    derive: fn(&DerivedMeasure, &MeasureInput<'_>) -> Vec<Measure>,
 }
 
 /// What a session has solved at a value.
-struct Solved<'a> {
+struct MeasureInput<'a> {
     family: &'a Family,
     densities: &'a [EstimatedDensity],
 }
@@ -49,7 +49,7 @@ impl DerivedMeasure {
 
 /// The measures that a subject asks for.
 pub(super) fn derive(subject: &Subject, densities: &[EstimatedDensity]) -> Vec<Measure> {
-    let solved = Solved {
+    let solved = MeasureInput {
         family: &subject.family,
         densities,
     };

@@ -5,7 +5,7 @@ use crate::continuation::measure::{DEVIATION, MEAN};
 use crate::continuation::{CellCheck, SolveReport};
 use crate::density::{Density, NEGLIGIBLE, Observable, Structure};
 use crate::space::Axis;
-use crate::system::examples::coulomb;
+use crate::system::test_families::coulomb;
 
 fn subject() -> Subject {
     Subject {

@@ -12,7 +12,7 @@ use crate::density::{
     Variants,
 };
 use crate::space::{Axis, CellSpace};
-use crate::system::examples::coulomb;
+use crate::system::test_families::coulomb;
 use kept::Kept;
 
 const SWEEP: &str = "title = \"t\"\n[sweep]\npoints = 3\n[figures]\nat = [0.0]\n";

@@ -12,7 +12,7 @@ use crate::continuation::{CellCheck, Finding, Measure, Point, PointStatus, Solve
 
 use crate::density::{Density, EstimatedDensity, Kink, Observable, Structure, Variants};
 use crate::space::{Axis, CellSpace, Grading};
-use crate::system::examples::coulomb;
+use crate::system::test_families::coulomb;
 
 const OBSERVABLES: [Observable; 2] = [Observable::Marginal(1), Observable::Joint(0, 1)];
 

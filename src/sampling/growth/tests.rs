@@ -4,8 +4,8 @@ use super::*;
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::sampling::{Integrator, TransitionMatrix, pilot};
 use crate::space::Axis;
-use crate::system::examples::OneState;
 use crate::system::registry;
+use crate::system::test_families::OneState;
 use std::sync::Arc;
 
 fn square(half: f64, count: usize) -> CellSpace {

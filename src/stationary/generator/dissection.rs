@@ -11,7 +11,7 @@ use crate::MAX_DIMENSION;
 
 /// A node of the elimination tree: the cells of one slab or one leaf.
 #[derive(Debug, Clone)]
-pub(super) struct Node {
+pub(super) struct TreeNode {
     /// Positions of its own cells in the elimination order.
     pub(super) own: Range<usize>,
     /// The two halves that the slab separates; none for a leaf.
@@ -24,7 +24,7 @@ pub(super) struct Node {
 #[derive(Debug, Clone)]
 pub(super) struct Dissection {
     /// All nodes, children before parents, the root last.
-    pub(super) nodes: Vec<Node>,
+    pub(super) nodes: Vec<TreeNode>,
     /// `order[position]` is the cell eliminated at that position.
     pub(super) order: Vec<u32>,
 }
@@ -185,7 +185,7 @@ impl Dissection {
         for own in cut.own {
             own.push_cells(&grid.shape, &mut self.order);
         }
-        self.nodes.push(Node {
+        self.nodes.push(TreeNode {
             own: start..self.order.len(),
             children,
             first,

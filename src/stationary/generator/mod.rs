@@ -32,6 +32,7 @@ mod memory;
 mod modewise;
 mod narrowing;
 mod newton;
+mod number;
 mod passes;
 mod preconditioner;
 mod prediction;

@@ -22,7 +22,7 @@ const ROUGH: f64 = 1e-3;
 
 /// Work and state of one solve.
 #[derive(Default)]
-pub(super) struct Progress {
+pub(super) struct SolveWork {
     pub(super) factorisations: usize,
     pub(super) iterations: usize,
     pub(super) error: f64,
@@ -52,7 +52,7 @@ impl Newton<'_> {
     pub(super) async fn run(
         &self,
         mass: &mut [f64],
-        progress: &mut Progress,
+        progress: &mut SolveWork,
     ) -> Result<usize, Cancelled> {
         let (mut used, mut smallest, mut previous) = (0, 1.0f64, f64::INFINITY);
         let (mut rounds, mut stalls) = (0, 0);

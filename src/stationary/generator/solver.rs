@@ -7,7 +7,7 @@ mod restore;
 use sprs::CsMat;
 
 use super::balance::Balance;
-use super::newton::{Newton, Progress};
+use super::newton::{Newton, SolveWork};
 use super::passes::{Seat, run_alone, together};
 use super::preconditioner::{Estimate, Preconditioner, Structure};
 use super::question::{Question, answer};
@@ -103,7 +103,7 @@ impl DirectSolver {
             None => Vec::new(),
         };
         let mut plan = self.plan(matrix)?;
-        let mut progress = Progress::default();
+        let mut progress = SolveWork::default();
         let mut held = self.choose_held(matrix, &mass);
         let mut fresh = self.is_worn()
             || self
@@ -189,7 +189,7 @@ impl DirectSolver {
         &mut self,
         balance: &Balance<'_>,
         mass: &mut [f64],
-        progress: &mut Progress,
+        progress: &mut SolveWork,
         (fresh, plan): (bool, &Estimate),
         question: Option<Question<'_>>,
     ) -> Result<Option<Vec<f64>>, Cancelled> {
@@ -245,7 +245,7 @@ impl DirectSolver {
         matrix: &CsMat<f64>,
         escape: &[f64],
         mut mass: Vec<f64>,
-        progress: &Progress,
+        progress: &SolveWork,
         method: RateMethod,
     ) -> RateSteadyState {
         let sum: f64 = mass.iter().sum();

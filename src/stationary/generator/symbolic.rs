@@ -4,7 +4,7 @@
 
 use sprs::CsMat;
 
-use super::dissection::{Dissection, Node};
+use super::dissection::{Dissection, TreeNode};
 use super::updates::UpdateSpace;
 
 /// A stored rate and its place in a front: local row and column, own cells first, then the boundary.
@@ -22,7 +22,7 @@ pub(super) struct Entry {
 #[derive(Debug, Clone)]
 pub(super) struct Front {
     /// The node of the elimination tree.
-    pub(super) node: Node,
+    pub(super) node: TreeNode,
     /// Number of cells around the subtree that elimination couples.
     pub(super) boundary: usize,
     /// For each boundary cell, ascending, its local number in the parent's front; empty at the root.

@@ -9,7 +9,8 @@ use std::array::from_fn;
 
 use multiversion::multiversion;
 
-use super::fronts::{Factor, Number};
+use super::fronts::Factor;
+use super::number::Number;
 use super::symbolic::Symbolic;
 
 /// Subtrees with fewer unknowns are not worth a task.

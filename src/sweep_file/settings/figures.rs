@@ -7,7 +7,7 @@ use crate::sweep_file::diagnostic::{Diagnostic, Place};
 use crate::sweep_file::draft::Draft;
 use crate::sweep_file::names::list;
 use crate::sweep_file::reader::Reader;
-use crate::sweep_file::value::Node;
+use crate::sweep_file::value::SpannedValue;
 
 /// Checks `figures.at`; left out, it is both ends and two of the sweep's values between.
 ///
@@ -25,7 +25,7 @@ pub(super) fn read_at(reader: &mut Reader<'_>, draft: &Draft, swept: &Swept) -> 
         place.is_some_and(Place::is_set)
     });
     let mut inside = Vec::new();
-    let mut left_out: Vec<(f64, &Node)> = Vec::new();
+    let mut left_out: Vec<(f64, &SpannedValue)> = Vec::new();
     for (&value, item) in values.iter().zip(items) {
         if is_inside(value) {
             inside.push(value);

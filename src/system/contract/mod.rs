@@ -21,6 +21,7 @@
 
 mod declarations;
 mod density;
+mod relaxing;
 mod surfaces;
 #[cfg(test)]
 pub(super) mod tests;

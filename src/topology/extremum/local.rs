@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::{LEAST, LOOKS, sign};
 use crate::space::Axis;
 use crate::topology::FeatureKind;
-use crate::topology::reconstruction::{Line, interpolating};
+use crate::topology::reconstruction::{Weights, interpolating};
 
 /// The polynomial through the averages over some cells.
 pub(super) struct Local {
@@ -36,7 +36,7 @@ impl Local {
         let origin = 0.5 * (axis.edges()[cells.start] + axis.edges()[cells.end]);
         let lines = interpolating(axis, cells, origin, count)?;
         let mut factorial = 1.0;
-        let coefficient = |(order, line): (usize, &Line)| {
+        let coefficient = |(order, line): (usize, &Weights)| {
             factorial *= order.max(1) as f64;
             line.apply(values) / factorial
         };

@@ -12,7 +12,7 @@ use super::{Indicator, IndicatorKind, exact, window};
 use crate::density::EstimatedDensity;
 use crate::topology::Feature;
 use crate::topology::field::{Field, Jet};
-use crate::topology::reconstruction::Line;
+use crate::topology::reconstruction::Weights;
 
 /// Distance from the kink at which its sides are told apart, as a share of the range.
 const ASIDE: f64 = 1e-9;
@@ -127,7 +127,7 @@ fn beside_kink(
 fn curvature_beside(estimated: &EstimatedDensity, near: f64, above: bool) -> Option<Indicator> {
     let at = nearest(estimated, near).filter(|_| !estimated.is_noisy())?;
     let lines = window::one_sided(&estimated.density.axes[0], at, above)?;
-    let of = |lines: &[Line], values: &[f64]| {
+    let of = |lines: &[Weights], values: &[f64]| {
         let [p, slope, bend] = [0, 1, 2].map(|order: usize| lines[order].apply(values));
         bend / p - (slope / p).powi(2)
     };

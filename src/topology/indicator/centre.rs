@@ -10,7 +10,7 @@ use super::window;
 use super::{Indicator, IndicatorKind, is_told};
 use crate::density::{EstimatedDensity, Kink, Variants};
 use crate::space::Axis;
-use crate::topology::reconstruction::Line;
+use crate::topology::reconstruction::Weights;
 
 impl IndicatorKind {
     /// p''/p of a marginal at its centre of symmetry.
@@ -161,7 +161,7 @@ fn curvature(estimated: &EstimatedDensity, at: f64) -> Option<Indicator> {
         return Indicator::derive(estimated, kind, vec![at], fine, rough);
     }
     let lines = window::about(estimated, 0, at)?;
-    let of = |lines: &[Line], values: &[f64]| lines[2].apply(values) / lines[0].apply(values);
+    let of = |lines: &[Weights], values: &[f64]| lines[2].apply(values) / lines[0].apply(values);
     let [fine, rough] = lines.both();
     let (fine, rough) = (
         |values: &[f64]| of(fine, values),
@@ -207,14 +207,14 @@ fn along_kink(estimated: &EstimatedDensity, kink: &Kink, centre: &[f64]) -> Opti
     let trace = window::on_kink(estimated, across, centre[across])?;
     let lines = window::about(estimated, along, centre[along])?;
     let columns = estimated.density.axes[1].count();
-    let apply = |trace: &Line, line: &Line, values: &[f64]| {
+    let apply = |trace: &Weights, line: &Weights, values: &[f64]| {
         if across == 1 {
             line.apply_with(trace, columns, values)
         } else {
             trace.apply_with(line, columns, values)
         }
     };
-    let of = |trace: &[Line], lines: &[Line], values: &[f64]| {
+    let of = |trace: &[Weights], lines: &[Weights], values: &[f64]| {
         apply(&trace[0], &lines[2], values) / apply(&trace[0], &lines[0], values)
     };
     let fine = |values: &[f64]| of(&trace.fine, &lines.fine, values);

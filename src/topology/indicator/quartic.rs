@@ -9,7 +9,7 @@ use super::kind::Traits;
 use super::window::{self, Lines};
 use super::{Indicator, IndicatorKind};
 use crate::density::{EstimatedDensity, Variants};
-use crate::topology::reconstruction::Line;
+use crate::topology::reconstruction::Weights;
 
 /// Lines for the value and four derivatives.
 const ORDERS: usize = 5;
@@ -47,7 +47,8 @@ fn quartic(estimated: &EstimatedDensity) -> Option<Indicator> {
     let kind = IndicatorKind::QUARTIC;
     if let [_] = centre.as_slice() {
         let lines = lines(0)?;
-        let of = |lines: &[Line], values: &[f64]| lines[4].apply(values) / lines[0].apply(values);
+        let of =
+            |lines: &[Weights], values: &[f64]| lines[4].apply(values) / lines[0].apply(values);
         let [fine, rough] = lines.both();
         let (fine, rough) = (
             |values: &[f64]| of(fine, values),

@@ -13,7 +13,7 @@ use super::{Indicator, IndicatorKind};
 use crate::density::{EstimatedDensity, Variants};
 use crate::space::Axis;
 use crate::topology::field::{Field, Jet};
-use crate::topology::reconstruction::{Line, smoothing};
+use crate::topology::reconstruction::{Weights, smoothing};
 
 /// Cells on either side when the density is sampled, as a share of all: noise of slopes falls with the window to the
 /// power 3/2.
@@ -297,7 +297,7 @@ fn from_samples(
     let place = steepest(axis, near, slope_at)?.place;
     let (fine, rough) = (lines(estimated, place, 0)?, lines(estimated, place, 1)?);
     let of =
-        |lines: &[Line], values: &[f64]| sign * lines[1].apply(values) / lines[0].apply(values);
+        |lines: &[Weights], values: &[f64]| sign * lines[1].apply(values) / lines[0].apply(values);
     Indicator::derive(
         estimated,
         kind,
@@ -308,7 +308,7 @@ fn from_samples(
 }
 
 /// Lines for the value and slope of a sampled marginal at a place that has no kink within their reach.
-fn lines(estimated: &EstimatedDensity, at: f64, level: usize) -> Option<Vec<Line>> {
+fn lines(estimated: &EstimatedDensity, at: f64, level: usize) -> Option<Vec<Weights>> {
     let axis = &estimated.density.axes[0];
     let reach = (axis.count() / SAMPLED_SHARE).max(LEAST);
     let cells = around(axis, at, reach)?;

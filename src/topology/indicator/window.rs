@@ -8,7 +8,7 @@ use std::ops::Range;
 use crate::density::{EstimatedDensity, Kink};
 use crate::space::Axis;
 use crate::topology::field::sides;
-use crate::topology::reconstruction::{Line, interpolating};
+use crate::topology::reconstruction::{Weights, interpolating};
 
 /// Cells on either side of a point, in the finer and the rougher reconstruction.
 const REACH: [usize; 2] = [4, 3];
@@ -18,13 +18,13 @@ const BESIDE: [usize; 2] = [4, 3];
 const BENT: [usize; 2] = [6, 5];
 /// Lines for the value and derivatives at a point, by the better and by a rougher reconstruction.
 pub(super) struct Lines {
-    pub(super) fine: Vec<Line>,
-    pub(super) rough: Vec<Line>,
+    pub(super) fine: Vec<Weights>,
+    pub(super) rough: Vec<Weights>,
 }
 
 impl Lines {
     /// Both, for one function of them.
-    pub(super) fn both(&self) -> [&[Line]; 2] {
+    pub(super) fn both(&self) -> [&[Weights]; 2] {
         [&self.fine, &self.rough]
     }
 }
@@ -57,7 +57,7 @@ pub(super) fn derivatives(
 /// The same at a place across which no polynomial follows the density, though its slope is one: the mean of both sides.
 fn beside(axis: &Axis, at: f64, orders: usize) -> Option<Lines> {
     let (below, above) = sides(axis, at)?;
-    let line = |reach: usize| -> Option<Vec<Line>> {
+    let line = |reach: usize| -> Option<Vec<Weights>> {
         let below = interpolating(axis, below.checked_sub(reach)?..below, at, orders)?;
         let above = interpolating(axis, above..above + reach, at, orders)?;
         let pairs = below.iter().zip(&above);
@@ -93,7 +93,7 @@ pub(super) fn on_kink(estimated: &EstimatedDensity, k: usize, at: f64) -> Option
     let face = axis.face_at(at)?;
     let sides = |below: Range<usize>,
                  above: Range<usize>,
-                 line: &dyn Fn(Range<usize>) -> Option<Vec<Line>>| {
+                 line: &dyn Fn(Range<usize>) -> Option<Vec<Weights>>| {
         let (below, above) = (line(below)?, line(above)?);
         Some(vec![below.first()?.mean(above.first()?)])
     };

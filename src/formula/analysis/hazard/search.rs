@@ -70,13 +70,13 @@ pub(super) fn search(
 
 /// A single choice of all coordinates.
 #[derive(Debug, Clone)]
-struct Place {
+struct Assignment {
     states: Vec<f64>,
     parameters: Vec<f64>,
     time: f64,
 }
 
-impl Place {
+impl Assignment {
     fn point(&self) -> Point<'_> {
         Point {
             states: &self.states,
@@ -96,9 +96,9 @@ impl Place {
     }
 }
 
-fn middle(domain: &Domain) -> Place {
+fn middle(domain: &Domain) -> Assignment {
     let middle = |intervals: &[Interval]| intervals.iter().map(|x| x.middle()).collect();
-    Place {
+    Assignment {
         states: middle(&domain.states),
         parameters: middle(&domain.parameters),
         time: domain.time.middle(),
@@ -114,7 +114,7 @@ fn coordinates(domain: &mut Domain) -> impl Iterator<Item = &mut Interval> {
 }
 
 /// The corners of a domain in its first few directions.
-fn corners(domain: &Domain) -> Vec<Place> {
+fn corners(domain: &Domain) -> Vec<Assignment> {
     let mut corners = vec![domain.clone()];
     let count = domain.states.len() + domain.parameters.len() + 1;
     let mut directions = 0;
@@ -207,8 +207,8 @@ struct Trial<'a> {
     kind: HazardKind,
     evaluator: Evaluator,
     /// Places with a positive and a negative divisor, and the largest divisor so far.
-    positive: Option<Place>,
-    negative: Option<Place>,
+    positive: Option<Assignment>,
+    negative: Option<Assignment>,
     largest: f64,
 }
 
@@ -227,7 +227,7 @@ impl<'a> Trial<'a> {
         }
     }
 
-    fn hazard(&self, place: Place, certain: bool) -> Hazard {
+    fn hazard(&self, place: Assignment, certain: bool) -> Hazard {
         Hazard {
             kind: self.kind,
             part: self.part,
@@ -248,7 +248,7 @@ impl<'a> Trial<'a> {
     }
 
     /// Whether the operation is needed at a place and has finite operands but no finite value.
-    fn fails(&mut self, place: &Place) -> bool {
+    fn fails(&mut self, place: &Assignment) -> bool {
         self.evaluator.evaluate(self.graph, &place.point());
         if let Some(divisor) = self.divisor().map(|divisor| self.evaluator.value(divisor)) {
             let side = if divisor > 0.0 {
@@ -270,7 +270,7 @@ impl<'a> Trial<'a> {
         finite && !self.evaluator.value(self.part).is_finite() && self.is_needed()
     }
 
-    fn is_needed_at(&mut self, place: &Place) -> bool {
+    fn is_needed_at(&mut self, place: &Assignment) -> bool {
         self.evaluator.evaluate(self.graph, &place.point());
         self.is_needed()
     }
@@ -302,7 +302,7 @@ impl<'a> Trial<'a> {
     }
 
     /// A place between two with divisors of different signs at which the divisor is zero.
-    fn zero_between(&mut self) -> Option<Place> {
+    fn zero_between(&mut self) -> Option<Assignment> {
         if self.kind != HazardKind::DivisionByZero {
             return None;
         }
@@ -329,14 +329,14 @@ impl<'a> Trial<'a> {
         None
     }
 
-    fn divisor_at(&mut self, place: &Place) -> Option<f64> {
+    fn divisor_at(&mut self, place: &Assignment) -> Option<f64> {
         self.evaluator.evaluate(self.graph, &place.point());
         let divisor = self.evaluator.value(self.divisor()?);
         divisor.is_finite().then_some(divisor)
     }
 
     /// Whether a divisor is very small at a place where it is needed.
-    fn is_next_to_zero(&mut self, place: &Place) -> bool {
+    fn is_next_to_zero(&mut self, place: &Assignment) -> bool {
         let limit = NEXT_TO_ZERO * self.largest;
         self.divisor_at(place)
             .is_some_and(|divisor| divisor.abs() <= limit)

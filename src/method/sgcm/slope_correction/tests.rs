@@ -7,7 +7,7 @@ use crate::cancellation::Cancellation;
 use crate::sampling::{Integrator, SampledTransitions, SamplingOptions, sample_transitions};
 use crate::space::{Axis, CellSpace};
 use crate::stationary::{Options, Outcome, Solver, SteadyState};
-use crate::system::examples::OneState;
+use crate::system::test_families::OneState;
 use crate::system::{System, registry};
 
 fn options(map_step: f64, samples: usize) -> SamplingOptions {

@@ -13,7 +13,7 @@ use sprs::CsMat;
 
 /// One axis: range, cells, diffusion σ²/2, and whether its ends are walls (otherwise mass flows out).
 #[derive(Clone, Copy)]
-pub struct Line {
+pub struct TestAxis {
     pub from: f64,
     pub to: f64,
     pub count: usize,
@@ -36,11 +36,14 @@ const UPWIND: [&[(isize, f64)]; 3] = [
 ];
 
 /// Q by columns and the escape, for cells in C order; `drift(axis, state)`.
-pub fn generator(lines: &[Line], drift: impl Fn(usize, &[f64]) -> f64) -> (CsMat<f64>, Vec<f64>) {
+pub fn generator(
+    lines: &[TestAxis],
+    drift: impl Fn(usize, &[f64]) -> f64,
+) -> (CsMat<f64>, Vec<f64>) {
     let n: usize = lines.iter().map(|line| line.count).product();
     let mut columns: Vec<BTreeMap<usize, f64>> = vec![BTreeMap::new(); n];
     let mut escape = vec![0.0; n];
-    let width = |line: &Line| (line.to - line.from) / line.count as f64;
+    let width = |line: &TestAxis| (line.to - line.from) / line.count as f64;
     for axis in 0..lines.len() {
         let line = &lines[axis];
         let (h, count) = (width(line), line.count as isize);
@@ -114,7 +117,7 @@ fn compress(columns: Vec<BTreeMap<usize, f64>>) -> CsMat<f64> {
 
 /// Duffing oscillator with friction, x' = y, y' = -κy - x - μx³ - f sgn(y) + ξ, on `count` × `count` cells.
 pub fn oscillator(count: usize, friction: f64) -> (CsMat<f64>, Vec<f64>) {
-    let line = |diffusion: f64| Line {
+    let line = |diffusion: f64| TestAxis {
         from: -4.0,
         to: 4.0,
         count,
@@ -135,7 +138,7 @@ pub fn oscillator(count: usize, friction: f64) -> (CsMat<f64>, Vec<f64>) {
 /// Duffing oscillator with Dahl friction at stiffness α, z' = y - (λ|y|/f_c) z between walls.
 pub fn dahl(shape: [usize; 3], alpha: f64) -> (CsMat<f64>, Vec<f64>) {
     let (friction, lambda) = (0.05, 0.06);
-    let line = |reach: f64, count: usize, diffusion: f64, walls: bool| Line {
+    let line = |reach: f64, count: usize, diffusion: f64, walls: bool| TestAxis {
         from: -reach,
         to: reach,
         count,

@@ -144,7 +144,7 @@ fn where_nothing_escapes_a_constant_takes_part_in_neither_side() {
 #[test]
 fn half_of_the_cells_and_all_of_them_are_each_others_adjoints() {
     let count = 112;
-    let line = |diffusion: f64| generators::Line {
+    let line = |diffusion: f64| generators::TestAxis {
         from: -4.0,
         to: 4.0,
         count,

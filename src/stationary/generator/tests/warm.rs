@@ -95,7 +95,7 @@ fn sensitivity_agrees_with_central_differences() {
     let step = 1e-5;
     // A domain that mass leaves, so that the escape's derivative counts too.
     let at = |damping: f64| {
-        let line = |diffusion: f64| generators::Line {
+        let line = |diffusion: f64| generators::TestAxis {
             from: -1.2,
             to: 1.2,
             count: 30,
@@ -135,7 +135,7 @@ fn sensitivity_agrees_with_central_differences() {
 #[test]
 fn memory_is_predicted_from_the_geometry() {
     for shape in [[14, 12, 9], [60, 8, 1], [7, 7, 7]] {
-        let lines = shape.map(|count| generators::Line {
+        let lines = shape.map(|count| generators::TestAxis {
             from: -1.0,
             to: 1.0,
             count,

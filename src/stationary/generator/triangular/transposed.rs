@@ -3,7 +3,8 @@
 //! Columns of the factors are rows of what is solved here, so that all sums are products of contiguous numbers.
 
 use super::{GRAIN, both};
-use crate::stationary::generator::fronts::{Factor, Number};
+use crate::stationary::generator::fronts::Factor;
+use crate::stationary::generator::number::Number;
 use crate::stationary::generator::symbolic::Symbolic;
 
 /// Solves Mᵀ x = b in place; x is in the elimination order.

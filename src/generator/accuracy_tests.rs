@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::banded::null_vector;
+use super::banded_tests::null_vector;
 use super::{AdvectiveScheme, GeneratorOptions, assemble, automatic_grading, cell_masses};
 use crate::space::{Axis, CellSpace};
 use crate::system::{Lanes, Noise, System, registry};

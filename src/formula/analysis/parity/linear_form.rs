@@ -6,18 +6,18 @@ use crate::formula::graph::{Expression, Node, Symbol};
 
 /// constant + Σ slope_i x_i.
 #[derive(Debug, Clone)]
-pub(super) struct Line {
+pub(super) struct LinearForm {
     constant: f64,
     slopes: Vec<f64>,
 }
 
-impl Line {
+impl LinearForm {
     pub(super) fn of(
         node: Node,
-        line: &impl Fn(Expression) -> Option<Line>,
+        line: &impl Fn(Expression) -> Option<LinearForm>,
         dimension: usize,
     ) -> Option<Self> {
-        let constant = |constant| Line {
+        let constant = |constant| LinearForm {
             constant,
             slopes: vec![0.0; dimension],
         };

@@ -8,7 +8,7 @@
 use crate::cancellation::Cancellation;
 use crate::sampling::{Integrator, SamplingOptions, TransitionMatrix, sample_transitions};
 use crate::space::{Axis, CellSpace};
-use crate::system::examples::OneState;
+use crate::system::test_families::OneState;
 
 const WIDTH: f64 = 0.25;
 

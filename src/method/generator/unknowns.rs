@@ -1,0 +1,45 @@
+//! Numbers of a generator's unknowns, which are masses of cells or of modes.
+
+use crate::density::Moments;
+use crate::generator::unknown_moments;
+use crate::space::CellSpace;
+
+/// Masses of the cells of the other axes. The values at the nodes of a series, which may be negative where the density
+/// is nothing, are the masses of no cells.
+pub(super) fn summed_over_modes(space: &CellSpace, masses: &[f64]) -> Vec<f64> {
+    let mut summed = masses.to_vec();
+    let mut stride = 1;
+    for axis in space.axes().iter().rev() {
+        if axis.is_modes() {
+            let blocks = summed.chunks_exact(stride * axis.count());
+            let sum = |block: &[f64], inner| block.iter().skip(inner).step_by(stride).sum::<f64>();
+            summed = blocks
+                .flat_map(|block| (0..stride).map(move |inner| sum(block, inner)))
+                .collect();
+        } else {
+            stride *= axis.count();
+        }
+    }
+    summed
+}
+
+/// Σ |a - b|.
+pub(super) fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum()
+}
+
+/// Σ |min(mass, 0)|.
+pub(super) fn negative_mass(masses: &[f64]) -> f64 {
+    masses.iter().map(|mass| (-mass).max(0.0)).sum()
+}
+
+/// Moments from the unknowns, which are free of the h²/6 that moments of cell masses have.
+pub(super) fn moments_of(space: &CellSpace, unknowns: &[f64]) -> Vec<Moments> {
+    unknown_moments(space, unknowns)
+        .into_iter()
+        .map(|(mean, variance)| Moments {
+            mean,
+            standard_deviation: variance.max(0.0).sqrt(),
+        })
+        .collect()
+}

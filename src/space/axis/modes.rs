@@ -1,0 +1,172 @@
+//! Axes that carry a series in place of cells: their nodes, their weights, and what is worked out in their modes.
+
+use super::Axis;
+use crate::space::SpaceError;
+use crate::space::hermite::{
+    NORMAL_RANGE, gauss_hermite, hermite_integrals, hermite_values, normal_edges,
+};
+use crate::space::series::{
+    MOST_MODES, Series, differentiation, gauss_legendre, legendre_integrals, legendre_values,
+};
+
+/// Standard deviations of the normal density from the middle to the ends of the range of a state that relaxes: ranges
+/// that are found hold 6.5 of the state's own, so that the normal density is a third wider than the state's.
+const DEVIATIONS_OF_A_RANGE: f64 = 5.0;
+
+impl Axis {
+    /// An axis of `count` modes: the density along it is a polynomial of degree `count` - 1, given by its values at the
+    /// nodes of Gauss's rule for Legendre polynomials. For internal states that stay in the range and have no noise.
+    ///
+    /// # Errors
+    /// [`SpaceError::Range`] or [`SpaceError::Modes`].
+    pub fn modes(from: f64, to: f64, count: usize) -> Result<Self, SpaceError> {
+        Self::check(from, to, count.max(2))?;
+        Self::check_modes(count)?;
+        let rule = gauss_legendre(count);
+        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+        let mut edges = vec![from];
+        // From the nearer end, so that mirrored cells are alike to the last bit.
+        let mut sum = 0.0;
+        for weight in &rule.weights[..count - 1] {
+            sum += weight;
+            edges.push(from + half * sum);
+        }
+        edges.push(to);
+        for index in 1..=count / 2 {
+            edges[count - index] = middle + (middle - edges[index]);
+        }
+        Ok(Self {
+            edges,
+            nodes: rule.nodes.iter().map(|s| middle + half * s).collect(),
+            pieces: Vec::new(),
+            series: Some(Series::Legendre),
+        })
+    }
+
+    /// An axis of `count` Hermite modes: the density along it is a normal density of this mean and standard deviation,
+    /// times a polynomial of degree `count` - 1, given by its values at the nodes of Gauss's rule for the normal
+    /// density. For white noise behind a linear filter. The range reaches at least six standard deviations to either
+    /// side.
+    ///
+    /// # Errors
+    /// [`SpaceError::Range`] where the deviation is not a positive number, or [`SpaceError::Modes`].
+    pub fn hermite(mean: f64, deviation: f64, count: usize) -> Result<Self, SpaceError> {
+        Self::check(mean - deviation, mean + deviation, count.max(2))?;
+        Self::check_modes(count)?;
+        let rule = gauss_hermite(count);
+        let place = |s: f64| mean + deviation * s;
+        Ok(Self {
+            edges: normal_edges(&rule).into_iter().map(place).collect(),
+            nodes: rule.nodes.into_iter().map(place).collect(),
+            pieces: Vec::new(),
+            series: Some(Series::Hermite { mean, deviation }),
+        })
+    }
+
+    /// As [`Axis::hermite`], of a state that a range holds nearly always: the range is five standard deviations of the
+    /// normal density to either side of its mean. The density need not be normal. Modes are few where the state's own
+    /// deviation is a half to one and a half of that of the normal density.
+    ///
+    /// # Errors
+    /// [`SpaceError::Range`] or [`SpaceError::Modes`].
+    pub(crate) fn hermite_over(from: f64, to: f64, count: usize) -> Result<Self, SpaceError> {
+        Self::check(from, to, count.max(2))?;
+        let (mean, half) = (0.5 * (from + to), 0.5 * (to - from));
+        Self::hermite(mean, half / DEVIATIONS_OF_A_RANGE, count)
+    }
+
+    /// The same axis with another number of modes.
+    ///
+    /// # Errors
+    /// [`SpaceError::Modes`]; an axis of cells becomes one of Legendre modes.
+    pub fn with_modes(&self, count: usize) -> Result<Self, SpaceError> {
+        match self.series {
+            Some(Series::Hermite { mean, deviation }) => Self::hermite(mean, deviation, count),
+            Some(Series::Legendre) | None => Self::modes(self.from(), self.to(), count),
+        }
+    }
+
+    /// Whether it carries a series in place of cells: see [`Axis::modes`] and [`Axis::hermite`].
+    pub fn is_modes(&self) -> bool {
+        self.series.is_some()
+    }
+
+    /// The series that it carries; `None` for cells.
+    pub fn series(&self) -> Option<Series> {
+        self.series
+    }
+
+    /// Of an axis of modes, the integrals of the series over bins with these edges: entry `bin · count + node` is what
+    /// the mass at a node adds to a bin, by the first `used` modes.
+    pub(crate) fn series_weights(&self, edges: &[f64], used: usize) -> Vec<f64> {
+        let (middle, half, is_hermite) = match self.series {
+            Some(Series::Hermite { mean, deviation }) => (mean, deviation, true),
+            Some(Series::Legendre) | None => {
+                let (from, to) = (self.from(), self.to());
+                (0.5 * (from + to), 0.5 * (to - from), false)
+            }
+        };
+        let place = |x: &f64| (x - middle) / half;
+        let at = |s: f64| match is_hermite {
+            true => hermite_values(used, s),
+            false => legendre_values(used, s),
+        };
+        let below = |s: f64| match is_hermite {
+            true => hermite_integrals(used, s),
+            false => legendre_integrals(used, s),
+        };
+        let nodes: Vec<Vec<f64>> = self.nodes.iter().map(|x| at(place(x))).collect();
+        let integrals: Vec<Vec<f64>> = edges.iter().map(|x| below(place(x))).collect();
+        let mut weights = Vec::with_capacity(nodes.len() * integrals.len());
+        for bin in integrals.windows(2) {
+            for node in &nodes {
+                let terms = node.iter().zip(&bin[0]).zip(&bin[1]);
+                weights.push(terms.map(|((value, low), high)| value * (high - low)).sum());
+            }
+        }
+        weights
+    }
+
+    /// The ends between which a series is laid out: those of the axis, but six deviations of a normal density.
+    pub(crate) fn series_range(&self) -> (f64, f64) {
+        match self.series {
+            Some(Series::Hermite { mean, deviation }) => {
+                let half = NORMAL_RANGE * deviation;
+                (mean - half, mean + half)
+            }
+            Some(Series::Legendre) | None => (self.from(), self.to()),
+        }
+    }
+
+    fn check_modes(count: usize) -> Result<(), SpaceError> {
+        if (2..=MOST_MODES).contains(&count) {
+            Ok(())
+        } else {
+            Err(SpaceError::Modes {
+                count,
+                most: MOST_MODES,
+            })
+        }
+    }
+
+    /// Of an axis of Legendre modes, the orthonormal polynomials √(2m + 1) P_m at its nodes: entry `node · count + m`.
+    pub(crate) fn orthonormal_values(&self) -> Vec<f64> {
+        let (middle, half) = (
+            0.5 * (self.from() + self.to()),
+            0.5 * (self.to() - self.from()),
+        );
+        let at = |x: &f64| {
+            let values = legendre_values(self.count(), (x - middle) / half).into_iter();
+            values
+                .enumerate()
+                .map(|(m, value)| (2.0 * m as f64 + 1.0).sqrt() * value)
+        };
+        self.nodes.iter().flat_map(at).collect()
+    }
+
+    /// Of an axis of modes, the derivatives of the Lagrange polynomials of its nodes: entry `k · count + i` is
+    /// ℓ_i'(node k).
+    pub(crate) fn differentiation(&self) -> Vec<f64> {
+        differentiation(&self.nodes)
+    }
+}
