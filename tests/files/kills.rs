@@ -65,10 +65,15 @@ const KINDS: [Kind; 5] = [
     },
 ];
 
+/// Whether a file is of work in the making.
+fn is_unfinished(name: &str) -> bool {
+    name.starts_with(".pbif") || name.ends_with(".part.bin")
+}
+
 /// Files of a folder by name, without its earlier versions, its lock, and what a kill left in the making.
 fn files(room: &Room, folder: &str) -> BTreeMap<String, Vec<u8>> {
     let mut files = room.files(folder, &["previous"]);
-    files.retain(|name, _| !name.starts_with(".pbif"));
+    files.retain(|name, _| !is_unfinished(name));
     files
 }
 
@@ -159,8 +164,11 @@ fn rounds(kind: &Kind, rounds: u64, seed: u64) -> usize {
         whole.assert_left_in(&room, "run", &what);
         assert_earlier();
         let left = room.files("run", &["previous"]);
-        let mut hidden = left.keys().filter(|name| name.starts_with(".pbif-"));
-        assert_eq!(hidden.next(), None, "{what}");
+        let lock = |name: &&String| *name == ".pbif.lock";
+        let mut unfinished = left
+            .keys()
+            .filter(|name| is_unfinished(name) && !lock(name));
+        assert_eq!(unfinished.next(), None, "{what}");
         room.done("verify run");
     }
     kills

@@ -183,6 +183,7 @@ fn names_and_texts_of_others_do_not_drive_the_terminal() {
     let sweep = format!("{SWEEP} --out '{foreign}'");
     let plot = format!("plot '{foreign}' --only none");
     let show = format!("show '{foreign}'");
+    let new = format!("new '{foreign}.toml'");
     for line in [
         "list .",
         &show,
@@ -190,6 +191,7 @@ fn names_and_texts_of_others_do_not_drive_the_terminal() {
         &format!("cite '{foreign}'"),
         &plot,
         &sweep,
+        &new,
     ] {
         let text = room.run(line).text();
         let is_harmless = |c: char| c == '\n' || c == '\t' || !c.is_control();
