@@ -9,32 +9,10 @@ use sha2::{Digest as _, Sha256};
 
 use super::atomic::write_durably;
 use super::place::read_text;
-use super::{RunError, journal, research_object};
+use super::{Damage, RunError, journal, research_object};
 
 /// Name of the file.
 pub(super) const NAME: &str = "checksums.sha256";
-
-/// What became of a file of a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Damage {
-    /// It is not there.
-    Missing,
-    /// It holds something else than the run left.
-    Changed,
-    /// The run has not left it, and it stands among the run's densities.
-    Added,
-}
-
-impl Damage {
-    /// In a word.
-    pub(crate) fn word(self) -> &'static str {
-        match self {
-            Self::Missing => "missing",
-            Self::Changed => "changed",
-            Self::Added => "added",
-        }
-    }
-}
 
 /// What a check finds: how many files are as the run left them, and those that are not.
 pub(crate) type Checked = (usize, Vec<(PathBuf, Damage)>);

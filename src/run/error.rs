@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-use super::Damage;
 use crate::continuation::Shard;
 
 /// Why a file of a run could not be written or read.
@@ -296,6 +295,28 @@ pub enum RunError {
         /// Its value.
         value: f64,
     },
+}
+
+/// What became of a file of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Damage {
+    /// It is not there.
+    Missing,
+    /// It holds something else than the run left.
+    Changed,
+    /// The run has not left it, and it stands among the run's densities.
+    Added,
+}
+
+impl Damage {
+    /// In a word.
+    pub(crate) fn word(self) -> &'static str {
+        match self {
+            Self::Missing => "missing",
+            Self::Changed => "changed",
+            Self::Added => "added",
+        }
+    }
 }
 
 /// Numbers with "and" before the last.

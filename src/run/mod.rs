@@ -102,7 +102,6 @@ pub(crate) use bifurcations::{
     bifurcations_csv, bifurcations_json, bifurcations_markdown, bifurcations_tex,
 };
 pub(crate) use checksums::Checked;
-pub use checksums::Damage;
 pub(crate) use clean::{Removable, Stays, removable_runs, remove_run};
 pub use codimension::curve_files;
 pub use compare::ComparedRun;
@@ -112,7 +111,7 @@ pub(crate) use curve::curve_name;
 pub(crate) use curve::point_labels;
 pub(crate) use date::date_in_utc;
 pub use doubts::doubt_in_words;
-pub use error::RunError;
+pub use error::{Damage, RunError};
 pub use export::{ExportFormat, export};
 pub(crate) use features_table::features_csv;
 pub(crate) use folder::{RunFolder, sweep_files};
