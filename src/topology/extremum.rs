@@ -25,7 +25,7 @@ const NEAR_FACE: f64 = 0.25;
 /// Places at which the slope is looked at, in each cell.
 const LOOKS: usize = 8;
 
-/// A refined place.
+/// Where an extremum is, refined between cells.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Vertex {
     /// One coordinate an axis.

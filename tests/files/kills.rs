@@ -8,7 +8,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::process::Command;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use super::killing::started;
 use super::resume_others::{COMPARISON, CUSP, MAP, TIMES};
@@ -181,18 +181,43 @@ fn kills_at_any_moment_lose_nothing() {
     }
 }
 
+/// As many rounds as there are asked for.
+fn many_rounds(name: &str) {
+    let (count, seed) = (given("PBIF_KILL_ROUNDS", 40), given("PBIF_FUZZ_SEED", 1));
+    let kind = KINDS.iter().find(|kind| kind.name == name).unwrap();
+    let clock = Instant::now();
+    let kills = rounds(kind, count, seed);
+    assert!(kills as u64 * 2 > count, "{name}: {kills} kills");
+    let took = clock.elapsed().as_secs();
+    println!("{name}: {count} rounds, {kills} kills, the same bytes; {took} s");
+}
+
 #[test]
 #[ignore = "takes minutes"]
-fn forty_rounds_of_kills_of_every_kind_lose_nothing() {
-    let (count, seed) = (given("PBIF_KILL_ROUNDS", 40), given("PBIF_FUZZ_SEED", 1));
-    for kind in &KINDS {
-        let clock = Instant::now();
-        let kills = rounds(kind, count, seed);
-        assert!(kills as u64 * 2 > count, "{}: {kills} kills", kind.name);
-        let took = Duration::as_secs(&clock.elapsed());
-        println!(
-            "{}: {count} rounds, {kills} kills, the same bytes; {took} s",
-            kind.name
-        );
-    }
+fn rounds_of_kills_of_a_sweep() {
+    many_rounds("sweep");
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn rounds_of_kills_of_a_map() {
+    many_rounds("map");
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn rounds_of_kills_of_a_curve() {
+    many_rounds("curve");
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn rounds_of_kills_of_a_comparison() {
+    many_rounds("comparison");
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn rounds_of_kills_of_a_merge() {
+    many_rounds("merge");
 }

@@ -67,14 +67,14 @@ pub(super) fn allocate(values: Values, fused: Fused, states: usize) -> Option<Ta
         .map(|&output| values.fixed(output))
         .collect();
     let registers = places.registers;
-    Some(Tape::new(
+    Some(Tape {
         steps,
-        values.scalars,
-        values.coefficients,
+        scalars: values.scalars,
+        coefficients: values.coefficients,
         fixed,
         states,
         registers,
-    ))
+    })
 }
 
 /// Where all values are kept.

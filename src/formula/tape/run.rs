@@ -15,12 +15,12 @@ use crate::formula::{LANES, Lanes};
 /// Expressions with bound parameters, ready to run. It may be run from any number of threads at a time.
 #[derive(Debug, Clone)]
 pub struct Tape {
-    steps: Vec<Step>,
-    scalars: Scalars,
-    coefficients: Vec<Vec<u32>>,
-    fixed: Vec<Option<f64>>,
-    states: usize,
-    registers: usize,
+    pub(super) steps: Vec<Step>,
+    pub(super) scalars: Scalars,
+    pub(super) coefficients: Vec<Vec<u32>>,
+    pub(super) fixed: Vec<Option<f64>>,
+    pub(super) states: usize,
+    pub(super) registers: usize,
 }
 
 /// Room for intermediate results. It grows to what a tape needs and is then reused.
@@ -43,24 +43,6 @@ thread_local! {
 }
 
 impl Tape {
-    pub(super) fn new(
-        steps: Vec<Step>,
-        scalars: Scalars,
-        coefficients: Vec<Vec<u32>>,
-        fixed: Vec<Option<f64>>,
-        states: usize,
-        registers: usize,
-    ) -> Self {
-        Self {
-            steps,
-            scalars,
-            coefficients,
-            fixed,
-            states,
-            registers,
-        }
-    }
-
     /// Number of states.
     pub fn states(&self) -> usize {
         self.states
