@@ -10,7 +10,7 @@ use super::stored::{Stored, set};
 use super::{CommandError, Outcome, tell};
 use crate::explore::{ExploreError, LiveServer, StoredPage};
 use crate::job;
-use crate::run::{CURVES, StoredPlane, StoredPlaneContent, write_atomically};
+use crate::run::{CURVES, StoredPlane, StoredPlaneContent, write_anywhere};
 use crate::sweep_file::{Diagnostic, SweepFile};
 
 /// Densities of a map between two words of how many are solved.
@@ -101,7 +101,7 @@ fn of_plane(stored: &StoredPlane, arguments: &ExploreArguments) -> Result<Outcom
 fn written(page: &StoredPage, arguments: &ExploreArguments) -> Result<Outcome, CommandError> {
     let file = file_of(arguments);
     place::check(&file, arguments.force)?;
-    write_atomically(&file, page.html().as_bytes())?;
+    write_anywhere(&file, page.html().as_bytes())?;
     if arguments.open {
         let file = file.canonicalize().unwrap_or_else(|_| file.clone());
         open(&file.to_string_lossy());

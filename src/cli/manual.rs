@@ -7,7 +7,7 @@ use clap_complete::Shell;
 
 use super::args::Arguments;
 use super::{CommandError, Outcome, conclude, print};
-use crate::run::{RunError, write_atomically};
+use crate::run::{RunError, write_anywhere};
 
 /// The completions of a shell.
 pub(super) fn completions(shell: Shell) -> String {
@@ -29,7 +29,7 @@ pub(super) fn run(folder: Option<&Path>) -> Result<Outcome, CommandError> {
     let mut text = "files\n".to_owned();
     let mut write = |name: String, command| -> Result<(), CommandError> {
         let path = folder.join(format!("{name}.1"));
-        write_atomically(&path, page(command)?.as_bytes())?;
+        write_anywhere(&path, page(command)?.as_bytes())?;
         text += &format!("  {}\n", path.display());
         Ok(())
     };

@@ -9,10 +9,49 @@ use std::sync::{Mutex, PoisonError};
 use super::RunError;
 use crate::UNFINISHED;
 
-/// Writes a file so that a killed program leaves either the old content or the new. Missing folders on the
-/// way are made.
+/// Writes a file into a folder that is there, so that a killed program leaves either the old content or the new.
 pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
     write(path, bytes, false).map(drop)
+}
+
+/// The same of a file that a user wants anywhere: missing folders on the way are made.
+pub(crate) fn write_anywhere(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
+    let folder = path.parent().unwrap_or(Path::new("."));
+    std::fs::create_dir_all(folder).map_err(|source| RunError::Write {
+        path: folder.to_owned(),
+        source,
+    })?;
+    write_atomically(path, bytes)
+}
+
+/// The same of a file below the folder `home`; folders that are missing on the way from there are made, see
+/// [`make_below`].
+pub(super) fn write_below(home: &Path, path: &Path, bytes: &[u8]) -> Result<(), RunError> {
+    // Most folders are there already: they are made only where they are missed.
+    write_atomically(path, bytes).or_else(|_| {
+        make_below(home, path.parent().unwrap_or(home))?;
+        write_atomically(path, bytes)
+    })
+}
+
+/// Makes a folder below `home` with those on the way. `home` itself is not made: where it was moved or removed, nothing
+/// takes its place.
+pub(super) fn make_below(home: &Path, folder: &Path) -> Result<(), RunError> {
+    let mut folders: Vec<&Path> = folder.ancestors().collect();
+    folders.retain(|one| one.starts_with(home) && *one != home && !one.is_dir());
+    for folder in folders.into_iter().rev() {
+        match std::fs::create_dir(folder) {
+            // Somebody else may have made it meanwhile.
+            Err(source) if !folder.is_dir() => {
+                return Err(RunError::Write {
+                    path: folder.to_owned(),
+                    source,
+                });
+            }
+            _ => {}
+        }
+    }
+    Ok(())
 }
 
 /// The same so that a machine that loses its power leaves either of them, too. It waits for the disk, about as long as
@@ -39,10 +78,7 @@ fn write(path: &Path, bytes: &[u8], durably: bool) -> Result<File, RunError> {
         let builder = builder.prefix(UNFINISHED).permissions_of_new_files();
         builder.tempfile_in(folder)
     };
-    // Most folders are there already: one is made only where it is missed.
-    let mut file = begun()
-        .or_else(|_| std::fs::create_dir_all(folder).and_then(|()| begun()))
-        .map_err(failed)?;
+    let mut file = begun().map_err(failed)?;
     file.write_all(bytes).map_err(failed)?;
     if durably {
         file.as_file().sync_all().map_err(failed)?;
@@ -200,6 +236,19 @@ mod tests {
         sync_all(&[folder.path().join("a"), folder.path().join("missing")]).unwrap();
         assert!(sync_file(&deep.join("gone")).is_err());
         sync_all(&[]).unwrap();
+    }
+
+    #[test]
+    fn folders_are_made_below_a_home_that_is_there() {
+        let folder = tempfile::tempdir().unwrap();
+        let home = folder.path().join("run");
+        let file = home.join("store/p_x/c/0");
+        assert!(write_below(&home, &file, b"1").is_err());
+        assert!(!home.exists());
+        std::fs::create_dir(&home).unwrap();
+        write_below(&home, &file, b"1").unwrap();
+        write_below(&home, &file, b"2").unwrap();
+        assert_eq!(std::fs::read(file).unwrap(), b"2");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::atomic::{clear_unfinished, sync_all, write_atomically};
+use super::atomic::{clear_unfinished, sync_all, write_below};
 use super::checksums::Checked;
 use super::lock::FolderLock;
 use super::place::{self, FIGURES, folder_in};
@@ -161,7 +161,7 @@ impl JobFolder {
         self.check()?;
         let path = self.path();
         let mut files = files.iter();
-        files.try_for_each(|(name, text)| write_atomically(&path.join(name), text.as_bytes()))
+        files.try_for_each(|(name, text)| write_below(&path, &path.join(name), text.as_bytes()))
     }
 
     /// The journal of a job that is made of what `of` describes as TOML: a new one, or that of the unfinished job.

@@ -97,7 +97,7 @@ mod tests;
 mod tree;
 mod warnings;
 
-pub(crate) use atomic::write_atomically;
+pub(crate) use atomic::write_anywhere;
 pub(crate) use bifurcations::{
     bifurcations_csv, bifurcations_json, bifurcations_markdown, bifurcations_tex,
 };

@@ -13,6 +13,7 @@ use rayon::prelude::*;
 
 use super::RunError;
 use super::arrays::{KINK_AT, Layout, REPLICATE_CHUNK};
+use super::atomic::make_below;
 use super::exchange::{Fresh, Leftover};
 use super::tree::link;
 use crate::density::{EstimatedDensity, Variants};
@@ -123,10 +124,8 @@ impl DensityStore {
     fn link_chunks(&self, other: &Self, places: &[usize]) -> Result<(), RunError> {
         let folders = |layout: &Layout, known: &Layout| -> Result<(PathBuf, PathBuf), RunError> {
             let to = self.path.join(&layout.name);
-            match std::fs::create_dir_all(&to) {
-                Ok(()) => Ok((other.path.join(&known.name), to)),
-                Err(source) => Err(RunError::Write { path: to, source }),
-            }
+            make_below(self.home(), &to)?;
+            Ok((other.path.join(&known.name), to))
         };
         for layout in &self.axes {
             let (from, to) = folders(layout, layout)?;

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use super::super::number::format_number;
-use super::super::{RunError, write_atomically};
+use super::super::{RunError, write_anywhere};
 use crate::continuation::{Point, Subject};
 
 /// Writes `p_x.csv`, `p_xy.csv`, … into a folder: parameter, coordinates of the cell's centre, density, standard error.
@@ -20,7 +20,7 @@ pub(super) fn write(subject: &Subject, points: &[&Point], folder: &Path) -> Resu
         for point in points {
             add(&mut text, point, index);
         }
-        write_atomically(&folder.join(format!("{name}.csv")), text.as_bytes())?;
+        write_anywhere(&folder.join(format!("{name}.csv")), text.as_bytes())?;
     }
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! The files of a store: metadata and chunks, composed in memory by the Zarr library and put in place by renaming.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use serde_json::{Map, Value, json};
@@ -10,7 +11,7 @@ use zarrs::storage::{ListableStorageTraits, ReadableStorageTraits};
 use super::DensityStore;
 use crate::run::RunError;
 use crate::run::arrays::{Layout, PARAMETER_CHUNK};
-use crate::run::atomic::write_atomically;
+use crate::run::atomic::write_below;
 use crate::system::Family;
 
 /// The name of a chunk in the folder of its array, as readers expect it that look for no other encoding of chunks'
@@ -122,7 +123,8 @@ impl DensityStore {
         for key in keys.map_err(|error| self.failed(error.to_string()))? {
             let bytes = memory.get(&key);
             let bytes = bytes.map_err(|error| self.failed(error.to_string()))?;
-            write_atomically(&self.path.join(key.as_str()), &bytes.unwrap_or_default())?;
+            let path = self.path.join(key.as_str());
+            write_below(self.home(), &path, &bytes.unwrap_or_default())?;
         }
         Ok(())
     }
@@ -147,6 +149,11 @@ impl DensityStore {
             },
         });
         let text = serde_json::to_string_pretty(&root)? + "\n";
-        write_atomically(&self.path.join("zarr.json"), text.as_bytes())
+        write_below(self.home(), &self.path.join("zarr.json"), text.as_bytes())
+    }
+
+    /// The folder that holds the store.
+    pub(super) fn home(&self) -> &Path {
+        self.path.parent().unwrap_or(Path::new("."))
     }
 }
