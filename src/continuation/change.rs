@@ -37,6 +37,9 @@ impl Change {
             false => count.saturating_sub(1),
         };
         let mut after = before;
+        if event.is_at_natural_end() {
+            after.at_ends = moved(before.at_ends);
+        }
         match event.feature {
             FeatureKind::Peak => after.peaks = moved(before.peaks),
             FeatureKind::Crater => after.craters = moved(before.craters),

@@ -7,7 +7,9 @@
 
 use super::Point;
 use crate::density::EstimatedDensity;
-use crate::topology::{Feature, FeatureKind, IndicatorKind, Verdict, born_at_kink};
+use crate::topology::{
+    Feature, FeatureKind, Indicator, IndicatorKind, Verdict, born_at_kink, peaks_at_ends,
+};
 
 /// Kinds that make a signature.
 pub(super) const COUNTED: [FeatureKind; 3] =
@@ -35,6 +37,13 @@ pub(super) struct Event {
 }
 
 impl Event {
+    /// Whether a natural end of the range becomes a peak, or is one no more.
+    pub(super) fn is_at_natural_end(&self) -> bool {
+        let ends = [false, true].map(IndicatorKind::natural_end);
+        let indicator = self.indicator.as_ref();
+        indicator.is_some_and(|(kind, _)| ends.contains(kind))
+    }
+
     /// The same born at an inflection beside the kink that it was seen at; `None` where no other place is known.
     pub(super) fn at_inflection(&self) -> Option<Self> {
         let (kind, place) = self.indicator.as_ref()?;
@@ -103,7 +112,42 @@ pub(super) fn events(a: &Point, b: &Point, observable: usize) -> Vec<Event> {
     }
     let mut found = without_moats(found);
     rings_at_rest(&mut found, (a, b), observable, &lengths);
+    let at_ends = at_natural_ends(a, b, observable);
+    if !at_ends.is_empty() {
+        found.retain(|event| !event.is_at_natural_end());
+        found.extend(at_ends);
+    }
     found
+}
+
+/// Natural ends that become peaks, or are peaks no more. The peak comes out of the range, or goes into it, where as
+/// many are counted on both sides.
+fn at_natural_ends(a: &Point, b: &Point, observable: usize) -> Vec<Event> {
+    let ends =
+        |point: &Point| -> Vec<Indicator> { peaks_at_ends(&point.densities[observable]).collect() };
+    let peaks = |point: &Point| point.detections[observable].signature.peaks;
+    let (below, above) = (ends(a), ends(b));
+    let only = |own: &[Indicator], other: &[Indicator]| -> Vec<Indicator> {
+        let is_other = |one: &&Indicator| !other.iter().any(|other| other.kind == one.kind);
+        own.iter().filter(is_other).cloned().collect()
+    };
+    let event = |end: Indicator, is_above: bool| Event {
+        // Between the two only one of several ends can be the cause that a count changes.
+        feature: match peaks(a) == peaks(b) {
+            true => FeatureKind::Valley,
+            false => FeatureKind::Peak,
+        },
+        above: is_above,
+        indicator: Some((end.kind, end.place.clone())),
+        from_centre: f64::INFINITY,
+        place: end.place,
+        was_peak: false,
+    };
+    let vanish = only(&below, &above)
+        .into_iter()
+        .map(|end| event(end, false));
+    let appear = only(&above, &below).into_iter().map(|end| event(end, true));
+    vanish.chain(appear).collect()
 }
 
 /// Rings that open where a peak was, and rings that merge at the saddle between them, in either direction: both
@@ -247,6 +291,10 @@ fn indicator(density: &EstimatedDensity, feature: &Feature) -> Option<(Indicator
             (FeatureKind::Ring, ..) => (IndicatorKind::RING, partner.clone()),
             (FeatureKind::Peak, [peak], [valley]) => {
                 let (valley, peak) = (*valley, *peak);
+                let mut ends = peaks_at_ends(density);
+                if let Some(end) = ends.find(|end| end.place == [peak]) {
+                    return Some((end.kind, end.place));
+                }
                 let rising = valley < peak;
                 let at_kink = born_at_kink(density, feature, valley);
                 let steepest = steepest(density, [valley, peak]).map(|place| vec![place]);

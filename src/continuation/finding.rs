@@ -23,6 +23,15 @@ pub enum Finding {
         /// Share within one relaxation time from which there is said to be no steady state.
         limit: f64,
     },
+    /// The noise dies at an end of an axis, and all mass ends there: there is no stationary density.
+    Absorbed {
+        /// The axis.
+        axis: usize,
+        /// Coordinate of the end.
+        at: f64,
+        /// Exponent of the density at the end, -1 or less: the density would grow like this power of the distance.
+        exponent: f64,
+    },
     /// Most of the mass leaves within one map step: Ω holds no steady state.
     LeavesAtOnce {
         /// Share that leaves per unit time.
@@ -192,6 +201,7 @@ impl Finding {
                 relaxation_time,
                 limit,
             } => plain("no-steady-state", &[rate, relaxation_time, limit]),
+            Self::Absorbed { axis, at, exponent } => along("absorbed", axis, &[at, exponent]),
             Self::LeavesAtOnce { rate } => plain("leaves-at-once", &[rate]),
             Self::NothingStays {
                 runaways,
@@ -242,6 +252,7 @@ impl Finding {
                 relaxation_time,
                 limit,
             },
+            ("absorbed", Some(axis), &[at, exponent]) => Self::Absorbed { axis, at, exponent },
             ("leaves-at-once", None, &[rate]) => Self::LeavesAtOnce { rate },
             ("nothing-stays", None, &[runaways, outside, limit]) => Self::NothingStays {
                 runaways,

@@ -2,10 +2,13 @@
 
 use super::Point;
 use super::events::Event;
-use crate::topology::{Detector, Indicator, IndicatorKind};
+use crate::topology::{Detector, Indicator, IndicatorKind, is_clear};
 
 /// Places of an indicator at neighbouring points farther apart than this, in ranges, are not one place that moved.
 const ONE_PLACE: f64 = 0.1;
+
+/// Times its error that a density must be where an indicator that is lost tells that there is none.
+const WELL: f64 = 10.0;
 
 /// A change of sign of an indicator between two neighbouring points.
 #[derive(Debug, Clone)]
@@ -31,6 +34,9 @@ pub(super) enum Course {
     Crossing(Box<Crossing>),
     /// It is lost between the point with this index and the next one, before it changes sign.
     Lost(usize),
+    /// From the point with this index or the next one on the density there is no clear multiple of its error, before
+    /// the indicator changes sign: nothing tells how far it keeps its sign.
+    Sunk(usize),
     /// It keeps its sign up to the end of the sweep, the point with this index or the next one.
     Beyond(usize),
 }
@@ -56,7 +62,10 @@ pub(super) fn follow(
     } else {
         (left + 1..points.len()).collect()
     };
-    let mut last = at(present, near)?;
+    let Some(mut last) = at(present, near) else {
+        let is_clear = is_clear(&points[present].densities[observable], near, WELL);
+        return (!is_clear).then_some(Course::Sunk(left));
+    };
     let mut last_index = present;
     if last.value <= 0.0 {
         return deeper(points, &at, last, present, event.above, observable);
@@ -66,7 +75,12 @@ pub(super) fn follow(
         let Some(next) =
             at(index, &last.place).filter(|next| is_one_place(points, observable, &last, next))
         else {
-            return Some(Course::Lost(gap));
+            let is_clear = is_clear(&points[index].densities[observable], &last.place, WELL);
+            return Some(if is_clear {
+                Course::Lost(gap)
+            } else {
+                Course::Sunk(gap)
+            });
         };
         if next.value <= 0.0 {
             let ends = if event.above {

@@ -2,7 +2,7 @@
 
 use super::change::{Change, changes};
 use super::doubt::MOST_TIMES;
-use super::doubt::{Doubt, Evidence, WiderRange};
+use super::doubt::{Doubt, Evidence, WiderRange, leaks};
 use super::follow::{Course, Crossing};
 use super::grid::{Checked, Checks, share_of_distance};
 use super::jump::instead_of_zero;
@@ -26,18 +26,35 @@ pub(super) fn label_points(
     let solved: Vec<&Point> = points.iter().filter(|p| !p.detections.is_empty()).collect();
     let mut rows: Vec<Located> = Vec::new();
     let changes = changes(&solved, detector);
+    let is_wider = leaks(points);
     for gap in changes.chunk_by(|a, b| (a.observable, a.left) == (b.observable, b.left)) {
         let found = gap.iter().map(|change| {
             let row = match &change.course {
                 Some(Course::Crossing(crossing)) => {
                     let zero = (change, &**crossing);
-                    by_indicator(&solved, subject, zero, detector, options, checks)
+                    by_indicator(
+                        &solved,
+                        (subject, is_wider),
+                        zero,
+                        detector,
+                        options,
+                        checks,
+                    )
                 }
                 Some(Course::Lost(at)) => {
-                    by_bracket(&solved, observables, change, (*at, Doubt::IndicatorLost))
+                    by_bracket(&solved, observables, change, [*at; 2], Doubt::IndicatorLost)
+                }
+                Some(Course::Sunk(at)) => {
+                    let is_above = change.event.as_ref().is_some_and(|event| event.above);
+                    let end = if is_above {
+                        0
+                    } else {
+                        solved.len().saturating_sub(2)
+                    };
+                    by_bracket(&solved, observables, change, [*at, end], Doubt::TooLow)
                 }
                 Some(Course::Beyond(at)) => {
-                    by_bracket(&solved, observables, change, (*at, Doubt::BornBeyond))
+                    by_bracket(&solved, observables, change, [*at; 2], Doubt::BornBeyond)
                 }
                 None => by_persistence(&solved, observables, change, options),
             };
@@ -82,18 +99,21 @@ fn band(
     }
 }
 
-/// An indicator was lost between two points: its zero lies there, or beyond.
+/// An indicator was lost between two points, or between one of two pairs of neighbours and the other: its zero lies
+/// there, or between there and where the signature changes. `lost` has the lower point of each pair.
 fn by_bracket(
     points: &[&Point],
     observables: &[Observable],
     change: &Change,
-    (at, doubt): (usize, Doubt),
+    lost: [usize; 2],
+    doubt: Doubt,
 ) -> Located {
-    let (lost, gap) = (
-        (points[at].value, points[at + 1].value),
-        (points[change.left].value, points[change.right].value),
-    );
-    let (lower, upper) = (lost.0.min(gap.0), lost.1.max(gap.1));
+    let ends = lost.iter().flat_map(|&at| [at, at + 1]);
+    let places = ends.chain([change.left, change.right]);
+    let values = places.map(|place| points[place].value);
+    let (lower, upper) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(value), high.max(value))
+    });
     Located {
         error: 0.5 * (upper - lower),
         ..band(
@@ -138,7 +158,7 @@ fn by_persistence(
 
 fn by_indicator(
     points: &[&Point],
-    subject: &Subject,
+    (subject, is_wider): (&Subject, bool),
     (change, crossing): (&Change, &Crossing),
     detector: &dyn Detector,
     options: &Goal,
@@ -161,8 +181,13 @@ fn by_indicator(
     });
     let on_finer = on_finer.flatten();
     let leaks = depends_on_cells && edge_mass(a).max(edge_mass(b)) > QUIET;
+    // On a wider range, where the finer cells have it too, what leaves is asked of the value that they give.
+    let of_leak = Checked {
+        root: if is_wider { zero } else { checked.root },
+        ..checked
+    };
     let leak = leaks
-        .then(|| checks.between_closed_ends(&checked))
+        .then(|| checks.between_closed_ends(&of_leak))
         .flatten();
     if let Some(Ok(distance)) = leak {
         zero.error.leak = distance;

@@ -39,6 +39,7 @@ pub(super) fn without_flicker(rows: Vec<Located>) -> Vec<Located> {
     let mut kept = Vec::new();
     for run in rows.chunk_by(is_one_doubt) {
         let (first, last) = (&run[0], &run[run.len() - 1]);
+        let is_too_low = run.iter().any(|row| row.doubts.contains(&Doubt::TooLow));
         let returns = run.len() > 1 && first.before == last.after;
         if run.len() < FLICKER && !returns {
             kept.extend_from_slice(run);
@@ -60,7 +61,9 @@ pub(super) fn without_flicker(rows: Vec<Located>) -> Vec<Located> {
             after: last.after,
             zero: None,
             is_several: false,
-            doubts: vec![if returns {
+            doubts: vec![if is_too_low {
+                Doubt::TooLow
+            } else if returns {
                 Doubt::Flicker
             } else {
                 Doubt::Stages
@@ -78,7 +81,10 @@ fn is_one_doubt(first: &Located, second: &Located) -> bool {
     let is_zero =
         |row: &Located| row.zero.is_some() && row.status() != BifurcationStatus::Unconfirmed;
     let between = second.lower - first.upper;
-    let width = if is_zero(first) && is_zero(second) {
+    // What lies between two bands that reach to the ends of the sweep was seen.
+    let reaches_out = |row: &Located| row.doubts.contains(&Doubt::TooLow);
+    let keeps = |row: &Located| is_zero(row) || reaches_out(row);
+    let width = if keeps(first) && keeps(second) {
         0.0
     } else {
         (first.upper - first.lower).max(second.upper - second.lower)

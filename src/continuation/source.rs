@@ -33,6 +33,9 @@ pub struct Want {
     pub measures: Vec<MeasureColumn>,
     /// Whether densities state the errors of their cells.
     pub errors: bool,
+    /// Ranges that its axes should hold, one an axis; empty, or `None`, where the range of an axis does. A source that
+    /// cannot widen its ranges leaves them.
+    pub reach: Vec<Option<[f64; 2]>>,
 }
 
 impl Want {
@@ -42,6 +45,7 @@ impl Want {
             observables: observables.to_vec(),
             measures: Vec::new(),
             errors: false,
+            reach: Vec::new(),
         }
     }
 }

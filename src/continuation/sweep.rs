@@ -4,6 +4,7 @@
 use super::bracket::is_settled;
 use super::change::{Change, changes, crossings_at_centre};
 use super::dips::{self, Flanks};
+use super::doubt::reach;
 use super::follow::Course;
 use super::grid::CheckedIndicator;
 use super::live::Live;
@@ -259,7 +260,7 @@ impl Run<'_> {
                 let middle = 0.5 * (a + b);
                 (b - a > tolerance && middle > a && middle < b).then_some(middle)
             }
-            Some(Course::Beyond(_)) => None,
+            Some(Course::Sunk(_) | Course::Beyond(_)) => None,
             None => {
                 let (a, b) = (solved[change.left], solved[change.left + 1]);
                 let middle = 0.5 * (a.value + b.value);
@@ -320,6 +321,7 @@ impl Run<'_> {
             self.detector,
             (self.cancellation, self.observer.known_checks()),
             (self.span, self.options.tolerance, effort),
+            reach(&self.points, self.source.subject()),
         );
         let labels = label_points(
             &self.points,

@@ -20,6 +20,9 @@ pub struct Profile {
     /// p''/p at the centre of symmetry, and its error, both over the square of the axis's unit; `None` without a
     /// centre.
     pub curvature: Option<(f64, f64)>,
+    /// Exponents ν of p ~ u^ν at the distance u from the lower and the upper end of the range, where these are natural:
+    /// the noise dies there. Infinite where the density vanishes faster than any power.
+    pub ends: [Option<f64>; 2],
 }
 
 /// A peak or a valley of a density over one axis.

@@ -42,7 +42,7 @@ pub use assemble::assemble;
 pub use derivative::assemble_derivative;
 pub use grading::automatic_grading;
 pub use masses::{cell_masses, unknown_moments};
-pub use one_axis::{OneAxis, one_axis, profile};
+pub use one_axis::{End, OneAxis, exponent_at, one_axis, profile};
 pub(crate) use resolution::{Resolution, resolution};
 pub use scheme::AdvectiveScheme;
 

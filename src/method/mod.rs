@@ -34,6 +34,7 @@ mod report;
 mod sgcm;
 mod sticking;
 mod structure;
+mod swap;
 mod time_step;
 mod watched;
 

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use super::swap::swaps;
 use crate::cancellation::Cancellation;
 use crate::sampling::pilot;
 use crate::space::{Axis, CellSpace};
@@ -79,10 +80,33 @@ pub(crate) fn automatic_ranges(
                 .collect(),
         });
     }
+    if let Some(hull) = &mut hull {
+        alike(systems, known, hull);
+    }
     let rounded = hull.iter().flatten().zip(known);
     Ok(rounded
         .map(|(&found, known)| known.unwrap_or_else(|| outward(found)))
         .collect())
+}
+
+/// Gives axes that may be exchanged in all the systems one range, where neither's is known.
+fn alike(systems: &[Arc<dyn System>], known: &[Option<(f64, f64)>], hull: &mut [(f64, f64)]) {
+    let Some((first, others)) = systems.split_first() else {
+        return;
+    };
+    for pair in swaps(first.as_ref(), hull) {
+        let (a, b) = pair;
+        let is_free = known[a].is_none() && known[b].is_none();
+        let is_always = || {
+            others
+                .iter()
+                .all(|one| swaps(one.as_ref(), hull).contains(&pair))
+        };
+        if is_free && is_always() {
+            let both = (hull[a].0.min(hull[b].0), hull[a].1.max(hull[b].1));
+            (hull[a], hull[b]) = (both, both);
+        }
+    }
 }
 
 fn ranges_of(
@@ -193,7 +217,7 @@ fn outward((from, to): (f64, f64)) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::system::registry;
+    use crate::system::{TypedModel, registry};
 
     #[test]
     fn a_normal_density_is_held_to_six_deviations_and_not_much_more() {
@@ -216,6 +240,26 @@ mod tests {
     }
 
     #[test]
+    fn axes_that_may_be_exchanged_have_one_range() {
+        let coupled = |k: f64, noise: f64| {
+            let typed = TypedModel::new("coupled", "Coupled", ["x", "y"])
+                .with_equation("x", format!("x - x^3 - {k} (x - y)"))
+                .with_equation("y", format!("y - y^3 - {k} (y - x)"))
+                .with_noise("x", ["0.6"])
+                .with_noise("y", [noise.to_string()]);
+            typed.build().unwrap().system_with(&[]).unwrap()
+        };
+        let ranges = |k: f64, noise: f64| {
+            let systems = [coupled(0.1, noise), coupled(k, noise)];
+            automatic_ranges(&systems, &[None, None], 1, &Cancellation::new()).unwrap()
+        };
+        let alike = ranges(0.5, 0.6);
+        assert_eq!(alike[0], alike[1]);
+        let different = ranges(0.5, 0.3);
+        assert_ne!(different[0], different[1]);
+    }
+
+    #[test]
     fn a_system_without_a_steady_state_has_no_range() {
         let model = registry::find("coulomb").unwrap();
         let given = [("kappa", -0.05), ("f_c", 0.0), ("sigma2", 0.01)];
@@ -226,7 +270,7 @@ mod tests {
             "{found:?}"
         );
         // One axis alone has none: x' = -x + …, y' = 0.1 y + ….
-        let typed = crate::system::TypedModel::new("half", "Half stable", ["x", "y"])
+        let typed = TypedModel::new("half", "Half stable", ["x", "y"])
             .with_equation("x", "-x")
             .with_equation("y", "0.1 y");
         let typed = typed.with_noise("x", ["0.5"]).with_noise("y", ["0.5"]);

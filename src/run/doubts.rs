@@ -66,6 +66,9 @@ pub fn doubt_in_words(family: &Family, doubt: &Doubt) -> String {
         Doubt::IndicatorLost => {
             "there its slope can be followed no further: more cells may show it".to_owned()
         }
+        Doubt::TooLow => "the density falls below its errors before the peak or crater vanishes, which may be anywhere \
+             up to the end of the sweep: more cells may show it"
+            .to_owned(),
         Doubt::BornBeyond => {
             "too low to be counted, it is there up to the end of the sweep".to_owned()
         }

@@ -70,6 +70,17 @@ fn escape_in_words(finding: &Finding) -> Option<String> {
 /// Whether the cells are wide enough and fine enough.
 fn cells_in_words(family: &Family, finding: &Finding) -> Option<String> {
     Some(match *finding {
+        Finding::Absorbed { axis, at, exponent } => {
+            let name = family.axis(axis);
+            let power = match exponent.is_finite() {
+                true => format!("like the power {exponent:.3} of the distance"),
+                false => "faster than any power of the distance".to_owned(),
+            };
+            format!(
+                "no stationary density: the noise dies at {name} = {at}, where the density would grow {power}; all that \
+                 comes near is absorbed there"
+            )
+        }
         Finding::EdgeMass { axis, mass, range } => format!(
             "{:.2} % of the mass lies in the outermost cells of {}: widen its range beyond [{}, {}]",
             100.0 * mass,

@@ -157,8 +157,8 @@ fn height(
         height_above(&extremum, &saddle, estimated)
     };
     // Else a cell that is the highest around it only because of how the cells lie.
-    let is_of_kind =
-        extremum.is_of_kind(kind, height) && extremum.is_level(height) && saddle.is_level(height);
+    let is_level = |place: &Critical| place.is_level(height, estimated);
+    let is_of_kind = extremum.is_of_kind(kind, height) && is_level(&extremum) && is_level(&saddle);
     Some(Refined {
         height: if is_of_kind { height } else { 0.0 },
         error,

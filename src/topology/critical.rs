@@ -10,8 +10,9 @@ use crate::density::{EstimatedDensity, WIGGLE};
 
 /// Most steps of Newton's method.
 const MOST_STEPS: usize = 12;
-/// Longest way from the centre of the candidate's cell, in cells.
-const FARTHEST: f64 = 2.5;
+/// Longest way from the centre of the candidate's cell, in cells. Along a trench that lies across the cells the lowest
+/// of them may be several cells away from the lowest point.
+const FARTHEST: f64 = 6.0;
 /// A direction whose curvature is a smaller share of the larger one is flat, as along a rim.
 const FLAT: f64 = 0.02;
 /// A flat direction is followed all the same where a rougher reconstruction agrees on its curvature to this share.
@@ -20,6 +21,10 @@ const CERTAIN: f64 = 0.3;
 const ONE_ERROR: f64 = 4.0;
 /// A step that is a smaller share of a cell ends the search.
 const SETTLED: f64 = 1e-6;
+/// Times its error that a slope may be where it is none.
+const UNCERTAIN: f64 = 3.0;
+/// Share of a height by which the density may change over a cell where the search has ended.
+const ROUNDED: f64 = 0.01;
 
 /// A critical point.
 #[derive(Debug, Clone)]
@@ -83,8 +88,9 @@ impl Critical {
         for (k, axis) in field.axes().iter().enumerate() {
             cell[k] = field.cell_width(k, centre[k]);
             width[k] = cell[k] * field.unit(k);
-            // At an end of the range the density need not be level.
-            pinned[k] |= position[k] <= axis.from() || position[k] >= axis.to();
+            // In the outermost cells the density need not be level: what rises up to the end is highest there.
+            let aside = (position[k] - axis.from()).min(axis.to() - position[k]);
+            pinned[k] |= aside <= width[k];
         }
         Some(Self {
             cell,
@@ -119,11 +125,22 @@ impl Critical {
         }
     }
 
-    /// Whether the density is level: over a cell it changes by less than half the height that is asked about.
-    pub(super) fn is_level(&self, height: f64) -> bool {
+    /// Whether the density is level: over a cell it changes by less than half the height that is asked about, and by no
+    /// more than its slope is uncertain. Along a trench or a ridge the slope may be small everywhere, and yet lead on
+    /// to the one place where it is zero.
+    pub(super) fn is_level(&self, height: f64, estimated: &EstimatedDensity) -> bool {
+        let values = &estimated.density.values;
+        let rough = self.rough.jet(values);
+        let second = estimated.variants.second_scheme();
+        let second = second.map(|values| self.fine.jet(values));
         let free = (0..self.position.len()).filter(|&k| !self.pinned[k]);
-        free.map(|k| (self.jet.first[k] * self.cell[k]).abs())
-            .all(|change| change <= 0.5 * height)
+        free.map(|k| {
+            let slope = self.jet.first[k];
+            let scheme = second.map_or(0.0, |second| (second.first[k] - slope).abs());
+            let error = (rough.first[k] - slope).abs() + scheme;
+            [slope.abs(), error].map(|slope| slope * self.cell[k])
+        })
+        .all(|[change, error]| change <= (0.5 * height).min(UNCERTAIN * error + ROUNDED * height))
     }
 
     /// Whether the density is curved to one side in every direction, as at no saddle of two axes.

@@ -3,7 +3,7 @@
 
 use std::cmp::Ordering;
 
-use super::indicator::{Counted, at_centre, correct};
+use super::indicator::{Counted, at_centre, correct, peaks_at_ends};
 use super::significance::Limits;
 use super::{Detection, Feature, FeatureKind, Signature, Verdict};
 use crate::density::{EstimatedDensity, Extremum, Profile};
@@ -26,7 +26,10 @@ pub(super) fn detection(
     // Where a split is nearer than rounding lets its peaks be told apart, the centre decides.
     let peaks = present_places(&features, FeatureKind::Peak);
     let counted = Counted {
-        signature: Signature::of_peaks(peaks.len()),
+        signature: Signature {
+            at_ends: peaks_at_ends(density).count(),
+            ..Signature::of_peaks(peaks.len())
+        },
         peaks: &peaks,
         craters: &[],
         rings_around_centre: 0,

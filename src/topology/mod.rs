@@ -30,7 +30,7 @@ mod invariance_tests;
 pub(crate) use between::Between;
 pub use detector::PersistenceDetector;
 pub use indicator::{Flank, Indicator, IndicatorKind};
-pub(crate) use indicator::{Step, born_at_kink, two_sided_limit};
+pub(crate) use indicator::{Step, born_at_kink, is_clear, peaks_at_ends, two_sided_limit};
 pub use signature::Signature;
 
 use crate::density::EstimatedDensity;

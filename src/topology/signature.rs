@@ -6,7 +6,7 @@ use std::fmt::{self, Display, Formatter};
 /// counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(from = "[usize; 5]", into = "[usize; 5]"))]
+#[cfg_attr(feature = "serde", serde(from = "[usize; 6]", into = "[usize; 6]"))]
 pub struct Signature {
     /// Number of significant peaks: maxima at a point, those on the rims of craters included.
     pub peaks: usize,
@@ -18,22 +18,34 @@ pub struct Signature {
     pub enclosed_peaks: usize,
     /// How many of the rings lie within another.
     pub enclosed_rings: usize,
+    /// How many natural ends of the range, at which the noise dies, are peaks: the density grows there beyond any
+    /// bound. Where it vanishes there these peaks are not at the end, or there are none.
+    pub at_ends: usize,
 }
 
-impl From<[usize; 5]> for Signature {
-    fn from([peaks, craters, rings, enclosed_peaks, enclosed_rings]: [usize; 5]) -> Self {
+impl From<[usize; 6]> for Signature {
+    fn from(counts: [usize; 6]) -> Self {
+        let [
+            peaks,
+            craters,
+            rings,
+            enclosed_peaks,
+            enclosed_rings,
+            at_ends,
+        ] = counts;
         Self {
             peaks,
             craters,
             rings,
             enclosed_peaks,
             enclosed_rings,
+            at_ends,
         }
     }
 }
 
 /// Its counts, in the order of its fields.
-impl From<Signature> for [usize; 5] {
+impl From<Signature> for [usize; 6] {
     fn from(of: Signature) -> Self {
         [
             of.peaks,
@@ -41,6 +53,7 @@ impl From<Signature> for [usize; 5] {
             of.rings,
             of.enclosed_peaks,
             of.enclosed_rings,
+            of.at_ends,
         ]
     }
 }
@@ -64,13 +77,21 @@ fn count_in_words(number: usize, noun: &str) -> String {
 }
 
 impl Display for Signature {
-    /// `1 peak`, `2 peaks`; `crater` (its rim has no second peak), `crater with 2 peaks`; `ring`, `peak in a ring`, `2
-    /// rings`, `ring around 2 craters`, `ring and 1 peak`.
+    /// `1 peak`, `2 peaks`, `1 peak at an end`, `2 peaks, 1 at an end`; `crater` (its rim has no second peak), `crater
+    /// with 2 peaks`; `ring`, `peak in a ring`, `2 rings`, `ring around 2 craters`, `ring and 1 peak`.
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let outside = self.peaks - self.enclosed_peaks.min(self.peaks);
         if self.rings == 0 {
             return match (self.craters, outside, self.enclosed_peaks) {
-                (0, ..) => f.write_str(&count_in_words(self.peaks, "peak")),
+                (0, ..) => {
+                    f.write_str(&count_in_words(self.peaks, "peak"))?;
+                    match (self.peaks, self.at_ends) {
+                        (_, 0) => Ok(()),
+                        (1, _) => f.write_str(" at an end"),
+                        (peaks, ends) if peaks == ends => f.write_str(" at the ends"),
+                        (_, ends) => write!(f, ", {ends} at an end"),
+                    }
+                }
                 (1, 0 | 1, 0) => f.write_str("crater"),
                 (1, ..) => write!(f, "crater with {}", count_in_words(outside, "peak")),
                 (craters, 0 | 1, 0) => f.write_str(&count_in_words(craters, "crater")),
@@ -122,11 +143,22 @@ mod tests {
                 rings,
                 enclosed_peaks,
                 enclosed_rings,
+                at_ends: 0,
             }
             .to_string()
         };
         assert_eq!(of(1, 0, 0, 0, 0), "1 peak");
         assert_eq!(of(0, 0, 0, 0, 0), "0 peaks");
+        let at_ends = |peaks, at_ends| {
+            let of = Signature {
+                at_ends,
+                ..Signature::of_peaks(peaks)
+            };
+            of.to_string()
+        };
+        assert_eq!(at_ends(1, 1), "1 peak at an end");
+        assert_eq!(at_ends(2, 1), "2 peaks, 1 at an end");
+        assert_eq!(at_ends(2, 2), "2 peaks at the ends");
         assert_eq!(of(1, 1, 0, 0, 0), "crater");
         assert_eq!(of(2, 1, 0, 0, 0), "crater with 2 peaks");
         assert_eq!(of(2, 2, 0, 0, 0), "2 craters with 2 peaks");

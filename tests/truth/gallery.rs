@@ -1,6 +1,6 @@
 //! The systems of the gallery against what is known: exact values of their changes, exact densities, free trajectories.
 
-use pbif::continuation::SweepResult;
+use pbif::continuation::{BifurcationStatus, SweepResult};
 use pbif::density::{EstimatedDensity, total_variation};
 use pbif::sweep_file::starting_files;
 
@@ -79,6 +79,15 @@ fn a_ship_in_wind_has_its_peaks_where_the_moment_is_zero() {
         let moment = x - k * x.powi(3) + q * x.powi(5);
         assert_located(&found, "x", moment.abs(), 2e-2);
     }
+}
+
+#[test]
+fn the_peak_of_verhulst_growth_leaves_the_edge_where_the_exponent_is_zero() {
+    let found = run("verhulst", "");
+    let rows = rows(&found, "x");
+    assert_eq!(rows.len(), 1);
+    assert_located(&found, "x", 0.3, 1e-3);
+    assert_eq!(rows[0].status(), BifurcationStatus::Located);
 }
 
 #[test]

@@ -11,6 +11,7 @@
 //! other systems of the same families are drawn.
 
 mod formulas;
+mod gibbs;
 mod sampled;
 mod wells;
 

@@ -22,7 +22,12 @@ pub(crate) fn every_finding() -> Vec<Finding> {
             relaxation_time: 20.0,
             limit: 0.5,
         }),
-        F::NoSteadyState { .. } => Some(F::LeavesAtOnce { rate: 3.0 }),
+        F::NoSteadyState { .. } => Some(F::Absorbed {
+            axis: 1,
+            at: 0.0,
+            exponent: f64::NEG_INFINITY,
+        }),
+        F::Absorbed { .. } => Some(F::LeavesAtOnce { rate: 3.0 }),
         F::LeavesAtOnce { .. } => Some(F::NothingStays {
             runaways: 0.7,
             outside: 0.1,

@@ -4,7 +4,7 @@
 
 use super::rule::{NODES, Rule, look};
 use super::series::Series;
-use super::{cuts, surfaces};
+use super::{cuts_toward, natural_ends, surfaces};
 use crate::space::Axis;
 use crate::system::{LANES, System};
 
@@ -42,6 +42,8 @@ pub(super) struct Part {
 /// The axis in parts.
 pub(super) struct Partition {
     pub(super) parts: Vec<Part>,
+    /// Those of the axis; the parts end a little before natural ones.
+    pub(super) ends: (f64, f64),
 }
 
 /// The slope at a place, the first of equal ones being on the lower side.
@@ -58,10 +60,14 @@ impl Partition {
     pub(super) fn new(system: &dyn System, axis: &Axis) -> Option<Self> {
         let rule = Rule::new();
         let surfaces = surfaces(system);
-        let mut line = Self { parts: Vec::new() };
+        let natural = natural_ends(system, axis).map(|end| end.is_some());
+        let mut line = Self {
+            parts: Vec::new(),
+            ends: (axis.from(), axis.to()),
+        };
         let least = 1.0 / (axis.to() - axis.from());
         for cell in 0..axis.count() {
-            for ends in cuts(axis, cell, &surfaces).windows(2) {
+            for ends in cuts_toward(axis, cell, &surfaces, natural).windows(2) {
                 line.add(system, &rule, (ends[0], ends[1]), least, MOST_HALVINGS)?;
             }
         }

@@ -5,13 +5,15 @@
 //! times the noise, weights of wells that no linear solver can tell from rounding come out of a quadrature. Polynomials
 //! through Gauss-Legendre points on panels of each cell give the exponent and its integral. A cell is cut where the
 //! drift jumps or bends, and halved where the exponent changes much, so that cells much wider than what they hold are
-//! right too.
+//! right too. Where the noise dies at an end, parts get smaller toward it, and the rest is the integral of a power.
 
+mod end;
 mod line;
 mod profile;
 mod rule;
 mod series;
 
+pub use end::{End, exponent_at};
 pub use profile::profile;
 
 use crate::space::Axis;
@@ -35,9 +37,16 @@ pub struct OneAxis {
 }
 
 /// The steady state without flux through the ends; `None` where drift and noise do not allow it: more than one axis,
-/// noise that vanishes or is not finite somewhere.
+/// noise that vanishes inside or is not finite somewhere, and a natural end that takes all mass ([`exponent_at`]).
 pub fn one_axis(system: &dyn System, axis: &Axis) -> Option<OneAxis> {
     if system.dimension() != 1 || system.facts().period.is_some() {
+        return None;
+    }
+    if natural_ends(system, axis)
+        .iter()
+        .flatten()
+        .any(|one| *one <= -1.0)
+    {
         return None;
     }
     let rule = Rule::new();
@@ -74,6 +83,29 @@ struct Integrals {
 }
 
 impl Integrals {
+    /// Adds what lies between a natural end and the distance u from it, where the density over exp(level) is `density`:
+    /// a power of the distance. The end is so far from the lower edge of the cell, in the direction `sign`.
+    fn add_power(
+        &mut self,
+        level: f64,
+        density: f64,
+        exponent: f64,
+        u: f64,
+        (edge, sign): (f64, f64),
+    ) {
+        let moment = |order: f64| density * u.powf(1.0 + order) / (exponent + 1.0 + order);
+        let [mass, first, second] = [0.0, 1.0, 2.0].map(moment);
+        let offset = sign * first;
+        self.add(
+            level,
+            [
+                mass,
+                edge * mass + offset,
+                edge * edge * mass + 2.0 * edge * offset + second,
+            ],
+        );
+    }
+
     /// Adds sums over exp(level): the higher level is kept, so that nothing overflows.
     fn add(&mut self, level: f64, sums: [f64; 3]) {
         if self.sums[0] == 0.0 {
@@ -143,6 +175,45 @@ impl Walk<'_> {
     }
 }
 
+/// Halvings of a cell toward a natural end.
+const HALVINGS: usize = 40;
+/// Share of an end's coordinate below which distances to it have lost their digits.
+const LOST: f64 = 1e-7;
+
+/// The places at which the cell next to a natural end is cut, by their distance from it, the nearest first: what is
+/// nearer is a power.
+fn toward(end: f64, cut: f64) -> Vec<f64> {
+    let width = (cut - end).abs();
+    let distances = (1..=HALVINGS)
+        .rev()
+        .map(|halvings| width * 0.5_f64.powi(halvings as i32));
+    distances
+        .filter(|distance| *distance > LOST * end.abs())
+        .collect()
+}
+
+/// The ends of an axis at which the noise dies, with the exponents of the density there.
+fn natural_ends(system: &dyn System, axis: &Axis) -> [Option<f64>; 2] {
+    End::ALL.map(|end| exponent_at(system, axis, end))
+}
+
+/// [`cuts`], and those toward natural ends; the cell's part next to such an end is left out.
+fn cuts_toward(axis: &Axis, cell: usize, surfaces: &[f64], natural: [bool; 2]) -> Vec<f64> {
+    let mut cuts = cuts(axis, cell, surfaces);
+    if natural[0] && cell == 0 {
+        let more = toward(cuts[0], cuts[1])
+            .into_iter()
+            .map(|distance| axis.from() + distance);
+        cuts.splice(0..1, more);
+    }
+    if natural[1] && cell + 1 == axis.count() {
+        let last = cuts.len() - 1;
+        let more = toward(cuts[last], cuts[last - 1]).into_iter().rev();
+        cuts.splice(last.., more.map(|distance| axis.to() - distance));
+    }
+    cuts
+}
+
 /// Where drift or noise are not smooth, ascending.
 fn surfaces(system: &dyn System) -> Vec<f64> {
     let mut surfaces: Vec<f64> = system.facts().surfaces_on(0).collect();
@@ -168,6 +239,9 @@ fn integrate(system: &dyn System, axis: &Axis, rule: &Rule, panels: usize) -> Op
     let (mut logs, mut firsts, mut seconds) =
         (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
     let surfaces = surfaces(system);
+    let ends = natural_ends(system, axis);
+    let natural = ends.map(|end| end.is_some());
+    let density = |place: f64| look(system, &[place; LANES]).1[0].recip();
     let mut walk = Walk {
         system,
         rule,
@@ -176,13 +250,20 @@ fn integrate(system: &dyn System, axis: &Axis, rule: &Rule, panels: usize) -> Op
     };
     for cell in 0..count {
         let mut found = Integrals::default();
-        for part in cuts(axis, cell, &surfaces).windows(2) {
-            walk.go(
-                (part[0], part[1]),
-                axis.edges()[cell],
-                &mut found,
-                MOST_HALVINGS,
-            )?;
+        let edge = axis.edges()[cell];
+        let cuts = cuts_toward(axis, cell, &surfaces, natural);
+        if let (0, Some(exponent)) = (cell, ends[0].filter(|one| one.is_finite())) {
+            let (from, level) = (cuts[0], walk.exponent);
+            found.add_power(level, density(from), exponent, from - edge, (0.0, 1.0));
+        }
+        for part in cuts.windows(2) {
+            walk.go((part[0], part[1]), edge, &mut found, MOST_HALVINGS)?;
+        }
+        let is_last = cell + 1 == count;
+        if let (true, Some(exponent)) = (is_last, ends[1].filter(|one| one.is_finite())) {
+            let (to, level) = (cuts[cuts.len() - 1], walk.exponent);
+            let end = (axis.width(cell), -1.0);
+            found.add_power(level, density(to), exponent, axis.to() - to, end);
         }
         logs[cell] = found.level + found.sums[0].ln();
         firsts[cell] = found.sums[1] / found.sums[0];
@@ -216,6 +297,8 @@ fn integrate(system: &dyn System, axis: &Axis, rule: &Rule, panels: usize) -> Op
 mod tests {
     use super::*;
     use crate::system::test_families::OneState;
+    use crate::system::{Interpretation, TypedModel};
+    use statrs::distribution::ContinuousCDF;
 
     #[test]
     fn cells_of_a_shallow_well_have_all_their_digits_beside_a_deep_one() {
@@ -243,6 +326,38 @@ mod tests {
             assert!((ratio / expected - 1.0).abs() < 1e-6, "{ratio} {expected}");
         }
         assert!(found.error < 1e-8, "{}", found.error);
+    }
+
+    #[test]
+    fn a_density_that_grows_at_a_natural_end_has_all_its_mass() {
+        // Beta densities x^(α - 1) (1 - x)^(β - 1): on few cells, singular at both ends.
+        let genes = |alpha: f64, beta: f64| {
+            TypedModel::new("genes", "Genes", ["x"])
+                .with_equation("x", format!("0.5 ({alpha} (1 - x) - {beta} x)"))
+                .with_noise("x", ["sqrt(x (1 - x))"])
+                .with_interpretation(Interpretation::Ito)
+                .build()
+                .unwrap()
+        };
+        for (alpha, beta) in [(0.5, 0.5), (0.02, 0.3), (1.0, 0.1), (3.0, 0.7)] {
+            let system = genes(alpha, beta).system_with(&[]).unwrap();
+            let axis = Axis::uniform(0.0, 1.0, 10).unwrap();
+            let found = one_axis(system.as_ref(), &axis).unwrap();
+            let (mean, variance) = found.moments;
+            let sum = alpha + beta;
+            let exact = alpha * beta / (sum * sum * (sum + 1.0));
+            assert!((mean - alpha / sum).abs() < 1e-6, "{mean} {}", alpha / sum);
+            assert!((variance - exact).abs() < 1e-6, "{variance} {exact}");
+            let beta = statrs::distribution::Beta::new(alpha, beta).unwrap();
+            for (cell, mass) in found.masses.iter().enumerate() {
+                let [low, high] = [0, 1].map(|side| beta.cdf(axis.edges()[cell + side]));
+                assert!((mass - (high - low)).abs() < 1e-6, "{cell}: {mass}");
+            }
+        }
+        // All of it.
+        let system = genes(0.0, 0.5).system_with(&[]).unwrap();
+        let axis = Axis::uniform(0.0, 1.0, 10).unwrap();
+        assert!(one_axis(system.as_ref(), &axis).is_none());
     }
 
     #[test]

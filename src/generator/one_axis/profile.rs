@@ -5,6 +5,7 @@
 
 use super::OneAxis;
 use super::line::{Part, Partition, STEEPEST, Sample, zero};
+use super::natural_ends;
 use crate::density::{Extremum, Profile, SlopeJump, Turn};
 use crate::space::Axis;
 use crate::system::System;
@@ -31,6 +32,7 @@ pub fn profile(
         turns: turns(&samples),
         jumps: line.jumps(),
         curvature: centre.and_then(|centre| line.curvature(centre)),
+        ends: natural_ends(system, axis),
     })
 }
 
@@ -72,9 +74,14 @@ impl Partition {
             let gathered = part.gathered + part.error * (place - part.slope.from);
             (logarithm, (place, is_peak, gathered))
         });
+        let at_end = |place: f64| match place {
+            _ if place == from => self.ends.0,
+            _ if place == to => self.ends.1,
+            _ => place,
+        };
         let kept = without_rounding(extrema.collect()).into_iter();
         kept.map(|(logarithm, (place, is_peak, gathered_error))| Extremum {
-            place,
+            place: at_end(place),
             is_peak,
             density: logarithm.exp(),
             gathered_error,

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use super::GeneratorSource;
 use super::jumps::Kinked;
 use super::source::METHOD;
-use crate::continuation::{Sensitivity, Solution, SourceError};
+use crate::continuation::{Finding, Sensitivity, Solution, SourceError};
 use crate::density::{EstimatedDensity, Moments, NEGLIGIBLE, Observable};
-use crate::generator::{OneAxis, one_axis, profile};
+use crate::generator::{End, OneAxis, exponent_at, one_axis, profile};
 use crate::method::MethodError;
 use crate::method::report::Reporter;
 use crate::method::structure::closed_ends;
@@ -23,6 +23,29 @@ const LARGEST_ERROR: f64 = 1e-6;
 const STEP: f64 = 2e-3;
 const LEAST: f64 = 1e-2;
 
+/// The natural end of the axis that takes all mass, if there is one.
+pub(super) fn absorbed(source: &GeneratorSource, system: &dyn System) -> Option<Finding> {
+    let [axis] = source.problem.space().axes() else {
+        return None;
+    };
+    End::ALL.into_iter().find_map(|end| {
+        let exponent = exponent_at(system, axis, end).filter(|exponent| *exponent <= -1.0)?;
+        let at = end.of(axis);
+        Some(Finding::Absorbed {
+            axis: 0,
+            at,
+            exponent,
+        })
+    })
+}
+
+/// The report of a value at which there is no stationary density.
+pub(super) fn without_density(source: &GeneratorSource, why: Finding) -> Solution<'static> {
+    let mut reporter = Reporter::new(METHOD, &source.problem);
+    reporter.no_steady_state(why);
+    Solution::without_density(reporter.report)
+}
+
 /// Masses by quadrature; `None` where the system has more axes, or pushes mass out of the range.
 pub(super) fn masses(source: &GeneratorSource, system: &dyn System) -> Option<OneAxis> {
     let [axis] = source.problem.space().axes() else {
@@ -34,7 +57,10 @@ pub(super) fn masses(source: &GeneratorSource, system: &dyn System) -> Option<On
 /// The same between ends of which some may be closed.
 fn between_ends(system: &dyn System, axis: &Axis, [low, high]: [bool; 2]) -> Option<OneAxis> {
     let pushes_in = |at: f64, sign: f64| sign * system.drift_at(0.0, &[at])[0] > 0.0;
-    if !((low || pushes_in(axis.from(), 1.0)) && (high || pushes_in(axis.to(), -1.0))) {
+    let is_natural = |end: End| exponent_at(system, axis, end).is_some();
+    let low = low || pushes_in(axis.from(), 1.0) || is_natural(End::Lower);
+    let high = high || pushes_in(axis.to(), -1.0) || is_natural(End::Upper);
+    if !(low && high) {
         return None;
     }
     one_axis(system, axis).filter(|found| found.error < LARGEST_ERROR)
@@ -96,7 +122,13 @@ pub(super) fn solution<'session>(
     let mut reporter = Reporter::new(METHOD, &source.problem);
     reporter.report.residual = 0.0;
     reporter.report.solver_error = found.error;
-    reporter.edge_mass(masses, &source.closed_ends);
+    let mut closed = source.closed_ends.clone();
+    if let ([axis], Some(closed)) = (source.problem.space().axes(), closed.first_mut()) {
+        for (end, closed) in End::ALL.into_iter().zip(closed) {
+            *closed |= exponent_at(system, axis, end).is_some();
+        }
+    }
+    reporter.edge_mass(masses, &closed);
     let difference: Vec<f64> = masses.iter().map(|mass| mass * found.error).collect();
     let (problem, maps) = (&source.problem, source.maps(value)?);
     let mut densities = maps.exact(problem, masses, &difference)?;

@@ -84,6 +84,9 @@ impl GeneratorSession {
         self.cancellation.check()?;
         self.has_left = false;
         let system = self.source.system_at(value)?;
+        if let Some(why) = one_axis::absorbed(&self.source, system.as_ref()) {
+            return Ok(one_axis::without_density(&self.source, why));
+        }
         if let Some(found) = one_axis::masses(&self.source, system.as_ref()) {
             return one_axis::solution(&self.source, value, system.as_ref(), &found);
         }

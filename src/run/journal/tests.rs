@@ -39,6 +39,7 @@ fn profile() -> Profile {
             error: 1e-14,
         }],
         curvature: Some((-1.0 / 3.0, 1e-9)),
+        ends: [Some(f64::INFINITY), None],
     }
 }
 

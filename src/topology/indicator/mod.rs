@@ -25,6 +25,7 @@ mod exact;
 mod fold;
 mod kind;
 mod level;
+mod natural_end;
 mod pair;
 mod quartic;
 mod registry;
@@ -44,6 +45,7 @@ pub(super) use centre::at_centre;
 pub(super) use corrected::{Counted, correct};
 pub use exact::Flank;
 pub use kind::IndicatorKind;
+pub(crate) use natural_end::peaks_at_ends;
 pub(super) use pair::put_right;
 pub(super) use section::flanks_from_centre;
 pub(super) use shoulder::shoulders;
@@ -120,7 +122,7 @@ impl Indicator {
         let value = function(values);
         let sensitivity = sensitivity(estimated, &place, value, &function);
         // What follows from the equations has no pole where the density is small.
-        if sensitivity > 0.0 && !is_clear(estimated, &place) {
+        if sensitivity > 0.0 && !is_clear(estimated, &place, CLEAR) {
             return None;
         }
         let replicates: Vec<f64> = match variants {
@@ -172,7 +174,7 @@ const BESIDE: usize = 1;
 
 /// Whether a density is a clear multiple of its error in the cell of a place and in those beside it along the axes: of
 /// its distance to the second scheme, and of what the solver leaves. Sampled densities have tests of their own.
-fn is_clear(estimated: &EstimatedDensity, place: &[f64]) -> bool {
+pub(crate) fn is_clear(estimated: &EstimatedDensity, place: &[f64], times: f64) -> bool {
     let density = &estimated.density;
     if estimated.is_noisy() {
         return true;
@@ -182,7 +184,7 @@ fn is_clear(estimated: &EstimatedDensity, place: &[f64]) -> bool {
     let is_clear = |cell: usize| {
         let value = density.values[cell];
         let error = second.map_or(0.0, |second| (second[cell] - value).abs());
-        value > least && value > CLEAR * error
+        value > times / CLEAR * least && value > times * error
     };
     let near = |k: usize| near(&density.axes[k], place[k], BESIDE);
     match density.axes.as_slice() {

@@ -4,7 +4,7 @@ use super::IndicatorKind;
 
 impl IndicatorKind {
     /// All but test functions, which are not stored.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 21] = [
         Self::CURVATURE,
         Self::KINK_SLOPE,
         Self::CURVATURE_ALONG_KINK,
@@ -24,6 +24,8 @@ impl IndicatorKind {
         Self::split(false, true),
         Self::split(true, false),
         Self::split(true, true),
+        Self::natural_end(false),
+        Self::natural_end(true),
     ];
 
     /// The one that has this code.
