@@ -207,49 +207,16 @@ impl WiderRange {
         let largest = masses.max_by(|a, b| a.1.total_cmp(&b.1));
         // A table that is read back does not tell of which axis.
         let name = largest.map(|one| one.0).or_else(|| names().next())?;
+        let moments = report.of(&MEAN, name).zip(report.of(&DEVIATION, name));
+        let range = moments.map(|(mean, deviation)| {
+            let reach = TAILS * deviation;
+            [mean - reach, mean + reach]
+        });
         Some(Self {
             axis: name.clone(),
-            range: held(point, name),
+            range,
         })
     }
-}
-
-/// Mass in the outermost cells of an axis from which on checks are made on a wider range.
-const LEAKY: f64 = 1e-9;
-
-/// Whether so much mass leaves at some value that checks are made on a wider range. A table that is read back tells of
-/// it too, though not along which axis.
-pub(super) fn leaks(points: &[Point]) -> bool {
-    let leaks = |point: &Point| point.report.edge_mass().is_some_and(|mass| mass > LEAKY);
-    points
-        .iter()
-        .any(|point| leaks(point) && point.report.status.is_resolved())
-}
-
-/// The ranges that would hold the densities of points from which mass leaves, one an axis; empty where little does.
-pub(super) fn reach(points: &[Point], subject: &Subject) -> Vec<Option<[f64; 2]>> {
-    if !leaks(points) {
-        return Vec::new();
-    }
-    let names = subject.family.model().axes.iter().map(|axis| &axis.name);
-    let is_leaky = |point: &&Point, name: &str| {
-        let mass = point.report.of(&EDGE_MASS, name);
-        mass.is_some_and(|mass| mass > LEAKY) && point.report.status.is_resolved()
-    };
-    let of = |name: &String| {
-        let leaky = points.iter().filter(|point| is_leaky(point, name));
-        let ranges = leaky.filter_map(|point| held(point, name));
-        ranges.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
-    };
-    names.map(of).collect()
-}
-
-/// The range that holds the density along an axis, by its moments.
-fn held(point: &Point, name: &str) -> Option<[f64; 2]> {
-    let report = &point.report;
-    let (mean, deviation) = report.of(&MEAN, name).zip(report.of(&DEVIATION, name))?;
-    let reach = TAILS * deviation;
-    Some([mean - reach, mean + reach])
 }
 
 /// What is known of a zero besides where it is.

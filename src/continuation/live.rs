@@ -28,8 +28,6 @@ pub(super) struct Live<'a> {
     known: Vec<CheckedIndicator>,
     span: Span,
     tolerance: f64,
-    /// Ranges that hold the densities, one an axis; empty where little mass leaves those of the sweep.
-    reach: Vec<Option<[f64; 2]>>,
     /// On cells refined once, twice, and so on.
     finer: [Opened; MOST_TIMES as usize],
     enclosed: Opened,
@@ -44,7 +42,6 @@ impl<'a> Live<'a> {
         detector: &'a dyn Detector,
         (cancellation, known): (&'a Cancellation, Vec<CheckedIndicator>),
         (span, tolerance, effort): (Span, f64, f64),
-        reach: Vec<Option<[f64; 2]>>,
     ) -> Self {
         Self {
             source,
@@ -53,7 +50,6 @@ impl<'a> Live<'a> {
             known,
             span,
             tolerance,
-            reach,
             finer: Default::default(),
             enclosed: Opened::default(),
             seen: Vec::new(),
@@ -72,16 +68,9 @@ impl<'a> Live<'a> {
             return Opened::None;
         };
         // One session checks what is found in all of them.
-        let want = Want {
-            reach: self.reach.clone(),
-            ..Want::densities(&source.subject().observables)
-        };
-        let is_wider = !self.reach.is_empty();
+        let want = Want::densities(&source.subject().observables);
         let found = match by {
             CheckedBy::FinerCells(times) => refined(source, &want, times),
-            CheckedBy::ClosedEnds if is_wider => {
-                refined(source, &want, 1).map(|finer| finer.and_then(|finer| finer.enclosed(&want)))
-            }
             CheckedBy::ClosedEnds => Ok(source.enclosed(&want)),
         };
         match found {

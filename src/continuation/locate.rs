@@ -2,7 +2,7 @@
 
 use super::change::{Change, changes};
 use super::doubt::MOST_TIMES;
-use super::doubt::{Doubt, Evidence, WiderRange, leaks};
+use super::doubt::{Doubt, Evidence, WiderRange};
 use super::follow::{Course, Crossing};
 use super::grid::{Checked, Checks, share_of_distance};
 use super::jump::instead_of_zero;
@@ -26,20 +26,12 @@ pub(super) fn label_points(
     let solved: Vec<&Point> = points.iter().filter(|p| !p.detections.is_empty()).collect();
     let mut rows: Vec<Located> = Vec::new();
     let changes = changes(&solved, detector);
-    let is_wider = leaks(points);
     for gap in changes.chunk_by(|a, b| (a.observable, a.left) == (b.observable, b.left)) {
         let found = gap.iter().map(|change| {
             let row = match &change.course {
                 Some(Course::Crossing(crossing)) => {
                     let zero = (change, &**crossing);
-                    by_indicator(
-                        &solved,
-                        (subject, is_wider),
-                        zero,
-                        detector,
-                        options,
-                        checks,
-                    )
+                    by_indicator(&solved, subject, zero, detector, options, checks)
                 }
                 Some(Course::Lost(at)) => {
                     by_bracket(&solved, observables, change, [*at; 2], Doubt::IndicatorLost)
@@ -158,7 +150,7 @@ fn by_persistence(
 
 fn by_indicator(
     points: &[&Point],
-    (subject, is_wider): (&Subject, bool),
+    subject: &Subject,
     (change, crossing): (&Change, &Crossing),
     detector: &dyn Detector,
     options: &Goal,
@@ -181,13 +173,8 @@ fn by_indicator(
     });
     let on_finer = on_finer.flatten();
     let leaks = depends_on_cells && edge_mass(a).max(edge_mass(b)) > QUIET;
-    // On a wider range, where the finer cells have it too, what leaves is asked of the value that they give.
-    let of_leak = Checked {
-        root: if is_wider { zero } else { checked.root },
-        ..checked
-    };
     let leak = leaks
-        .then(|| checks.between_closed_ends(&of_leak))
+        .then(|| checks.between_closed_ends(&checked))
         .flatten();
     if let Some(Ok(distance)) = leak {
         zero.error.leak = distance;

@@ -33,9 +33,6 @@ pub struct Want {
     pub measures: Vec<MeasureColumn>,
     /// Whether densities state the errors of their cells.
     pub errors: bool,
-    /// Ranges that its axes should hold, one an axis; empty, or `None`, where the range of an axis does. A source that
-    /// cannot widen its ranges leaves them.
-    pub reach: Vec<Option<[f64; 2]>>,
 }
 
 impl Want {
@@ -45,7 +42,6 @@ impl Want {
             observables: observables.to_vec(),
             measures: Vec::new(),
             errors: false,
-            reach: Vec::new(),
         }
     }
 }

@@ -4,7 +4,6 @@
 use super::bracket::is_settled;
 use super::change::{Change, changes, crossings_at_centre};
 use super::dips::{self, Flanks};
-use super::doubt::reach;
 use super::follow::Course;
 use super::grid::CheckedIndicator;
 use super::live::Live;
@@ -321,7 +320,6 @@ impl Run<'_> {
             self.detector,
             (self.cancellation, self.observer.known_checks()),
             (self.span, self.options.tolerance, effort),
-            reach(&self.points, self.source.subject()),
         );
         let labels = label_points(
             &self.points,

@@ -3,7 +3,7 @@
 use crate::continuation::CellCheck;
 use crate::generator::AdvectiveScheme;
 use crate::method::report::ESCAPE_LIMIT;
-use crate::space::{Axis, CellSpace, SpaceError};
+use crate::space::{Axis, CellSpace};
 
 /// Settings of the generator method.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,36 +43,6 @@ pub(super) fn finer_axes(space: &CellSpace) -> Vec<Axis> {
     let factor = finer_factor(space);
     let axes = space.axes().iter();
     axes.map(|axis| axis.refined(factor)).collect()
-}
-
-/// The axes with more cells of the same width at ends where mass leaves, so that they hold the ranges of `reach`. An
-/// axis grows by its own length at either end at most; walls stay, and graded axes.
-pub(super) fn wider_axes(
-    space: &CellSpace,
-    reach: &[Option<[f64; 2]>],
-    closed: &[[bool; 2]],
-) -> Result<Vec<Axis>, SpaceError> {
-    let axes = space.axes().iter().enumerate();
-    axes.map(|(k, axis)| match reach.get(k).copied().flatten() {
-        Some([low, high]) if axis.is_uniform() && !axis.is_modes() => {
-            let width = (axis.to() - axis.from()) / axis.count() as f64;
-            let [from_is_wall, to_is_wall] = closed.get(k).copied().unwrap_or_default();
-            let more = |missing: f64, is_wall: bool| match is_wall {
-                true => 0.0,
-                false => (missing / width).ceil().clamp(0.0, axis.count() as f64),
-            };
-            let below = more(axis.from() - low, from_is_wall);
-            let above = more(high - axis.to(), to_is_wall);
-            let count = axis.count() + (below + above) as usize;
-            Axis::uniform(
-                axis.from() - below * width,
-                axis.to() + above * width,
-                count,
-            )
-        }
-        _ => Ok(axis.clone()),
-    })
-    .collect()
 }
 
 /// Which of the factors is meant.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::GeneratorMethodOptions;
-use super::options::{finer_axes, finer_factor, wider_axes};
+use super::options::{finer_axes, finer_factor};
 use crate::cancellation::Cancellation;
 use crate::continuation::Want;
 use crate::generator::{AdvectiveScheme, Generator, GeneratorError, GeneratorOptions, assemble};
@@ -84,8 +84,7 @@ impl GeneratorSource {
     /// The same on finer cells.
     pub(super) fn refined(&self, want: &Want) -> Result<Self, MethodError> {
         let space = self.problem.space();
-        let wider = CellSpace::new(wider_axes(space, &want.reach, &self.closed_ends)?)?;
-        let finer = CellSpace::new(finer_axes(&wider))?;
+        let finer = CellSpace::new(finer_axes(space))?;
         let problem = self.problem.wanting(want).on(finer)?;
         let problem = problem.with_finer_bins(finer_factor(space));
         Ok(Self {
