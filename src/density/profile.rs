@@ -33,7 +33,8 @@ pub struct Extremum {
     pub place: f64,
     /// Whether it is a peak.
     pub is_peak: bool,
-    /// The density there, over the axis's unit; ∫ p = 1 over the range.
+    /// The density there, over the axis's unit; ∫ p = 1 over the range. At a natural end that is a peak, where it has
+    /// no bound, the density next to it: 2⁻⁴⁰ of a cell away.
     pub density: f64,
     /// Error of log p (a number without unit) that has gathered from the lower end of the range up to here: that of the
     /// ratio of two densities is the difference of theirs.

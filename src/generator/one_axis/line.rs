@@ -2,9 +2,9 @@
 //!
 //! A part that ten digits need smaller is halved; cells are cut where drift and noise are not smooth.
 
+use super::cuts::{cuts_toward, surfaces};
 use super::rule::{NODES, Rule, look};
 use super::series::Series;
-use super::{cuts_toward, natural_ends, surfaces};
 use crate::space::Axis;
 use crate::system::{LANES, System};
 
@@ -56,11 +56,11 @@ pub(super) struct Sample {
 }
 
 impl Partition {
-    /// All of an axis; `None` where drift or noise are not finite, or the noise vanishes.
-    pub(super) fn new(system: &dyn System, axis: &Axis) -> Option<Self> {
+    /// All of an axis, of which `natural` ends are such that the noise dies there; `None` where drift or noise are not
+    /// finite, or the noise vanishes elsewhere.
+    pub(super) fn new(system: &dyn System, axis: &Axis, natural: [bool; 2]) -> Option<Self> {
         let rule = Rule::new();
         let surfaces = surfaces(system);
-        let natural = natural_ends(system, axis).map(|end| end.is_some());
         let mut line = Self {
             parts: Vec::new(),
             ends: (axis.from(), axis.to()),

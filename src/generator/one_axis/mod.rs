@@ -7,6 +7,7 @@
 //! drift jumps or bends, and halved where the exponent changes much, so that cells much wider than what they hold are
 //! right too. Where the noise dies at an end, parts get smaller toward it, and the rest is the integral of a power.
 
+mod cuts;
 mod end;
 mod line;
 mod profile;
@@ -18,6 +19,7 @@ pub use profile::profile;
 
 use crate::space::Axis;
 use crate::system::{LANES, System};
+use cuts::{cuts_toward, surfaces};
 use rule::{NODES, Rule, look};
 
 /// Panels a cell; eight points on each of eight panels fill a batch.
@@ -34,6 +36,8 @@ pub struct OneAxis {
     pub moments: (f64, f64),
     /// ln ∫ (1/b²) exp ∫ (2a/b²) over the axis, the inner integral from its lower end: what the density is divided by.
     pub log_integral: f64,
+    /// Exponents of the density at the lower and the upper end, where these are natural ([`exponent_at`]).
+    pub ends: [Option<f64>; 2],
 }
 
 /// The steady state without flux through the ends; `None` where drift and noise do not allow it: more than one axis,
@@ -42,16 +46,13 @@ pub fn one_axis(system: &dyn System, axis: &Axis) -> Option<OneAxis> {
     if system.dimension() != 1 || system.facts().period.is_some() {
         return None;
     }
-    if natural_ends(system, axis)
-        .iter()
-        .flatten()
-        .any(|one| *one <= -1.0)
-    {
+    let ends = End::ALL.map(|end| exponent_at(system, axis, end));
+    if ends.iter().flatten().any(|one| *one <= -1.0) {
         return None;
     }
     let rule = Rule::new();
-    let fine = integrate(system, axis, &rule, PANELS)?;
-    let coarse = integrate(system, axis, &rule, PANELS / 2)?;
+    let fine = integrate(system, axis, ends, &rule, PANELS)?;
+    let coarse = integrate(system, axis, ends, &rule, PANELS / 2)?;
     let pairs = fine.masses.iter().zip(&coarse.masses);
     let change = pairs.map(|(a, b)| if *a > 0.0 { (b / a - 1.0).abs() } else { 0.0 });
     Some(OneAxis {
@@ -175,72 +176,20 @@ impl Walk<'_> {
     }
 }
 
-/// Halvings of a cell toward a natural end.
-const HALVINGS: usize = 40;
-/// Share of an end's coordinate below which distances to it have lost their digits.
-const LOST: f64 = 1e-7;
-
-/// The places at which the cell next to a natural end is cut, by their distance from it, the nearest first: what is
-/// nearer is a power.
-fn toward(end: f64, cut: f64) -> Vec<f64> {
-    let width = (cut - end).abs();
-    let distances = (1..=HALVINGS)
-        .rev()
-        .map(|halvings| width * 0.5_f64.powi(halvings as i32));
-    distances
-        .filter(|distance| *distance > LOST * end.abs())
-        .collect()
-}
-
-/// The ends of an axis at which the noise dies, with the exponents of the density there.
-fn natural_ends(system: &dyn System, axis: &Axis) -> [Option<f64>; 2] {
-    End::ALL.map(|end| exponent_at(system, axis, end))
-}
-
-/// [`cuts`], and those toward natural ends; the cell's part next to such an end is left out.
-fn cuts_toward(axis: &Axis, cell: usize, surfaces: &[f64], natural: [bool; 2]) -> Vec<f64> {
-    let mut cuts = cuts(axis, cell, surfaces);
-    if natural[0] && cell == 0 {
-        let more = toward(cuts[0], cuts[1])
-            .into_iter()
-            .map(|distance| axis.from() + distance);
-        cuts.splice(0..1, more);
-    }
-    if natural[1] && cell + 1 == axis.count() {
-        let last = cuts.len() - 1;
-        let more = toward(cuts[last], cuts[last - 1]).into_iter().rev();
-        cuts.splice(last.., more.map(|distance| axis.to() - distance));
-    }
-    cuts
-}
-
-/// Where drift or noise are not smooth, ascending.
-fn surfaces(system: &dyn System) -> Vec<f64> {
-    let mut surfaces: Vec<f64> = system.facts().surfaces_on(0).collect();
-    surfaces.sort_by(f64::total_cmp);
-    surfaces
-}
-
-/// Coordinates at which a cell is cut: its edges, and where the drift is not smooth.
-fn cuts(axis: &Axis, cell: usize, surfaces: &[f64]) -> Vec<f64> {
-    let (from, to) = (axis.edges()[cell], axis.edges()[cell + 1]);
-    let mut cuts = vec![from];
-    for &at in surfaces.iter().filter(|&&at| from < at && at < to) {
-        let known = cuts[cuts.len() - 1];
-        let is_same = |other: f64| axis.is_same_place(at, other);
-        cuts.extend((!is_same(known) && !is_same(to)).then_some(at));
-    }
-    cuts.push(to);
-    cuts
-}
-
-fn integrate(system: &dyn System, axis: &Axis, rule: &Rule, panels: usize) -> Option<OneAxis> {
+/// The steady state with so many panels a cell; `ends` are the exponents at natural ends.
+fn integrate(
+    system: &dyn System,
+    axis: &Axis,
+    ends: [Option<f64>; 2],
+    rule: &Rule,
+    panels: usize,
+) -> Option<OneAxis> {
     let count = axis.count();
     let (mut logs, mut firsts, mut seconds) =
         (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
     let surfaces = surfaces(system);
-    let ends = natural_ends(system, axis);
     let natural = ends.map(|end| end.is_some());
+    // The density over exp(exponent).
     let density = |place: f64| look(system, &[place; LANES]).1[0].recip();
     let mut walk = Walk {
         system,
@@ -290,6 +239,7 @@ fn integrate(system: &dyn System, axis: &Axis, rule: &Rule, panels: usize) -> Op
         error: 0.0,
         moments: (mean, variance),
         log_integral: largest + total.ln(),
+        ends,
     })
 }
 

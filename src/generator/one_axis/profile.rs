@@ -5,7 +5,6 @@
 
 use super::OneAxis;
 use super::line::{Part, Partition, STEEPEST, Sample, zero};
-use super::natural_ends;
 use crate::density::{Extremum, Profile, SlopeJump, Turn};
 use crate::space::Axis;
 use crate::system::System;
@@ -25,14 +24,14 @@ pub fn profile(
     found: &OneAxis,
     centre: Option<f64>,
 ) -> Option<Profile> {
-    let line = Partition::new(system, axis)?;
+    let line = Partition::new(system, axis, found.ends.map(|end| end.is_some()))?;
     let samples = line.samples();
     Some(Profile {
         extrema: line.extrema(&samples, found.log_integral),
         turns: turns(&samples),
         jumps: line.jumps(),
         curvature: centre.and_then(|centre| line.curvature(centre)),
-        ends: natural_ends(system, axis),
+        ends: found.ends,
     })
 }
 

@@ -123,10 +123,8 @@ pub(super) fn solution<'session>(
     reporter.report.residual = 0.0;
     reporter.report.solver_error = found.error;
     let mut closed = source.closed_ends.clone();
-    if let ([axis], Some(closed)) = (source.problem.space().axes(), closed.first_mut()) {
-        for (end, closed) in End::ALL.into_iter().zip(closed) {
-            *closed |= exponent_at(system, axis, end).is_some();
-        }
+    for (closed, end) in closed.iter_mut().flatten().zip(found.ends) {
+        *closed |= end.is_some();
     }
     reporter.edge_mass(masses, &closed);
     let difference: Vec<f64> = masses.iter().map(|mass| mass * found.error).collect();

@@ -1,0 +1,65 @@
+//! Where the cells of an axis are cut: at places where drift or noise are not smooth, and closer and closer toward an
+//! end at which the noise dies.
+
+use crate::space::Axis;
+use crate::system::System;
+
+/// Halvings of a cell toward a natural end.
+const HALVINGS: usize = 40;
+/// Share of an end's coordinate below which distances to it have lost their digits.
+const LOST: f64 = 1e-7;
+
+/// The places at which the cell next to a natural end is cut, by their distance from it, the nearest first: what is
+/// nearer is a power.
+fn toward(end: f64, cut: f64) -> Vec<f64> {
+    let width = (cut - end).abs();
+    let distances = (1..=HALVINGS).rev();
+    let distances = distances.map(|halvings| (halvings, width * 0.5_f64.powi(halvings as i32)));
+    // The first halving stands whatever its digits, so that no cell loses all its cuts.
+    distances
+        .filter(|(halvings, distance)| *halvings == 1 || *distance > LOST * end.abs())
+        .map(|(_, distance)| distance)
+        .collect()
+}
+
+/// [`cuts`], and those toward natural ends; the cell's part next to such an end is left out.
+pub(super) fn cuts_toward(
+    axis: &Axis,
+    cell: usize,
+    surfaces: &[f64],
+    natural: [bool; 2],
+) -> Vec<f64> {
+    let mut cuts = cuts(axis, cell, surfaces);
+    if natural[0] && cell == 0 {
+        let more = toward(cuts[0], cuts[1])
+            .into_iter()
+            .map(|distance| axis.from() + distance);
+        cuts.splice(0..1, more);
+    }
+    if natural[1] && cell + 1 == axis.count() {
+        let last = cuts.len() - 1;
+        let more = toward(cuts[last], cuts[last - 1]).into_iter().rev();
+        cuts.splice(last.., more.map(|distance| axis.to() - distance));
+    }
+    cuts
+}
+
+/// Where drift or noise are not smooth, ascending.
+pub(super) fn surfaces(system: &dyn System) -> Vec<f64> {
+    let mut surfaces: Vec<f64> = system.facts().surfaces_on(0).collect();
+    surfaces.sort_by(f64::total_cmp);
+    surfaces
+}
+
+/// Coordinates at which a cell is cut: its edges, and where the drift is not smooth.
+fn cuts(axis: &Axis, cell: usize, surfaces: &[f64]) -> Vec<f64> {
+    let (from, to) = (axis.edges()[cell], axis.edges()[cell + 1]);
+    let mut cuts = vec![from];
+    for &at in surfaces.iter().filter(|&&at| from < at && at < to) {
+        let known = cuts[cuts.len() - 1];
+        let is_same = |other: f64| axis.is_same_place(at, other);
+        cuts.extend((!is_same(known) && !is_same(to)).then_some(at));
+    }
+    cuts.push(to);
+    cuts
+}
