@@ -29,7 +29,7 @@ pub(super) fn run(arguments: &DetectArguments) -> Result<Outcome, CommandError> 
     let seconds = clock.elapsed().as_secs_f64();
     let out = arguments.out.as_deref().unwrap_or(&arguments.run);
     let output = OutputFolder::prepare(out)?;
-    let staged = StagedRun::new(output.path(), &arguments.run)?;
+    let staged = StagedRun::new(output.path(), &stored.run)?;
     write(&stored, seconds, &staged)?;
     staged.take_place()?;
     let outcome = match sweep_outcome(&stored.result, &stored.spec.settings.locate) {

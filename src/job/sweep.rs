@@ -1,4 +1,4 @@
-//! A sweep, a shard of it, or what its shards have left open. Its tables and densities grow while it is solved.
+//! A sweep, a shard of it, or what its shards have left open. Its tables grow while it is solved.
 
 mod recorder;
 
@@ -17,7 +17,7 @@ use crate::run::{
 use crate::sweep_file::{Report, Sweep};
 use recorder::Recorder;
 
-/// Points of an interrupted sweep up to which its store is put in order, summed and drawn.
+/// Points of an interrupted sweep up to which its densities are stored, summed and drawn.
 pub(crate) const QUICK_POINTS: usize = 200;
 
 /// A sweep that is to be run.

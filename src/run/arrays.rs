@@ -18,15 +18,7 @@ use serde_json::{Map, Value, json};
 
 use super::columns::Named;
 use crate::density::{EstimatedDensity, Kink, Observable};
-use crate::space::Axis;
 use crate::system::Family;
-
-/// Values a chunk of the parameter's coordinate holds.
-pub(super) const PARAMETER_CHUNK: u64 = 1024;
-
-/// Replicates a chunk holds. Groups of samples that leave no steady state give no replicate, so their number may grow
-/// along a sweep; chunks of fixed extent let it.
-pub(super) const REPLICATE_CHUNK: u64 = 8;
 
 /// What the array of the parameter is, in words.
 const SWEPT: &str = "swept parameter";
@@ -64,23 +56,16 @@ pub(super) struct Layout {
     pub(super) name: String,
     /// Names with lengths.
     pub(super) dimensions: Vec<(String, u64)>,
-    pub(super) chunk: Vec<u64>,
     pub(super) attributes: Map<String, Value>,
 }
 
 impl Layout {
-    fn new(
-        name: String,
-        dimensions: Vec<(String, u64)>,
-        chunk: Vec<u64>,
-        long_name: String,
-    ) -> Self {
+    fn new(name: String, dimensions: Vec<(String, u64)>, long_name: String) -> Self {
         let mut attributes = Map::new();
         attributes.insert("long_name".to_owned(), long_name.into());
         Self {
             name,
             dimensions,
-            chunk,
             attributes,
         }
     }
@@ -90,28 +75,28 @@ impl Layout {
         self
     }
 
-    /// The swept parameter with `count` values.
-    pub(super) fn parameter(family: &Family, count: u64) -> Self {
-        let name = family.parameter().to_owned();
-        let dimensions = vec![(name.clone(), count)];
-        Self::new(name, dimensions, vec![PARAMETER_CHUNK], SWEPT.to_owned())
+    /// The swept parameter.
+    pub(super) fn parameter(family: &Family) -> Self {
+        Self::line(family.parameter().to_owned(), SWEPT)
     }
 
     /// Centres and edges of an axis.
-    pub(super) fn axis(name: &str, axis: &Axis) -> [Self; 2] {
-        let array = |name: String, count: usize, words: &str| {
-            let count = count as u64;
-            Self::new(
-                name.clone(),
-                vec![(name, count)],
-                vec![count],
-                words.to_owned(),
-            )
-        };
+    pub(super) fn axis(name: &str) -> [Self; 2] {
         [
-            array(name.to_owned(), axis.count(), "centres of the cells"),
-            array(edges(name), axis.count() + 1, "edges of the cells"),
+            Self::line(name.to_owned(), "centres of the cells"),
+            Self::line(edges(name), "edges of the cells"),
         ]
+    }
+
+    /// A coordinate.
+    fn line(name: String, words: &str) -> Self {
+        Self::new(name.clone(), vec![(name, 1)], words.to_owned())
+    }
+
+    /// Whether it has a row for every value of the parameter.
+    pub(super) fn is_along(&self, family: &Family) -> bool {
+        let first = self.dimensions.first();
+        first.is_some_and(|(name, _)| name == family.parameter())
     }
 
     /// The density itself.
@@ -173,7 +158,6 @@ impl Layout {
         layout
             .dimensions
             .insert(1, (REPLICATE.to_owned(), count as u64));
-        layout.chunk.insert(1, REPLICATE_CHUNK);
         layout
     }
 
@@ -194,7 +178,6 @@ impl Layout {
         let mut layout = Self::of_cells(family, estimate, name, long_name);
         // The plane leaves the other axis, if there is one.
         layout.dimensions.remove(1 + kink.axis);
-        layout.chunk.remove(1 + kink.axis);
         let layout = layout
             .attribute(KINK_AXIS, axis.into())
             .attribute(KINK_AT, json!(kink.at));
@@ -205,7 +188,8 @@ impl Layout {
         }
     }
 
-    /// An array with one value a cell and parameter value; the number of parameter values is set when it is stored.
+    /// An array with one value a cell and parameter value; how many values the first dimension has is set when it is
+    /// stored.
     fn of_cells(
         family: &Family,
         estimate: &EstimatedDensity,
@@ -217,21 +201,7 @@ impl Layout {
         for (&axis, cells) in axes.iter().zip(&estimate.density.axes) {
             dimensions.push((family.axis(axis).to_owned(), cells.count() as u64));
         }
-        let chunk = dimensions.iter().map(|dimension| dimension.1).collect();
-        Self::new(name, dimensions, chunk, long_name)
-    }
-
-    /// The places of all chunks of one parameter value, along the other dimensions.
-    pub(super) fn chunks_of_a_value(&self) -> Vec<Vec<u64>> {
-        let dimensions = self.dimensions.iter().zip(&self.chunk).skip(1);
-        let counts = dimensions.map(|((_, length), chunk)| length.div_ceil(*chunk));
-        counts.fold(vec![Vec::new()], |places, count| {
-            let with = |place: &Vec<u64>| {
-                let place = place.clone();
-                (0..count).map(move |number| [&place[..], &[number]].concat())
-            };
-            places.iter().flat_map(with).collect()
-        })
+        Self::new(name, dimensions, long_name)
     }
 
     /// Whether this is the array of that kink, whatever its number.

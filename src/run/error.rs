@@ -18,14 +18,6 @@ pub enum RunError {
     /// A table could not be composed.
     #[error("cannot compose a table: {0}")]
     Table(#[from] csv::Error),
-    /// The array store could not be composed.
-    #[error("cannot compose the array store at {}: {message}", path.display())]
-    Store {
-        /// The store.
-        path: PathBuf,
-        /// What the Zarr library says.
-        message: String,
-    },
     /// A resolved sweep that is not TOML.
     #[error("the resolved sweep does not parse: {0}")]
     Resolved(#[from] toml::de::Error),
@@ -260,7 +252,7 @@ pub enum RunError {
     ReadStore {
         /// The store.
         path: PathBuf,
-        /// What the Zarr library says.
+        /// Why not.
         message: String,
     },
     /// The store has no such density.

@@ -5,10 +5,11 @@ use std::sync::{Mutex, PoisonError};
 
 use super::atomic::{sync_all, write_atomically, write_durably};
 use super::growing::GrowingTable;
+use super::store::write_store;
 use super::{
-    DensityStore, Ending, Layout, Manifest, RunError, bifurcations_csv, bifurcations_json,
-    bifurcations_markdown, bifurcations_tex, checks, features_csv, features_table, points_csv,
-    points_table, settling::Settling,
+    Ending, Layout, Manifest, RunError, bifurcations_csv, bifurcations_json, bifurcations_markdown,
+    bifurcations_tex, checks, features_csv, features_table, points_csv, points_table,
+    settling::Settling,
 };
 use crate::continuation::{Point, Subject, SweepResult};
 use crate::density::EstimatedDensity;
@@ -20,7 +21,6 @@ const STORE: &str = "densities.zarr";
 #[derive(Debug)]
 pub(crate) struct RunFolder {
     path: PathBuf,
-    store: DensityStore,
     points: GrowingTable,
     features: GrowingTable,
     /// Points that were added.
@@ -34,7 +34,6 @@ impl RunFolder {
     pub(crate) fn at(path: &Path) -> Self {
         Self {
             path: path.to_owned(),
-            store: DensityStore::new(&path.join(STORE)),
             points: GrowingTable::new(&path.join("points.csv")),
             features: GrowingTable::new(&path.join("features.csv")),
             added: 0,
@@ -59,9 +58,6 @@ impl RunFolder {
             if let Some(settling) = settling {
                 settling.end()?;
                 done.push(STORE);
-            } else if manifest.ending == Ending::Interrupted {
-                // One that was broken off is as it grew, and its journal has what it lacks.
-                done.push(STORE);
             }
             let kept = Layout::SWEEP.entries.iter();
             let kept = kept.filter(|entry| !done.contains(entry));
@@ -81,8 +77,9 @@ impl RunFolder {
         write_atomically(&self.path.join("run.json"), text.as_bytes())
     }
 
-    /// Stores a point's densities and adds its rows to the tables. What this costs does not depend on how many points
-    /// there are: until [`RunFolder::finish`], rows stand in the order in which the points came.
+    /// Adds a point's rows to the tables; its densities are in the journal until the run has ended. What this costs does
+    /// not depend on how many points there are: until [`RunFolder::finish`], rows stand in the order in which the points
+    /// came.
     ///
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.
@@ -92,10 +89,6 @@ impl RunFolder {
             observables,
             ..
         } = subject;
-        if !point.densities.is_empty() {
-            self.store.append(family, point.value, &point.densities)?;
-        }
-        // The row comes after its density, which a reader of the row may look for.
         let rows: Vec<_> = features_table::found(observables, point).collect();
         let columns = features_table::columns(family);
         self.features
@@ -107,8 +100,7 @@ impl RunFolder {
         Ok(())
     }
 
-    /// The same of several points at once, the first of the run: whatever was there of the tables and the store is
-    /// replaced.
+    /// The same of several points at once, the first of the run: whatever was there of the tables is replaced.
     ///
     /// # Errors
     /// As [`RunFolder::add_point`].
@@ -118,7 +110,6 @@ impl RunFolder {
         points: &[Point],
     ) -> Result<(), RunError> {
         let family = &subject.family;
-        self.store.replace(family, &with_densities(points))?;
         let observables = &subject.observables;
         let found = points
             .iter()
@@ -139,8 +130,7 @@ impl RunFolder {
         self.added
     }
 
-    /// Writes the tables of a sweep that ends at once. Its stored densities stay in the order in which they came, as a
-    /// kill leaves them.
+    /// Writes the tables of a sweep that ends at once. Its densities stay in the journal, as a kill leaves them.
     ///
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.
@@ -153,18 +143,32 @@ impl RunFolder {
         Ok(())
     }
 
-    /// Writes all files of a finished sweep and puts the stored densities in ascending order. They are brought to the
-    /// disk while the caller goes on, to the figures for example, until the manifest is written.
+    /// Writes all files of a finished sweep, its densities among them, which are brought to the disk while the caller
+    /// goes on, to the figures for example, until the manifest is written.
     ///
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.
     pub(crate) fn finish(&mut self, result: &SweepResult) -> Result<(), RunError> {
         self.break_off(result)?;
-        let densities = with_densities(&result.points);
-        let before = self.store.replaced(&result.subject.family, &densities)?;
-        self.settling = Some(Settling::begin(self.store.path(), before)).into();
+        self.settling = Some(Settling::begin(write_densities(&self.path, result)?)).into();
         Ok(())
     }
+}
+
+/// Writes all densities of a sweep into a folder and returns where they are.
+///
+/// # Errors
+/// [`RunError::Write`].
+pub(super) fn write_densities(run: &Path, result: &SweepResult) -> Result<PathBuf, RunError> {
+    let path = run.join(STORE);
+    let solved = result
+        .points
+        .iter()
+        .filter(|point| !point.densities.is_empty());
+    let densities = solved.map(|point| (point.value, point.densities.as_slice()));
+    let densities: Vec<(f64, &[EstimatedDensity])> = densities.collect();
+    write_store(&path, &result.subject.family, &densities)?;
+    Ok(path)
 }
 
 /// The files of a sweep by their names, but for its manifest and its densities.
@@ -193,12 +197,4 @@ pub(crate) fn sweep_files(result: &SweepResult) -> Result<Vec<(String, String)>,
     }
     let files = files.into_iter();
     Ok(files.map(|(name, text)| (name.to_owned(), text)).collect())
-}
-
-/// The densities of those points that have some.
-fn with_densities(points: &[Point]) -> Vec<(f64, &[EstimatedDensity])> {
-    let solved = points.iter().filter(|point| !point.densities.is_empty());
-    solved
-        .map(|point| (point.value, point.densities.as_slice()))
-        .collect()
 }

@@ -5,9 +5,9 @@
 //!
 //! **A run replaces nothing.** The files of an earlier run in the same folder are linked into `previous/1`, the next
 //! free number, and only when they are whole there are they taken away (`run::staging`, `run::archive`). What was
-//! followed from a run (`curves/`) goes with it, so that nothing beside a run is of another one. The Zarr library
-//! composes arrays in memory, the files are put in place by renaming: a killed run leaves whole files. A lock of the
-//! operating system keeps a second writer away and cannot go stale (`run::lock`).
+//! followed from a run (`curves/`) goes with it, so that nothing beside a run is of another one. Files and the store of
+//! densities are put in place by renaming: a killed run leaves whole files. A lock of the operating system keeps a second
+//! writer away and cannot go stale (`run::lock`).
 //!
 //! **A job goes on to the same bytes.** A session's solve starts from what it solved before, so a job that goes on must
 //! know what the first one knew. A session says after each solve what it has left for later ones (`Session::memory`:
@@ -19,9 +19,15 @@
 //! resuming; neither the order in which sessions are opened nor the number of threads matters, and what is asked
 //! otherwise than before is solved from where an uninterrupted session would have stood. A comparison, which asks no
 //! sessions, keeps its solves by their numbers in the same file. One file is waited for, once a second (fsync of the
-//! journal); tables and chunks are made from it again. Its records are what serde derives of the types, in postcard's
+//! journal); tables are made from it again. Its records are what serde derives of the types, in postcard's
 //! format, bit for bit; sessions' memories are theirs alone. They are read when they are asked for, so that the journal
 //! of a map may be larger than the memory.
+//!
+//! **Densities are stored at the end.** While a sweep goes on, its densities are in the journal, by which it goes on:
+//! readers of an unfinished run find a point there by its value (`run::journal::solved`). A store that grew beside it held
+//! them a second time, in a file a value and array, 3400 of them for `sweeps/coulomb_fc.toml`, which took as much of the
+//! system's time as all else. The format of the files (`run::zarr`) is written out in two hundred lines: plain numbers in
+//! a few large chunks need nothing of a library but its hundred crates.
 //!
 //! **A map keeps every solve while it is made.** Nodes beside changes decide where curves begin, from densities that
 //! depend on all solves of their session; a map that kept signatures alone, as it did, solved those nodes again from
@@ -57,7 +63,6 @@ mod curve;
 mod date;
 mod doubts;
 mod error;
-mod exchange;
 mod export;
 mod features_table;
 mod findings;
@@ -96,6 +101,7 @@ mod summary;
 mod tests;
 mod tree;
 mod warnings;
+mod zarr;
 
 pub(crate) use atomic::write_anywhere;
 pub(crate) use bifurcations::{
@@ -134,7 +140,6 @@ pub use sentences::finding_in_words;
 pub(crate) use shards::shard_folder;
 pub use shards::{Gathered, Shards};
 pub(crate) use staged::StagedRun;
-pub(crate) use store::DensityStore;
 pub use stored_run::StoredRun;
 pub use summary::{FoundRow, RunSummary, find_runs};
 pub(crate) use warnings::{warnings_of_comparison, warnings_of_points};

@@ -1,15 +1,11 @@
-//! A store of densities that is settled while something else is done: brought to the disk, and what stood in its place
-//! before removed.
-//!
-//! A store has a file a density; waiting for all of them takes as long as drawing all figures, and the one waits for
-//! the disk while the other computes.
+//! A store of densities that is brought to the disk while something else is done: the one waits while the other
+//! computes.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::thread::JoinHandle;
 
 use super::RunError;
 use super::atomic::sync_all;
-use super::exchange::Leftover;
 
 /// Work that goes on beside.
 #[derive(Debug)]
@@ -20,16 +16,12 @@ pub(super) struct Settling {
 }
 
 impl Settling {
-    /// Begins. What was there before is removed only when the new store is on the disk.
-    pub(super) fn begin(store: &Path, before: Option<Leftover>) -> Self {
-        let place = vec![store.to_owned()];
-        let work = move || {
-            let synced = sync_all(&place);
-            drop(before);
-            synced
-        };
+    /// Begins.
+    pub(super) fn begin(store: PathBuf) -> Self {
+        let place = vec![store.clone()];
+        let work = move || sync_all(&place);
         Self {
-            store: store.to_owned(),
+            store,
             thread: std::thread::Builder::new().spawn(work).ok(),
         }
     }

@@ -6,7 +6,7 @@ use super::atomic::write_atomically;
 use super::staging::Staging;
 use super::tree::link_tree;
 use super::{
-    Layout, Manifest, RunError, RunFolder, StoredRun, checksums, exchange, journal,
+    Ending, Layout, Manifest, RunError, RunFolder, StoredRun, checksums, folder, journal,
     research_object, sweep_files,
 };
 use crate::continuation::SweepResult;
@@ -20,24 +20,27 @@ pub(crate) struct StagedRun {
     staging: Staging,
     /// Whether what was solved for is in place already.
     same: bool,
+    /// Whether the run has come to its end; the densities of another one stand in its journal.
+    is_complete: bool,
 }
 
 impl StagedRun {
-    /// A new version of the run at `solved`, to stand at `home`: the folder of that run, or another one that exists.
+    /// A new version of the run `solved`, to stand at `home`: the folder of that run, or another one that exists.
     ///
     /// # Errors
     /// [`RunError::InUse`], [`RunError::NotOurs`], [`RunError::Read`] or [`RunError::Write`].
-    pub(crate) fn new(home: &Path, solved: &Path) -> Result<Self, RunError> {
+    pub(crate) fn new(home: &Path, solved: &StoredRun) -> Result<Self, RunError> {
         let staging = Staging::new(home, Layout::SWEEP.entries)?.with(Layout::SWEEP.about)?;
-        let same = is_same(home, solved);
-        for entry in SOLVED {
-            let place = solved.join(entry);
-            let standing = exchange::standing(&place, "zarr.json");
-            if !same || standing != place {
-                link_tree(&standing, &staging.fresh().join(entry))?;
-            }
+        let same = is_same(home, solved.path());
+        for entry in SOLVED.iter().filter(|_| !same) {
+            link_tree(&solved.path().join(entry), &staging.fresh().join(entry))?;
         }
-        Ok(Self { staging, same })
+        let is_complete = solved.ending() == Ending::Complete;
+        Ok(Self {
+            staging,
+            same,
+            is_complete,
+        })
     }
 
     /// Where figures are drawn to.
@@ -50,13 +53,15 @@ impl StagedRun {
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.
     pub(crate) fn write(&self, result: &SweepResult) -> Result<(), RunError> {
+        let fresh = self.staging.fresh();
+        if !self.is_complete {
+            folder::write_densities(&fresh, result)?;
+        }
         let files = sweep_files(result)?;
         let mut made = files
             .iter()
             .filter(|(name, _)| !SOLVED.contains(&name.as_str()));
-        made.try_for_each(|(name, text)| {
-            write_atomically(&self.staging.fresh().join(name), text.as_bytes())
-        })
+        made.try_for_each(|(name, text)| write_atomically(&fresh.join(name), text.as_bytes()))
     }
 
     /// Writes the manifest.

@@ -1,13 +1,11 @@
 //! `densities.zarr`, read back: the same densities bit for bit, with their errors, variants and structure.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use serde_json::Value;
-use zarrs::array::{Array, ArraySubset};
-use zarrs::filesystem::FilesystemStore;
 
 use super::place::check_files;
+use super::zarr::StoredArray;
 use super::{RunError, arrays};
 use crate::continuation::Subject;
 use crate::density::{
@@ -16,8 +14,6 @@ use crate::density::{
 use crate::method::OneAxisFamily;
 use crate::space::{Axis, CellSpace};
 use crate::system::{Family, Symmetry, proved_symmetry};
-
-type StoredArray = Array<FilesystemStore>;
 
 /// The store of a run, opened for the observables that are wanted of it.
 pub(super) struct StoredDensities {
@@ -66,7 +62,7 @@ impl StoredDensities {
         let opened = Opened::new(path)?;
         let family = &subject.family;
         let mut values = opened.whole(family.parameter())?;
-        // A store that grows has room for values that are not solved yet.
+        // Stores of early versions grew, and had room for values that were not solved yet.
         let solved = values.iter().position(|value| value.is_nan());
         values.truncate(solved.unwrap_or(values.len()));
         let observed = subject
@@ -135,6 +131,12 @@ impl Observed {
             axes.all(|&axis| symmetry.reflected.get(axis).copied().unwrap_or(true))
         };
         let read = |array: &StoredArray| at_index(path, array, index);
+        let cells = self.axes.iter().map(Axis::count).product();
+        let in_cells = |array: &StoredArray| -> Result<Vec<f64>, RunError> {
+            let mut values = read(array)?;
+            values.resize(cells, f64::NAN);
+            Ok(values)
+        };
         let mut kinks = Vec::new();
         for kink in &self.kinks {
             let jump = read(&kink.jump)?;
@@ -150,9 +152,9 @@ impl Observed {
             observable: self.observable,
             density: Density {
                 axes: self.axes.clone(),
-                values: read(&self.density)?,
+                values: in_cells(&self.density)?,
             },
-            standard_error: read(&self.error)?,
+            standard_error: in_cells(&self.error)?,
             variants: self.variants(path, index)?,
             structure: Structure {
                 centre,
@@ -188,18 +190,14 @@ impl Observed {
     }
 }
 
-/// NaN stands for values that a parameter value does not have.
+/// NaN, or nothing, stands for values that a parameter value does not have.
 fn is_missing(values: &[f64]) -> bool {
     values.iter().all(|value| value.is_nan())
 }
 
 /// An array at one parameter value.
 fn at_index(path: &Path, array: &StoredArray, index: u64) -> Result<Vec<f64>, RunError> {
-    let mut ranges: Vec<_> = array.shape().iter().map(|&length| 0..length).collect();
-    ranges[0] = index..index + 1;
-    array
-        .retrieve_array_subset(&ArraySubset::new_with_ranges(&ranges))
-        .map_err(|error| unreadable(path, error))
+    array.row(index).map_err(|error| unreadable(path, error))
 }
 
 fn unreadable(path: &Path, error: impl std::fmt::Display) -> RunError {
@@ -212,22 +210,14 @@ fn unreadable(path: &Path, error: impl std::fmt::Display) -> RunError {
 /// A store while its arrays are looked up.
 struct Opened {
     path: PathBuf,
-    store: Arc<FilesystemStore>,
     /// Names of all arrays, sorted.
     names: Vec<String>,
 }
 
 impl Opened {
     fn new(path: &Path) -> Result<Self, RunError> {
-        // The library waits for pipes, and knows no other names.
+        // Pipes would be waited for.
         check_files(path)?;
-        if path.to_str().is_none() {
-            return Err(RunError::Place {
-                path: path.to_owned(),
-                why: "its name is not UTF-8, which array stores must have".to_owned(),
-            });
-        }
-        let store = FilesystemStore::new(path).map_err(|error| unreadable(path, error))?;
         let entries = std::fs::read_dir(path).map_err(|error| unreadable(path, error))?;
         let mut names: Vec<String> = entries
             .flatten()
@@ -237,7 +227,6 @@ impl Opened {
         names.sort_by_key(|name| (name.len(), name.clone()));
         Ok(Self {
             path: path.to_owned(),
-            store: Arc::new(store),
             names,
         })
     }
@@ -247,7 +236,7 @@ impl Opened {
     }
 
     fn array(&self, name: &str) -> Result<StoredArray, RunError> {
-        Array::open(self.store.clone(), &format!("/{name}"))
+        StoredArray::open(&self.path.join(name))
             .map_err(|error| unreadable(&self.path, format!("array `{name}`: {error}")))
     }
 
@@ -267,11 +256,8 @@ impl Opened {
     }
 
     fn whole(&self, name: &str) -> Result<Vec<f64>, RunError> {
-        let array = self.array(name)?;
-        let all = array.subset_all();
-        array
-            .retrieve_array_subset(&all)
-            .map_err(|error| unreadable(&self.path, error))
+        let line = self.array(name)?.line();
+        line.map_err(|error| unreadable(&self.path, format!("array `{name}`: {error}")))
     }
 
     fn observed(

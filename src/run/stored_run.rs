@@ -11,9 +11,10 @@ use super::place::{FIGURES, folder_in, read};
 use super::points_table::read_points;
 use super::sealing::seal_after_kill;
 use super::stored_densities::StoredDensities;
-use super::{Checked, Ending, Layout, PhaseSeconds, RunError, checksums, exchange, journal};
+use super::{Checked, Ending, Journal, Layout, PhaseSeconds, RunError, checksums, journal};
 use crate::continuation::measure::MEAN;
 use crate::continuation::{CheckedIndicator, Point, Shard, Subject};
+use crate::density::EstimatedDensity;
 use crate::space::{Axis, CellSpace};
 use crate::sweep_file::SweepText;
 use crate::system::Family;
@@ -245,10 +246,27 @@ impl StoredRun {
         if !points.iter().any(has_density) {
             return self.check_sums().map(|()| points);
         }
-        let path = exchange::standing(&self.path.join("densities.zarr"), "zarr.json");
-        let stored = StoredDensities::open(&path, subject, (space, bins))?;
+        let path = self.path.join("densities.zarr");
+        let journal = match complete {
+            true => None,
+            false => Journal::look(&self.path)?,
+        };
+        // Unfinished runs of early versions have a store that grew.
+        let stored = match journal.is_none() || path.join("zarr.json").is_file() {
+            true => Some(StoredDensities::open(&path, subject, (space, bins))?),
+            false => None,
+        };
+        let find = |value: f64| -> Result<Option<Vec<EstimatedDensity>>, RunError> {
+            let found = journal
+                .as_ref()
+                .map(|journal| journal.densities(subject, (space, bins), value));
+            match (found.transpose()?.flatten(), &stored) {
+                (None, Some(stored)) => stored.at(value),
+                (found, _) => Ok(found),
+            }
+        };
         let read = |point: &mut Point| -> Result<(), RunError> {
-            point.densities = stored.at(point.value)?.ok_or_else(|| RunError::NoDensity {
+            point.densities = find(point.value)?.ok_or_else(|| RunError::NoDensity {
                 path: path.clone(),
                 parameter: family.parameter().to_owned(),
                 value: point.value,

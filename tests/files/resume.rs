@@ -3,6 +3,8 @@
 
 #![cfg(unix)]
 
+use std::collections::BTreeSet;
+
 use super::killing::{size, started, stopped_at, wait_until};
 use crate::common::room::{Printed, Room, assert_same};
 
@@ -64,6 +66,10 @@ fn killed_runs_end_with_the_bytes_of_one_that_was_not() {
         assert!(first, "{sweep}: nothing to kill");
         assert_eq!(manifest(&room, "run")["ending"], "running");
         assert!(manifest(&room, "run")["points"].as_u64().unwrap() >= 1);
+        // Its densities can be read, and stored for good elsewhere.
+        room.done("export run --format csv --out killed");
+        room.run("detect run --out seen --quiet").ends(1);
+        room.done("export seen --format csv --out seen-csv");
         stopped_at(
             &room,
             &line(sweep, "run", "--resume --threads 1"),
@@ -73,6 +79,20 @@ fn killed_runs_end_with_the_bytes_of_one_that_was_not() {
         stopped_at(&room, &line(sweep, "run", "--resume"), 5, "-KILL");
         run(&room, sweep, "run", "--resume");
         assert_same_runs(&room, "run", "whole", sweep);
+        room.done("export whole --format csv --out all");
+        for (name, text) in room.files("all", &[]) {
+            let lines = |bytes: Vec<u8>| -> BTreeSet<String> {
+                String::from_utf8(bytes)
+                    .unwrap()
+                    .lines()
+                    .map(str::to_owned)
+                    .collect()
+            };
+            let [killed, seen] =
+                ["killed", "seen-csv"].map(|folder| lines(room.bytes(&format!("{folder}/{name}"))));
+            assert!(killed.len() > 1 && killed == seen, "{sweep}: {name}");
+            assert!(killed.is_subset(&lines(text)), "{sweep}: {name}");
+        }
         assert_eq!(manifest(&room, "run")["ending"], "complete");
         // What is stored is read again, also along axes of modes.
         run(&room, sweep, "run", "--resume");

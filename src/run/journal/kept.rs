@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::continuation::{Sensitivity, Solution, SolveReport, SourceError};
+use crate::continuation::{Point, Sensitivity, Solution, SolveReport, SourceError};
 use crate::density::EstimatedDensity;
 
 /// A solve that is kept.
@@ -52,12 +52,28 @@ impl KeptSolution {
 }
 
 impl Kept {
+    /// A point that was solved elsewhere.
+    pub(super) fn of_point(point: &Point) -> Self {
+        Self {
+            seconds: point.seconds,
+            solved: Ok(KeptSolution {
+                report: point.report.clone(),
+                densities: point.densities.clone(),
+            }),
+            is_sensitive: false,
+            answers: Vec::new(),
+            memory: Vec::new(),
+        }
+    }
+
+    /// The densities that were solved, none where there is no solution.
+    pub(super) fn densities(&self) -> &[EstimatedDensity] {
+        self.solved.as_ref().map_or(&[], |found| &found.densities)
+    }
+
     /// Whether what was read is what a solve can give.
     pub(super) fn is_sound(&self) -> bool {
-        let found = self.solved.iter();
-        found
-            .flat_map(|found| &found.densities)
-            .all(EstimatedDensity::is_sound)
+        self.densities().iter().all(EstimatedDensity::is_sound)
     }
 }
 

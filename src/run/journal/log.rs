@@ -65,7 +65,6 @@ impl Log {
             path: path.clone(),
             source,
         };
-        let broken = || RunError::Journal { path: path.clone() };
         take_own_copy(&path).map_err(unreadable)?;
         let mut file = match File::options().read(true).write(true).open(&path) {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
@@ -76,16 +75,22 @@ impl Log {
             }
             file => file.map_err(unreadable)?,
         };
-        let mut frames = Frames::new(&file).map_err(unreadable)?;
-        let first = frames.next().map_err(unreadable)?.ok_or_else(broken)?;
-        check_sweep(&path, &first, of)?;
-        while let Some(frame) = frames.next().map_err(unreadable)? {
-            let place = frames.whole - frame.len() as u64..frames.whole;
-            each(&frame, place).map_err(|NotWhatWasWritten| broken())?;
-        }
-        let whole = frames.whole;
+        let whole = go_through(&path, &file, Some(of), each)?;
         file.set_len(whole).map_err(unreadable)?;
         file.seek(SeekFrom::Start(whole)).map_err(unreadable)?;
+        Ok(Self::at(path, file))
+    }
+
+    /// Opens a file that others may write to, for reading alone.
+    ///
+    /// # Errors
+    /// As [`Log::open`], whatever work it is of.
+    pub(in crate::run) fn look(path: PathBuf, each: &mut Each<'_>) -> Result<Self, RunError> {
+        let file = File::open(&path).map_err(|source| RunError::Read {
+            path: path.clone(),
+            source,
+        })?;
+        go_through(&path, &file, None, each)?;
         Ok(Self::at(path, file))
     }
 
@@ -155,6 +160,32 @@ impl Log {
             source,
         }
     }
+}
+
+/// Gives `each` all whole records of a file but the first, which must be of this work; the end of the last one.
+fn go_through(
+    path: &Path,
+    file: &File,
+    of: Option<&str>,
+    each: &mut Each<'_>,
+) -> Result<u64, RunError> {
+    let unreadable = |source| RunError::Read {
+        path: path.to_owned(),
+        source,
+    };
+    let broken = || RunError::Journal {
+        path: path.to_owned(),
+    };
+    let mut frames = Frames::new(file).map_err(unreadable)?;
+    let first = frames.next().map_err(unreadable)?.ok_or_else(broken)?;
+    if let Some(of) = of {
+        check_sweep(path, &first, of)?;
+    }
+    while let Some(frame) = frames.next().map_err(unreadable)? {
+        let place = frames.whole - frame.len() as u64..frames.whole;
+        each(&frame, place).map_err(|NotWhatWasWritten| broken())?;
+    }
+    Ok(frames.whole)
 }
 
 /// A record with its length and checksum.

@@ -9,6 +9,7 @@
 mod kept;
 mod log;
 mod session;
+mod solved;
 mod source;
 
 pub use source::JournalledSource;
@@ -71,6 +72,23 @@ impl Journal {
         Ok(Self::new(log, places))
     }
 
+    /// Opens the file of a run that others may write to, for reading alone; `None` where it has none.
+    ///
+    /// # Errors
+    /// [`RunError::Journal`], [`RunError::Read`].
+    pub(super) fn look(run: &Path) -> Result<Option<Self>, RunError> {
+        let path = run.join(NAME);
+        if !path.is_file() {
+            return Ok(None);
+        }
+        let mut places = HashMap::new();
+        let log = Log::look(path, &mut |content, place| {
+            places.insert(from_bytes(content)?, place);
+            Ok(())
+        })?;
+        Ok(Some(Self::new(log, places)))
+    }
+
     fn new(log: Log, places: HashMap<Key, Range<u64>>) -> Self {
         Self(Arc::new(Mutex::new(Shared {
             log,
@@ -81,7 +99,9 @@ impl Journal {
 
     /// Solves that earlier processes have left.
     pub fn solves(&self) -> usize {
-        self.lock().places.len()
+        let shared = self.lock();
+        let solves = shared.places.keys().filter(|key| !key.is_of_point());
+        solves.count()
     }
 
     /// Why a session ended, where it was not interrupted. It is told once.
@@ -142,6 +162,9 @@ impl Journal {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 struct Key([u8; 16]);
 
+/// How the keys of points begin; that a hash does is out of the question.
+const POINT: [u8; 16] = [0xff; 16];
+
 impl Key {
     fn of(name: &str) -> Self {
         Self([0; 16]).then(name)
@@ -164,6 +187,18 @@ impl Key {
                 .flat_map(|number| number.to_le_bytes())
                 .collect::<Vec<u8>>(),
         )
+    }
+
+    /// A point of a sweep, whatever was solved before it.
+    fn of_point(value: f64) -> Self {
+        let mut key = POINT;
+        // Zero is one value.
+        key[8..].copy_from_slice(&(value + 0.0).to_le_bytes());
+        Self(key)
+    }
+
+    fn is_of_point(&self) -> bool {
+        self.0[..8] == POINT[..8]
     }
 
     /// The same where its solution was asked something.

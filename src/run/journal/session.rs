@@ -51,6 +51,8 @@ impl Session for JournalledSession {
         if let Some(point) = self.known.points.get(&value.to_bits()) {
             self.known.is_stored.store(false, Ordering::Relaxed);
             self.seconds = Some(point.seconds);
+            let written = self.journal.write_known(&self.family, point);
+            written.map_err(|error| self.journal.end(error))?;
             return Ok(Solution {
                 report: point.report.clone(),
                 densities: point.densities.clone(),
@@ -166,7 +168,12 @@ impl JournalledSession {
         self.key = last.key.of_questions(&last.kept.answers);
         if last.is_new {
             last.kept.memory = self.inner.session.memory();
-            let written = self.journal.write(last.key, &last.kept);
+            let mut written = self.journal.write(last.key, &last.kept);
+            if self.known.is_swept {
+                let point = (last.value, last.key);
+                written = written
+                    .and_then(|()| self.journal.write_point(&self.family, point, &last.kept));
+            }
             return written.map_err(|error| self.journal.end(error));
         }
         self.inner.left.push((last.value, last.kept.memory));
@@ -284,6 +291,8 @@ pub(super) struct Known {
     pub(super) points: HashMap<u64, Point>,
     /// Whether solutions are asked how they answer to parameters.
     pub(super) is_asked: bool,
+    /// Whether what is solved are the points of a sweep.
+    pub(super) is_swept: bool,
     /// Values that were solved by this process.
     pub(super) solves: AtomicUsize,
     /// Whether the last solution came from the journal.

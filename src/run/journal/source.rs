@@ -37,6 +37,7 @@ impl JournalledSource {
         let points = points.into_iter();
         let known = Known {
             points: points.map(|point| (point.value.to_bits(), point)).collect(),
+            is_swept: true,
             ..Known::default()
         };
         Self::at(source, journal, Key::of("main"), known)

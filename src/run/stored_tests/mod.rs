@@ -3,6 +3,8 @@
 mod faults;
 mod one_axis;
 
+use super::store::write_store;
+use super::zarr::StoredArray;
 use super::*;
 use crate::continuation::measure::{
     DEVIATION, EDGE_MASS, ESCAPE_RATE, FACTORISATIONS, MAP_STEP, MEAN, NEGATIVE_MASS,
@@ -147,6 +149,10 @@ fn write(folder: &std::path::Path, points: &[Point]) {
     for point in points {
         run.add_point(&subject(&OBSERVABLES), point).unwrap();
     }
+    let densities = points.iter().filter(|point| !point.densities.is_empty());
+    let densities = densities.map(|point| (point.value, &point.densities[..]));
+    let store = folder.join("densities.zarr");
+    write_store(&store, &coulomb(), &densities.collect::<Vec<_>>()).unwrap();
     let manifest =
         Manifest::start(RESOLVED, crate::sweep_file::SweepText::default(), 1, 2).unwrap();
     run.write_manifest(&manifest).unwrap();
@@ -206,79 +212,76 @@ fn what_was_written_is_read_bit_for_bit() {
     for points in [&by_samples[..], &by_schemes] {
         let folder = tempfile::tempdir().unwrap();
         write(folder.path(), points);
-        let mut found = read(folder.path()).unwrap();
-        for wanted in points {
-            let place = found.iter().position(|point| point.value == wanted.value);
-            let found = found.remove(place.unwrap());
-            assert!(bits(&found) == bits(wanted), "{}", wanted.value);
-        }
-        assert!(found.is_empty());
+        let assert_read = || {
+            let mut found = read(folder.path()).unwrap();
+            for wanted in points {
+                let place = found.iter().position(|point| point.value == wanted.value);
+                let found = found.remove(place.unwrap());
+                assert!(bits(&found) == bits(wanted), "{}", wanted.value);
+            }
+            assert!(found.is_empty());
+        };
+        assert_read();
+        as_early_versions_did(&folder.path().join("densities.zarr"));
+        assert_read();
     }
 }
 
-#[test]
-fn a_store_in_its_final_order_holds_the_same() {
-    let folder = tempfile::tempdir().unwrap();
-    let points = [point(-0.5, Some(3), 1), point(0.5, Some(9), 2)];
-    write(folder.path(), &points);
-    let mut store = DensityStore::new(&folder.path().join("densities.zarr"));
-    let of = |point: &Point| (point.value, point.densities.clone());
-    let densities = points.each_ref().map(of);
-    let borrowed: Vec<_> = densities
-        .iter()
-        .map(|(value, d)| (*value, d.as_slice()))
-        .collect();
-    store.replace(&coulomb(), &borrowed).unwrap();
-    let found = read(folder.path()).unwrap();
-    for (found, wanted) in found.iter().zip(&points) {
-        assert!(bits(found) == bits(wanted), "{}", wanted.value);
-    }
-    let left: Vec<_> = std::fs::read_dir(folder.path())
-        .unwrap()
-        .flatten()
-        .collect();
-    assert!(
-        left.iter()
-            .all(|entry| !entry.file_name().to_string_lossy().contains("zarr."))
-    );
-}
-
-#[test]
-fn chunks_that_are_linked_are_those_that_would_be_written() {
-    let points = [
-        point(0.5, Some(9), 2),
-        point(-0.5, Some(3), 1),
-        point(0.25, None, 2),
-    ];
-    let folder = tempfile::tempdir().unwrap();
-    let places = ["grown", "whole"].map(|name| folder.path().join(name));
-    let mut sorted = points
-        .each_ref()
-        .map(|point| (point.value, point.densities.as_slice()));
-    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
-    for (place, grown) in places.iter().zip([true, false]) {
-        let mut store = DensityStore::new(place);
-        for point in points.iter().filter(|_| grown) {
-            store
-                .append(&coulomb(), point.value, &point.densities)
-                .unwrap();
-        }
-        store.replace(&coulomb(), &sorted).unwrap();
-    }
-    let [grown, whole] = places.map(|place| {
-        let (mut open, mut files) = (vec![place.clone()], std::collections::BTreeMap::new());
-        while let Some(folder) = open.pop() {
-            for entry in std::fs::read_dir(folder).unwrap().flatten() {
-                match entry.file_type().unwrap().is_dir() {
-                    true => open.push(entry.path()),
-                    false => {
-                        let name = entry.path().strip_prefix(&place).unwrap().to_owned();
-                        files.insert(name, std::fs::read(entry.path()).unwrap());
-                    }
+/// Stores of early versions had a chunk a value, of eight replicates at most, and room for more values.
+fn as_early_versions_did(store: &std::path::Path) {
+    let names = std::fs::read_dir(store).unwrap().flatten();
+    for folder in names.map(|entry| entry.path()).filter(|path| path.is_dir()) {
+        let array = StoredArray::open(&folder).unwrap();
+        let about = std::fs::read(folder.join("zarr.json")).unwrap();
+        let mut about: serde_json::Value = serde_json::from_slice(&about).unwrap();
+        let mut shape = array.shape().to_vec();
+        let rows: Vec<Vec<f64>> = (0..shape[0])
+            .map(|index| array.row(index).unwrap())
+            .collect();
+        std::fs::remove_dir_all(folder.join("c")).unwrap();
+        let mut chunk = shape.clone();
+        let rest: u64 = shape.iter().skip(1).product();
+        let write = |name: &str, numbers: &[f64], length: u64| {
+            let mut numbers = numbers.to_vec();
+            numbers.resize(length as usize, f64::NAN);
+            let bytes: Vec<u8> = numbers.iter().flat_map(|one| one.to_le_bytes()).collect();
+            let path = folder.join(name);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            // A chunk of NaN was not written.
+            if numbers.iter().any(|number| !number.is_nan()) {
+                std::fs::write(path, bytes).unwrap();
+            }
+        };
+        let name = folder.file_name().unwrap().to_str().unwrap();
+        let zeros = |count: usize| "/0".repeat(count);
+        if shape.len() == 1 && !name.contains("_kink") {
+            let is_swept = name == "f_c";
+            chunk[0] = if is_swept { 1024 } else { shape[0] };
+            shape[0] = if is_swept { 64 } else { shape[0] };
+            write("c/0", &rows.concat(), chunk[0]);
+        } else {
+            chunk[0] = 1;
+            shape[0] = 64;
+            let is_replicates = name.ends_with("_replicate");
+            let cells = if is_replicates { rest / shape[1] } else { rest };
+            let length = if is_replicates { 8 * cells } else { cells };
+            for (index, row) in rows.iter().enumerate() {
+                for (second, part) in row.chunks(length as usize).enumerate() {
+                    let second = if shape.len() > 1 {
+                        format!("/{second}")
+                    } else {
+                        String::new()
+                    };
+                    let rest = zeros(shape.len().saturating_sub(2));
+                    write(&format!("c/{index}{second}{rest}"), part, length);
                 }
             }
+            if is_replicates {
+                chunk[1] = 8;
+            }
         }
-        files
-    });
-    assert!(grown.len() > 20 && grown == whole);
+        about["shape"] = shape.into();
+        about["chunk_grid"]["configuration"]["chunk_shape"] = chunk.into();
+        std::fs::write(folder.join("zarr.json"), about.to_string()).unwrap();
+    }
 }

@@ -4,6 +4,7 @@ use crate::cancellation::Cancellation;
 use crate::continuation::{DensitySource, Point};
 use crate::density::{EstimatedDensity, Observable};
 use crate::method::{GeneratorMethodOptions, GeneratorSource, Problem};
+use crate::run::store::write_store;
 use crate::run::{Manifest, RunFolder, StoredRun};
 use crate::space::{Axis, CellSpace};
 use crate::system::{Family, Path, TypedModel};
@@ -53,6 +54,12 @@ fn values_by_quadrature_and_on_cells_come_back_as_they_were_solved() {
         for point in &points {
             run.add_point(source.subject(), point).unwrap();
         }
+        let densities = points
+            .iter()
+            .map(|point| (point.value, &point.densities[..]));
+        let store = folder.path().join("densities.zarr");
+        let densities: Vec<_> = densities.collect();
+        write_store(&store, &source.subject().family, &densities).unwrap();
         let text = crate::sweep_file::SweepText::default();
         let manifest = Manifest::start("title = \"t\"\n", text, 1, 2).unwrap();
         run.write_manifest(&manifest).unwrap();

@@ -179,11 +179,12 @@ fn what_shards_have_solved_is_not_solved_and_a_sweep_is_written_at_once() {
     let point = Point {
         value: 3.0,
         report: SolveReport::solved("diary"),
-        densities: Vec::new(),
+        densities: vec![density(Observable::Joint(0, 1), Variants::Scheme)],
         detections: Vec::new(),
         distance: None,
         seconds: 1.5,
     };
+    let known = point.densities.clone();
     let source = JournalledSource::of_sweep(diary(&count), &journal, vec![point]);
     let mut session = source.open(&never);
     for (value, iterations, seconds) in [(3.0, 0, Some(1.5)), (1.0, 218, None), (3.0, 0, Some(1.5))]
@@ -198,6 +199,29 @@ fn what_shards_have_solved_is_not_solved_and_a_sweep_is_written_at_once() {
     // While the session goes on.
     let journal = open(folder.path(), SWEEP).unwrap();
     assert_eq!(journal.solves(), 1);
+    // Densities are found by the values of points.
+    let look = Journal::look(folder.path()).unwrap().unwrap();
+    let watched = |observable| Subject {
+        observables: vec![observable],
+        ..source.subject().clone()
+    };
+    let joint = watched(Observable::Joint(0, 1));
+    let found =
+        |subject: &Subject, space: &CellSpace, value| look.densities(subject, (space, &[]), value);
+    assert_eq!(found(&joint, &space(), 3.0).unwrap(), Some(known));
+    assert_eq!(found(&joint, &space(), 2.0).unwrap(), None);
+    assert_eq!(
+        found(source.subject(), &space(), 1.0).unwrap(),
+        Some(Vec::new())
+    );
+    let other = found(&watched(Observable::Marginal(0)), &space(), 3.0);
+    assert!(matches!(other, Err(RunError::NotStored { stored, .. }) if stored == ["xy"]));
+    let finer = CellSpace::new(vec![
+        Axis::uniform(-1.0, 1.0, 4).unwrap(),
+        space().axes()[1].clone(),
+    ]);
+    let other = found(&joint, &finer.unwrap(), 3.0);
+    assert!(matches!(other, Err(RunError::Cells { axis, .. }) if axis == "x"));
     let source = JournalledSource::of_sweep(diary(&count), &journal, Vec::new());
     let mut session = source.open(&never);
     assert_eq!(session.solve(1.0).unwrap().report.iterations, 218);

@@ -1,0 +1,236 @@
+//! Arrays of numbers in the format Zarr v3, as far as this program has ever written it: an array is a folder with its
+//! metadata as JSON and its chunks, files of little-endian numbers without compression.
+//!
+//! Chunks divide the first dimension. Those of early versions hold one index of it each, and may divide the second
+//! dimension too. NaN stands for what no chunk holds.
+
+use std::borrow::Cow;
+use std::fs::File;
+use std::io::{Error, ErrorKind, Read as _, Result, Seek as _, SeekFrom};
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use serde_json::{Map, Value, json};
+
+/// Bytes of a chunk, at most: that of one index may be larger.
+const LARGEST_CHUNK: u64 = 1 << 25;
+
+/// Bytes of a number.
+const NUMBER: u64 = 8;
+
+/// What the metadata of an array say.
+#[derive(Debug, Deserialize)]
+struct Metadata {
+    shape: Vec<u64>,
+    data_type: String,
+    chunk_grid: Value,
+    chunk_key_encoding: Value,
+    codecs: Value,
+    #[serde(default)]
+    attributes: Map<String, Value>,
+}
+
+/// The one way in which chunks are named.
+fn names_of_chunks() -> Value {
+    json!({ "name": "default", "configuration": { "separator": "/" } })
+}
+
+/// The one way in which numbers are written.
+fn codecs() -> Value {
+    json!([{ "name": "bytes", "configuration": { "endian": "little" } }])
+}
+
+/// The numbers of an array at one index of the first dimension, in parts; what they do not fill is NaN.
+pub(super) type Row<'a> = Vec<Cow<'a, [f64]>>;
+
+/// Writes an array with named dimensions into the folder `folder`, which is made, and returns its metadata.
+///
+/// # Errors
+/// Whatever the system says.
+pub(super) fn write(
+    folder: &Path,
+    dimensions: &[(String, u64)],
+    attributes: &Map<String, Value>,
+    rows: &[Row<'_>],
+) -> Result<Value> {
+    let (names, mut chunk): (Vec<&str>, Vec<u64>) = dimensions
+        .iter()
+        .map(|(name, n)| (name.as_str(), *n))
+        .unzip();
+    let shape = chunk.clone();
+    let length: u64 = shape.iter().skip(1).product();
+    let most = (LARGEST_CHUNK / NUMBER / length.max(1)).max(1);
+    let count = (rows.len() as u64).div_ceil(most).max(1);
+    // As many rows in every chunk: the last one has to be as long as the others.
+    let long = (rows.len() as u64).div_ceil(count).max(1);
+    if let Some(first) = chunk.first_mut() {
+        *first = long;
+    }
+    for (number, rows) in rows.chunks(long as usize).enumerate() {
+        let mut bytes = Vec::with_capacity((long * length * NUMBER) as usize);
+        for (index, row) in rows.iter().enumerate() {
+            let numbers = row.iter().flat_map(|part| part.iter());
+            bytes.extend(numbers.flat_map(|number| number.to_le_bytes()));
+            fill(&mut bytes, (index as u64 + 1) * length);
+        }
+        fill(&mut bytes, long * length);
+        let path = folder.join(chunk_name(number as u64, 0, shape.len()));
+        std::fs::create_dir_all(path.parent().unwrap_or(folder))?;
+        std::fs::write(path, bytes)?;
+    }
+    let metadata = json!({
+        "zarr_format": 3,
+        "node_type": "array",
+        "shape": shape,
+        "data_type": "float64",
+        "chunk_grid": { "name": "regular", "configuration": { "chunk_shape": chunk } },
+        "chunk_key_encoding": names_of_chunks(),
+        "fill_value": "NaN",
+        "codecs": codecs(),
+        "attributes": attributes,
+        "dimension_names": names,
+    });
+    write_metadata(folder, &metadata)?;
+    Ok(metadata)
+}
+
+/// Writes the metadata of an array, or of the folder of several.
+///
+/// # Errors
+/// Whatever the system says.
+pub(super) fn write_metadata(folder: &Path, metadata: &Value) -> Result<()> {
+    let text = serde_json::to_string_pretty(metadata)? + "\n";
+    std::fs::write(folder.join("zarr.json"), text)
+}
+
+/// Adds NaN up to so many numbers.
+fn fill(bytes: &mut Vec<u8>, numbers: u64) {
+    while (bytes.len() as u64) < numbers * NUMBER {
+        bytes.extend(f64::NAN.to_le_bytes());
+    }
+}
+
+/// The file of the chunk with these numbers along the first two of so many dimensions.
+fn chunk_name(first: u64, second: u64, dimensions: usize) -> PathBuf {
+    let numbers = [first, second].into_iter().chain(std::iter::repeat(0));
+    let numbers = numbers.take(dimensions).map(|number| number.to_string());
+    std::iter::once("c".to_owned()).chain(numbers).collect()
+}
+
+/// An array that is read.
+#[derive(Debug)]
+pub(super) struct StoredArray {
+    folder: PathBuf,
+    shape: Vec<u64>,
+    chunk: Vec<u64>,
+    attributes: Map<String, Value>,
+}
+
+impl StoredArray {
+    /// Opens the array in a folder.
+    ///
+    /// # Errors
+    /// Whatever the system says; metadata of arrays that this program does not write.
+    pub(super) fn open(folder: &Path) -> Result<Self> {
+        let text = super::place::read(&folder.join("zarr.json"))?;
+        let metadata: Metadata = serde_json::from_slice(&text)?;
+        let chunk = &metadata.chunk_grid["configuration"]["chunk_shape"];
+        let chunk: Vec<u64> = Deserialize::deserialize(chunk)?;
+        let shape = metadata.shape;
+        let is_known = metadata.data_type == "float64"
+            && metadata.codecs == codecs()
+            && metadata.chunk_key_encoding == names_of_chunks()
+            && !chunk.contains(&0)
+            && !chunk.is_empty()
+            && chunk.len() == shape.len()
+            && chunk.get(2..) == shape.get(2..);
+        match is_known {
+            true => Ok(Self {
+                folder: folder.to_owned(),
+                shape,
+                chunk,
+                attributes: metadata.attributes,
+            }),
+            false => Err(Error::other("it is not stored as this program does it")),
+        }
+    }
+
+    /// Lengths of the dimensions, of which there is one at least.
+    pub(super) fn shape(&self) -> &[u64] {
+        &self.shape
+    }
+
+    pub(super) fn attributes(&self) -> &Map<String, Value> {
+        &self.attributes
+    }
+
+    /// The numbers at one index of the first dimension; none, or fewer than there is room for, where no more were
+    /// written.
+    ///
+    /// # Errors
+    /// Whatever the system says; chunks of another length than the metadata say.
+    pub(super) fn row(&self, index: u64) -> Result<Vec<f64>> {
+        let (first, place) = (index / self.chunk[0], index % self.chunk[0]);
+        let dimensions = self.shape.len();
+        let along = |lengths: &[u64]| lengths.get(1).copied().unwrap_or(1);
+        let count = along(&self.shape).div_ceil(along(&self.chunk));
+        let mut numbers = Vec::new();
+        for second in 0..count {
+            let name = chunk_name(first, second, dimensions);
+            match self.chunk(&name, Some(place))? {
+                Some(found) => numbers.extend(found),
+                None => break,
+            }
+        }
+        let length: u64 = self.shape.iter().skip(1).product();
+        numbers.truncate(length as usize);
+        Ok(numbers)
+    }
+
+    /// All numbers of an array with one dimension, as far as they were written.
+    ///
+    /// # Errors
+    /// As [`StoredArray::row`].
+    pub(super) fn line(&self) -> Result<Vec<f64>> {
+        let mut numbers = Vec::new();
+        for first in 0..self.shape[0].div_ceil(self.chunk[0]) {
+            match self.chunk(&chunk_name(first, 0, 1), None)? {
+                Some(found) => numbers.extend(found),
+                None => break,
+            }
+        }
+        numbers.truncate(self.shape[0] as usize);
+        Ok(numbers)
+    }
+
+    /// A chunk, or what it holds at one of its places along the first dimension; `None` where there is none.
+    fn chunk(&self, name: &Path, place: Option<u64>) -> Result<Option<Vec<f64>>> {
+        let mut file = match File::open(self.folder.join(name)) {
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+            file => file?,
+        };
+        let product = |lengths: &[u64]| {
+            let mut lengths = lengths.iter();
+            lengths.try_fold(NUMBER, |product, length| product.checked_mul(*length))
+        };
+        let (whole, part) = (product(&self.chunk), product(&self.chunk[1..]));
+        let (Some(part), true) = (part, whole == Some(file.metadata()?.len())) else {
+            let words = format!("the chunk {} has another length", name.display());
+            return Err(Error::other(words));
+        };
+        let mut bytes = Vec::new();
+        match place {
+            Some(place) => {
+                file.seek(SeekFrom::Start(place * part))?;
+                file.take(part).read_to_end(&mut bytes)?;
+            }
+            None => {
+                file.read_to_end(&mut bytes)?;
+            }
+        }
+        let (numbers, _) = bytes.as_chunks();
+        Ok(Some(
+            numbers.iter().map(|one| f64::from_le_bytes(*one)).collect(),
+        ))
+    }
+}
