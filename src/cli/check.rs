@@ -55,6 +55,10 @@ fn costs(spec: &Sweep) -> Vec<String> {
         Ok(Cost::MonteCarlo(cost)) => monte_carlo_costs(spec, &cost),
         Err(error) => vec![unknowns(spec), error.to_string()],
     });
+    if spec.settings.map.is_none() {
+        let kept = bytes_in_words(spec.kept_bytes());
+        lines.push(format!("kept: {kept}, the densities of all points"));
+    }
     lines
 }
 
@@ -164,12 +168,13 @@ fn notes(spec: &Sweep) -> Vec<String> {
             spec.settings.points
         ));
     }
-    let most = costs_of_a_point(spec).map_or(0.0, |cost| cost.most_bytes());
+    let at_work = costs_of_a_point(spec).map_or(0.0, |cost| cost.most_bytes());
+    let most = at_work + spec.kept_bytes();
     if let Some(memory) = machine_memory().filter(|&memory| most > memory) {
         let memory = bytes_in_words(memory);
         let remedy = match spec.settings.method.kind {
             MethodKind::Sgcm => "; a shorter map step spreads less",
-            MethodKind::Generator | MethodKind::MonteCarlo => "; fewer cells take less",
+            MethodKind::Generator | MethodKind::MonteCarlo => "; fewer cells or points take less",
         };
         notes.push(format!(
             "this machine has {memory} of memory, which may not be enough{remedy}"

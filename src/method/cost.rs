@@ -1,6 +1,7 @@
 //! What a point of a sweep costs, whatever the method. Each method predicts its own.
 
 use super::{GeneratorCost, MethodOptions, MonteCarloCost, SgcmCost};
+use crate::monte_carlo::BLOCKS;
 use crate::space::CellSpace;
 use crate::stationary::generator::RateError;
 
@@ -38,6 +39,17 @@ impl MethodOptions {
             Self::Sgcm(options) => Cost::Sgcm(options.cost(n_cells, space.dimension())),
             Self::MonteCarlo(options) => Cost::MonteCarlo(options.cost(n_cells)),
         })
+    }
+
+    /// Bytes of the densities of a point on so many bins, as they are kept until a sweep ends: values, their errors,
+    /// and the other estimates of each.
+    pub(crate) fn kept_bytes(&self, bins: f64) -> f64 {
+        let others = match self {
+            Self::Generator(_) => 1,
+            Self::Sgcm(options) => options.replicates,
+            Self::MonteCarlo(_) => BLOCKS,
+        };
+        bins * 8.0 * (2 + others) as f64
     }
 
     /// Lower bound of the bytes at work on so many cells, which need not be laid out for it.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::*;
 use crate::cancellation::Cancellation;
 use crate::continuation::DensitySource as _;
-use crate::density::Observable;
+use crate::density::{Observable, Variants};
 use crate::generator::{GeneratorError, GeneratorOptions, assemble};
 use crate::monte_carlo::{EnsembleRun, ErgodicRun, MonteCarloError, ensemble, ergodic};
 use crate::sampling::{Integrator, SamplingError, SamplingOptions, sample_transitions};
@@ -88,6 +88,45 @@ fn no_method_takes_a_periodic_system_for_an_autonomous_one() {
             sentence.contains("depends on time with period 6.28"),
             "{sentence}"
         );
+    }
+}
+
+#[test]
+fn what_is_kept_of_a_point_is_what_its_densities_hold() {
+    let axis = |count| Axis::uniform(-6.0, 6.0, count).unwrap();
+    let space = CellSpace::new(vec![axis(12), axis(14)]).unwrap();
+    let observables = vec![Observable::Marginal(1), Observable::Joint(0, 1)];
+    let problem = Problem::new(coulomb(), space, observables).unwrap();
+    let replicates = |replicates| SgcmOptions {
+        replicates,
+        samples: 60,
+        ..SgcmOptions::default()
+    };
+    let few = MonteCarloOptions {
+        error: 0.2,
+        ..MonteCarloOptions::default()
+    };
+    for method in [
+        MethodOptions::Generator(GeneratorMethodOptions::default()),
+        MethodOptions::Sgcm(replicates(5)),
+        MethodOptions::MonteCarlo(few),
+    ] {
+        let never = Cancellation::new();
+        let source = MethodSource::new(&problem, &method, &never).unwrap();
+        let mut session = source.open(&never);
+        let solution = session.solve(problem.family().ends().0).unwrap();
+        let held = solution.densities.iter().map(|one| {
+            let numbers = one.density.values.len() + one.standard_error.len();
+            numbers
+                + match &one.variants {
+                    Variants::None => 0,
+                    Variants::Scheme(second) => second.len(),
+                    Variants::Jackknife(all) => all.iter().map(Vec::len).sum(),
+                }
+        });
+        let bins = (14 + 12 * 14) as f64;
+        let bytes = 8.0 * held.sum::<usize>() as f64;
+        assert_eq!(bytes, method.kept_bytes(bins), "{method:?}");
     }
 }
 

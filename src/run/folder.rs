@@ -77,9 +77,9 @@ impl RunFolder {
         write_atomically(&self.path.join("run.json"), text.as_bytes())
     }
 
-    /// Adds a point's rows to the tables; its densities are in the journal until the run has ended. What this costs does
-    /// not depend on how many points there are: until [`RunFolder::finish`], rows stand in the order in which the points
-    /// came.
+    /// Adds a point's rows to the tables; its densities are in the journal until the run has ended. What this costs
+    /// does not depend on how many points there are: until [`RunFolder::finish`], rows stand in the order in which the
+    /// points came.
     ///
     /// # Errors
     /// [`RunError`] when a file cannot be composed or written.

@@ -6,8 +6,8 @@
 //! **A run replaces nothing.** The files of an earlier run in the same folder are linked into `previous/1`, the next
 //! free number, and only when they are whole there are they taken away (`run::staging`, `run::archive`). What was
 //! followed from a run (`curves/`) goes with it, so that nothing beside a run is of another one. Files and the store of
-//! densities are put in place by renaming: a killed run leaves whole files. A lock of the operating system keeps a second
-//! writer away and cannot go stale (`run::lock`).
+//! densities are put in place by renaming: a killed run leaves whole files. A lock of the operating system keeps a
+//! second writer away and cannot go stale (`run::lock`).
 //!
 //! **A job goes on to the same bytes.** A session's solve starts from what it solved before, so a job that goes on must
 //! know what the first one knew. A session says after each solve what it has left for later ones (`Session::memory`:
@@ -24,10 +24,10 @@
 //! of a map may be larger than the memory.
 //!
 //! **Densities are stored at the end.** While a sweep goes on, its densities are in the journal, by which it goes on:
-//! readers of an unfinished run find a point there by its value (`run::journal::solved`). A store that grew beside it held
-//! them a second time, in a file a value and array, 3400 of them for `sweeps/coulomb_fc.toml`, which took as much of the
-//! system's time as all else. The format of the files (`run::zarr`) is written out in two hundred lines: plain numbers in
-//! a few large chunks need nothing of a library but its hundred crates.
+//! readers of an unfinished run find a point there by its value (`run::journal::solved`). A store that grew beside it
+//! held them a second time, in a file a value and array, 3400 of them for `sweeps/coulomb_fc.toml`, which took as much
+//! of the system's time as all else. The format of the files (`run::zarr`) is written out in two hundred lines: plain
+//! numbers in a few large chunks need nothing of a library but its hundred crates.
 //!
 //! **A map keeps every solve while it is made.** Nodes beside changes decide where curves begin, from densities that
 //! depend on all solves of their session; a map that kept signatures alone, as it did, solved those nodes again from

@@ -81,7 +81,7 @@ pub(super) fn check(home: &Path, entries_of: &EntriesOf<'_>) -> Result<(), RunEr
         })
     };
     if home.to_str().is_none() {
-        return refused("its name is not UTF-8, which array stores must have".to_owned());
+        return refused("its name is not UTF-8, which tables and messages are".to_owned());
     }
     let place = whole(home);
     if place.parent().is_none() {

@@ -31,11 +31,11 @@ impl Settings {
 
     /// Refuses what the system would not give: a limit of the process (`ulimit -v`) shows when memory is asked for, and
     /// in the middle of a solve it ends the program.
-    fn check_given(&self, bytes: f64) -> Result<(), Report> {
+    fn check_given(&self, at_work: f64, kept: f64) -> Result<(), Report> {
         // What is more than the machine has is told elsewhere, and may be a bound that is never reached.
         let most = machine_memory().map_or(SMALL_MACHINE, |memory| 0.5 * memory);
         let beside = BESIDE + A_THREAD * rayon::current_num_threads() as f64;
-        let bytes = (TRIED * bytes + beside).min(most);
+        let bytes = (TRIED * at_work + kept + beside).min(most);
         // Nothing is written to it: only room among the addresses is asked for.
         let mut room = Vec::<u8>::new();
         if room.try_reserve_exact(bytes as usize).is_ok() {
@@ -45,7 +45,7 @@ impl Settings {
             "a sweep may take {} of memory, and the system gives this process less",
             bytes_in_words(bytes)
         );
-        let remedy = "use fewer cells or `--threads`, or a higher limit (`ulimit -v`, or that of the batch job)";
+        let remedy = "use fewer cells, fewer points or `--threads`, or a higher limit (`ulimit -v`, or that of the batch job)";
         Err(self.refuse_cells(Diagnostic::new(title).remedy(remedy)))
     }
 
@@ -79,7 +79,7 @@ impl Settings {
     /// Refuses cells whose factors exceed the memory that they may take, or that the system gives this process.
     pub(super) fn check_factors(&self, sweep: &Sweep) -> Result<(), Report> {
         let error = match self.method.chosen().cost(sweep.problem.space()) {
-            Ok(cost) => return self.check_given(cost.most_bytes()),
+            Ok(cost) => return self.check_given(cost.most_bytes(), sweep.kept_bytes()),
             Err(error) => error,
         };
         let memory = machine_memory();

@@ -61,6 +61,19 @@ impl Sweep {
         PersistenceDetector::new(settings.detect.clone(), looks)
     }
 
+    /// Bytes of the densities that are kept until the sweep ends; a map lets go of them before.
+    pub(crate) fn kept_bytes(&self) -> f64 {
+        if self.settings.map.is_some() {
+            return 0.0;
+        }
+        let observables = self.problem.observables().iter();
+        let bins = observables.map(|&observable| {
+            let axes = self.problem.axes_of(observable);
+            axes.iter().map(|axis| axis.count() as f64).product::<f64>()
+        });
+        self.settings.points as f64 * self.settings.method.chosen().kept_bytes(bins.sum())
+    }
+
     /// The same sweep by a method of one's own, in the place of that of the sweep file: `method` is its name, as
     /// [`DensitySource::method`] gives it, and `make` its source for the systems, cells and observables of a problem.
     /// The sweep asks for one along its parameter, curves and maps for others along paths of theirs.

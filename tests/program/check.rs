@@ -74,7 +74,12 @@ fn the_cost_is_counted() {
     let free = format!("method.kind=monte-carlo method.error=0.02 sweep.points=2 {cells}");
     let left = "chosen when the sweep runs, for a relative error of 0.02";
     // 900 cells of 32 blocks of 16 bytes.
-    assert_says(&checked("coulomb_fc", &free), &[left, "memory: 460.8 kB"]);
+    // Two values of 900 + 60 bins: value, error, and 32 replicates.
+    let told = [
+        "memory: 460.8 kB",
+        "kept: 522.2 kB, the densities of all points",
+    ];
+    assert_says(&checked("coulomb_fc", &free), &[left, told[0], told[1]]);
     let steps =
         "method.time_step=0.01 method.burn_in=100 method.length=900 method.trajectories=640";
     let given = checked("coulomb_fc", &format!("{free} {steps}"));

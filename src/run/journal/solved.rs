@@ -75,8 +75,8 @@ impl Journal {
         self.write(key, &PointRecord { place, densities })
     }
 
-    /// The densities of a point of a sweep that earlier processes have solved, for the observables of `subject` on these
-    /// cells and bins.
+    /// The densities of a point of a sweep that earlier processes have solved, for the observables of `subject` on
+    /// these cells and bins.
     ///
     /// # Errors
     /// [`RunError::Read`], [`RunError::Journal`]; [`RunError::NotStored`], [`RunError::OtherFormula`] and
