@@ -166,18 +166,21 @@ impl JournalledSession {
             self.inner.again(&mut last, &self.journal)?;
         }
         self.key = last.key.of_questions(&last.kept.answers);
+        let mut written = Ok(());
         if last.is_new {
             last.kept.memory = self.inner.session.memory();
-            let mut written = self.journal.write(last.key, &last.kept);
-            if self.known.is_swept {
-                let point = (last.value, last.key);
-                written = written
-                    .and_then(|()| self.journal.write_point(&self.family, point, &last.kept));
-            }
-            return written.map_err(|error| self.journal.end(error));
+            written = self.journal.write(last.key, &last.kept);
         }
-        self.inner.left.push((last.value, last.kept.memory));
-        Ok(())
+        // Journals of early versions do not say which solves are points.
+        if self.known.is_swept && (last.is_new || !self.journal.has_point(last.value)) {
+            let point = (last.value, last.key);
+            written =
+                written.and_then(|()| self.journal.write_point(&self.family, point, &last.kept));
+        }
+        if !last.is_new {
+            self.inner.left.push((last.value, last.kept.memory));
+        }
+        written.map_err(|error| self.journal.end(error))
     }
 }
 

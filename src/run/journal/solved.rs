@@ -66,13 +66,20 @@ impl Journal {
     /// # Errors
     /// [`RunError::Write`].
     pub(super) fn write_known(&self, family: &Family, point: &Point) -> Result<(), RunError> {
-        let key = Key::of_point(point.value);
-        if self.lock().places.contains_key(&key) {
+        if self.has_point(point.value) {
             return Ok(());
         }
         let densities = of_densities(family, &point.densities);
         let place = Place::Here(Kept::of_point(point));
-        self.write(key, &PointRecord { place, densities })
+        self.write(
+            Key::of_point(point.value),
+            &PointRecord { place, densities },
+        )
+    }
+
+    /// Whether an earlier process has said where a point is.
+    pub(super) fn has_point(&self, value: f64) -> bool {
+        self.lock().places.contains_key(&Key::of_point(value))
     }
 
     /// The densities of a point of a sweep that earlier processes have solved, for the observables of `subject` on
