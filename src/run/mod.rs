@@ -80,6 +80,7 @@ mod names;
 mod number;
 mod place;
 mod plane_file;
+mod point_densities;
 mod points_table;
 mod provenance;
 mod recompute;

@@ -8,16 +8,14 @@ use serde::Deserialize;
 use super::checks::read_checks;
 use super::manifest::{Typed, hash};
 use super::place::{FIGURES, folder_in, read};
+use super::point_densities::PointDensities;
 use super::points_table::read_points;
 use super::sealing::seal_after_kill;
-use super::stored_densities::StoredDensities;
-use super::{Checked, Ending, Journal, Layout, PhaseSeconds, RunError, checksums, journal};
+use super::{Checked, Ending, Layout, PhaseSeconds, RunError, checksums, journal};
 use crate::continuation::measure::MEAN;
 use crate::continuation::{CheckedIndicator, Point, Shard, Subject};
-use crate::density::EstimatedDensity;
 use crate::space::{Axis, CellSpace};
 use crate::sweep_file::SweepText;
-use crate::system::Family;
 
 /// The folder of a run that is read.
 #[derive(Debug)]
@@ -228,7 +226,6 @@ impl StoredRun {
         methods: &[&'static str],
     ) -> Result<Vec<Point>, RunError> {
         let table = self.path.join("points.csv");
-        let family = &subject.family;
         let complete = self.ending() == Ending::Complete;
         let mut points = read_points(&table, subject, methods, complete)?;
         if let Some(wanted) = self.manifest.points.filter(|_| complete)
@@ -246,36 +243,11 @@ impl StoredRun {
         if !points.iter().any(has_density) {
             return self.check_sums().map(|()| points);
         }
-        let path = self.path.join("densities.zarr");
-        let journal = match complete {
-            true => None,
-            false => Journal::look(&self.path)?,
-        };
-        // Unfinished runs of early versions have a store that grew.
-        let stored = match journal.is_none() || path.join("zarr.json").is_file() {
-            true => Some(StoredDensities::open(&path, subject, (space, bins))?),
-            false => None,
-        };
-        let find = |value: f64| -> Result<Option<Vec<EstimatedDensity>>, RunError> {
-            let found = journal
-                .as_ref()
-                .map(|journal| journal.densities(subject, (space, bins), value));
-            match (found.transpose()?.flatten(), &stored) {
-                (None, Some(stored)) => stored.at(value),
-                (found, _) => Ok(found),
-            }
-        };
-        let read = |point: &mut Point| -> Result<(), RunError> {
-            point.densities = find(point.value)?.ok_or_else(|| RunError::NoDensity {
-                path: path.clone(),
-                parameter: family.parameter().to_owned(),
-                value: point.value,
-            })?;
-            check_finite(&path, family, point)
-        };
+        let densities = PointDensities::open(&self.path, complete, subject, (space, bins))?;
         let solved = points.par_iter_mut();
         let solved = solved.filter(|point| has_density(point));
-        let results: Vec<Result<(), RunError>> = solved.map(read).collect();
+        let results: Vec<Result<(), RunError>> =
+            solved.map(|point| densities.read(point)).collect();
         // Of several faults the same one is told each time: that of the first point.
         results.into_iter().collect::<Result<(), RunError>>()?;
         self.check_sums()?;
@@ -314,26 +286,6 @@ impl StoredRun {
         checksums::renew(&self.path, "figures")
     }
 }
-
-/// Refuses densities with values that are missing or no numbers.
-fn check_finite(path: &Path, family: &Family, point: &Point) -> Result<(), RunError> {
-    let is_number = |value: &f64| value.is_finite() && value.abs() < LARGEST;
-    for one in &point.densities {
-        let mut values = one.density.values.iter().chain(&one.standard_error);
-        if !values.all(is_number) {
-            return Err(RunError::NotFinite {
-                path: path.to_owned(),
-                observable: one.observable.name(family),
-                parameter: family.parameter().to_owned(),
-                value: point.value,
-            });
-        }
-    }
-    Ok(())
-}
-
-/// No density is as large: its square is still a number.
-const LARGEST: f64 = 1e150;
 
 /// Versions are compatible when they differ in the last number alone.
 fn check_version(file: &Path, manifest: &StoredManifest) -> Result<(), RunError> {

@@ -142,7 +142,8 @@ impl Journal {
         self.lock().log.append(&content)
     }
 
-    fn path(&self) -> PathBuf {
+    /// Where it is.
+    pub(super) fn path(&self) -> PathBuf {
         self.lock().log.path().to_owned()
     }
 

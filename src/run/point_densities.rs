@@ -1,0 +1,91 @@
+//! Where a run's densities are read: its store, and the journal of an unfinished one.
+
+use std::path::{Path, PathBuf};
+
+use super::stored_densities::StoredDensities;
+use super::{Journal, RunError};
+use crate::continuation::{Point, Subject};
+use crate::space::{Axis, CellSpace};
+
+/// No density is as large: its square is still a number.
+const LARGEST: f64 = 1e150;
+
+/// The densities of a run, opened for the observables of a subject.
+pub(super) struct PointDensities<'a> {
+    subject: &'a Subject,
+    cells: (&'a CellSpace, &'a [Axis]),
+    journal: Option<Journal>,
+    store: Option<StoredDensities>,
+    /// What is opened.
+    path: PathBuf,
+}
+
+impl<'a> PointDensities<'a> {
+    /// Opens those of the run in a folder.
+    ///
+    /// # Errors
+    /// As [`StoredDensities::open`]; [`RunError::Journal`], [`RunError::Read`].
+    pub(super) fn open(
+        run: &Path,
+        is_complete: bool,
+        subject: &'a Subject,
+        cells: (&'a CellSpace, &'a [Axis]),
+    ) -> Result<Self, RunError> {
+        let path = run.join("densities.zarr");
+        let journal = match is_complete {
+            true => None,
+            false => Journal::look(run)?,
+        };
+        // Unfinished runs of early versions have a store that grew.
+        let store = match journal.is_none() || path.join("zarr.json").is_file() {
+            true => Some(StoredDensities::open(&path, subject, cells)?),
+            false => None,
+        };
+        let path = match &journal {
+            Some(journal) => journal.path(),
+            None => path,
+        };
+        Ok(Self {
+            subject,
+            cells,
+            journal,
+            store,
+            path,
+        })
+    }
+
+    /// Gives a point its densities.
+    ///
+    /// # Errors
+    /// [`RunError::NoDensity`], [`RunError::NotFinite`]; as [`StoredDensities::at`] and [`Journal::densities`].
+    pub(super) fn read(&self, point: &mut Point) -> Result<(), RunError> {
+        let value = point.value;
+        let mut found = None;
+        if let Some(journal) = &self.journal {
+            found = journal.densities(self.subject, self.cells, value)?;
+        }
+        if let (None, Some(store)) = (&found, &self.store) {
+            found = store.at(value)?;
+        }
+        let (path, family) = (|| self.path.clone(), &self.subject.family);
+        let parameter = || family.parameter().to_owned();
+        point.densities = found.ok_or_else(|| RunError::NoDensity {
+            path: path(),
+            parameter: parameter(),
+            value,
+        })?;
+        let is_number = |value: &f64| value.is_finite() && value.abs() < LARGEST;
+        for one in &point.densities {
+            let mut values = one.density.values.iter().chain(&one.standard_error);
+            if !values.all(is_number) {
+                return Err(RunError::NotFinite {
+                    path: path(),
+                    observable: one.observable.name(family),
+                    parameter: parameter(),
+                    value,
+                });
+            }
+        }
+        Ok(())
+    }
+}
