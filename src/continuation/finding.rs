@@ -89,6 +89,16 @@ pub enum Finding {
         /// Largest cell Péclet number of damping and friction.
         peclet: f64,
     },
+    /// An oscillator's balance is broken: of power in and power out where the axis is a velocity, of E[y²] and -E[x y']
+    /// where it is a displacement.
+    BalanceBroken {
+        /// The axis.
+        axis: usize,
+        /// What is left of the balance, relative.
+        relative: f64,
+        /// The error of that.
+        error: f64,
+    },
     /// The last modes of a series matter to the density along its axis.
     UnresolvedSeries {
         /// The axis.
@@ -217,6 +227,11 @@ impl Finding {
             Self::NegativeDensity { mass } => plain("negative-density", &[mass]),
             Self::NegativeCells { mass, watched } => plain("negative-cells", &[mass, watched]),
             Self::WideCells { axis, peclet } => along("wide-cells", axis, &[peclet]),
+            Self::BalanceBroken {
+                axis,
+                relative,
+                error,
+            } => along("balance-broken", axis, &[relative, error]),
             Self::FewModes { change } => plain("few-modes", &[change]),
             Self::UnresolvedSeries { axis, change } => along("unresolved-series", axis, &[change]),
             Self::SmearedKink { axis, widths } => along("smeared-kink", axis, &[widths]),
@@ -272,6 +287,11 @@ impl Finding {
             ("negative-density", None, &[mass]) => Self::NegativeDensity { mass },
             ("negative-cells", None, &[mass, watched]) => Self::NegativeCells { mass, watched },
             ("wide-cells", Some(axis), &[peclet]) => Self::WideCells { axis, peclet },
+            ("balance-broken", Some(axis), &[relative, error]) => Self::BalanceBroken {
+                axis,
+                relative,
+                error,
+            },
             ("few-modes", None, &[change]) => Self::FewModes { change },
             ("unresolved-series", Some(axis), &[change]) => Self::UnresolvedSeries { axis, change },
             ("smeared-kink", Some(axis), &[widths]) => Self::SmearedKink { axis, widths },

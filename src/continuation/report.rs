@@ -81,6 +81,12 @@ impl SolveReport {
         found.map(|one| one.value)
     }
 
+    /// The error of the measure of this name, where one is known.
+    pub(crate) fn error_of(&self, name: &str) -> Option<f64> {
+        let found = self.measures.iter().find(|one| one.name == name);
+        found.and_then(|one| one.error)
+    }
+
     /// The measure of one kind that is of an axis, a quantity or a density.
     pub(crate) fn of(&self, kind: &MeasureKind, of: &str) -> Option<f64> {
         self.measure(&kind.name(of))
@@ -97,9 +103,13 @@ impl SolveReport {
         self.all(&EDGE_MASS).reduce(f64::max)
     }
 
-    /// One more measure, in place of what was there of its name.
+    /// One more measure without a known error, in place of what was there of its name.
     pub(crate) fn add(&mut self, kind: &MeasureKind, of: &str, value: f64) {
-        let measure = kind.measure(of, value);
+        self.put(kind.measure(of, value));
+    }
+
+    /// One more measure, in place of what was there of its name.
+    pub(crate) fn put(&mut self, measure: Measure) {
         let mut known = self.measures.iter_mut();
         match known.find(|one| one.name == measure.name) {
             Some(known) => *known = measure,

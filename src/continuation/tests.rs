@@ -5,7 +5,9 @@ use crate::cancellation::Cancellation;
 use crate::density::{Density, EstimatedDensity, Observable};
 use crate::space::Axis;
 use crate::system::test_families::bistable;
-use crate::topology::{Detection, Detector, Feature, FeatureKind, Signature, Verdict};
+use crate::topology::{
+    Detection, Detector, Feature, FeatureErrors, FeatureKind, Signature, Verdict,
+};
 
 /// A source that hands the parameter to the detector, and fails where asked.
 #[derive(Clone)]
@@ -95,6 +97,7 @@ impl Detector for SquareLaw {
             significance,
             verdict,
             partner: None,
+            errors: FeatureErrors::default(),
         };
         let present = verdict == Verdict::Present;
         Detection {

@@ -24,8 +24,8 @@ pub(super) struct Frame {
     seconds: f64,
     /// What must be known of this value, in sentences.
     findings: Vec<String>,
-    /// Mean and standard deviation of every axis, and of every quantity that is averaged.
-    moments: Vec<(f64, f64)>,
+    /// Mean and standard deviation of every axis, and of every quantity that is averaged, then their errors.
+    moments: Vec<(f64, f64, Option<f64>, Option<f64>)>,
     /// All other measures: name, value, error, unit.
     measures: Vec<(String, f64, Option<f64>, String)>,
     /// Of every watched density; empty where there is none.
@@ -55,7 +55,12 @@ struct Mark {
 impl Frame {
     pub(super) fn new(point: &Point, family: &Family) -> Self {
         let report = &point.report;
-        let moments = |name: &str| Some((report.of(&MEAN, name)?, report.of(&DEVIATION, name)?));
+        let moments = |name: &str| {
+            let names = [&MEAN, &DEVIATION].map(|kind| kind.name(name));
+            let [mean, deviation] = names.each_ref().map(|name| report.measure(name));
+            let [mean_error, deviation_error] = names.each_ref().map(|name| report.error_of(name));
+            Some((mean?, deviation?, mean_error, deviation_error))
+        };
         let is_moment = |one: &&Measure| MEAN.has(one) || DEVIATION.has(one);
         let others = report.measures.iter().filter(|one| !is_moment(one));
         let numbers = |one: &Measure| (one.name.clone(), one.value, one.error, one.unit.clone());

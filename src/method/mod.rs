@@ -24,6 +24,7 @@ mod any;
 mod bins;
 mod cost;
 mod generator;
+mod lattice;
 mod measures;
 mod monte_carlo;
 mod neighbours;
@@ -35,6 +36,7 @@ mod sgcm;
 mod sticking;
 mod structure;
 mod swap;
+mod tails;
 mod time_step;
 mod watched;
 

@@ -14,9 +14,18 @@ use crate::system::{BoundQuantity, Family};
 pub(super) struct Maps {
     /// One an observable that has a quantity: the map, and a coarser one where the masses carry no noise.
     pub(super) watched: Vec<Option<(Projection, Option<Projection>)>>,
-    pub(super) averaged: Vec<QuantityMoments>,
+    /// One a quantity that is averaged.
+    pub(super) averaged: Vec<AveragedMap>,
     /// The quantities that can be watched, in their order.
     pub(super) bound: Vec<BoundQuantity>,
+}
+
+/// What turns masses into the moments of a quantity.
+#[derive(Debug)]
+pub(super) struct AveragedMap {
+    pub(super) moments: QuantityMoments,
+    /// Where the masses carry no noise: the same with coarser sub-cells, and the quantity at the nodes of all cells.
+    pub(super) judge: Option<(QuantityMoments, Vec<f64>)>,
 }
 
 /// The maps where they are the same along a whole path.

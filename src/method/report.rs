@@ -2,14 +2,15 @@
 //! once.
 
 use super::Problem;
-use super::measures::derive;
+use super::measures::{Cells, broken, derive};
+use super::tails::{self, Layers};
 use crate::continuation::measure::{
     DEVIATION, EDGE_MASS, ESCAPE_RATE, MEAN, NEGATIVE_MASS, NUMERICAL_DIFFUSION,
 };
 use crate::continuation::{
-    Finding, PointStatus, ShiftedQuantity, Solution, SolveReport, SteadyClass,
+    Finding, Measure, PointStatus, ShiftedQuantity, Solution, SolveReport, SteadyClass,
 };
-use crate::density::{EstimatedDensity, Moments};
+use crate::density::{EstimatedDensity, EstimatedMoments, Moments};
 use crate::generator::Resolution;
 use crate::monte_carlo::{BiasedQuantity, StepBias, TOLERATED_BIAS};
 use crate::space::CellSpace;
@@ -39,6 +40,10 @@ pub(super) struct Reporter<'a> {
     problem: &'a Problem,
     /// What is known so far.
     pub(super) report: SolveReport,
+    /// Mass that may lie beyond the ends of each axis.
+    beyond: Vec<[f64; 2]>,
+    /// Share of the mass that leaves within one relaxation time.
+    leak: f64,
 }
 
 impl<'a> Reporter<'a> {
@@ -47,6 +52,8 @@ impl<'a> Reporter<'a> {
         Self {
             problem,
             report: SolveReport::solved(method),
+            beyond: Vec::new(),
+            leak: 0.0,
         }
     }
 
@@ -62,17 +69,42 @@ impl<'a> Reporter<'a> {
         self.report.of(&ESCAPE_RATE, "").unwrap_or(0.0)
     }
 
-    /// Means and standard deviations of the axes, then of the quantities that are averaged.
-    pub(super) fn moments(&mut self, moments: &[Moments]) {
-        for (name, one) in self.problem.family().averages().zip(moments) {
-            self.report.add(&MEAN, name, one.mean);
-            self.report.add(&DEVIATION, name, one.standard_deviation);
+    /// Means and standard deviations of the axes, then of the quantities that are averaged. What may lie beyond the
+    /// ends of the ranges adds to their errors.
+    pub(super) fn moments(&mut self, estimated: &[EstimatedMoments]) {
+        let ends = tails::beyond(self.space(), (&self.beyond, self.leak), estimated);
+        let names = self.problem.family().averages();
+        for (index, (name, one)) in names.zip(estimated).enumerate() {
+            let beyond = ends.of(index, &one.moments);
+            let numbers = [
+                (
+                    &MEAN,
+                    one.moments.mean,
+                    one.errors.map(|errors| errors.mean + beyond.mean),
+                ),
+                (
+                    &DEVIATION,
+                    one.moments.standard_deviation,
+                    one.errors
+                        .map(|errors| errors.standard_deviation + beyond.standard_deviation),
+                ),
+            ];
+            for (kind, value, error) in numbers {
+                self.report.put(Measure {
+                    error,
+                    ..kind.measure(name, value)
+                });
+            }
         }
     }
 
     /// The solution with these densities, and with the measures that are derived from them.
-    pub(super) fn solution(mut self, densities: Vec<EstimatedDensity>) -> Solution<'static> {
-        let measures = derive(self.problem.subject(), &densities);
+    pub(super) fn solution(
+        mut self,
+        densities: Vec<EstimatedDensity>,
+        cells: Option<&Cells<'_>>,
+    ) -> Solution<'static> {
+        let measures = derive(self.problem.subject(), &densities, cells);
         self.report.measures.extend(measures);
         Solution {
             densities,
@@ -82,21 +114,10 @@ impl<'a> Reporter<'a> {
 
     /// Mass in the cells at the ends of each axis that are not walls of the system.
     pub(super) fn edge_mass(&mut self, mass: &[f64], closed: &[[bool; 2]]) {
-        let mut edges = vec![[0.0; 2]; self.space().dimension()];
-        for (cell, &mass) in mass.iter().enumerate() {
-            for (axis, ends) in edges.iter_mut().enumerate() {
-                let position = self.space().position(cell, axis);
-                let last = self.space().axes()[axis].count() - 1;
-                if position == 0 && !closed[axis][0] {
-                    ends[0] += mass;
-                }
-                if position == last && !closed[axis][1] {
-                    ends[1] += mass;
-                }
-            }
-        }
-        for (axis, ends) in edges.into_iter().enumerate() {
-            let mass = ends[0] + ends[1];
+        let layers = tails::layers(self.space(), mass, closed);
+        self.beyond = layers.iter().map(|ends| ends.map(Layers::beyond)).collect();
+        for (axis, ends) in layers.into_iter().enumerate() {
+            let mass = ends[0].outer + ends[1].outer;
             self.report
                 .add(&EDGE_MASS, self.problem.family().axis(axis), mass);
             if mass > EDGE_MASS_LIMIT {
@@ -157,13 +178,14 @@ impl<'a> Reporter<'a> {
         }
     }
 
-    /// The diffusion that the cells add, compared with the noise, each axis in units of its variance.
+    /// The diffusion that the cells add, compared with the noise, each axis in units of its variance: the relative
+    /// increase of the noise.
     pub(super) fn numerical_diffusion(
         &mut self,
         diffusion: Vec<f64>,
         noise: &[f64],
         moments: &[Moments],
-    ) {
+    ) -> f64 {
         let in_units_of_spread = |values: &[f64]| -> f64 {
             let pairs = values.iter().zip(moments);
             pairs
@@ -178,10 +200,17 @@ impl<'a> Reporter<'a> {
         if share > NUMERICAL_DIFFUSION_LIMIT {
             self.tell(Finding::NumericalDiffusion { share });
         }
+        share
+    }
+
+    /// Balances of power that the masses break.
+    pub(super) fn balances(&mut self, cells: &Cells<'_>) {
+        self.report.findings.extend(broken(cells));
     }
 
     /// Says so when a share of the mass that is worth a word leaves within one relaxation time.
     pub(super) fn escaping(&mut self, share: f64) {
+        self.leak = share;
         if share > QUIET_ESCAPE {
             self.leaks();
             let rate = self.escape_rate();

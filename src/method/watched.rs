@@ -3,14 +3,16 @@
 
 use std::sync::Arc;
 
-use super::problem::Maps;
+use super::lattice::values_at_nodes;
+use super::problem::{AveragedMap, Maps};
 use super::structure::structure;
 use super::{MethodError, Problem};
 use crate::density::{
-    Coordinate, Detail, EstimatedDensity, Moments, NEGLIGIBLE_OF_QUANTITIES, Observable,
-    Projection, QuantityMoments, Structure, estimate_from_difference, estimate_from_second,
-    estimate_projected, total_variation,
+    Coordinate, Detail, EstimatedDensity, EstimatedMoments, Moments, NEGLIGIBLE_OF_QUANTITIES,
+    Observable, Projection, QuantityMoments, Roughness, Structure, estimate_from_difference,
+    estimate_from_second, estimate_projected, moments, total_variation,
 };
+use crate::space::CellSpace;
 use crate::system::{BoundQuantity, LANES, SwitchingSurface, System, proved_symmetry};
 
 /// Whether masses carry noise.
@@ -48,7 +50,7 @@ impl Problem {
     ) -> Result<Maps, MethodError> {
         let (family, space) = (self.family(), self.space());
         let values = family.values_at(value)?;
-        let planes: Vec<(usize, f64)> = kinked.iter().map(|one| (one.axis, one.at)).collect();
+        let planes = planes(kinked);
         let bind = |quantity: &Arc<crate::system::Quantity>| quantity.bind(&values);
         let bound: Result<Vec<BoundQuantity>, _> = family.quantities().iter().map(bind).collect();
         let averaged: Result<Vec<BoundQuantity>, _> = family.averaged().iter().map(bind).collect();
@@ -78,9 +80,13 @@ impl Problem {
             Ok::<_, MethodError>(Some((map(fine)?, coarse.map(map).transpose()?)))
         });
         let watched: Result<Vec<_>, _> = watched.collect();
-        let averaged = averaged
-            .iter()
-            .map(|quantity| QuantityMoments::new(space, quantity, fine, &planes));
+        let averaged = averaged.iter().map(|quantity| {
+            let map = |detail| QuantityMoments::new(space, quantity, detail, &planes);
+            AveragedMap {
+                moments: map(fine),
+                judge: coarse.map(|detail| (map(detail), values_at_nodes(space, quantity))),
+            }
+        });
         Ok(Maps {
             watched: watched?,
             averaged: averaged.collect(),
@@ -175,12 +181,61 @@ impl Maps {
         changes.collect()
     }
 
-    /// Moments of the quantities that are averaged.
-    pub(super) fn moments(&self, masses: &[f64]) -> Result<Vec<Moments>, MethodError> {
-        let averaged = self.averaged.iter();
-        Ok(averaged
-            .map(|map| map.of(masses))
-            .collect::<Result<_, _>>()?)
+    /// Moments of the quantities that are averaged, from masses without noise. Their errors are what a second
+    /// discretisation of the masses and coarser sub-cells change; unknown without the former.
+    pub(super) fn exact_moments(
+        &self,
+        space: &CellSpace,
+        masses: &[f64],
+        second: Option<&[f64]>,
+        kinked: &[SwitchingSurface],
+    ) -> Result<Vec<EstimatedMoments>, MethodError> {
+        let averaged = self.averaged.iter().map(|map| {
+            let moments = map.moments.of(masses)?;
+            let (Some(second), Some((coarse, values))) = (second, &map.judge) else {
+                return Ok(EstimatedMoments::unjudged(moments));
+            };
+            let others = [map.moments.of(second)?, coarse.of(masses)?];
+            let roughness = Roughness {
+                space,
+                weights: masses,
+                differences: &differences(masses, second),
+                planes: &planes(kinked),
+            };
+            let more = roughness.of_moments(values, &moments);
+            Ok(EstimatedMoments::by_difference(moments, &others).with(more))
+        });
+        averaged.collect()
+    }
+
+    /// Moments of the axes, which are known, and of the quantities that are averaged, with standard errors from
+    /// replicates of sampled masses.
+    pub(super) fn all_sampled_moments(
+        &self,
+        space: &CellSpace,
+        of_axes: &[Moments],
+        masses: &[f64],
+        replicates: &[Vec<f64>],
+    ) -> Result<Vec<EstimatedMoments>, MethodError> {
+        let all = |of_axes: Vec<Moments>, masses: &[f64]| {
+            let averaged = self.averaged.iter().map(|map| map.moments.of(masses));
+            let averaged: Result<Vec<Moments>, _> = averaged.collect();
+            Ok::<_, MethodError>([of_axes, averaged?].concat())
+        };
+        let others = replicates
+            .iter()
+            .map(|masses| all(moments(space, masses)?, masses));
+        let others: Result<Vec<Vec<Moments>>, _> = others.collect();
+        let others = others?;
+        let found = all(of_axes.to_vec(), masses)?.into_iter().enumerate();
+        let estimated = found.map(|(index, own)| {
+            let others: Vec<Moments> = others
+                .iter()
+                .filter_map(|all| all.get(index).copied())
+                .collect();
+            EstimatedMoments::by_replicates(own, &others)
+        });
+        Ok(estimated.collect())
     }
 
     /// What the equations say of the density of an observable.
@@ -233,6 +288,17 @@ impl Maps {
         };
         axes.iter().map(of).collect()
     }
+}
+
+/// Surfaces as axes with coordinates.
+pub(super) fn planes(surfaces: &[SwitchingSurface]) -> Vec<(usize, f64)> {
+    surfaces.iter().map(|one| (one.axis, one.at)).collect()
+}
+
+/// What a second discretisation changes of the masses.
+pub(super) fn differences(masses: &[f64], second: &[f64]) -> Vec<f64> {
+    let pairs = second.iter().zip(masses);
+    pairs.map(|(second, own)| second - own).collect()
 }
 
 /// Relative difference of two values that are the same.

@@ -19,6 +19,8 @@ pub(super) struct FeatureRow<'p> {
 pub(super) fn columns<'a>(family: &'a Family) -> Columns<'a, FeatureRow<'a>> {
     let coordinate =
         |axis: usize| move |row: &FeatureRow<'_>| row.feature.position.get(axis).copied();
+    let error_along =
+        |axis: usize| move |row: &FeatureRow<'_>| row.feature.errors.position.get(axis).copied();
     Columns(vec![
         number(family.parameter(), |row: &FeatureRow<'_>| row.value),
         word("observable", move |row: &FeatureRow<'_>| {
@@ -42,6 +44,11 @@ pub(super) fn columns<'a>(family: &'a Family) -> Columns<'a, FeatureRow<'a>> {
         word("verdict", |row: &FeatureRow<'_>| {
             verdict_word(row.feature.verdict).to_owned()
         }),
+        optional("position_error", error_along(0)),
+        optional("density_error", |row: &FeatureRow<'_>| {
+            row.feature.errors.density
+        }),
+        optional("position_2_error", error_along(1)),
     ])
 }
 

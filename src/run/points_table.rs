@@ -47,6 +47,9 @@ pub(super) fn columns<'a>(
     for column in measures {
         columns.extend(derived_measure(column));
     }
+    for name in family.averages() {
+        columns.extend([&MEAN, &DEVIATION].map(|kind| error_of(kind.name(name))));
+    }
     Columns(columns)
 }
 
@@ -99,32 +102,34 @@ fn measure<'a>(kind: &'static MeasureKind, of: &str) -> Column<'a, Point> {
 fn derived_measure<'a>(column: &MeasureColumn) -> [Column<'a, Point>; 2] {
     let name = column.kind.name(&column.of);
     let (own, of) = (name.clone(), column.clone());
-    let find = move |point: &Point| {
-        let mut measures = point.report.measures.iter();
-        measures.find(|one| one.name == own).cloned()
-    };
-    let find_error = find.clone();
-    let (known, error_name) = (name.clone(), format!("{name}_error"));
-    let columns = [
-        optional(name, move |point: &Point| Some(find(point)?.value)).read(
-            |cell| cell.optional(),
-            move |point, value| {
-                let value = value.map(|value| of.kind.measure(&of.of, value));
-                point.report.measures.extend(value);
-            },
-        ),
-        optional(error_name, move |point: &Point| find_error(point)?.error).read(
+    let value = optional(name.clone(), move |point: &Point| {
+        point.report.measure(&own)
+    })
+    .read(
+        |cell| cell.optional(),
+        move |point, value| {
+            let value = value.map(|value| of.kind.measure(&of.of, value));
+            point.report.measures.extend(value);
+        },
+    );
+    // A run may have been made without.
+    [value.newer(), error_of(name)]
+}
+
+/// The error of a measure whose column comes before.
+fn error_of<'a>(name: String) -> Column<'a, Point> {
+    let (own, known) = (name.clone(), format!("{name}_error"));
+    optional(known, move |point: &Point| point.report.error_of(&own))
+        .read(
             |cell| cell.optional(),
             move |point, error| {
                 let mut measures = point.report.measures.iter_mut();
-                if let Some(measure) = measures.find(|one| one.name == known) {
+                if let Some(measure) = measures.find(|one| one.name == name) {
                     measure.error = error;
                 }
             },
-        ),
-    ];
-    // A run may have been made without.
-    columns.map(Column::newer)
+        )
+        .newer()
 }
 
 /// A measure that is zero where a method does not know it; an empty cell is one that is no number.

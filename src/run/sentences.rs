@@ -107,6 +107,17 @@ fn cells_in_words(family: &Family, finding: &Finding) -> Option<String> {
                 format!("{peclet:.1e}")
             }
         ),
+        Finding::BalanceBroken {
+            axis,
+            relative,
+            error,
+        } => format!(
+            "a balance that the equations imply along {} is broken by {:.2} ± {:.2} % (of a velocity: power in and power out; of \
+             a displacement x: E[x'^2] and -E[x x'']), so that densities and moments err by more than is stated: use more cells",
+            family.axis(axis),
+            100.0 * relative,
+            100.0 * error
+        ),
         Finding::UnresolvedSeries { axis, change } => {
             let axis = family.axis(axis);
             format!(

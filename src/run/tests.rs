@@ -15,7 +15,7 @@ use crate::density::{Density, EstimatedDensity, Observable};
 use crate::method::DerivedMeasure;
 use crate::space::Axis;
 use crate::system::test_families::coulomb;
-use crate::topology::{Detection, Feature, FeatureKind, Signature, Verdict};
+use crate::topology::{Detection, Feature, FeatureErrors, FeatureKind, Signature, Verdict};
 
 fn subject() -> Subject {
     Subject {
@@ -72,6 +72,10 @@ fn point(value: f64, solved: bool) -> Point {
             significance: 3.0,
             verdict: Verdict::Present,
             partner: None,
+            errors: FeatureErrors {
+                position: vec![0.125, 0.0625],
+                density: Some(0.5),
+            },
         }],
     };
     let kept = |count: usize| if solved { count } else { 0 };
@@ -131,13 +135,14 @@ fn points_have_the_columns_of_the_contract_and_no_nan() {
     assert_eq!(
         lines.next().unwrap(),
         "f_c,status,method,iterations,residual,escape_rate,negative_mass,edge_mass,mean_x,sd_x,mean_y,sd_y,\
-         peaks_x,peaks_xy,craters_xy,distance,seconds,map_step,factorisations,numerical_diffusion_x,numerical_diffusion_y,solver_error,time_step_bias,warnings,findings,rings_xy"
+         peaks_x,peaks_xy,craters_xy,distance,seconds,map_step,factorisations,numerical_diffusion_x,numerical_diffusion_y,solver_error,time_step_bias,warnings,findings,rings_xy,\
+         mean_x_error,sd_x_error,mean_y_error,sd_y_error"
     );
     let first = lines.next().unwrap();
     assert!(first.starts_with("-0.02,no-steady-state,sgcm,7,1e-12,,0,1e-5,,,,,,,,"));
     assert!(
         first.contains(",\"the trajectories spend 12.5 % of their time outside Ω: ")
-            && first.ends_with(" [-8, 8]\",outside:0.125;edge-mass-y:0.5:-8:8,"),
+            && first.ends_with(" [-8, 8]\",outside:0.125;edge-mass-y:0.5:-8:8,,,,,"),
         "{first}"
     );
     assert!(
@@ -150,9 +155,9 @@ fn points_have_the_columns_of_the_contract_and_no_nan() {
 }
 
 #[test]
-fn features_carry_both_coordinates() {
+fn features_carry_both_coordinates_and_their_errors() {
     let text = features_csv(&subject(), &[point(0.01, true)]).unwrap();
-    assert!(text.contains("0.01,xy,peak,0.25,2,1,3,1.5,0.1,present\n"));
+    assert!(text.contains("0.01,xy,peak,0.25,2,1,3,1.5,0.1,present,0.125,0.5,0.0625\n"));
 }
 
 #[test]
@@ -293,7 +298,7 @@ fn tables_for_people_round_to_the_error() {
 }
 
 #[test]
-fn derived_measures_are_the_last_columns_with_their_errors_and_are_read_back() {
+fn derived_measures_and_errors_of_moments_are_the_last_columns_and_are_read_back() {
     let kind = MeasureKind {
         word: "spread",
         unit: "1",
@@ -310,16 +315,23 @@ fn derived_measures_are_the_last_columns_with_their_errors_and_are_read_back() {
         ..kind.measure("xy", 1.5)
     };
     known.report.measures.push(measure.clone());
+    let deviation = Measure {
+        error: Some(0.125),
+        ..DEVIATION.measure("y", 3.0)
+    };
+    known.report.put(deviation.clone());
     let text = points_csv(&subject, &[known, point(0.02, false)]).unwrap();
     let lines: Vec<&str> = text.lines().collect();
     let name = &measure.name;
-    assert!(lines[0].ends_with(&format!(",rings_xy,{name},{name}_error")));
-    assert!(lines[1].ends_with(",1.5,0.25") && lines[2].ends_with(",,"));
+    let errors = "mean_x_error,sd_x_error,mean_y_error,sd_y_error";
+    assert!(lines[0].ends_with(&format!(",rings_xy,{name},{name}_error,{errors}")));
+    assert!(lines[1].ends_with(",1.5,0.25,,,,0.125") && lines[2].ends_with(",,,,,,"));
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("points.csv");
     std::fs::write(&path, &text).unwrap();
     let read = read_points(&path, &subject, &["sgcm"], true).unwrap();
     assert!(read[0].report.measures.contains(&measure));
+    assert!(read[0].report.measures.contains(&deviation));
     assert_eq!(read[1].report.measure(name), None);
 }
 

@@ -7,7 +7,7 @@ use super::persistence::Component;
 use super::refine::refine;
 use super::ridge;
 use super::significance::{Judgement, Limits};
-use super::{Feature, FeatureKind, Verdict};
+use super::{Feature, FeatureErrors, FeatureKind, Verdict};
 use crate::density::{EstimatedDensity, Kink};
 
 /// How many absent features of each kind are listed, so that a birth can be followed.
@@ -184,6 +184,7 @@ impl Candidate {
             significance: self.judgement.significance,
             verdict: self.judgement.verdict,
             partner: self.partner(estimated, kind),
+            errors: FeatureErrors::default(),
         }
     }
 

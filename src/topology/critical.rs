@@ -5,7 +5,7 @@
 //! it was. On a plane where the derivative jumps from rising to falling (or back) the point stays on the plane.
 
 use super::FeatureKind;
-use super::field::{Field, Jet, Stencil};
+use super::field::{Curvature, Field, Jet, Stencil};
 use crate::density::{EstimatedDensity, WIGGLE};
 
 /// Most steps of Newton's method.
@@ -14,7 +14,7 @@ const MOST_STEPS: usize = 12;
 /// of them may be several cells away from the lowest point.
 const FARTHEST: f64 = 6.0;
 /// A direction whose curvature is a smaller share of the larger one is flat, as along a rim.
-const FLAT: f64 = 0.02;
+pub(super) const FLAT: f64 = 0.02;
 /// A flat direction is followed all the same where a rougher reconstruction agrees on its curvature to this share.
 const CERTAIN: f64 = 0.3;
 /// Up to so many cells from each other two points share their errors; from twice as many on they share none.
@@ -152,13 +152,59 @@ impl Critical {
             && lower.abs().min(upper.abs()) > FLAT * largest
     }
 
+    /// How far, along each axis, the point moves when the slope changes by what a rougher reconstruction makes of it
+    /// (and by what is left of it where the search does not follow it), and by errors of the cells that are this large
+    /// and independent of each other. Nothing along directions that are flat, and along axes on which a plane holds the
+    /// point; flat is what is curved less than this share of the most curved.
+    pub(super) fn shifts(&self, field: &Field<'_>, error: f64, flat: f64) -> ([f64; 2], [f64; 2]) {
+        let rough = self.rough.jet(field.values()).first;
+        let change = [0, 1].map(|k| rough[k] - self.jet.first[k]);
+        let slopes = [0, 1].map(|k| match self.cell[k] {
+            0.0 => 0.0,
+            width => error / (std::f64::consts::SQRT_2 * width),
+        });
+        let free = |k: usize| !self.pinned.get(k).copied().unwrap_or(true);
+        let principal = match [free(0), free(1)] {
+            [true, true] => self.jet.principal().to_vec(),
+            one => (0..2).filter(|&k| one[k]).map(|k| self.along(k)).collect(),
+        };
+        let largest = principal.iter().map(|one| one.value.abs());
+        let largest = largest.fold(0.0, f64::max);
+        let mut moved = ([0.0; 2], [0.0; 2]);
+        for one in principal
+            .iter()
+            .filter(|one| one.value.abs() > flat * largest)
+        {
+            let [a, b] = one.direction;
+            let away = change[0] * a + change[1] * b;
+            let length = (away.abs() + self.jet.slope(one.direction).abs()) / one.value.abs();
+            let independent = (slopes[0] * a).hypot(slopes[1] * b) / one.value.abs();
+            // No farther than the range is long.
+            for (k, part) in [a, b].into_iter().enumerate() {
+                moved.0[k] += length.min(1.0) * part.abs() * field.unit(k);
+                moved.1[k] += independent.min(1.0) * part.abs() * field.unit(k);
+            }
+        }
+        moved
+    }
+
+    /// The direction of an axis, with the curvature along it.
+    fn along(&self, k: usize) -> Curvature {
+        let mut direction = [0.0; 2];
+        direction[k] = 1.0;
+        Curvature {
+            value: self.jet.second[2 * k],
+            direction,
+        }
+    }
+
     /// Value of another variant of the density at the same place.
     fn value(&self, values: &[f64]) -> f64 {
         self.fine.value(values)
     }
 
     /// What a rougher reconstruction and the second discretisation change of the value.
-    fn error(&self, estimated: &EstimatedDensity) -> f64 {
+    pub(super) fn error(&self, estimated: &EstimatedDensity) -> f64 {
         let values = &estimated.density.values;
         let scheme = estimated.variants.second_scheme();
         let scheme = scheme.map_or(0.0, |second| {

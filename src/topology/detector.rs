@@ -4,6 +4,7 @@ use super::candidate::{Candidate, judge};
 use super::exact::{self, by_kind_and_height, present_places};
 use super::indicator::{Counted, at_centre, correct, flanks_from_centre, put_right, shoulders};
 use super::persistence::{CellValues, components};
+use super::place_error;
 use super::significance::Limits;
 use super::surroundings::{contents, rims};
 use super::{
@@ -119,6 +120,9 @@ impl Detector for PersistenceDetector {
         };
         let signature = correct(density, &indicators, self.doubt(), &counted);
         put_right(density, &indicators, self.doubt(), &mut features);
+        for feature in &mut features {
+            feature.errors = place_error::errors(density, feature);
+        }
         Detection {
             signature,
             is_seen: signature.craters <= persistent.craters,

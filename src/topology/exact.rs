@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 
 use super::indicator::{Counted, at_centre, correct, peaks_at_ends};
 use super::significance::Limits;
-use super::{Detection, Feature, FeatureKind, Signature, Verdict};
+use super::{Detection, Feature, FeatureErrors, FeatureKind, Signature, Verdict};
 use crate::density::{EstimatedDensity, Extremum, Profile};
 
 /// Relative error of a density computed from its logarithm.
@@ -120,6 +120,7 @@ fn pair(peak: &Extremum, valley: &Extremum, limits: &Limits) -> [Feature; 2] {
         significance: judgement.significance,
         verdict: judgement.verdict,
         partner: None,
+        errors: exact_errors(of),
     };
     [
         feature(peak, FeatureKind::Peak),
@@ -147,6 +148,15 @@ fn highest(peak: &Extremum) -> Feature {
         significance: f64::INFINITY,
         verdict: super::Verdict::Present,
         partner: None,
+        errors: exact_errors(peak),
+    }
+}
+
+/// Errors of what follows from the equations: rounding, and what its height has gathered.
+fn exact_errors(extremum: &Extremum) -> FeatureErrors {
+    FeatureErrors {
+        position: vec![ROUNDING * extremum.place.abs()],
+        density: Some(extremum.density * (extremum.gathered_error + ROUNDING)),
     }
 }
 

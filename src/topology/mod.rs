@@ -10,6 +10,7 @@ mod extremum;
 mod field;
 mod indicator;
 mod persistence;
+mod place_error;
 mod quadratic;
 mod reconstruction;
 mod refine;
@@ -100,6 +101,18 @@ pub struct Feature {
     /// The saddle where it merges with another; of a ring a point inside. `None` for the highest peak and for valleys.
     /// Where extrema follow from the equations, the higher of the valleys beside a peak.
     pub partner: Option<Vec<f64>>,
+    /// How well its place and its density are known.
+    pub errors: FeatureErrors,
+}
+
+/// Errors of a feature's place and height: what other readings and the second discretisation, or replicates, differ by.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct FeatureErrors {
+    /// Of the place, one number an axis of the density; empty where unknown. The place of a ring is one of its points:
+    /// this is across it.
+    pub position: Vec<f64>,
+    /// Of the density there; `None` where unknown.
+    pub density: Option<f64>,
 }
 
 /// The detector's findings on one density.

@@ -7,7 +7,7 @@ use super::field::Field;
 use super::persistence::CellValues;
 use super::rim::{RimPeak, Summits, summits};
 use super::significance::{Judgement, Limits};
-use super::{Feature, FeatureKind, Signature, Verdict};
+use super::{Feature, FeatureErrors, FeatureKind, Signature, Verdict};
 use crate::density::EstimatedDensity;
 
 /// A crater's rim.
@@ -94,6 +94,7 @@ impl Rim {
                 significance: judgement.significance,
                 verdict: judgement.verdict,
                 partner,
+                errors: FeatureErrors::default(),
             };
             let saddle = Some(peak.saddle.clone());
             found.push(feature(

@@ -7,7 +7,7 @@ use pbif::continuation::{
 use pbif::density::{Density, EstimatedDensity, Observable};
 use pbif::space::Axis;
 use pbif::system::{Family, Path, registry};
-use pbif::topology::{Detection, Feature, FeatureKind, Signature, Verdict};
+use pbif::topology::{Detection, Feature, FeatureErrors, FeatureKind, Signature, Verdict};
 
 fn feature(kind: FeatureKind, position: Vec<f64>, density: f64) -> Feature {
     Feature {
@@ -19,6 +19,7 @@ fn feature(kind: FeatureKind, position: Vec<f64>, density: f64) -> Feature {
         significance: 10.0,
         verdict: Verdict::Present,
         partner: None,
+        errors: FeatureErrors::default(),
     }
 }
 

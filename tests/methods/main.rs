@@ -14,5 +14,6 @@ mod generator_against_monte_carlo;
 mod generator_refinement;
 mod generator_sensitivity;
 mod generator_work;
+mod gibbs;
 mod modes_accuracy;
 mod sessions;

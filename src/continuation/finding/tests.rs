@@ -58,7 +58,12 @@ pub(crate) fn every_finding() -> Vec<Finding> {
             axis: 1,
             widths: 3.5,
         }),
-        F::SmearedKink { .. } => Some(F::UnresolvedSeries {
+        F::SmearedKink { .. } => Some(F::BalanceBroken {
+            axis: 1,
+            relative: -0.03,
+            error: 0.002,
+        }),
+        F::BalanceBroken { .. } => Some(F::UnresolvedSeries {
             axis: 1,
             change: 0.03,
         }),

@@ -52,10 +52,11 @@ const row = (name, ...values) =>
 const momentsTable = (scene, frame) => make("table", {},
   make("thead", {}, make("tr", {}, make("th", { scope: "col" }, "axis"),
     make("th", { scope: "col", class: "number" }, "mean"), make("th", { scope: "col", class: "number" }, "standard deviation"))),
-  make("tbody", {}, frame.moments.map(([mean, deviation], axis) => {
+  make("tbody", {}, frame.moments.map(([mean, deviation, ...errors], axis) => {
     // A mean that is rounding of the solver beside the width is zero to the eye.
     const shown = Math.abs(mean) < 1e-9 * deviation ? 0 : mean;
-    return row(nodes(scene.moments[axis]), number(shown, 5), number(deviation, 5));
+    const told = (value, error) => (error && value ? withError(value, error) : number(value, 5));
+    return row(nodes(scene.moments[axis]), told(shown, errors[0]), told(deviation, errors[1]));
   })));
 
 const comparison = (source, frame, pinned, scene) => {

@@ -238,6 +238,7 @@ fn draw_areas(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::topology::FeatureErrors;
 
     fn feature(kind: FeatureKind, density: f64, persistence: f64, verdict: Verdict) -> Feature {
         Feature {
@@ -249,6 +250,7 @@ mod tests {
             significance: 1.0,
             verdict,
             partner: None,
+            errors: FeatureErrors::default(),
         }
     }
 

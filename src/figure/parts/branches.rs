@@ -113,6 +113,7 @@ pub(crate) fn branches(
 mod tests {
     use super::*;
     use crate::continuation::SolveReport;
+    use crate::topology::FeatureErrors;
     use crate::topology::{Detection, Signature};
 
     #[test]
@@ -143,6 +144,7 @@ mod tests {
             significance: 9.0,
             verdict: Verdict::Present,
             partner: None,
+            errors: FeatureErrors::default(),
         };
         let detection = |places: &[f64]| Detection {
             indicators: Vec::new(),

@@ -11,6 +11,7 @@ mod one_axis;
 mod open;
 mod options;
 mod relaxation;
+mod second;
 mod sensitivity;
 mod session;
 mod source;

@@ -6,7 +6,7 @@ use super::GeneratorSource;
 use super::jumps::Kinked;
 use super::source::METHOD;
 use crate::continuation::{Finding, Sensitivity, Solution, SourceError};
-use crate::density::{EstimatedDensity, Moments, NEGLIGIBLE, Observable};
+use crate::density::{EstimatedDensity, EstimatedMoments, Moments, NEGLIGIBLE, Observable};
 use crate::generator::{End, OneAxis, exponent_at, one_axis, profile};
 use crate::method::MethodError;
 use crate::method::report::Reporter;
@@ -138,15 +138,25 @@ pub(super) fn solution<'session>(
             know(one, system, found);
         }
     }
-    let mut moments = vec![Moments {
-        mean: found.moments.0,
-        standard_deviation: found.moments.1.max(0.0).sqrt(),
+    let deviation = found.moments.1.max(0.0).sqrt();
+    // All cells off by no more than this share: so are both relative to the deviation.
+    let error = found.error * deviation;
+    let mut moments = vec![EstimatedMoments {
+        moments: Moments {
+            mean: found.moments.0,
+            standard_deviation: deviation,
+        },
+        errors: Some(Moments {
+            mean: error,
+            standard_deviation: error,
+        }),
     }];
-    moments.extend(maps.moments(masses)?);
+    let second: Vec<f64> = masses.iter().zip(&difference).map(|(m, d)| m + d).collect();
+    moments.extend(maps.exact_moments(problem.space(), masses, Some(&second), &source.kinked)?);
     reporter.moments(&moments);
     Ok(Solution {
         sensitivity: Some(Box::new(QuadratureSensitivity { source, value })),
-        ..reporter.solution(densities)
+        ..reporter.solution(densities, None)
     })
 }
 

@@ -12,20 +12,21 @@ use super::GeneratorSource;
 use super::coarse::rough_relaxation;
 use super::one_axis;
 use super::relaxation::Relaxation;
+use super::second::{Second, SecondSolve, companion};
 use super::sensitivity::GeneratorSensitivity;
 use super::source::METHOD;
 use super::stand::Stand;
 use super::trail::{self, Trail};
-use super::unknowns::{distance, moments_of, negative_mass, summed_over_modes};
+use super::unknowns::{by_schemes, distance, negative_mass, summed_over_modes};
 use crate::cancellation::Cancellation;
 use crate::continuation::Solution;
 use crate::continuation::measure::{ESCAPE_RATE, FACTORISATIONS, NEGATIVE_MASS};
 use crate::density::EstimatedDensity;
-use crate::generator::{
-    AdvectiveScheme, Generator, GeneratorOptions, assemble_derivative, cell_masses, resolution,
-};
+use crate::generator::{Generator, GeneratorOptions, assemble_derivative, cell_masses, resolution};
+use crate::method::measures::{Cells, Others};
 use crate::method::neighbours::Neighbours;
 use crate::method::report::{QUIET_ESCAPE, Reporter};
+use crate::method::watched::planes;
 use crate::method::{MethodError, Problem};
 use crate::stationary::generator::{Along, RateError, RateInfo, RateSolver, RateSteadyState};
 use crate::system::System;
@@ -218,7 +219,7 @@ impl GeneratorSession {
         for judged in resolution(solved.system.as_ref(), space, &masses) {
             reporter.resolution(&judged);
         }
-        let (densities, difference) = self.densities(solved, &masses)?;
+        let (densities, second) = self.densities(solved, &masses)?;
         // What is negative along a series is told of its modes.
         let carried = |axis: &usize| space.axes().get(*axis).is_some_and(|axis| axis.is_modes());
         let by_cells = densities
@@ -230,10 +231,27 @@ impl GeneratorSession {
         reporter.few_modes(self.source.options.change_by_modes);
         reporter.series(&maps.changes_by_last_modes(&self.source.problem, &masses)?);
         reporter.negative_mass(negative_mass(&summed_over_modes(space, &masses)), watched);
-        reporter.moments(&[moments_of(space, unknowns), maps.moments(&masses)?].concat());
+        let (kinked, planes) = (&self.source.kinked, planes(&self.source.kinked));
+        let of_axes = by_schemes(space, unknowns, second.unknowns(), &planes);
+        let of_quantities = maps.exact_moments(space, &masses, second.masses(), kinked)?;
+        let moments = [of_axes, of_quantities].concat();
+        reporter.moments(&moments);
+        let cells = Cells {
+            system: solved.system.as_ref(),
+            space,
+            weights: unknowns,
+            others: second.unknowns().map_or(Others::None, Others::Second),
+            planes: &planes,
+            closed: &self.source.closed_ends,
+            escape_rate: info.escape_rate,
+        };
+        // Of more axes it is not cheap.
+        if space.dimension() == 2 {
+            reporter.balances(&cells);
+        }
         Ok((
-            reporter.solution(densities),
-            Some(trail_after(solved, difference, relaxation, before)),
+            reporter.solution(densities, Some(&cells)),
+            Some(trail_after(solved, second.change, relaxation, before)),
         ))
     }
 
@@ -258,12 +276,12 @@ impl GeneratorSession {
         near.or_else(|| Relaxation::compute(&mut self.solver, mass, neighbour))
     }
 
-    /// Densities with the difference to the second scheme as their error, and that difference of the unknowns.
+    /// Densities with the difference to the second scheme as their error, and what the second scheme gives.
     fn densities(
         &mut self,
         solved: &PointSolve,
         masses: &[f64],
-    ) -> Result<(Vec<EstimatedDensity>, Vec<f64>), MethodError> {
+    ) -> Result<(Vec<EstimatedDensity>, Second), MethodError> {
         let problem = &self.source.problem;
         let (system, space) = (solved.system.as_ref(), problem.space());
         let unknowns = &solved.steady.mass;
@@ -277,15 +295,19 @@ impl GeneratorSession {
             (None, _) => vec![0.0; unknowns.len()],
         };
         let changed: Vec<f64> = unknowns.iter().zip(&change).map(|(u, du)| u + du).collect();
-        let changed = cell_masses(system, space, &changed);
-        let difference: Vec<f64> = changed.iter().zip(masses).map(|(b, a)| b - a).collect();
+        let by_second = cell_masses(system, space, &changed);
+        let difference: Vec<f64> = by_second.iter().zip(masses).map(|(b, a)| b - a).collect();
         let kinked = &self.source.kinked;
         let maps = self.source.maps(solved.value)?;
         let mut densities = maps.exact(problem, masses, &difference)?;
         for one in &mut densities {
             one.structure = maps.structure(system, problem, masses, one.observable, kinked);
         }
-        Ok((densities, change))
+        let solved = solved.second.is_some().then_some(SecondSolve {
+            unknowns: changed,
+            masses: by_second,
+        });
+        Ok((densities, Second { change, solved }))
     }
 
     /// du/dθ at the only point of a trail, for the first step from it: worked out when there is one, as long as the
@@ -345,12 +367,4 @@ fn trail_after(
     trail
         .unwrap_or_default()
         .with(point, relaxation.map(Arc::new))
-}
-
-/// The scheme whose difference to the given one stands for its error.
-fn companion(scheme: AdvectiveScheme) -> AdvectiveScheme {
-    match scheme {
-        AdvectiveScheme::Upwind5 | AdvectiveScheme::Central6 => AdvectiveScheme::Central4,
-        AdvectiveScheme::Central4 => AdvectiveScheme::Central6,
-    }
 }

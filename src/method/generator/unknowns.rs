@@ -1,7 +1,8 @@
 //! Numbers of a generator's unknowns, which are masses of cells or of modes.
 
-use crate::density::Moments;
+use crate::density::{EstimatedMoments, Moments, Roughness};
 use crate::generator::unknown_moments;
+use crate::method::watched::differences;
 use crate::space::CellSpace;
 
 /// Masses of the cells of the other axes. The values at the nodes of a series, which may be negative where the density
@@ -33,8 +34,40 @@ pub(super) fn negative_mass(masses: &[f64]) -> f64 {
     masses.iter().map(|mass| (-mass).max(0.0)).sum()
 }
 
-/// Moments from the unknowns, which are free of the h²/6 that moments of cell masses have.
-pub(super) fn moments_of(space: &CellSpace, unknowns: &[f64]) -> Vec<Moments> {
+/// Moments of the axes from the unknowns, which are free of the h²/6 that moments of cell masses have. Their errors are
+/// what the unknowns of a second scheme change; unknown without them.
+pub(super) fn by_schemes(
+    space: &CellSpace,
+    unknowns: &[f64],
+    second: Option<&[f64]>,
+    planes: &[(usize, f64)],
+) -> Vec<EstimatedMoments> {
+    let own = moments_of(space, unknowns);
+    let Some(second) = second else {
+        return own.into_iter().map(EstimatedMoments::unjudged).collect();
+    };
+    let others = moments_of(space, second);
+    let differences = differences(unknowns, second);
+    let estimated = own.into_iter().zip(&others).zip(space.axes()).enumerate();
+    let estimated = estimated.map(|(index, ((own, other), axis))| {
+        let cells = 0..space.n_cells();
+        let values: Vec<f64> = cells
+            .map(|cell| axis.nodes()[space.position(cell, index)])
+            .collect();
+        let roughness = Roughness {
+            space,
+            weights: unknowns,
+            differences: &differences,
+            planes,
+        };
+        let more = roughness.of_moments(&values, &own);
+        EstimatedMoments::by_difference(own, std::slice::from_ref(other)).with(more)
+    });
+    estimated.collect()
+}
+
+/// The moments alone.
+fn moments_of(space: &CellSpace, unknowns: &[f64]) -> Vec<Moments> {
     unknown_moments(space, unknowns)
         .into_iter()
         .map(|(mean, variance)| Moments {

@@ -1,10 +1,14 @@
 //! Measures that are derived where they are asked for, from what a session has solved. A file each.
 
+mod balance;
 mod entropy;
+
+pub(super) use balance::broken;
 
 use crate::continuation::{Measure, MeasureColumn, MeasureKind, Subject};
 use crate::density::{EstimatedDensity, Observable};
-use crate::system::Family;
+use crate::space::CellSpace;
+use crate::system::{Family, System};
 
 /// A measure that is derived when it is asked for.
 #[derive(Debug, Clone, Copy)]
@@ -21,11 +25,37 @@ pub struct DerivedMeasure {
 struct MeasureInput<'a> {
     family: &'a Family,
     densities: &'a [EstimatedDensity],
+    cells: Option<&'a Cells<'a>>,
+}
+
+/// The weights of all cells, and what goes with them.
+pub(super) struct Cells<'a> {
+    pub(super) system: &'a dyn System,
+    pub(super) space: &'a CellSpace,
+    /// Masses, or a generator's unknowns, whose sums are more accurate; Σ = 1.
+    pub(super) weights: &'a [f64],
+    pub(super) others: Others<'a>,
+    /// Axes with coordinates of planes on which the derivative of the density jumps.
+    pub(super) planes: &'a [(usize, f64)],
+    /// Ends that nothing passes, by axes.
+    pub(super) closed: &'a [[bool; 2]],
+    /// Mass that leaves per unit time.
+    pub(super) escape_rate: f64,
+}
+
+/// Other estimates of the weights, from which errors follow.
+#[derive(Clone, Copy)]
+pub(super) enum Others<'a> {
+    None,
+    /// By a second scheme.
+    Second(&'a [f64]),
+    /// Without one group of samples each.
+    Replicates(&'a [Vec<f64>]),
 }
 
 impl DerivedMeasure {
     /// All of them.
-    pub const ALL: [Self; 1] = [entropy::ENTROPY];
+    pub const ALL: [Self; 2] = [entropy::ENTROPY, balance::BALANCE];
 
     /// Its word in files.
     pub fn name(self) -> &'static str {
@@ -48,10 +78,15 @@ impl DerivedMeasure {
 }
 
 /// The measures that a subject asks for.
-pub(super) fn derive(subject: &Subject, densities: &[EstimatedDensity]) -> Vec<Measure> {
+pub(super) fn derive(
+    subject: &Subject,
+    densities: &[EstimatedDensity],
+    cells: Option<&Cells<'_>>,
+) -> Vec<Measure> {
     let solved = MeasureInput {
         family: &subject.family,
         densities,
+        cells,
     };
     let asked = |one: &&DerivedMeasure| subject.measures.iter().any(|of| of.kind == one.kind);
     let all = DerivedMeasure::ALL.iter().filter(asked);

@@ -6,6 +6,7 @@ use crate::cancellation::Cancellation;
 use crate::continuation::measure::{ESCAPE_RATE, TIME_STEP_BIAS};
 use crate::continuation::{DensitySource, Finding, Session, Solution, Subject};
 use crate::density::{EstimatedDensity, Moments};
+use crate::method::measures::{Cells, Others};
 use crate::method::problem::Maps;
 use crate::method::report::Reporter;
 use crate::method::structure::{closed_ends, kinked_surfaces};
@@ -193,10 +194,21 @@ impl MonteCarloSource {
             mean,
             standard_deviation: variance.sqrt(),
         });
-        let of_quantities = maps.moments(&found.mass)?;
-        let moments: Vec<Moments> = of_axes.chain(of_quantities).collect();
+        let of_axes: Vec<Moments> = of_axes.collect();
+        let (space, replicates) = (self.problem.space(), &found.replicates);
+        let moments = maps.all_sampled_moments(space, &of_axes, &found.mass, replicates)?;
         reporter.moments(&moments);
-        Ok(reporter.solution(self.densities(&maps, system, found)?))
+        let cells = Cells {
+            system,
+            space,
+            weights: &found.mass,
+            others: Others::Replicates(replicates),
+            planes: &[],
+            closed: &self.closed_ends,
+            escape_rate: found.runaway_rate,
+        };
+        let densities = self.densities(&maps, system, found)?;
+        Ok(reporter.solution(densities, Some(&cells)))
     }
 }
 

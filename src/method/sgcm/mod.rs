@@ -7,6 +7,7 @@ mod session;
 mod slope_correction;
 mod source;
 mod steps;
+mod widening;
 
 pub use cost::SgcmCost;
 pub use options::{Correction, SgcmOptions};

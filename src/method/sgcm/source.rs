@@ -7,12 +7,14 @@ use rayon::prelude::*;
 
 use super::slope_correction::{Corrected, solve_by};
 use super::steps::{Steps, choose_steps};
+use super::widening::widened;
 use super::{Correction, SgcmOptions};
 use crate::MAX_DIMENSION;
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::continuation::measure::{ESCAPE_RATE, MAP_STEP, TIME_STEP_BIAS};
 use crate::continuation::{Finding, Solution, Subject};
-use crate::density::{EstimatedDensity, moments};
+use crate::density::{EstimatedDensity, excess_variances, moments};
+use crate::method::measures::{Cells, Others};
 use crate::method::problem::Maps;
 use crate::method::report::Reporter;
 use crate::method::watched::Masses;
@@ -191,25 +193,18 @@ impl SgcmSource {
     fn densities(
         &self,
         point: &SampledPoint,
-        correction: Correction,
         steady: &SteadyState,
-        cancellation: &Cancellation,
-    ) -> Result<(Vec<EstimatedDensity>, usize), MethodError> {
-        let (system, transitions) = (point.system.as_ref(), &point.transitions);
-        let replicates = self.replicates(correction, transitions, steady, cancellation)?;
-        let usable: &[Vec<f64>] = if replicates.len() < 2 {
-            &[]
-        } else {
-            &replicates
-        };
+        replicates: &[Vec<f64>],
+    ) -> Result<Vec<EstimatedDensity>, MethodError> {
+        let system = point.system.as_ref();
         let (problem, surfaces) = (&self.problem, &self.steps.kinked);
         let maps = self.maps(point.value)?;
-        let mut densities = maps.sampled(problem, &steady.mass, usable)?;
+        let mut densities = maps.sampled(problem, &steady.mass, replicates)?;
         for one in &mut densities {
             let observable = one.observable;
             one.structure = maps.structure(system, problem, &steady.mass, observable, surfaces);
         }
-        Ok((densities, usable.len()))
+        Ok(densities)
     }
 
     fn solved(
@@ -237,21 +232,40 @@ impl SgcmSource {
         let Some(share) = reporter.escaping_share(relaxation_time, limit) else {
             return Ok((Solution::without_density(reporter.report), None));
         };
-        let mut moments = moments(self.problem.space(), &steady.mass)?;
+        let of_axes = moments(self.problem.space(), &steady.mass)?;
         reporter.edge_mass(&steady.mass, &self.steps.closed_ends);
         let diffusion = self.diffusion(transitions, correction, slopes, &steady.mass);
-        reporter.numerical_diffusion(diffusion, &self.steps.noise, &moments);
+        let widening = reporter.numerical_diffusion(diffusion, &self.steps.noise, &of_axes);
         let (time_step, bias) = (self.steps.time_step, self.steps.bias.as_ref());
         reporter.time_step(time_step, bias, f64::INFINITY);
         reporter.escaping(share);
         if !info.converged {
             reporter.not_converged(info.error_estimate);
         }
-        let (densities, replicates) = self.densities(point, correction, &steady, cancellation)?;
-        moments.extend(self.maps(point.value)?.moments(&steady.mass)?);
-        reporter.moments(&moments);
-        reporter.replicates(replicates, transitions.groups());
-        Ok((reporter.solution(densities), Some(steady.mass)))
+        let mut replicates = self.replicates(correction, transitions, &steady, cancellation)?;
+        if replicates.len() < 2 {
+            replicates.clear();
+        }
+        let densities = self.densities(point, &steady, &replicates)?;
+        let space = self.problem.space();
+        let maps = self.maps(point.value)?;
+        let sampled = maps.all_sampled_moments(space, &of_axes, &steady.mass, &replicates)?;
+        let excess = excess_variances(space, &steady.mass)?;
+        reporter.moments(&widened(sampled, &excess, widening));
+        reporter.replicates(replicates.len(), transitions.groups());
+        let solution = reporter.solution(
+            densities,
+            Some(&Cells {
+                system: point.system.as_ref(),
+                space,
+                weights: &steady.mass,
+                others: Others::Replicates(&replicates),
+                planes: &[],
+                closed: &self.steps.closed_ends,
+                escape_rate,
+            }),
+        );
+        Ok((solution, Some(steady.mass)))
     }
 
     /// What turns masses into what is watched at a value of the path.

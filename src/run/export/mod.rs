@@ -63,7 +63,7 @@ struct DataSet {
 /// Writes the densities and moments of a run's points to a file, or to a folder of tables. Points without a density are
 /// left out. The arrays have the names of `densities.zarr`: `p_x` with dimensions of the parameter and `x`, normalised
 /// to ∫ = 1, its standard error `p_x_error`, its second discretisation `p_x_second`; centres `x` and edges `x_edges` of
-/// the cells; `mean_x` and `sd_x`.
+/// the cells; `mean_x` and `sd_x` with their errors `mean_x_error` and `sd_x_error`.
 ///
 /// # Errors
 /// [`RunError::Write`], [`RunError::Export`] when the format cannot hold it, [`RunError::NothingToExport`] when no
@@ -129,18 +129,28 @@ fn data_set(subject: &Subject, points: &[&Point], title: &str) -> DataSet {
     }
 }
 
-/// Names of means and standard deviations, with what they are.
+/// Names of means, standard deviations and their errors, with what they are.
 pub(super) fn moments(family: &Family) -> impl Iterator<Item = (String, String)> {
-    family.averages().flat_map(|quantity| {
+    let values = family.averages().flat_map(|quantity| {
         let of =
             |kind: &MeasureKind, long: &str| (kind.name(quantity), format!("{long} of {quantity}"));
         [of(&MEAN, "mean"), of(&DEVIATION, "standard deviation")]
+    });
+    values.flat_map(|(name, long)| {
+        let error = (format!("{name}_error"), format!("error of the {long}"));
+        [(name, long), error]
     })
 }
 
 fn moments_at(family: &Family, points: &[&Point]) -> Vec<Array> {
     let array = |(name, long_name): (String, String)| {
-        let value = |point: &&Point| point.report.measure(&name).unwrap_or(f64::NAN);
+        let value = |point: &&Point| {
+            let found = match name.strip_suffix("_error") {
+                Some(of) => point.report.error_of(of),
+                None => point.report.measure(&name),
+            };
+            found.unwrap_or(f64::NAN)
+        };
         Array {
             dimensions: vec![(family.parameter().to_owned(), points.len())],
             values: points.iter().map(value).collect(),

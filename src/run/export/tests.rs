@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::continuation::measure::{DEVIATION, MEAN};
-use crate::continuation::{CellCheck, SolveReport};
+use crate::continuation::{CellCheck, Measure, SolveReport};
 use crate::density::{Density, NEGLIGIBLE, Observable, Structure};
 use crate::space::Axis;
 use crate::system::test_families::coulomb;
@@ -43,7 +43,10 @@ fn point(value: f64, solved: bool) -> Point {
     let mut report = SolveReport::solved("generator");
     for axis in ["x", "y"].into_iter().filter(|_| solved) {
         report.add(&MEAN, axis, 0.5);
-        report.add(&DEVIATION, axis, 2.0);
+        report.put(Measure {
+            error: Some(0.25),
+            ..DEVIATION.measure(axis, 2.0)
+        });
     }
     Point {
         value,
@@ -83,6 +86,8 @@ fn netcdf_holds_every_array_with_its_dimensions() {
     assert_eq!(read("p_xy")[6..], [0.5, 1.5, 2.5, 3.5, 4.5, 5.5]);
     assert_eq!(read("p_xy_error"), [0.25; 12]);
     assert_eq!((read("mean_y"), read("sd_y")), (vec![0.5; 2], vec![2.0; 2]));
+    assert_eq!(read("sd_y_error"), [0.25; 2]);
+    assert!(read("mean_y_error").iter().all(|error| error.is_nan()));
 }
 
 #[test]

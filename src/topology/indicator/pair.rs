@@ -9,7 +9,7 @@ use super::window::around;
 use super::{Indicator, IndicatorKind};
 use crate::density::EstimatedDensity;
 use crate::topology::extremum::density_at;
-use crate::topology::{Feature, FeatureKind, Verdict};
+use crate::topology::{Feature, FeatureErrors, FeatureKind, Verdict};
 
 /// Cells on either side of the centre within which peaks belong to it.
 const REACH: usize = 4;
@@ -136,6 +136,7 @@ impl<'a> Centre<'a> {
             significance: significance.min(1e9),
             verdict: Verdict::Present,
             partner: (split && kind == FeatureKind::Peak).then(|| vec![self.at]),
+            errors: FeatureErrors::default(),
         };
         let known = density_at(self.estimated, self.at);
         let density = known.unwrap_or_else(|| beside(self.estimated, self.at));

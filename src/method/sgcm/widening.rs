@@ -1,0 +1,47 @@
+//! What cells make of moments beside sampling: a density that is constant inside them is wider than one that is not,
+//! and so is one with more noise.
+
+use crate::density::{EstimatedMoments, Moments};
+
+/// Moments with what cells make of them beside sampling: variances in `excess`, one an axis, and noise that is larger
+/// by a share. Quantities are taken to answer to that as squares of the axes do.
+pub(super) fn widened(
+    estimated: Vec<EstimatedMoments>,
+    excess: &[f64],
+    share: f64,
+) -> Vec<EstimatedMoments> {
+    let one = |(index, one): (usize, EstimatedMoments)| {
+        let deviation = one.moments.standard_deviation;
+        one.with(match excess.get(index) {
+            Some(excess) => Moments {
+                mean: 0.0,
+                standard_deviation: 0.5 * (excess / deviation + share * deviation),
+            },
+            None => Moments {
+                mean: share * deviation,
+                standard_deviation: share * deviation,
+            },
+        })
+    };
+    estimated.into_iter().enumerate().map(one).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn axes_and_quantities_are_widened_as_squares_are() {
+        let own = Moments {
+            mean: 1.0,
+            standard_deviation: 2.0,
+        };
+        let exact = EstimatedMoments::by_difference(own, &[own]);
+        let found = widened(vec![exact, exact], &[0.04], 0.01);
+        let errors = |index: usize| found[index].errors.unwrap();
+        // √(4 + 0.04) - 2, and noise of 1.01 in place of 1.
+        assert!((errors(0).standard_deviation - 0.02).abs() < 1e-12);
+        assert_eq!(errors(0).mean, 0.0);
+        assert!((errors(1).mean - 0.02).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,85 @@
+//! How well place and height of a feature are known.
+//!
+//! Without noise a feature is read again as a critical point of a reconstruction of high order, of the density and of
+//! its second discretisation, and of a rougher reconstruction. What these differ by is the error. As the
+//! discretisations may cross at the very place, what differences that are independent from cell to cell would do is
+//! added, to a height the relative difference of the densities as wholes.
+//! With noise it is read again from every replicate.
+
+use super::critical::{Critical, FLAT};
+use super::field::Field;
+use super::refine::refine;
+use super::{Feature, FeatureErrors, FeatureKind};
+use crate::density::{EstimatedDensity, Variants, jackknife};
+
+/// The errors of a feature of a density.
+pub(super) fn errors(estimated: &EstimatedDensity, feature: &Feature) -> FeatureErrors {
+    let found = match &estimated.variants {
+        Variants::Jackknife(replicates) => by_replicates(estimated, feature, replicates),
+        _ if estimated.is_noisy() => None,
+        _ => by_reading_again(estimated, feature),
+    };
+    found.unwrap_or_default()
+}
+
+fn by_reading_again(estimated: &EstimatedDensity, feature: &Feature) -> Option<FeatureErrors> {
+    let field = Field::new(estimated)?;
+    let (values, at) = (field.values(), feature.position.as_slice());
+    let near = |values| Critical::near(&field, at, feature.kind, values);
+    let own = near(values)?;
+    let second = field.second_scheme().and_then(near);
+    let second = second.as_ref().unwrap_or(&own);
+    let cell = field.cell_at(&own.position)?;
+    let noise = *estimated.standard_error.get(cell)?;
+    // The place of a ring is any point of it.
+    let flat = match feature.kind {
+        FeatureKind::Ring => FLAT,
+        _ => 0.0,
+    };
+    let (rough, independent) = own.shifts(&field, noise, flat);
+    let along = |k: usize| {
+        let [given, own, second] = [at, &own.position, &second.position].map(|place| place[k]);
+        (given - own).abs() + (second - own).abs() + rough[k] + independent[k]
+    };
+    Some(FeatureErrors {
+        position: (0..at.len()).map(along).collect(),
+        density: Some(
+            (feature.density - own.jet.value).abs()
+                + own.error(estimated).max(noise)
+                + whole(estimated) * feature.density.abs(),
+        ),
+    })
+}
+
+/// The error of a density in the norm L1, over its mass.
+fn whole(estimated: &EstimatedDensity) -> f64 {
+    let errors = estimated.standard_error.iter();
+    let parts = errors.zip(estimated.density.volumes());
+    parts.map(|(error, volume)| error * volume).sum()
+}
+
+fn by_replicates(
+    estimated: &EstimatedDensity,
+    feature: &Feature,
+    replicates: &[Vec<f64>],
+) -> Option<FeatureErrors> {
+    let cell = Field::new(estimated)?.cell_at(&feature.position)?;
+    let mut variant = EstimatedDensity {
+        variants: Variants::None,
+        ..estimated.clone()
+    };
+    let mut read = |values: &Vec<f64>| {
+        variant.density.values.clone_from(values);
+        refine(&variant, cell, feature.kind)
+    };
+    let read: Vec<_> = replicates.iter().map(&mut read).collect();
+    let of = |number: &dyn Fn(&super::extremum::Vertex) -> f64| {
+        let values: Vec<f64> = read.iter().map(number).collect();
+        jackknife(&values)
+    };
+    let along = |k: usize| of(&|one| one.position[k]);
+    (read.len() > 1).then(|| FeatureErrors {
+        position: (0..feature.position.len()).map(along).collect(),
+        density: Some(of(&|one| one.density)),
+    })
+}
