@@ -49,6 +49,7 @@ pub mod generator;
 pub mod job;
 pub mod method;
 pub mod monte_carlo;
+pub mod passage;
 #[cfg(feature = "store")]
 pub mod run;
 pub mod sampling;

@@ -171,8 +171,55 @@ pub enum Finding {
         /// Groups there are.
         wanted: usize,
     },
+    /// A passage that was asked for has no numbers.
+    NoPassage {
+        /// Its number among those that were asked for.
+        passage: usize,
+        /// Why.
+        fault: PassageFault,
+    },
     /// Sentences of a stored run that has no numbers for them.
     Told(String),
+}
+
+/// Why a passage has no numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum PassageFault {
+    /// No cell is inside the region that is waited for.
+    Nowhere,
+    /// All cells are.
+    Everywhere,
+    /// The start is inside that region, outside of the cells, or never visited.
+    Start,
+    /// The start is weighted by a steady state, and there is none.
+    NoDensity,
+    /// The region is never entered.
+    Never,
+    /// The equations of the passage were not solved.
+    Unsolved,
+}
+
+impl PassageFault {
+    /// All of them, with their codes.
+    const CODES: [(Self, &'static str); 6] = [
+        (Self::Nowhere, "passage-nowhere"),
+        (Self::Everywhere, "passage-everywhere"),
+        (Self::Start, "passage-start"),
+        (Self::NoDensity, "passage-no-density"),
+        (Self::Never, "passage-never"),
+        (Self::Unsolved, "passage-unsolved"),
+    ];
+
+    fn code(self) -> &'static str {
+        let known = Self::CODES.into_iter().find(|(fault, _)| *fault == self);
+        known.map_or("", |(_, code)| code)
+    }
+
+    fn of_code(code: &str) -> Option<Self> {
+        let known = Self::CODES.into_iter().find(|(_, known)| *known == code);
+        known.map(|(fault, _)| fault)
+    }
 }
 
 /// A class of cells with a steady state of its own, beside others.
@@ -253,6 +300,7 @@ impl Finding {
             Self::FewReplicates { usable, wanted } => {
                 plain("few-replicates", &[usable as f64, wanted as f64])
             }
+            Self::NoPassage { passage, fault } => plain(fault.code(), &[passage as f64]),
             Self::Told(_) => plain("told", &[]),
         }
     }
@@ -304,6 +352,10 @@ impl Finding {
             ("few-replicates", None, &[usable, wanted]) => Self::FewReplicates {
                 usable: usable as usize,
                 wanted: wanted as usize,
+            },
+            (code, None, &[passage]) => Self::NoPassage {
+                passage: passage as usize,
+                fault: PassageFault::of_code(code)?,
             },
             (code, axis, &[relative, standard_error, time_step]) => Self::StepBias {
                 quantity: ShiftedQuantity::of_code(code, axis)?,

@@ -19,6 +19,8 @@ pub struct Measure {
 pub struct MeasureKind {
     /// The word in tables.
     pub word: &'static str,
+    /// Whether the name of what the number is of goes before the word, as that of a passage does: `exit_mean`.
+    pub follows: bool,
     /// The unit; `{}` is the name of what the number is of.
     pub unit: &'static str,
     /// The column of `points.csv`, in words.
@@ -39,6 +41,7 @@ impl MeasureKind {
     pub fn name(&self, of: &str) -> String {
         match of {
             "" => self.word.to_owned(),
+            of if self.follows => format!("{of}_{}", self.word),
             of => format!("{}_{of}", self.word),
         }
     }
@@ -55,6 +58,10 @@ impl MeasureKind {
 
     /// Whether a measure is of this kind.
     pub(crate) fn has(&self, measure: &Measure) -> bool {
+        if self.follows {
+            let of = measure.name.strip_suffix(self.word);
+            return of.is_some_and(|of| of.ends_with('_'));
+        }
         let of = measure.name.strip_prefix(self.word);
         of.is_some_and(|of| of.is_empty() || of.starts_with('_'))
     }
@@ -63,10 +70,37 @@ impl MeasureKind {
 const fn kind(word: &'static str, unit: &'static str, meaning: &'static str) -> MeasureKind {
     MeasureKind {
         word,
+        follows: false,
         unit,
         meaning,
     }
 }
+
+const fn of_passage(word: &'static str, unit: &'static str, meaning: &'static str) -> MeasureKind {
+    MeasureKind {
+        follows: true,
+        ..kind(word, unit, meaning)
+    }
+}
+
+pub(crate) const PASSAGE_MEAN: MeasureKind = of_passage("mean", "t", "mean time of a passage");
+pub(crate) const PASSAGE_DEVIATION: MeasureKind =
+    of_passage("sd", "t", "standard deviation of the time of a passage");
+pub(crate) const PASSAGE_SURVIVAL: MeasureKind = of_passage(
+    "survival",
+    "1",
+    "probability that a passage still goes on at a time, which stands before the word",
+);
+pub(crate) const PASSAGE_QUANTILE: MeasureKind = of_passage(
+    "quantile",
+    "t",
+    "time by which a share of the passages, which stands before the word, has ended",
+);
+pub(crate) const PASSAGE_RATE: MeasureKind = of_passage(
+    "rate",
+    "1/t",
+    "probability per unit time that a passage ends which has lasted long",
+);
 
 pub(crate) const ESCAPE_RATE: MeasureKind =
     kind("escape_rate", "1/t", "mass that leaves Ω per unit time");

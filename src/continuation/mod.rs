@@ -55,7 +55,7 @@ pub(crate) use again::detect_again;
 pub use doubt::{BifurcationStatus, CheckedBy, Doubt, WiderRange};
 #[cfg(test)]
 pub(crate) use finding::tests::every_finding;
-pub use finding::{Finding, ShiftedQuantity, SteadyClass};
+pub use finding::{Finding, PassageFault, ShiftedQuantity, SteadyClass};
 pub use grid::CheckedIndicator;
 pub use label::{Label, Located, Zero};
 pub use measure::{Measure, MeasureColumn, MeasureKind};

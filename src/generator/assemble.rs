@@ -60,7 +60,7 @@ pub(super) fn assemble_within(
     columns(&axes, &strides, &rates?, space.n_cells())
 }
 
-fn check(system: &dyn System, space: &CellSpace) -> Result<(), GeneratorError> {
+pub(super) fn check(system: &dyn System, space: &CellSpace) -> Result<(), GeneratorError> {
     let (axes, dimension) = (space.dimension(), system.dimension());
     if axes != dimension {
         return Err(GeneratorError::Dimension { axes, dimension });
@@ -80,7 +80,7 @@ fn check(system: &dyn System, space: &CellSpace) -> Result<(), GeneratorError> {
 }
 
 /// Distance in cell numbers between neighbours along each axis.
-fn strides(axes: &[AxisGeometry]) -> Vec<usize> {
+pub(super) fn strides(axes: &[AxisGeometry]) -> Vec<usize> {
     let mut strides = vec![1; axes.len()];
     for axis in (1..axes.len()).rev() {
         strides[axis - 1] = strides[axis] * axes[axis].count();
@@ -90,7 +90,7 @@ fn strides(axes: &[AxisGeometry]) -> Vec<usize> {
 
 /// Flux weights of all lines along an axis: `lines × (count + 1)` windows. Line `outer · stride + inner` starts at
 /// cell `outer · stride · count + inner`.
-fn axis_fluxes(
+pub(super) fn axis_fluxes(
     system: &dyn System,
     axes: &[AxisGeometry],
     strides: &[usize],
@@ -119,7 +119,7 @@ fn axis_fluxes(
 }
 
 /// Blocks of all lines along an axis of modes: `lines × count × count` rates, the line's number as in [`axis_fluxes`].
-fn axis_blocks(
+pub(super) fn axis_blocks(
     system: &dyn System,
     axes: &[AxisGeometry],
     strides: &[usize],
@@ -145,7 +145,7 @@ fn axis_blocks(
 }
 
 /// Nodes of the first cell of a line along an axis.
-fn line_start(
+pub(super) fn line_start(
     axes: &[AxisGeometry],
     strides: &[usize],
     axis: usize,

@@ -14,12 +14,14 @@
 //! | fluxes along a grid line: fitted and advected drift | `line.rs`, `smooth.rs` |
 //! | rates along an axis of modes | `modes.rs` |
 //! | the matrix | `assemble.rs`, `columns.rs` |
+//! | the matrix of a process that ends in a region | `absorbing.rs` |
 //! | masses of cells and moments from the unknowns | `masses.rs` |
 //! | one axis: the steady state by quadrature, its extrema from the equations | `one_axis/` |
 //! | dQ/dθ | `derivative.rs` |
 //! | axes graded toward switching surfaces | `grading.rs` |
 //! | is the grid fine enough for the noise | `resolution.rs` |
 
+mod absorbing;
 #[cfg(test)]
 mod accuracy_tests;
 mod assemble;
@@ -38,6 +40,8 @@ mod sampler;
 mod scheme;
 mod smooth;
 
+pub(crate) use absorbing::levels;
+pub use absorbing::{AbsorbingGenerator, Dissipation, assemble_absorbing};
 pub use assemble::assemble;
 pub use derivative::assemble_derivative;
 pub use grading::automatic_grading;

@@ -47,6 +47,8 @@ pub use cost::Cost;
 pub use generator::{GeneratorCost, GeneratorMethodOptions, GeneratorSource};
 pub(crate) use generator::{OneAxisFamily, automatic_modes, change_by_more_modes};
 pub use measures::DerivedMeasure;
+#[cfg(feature = "store")]
+pub(crate) use measures::passage_columns;
 pub use monte_carlo::{Estimator, MonteCarloCost, MonteCarloOptions, MonteCarloSource};
 pub use options::MethodOptions;
 pub use problem::Problem;

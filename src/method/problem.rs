@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use super::MethodError;
-use super::measures::DerivedMeasure;
+use super::measures::{DerivedMeasure, passage_columns};
 use crate::continuation::{CellCheck, Subject, Want};
 use crate::density::{DensityError, Observable, Projection, QuantityMoments, laid_out};
 use crate::space::{Axis, CellSpace};
@@ -142,7 +142,7 @@ impl Problem {
         let columns = measures
             .iter()
             .flat_map(|measure| measure.columns(family, observables));
-        self.subject.measures = columns.collect();
+        self.subject.measures = columns.chain(passage_columns(family)).collect();
         self
     }
 

@@ -1,6 +1,6 @@
 //! Findings in sentences, for the columns `warnings`, for `run.json` and for the terminal.
 
-use crate::continuation::{Finding, ShiftedQuantity, SteadyClass};
+use crate::continuation::{Finding, PassageFault, ShiftedQuantity, SteadyClass};
 use crate::system::Family;
 
 /// Steady states that are named one by one.
@@ -199,10 +199,35 @@ fn solve_in_words(family: &Family, finding: &Finding) -> String {
         Finding::FewReplicates { usable, wanted } => {
             format!("the sampling error rests on {usable} of {wanted} groups of samples")
         }
+        Finding::NoPassage { passage, fault } => passage_in_words(family, passage, fault),
         Finding::Told(ref text) => text.clone(),
         // The others are worded above.
         _ => finding.kind().0.to_owned(),
     }
+}
+
+/// Why a passage has no numbers, and what to do.
+fn passage_in_words(family: &Family, passage: usize, fault: PassageFault) -> String {
+    let name = family.passages().get(passage).map_or("", |one| &one.name);
+    let why = match fault {
+        PassageFault::Nowhere => {
+            "no cell is inside the region that is waited for: widen the ranges until it is, or use more cells"
+        }
+        PassageFault::Everywhere => {
+            "all cells are inside the region that is waited for: there is nothing to wait for"
+        }
+        PassageFault::Start => {
+            "it starts inside the region that is waited for, outside of the cells, or where the steady state has no mass"
+        }
+        PassageFault::NoDensity => {
+            "its start is spread as the steady state is, and there is none: give a state as its `start`"
+        }
+        PassageFault::Never => "the region that is waited for is never entered from its start",
+        PassageFault::Unsolved => {
+            "its equations were not solved: use more cells, or give it more memory (`method.memory_limit`)"
+        }
+    };
+    format!("passage `{name}` has no numbers: {why}")
 }
 
 fn class_in_words(class: &SteadyClass) -> String {

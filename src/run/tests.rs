@@ -301,6 +301,7 @@ fn tables_for_people_round_to_the_error() {
 fn derived_measures_and_errors_of_moments_are_the_last_columns_and_are_read_back() {
     let kind = MeasureKind {
         word: "spread",
+        follows: false,
         unit: "1",
         meaning: "",
     };

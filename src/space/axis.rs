@@ -9,7 +9,7 @@
 //! rule, and its "cells" hold the weights, so that sums over cells are the rule.
 
 use super::SpaceError;
-use super::grading::{BULK_SHARE, Grading, Piece, grading_terms};
+use super::grading::{BULK_SHARE, Grading, Piece, cubic_term, grading_terms};
 use super::series::{MOST_MODES, Series};
 
 /// The cells of one axis. Cell `i` is `[edges[i], edges[i + 1])`; the last one includes its upper edge.
@@ -76,6 +76,34 @@ impl Axis {
         let bulk = BULK_SHARE / uniform;
         let terms = grading_terms((from, to), count, bulk, &points, smallest);
         Self::split(from, to, count, bulk, &terms)
+    }
+
+    /// Cells whose distance from the marked ends (lower, upper) grows as the cube of their number there, and whose
+    /// width is even elsewhere: for densities that are as the cube root of the distance from an end.
+    ///
+    /// # Errors
+    /// As [`Axis::uniform`].
+    pub(crate) fn toward_ends(
+        from: f64,
+        to: f64,
+        count: usize,
+        ends: [bool; 2],
+    ) -> Result<Self, SpaceError> {
+        Self::check(from, to, count)?;
+        let marked = [from, to]
+            .into_iter()
+            .zip(ends)
+            .filter(|(_, marked)| *marked);
+        let terms: Vec<_> = marked
+            .map(|(end, _)| cubic_term((from, to), count, end))
+            .collect();
+        let bulk = count as f64 / (to - from);
+        Ok(Self::from_pieces(vec![Piece::new(
+            (from, to),
+            (0, count),
+            bulk,
+            &terms,
+        )]))
     }
 
     /// Cuts the axis at the graded points and gives each piece a whole number of cells.

@@ -12,7 +12,17 @@ pub struct Grading {
     pub smallest: f64,
 }
 
-/// A stretch between two graded points (or ends) that holds a whole number of cells.
+/// Where cells graded as the cube of the distance from an end go over into even ones, as a share of the range.
+const CUBIC_SHARE: f64 = 0.15;
+
+/// The term that grades cells as the cube of the distance from an end: its width is zero.
+pub(super) fn cubic_term((from, to): (f64, f64), count: usize, end: f64) -> (f64, f64, f64) {
+    let bulk = count as f64 / (to - from);
+    (bulk * (CUBIC_SHARE * (to - from)).powf(2.0 / 3.0), end, 0.0)
+}
+
+/// A stretch between two graded points (or ends) that holds a whole number of cells. A term is its amplitude, its
+/// centre and its width: a sinh grading, or cells as the cube of the distance where the width is zero.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Piece {
@@ -31,7 +41,12 @@ impl Piece {
     pub(super) fn raw(bulk: f64, terms: &[(f64, f64, f64)], x: f64) -> f64 {
         let graded: f64 = terms
             .iter()
-            .map(|&(amplitude, centre, width)| amplitude * ((x - centre) / width).asinh())
+            .map(|&(amplitude, centre, width)| {
+                if width == 0.0 {
+                    return amplitude * (x - centre).cbrt();
+                }
+                amplitude * ((x - centre) / width).asinh()
+            })
             .sum();
         bulk * x + graded
     }
@@ -66,7 +81,12 @@ impl Piece {
         let graded: f64 = self
             .terms
             .iter()
-            .map(|&(amplitude, centre, width)| amplitude / (x - centre).hypot(width))
+            .map(|&(amplitude, centre, width)| {
+                if width == 0.0 {
+                    return amplitude / (3.0 * (x - centre).cbrt().powi(2));
+                }
+                amplitude / (x - centre).hypot(width)
+            })
             .sum();
         1.0 / (self.scale * (self.bulk + graded))
     }

@@ -155,6 +155,19 @@ pub(super) struct CurveDraft {
     pub(super) branches: Option<bool>,
 }
 
+/// What the file says of a passage.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct PassageDraft {
+    pub(super) name: String,
+    pub(super) from: Option<String>,
+    pub(super) to: Option<String>,
+    pub(super) until: Option<String>,
+    /// Axes and coordinates.
+    pub(super) start: Vec<(String, f64)>,
+    pub(super) times: Option<Vec<f64>>,
+    pub(super) quantiles: Option<Vec<f64>>,
+}
+
 /// What the file says.
 #[derive(Debug, Clone)]
 pub(super) struct Draft {
@@ -187,6 +200,10 @@ pub(super) struct Draft {
     pub(super) bins: Vec<BinsDraft>,
     /// Names and formulas of quantities of which moments are wanted.
     pub(super) averaged: Vec<(String, String)>,
+    /// Names and inequalities of regions.
+    pub(super) regions: Vec<(String, String)>,
+    /// Questions of first passage, in the order given.
+    pub(super) passages: Vec<PassageDraft>,
     pub(super) detect: DetectOptions,
     pub(super) locate: LocateOptions,
     pub(super) figures_at: Option<Vec<f64>>,
@@ -215,6 +232,8 @@ impl Default for Draft {
             measures: None,
             bins: Vec::new(),
             averaged: Vec::new(),
+            regions: Vec::new(),
+            passages: Vec::new(),
             detect: DetectOptions::default(),
             locate: LocateOptions::default(),
             figures_at: None,
@@ -240,6 +259,24 @@ impl Draft {
             });
         }
         &mut self.axes[index]
+    }
+
+    /// What is said of a passage, made where nothing was.
+    pub(super) fn passage_mut(&mut self, name: &str) -> &mut PassageDraft {
+        let known = self.passages.iter().position(|one| one.name == name);
+        let index = known.unwrap_or(self.passages.len());
+        if known.is_none() {
+            self.passages.push(PassageDraft {
+                name: name.to_owned(),
+                ..PassageDraft::default()
+            });
+        }
+        &mut self.passages[index]
+    }
+
+    /// What is said of a passage.
+    pub(super) fn passage(&self, name: &str) -> Option<&PassageDraft> {
+        self.passages.iter().find(|one| one.name == name)
     }
 
     /// What is said of a quantity's values, made where nothing was.

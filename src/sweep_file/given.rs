@@ -6,7 +6,7 @@ use super::settings::Settings;
 use super::value::Value;
 
 impl Settings {
-    /// Names of the parameters that are moved, of axes and of quantities, where the file gives them.
+    /// Names of the parameters that are moved, of axes, of quantities and of passages, where the file gives them.
     pub(crate) fn given_names(&self) -> Vec<(String, Place)> {
         let root = &self.document.root;
         let sections = ["sweep", "map", "curve"].into_iter();
@@ -25,6 +25,13 @@ impl Settings {
             let name = one.name();
             Some((name.to_owned(), quantity_place(&self.document, name)?))
         });
-        moved.chain(axes).chain(quantities).collect()
+        let passages = root.find(&["passage"]).into_iter();
+        let passages = passages.flat_map(|table| table.node.entries());
+        let passages = passages.map(|entry| (entry.key.clone(), entry.key_place.clone()));
+        moved
+            .chain(axes)
+            .chain(quantities)
+            .chain(passages)
+            .collect()
     }
 }

@@ -128,7 +128,7 @@ fn check_table<'n>(
         let opens = is_table && !below(path).is_empty();
         if let Some(key) = keys::find(path).filter(|_| !opens) {
             match value_of(key, path, &entry.node) {
-                Ok(plain) => (key.field.set)(draft, key.name_in(path), &plain),
+                Ok(plain) => (key.field.set)(draft, &key.name_in(path), &plain),
                 Err(wrong) => found.push(*wrong),
             }
         } else if !KEYS.iter().any(|key| key.starts_with(path)) {

@@ -22,11 +22,12 @@ pub(super) fn to_toml(draft: &Draft) -> String {
     let mut root = Vec::new();
     for key in KEYS {
         for name in names(key, draft) {
-            if let Some(plain) = (key.field.get)(draft, name) {
+            if let Some(plain) = (key.field.get)(draft, &name) {
+                let mut names = name.split('.');
                 let path: Vec<(&str, bool)> = key
                     .parts()
                     .map(|part| match is_stand_in(part) {
-                        true => (name, true),
+                        true => (names.next().unwrap_or_default(), true),
                         false => (part, false),
                     })
                     .collect();
@@ -39,25 +40,27 @@ pub(super) fn to_toml(draft: &Draft) -> String {
     text
 }
 
-/// What `<…>` in a key's path stands for; one empty name where there is none.
-fn names<'d>(key: &Key, draft: &'d Draft) -> Vec<&'d str> {
+/// What `<…>` in a key's path stands for, several joined by points; one empty name where there is none.
+fn names(key: &Key, draft: &Draft) -> Vec<String> {
+    fn of<'d>(names: impl Iterator<Item = &'d String>) -> Vec<String> {
+        names.cloned().collect()
+    }
     match key.parts().find(|part| is_stand_in(part)) {
-        None => vec![""],
-        Some("<quantity>") => draft.bins.iter().map(|bins| bins.name.as_str()).collect(),
-        Some("<formula>") => draft
-            .averaged
-            .iter()
-            .map(|(name, _)| name.as_str())
-            .collect(),
-        Some("<axis>") => draft.axes.iter().map(|axis| axis.name.as_str()).collect(),
-        Some("<name>") => {
-            let definitions = draft.equations.define.iter();
-            definitions.map(|(name, _)| name.as_str()).collect()
+        None => vec![String::new()],
+        Some("<quantity>") => of(draft.bins.iter().map(|bins| &bins.name)),
+        Some("<formula>") => of(draft.averaged.iter().map(|(name, _)| name)),
+        Some("<region>") => of(draft.regions.iter().map(|(name, _)| name)),
+        Some("<axis>") => of(draft.axes.iter().map(|axis| &axis.name)),
+        Some("<name>") => of(draft.equations.define.iter().map(|(name, _)| name)),
+        Some("<passage>") if key.parts().any(|part| part == "<axis>") => {
+            let starts = draft.passages.iter().flat_map(|one| {
+                let axes = one.start.iter();
+                axes.map(move |(axis, _)| format!("{}.{axis}", one.name))
+            });
+            starts.collect()
         }
-        Some(_) => {
-            let parameters = draft.parameters.iter();
-            parameters.map(|(name, _)| name.as_str()).collect()
-        }
+        Some("<passage>") => of(draft.passages.iter().map(|one| &one.name)),
+        Some(_) => of(draft.parameters.iter().map(|(name, _)| name)),
     }
 }
 

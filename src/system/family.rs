@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Model, ParameterValues, Path, Quantity, System, SystemError};
+use super::{Model, ParameterValues, PassageQuestion, Path, Quantity, Region, System, SystemError};
 
 /// Systems along a path: one number in, a bound system out, with names and symbols for tables and figures.
 ///
@@ -26,6 +26,8 @@ pub struct Family {
     /// Numbered on from the axes.
     quantities: Vec<Arc<Quantity>>,
     averaged: Vec<Arc<Quantity>>,
+    regions: Vec<Region>,
+    passages: Vec<PassageQuestion>,
 }
 
 impl Family {
@@ -51,6 +53,8 @@ impl Family {
             path,
             quantities: Vec::new(),
             averaged: Vec::new(),
+            regions: Vec::new(),
+            passages: Vec::new(),
         };
         family.along()?;
         Ok(family)
@@ -71,6 +75,24 @@ impl Family {
         self
     }
 
+    /// The family with named regions, and with questions of first passage.
+    #[must_use]
+    pub fn with_passages(mut self, regions: Vec<Region>, passages: Vec<PassageQuestion>) -> Self {
+        self.regions = regions;
+        self.passages = passages;
+        self
+    }
+
+    /// The regions that have names.
+    pub fn regions(&self) -> &[Region] {
+        &self.regions
+    }
+
+    /// The questions of first passage.
+    pub fn passages(&self) -> &[PassageQuestion] {
+        &self.passages
+    }
+
     /// The same model and quantities with other values, along another path.
     ///
     /// # Errors
@@ -83,6 +105,8 @@ impl Family {
         Ok(Self {
             quantities: self.quantities.clone(),
             averaged: self.averaged.clone(),
+            regions: self.regions.clone(),
+            passages: self.passages.clone(),
             ..Self::new(self.model.clone(), fixed, path)?
         })
     }

@@ -35,9 +35,11 @@ mod model;
 mod noise;
 mod oscillator;
 mod parameters;
+mod passage;
 mod path;
 mod quantity;
 mod rayleigh;
+mod region;
 pub mod registry;
 mod symmetry;
 #[cfg(test)]
@@ -55,8 +57,10 @@ pub use model::Model;
 pub use noise::{Amplitude, Noise};
 pub use oscillator::VELOCITY;
 pub(crate) use oscillator::{DISPLACEMENT, FIRST_INTERNAL_STATE};
+pub use passage::{PassageQuestion, PassageStart};
 pub use path::Path;
 pub use quantity::{BoundQuantity, Quantity, QuantityError, QuantityFault, quantities};
+pub use region::{Region, RegionError, RegionFault, regions};
 pub(crate) use symmetry::proved_symmetry;
 pub(crate) use typed::FormulaHazard;
 pub use typed::{

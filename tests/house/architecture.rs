@@ -17,10 +17,11 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("density", &["bytes", "system", "space"]),
     ("generator", &["system", "space", "density"]),
     ("stationary", &["cancellation", "space", "sampling"]),
+    ("passage", &["cancellation", "system", "space", "generator", "stationary"]),
     ("topology", &["space", "density"]),
     ("continuation", &["cancellation", "system", "space", "density", "topology", "bytes"]),
     ("method", &[
-        "cancellation", "system", "space", "sampling", "monte_carlo", "generator", "stationary", "density",
+        "cancellation", "system", "space", "sampling", "monte_carlo", "generator", "stationary", "passage", "density",
         "continuation", "bytes"
     ]),
     ("compare", &[

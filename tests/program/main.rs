@@ -23,6 +23,7 @@ mod monte_carlo;
 mod names;
 mod pages;
 mod paper;
+mod passages;
 mod paths;
 mod quantities;
 mod sweep;

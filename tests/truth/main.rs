@@ -12,4 +12,5 @@ mod hard_cases;
 mod internal_states;
 mod located;
 mod location;
+mod passages;
 mod random_systems;

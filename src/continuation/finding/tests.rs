@@ -86,7 +86,18 @@ pub(crate) fn every_finding() -> Vec<Finding> {
             usable: 6,
             wanted: 8,
         }),
-        F::FewReplicates { .. } => Some(F::Told("as it was told; twice".to_owned())),
+        F::FewReplicates { .. } => Some(F::NoPassage {
+            passage: 0,
+            fault: PassageFault::Nowhere,
+        }),
+        F::NoPassage { fault, .. } => {
+            let faults = PassageFault::CODES.into_iter().map(|(fault, _)| fault);
+            let next = faults.skip_while(|one| *one != *fault).nth(1);
+            Some(next.map_or_else(
+                || F::Told("as it was told; twice".to_owned()),
+                |fault| F::NoPassage { passage: 1, fault },
+            ))
+        }
         F::Told(_) => None,
     };
     let first = F::Escaping {

@@ -19,11 +19,11 @@ use super::stand::Stand;
 use super::trail::{self, Trail};
 use super::unknowns::{by_schemes, distance, negative_mass, summed_over_modes};
 use crate::cancellation::Cancellation;
-use crate::continuation::Solution;
 use crate::continuation::measure::{ESCAPE_RATE, FACTORISATIONS, NEGATIVE_MASS};
+use crate::continuation::{Solution, SolveReport};
 use crate::density::EstimatedDensity;
 use crate::generator::{Generator, GeneratorOptions, assemble_derivative, cell_masses, resolution};
-use crate::method::measures::{Cells, Others};
+use crate::method::measures::{Cells, Others, add_passages};
 use crate::method::neighbours::Neighbours;
 use crate::method::report::{QUIET_ESCAPE, Reporter};
 use crate::method::watched::planes;
@@ -89,7 +89,9 @@ impl GeneratorSession {
             return Ok(one_axis::without_density(&self.source, why));
         }
         if let Some(found) = one_axis::masses(&self.source, system.as_ref()) {
-            return one_axis::solution(&self.source, value, system.as_ref(), &found);
+            let mut solution = one_axis::solution(&self.source, value, system.as_ref(), &found)?;
+            self.add_passages(&mut solution.report, value, &system, Some(&found.masses))?;
+            return Ok(solution);
         }
         let mut before = self.trails.nearest(value).cloned();
         if let Some(trail) = &mut before {
@@ -104,6 +106,8 @@ impl GeneratorSession {
         let mut solved = self.solved(value, system, guess.as_deref(), expected.as_deref())?;
         solved.steady.info.factorisations = self.solver.factorisations() - factorisations;
         let (mut solution, trail) = self.judge(&solved, before.as_ref())?;
+        let known = trail.is_some().then_some(solved.steady.mass.as_slice());
+        self.add_passages(&mut solution.report, value, &solved.system, known)?;
         let Some(trail) = trail else {
             return Ok(solution);
         };
@@ -117,6 +121,23 @@ impl GeneratorSession {
             unknowns,
         }));
         Ok(solution)
+    }
+
+    /// Adds what is asked of first passages at a value, unless densities are all that is asked for; `known` are the
+    /// unknowns of the steady state.
+    fn add_passages(
+        &self,
+        report: &mut SolveReport,
+        value: f64,
+        system: &Arc<dyn System>,
+        known: Option<&[f64]>,
+    ) -> Result<(), MethodError> {
+        if self.source.checks {
+            return Ok(());
+        }
+        let (problem, options) = (&self.source.problem, &self.source.options);
+        let asked = (problem, value);
+        add_passages(report, asked, system, known, options, &self.cancellation)
     }
 
     /// Factorises ahead of a value in place of at it, where the sweep goes on: values on either side of the factorised

@@ -14,6 +14,7 @@ use crate::system::Family;
 pub(super) const ENTROPY: DerivedMeasure = DerivedMeasure {
     kind: MeasureKind {
         word: "entropy",
+        follows: false,
         unit: "nat",
         meaning: "differential entropy of a joint density, axes in the units of the equations",
     },

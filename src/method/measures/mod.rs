@@ -2,6 +2,10 @@
 
 mod balance;
 mod entropy;
+mod passage;
+
+pub(super) use passage::add_passages;
+pub(crate) use passage::passage_columns;
 
 pub(super) use balance::broken;
 

@@ -29,6 +29,13 @@ impl Axis {
         Some(cell)
     }
 
+    /// The cell coordinate of `x`: 0 at the lower end, the number of cells at the upper one, one more a cell.
+    pub(crate) fn coordinate(&self, x: f64) -> f64 {
+        let piece = self.pieces.iter().find(|piece| x < piece.to);
+        let piece = piece.or(self.pieces.last());
+        piece.map_or(0.0, |piece| piece.first_cell as f64 + piece.coordinate(x))
+    }
+
     /// Whether two coordinates are one place on this axis: to a millionth of the width of the cell that holds `at`.
     pub(crate) fn is_same_place(&self, at: f64, other: f64) -> bool {
         self.find(at)

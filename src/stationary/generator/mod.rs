@@ -20,10 +20,12 @@
 //! | `question` | a change of the balance, and its answer |
 //! | `response` | how a steady state answers to a change |
 //! | `transposed` | functions of the state: Qᵀ x = b by the same factors |
+//! | `absorbing` | processes that end: occupied times, and what is expected from each cell |
 //! | `solver` | when to iterate, when to factorise |
 //! | `memory` | where the solver stands, to go on from there later |
 //! | `symmetric` | symmetric generators on half of the cells |
 
+mod absorbing;
 mod balance;
 mod dissection;
 mod fronts;
@@ -47,6 +49,8 @@ mod transposed;
 mod triangular;
 mod updates;
 
+pub use absorbing::AbsorbingWork;
+pub(crate) use absorbing::{Absorbing, AbsorbingSolver, Expected};
 pub(crate) use memory::SolverMemory;
 pub use preconditioner::{Estimate, RateMethod, estimate};
 pub use symmetric::{Along, RateSolver};

@@ -15,7 +15,8 @@ use super::{RateError, RateInfo, RateMethod, RateOptions, RateSteadyState};
 use crate::cancellation::{Cancellation, Cancelled};
 use crate::space::CellSpace;
 use factors::renewal;
-use held::{WEAK_HELD_SHARE, largest};
+use held::WEAK_HELD_SHARE;
+pub(super) use held::largest;
 
 /// Solves generators on one cell space, keeping the factorisation from one to the next.
 pub(super) struct DirectSolver {

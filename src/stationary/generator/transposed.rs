@@ -105,7 +105,7 @@ impl DirectSolver {
 }
 
 /// Qᵀ x.
-fn product(matrix: &CsMat<f64>, x: &[f64]) -> Vec<f64> {
+pub(super) fn product(matrix: &CsMat<f64>, x: &[f64]) -> Vec<f64> {
     let columns = matrix.outer_iterator();
     let sum = |indices: &[usize], rates: &[f64]| {
         let pairs = indices.iter().zip(rates);

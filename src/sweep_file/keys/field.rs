@@ -341,6 +341,16 @@ macro_rules! of_bins {
     };
 }
 
+/// A field of a passage.
+macro_rules! of_passage {
+    ($field:ident) => {
+        Field {
+            get: |draft, name| draft.passage(name)?.$field.as_ref().map(InFile::to_plain),
+            set: |draft, name, plain| draft.passage_mut(name).$field = InFile::from_plain(plain),
+        }
+    };
+}
+
 /// A field of the settings of some methods: set for all of them, got from the chosen one.
 macro_rules! of_methods {
     ($field:ident: $($kind:ident $method:ident),+) => {
@@ -359,4 +369,4 @@ macro_rules! of_methods {
     };
 }
 
-pub(super) use {always, formulas, of_axis, of_bins, of_methods, optional};
+pub(super) use {always, formulas, of_axis, of_bins, of_methods, of_passage, optional};

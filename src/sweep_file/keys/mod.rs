@@ -130,12 +130,12 @@ impl Key {
         self.parts().count() == names.len() && self.starts_with(names)
     }
 
-    /// The name of a path that a part `<…>` stands for; empty where there is none.
-    pub(super) fn name_in<'n>(&self, names: &[&'n str]) -> &'n str {
-        let mut pairs = self.parts().zip(names);
-        pairs
-            .find(|(part, _)| is_stand_in(part))
-            .map_or("", |(_, name)| name)
+    /// The name of a path that a part `<…>` stands for, several joined by points; empty where there is none.
+    pub(super) fn name_in(&self, names: &[&str]) -> String {
+        let pairs = self.parts().zip(names);
+        let stand_ins = pairs.filter(|(part, _)| is_stand_in(part));
+        let names: Vec<&str> = stand_ins.map(|(_, name)| *name).collect();
+        names.join(".")
     }
 }
 

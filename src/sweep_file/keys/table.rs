@@ -1,7 +1,8 @@
 //! Every key of a sweep file, declared once: path, kind of value, default, meaning, and where the value lives.
 
 use super::field::{
-    Field, InFile, Named, SWITCH, always, formulas, of_axis, of_bins, of_methods, optional,
+    Field, InFile, Named, SWITCH, always, formulas, of_axis, of_bins, of_methods, of_passage,
+    optional,
 };
 use super::kind::{
     ANY, DPI, Kind, LINE, NOT_NEGATIVE, OPEN_UNIT, POSITIVE, SHARE, STEP, TEXT, UP_TO_ONE,
@@ -181,6 +182,38 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
             set: |draft, name, plain| super::field::set_formulas(&mut draft.averaged, name, plain),
         },
         "A formula whose mean and standard deviation are columns of `points.csv`, for example `power = \"y^2\"`."),
+    key("regions.<region>", Kind::Text, Rule("none"),
+        Field {
+            get: |draft, name| draft.regions.iter().find(|(known, _)| known == name).map(|(_, text)| text.to_plain()),
+            set: |draft, name, plain| super::field::set_formulas(&mut draft.regions, name, plain),
+        },
+        "A region of the state by inequalities, for example `left = \"x < -0.2 and y > 0\"`, joined by `and`, `or`, `not`; names of other regions may stand in it."),
+    key("passage.<passage>.from", Kind::Text, Rule("`start`"), of_passage!(from),
+        "Where a passage starts: in a region (by its name, or an inequality), spread as the steady state is there, or `density`, spread as it is everywhere."),
+    key("passage.<passage>.start.<axis>", Kind::Number(ANY), Rule("`from`"),
+        Field {
+            get: |draft, name| {
+                let (name, axis) = name.split_once('.')?;
+                let start = draft.passage(name)?.start.iter();
+                start.clone().find(|(known, _)| known == axis).map(|(_, value)| value.to_plain())
+            },
+            set: |draft, name, plain| {
+                if let (Some((name, axis)), Some(value)) = (name.split_once('.'), plain.number()) {
+                    let start = &mut draft.passage_mut(name).start;
+                    start.retain(|(known, _)| known != axis);
+                    start.push((axis.to_owned(), value));
+                }
+            },
+        },
+        "A state in which a passage starts: a coordinate for every axis."),
+    key("passage.<passage>.until", Kind::Text, Rule("`to`"), of_passage!(until),
+        "The region at whose border a passage ends: a name, or an inequality such as `abs(x) > 2`. How long that takes is told in `points.csv`, with errors (docs/passage.md)."),
+    key("passage.<passage>.to", Kind::Text, Rule("`until`"), of_passage!(to),
+        "Another word for `until`, which goes with `from`: `exit = { from = \"left\", to = \"right\" }`."),
+    key("passage.<passage>.times", Kind::List(&Kind::Number(POSITIVE)), Rule("none"), of_passage!(times),
+        "Times at which the probability is wanted that a passage still goes on."),
+    key("passage.<passage>.quantiles", Kind::List(&Kind::Number(OPEN_UNIT)), Rule("none"), of_passage!(quantiles),
+        "Shares of passages: the times by which so many have ended are wanted, 0.5 for the median."),
     key("locate.tolerance", Kind::Number(POSITIVE), Rule("`locate.relative_tolerance` of the swept range"), optional!(locate.tolerance),
         "Wanted width of a P-bifurcation's bracket, in units of the swept parameter."),
     key("locate.relative_tolerance", Kind::Number(OPEN_UNIT), OfOptions, always!(locate.relative_tolerance),

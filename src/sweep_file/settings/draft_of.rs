@@ -1,11 +1,12 @@
 //! Settings back into what a file says of them.
 
+use super::passages::DENSITY;
 use super::{AxisSettings, Grade, Settings};
 use crate::density::Observable;
 use crate::sweep_file::draft::{
-    Auto, AxisDraft, BinsDraft, CurveDraft, Draft, EquationsDraft, MapDraft,
+    Auto, AxisDraft, BinsDraft, CurveDraft, Draft, EquationsDraft, MapDraft, PassageDraft,
 };
-use crate::system::{Model, NoiseKind};
+use crate::system::{Model, NoiseKind, PassageStart, Region};
 
 impl Settings {
     /// What a complete file says.
@@ -46,6 +47,8 @@ impl Settings {
             measures: self.measures.clone(),
             bins: self.bins_draft(),
             averaged: self.averaged(),
+            regions: self.regions_draft(),
+            passages: self.passages_draft(),
             detect: self.detect.clone(),
             locate: self.locate.clone(),
             figures_at: Some(self.figures.at.clone()),
@@ -100,6 +103,45 @@ impl Settings {
         texts
             .map(|(name, text)| (name.to_owned(), text.to_owned()))
             .collect()
+    }
+
+    fn regions_draft(&self) -> Vec<(String, String)> {
+        let regions = self.family.regions().iter();
+        regions
+            .map(|one| (one.name().to_owned(), one.text().to_owned()))
+            .collect()
+    }
+
+    fn passages_draft(&self) -> Vec<PassageDraft> {
+        let named = |region: &Region| {
+            let mut known = self.family.regions().iter();
+            match known.any(|one| one.name() == region.name()) {
+                true => region.name().to_owned(),
+                false => region.text().to_owned(),
+            }
+        };
+        let axes = &self.family.model().axes;
+        let passages = self.family.passages().iter();
+        let draft = passages.map(|one| PassageDraft {
+            name: one.name.clone(),
+            from: match &one.start {
+                PassageStart::State(_) => None,
+                PassageStart::Region(region) => Some(named(region)),
+                PassageStart::Density => Some(DENSITY.to_owned()),
+            },
+            to: None,
+            until: Some(named(&one.until)),
+            start: match &one.start {
+                PassageStart::State(state) => {
+                    let pairs = axes.iter().zip(state);
+                    pairs.map(|(axis, &x)| (axis.name.clone(), x)).collect()
+                }
+                _ => Vec::new(),
+            },
+            times: (!one.times.is_empty()).then(|| one.times.clone()),
+            quantiles: (!one.quantiles.is_empty()).then(|| one.quantiles.clone()),
+        });
+        draft.collect()
     }
 
     /// How a file says an axis or a quantity: with the formula, where its name alone does not say it.

@@ -13,6 +13,7 @@ mod figures;
 mod map;
 mod method;
 mod modes_of;
+mod passages;
 mod quantities;
 mod system;
 #[cfg(test)]
@@ -122,6 +123,8 @@ impl Settings {
         };
         let family = swept.family.with_quantities(watched.quantities);
         swept.family = family.with_averaged(watched.averaged);
+        let (regions, questions) = passages::read(&mut reader, &draft, swept.family.model());
+        swept.family = swept.family.with_passages(regions, questions);
         let bins = quantities::read_bins(&mut reader, &draft, &swept.family);
         if !reader.is_clean() {
             return Err(reader.into_report());

@@ -43,7 +43,7 @@ impl DirectSolver {
 }
 
 /// The cell with the largest mass, and that mass.
-pub(super) fn largest(mass: &[f64]) -> (usize, f64) {
+pub(in crate::stationary::generator) fn largest(mass: &[f64]) -> (usize, f64) {
     let cells = mass.iter().copied().enumerate();
     cells.fold((0, f64::NEG_INFINITY), |best, cell| {
         if cell.1 > best.1 { cell } else { best }

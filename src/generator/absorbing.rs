@@ -1,0 +1,284 @@
+//! The generator of a process that ends where it enters a region: Q on the cells outside of it.
+//!
+//! The region is the set where a level function is negative, its border any line through the cells. Rows are not just
+//! dropped: stencils would read zeros where the density is not zero, and central fluxes would be wrong by factors.
+//! A stencil that reaches past the border reads there the polynomial through the last cells outside of the region and
+//! through zero at the place where the grid line crosses the border. So means of first passage are of fourth order for
+//! a border of any shape.
+//!
+//! Along an axis without noise the density is not zero at a border that stands across the axis: where the drift leaves
+//! through it the polynomial is through cells alone, and where the drift comes in nothing does. On a border that is
+//! oblique or curved the density of a system with noise on another axis is zero but for single points.
+
+mod border;
+
+use sprs::{CsMat, TriMat};
+
+use super::assemble::{axis_blocks, axis_fluxes, check, strides};
+use super::geometry::{AxisGeometry, End};
+use super::scheme::{AdvectiveScheme, REACH, Window};
+use super::{GeneratorError, GeneratorOptions};
+use crate::MAX_DIMENSION;
+use crate::space::CellSpace;
+use crate::system::{BoundQuantity, LANES, Lanes, System};
+use border::{Beyond, Border, GridLine};
+
+/// The generator on the cells outside of a region.
+#[derive(Debug, Clone)]
+pub struct AbsorbingGenerator {
+    /// Q, `n × n` over all cells of the space, per unit time, by columns. Cells inside the region are coupled to none.
+    pub matrix: CsMat<f64>,
+    /// Which cells are outside of the region: their nodes are.
+    pub kept: Vec<bool>,
+    /// Rate at which the process ends from a cell: it enters the region, or leaves the range of the cells.
+    pub ends: Vec<f64>,
+    /// Weights with which the unknowns sum to the mass outside of the region: zero inside, one away from the border,
+    /// where the density does not end between two nodes. In two ways, which differ where the border is oblique.
+    pub weights: [Vec<f64>; 2],
+}
+
+/// How much of the advective scheme's dissipation is kept. What two shares differ by is an error of the cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dissipation {
+    /// All of it.
+    Full,
+    /// Half of it.
+    Half,
+}
+
+/// Assembles the generator of a process that ends where `level` becomes negative.
+///
+/// # Errors
+/// As [`super::assemble`], and [`GeneratorError::NotFinite`] for a level that has no value at a node.
+pub fn assemble_absorbing(
+    system: &dyn System,
+    space: &CellSpace,
+    level: &BoundQuantity,
+    options: &GeneratorOptions,
+    dissipation: Dissipation,
+) -> Result<AbsorbingGenerator, GeneratorError> {
+    check(system, space)?;
+    let geometry = |axis| geometry(system, axis, space, options.scheme, dissipation);
+    let axes: Vec<AxisGeometry> = (0..space.dimension()).map(geometry).collect();
+    let strides = strides(&axes);
+    let border = Border {
+        system,
+        space,
+        level,
+        axes: &axes,
+        strides: &strides,
+        levels: levels(space, level)?,
+    };
+    let weight = |cell: usize| f64::from(u8::from(border.keeps(cell)));
+    let mut assembly = Assembly {
+        weights: [0; 2].map(|_| (0..space.n_cells()).map(weight).collect()),
+        ends: vec![0.0; space.n_cells()],
+        entries: Vec::new(),
+        border,
+    };
+    for axis in 0..axes.len() {
+        match &axes[axis].modes {
+            None => {
+                let fluxes = axis_fluxes(system, &axes, &strides, axis)?;
+                assembly.cells_along(axis, &fluxes);
+            }
+            Some(modes) => {
+                modes.check(system, axis, axes[axis].ends == [End::Wall; 2])?;
+                let blocks = axis_blocks(system, &axes, &strides, axis, modes)?;
+                assembly.modes_along(axis, &blocks);
+            }
+        }
+    }
+    assembly.matrix()
+}
+
+fn geometry(
+    system: &dyn System,
+    axis: usize,
+    space: &CellSpace,
+    scheme: AdvectiveScheme,
+    dissipation: Dissipation,
+) -> AxisGeometry {
+    let mut geometry = AxisGeometry::new(system, axis, space, scheme);
+    if dissipation == Dissipation::Half {
+        let weights = geometry.stencils.iter_mut().map(|one| &mut one.dissipation);
+        weights.flatten().for_each(|weight| *weight *= 0.5);
+    }
+    geometry
+}
+
+/// The level function at the nodes of all cells.
+pub(crate) fn levels(space: &CellSpace, level: &BoundQuantity) -> Result<Vec<f64>, GeneratorError> {
+    let cells = space.n_cells();
+    let dimension = space.dimension();
+    let mut all = Vec::with_capacity(cells);
+    let mut states = [[0.0; LANES]; MAX_DIMENSION];
+    for first in (0..cells).step_by(LANES) {
+        for lane in 0..LANES {
+            let cell = (first + lane).min(cells - 1);
+            for (axis, lanes) in states[..dimension].iter_mut().enumerate() {
+                lanes[lane] = space.axes()[axis].nodes()[space.position(cell, axis)];
+            }
+        }
+        let values: Lanes = level.values(&states[..dimension]);
+        all.extend_from_slice(&values[..LANES.min(cells - first)]);
+    }
+    match all.iter().position(|value| value.is_nan()) {
+        None => Ok(all),
+        Some(cell) => Err(GeneratorError::NotFinite {
+            axis: 0,
+            state: space.centre(cell),
+        }),
+    }
+}
+
+/// The matrix in the making.
+struct Assembly<'a> {
+    border: Border<'a>,
+    entries: Vec<(usize, usize, f64)>,
+    ends: Vec<f64>,
+    weights: [Vec<f64>; 2],
+}
+
+impl Assembly<'_> {
+    /// Adds what moves along an axis of cells.
+    fn cells_along(&mut self, axis: usize, fluxes: &[Window]) {
+        let (count, stride) = self.shape(axis);
+        for (number, fluxes) in fluxes.chunks(count + 1).enumerate() {
+            let line = GridLine {
+                axis,
+                number,
+                first: number / stride * stride * count + number % stride,
+                stride,
+            };
+            let mut from = 0;
+            while from < count {
+                if !self.border.keeps(line.at(from)) {
+                    from += 1;
+                    continue;
+                }
+                let inside = (from..count).find(|&at| !self.border.keeps(line.at(at)));
+                let to = inside.unwrap_or(count);
+                self.stretch(&line, (from, to), count, fluxes);
+                from = to;
+            }
+        }
+    }
+
+    /// Cells along an axis, and their distance in cell numbers.
+    fn shape(&self, axis: usize) -> (usize, usize) {
+        (self.border.axes[axis].count(), self.border.strides[axis])
+    }
+
+    /// Adds the fluxes of a stretch of cells, `from..to` along a line of `count`.
+    fn stretch(
+        &mut self,
+        line: &GridLine,
+        (from, to): (usize, usize),
+        count: usize,
+        fluxes: &[Window],
+    ) {
+        let lower = (from > 0).then(|| self.border.beyond(line, (from, to), false));
+        let upper = (to < count).then(|| self.border.beyond(line, (from, to), true));
+        for (position, changes) in lower.iter().chain(&upper).flat_map(|end| &end.weights) {
+            for (weights, change) in self.weights.iter_mut().zip(changes) {
+                weights[line.at(*position)] += change;
+            }
+        }
+        for (face, window) in fluxes.iter().enumerate().take(to + 1).skip(from) {
+            for (k, &weight) in window.iter().enumerate() {
+                if weight == 0.0 {
+                    continue;
+                }
+                // A stencil has weights on cells of the line alone.
+                let position = face + k - REACH;
+                let one = [(position, 1.0)];
+                let far = |end: &'_ Option<Beyond>, cells: usize| -> Vec<(usize, f64)> {
+                    end.as_ref()
+                        .map_or_else(Vec::new, |end| end.read[cells].clone())
+                };
+                let beyond;
+                let read: &[(usize, f64)] = if position < from {
+                    beyond = far(&lower, from - position - 1);
+                    &beyond
+                } else if position >= to {
+                    beyond = far(&upper, position - to);
+                    &beyond
+                } else {
+                    &one
+                };
+                for &(source, share) in read {
+                    self.add(line, line.at(source), face, (from, to), weight * share);
+                }
+            }
+        }
+    }
+
+    /// Adds a flux out of a cell through a face.
+    fn add(
+        &mut self,
+        line: &GridLine,
+        source: usize,
+        face: usize,
+        (from, to): (usize, usize),
+        flux: f64,
+    ) {
+        if face > from {
+            self.entries.push((line.at(face - 1), source, -flux));
+        } else {
+            self.ends[source] -= flux;
+        }
+        if face < to {
+            self.entries.push((line.at(face), source, flux));
+        } else {
+            self.ends[source] += flux;
+        }
+    }
+
+    /// Adds the rates between modes where their places are kept.
+    fn modes_along(&mut self, axis: usize, blocks: &[f64]) {
+        let (count, stride) = self.shape(axis);
+        for (line, rates) in blocks.chunks(count * count).enumerate() {
+            let first = line / stride * stride * count + line % stride;
+            if !self.border.keeps(first) {
+                continue;
+            }
+            for (from, rates) in rates.chunks(count).enumerate() {
+                let source = first + from * stride;
+                let others = rates.iter().enumerate().filter(|(to, _)| *to != from);
+                for (to, &rate) in others {
+                    self.entries.push((first + to * stride, source, rate));
+                    self.entries.push((source, source, -rate));
+                }
+            }
+        }
+    }
+
+    /// The matrix, with the cells inside the region on their own.
+    fn matrix(self) -> Result<AbsorbingGenerator, GeneratorError> {
+        let cells = self.ends.len();
+        let kept: Vec<bool> = (0..cells).map(|cell| self.border.keeps(cell)).collect();
+        let mut diagonal = 0.0f64;
+        let mut triplets = TriMat::with_capacity((cells, cells), self.entries.len() + cells);
+        for &(row, column, rate) in &self.entries {
+            triplets.add_triplet(row, column, rate);
+            if row == column {
+                diagonal = diagonal.max(rate.abs());
+            }
+        }
+        if !self.entries.iter().all(|(_, _, rate)| rate.is_finite()) {
+            return Err(GeneratorError::Overflow { axis: 0 });
+        }
+        let diagonal = if diagonal > 0.0 { diagonal } else { 1.0 };
+        for (cell, &kept) in kept.iter().enumerate() {
+            let rate = if kept { 0.0 } else { -diagonal };
+            triplets.add_triplet(cell, cell, rate);
+        }
+        Ok(AbsorbingGenerator {
+            matrix: triplets.to_csc(),
+            kept,
+            ends: self.ends,
+            weights: self.weights,
+        })
+    }
+}

@@ -1,0 +1,233 @@
+//! The cells on which a passage is solved: those of the sweep's range that are outside of the target, as many an axis
+//! as the sweep has.
+//!
+//! Where a border stands across an axis without noise, as a barrier of an oscillator's displacement does, half of it
+//! lets out and half of it is never reached from inside. The density there goes as the cube root of the distance
+//! (T as the square root of the velocity), and cells of even width converge slowly, whatever the scheme. The axis ends
+//! at such a border, and its cells are graded as the cube of the distance from it.
+
+use super::PassageError;
+use crate::generator::levels;
+use crate::space::{Axis, CellSpace, Grading};
+use crate::system::{BoundQuantity, System};
+
+/// Cells inside the target, or beyond what is kept, that stencils may read.
+const MARGIN: usize = 4;
+
+/// Narrowest cells beside the place at which a barrier of an oscillator begins to let out, over those of even width.
+const BESIDE_BARRIER: f64 = 0.15;
+
+/// Fewest cells of an axis that is cut.
+const FEWEST: usize = 16;
+
+/// The cells of a passage.
+pub(super) struct PassageCells {
+    /// The cells.
+    pub(super) space: CellSpace,
+    /// Per axis, whether its lower and its upper end are borders of the target.
+    pub(super) borders: Vec<[bool; 2]>,
+}
+
+/// Finds the cells of a passage that ends where `level` is negative, `factor` times as many an axis as the space has.
+///
+/// # Errors
+/// [`PassageError::Nowhere`] and [`PassageError::Everywhere`], errors of the level, and of the cells.
+pub(super) fn cells(
+    system: &dyn System,
+    space: &CellSpace,
+    level: &BoundQuantity,
+    factor: f64,
+) -> Result<PassageCells, PassageError> {
+    let levels = levels(space, level)?;
+    let kept: Vec<usize> = (0..space.n_cells())
+        .filter(|&cell| levels[cell] >= 0.0)
+        .collect();
+    if kept.is_empty() {
+        return Err(PassageError::Everywhere);
+    }
+    if kept.len() == space.n_cells() {
+        return Err(PassageError::Nowhere);
+    }
+    let mut axes: Vec<Axis> = Vec::new();
+    let mut borders = Vec::new();
+    for (index, axis) in space.axes().iter().enumerate() {
+        let positions = kept.iter().map(|&cell| space.position(cell, index));
+        let (low, high) = positions.fold((axis.count(), 0), |(low, high), at| {
+            (low.min(at), high.max(at))
+        });
+        if axis.is_modes() {
+            axes.push(axis.clone());
+            borders.push([false; 2]);
+            continue;
+        }
+        let count = ((axis.count() as f64 * factor) as usize).max(FEWEST) / 2 * 2;
+        let flat = |last, is_upper| flat(space, level, &kept, index, last, is_upper);
+        let ends = [
+            (low > 0).then(|| flat(low, false)).flatten(),
+            (high + 1 < axis.count())
+                .then(|| flat(high, true))
+                .flatten(),
+        ];
+        let trimmed = [
+            axis.edges()[low.saturating_sub(MARGIN)],
+            axis.edges()[(high + 1 + MARGIN).min(axis.count())],
+        ];
+        let range = [0, 1].map(|end| ends[end].unwrap_or(trimmed[end]));
+        let marked = ends.map(|end| end.is_some());
+        let is_noisy = system.is_noisy(index);
+        borders.push(if is_noisy { [false; 2] } else { marked });
+        axes.push(match (is_noisy, axis.is_uniform()) {
+            (false, _) if marked != [false; 2] => {
+                Axis::toward_ends(range[0], range[1], count, marked)?
+            }
+            (_, true) => with_faces(range, count, marked)?,
+            (_, false) if factor == 1.0 => axis.clone(),
+            (_, false) => axis.refined(factor),
+        });
+    }
+    grade_beside_barriers(system, &mut axes, &borders)?;
+    Ok(PassageCells {
+        space: CellSpace::new(axes)?,
+        borders,
+    })
+}
+
+/// Even cells with a face on each border, and some beyond it: so that what cells do changes evenly with their number.
+fn with_faces([from, to]: [f64; 2], count: usize, marked: [bool; 2]) -> Result<Axis, PassageError> {
+    let beyond = marked.map(|marked| if marked { MARGIN } else { 0 });
+    let width = (to - from) / (count - beyond[0] - beyond[1]) as f64;
+    let [below, above] = beyond.map(|cells| cells as f64 * width);
+    Ok(Axis::uniform(from - below, to + above, count)?)
+}
+
+/// Narrows even cells along a noisy axis toward the place at which the drift through a barrier changes its sign: for
+/// an oscillator, a velocity of zero. From there on outward the process ends, inward it does not.
+fn grade_beside_barriers(
+    system: &dyn System,
+    axes: &mut [Axis],
+    borders: &[[bool; 2]],
+) -> Result<(), PassageError> {
+    let middle: Vec<f64> = axes
+        .iter()
+        .map(|axis| 0.5 * (axis.from() + axis.to()))
+        .collect();
+    for barrier in 0..axes.len() {
+        let ends = [axes[barrier].from(), axes[barrier].to()];
+        let marked = ends
+            .into_iter()
+            .zip(borders[barrier])
+            .filter(|(_, marked)| *marked);
+        for at in marked.map(|(at, _)| at).collect::<Vec<f64>>() {
+            for (index, axis) in axes.iter_mut().enumerate() {
+                if index == barrier || !system.is_noisy(index) || !axis.is_uniform() {
+                    continue;
+                }
+                let mut state = middle.clone();
+                state[barrier] = at;
+                let mut drift = |x: f64| {
+                    state[index] = x;
+                    system.drift_at(0.0, &state)[barrier]
+                };
+                if let Some(at) = only_zero(&mut drift, axis.nodes()) {
+                    let width = (axis.to() - axis.from()) / axis.count() as f64;
+                    let grading = Grading {
+                        at: vec![at],
+                        smallest: BESIDE_BARRIER * width,
+                    };
+                    *axis = Axis::graded(axis.from(), axis.to(), axis.count(), &grading)?;
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Where a function changes its sign, if it does so once between the first and the last of some places.
+fn only_zero(function: &mut impl FnMut(f64) -> f64, places: &[f64]) -> Option<f64> {
+    let mut brackets = places
+        .windows(2)
+        .filter(|pair| (function(pair[0]) < 0.0) != (function(pair[1]) < 0.0));
+    let (pair, more) = (brackets.next()?, brackets.next());
+    if more.is_some() {
+        return None;
+    }
+    let (mut low, mut high) = (pair[0], pair[1]);
+    let below = function(low) < 0.0;
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if (function(middle) < 0.0) == below {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    // A place that is zero but for rounding is zero.
+    let at = 0.5 * (low + high);
+    Some(if at.abs() <= 1e-12 * (pair[1] - pair[0]) {
+        0.0
+    } else {
+        at
+    })
+}
+
+/// The coordinate of a border that stands across an axis beyond a cell, and bounds all that is kept.
+fn flat(
+    space: &CellSpace,
+    level: &BoundQuantity,
+    kept: &[usize],
+    index: usize,
+    last: usize,
+    is_upper: bool,
+) -> Option<f64> {
+    let axis = &space.axes()[index];
+    let nodes = axis.nodes();
+    let (inner, outer) = (
+        nodes[last],
+        if is_upper {
+            nodes[last + 1]
+        } else {
+            nodes[last - 1]
+        },
+    );
+    let at_end = kept
+        .iter()
+        .filter(|&&cell| space.position(cell, index) == last);
+    let crossing = |cell: usize| {
+        let mut state: Vec<f64> = space
+            .axes()
+            .iter()
+            .enumerate()
+            .map(|(other, axis)| axis.nodes()[space.position(cell, other)])
+            .collect();
+        let (mut a, mut b) = (inner, outer);
+        for _ in 0..200 {
+            let middle = 0.5 * (a + b);
+            if middle == a || middle == b {
+                break;
+            }
+            state[index] = middle;
+            if level.at(&state) >= 0.0 {
+                a = middle
+            } else {
+                b = middle
+            }
+        }
+        a
+    };
+    let first = crossing(
+        *kept
+            .iter()
+            .find(|&&cell| space.position(cell, index) == last)?,
+    );
+    let same = |x: f64| (x - first).abs() <= 1e-9 * (outer - inner).abs();
+    // All lines cross there: as many cells are kept beside the border as there are lines.
+    let lines = space.n_cells() / axis.count();
+    let at_end: Vec<usize> = at_end.copied().collect();
+    let every = (at_end.len() / 8).max(1);
+    (at_end.len() == lines
+        && at_end
+            .iter()
+            .step_by(every)
+            .all(|&cell| same(crossing(cell))))
+    .then_some(first)
+}

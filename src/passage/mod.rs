@@ -1,0 +1,107 @@
+//! How long it lasts: first passage from where a process starts into a region, with the error of each number.
+//!
+//! A passage is solved with the generator on the cells outside of its target (`generator::absorbing`). The times z that
+//! a process which starts spread as p₀ occupies the cells, Q z = -p₀, sum to the mean time, and from there on every
+//! moment is one more back substitution: E T² = 2 Σ w with Q w = -z. The rate is that of the quasi-stationary density,
+//! Q u = -r u: what a process has per unit of time that has lasted long.
+//!
+//! Every number is solved by the scheme, by the same scheme with half its dissipation, and both again on three quarters
+//! of the cells. What is given is extrapolated to no dissipation, and its error is what the cells change.
+//!
+//! | part | file |
+//! | --- | --- |
+//! | cells, graded toward a barrier of an oscillator | `cells.rs` |
+//! | weights of a start | `start.rs` |
+//! | numbers on one grid | `solve.rs` |
+//! | the rate, from the vectors of moments | `rate.rs` |
+//! | probabilities at times, and quantiles | `survival.rs` |
+//! | numbers with errors | `timed.rs` |
+
+mod cells;
+mod rate;
+mod solve;
+mod start;
+mod survival;
+mod timed;
+
+use start::KnownDensity;
+pub use timed::{Timed, WithError, timed};
+
+use crate::generator::GeneratorError;
+use crate::space::SpaceError;
+use crate::stationary::generator::RateError;
+use crate::system::{BoundQuantity, ParameterValues, PassageQuestion, PassageStart, SystemError};
+
+/// A question with values of all parameters: from where, until where.
+#[derive(Debug, Clone)]
+pub struct Passage {
+    /// Negative in the region at whose border the process ends, as a region's level is.
+    pub until: BoundQuantity,
+    /// Where it starts.
+    pub start: Start,
+    /// Times at which the probability is wanted that it still goes on.
+    pub times: Vec<f64>,
+    /// Shares of the processes, between 0 and 1: the times by which so many have ended are wanted.
+    pub quantiles: Vec<f64>,
+}
+
+impl Passage {
+    /// A question with values of all parameters.
+    ///
+    /// # Errors
+    /// [`SystemError`] for values of another model.
+    pub fn bind(question: &PassageQuestion, values: &ParameterValues) -> Result<Self, SystemError> {
+        Ok(Self {
+            until: question.until.level().bind(values)?,
+            start: match &question.start {
+                PassageStart::State(state) => Start::State(state.clone()),
+                PassageStart::Region(region) => Start::Density(Some(region.level().bind(values)?)),
+                PassageStart::Density => Start::Density(None),
+            },
+            times: question.times.clone(),
+            quantiles: question.quantiles.clone(),
+        })
+    }
+}
+
+/// Where a process starts.
+#[derive(Debug, Clone)]
+pub enum Start {
+    /// At a state: one number an axis.
+    State(Vec<f64>),
+    /// As the steady state has it, in the region where this is negative; all over without one.
+    Density(Option<BoundQuantity>),
+}
+
+/// Why a passage has no numbers.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PassageError {
+    /// No cell is inside the target.
+    #[error(
+        "no cell is inside the region that is waited for: it lies outside of the cells, or is thinner than one"
+    )]
+    Nowhere,
+    /// All cells are inside the target.
+    #[error("all cells are inside the region that is waited for")]
+    Everywhere,
+    /// The start is inside the target or outside of the cells, or has no mass.
+    #[error(
+        "the start is inside the region that is waited for, outside of the cells, or never visited"
+    )]
+    Start,
+    /// The process never enters the target.
+    #[error("the region that is waited for is never entered from the start")]
+    Never,
+    /// The steady state is not known, and the start is weighted by it.
+    #[error("the start is weighted by a steady state, and there is none")]
+    NoDensity,
+    /// The generator could not be assembled.
+    #[error(transparent)]
+    Generator(#[from] GeneratorError),
+    /// The cells could not be laid out.
+    #[error(transparent)]
+    Space(#[from] SpaceError),
+    /// The generator could not be solved.
+    #[error(transparent)]
+    Rate(#[from] RateError),
+}

@@ -1,0 +1,239 @@
+//! The numbers of a passage on one grid, by the scheme and with half of its dissipation.
+
+use std::sync::Arc;
+
+use super::cells::{PassageCells, cells};
+use super::rate::largest_eigenvalue;
+use super::start::{FEWER_NODES, KnownDensity, NODES, add_density, add_state};
+use super::survival::{Survival, models};
+use super::{Passage, PassageError, Start};
+use crate::cancellation::Cancellation;
+use crate::generator::{AbsorbingGenerator, Dissipation, GeneratorOptions, assemble_absorbing};
+use crate::space::CellSpace;
+use crate::stationary::generator::{
+    Absorbing, AbsorbingSolver, AbsorbingWork, Expected, RateOptions,
+};
+use crate::system::{Enclosed, System};
+
+/// Relative change of the rate by one more vector at which it stands.
+const RATE_TOLERANCE: f64 = 1e-6;
+
+/// Most vectors that are made for a rate.
+const VECTORS: usize = 24;
+
+/// Numbers of a passage: mean, standard deviation, the rate of the quasi-stationary density; then the probabilities at
+/// times and the quantiles that are asked for.
+pub(super) struct Numbers {
+    pub(super) values: Vec<f64>,
+    /// Errors beside those of the cells: of the start, and of the models behind the last numbers.
+    pub(super) errors: Vec<f64>,
+}
+
+/// What a passage is solved with.
+pub(super) struct Question<'a> {
+    pub(super) system: &'a Arc<dyn System>,
+    /// The cells of the sweep.
+    pub(super) space: &'a CellSpace,
+    pub(super) passage: &'a Passage,
+    pub(super) density: Option<KnownDensity<'a>>,
+    pub(super) options: &'a GeneratorOptions,
+    pub(super) rates: &'a RateOptions,
+    pub(super) cancellation: &'a Cancellation,
+}
+
+impl Question<'_> {
+    /// The numbers with all and with half of the dissipation on `factor` times the sweep's cells an axis.
+    pub(super) fn solve(&self, factor: f64) -> Result<([Numbers; 2], AbsorbingWork), PassageError> {
+        let until = &self.passage.until;
+        let found = cells(self.system.as_ref(), self.space, until, factor)?;
+        let enclosed = enclosed(self.system, &found);
+        let space = found.space;
+        let assemble =
+            |dissipation| assemble_absorbing(&enclosed, &space, until, self.options, dissipation);
+        let (full, half) = rayon::join(
+            || assemble(Dissipation::Full),
+            || assemble(Dissipation::Half),
+        );
+        let (full, half) = (full?, half?);
+        let start = [NODES, FEWER_NODES].map(|nodes| self.weights(&space, &full.kept, nodes));
+        let [start, coarse] = start;
+        let (start, coarse) = (start?, coarse?);
+        let mut solver = AbsorbingSolver::new(&space, *self.rates, self.cancellation);
+        let mut both = moments(&mut solver, [&full, &half], [&start, &coarse])?;
+        let mut work = solver.work;
+        drop(solver);
+        if let Some(times) = self.passage.times_asked(both[0].values[0]) {
+            let settings = (self.rates, self.cancellation);
+            let (models, more) = models(&space, [&full, &half], &start, times, settings)?;
+            work.factorisations += more.factorisations;
+            work.passes += more.passes;
+            for (numbers, model) in both.iter_mut().zip(&models) {
+                self.passage.add(numbers, model);
+            }
+        }
+        Ok((both, work))
+    }
+
+    /// The weights of the cells at the start, Σ = 1; a state between so many nodes an axis.
+    fn weights(
+        &self,
+        space: &CellSpace,
+        kept: &[bool],
+        nodes: usize,
+    ) -> Result<Vec<f64>, PassageError> {
+        let mut weights = vec![0.0; space.n_cells()];
+        let mass = match &self.passage.start {
+            Start::State(state) => {
+                let found = self.passage.until.at(state) >= 0.0
+                    && space.find(state).is_some()
+                    && add_state(space, kept, (state, 1.0), nodes, &mut weights);
+                if found { 1.0 } else { 0.0 }
+            }
+            Start::Density(region) => {
+                let density = self.density.ok_or(PassageError::NoDensity)?;
+                add_density(space, kept, density, region.as_ref(), &mut weights)
+            }
+        };
+        if !(mass > f64::MIN_POSITIVE && mass.is_finite()) {
+            return Err(PassageError::Start);
+        }
+        let total = sum(&weights);
+        weights.iter_mut().for_each(|weight| *weight /= total);
+        Ok(weights)
+    }
+}
+
+/// Mean, standard deviation and rate by a generator, and by another one to first order of what they differ by. The
+/// start is given by many nodes and by fewer.
+fn moments(
+    solver: &mut AbsorbingSolver<'_>,
+    [one, other]: [&AbsorbingGenerator; 2],
+    [start, coarse]: [&[f64]; 2],
+) -> Result<[Numbers; 2], PassageError> {
+    if one.ends.iter().all(|&rate| rate == 0.0) {
+        return Err(PassageError::Never);
+    }
+    let (stage, first) = solver.stage(&one.matrix, &one.ends, start)?;
+    let second = solver.times(&stage, &first)?;
+    let [weights, others] = &one.weights;
+    let (mean, square) = (dot(weights, &first), 2.0 * dot(weights, &second));
+    let mut powers = vec![first, second];
+    let rate = rate(solver, &stage, &mut powers)?;
+    let expected = solver.expected(&stage, weights)?;
+    let again = solver.expected(&stage, &expected.values())?;
+    let to = (&other.matrix, other.ends.as_slice());
+    let change = |expected: &Expected, times: &[f64]| stage.change(to, expected, times);
+    let mean_change = change(&expected, &powers[0]);
+    let square_change = 2.0 * (change(&expected, &powers[1]) + change(&again, &powers[0]));
+    let left = solver.expected(&stage, &again.scaled(1.0 / mean.powi(2)).values())?;
+    let lasting = &powers[powers.len() - 1];
+    let rate_change = -change(&left, lasting) / dot(&left.values(), lasting);
+    // What fewer nodes change of the start, and another way to end sums at an oblique border.
+    let of_start = expected.difference(start, coarse).abs();
+    let of_border = (dot(others, &powers[0]) - mean).abs();
+    let error = of_start + of_border;
+    let numbers = |mean: f64, square: f64, rate: f64| {
+        let deviation = (square - mean * mean).max(0.0).sqrt();
+        let values = vec![mean, deviation, rate];
+        let is_finite = values.iter().all(|value| value.is_finite());
+        is_finite.then_some(Numbers {
+            values,
+            errors: vec![error, error, 0.0],
+        })
+    };
+    let full = numbers(mean, square, rate);
+    let half = numbers(
+        mean + mean_change,
+        square + square_change,
+        rate + rate_change,
+    );
+    match (full, half) {
+        (Some(full), Some(half)) => Ok([full, half]),
+        _ => Err(PassageError::Never),
+    }
+}
+
+/// The rate at which processes end that have lasted long; makes as many more vectors as it takes.
+fn rate(
+    solver: &mut AbsorbingSolver<'_>,
+    stage: &Absorbing<'_>,
+    powers: &mut Vec<Vec<f64>>,
+) -> Result<f64, PassageError> {
+    let mut rate = 0.0;
+    while powers.len() < VECTORS {
+        let last = &powers[powers.len() - 1];
+        let size = sum(last);
+        let last: Vec<f64> = last.iter().map(|value| value / size).collect();
+        let next = solver.times(stage, &last)?;
+        // Lengths do not matter to what the vectors span, but large ones would overflow.
+        powers.push(next.iter().map(|value| value * size).collect());
+        let Some(time) = largest_eigenvalue(powers) else {
+            continue;
+        };
+        let change = 1.0 / time - std::mem::replace(&mut rate, 1.0 / time);
+        if change.abs() <= RATE_TOLERANCE * rate {
+            break;
+        }
+    }
+    Ok(rate)
+}
+
+impl Passage {
+    /// From the shortest to the longest time that numbers beyond the moments are of.
+    fn times_asked(&self, mean: f64) -> Option<(f64, f64)> {
+        let least = self.quantiles.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = self
+            .quantiles
+            .iter()
+            .copied()
+            .fold(f64::NEG_INFINITY, f64::max);
+        // As if times were exponential; early ones are longer than that, because there is a way to go.
+        let of_quantiles = [least, most].map(|share| -mean * (-share).ln_1p());
+        let all = self.times.iter().copied().chain(of_quantiles);
+        let asked = all.filter(|time| time.is_finite() && *time > 0.0);
+        asked.fold(None, |range, time| match range {
+            None => Some((time, time)),
+            Some((first, last)) => Some((time.min(first), time.max(last))),
+        })
+    }
+
+    /// Adds the probabilities and the quantiles that are asked for.
+    fn add(&self, numbers: &mut Numbers, model: &Survival) {
+        let mean = numbers.values[0];
+        let probabilities = self.times.iter().map(|&time| model.at(time));
+        let quantiles = self
+            .quantiles
+            .iter()
+            .map(|&share| model.time(1.0 - share, mean));
+        for (value, error) in probabilities.chain(quantiles) {
+            numbers.values.push(value);
+            numbers.errors.push(error);
+        }
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+fn sum(values: &[f64]) -> f64 {
+    values.iter().sum()
+}
+
+/// The system between walls at the ends of the cells that are no borders of the target: what would leave the range
+/// there comes back sooner or later, and waits on.
+fn enclosed(system: &Arc<dyn System>, cells: &PassageCells) -> Enclosed {
+    let ends = cells.space.axes().iter().zip(&cells.borders);
+    let ranges: Vec<(f64, f64)> = ends
+        .map(|(axis, &[lower, upper])| {
+            let from = if lower {
+                f64::NEG_INFINITY
+            } else {
+                axis.from()
+            };
+            let to = if upper { f64::INFINITY } else { axis.to() };
+            (from, to)
+        })
+        .collect();
+    Enclosed::new(Arc::clone(system), &ranges)
+}

@@ -1,0 +1,261 @@
+//! The probability that a process still goes on, for all times, from a small model of the generator.
+//!
+//! S(t) = 1ᵀ e^{Qt} p₀. Its Laplace transform 1ᵀ (s - Q)⁻¹ p₀ is matched by a model of a few dozen states at real s
+//! spread over the times that are asked for, and at s = 0 with the first moments: the space of the columns
+//! (s - Q)⁻ʲ p₀ is tested with that of the rows 1ᵀ (s - Q)⁻ʲ, so that at each s twice as many derivatives agree as
+//! either has vectors (rational Krylov spaces from both sides; A. Ruhe 1984, E. J. Grimme 1997).
+
+use nalgebra::{DMatrix, DVector};
+
+use super::PassageError;
+use crate::cancellation::Cancellation;
+use crate::generator::AbsorbingGenerator;
+use crate::space::CellSpace;
+use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, RateOptions};
+
+/// Vectors from either side at each s.
+const VECTORS: usize = 3;
+
+/// Ratio of neighbouring s.
+const RATIO: f64 = 4.0;
+
+/// Most values of s.
+const SHIFTS: usize = 9;
+
+/// Vectors shorter than this beside the others, relative to their length, add nothing.
+const NOTHING: f64 = 1e-9;
+
+/// Largest growth rate of a model, over its fastest decay, that is rounding.
+const GROWTH: f64 = 1e-9;
+
+/// Real numbers at which the transform is matched, for times from one to another.
+fn shifts((first, last): (f64, f64)) -> Vec<f64> {
+    let (low, high) = (0.5 / last, 10.0 / first);
+    let steps = ((high / low).ln() / RATIO.ln())
+        .ceil()
+        .clamp(1.0, SHIFTS as f64 - 1.0);
+    let all = 0..=steps as usize;
+    all.map(|step| low * (high / low).powf(step as f64 / steps))
+        .collect()
+}
+
+/// Small models of two generators on the same cells, for times from one to another.
+pub(super) fn models(
+    space: &CellSpace,
+    generators: [&AbsorbingGenerator; 2],
+    start: &[f64],
+    times: (f64, f64),
+    (rates, cancellation): (&RateOptions, &Cancellation),
+) -> Result<([Survival; 2], AbsorbingWork), PassageError> {
+    let [first, _] = generators;
+    let (mut columns, mut rows) = (Vec::new(), Vec::new());
+    let mut work = AbsorbingWork::default();
+    for shift in [0.0].into_iter().chain(shifts(times)) {
+        let ends: Vec<f64> = first.ends.iter().map(|rate| rate + shift).collect();
+        let mut matrix = first.matrix.clone();
+        for cell in 0..ends.len() {
+            if let Some(rate) = matrix.get_mut(cell, cell) {
+                *rate -= shift;
+            }
+        }
+        let mut solver = AbsorbingSolver::new(space, *rates, cancellation);
+        let (stage, mut column) = solver.stage(&matrix, &ends, start)?;
+        let mut row = solver.expected(&stage, &first.weights[0])?.values();
+        for vector in 0..VECTORS {
+            normalise(&mut column);
+            normalise(&mut row);
+            columns.push(column.clone());
+            rows.push(row.clone());
+            if vector + 1 < VECTORS {
+                column = solver.times(&stage, &column)?;
+                row = solver.expected(&stage, &row)?.values();
+            }
+        }
+        work.factorisations += solver.work.factorisations;
+        work.passes += solver.work.passes;
+    }
+    // The other scheme is projected on the same vectors: what it changes is right to first order.
+    let model = |generator| Survival::new(generator, start, columns.clone(), rows.clone());
+    Ok((generators.map(model), work))
+}
+
+fn normalise(vector: &mut [f64]) {
+    let length = dot(vector, vector).sqrt();
+    if length > 0.0 {
+        vector.iter_mut().for_each(|value| *value /= length);
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+/// A model, and one with fewer vectors, by which the first is judged.
+pub(super) struct Survival {
+    whole: Model,
+    fewer: Model,
+}
+
+impl Survival {
+    fn new(
+        generator: &AbsorbingGenerator,
+        start: &[f64],
+        columns: Vec<Vec<f64>>,
+        rows: Vec<Vec<f64>>,
+    ) -> Self {
+        // All but the last vector of each s: neither the shortest nor the longest times are left out.
+        let thinned = |all: &[Vec<f64>]| -> Vec<Vec<f64>> {
+            let kept = all
+                .iter()
+                .enumerate()
+                .filter(|(index, _)| index % VECTORS + 1 < VECTORS);
+            kept.map(|(_, vector)| vector.clone()).collect()
+        };
+        let less = [thinned(&columns), thinned(&rows)];
+        let [few_columns, few_rows] = less;
+        Self {
+            whole: Model::new(generator, start, columns, rows),
+            fewer: Model::new(generator, start, few_columns, few_rows),
+        }
+    }
+
+    /// S at a time, with what fewer vectors change.
+    pub(super) fn at(&self, time: f64) -> (f64, f64) {
+        let value = self.whole.at(time);
+        (value, (value - self.fewer.at(time)).abs())
+    }
+
+    /// The time at which S has fallen to a share, with what fewer vectors change.
+    pub(super) fn time(&self, share: f64, mean: f64) -> (f64, f64) {
+        let value = self.whole.time(share, mean);
+        (value, (value - self.fewer.time(share, mean)).abs())
+    }
+}
+
+/// S(t) = weights · e^{rates t} start.
+struct Model {
+    rates: DMatrix<f64>,
+    start: DVector<f64>,
+    weights: DVector<f64>,
+}
+
+impl Model {
+    /// The model of these vectors, or of fewer where it would grow.
+    fn new(
+        generator: &AbsorbingGenerator,
+        start: &[f64],
+        columns: Vec<Vec<f64>>,
+        rows: Vec<Vec<f64>>,
+    ) -> Self {
+        let (mut columns, mut rows) = (orthonormal(columns), orthonormal(rows));
+        loop {
+            let size = columns.len().min(rows.len());
+            columns.truncate(size);
+            rows.truncate(size);
+            if let Some(model) = Self::of(generator, start, &columns, &rows)
+                && (model.is_stable() || size <= 2)
+            {
+                return model;
+            }
+            if size <= 1 {
+                return Self {
+                    rates: DMatrix::zeros(1, 1),
+                    start: DVector::from_element(1, f64::NAN),
+                    weights: DVector::from_element(1, 1.0),
+                };
+            }
+            columns.pop();
+            rows.pop();
+        }
+    }
+
+    fn of(
+        generator: &AbsorbingGenerator,
+        start: &[f64],
+        columns: &[Vec<f64>],
+        rows: &[Vec<f64>],
+    ) -> Option<Self> {
+        let size = columns.len();
+        let images: Vec<Vec<f64>> = columns
+            .iter()
+            .map(|column| {
+                let mut image = vec![0.0; column.len()];
+                for (rates, &weight) in generator.matrix.outer_iterator().zip(column) {
+                    for (row, rate) in rates.iter() {
+                        image[row] += rate * weight;
+                    }
+                }
+                image
+            })
+            .collect();
+        let overlaps =
+            DMatrix::from_fn(size, size, |row, column| dot(&rows[row], &columns[column]));
+        let rates = DMatrix::from_fn(size, size, |row, column| dot(&rows[row], &images[column]));
+        let tested = DVector::from_fn(size, |row, _| dot(&rows[row], start));
+        let inverse = overlaps.full_piv_lu();
+        Some(Self {
+            rates: inverse.solve(&rates)?,
+            start: inverse.solve(&tested)?,
+            weights: DVector::from_fn(size, |column, _| {
+                dot(&columns[column], &generator.weights[0])
+            }),
+        })
+    }
+
+    /// Whether nothing grows.
+    fn is_stable(&self) -> bool {
+        let eigenvalues = self.rates.complex_eigenvalues();
+        let fastest = eigenvalues
+            .iter()
+            .fold(0.0f64, |most, one| most.max(one.norm()));
+        eigenvalues.iter().all(|one| one.re <= GROWTH * fastest)
+    }
+
+    fn at(&self, time: f64) -> f64 {
+        let grown = (self.rates.clone() * time).exp() * &self.start;
+        self.weights.dot(&grown)
+    }
+
+    /// The time at which S has fallen to a share.
+    fn time(&self, share: f64, mean: f64) -> f64 {
+        let mut high = mean;
+        for _ in 0..60 {
+            if self.at(high) <= share {
+                break;
+            }
+            high *= 2.0;
+        }
+        let mut low = 0.0;
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if self.at(middle) > share {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        0.5 * (low + high)
+    }
+}
+
+/// An orthonormal basis of the span of some vectors, in their order.
+fn orthonormal(vectors: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    for mut vector in vectors {
+        for _ in 0..2 {
+            for known in &basis {
+                let overlap = dot(known, &vector);
+                vector
+                    .iter_mut()
+                    .zip(known)
+                    .for_each(|(x, y)| *x -= overlap * y);
+            }
+        }
+        let length = dot(&vector, &vector).sqrt();
+        if length > NOTHING {
+            vector.iter_mut().for_each(|value| *value /= length);
+            basis.push(vector);
+        }
+    }
+    basis
+}

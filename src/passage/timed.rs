@@ -1,0 +1,104 @@
+//! The numbers of a passage with their errors, from several grids.
+
+use std::sync::Arc;
+
+use super::solve::{Numbers, Question};
+use super::{KnownDensity, Passage, PassageError};
+use crate::cancellation::Cancellation;
+use crate::generator::GeneratorOptions;
+use crate::space::CellSpace;
+use crate::stationary::generator::{AbsorbingWork, RateOptions};
+use crate::system::System;
+
+/// Grids by which errors are made: cells an axis over those of the sweep, and how often what they differ by is taken.
+/// At a convergence order of three the true error is 0.73 and 0.28 times those differences, at four 0.46 and 0.15
+/// times. Where a border passes between nodes moves errors about, so that one difference alone may vanish by chance.
+const FEWER: [(f64, f64); 2] = [(0.75, 1.4), (0.6, 0.6)];
+
+/// Share of the difference by dissipation that stays as an error once it is extrapolated away.
+const DAMPED: f64 = 0.25;
+
+/// A number with its error.
+pub type WithError = (f64, f64);
+
+/// What is known of a passage.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Timed {
+    /// Mean time.
+    pub mean: WithError,
+    /// Standard deviation of the time.
+    pub deviation: WithError,
+    /// Rate at which processes end that have lasted long.
+    pub rate: WithError,
+    /// Probabilities that the process still goes on at the times that were asked for.
+    pub survival: Vec<WithError>,
+    /// The quantiles that were asked for.
+    pub quantiles: Vec<WithError>,
+    /// What it took.
+    pub work: AbsorbingWork,
+}
+
+/// The numbers of a passage of a system on the cells of a sweep; `unknowns` are densities at nodes times local volumes
+/// of its steady state, where a start is weighted by that. They do not depend on what was solved before.
+///
+/// # Errors
+/// [`PassageError`].
+pub fn timed(
+    system: &Arc<dyn System>,
+    space: &CellSpace,
+    passage: &Passage,
+    unknowns: Option<&[f64]>,
+    settings: (&GeneratorOptions, &RateOptions),
+    cancellation: &Cancellation,
+) -> Result<Timed, PassageError> {
+    let question = Question {
+        system,
+        space,
+        passage,
+        density: unknowns.map(|unknowns| KnownDensity { space, unknowns }),
+        options: settings.0,
+        rates: settings.1,
+        cancellation,
+    };
+    let (finest, fewer) = rayon::join(
+        || question.solve(1.0),
+        || FEWER.map(|(factor, _)| question.solve(factor)),
+    );
+    let (finest, mut work) = finest?;
+    let values = without_dissipation(&finest);
+    let mut errors: Vec<f64> = pairs(&finest[0].values, &finest[1].values)
+        .map(|(full, half)| DAMPED * (full - half).abs())
+        .collect();
+    for (solved, (_, times)) in fewer.into_iter().zip(FEWER) {
+        let (solved, more) = solved?;
+        let others = without_dissipation(&solved);
+        for (error, (value, other)) in errors.iter_mut().zip(pairs(&values, &others)) {
+            *error = error.max(times * (value - other).abs());
+        }
+        work.factorisations += more.factorisations;
+        work.passes += more.passes;
+    }
+    let reduced = pairs(&finest[0].errors, &finest[1].errors);
+    let all = pairs(&values, &errors).zip(reduced);
+    let mut all = all.map(|((value, error), (full, half))| (value, error + full.max(half)));
+    let mut next = || all.next().unwrap_or((f64::NAN, f64::NAN));
+    let [mean, deviation, rate] = [next(), next(), next()];
+    let survival = all.by_ref().take(passage.times.len()).collect();
+    Ok(Timed {
+        mean,
+        deviation,
+        rate,
+        survival,
+        quantiles: all.collect(),
+        work,
+    })
+}
+
+fn pairs<'v>(one: &'v [f64], other: &'v [f64]) -> impl Iterator<Item = (f64, f64)> + 'v {
+    one.iter().copied().zip(other.iter().copied())
+}
+
+fn without_dissipation([full, half]: &[Numbers; 2]) -> Vec<f64> {
+    let both = pairs(&full.values, &half.values);
+    both.map(|(full, half)| 2.0 * half - full).collect()
+}

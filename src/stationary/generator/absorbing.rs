@@ -1,0 +1,302 @@
+//! Processes that end: how long each cell is occupied before, and what is expected of the way from each cell.
+//!
+//! With Q on the cells that a process may be in, and e the rates at which it ends, a process that starts spread as f
+//! occupies the cells for the times z, Q z = -f, and Σ z is the mean time to its end. A process may last for 10¹² units
+//! of time: then Q is singular to rounding, and z of a plain solve is worth nothing. So one cell that is occupied for
+//! long is held, its balance dropped, and its time follows from e·z = Σf, that everything ends. Nothing in that is a
+//! small difference of large numbers, whether ends are rare or not.
+//!
+//! What another scheme Q' changes follows to first order from both sides, without another factorisation: with w the
+//! expected times to the end from each cell, the mean time changes by w·(Q' - Q) z.
+
+use sprs::CsMat;
+
+use super::balance::{add_product, dot};
+use super::narrowing;
+use super::newton::linear;
+use super::passes::{Seat, run_alone};
+use super::preconditioner::{LARGE, Preconditioner, Structure, estimate_of};
+use super::solver::{largest, shape};
+use super::transposed::product;
+use super::{RateError, RateMethod, RateOptions};
+use crate::cancellation::Cancellation;
+use crate::space::CellSpace;
+
+/// Another cell is held where the one that is held is occupied for less than this share of the longest time.
+const LEAST_HELD: f64 = 1e-3;
+
+/// Cells that are tried.
+const TRIED: usize = 3;
+
+/// Solves a process that ends, with one factorisation.
+pub(crate) struct AbsorbingSolver<'s> {
+    space: &'s CellSpace,
+    options: RateOptions,
+    preconditioner: Option<Preconditioner>,
+    /// Factorisations that were made, and passes through them.
+    pub(crate) work: AbsorbingWork,
+    cancellation: Cancellation,
+}
+
+/// What was done.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct AbsorbingWork {
+    /// Factorisations.
+    pub factorisations: usize,
+    /// Passes of forward and backward substitution.
+    pub passes: usize,
+}
+
+/// A matrix that is being solved.
+pub(crate) struct Absorbing<'a> {
+    matrix: &'a CsMat<f64>,
+    /// Rates at which the process ends.
+    ends: &'a [f64],
+    held: usize,
+    /// Times in all cells a unit of time in the held one, from visits that begin there.
+    unit: Vec<f64>,
+    /// Probability that the process ends before it is in the held cell, from each cell; zero from that cell.
+    ended: Vec<f64>,
+}
+
+/// What a process is expected to gather on its way from each cell to its end.
+pub(crate) struct Expected {
+    /// From the held cell.
+    at_held: f64,
+    /// From each cell, less than from the held one: known to more digits than the difference.
+    beside: Vec<f64>,
+}
+
+impl Expected {
+    /// From each cell.
+    pub(crate) fn values(&self) -> Vec<f64> {
+        let values = self.beside.iter().map(|value| value + self.at_held);
+        values.collect()
+    }
+
+    /// What two starts, each with Σ = 1, differ by.
+    pub(crate) fn difference(&self, one: &[f64], other: &[f64]) -> f64 {
+        dot(&self.beside, one) - dot(&self.beside, other)
+    }
+
+    /// In other units.
+    pub(crate) fn scaled(mut self, factor: f64) -> Self {
+        self.at_held *= factor;
+        self.beside.iter_mut().for_each(|value| *value *= factor);
+        self
+    }
+}
+
+impl Absorbing<'_> {
+    /// w·(Q' - Q) z for another matrix of the same pattern or not, with the rates of its ends.
+    pub(crate) fn change(
+        &self,
+        (matrix, ends): (&CsMat<f64>, &[f64]),
+        expected: &Expected,
+        times: &[f64],
+    ) -> f64 {
+        // Columns sum to minus the ends, so that the held cell's value meets what ends alone.
+        let within = |matrix: &CsMat<f64>| {
+            let mut out = vec![0.0; times.len()];
+            add_product(matrix, times, &mut out);
+            dot(&out, &expected.beside)
+        };
+        let out = dot(ends, times) - dot(self.ends, times);
+        within(matrix) - within(self.matrix) - expected.at_held * out
+    }
+}
+
+impl<'s> AbsorbingSolver<'s> {
+    /// A solver without a factorisation yet.
+    pub(crate) fn new(
+        space: &'s CellSpace,
+        options: RateOptions,
+        cancellation: &Cancellation,
+    ) -> Self {
+        Self {
+            space,
+            options,
+            preconditioner: None,
+            work: AbsorbingWork::default(),
+            cancellation: cancellation.clone(),
+        }
+    }
+
+    /// Makes ready to solve a matrix, `n × n` by columns, column j the rates out of cell j, summing to -`ends[j]`, and
+    /// gives the times for a process that starts spread as `start`. The first matrix is factorised.
+    ///
+    /// # Errors
+    /// [`RateError::Shape`], and any error of a factorisation or of [`AbsorbingSolver::times`].
+    pub(crate) fn stage<'a>(
+        &mut self,
+        matrix: &'a CsMat<f64>,
+        ends: &'a [f64],
+        start: &[f64],
+    ) -> Result<(Absorbing<'a>, Vec<f64>), RateError> {
+        let cells = self.space.n_cells();
+        shape(cells, "matrix", matrix.cols())?;
+        shape(cells, "ends", ends.len())?;
+        shape(cells, "start", start.len())?;
+        let mut held = match &self.preconditioner {
+            Some(kept) => kept.held,
+            None => self.factorise(matrix, largest(start).0)?,
+        };
+        let mut tried = 1;
+        loop {
+            let mut stage = self.unit(matrix, ends, held)?;
+            let times = self.times(&stage, start)?;
+            // The cell that is held may turn out to be occupied for a short time only.
+            let (longest, time) = largest(&times);
+            if times[held].abs() >= LEAST_HELD * time || tried == TRIED {
+                stage.ended = self.reduced(matrix, held, &without(ends, held), true)?;
+                return Ok((stage, times));
+            }
+            held = self.factorise(matrix, longest)?;
+            tried += 1;
+        }
+    }
+
+    fn unit<'a>(
+        &mut self,
+        matrix: &'a CsMat<f64>,
+        ends: &'a [f64],
+        held: usize,
+    ) -> Result<Absorbing<'a>, RateError> {
+        let mut source = vec![0.0; ends.len()];
+        if let Some(column) = matrix.outer_view(held) {
+            for (row, rate) in column.iter() {
+                source[row] = -rate;
+            }
+        }
+        source[held] = 0.0;
+        let mut unit = self.reduced(matrix, held, &source, false)?;
+        unit[held] = 1.0;
+        Ok(Absorbing {
+            matrix,
+            ends,
+            held,
+            unit,
+            ended: Vec::new(),
+        })
+    }
+
+    /// Factorises in double precision where that is small, in single precision elsewhere; gives the cell that is held.
+    fn factorise(&mut self, matrix: &CsMat<f64>, held: usize) -> Result<usize, RateError> {
+        let structure = Structure {
+            reach: narrowing::reach(self.space, matrix),
+            folded: None,
+        };
+        let limit = self.options.memory_limit_bytes;
+        let of = |method| estimate_of(self.space, &structure, limit, Some(method));
+        let plan = match of(RateMethod::Lu) {
+            Ok(plan) if plan.factor_bytes <= LARGE => plan,
+            _ => of(RateMethod::LuSingle)?,
+        };
+        let old = self.preconditioner.take();
+        let (space, cancellation) = (self.space, &self.cancellation);
+        let method = plan.method;
+        let new = Preconditioner::new(space, &structure, method, matrix, held, old, cancellation)?;
+        self.work.factorisations += 1;
+        let held = new.held;
+        self.preconditioner = Some(new);
+        Ok(held)
+    }
+
+    /// The times for which a process that starts spread as `start` (any sum) occupies the cells before it ends.
+    ///
+    /// # Errors
+    /// [`RateError::Sensitivity`] where iterating does not converge, [`RateError::Cancelled`].
+    pub(crate) fn times(
+        &mut self,
+        stage: &Absorbing<'_>,
+        start: &[f64],
+    ) -> Result<Vec<f64>, RateError> {
+        let held = stage.held;
+        let mut source: Vec<f64> = start.iter().map(|value| -value).collect();
+        source[held] = 0.0;
+        // What is beside the visits of the held cell.
+        let mut times = self.reduced(stage.matrix, held, &source, false)?;
+        let ended = start.iter().sum::<f64>() - dot(stage.ends, &times);
+        let time = ended / dot(stage.ends, &stage.unit);
+        let pairs = times.iter_mut().zip(&stage.unit);
+        pairs.for_each(|(value, unit)| *value += time * unit);
+        Ok(times)
+    }
+
+    /// What a process that starts in each cell is expected to gather before it ends, where a cell that is occupied
+    /// gives `gain` per unit of time: with a gain of one the mean time to the end, with the rates into one of several
+    /// ends the probability of that.
+    ///
+    /// # Errors
+    /// As [`AbsorbingSolver::times`].
+    pub(crate) fn expected(
+        &mut self,
+        stage: &Absorbing<'_>,
+        gain: &[f64],
+    ) -> Result<Expected, RateError> {
+        let (matrix, held) = (stage.matrix, stage.held);
+        // Before the held cell is reached.
+        let gathered = self.reduced(matrix, held, &without(gain, held), true)?;
+        let from_held = |values: &[f64]| -> f64 {
+            let column = matrix.outer_view(held);
+            let terms =
+                column.map(|column| column.iter().map(|(row, rate)| rate * values[row]).sum());
+            terms.unwrap_or(0.0)
+        };
+        let ending = stage.ends[held] + from_held(&stage.ended);
+        let at_held = (gain[held] + from_held(&gathered)) / ending;
+        let pairs = gathered.iter().zip(&stage.ended);
+        Ok(Expected {
+            at_held,
+            beside: pairs.map(|(gain, end)| gain - end * at_held).collect(),
+        })
+    }
+
+    /// Solves Q x = source (Qᵀ x where it is transposed) with a cell held at zero.
+    fn reduced(
+        &mut self,
+        matrix: &CsMat<f64>,
+        held: usize,
+        source: &[f64],
+        is_transposed: bool,
+    ) -> Result<Vec<f64>, RateError> {
+        let Some(kept) = &self.preconditioner else {
+            return Err(RateError::NoSteadyState);
+        };
+        if source.iter().all(|&value| value == 0.0) {
+            return Ok(source.to_vec());
+        }
+        let operator = |x: &[f64]| {
+            let mut out = if is_transposed {
+                product(matrix, x)
+            } else {
+                let mut out = vec![0.0; x.len()];
+                add_product(matrix, x, &mut out);
+                out
+            };
+            out[held] = 0.0;
+            out
+        };
+        let seat = Seat::default();
+        let effort = (self.options.tolerance, self.options.max_iterations);
+        let work = linear(&seat, &operator, (source, None), effort, &self.cancellation);
+        let apply = |rest: &[f64]| {
+            if is_transposed {
+                kept.apply_transposed(rest)
+            } else {
+                kept.apply_one(rest)
+            }
+        };
+        let found = run_alone(apply, &seat, work)?;
+        let (solution, used) = found.ok_or(RateError::Sensitivity)?;
+        self.work.passes += used;
+        Ok(solution)
+    }
+}
+
+/// The right side of what is gathered before a cell is reached.
+fn without(gain: &[f64], held: usize) -> Vec<f64> {
+    let mut negative: Vec<f64> = gain.iter().map(|value| -value).collect();
+    negative[held] = 0.0;
+    negative
+}

@@ -1,0 +1,241 @@
+//! Regions and questions of first passage as a file has them, with the place of everything that is wrong with them.
+
+use crate::formula::language::check_name;
+use crate::sweep_file::diagnostic::{Diagnostic, Place};
+use crate::sweep_file::draft::{Draft, MethodKind, PassageDraft};
+use crate::sweep_file::formula_place::inside;
+use crate::sweep_file::names::quotable;
+use crate::sweep_file::reader::Reader;
+use crate::system::{Model, PassageQuestion, PassageStart, Region, RegionError, regions};
+
+/// The word for a start that is spread as the steady state is.
+pub(super) const DENSITY: &str = "density";
+
+/// An inequality as it was given.
+struct Given {
+    name: String,
+    text: String,
+    place: Place,
+}
+
+/// Checks `[regions]` and `[passage]`: the regions with names, and the questions.
+pub(super) fn read(
+    reader: &mut Reader<'_>,
+    draft: &Draft,
+    model: &Model,
+) -> (Vec<Region>, Vec<PassageQuestion>) {
+    let mut given = Vec::new();
+    for entry in reader.entries(&["regions"]) {
+        if let Some((name, text)) = draft.regions.iter().find(|(name, _)| *name == entry.key) {
+            given.push(Given {
+                name: name.clone(),
+                text: text.clone(),
+                place: entry.node.place.clone(),
+            });
+        }
+    }
+    let named = given.len();
+    check_method(reader, draft);
+    let mut asked = Vec::new();
+    for passage in &draft.passages {
+        if !check_name(&passage.name) {
+            let title = format!("`{}` cannot name a passage", quotable(&passage.name));
+            let remedy =
+                "take letters, digits and `_`, a letter first: columns are called after it";
+            refuse(reader, &passage.name, title, remedy);
+            continue;
+        }
+        if let Some(ends) = ends(reader, passage, &mut given, model) {
+            asked.push((passage, ends));
+        }
+    }
+    let texts: Vec<(&str, &str)> = given
+        .iter()
+        .map(|one| (one.name.as_str(), one.text.as_str()))
+        .collect();
+    let read = match regions(model, &texts) {
+        Ok(read) => read,
+        Err(errors) => {
+            for error in errors {
+                let diagnostic = diagnostic(reader, &given[error.index], &error);
+                reader.report(diagnostic);
+            }
+            return (Vec::new(), Vec::new());
+        }
+    };
+    let questions = asked
+        .into_iter()
+        .map(|(passage, (until, start))| PassageQuestion {
+            name: passage.name.clone(),
+            until: read[until].clone(),
+            start: match start {
+                GivenStart::State(state) => PassageStart::State(state),
+                GivenStart::Region(region) => PassageStart::Region(read[region].clone()),
+                GivenStart::Density => PassageStart::Density,
+            },
+            times: ascending(passage.times.as_ref()),
+            quantiles: ascending(passage.quantiles.as_ref()),
+        });
+    let questions = questions.collect();
+    (read.into_iter().take(named).collect(), questions)
+}
+
+/// Numbers in their order, each once.
+fn ascending(given: Option<&Vec<f64>>) -> Vec<f64> {
+    let mut all = given.cloned().unwrap_or_default();
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    all
+}
+
+/// Passages are solved by the generator alone.
+fn check_method(reader: &mut Reader<'_>, draft: &Draft) {
+    let Some(first) = draft.passages.first() else {
+        return;
+    };
+    if draft.method.kind == MethodKind::Generator {
+        return;
+    }
+    let title = format!(
+        "times of first passage are worked out by `generator`, not by `{}`",
+        draft.method.kind.name()
+    );
+    let diagnostic = Diagnostic::new(title).remedy("set `method.kind = \"generator\"`");
+    let entry = reader.entry(&["passage", &first.name]);
+    reader.report(match entry {
+        Some(entry) => diagnostic.at(&entry.key_place, "this passage"),
+        None => diagnostic,
+    });
+}
+
+/// Where a passage starts, regions by their numbers among those that are given.
+enum GivenStart {
+    State(Vec<f64>),
+    Region(usize),
+    Density,
+}
+
+/// The region that ends a passage, and its start; `None` where something is missing or said twice.
+fn ends(
+    reader: &mut Reader<'_>,
+    passage: &PassageDraft,
+    given: &mut Vec<Given>,
+    model: &Model,
+) -> Option<(usize, GivenStart)> {
+    let name = passage.name.as_str();
+    let (word, until) = match (&passage.until, &passage.to) {
+        (Some(until), None) => ("until", until),
+        (None, Some(to)) => ("to", to),
+        (until, _) => {
+            let title = match until {
+                Some(_) => format!("passage `{name}` has `until` and `to`, which mean the same"),
+                None => format!("passage `{name}` does not say where it ends"),
+            };
+            refuse(
+                reader,
+                name,
+                title,
+                "give `until`: a region, or an inequality such as `\"abs(x) > 2\"`",
+            );
+            return None;
+        }
+    };
+    let until = region(reader, given, name, word, until);
+    let start = match (&passage.from, passage.start.is_empty()) {
+        (Some(from), true) if from.trim() == DENSITY => GivenStart::Density,
+        (Some(from), true) => GivenStart::Region(region(reader, given, name, "from", from)),
+        (None, false) => GivenStart::State(state(reader, passage, model)?),
+        (from, _) => {
+            let title = match from {
+                Some(_) => format!("passage `{name}` has `from` and `start`: one is enough"),
+                None => format!("passage `{name}` does not say where it starts"),
+            };
+            let axes = model.axes.iter().map(|axis| format!("{} = 0", axis.name));
+            let state = axes.collect::<Vec<_>>().join(", ");
+            let remedy =
+                format!("give `from`, a region or `\"density\"`, or `start = {{ {state} }}`");
+            refuse(reader, name, title, &remedy);
+            return None;
+        }
+    };
+    Some((until, start))
+}
+
+/// The number of a region that a passage names, or gives as an inequality.
+fn region(
+    reader: &Reader<'_>,
+    given: &mut Vec<Given>,
+    passage: &str,
+    word: &str,
+    text: &str,
+) -> usize {
+    if let Some(known) = given.iter().position(|one| one.name == text.trim()) {
+        return known;
+    }
+    let place = reader.place(&["passage", passage, word]);
+    let whole = &reader.document().root.place;
+    given.push(Given {
+        name: format!("{passage}_{word}"),
+        text: text.to_owned(),
+        place: place.unwrap_or(whole).clone(),
+    });
+    given.len() - 1
+}
+
+/// The state in which a passage starts.
+fn state(reader: &mut Reader<'_>, passage: &PassageDraft, model: &Model) -> Option<Vec<f64>> {
+    let known = |axis: &str| passage.start.iter().find(|(name, _)| name == axis);
+    let is_axis = |name: &str| model.axes.iter().any(|axis| axis.name == name);
+    if let Some((wrong, _)) = passage.start.iter().find(|(name, _)| !is_axis(name)) {
+        let title = format!("`{wrong}` is no coordinate of the state");
+        let names: Vec<&str> = model.axes.iter().map(|axis| axis.name.as_str()).collect();
+        let entry = reader.entry(&["passage", &passage.name, "start", wrong]);
+        let diagnostic = Diagnostic::new(title).nearest(wrong, names);
+        reader.report(match entry {
+            Some(entry) => diagnostic.at(&entry.key_place, "no axis"),
+            None => diagnostic,
+        });
+        return None;
+    }
+    let state = model
+        .axes
+        .iter()
+        .map(|axis| known(&axis.name).map(|(_, x)| *x));
+    let found: Option<Vec<f64>> = state.collect();
+    if found.is_none() {
+        let missing = model.axes.iter().find(|axis| known(&axis.name).is_none());
+        let missing = missing.map_or("", |axis| axis.name.as_str());
+        let title = format!("the start of passage `{}` lacks `{missing}`", passage.name);
+        refuse(
+            reader,
+            &passage.name,
+            title,
+            "give a coordinate for every axis",
+        );
+    }
+    found
+}
+
+fn refuse(reader: &mut Reader<'_>, passage: &str, title: String, remedy: &str) {
+    let diagnostic = Diagnostic::new(title).remedy(remedy);
+    let entry = reader.entry(&["passage", passage]);
+    reader.report(match entry {
+        Some(entry) => diagnostic.at(&entry.key_place, "this passage"),
+        None => diagnostic,
+    });
+}
+
+fn diagnostic(reader: &Reader<'_>, one: &Given, error: &RegionError) -> Diagnostic {
+    let diagnostic = Diagnostic::new(format!("region `{}`: {}", one.name, error.fault));
+    let diagnostic = match &error.span {
+        Some(span) => {
+            let sources = &reader.document().sources;
+            diagnostic.at(&inside(sources, &one.place, span), "here")
+        }
+        None => diagnostic.at(&one.place, "this region"),
+    };
+    match error.fault.remedy() {
+        Some(remedy) => diagnostic.remedy(remedy),
+        None => diagnostic,
+    }
+}

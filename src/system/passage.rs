@@ -1,0 +1,29 @@
+//! Questions of first passage: from where, until where. What they ask is solved in [`crate::passage`].
+
+use super::Region;
+
+/// A question of first passage, with names instead of values.
+#[derive(Debug, Clone)]
+pub struct PassageQuestion {
+    /// Its name, with which its numbers' names begin.
+    pub name: String,
+    /// The region at whose border the process ends.
+    pub until: Region,
+    /// Where the process starts.
+    pub start: PassageStart,
+    /// Times at which the probability is wanted that the process still goes on, ascending.
+    pub times: Vec<f64>,
+    /// Shares of the processes, between 0 and 1, ascending: the times by which so many have ended are wanted.
+    pub quantiles: Vec<f64>,
+}
+
+/// Where a process starts.
+#[derive(Debug, Clone)]
+pub enum PassageStart {
+    /// At a state: one coordinate an axis.
+    State(Vec<f64>),
+    /// In a region, as the steady state is spread there.
+    Region(Region),
+    /// As the steady state is spread, outside of the region that ends the passage.
+    Density,
+}

@@ -1,0 +1,180 @@
+//! Times of first passage from a sweep file to tables and figures; and questions that have no answer.
+
+use crate::common::room::{Room, assert_says};
+
+/// dx = -k x dt + √2 dW.
+const FILE: &str = r#"title = "passages"
+[system.equations]
+x = "-k x"
+[system.noise]
+x = "sqrt(2)"
+[system.parameters]
+k = 0.5
+[sweep]
+parameter = "k"
+from = 0.5
+to = 1.0
+points = 3
+[cells]
+x = { from = -6.0, to = 6.0, count = 120 }
+[regions]
+near = "abs(x) < 0.5"
+far = "not (-2 <= x <= 2)"
+[passage]
+leave = { start = { x = 0 }, until = "far", times = [1, 0.5], quantiles = [0.5] }
+between = { from = "near", to = "x > 2 or far" }
+[figures]
+formats = ["svg"]
+draw = ["measures_leave_mean"]
+"#;
+
+/// T(0) = ∫_0^2 e^{k y²/2} ∫_0^y e^{-k z²/2} dz dy of dx = -k x dt + √2 dW until |x| = 2, by Simpson's rule.
+fn exact(k: f64) -> f64 {
+    let n = 2000;
+    let h = 2.0 / f64::from(n);
+    let (mut inner, mut sum) = (0.0, 0.0);
+    for step in 0..n {
+        let [a, b, c] = [0.0, 0.5, 1.0].map(|share| h * (f64::from(step) + share));
+        let f = |z: f64| (-k * z * z / 2.0).exp();
+        let half = inner + h / 24.0 * (5.0 * f(a) + 8.0 * f(b) - f(c));
+        let whole = inner + h / 6.0 * (f(a) + 4.0 * f(b) + f(c));
+        sum += h / 6.0 * (inner / f(a) + 4.0 * half / f(b) + whole / f(c));
+        inner = whole;
+    }
+    sum
+}
+
+#[test]
+fn a_sweep_has_the_numbers_of_its_passages_and_again_after_it_is_read_back() {
+    let room = Room::new();
+    room.write("a.toml", FILE);
+    room.done("sweep a.toml --out run");
+    let table = room.table("run/points.csv");
+    for row in &table.0 {
+        let [k, mean, error] = row.numbers(["k", "leave_mean", "leave_mean_error"]);
+        assert!(
+            (mean - exact(k)).abs() <= error && error < 1e-3 * mean,
+            "{mean} ± {error}"
+        );
+        let [early, late] = row.numbers(["leave_0.5_survival", "leave_1_survival"]);
+        assert!(1.0 > early && early > late && late > 0.0);
+        let [median, deviation, rate] =
+            row.numbers(["leave_0.5_quantile", "leave_sd", "leave_rate"]);
+        assert!(median < mean && deviation < mean && rate * mean > 1.0 && rate * mean < 1.5);
+        // From near the middle to the same border it takes a little less.
+        let between = row.number("between_mean");
+        assert!(between < mean && between > 0.9 * mean, "{between} {mean}");
+        assert_eq!(&row["findings"], "");
+    }
+    room.holds_all("run", "figures/measures_leave_mean.svg");
+    // The complete file asks the same, and gives the same.
+    let complete = room.done("show run --sweep").out;
+    assert_says(
+        &complete,
+        &["[regions]", "near = \"abs(x) < 0.5\"", "quantiles = [0.5]"],
+    );
+    room.write("b.toml", complete);
+    room.done("sweep b.toml --out again");
+    let columns = ["seconds"];
+    let again = room.table("again/points.csv").without(&columns);
+    assert_eq!(again, table.without(&columns));
+    room.done("plot run --only measures_leave_mean --format csv");
+}
+
+#[test]
+fn a_question_without_an_answer_leaves_the_rest_and_says_why() {
+    let room = Room::new();
+    for (old, new, code, words) in [
+        (
+            "far = \"not (-2 <= x <= 2)\"",
+            "far = \"x > 7\"",
+            "passage-nowhere",
+            "widen the ranges",
+        ),
+        (
+            "far = \"not (-2 <= x <= 2)\"",
+            "far = \"x < 7\"",
+            "passage-everywhere",
+            "nothing to wait for",
+        ),
+        (
+            "start = { x = 0 }",
+            "start = { x = 3 }",
+            "passage-start",
+            "it starts inside",
+        ),
+    ] {
+        room.write("a.toml", FILE.replace(old, new));
+        let printed = room.solved("sweep a.toml --out run");
+        assert_says(&printed.text(), &[words, "passage `leave` has no numbers"]);
+        let row = &room.table("run/points.csv").0[0];
+        assert_eq!(&row["status"], "solved");
+        assert_eq!(&row["leave_mean"], "");
+        assert_says(&row["findings"], &[code]);
+        room.done("clean run --yes");
+        let _ = std::fs::remove_dir_all(room.path("run"));
+    }
+}
+
+#[test]
+fn wrong_questions_are_refused_with_their_place_and_a_remedy() {
+    let room = Room::new();
+    for (old, new, words) in [
+        ("abs(x) < 0.5", "abs(z) < 0.5", ["region `near`", "z"]),
+        (
+            "abs(x) < 0.5",
+            "abs(x)",
+            ["neither an inequality", "and `not`"],
+        ),
+        (
+            "abs(x) < 0.5",
+            "k < 0.5",
+            ["depends on no coordinate", "near"],
+        ),
+        (
+            "x > 2 or far",
+            "x > 2 or",
+            ["an inequality is missing", "between"],
+        ),
+        ("x > 2 or far", "fra", ["`fra` is neither", "between"]),
+        (
+            "start = { x = 0 }, ",
+            "",
+            ["does not say where it starts", "start = { x = 0 }"],
+        ),
+        (
+            "start = { x = 0 }",
+            "start = { y = 0 }",
+            ["`y` is no coordinate", "no axis"],
+        ),
+        (
+            "start = { x = 0 }",
+            "start = { x = 0 }, from = \"near\"",
+            ["one is enough", "leave"],
+        ),
+        (
+            "until = \"far\", ",
+            "",
+            ["does not say where it ends", "leave"],
+        ),
+        (
+            "times = [1, 0.5]",
+            "times = [-1]",
+            ["times", "greater than zero"],
+        ),
+        (
+            "quantiles = [0.5]",
+            "quantiles = [1.5]",
+            ["quantiles", "between 0 and 1"],
+        ),
+        (
+            "[figures]",
+            "[method]\nkind = \"sgcm\"\n[figures]",
+            ["worked out by `generator`", "sgcm"],
+        ),
+    ] {
+        assert_eq!(FILE.matches(old).count(), 1, "{old}");
+        room.write("a.toml", FILE.replace(old, new));
+        room.refused("sweep a.toml", &words);
+    }
+}
