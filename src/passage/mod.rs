@@ -8,6 +8,31 @@
 //! Every number is solved by the scheme, by the same scheme with half its dissipation, and both again on three quarters
 //! of the cells. What is given is extrapolated to no dissipation, and its error is what the cells change.
 //!
+//! ```
+//! use pbif::cancellation::Cancellation;
+//! use pbif::passage::{Passage, Start, timed};
+//! use pbif::space::{Axis, CellSpace};
+//! use pbif::system::{regions, registry};
+//!
+//! // dx = (x - x³) dt + √0.2 dW from -1 until it is beyond 0.
+//! let model = registry::find("bistable")?;
+//! let given = [("a", 1.0), ("sigma2", 0.2)];
+//! let until = regions(&model, &[("right", "x > 0")]).unwrap().remove(0);
+//! let passage = Passage {
+//!     until: until.level().bind(&model.values(&given)?)?,
+//!     start: Start::State(vec![-1.0]),
+//!     times: vec![10.0],
+//!     quantiles: vec![0.5],
+//! };
+//! let space = CellSpace::new(vec![Axis::uniform(-2.5, 2.5, 200)?])?;
+//! let (system, settings) = (model.system_with(&given)?, (&Default::default(), &Default::default()));
+//! let found = timed(&system, &space, &passage, None, settings, &Cancellation::new())?;
+//! // By quadrature 30.8213.
+//! assert!((found.mean.0 - 30.8213).abs() < found.mean.1 + 5e-5);
+//! assert!(found.survival[0].0 > 0.6 && found.quantiles[0].0 < found.mean.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! | part | file |
 //! | --- | --- |
 //! | cells, graded toward a barrier of an oscillator | `cells.rs` |

@@ -125,8 +125,9 @@ impl Kind {
                 "a formula, such as `\"sqrt(2 D)\"`, or a list of formulas".to_owned()
             }
             Self::FormulaPair => "two formulas, such as `[\"-a\", \"a\"]`".to_owned(),
-            Self::List(Self::Number(_)) => {
-                "a list of finite numbers, such as `[0.5, 1.0]`".to_owned()
+            Self::List(Self::Number(condition)) => {
+                let words = condition.words;
+                format!("a list of finite numbers{words}, such as `[0.25, 0.5]`")
             }
             Self::List(Self::Text) => "a list of strings, such as `[\"x\", \"y\"]`".to_owned(),
             Self::List(Self::Pair) => {

@@ -193,12 +193,13 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
     key("passage.<passage>.start.<axis>", Kind::Number(ANY), Rule("`from`"),
         Field {
             get: |draft, name| {
-                let (name, axis) = name.split_once('.')?;
+                let (name, axis) = passage_and_axis(name);
                 let start = draft.passage(name)?.start.iter();
                 start.clone().find(|(known, _)| known == axis).map(|(_, value)| value.to_plain())
             },
             set: |draft, name, plain| {
-                if let (Some((name, axis)), Some(value)) = (name.split_once('.'), plain.number()) {
+                let (name, axis) = passage_and_axis(name);
+                if let Some(value) = plain.number() {
                     let start = &mut draft.passage_mut(name).start;
                     start.retain(|(known, _)| known != axis);
                     start.push((axis.to_owned(), value));
@@ -249,6 +250,11 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
     key("figures.style.letters", Kind::Choice(switch), OfOptions, always!(figures.style.letters),
         "Whether the panels of a sheet have letters: (a), (b)."),
 ];
+
+/// The two names that stand in the path of a start.
+fn passage_and_axis(name: &str) -> (&str, &str) {
+    name.split_once('.').unwrap_or((name, name))
+}
 
 fn switch() -> Vec<&'static str> {
     SWITCH.to_vec()
