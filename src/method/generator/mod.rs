@@ -10,6 +10,7 @@ mod modes;
 mod one_axis;
 mod open;
 mod options;
+mod passages;
 mod relaxation;
 mod second;
 mod sensitivity;

@@ -1,0 +1,90 @@
+//! Times of first passage at the values of a sweep, and findings where there are none.
+
+use std::sync::Arc;
+
+use crate::cancellation::Cancellation;
+use crate::continuation::{Finding, Measure, MeasureColumn, PassageFault, SolveReport};
+use crate::generator::GeneratorOptions;
+use crate::method::measures::columns_of_passage;
+use crate::method::{GeneratorMethodOptions, MethodError, Problem};
+use crate::passage::{Passage, PassageError, Timed, WithError, timed};
+use crate::stationary::generator::{RateError, RateOptions};
+use crate::system::{PassageQuestion, System};
+
+/// Error at which times stop to be iterated, relative to their sum: below what cells change.
+const TOLERANCE: f64 = 1e-9;
+
+/// Adds the numbers of all passages at a value to a report, with findings where there are none. `unknowns` are the
+/// steady state's densities at nodes times local volumes.
+///
+/// # Errors
+/// [`MethodError::Cancelled`], and errors of values that the family does not have.
+pub(super) fn add_passages(
+    report: &mut SolveReport,
+    (problem, value): (&Problem, f64),
+    system: &Arc<dyn System>,
+    unknowns: Option<&[f64]>,
+    options: &GeneratorMethodOptions,
+    cancellation: &Cancellation,
+) -> Result<(), MethodError> {
+    let family = problem.family();
+    if family.passages().is_empty() || problem.subject().measures.is_empty() {
+        return Ok(());
+    }
+    let rates = RateOptions {
+        tolerance: TOLERANCE,
+        memory_limit_bytes: (options.memory_limit * 1e9) as u64,
+        ..RateOptions::default()
+    };
+    let generator = GeneratorOptions {
+        scheme: options.scheme,
+    };
+    let values = family.values_at(value)?;
+    for (number, question) in family.passages().iter().enumerate() {
+        let passage = Passage::bind(question, &values)?;
+        let settings = (&generator, &rates);
+        match timed(
+            system,
+            problem.space(),
+            &passage,
+            unknowns,
+            settings,
+            cancellation,
+        ) {
+            Ok(timed) => report.measures.extend(measures(question, &timed)),
+            Err(PassageError::Rate(RateError::Cancelled(cancelled))) => {
+                return Err(cancelled.into());
+            }
+            Err(error) => report.findings.push(Finding::NoPassage {
+                passage: number,
+                fault: fault(&error),
+            }),
+        }
+    }
+    Ok(())
+}
+
+fn measures(question: &PassageQuestion, timed: &Timed) -> Vec<Measure> {
+    let moments = [timed.mean, timed.deviation, timed.rate];
+    let more = timed.survival.iter().chain(&timed.quantiles);
+    let numbers = moments.into_iter().chain(more.copied());
+    let pairs = columns_of_passage(question).into_iter().zip(numbers);
+    let one = |(column, (value, error)): (MeasureColumn, WithError)| Measure {
+        error: Some(error),
+        ..column.kind.measure(&column.of, value)
+    };
+    pairs.map(one).collect()
+}
+
+fn fault(error: &PassageError) -> PassageFault {
+    match error {
+        PassageError::Nowhere => PassageFault::Nowhere,
+        PassageError::Everywhere => PassageFault::Everywhere,
+        PassageError::Start => PassageFault::Start,
+        PassageError::NoDensity => PassageFault::NoDensity,
+        PassageError::Never => PassageFault::Never,
+        PassageError::Generator(_) | PassageError::Space(_) | PassageError::Rate(_) => {
+            PassageFault::Unsolved
+        }
+    }
+}
