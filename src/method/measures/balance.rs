@@ -15,6 +15,7 @@ use crate::system::{Family, LANES, Lanes, System};
 pub(super) const BALANCE: DerivedMeasure = DerivedMeasure {
     kind: MeasureKind {
         word: "balance",
+        follows: false,
         unit: "1",
         meaning: "what is left of a balance of an oscillator x' = y, relative: of y, power in less power out; of x, E[y²] + E[x y']",
     },
