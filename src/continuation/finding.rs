@@ -89,8 +89,8 @@ pub enum Finding {
         /// Largest cell Péclet number of damping and friction.
         peclet: f64,
     },
-    /// An oscillator's balance is broken: of power in and power out where the axis is a velocity, of `E[y²]` and `-E[x
-    /// y']` where it is a displacement.
+    /// An oscillator's balance is broken: where the axis is a velocity, of power in and power out, where it is a
+    /// displacement, of `E[y²]` and `-E[x y']`.
     BalanceBroken {
         /// The axis.
         axis: usize,
