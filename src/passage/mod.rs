@@ -130,3 +130,8 @@ pub enum PassageError {
     #[error(transparent)]
     Rate(#[from] RateError),
 }
+
+/// Σ a b.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}

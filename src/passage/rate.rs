@@ -6,6 +6,8 @@
 
 use nalgebra::DMatrix;
 
+use super::dot;
+
 /// Largest eigenvalue of an operator on the span of all given vectors but the last, each the operator times the one
 /// before; `None` where none is real and positive.
 pub(super) fn largest_eigenvalue(powers: &[Vec<f64>]) -> Option<f64> {
@@ -45,13 +47,15 @@ pub(super) fn largest_eigenvalue(powers: &[Vec<f64>]) -> Option<f64> {
         dot(&basis[row], &powers[column + 1]) / lengths[column]
     });
     let inverse = triangle.try_inverse()?;
-    let eigenvalues = (image * inverse).complex_eigenvalues();
+    let projected = image * inverse;
+    // Eigenvalues of a matrix that is not finite are looked for without end.
+    projected
+        .iter()
+        .all(|entry| entry.is_finite())
+        .then_some(())?;
+    let eigenvalues = projected.complex_eigenvalues();
     let real = eigenvalues
         .iter()
         .filter(|one| one.im.abs() <= 1e-9 * one.re);
     real.map(|one| one.re).max_by(f64::total_cmp)
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }

@@ -6,7 +6,7 @@ use super::cells::{PassageCells, cells};
 use super::rate::largest_eigenvalue;
 use super::start::{FEWER_NODES, KnownDensity, NODES, add_density, add_state};
 use super::survival::{Survival, models};
-use super::{Passage, PassageError, Start};
+use super::{Passage, PassageError, Start, dot};
 use crate::cancellation::Cancellation;
 use crate::generator::{AbsorbingGenerator, Dissipation, GeneratorOptions, assemble_absorbing};
 use crate::space::CellSpace;
@@ -210,10 +210,6 @@ impl Passage {
             numbers.errors.push(error);
         }
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
 fn sum(values: &[f64]) -> f64 {

@@ -22,14 +22,14 @@ const CUT: usize = 8;
 
 /// Weights of nodes along one axis about a coordinate.
 #[derive(Clone, Copy)]
-struct Along {
+struct AxisWeights {
     first: usize,
     used: usize,
     weights: [f64; NODES],
 }
 
 /// The weights of the nodes of an axis about a cell coordinate, `shift` nodes above those that lie evenly about it.
-fn along(count: usize, place: f64, shift: isize, nodes: usize) -> Along {
+fn along(count: usize, place: f64, shift: isize, nodes: usize) -> AxisWeights {
     let used = nodes.min(count);
     let nearest = (place - 0.5).floor() as isize - (used as isize / 2 - 1) + shift;
     let first = nearest.clamp(0, (count - used) as isize) as usize;
@@ -43,7 +43,7 @@ fn along(count: usize, place: f64, shift: isize, nodes: usize) -> Along {
                 product * (place - other) / (node - other)
             });
     }
-    Along {
+    AxisWeights {
         first,
         used,
         weights,
@@ -51,7 +51,7 @@ fn along(count: usize, place: f64, shift: isize, nodes: usize) -> Along {
 }
 
 /// Visits the nodes of a product of weights: numbers of cells, and weights.
-fn each(space: &CellSpace, along: &[Along], mut visit: impl FnMut(usize, f64)) {
+fn each(space: &CellSpace, along: &[AxisWeights], mut visit: impl FnMut(usize, f64)) {
     let shape = space.shape();
     let total: usize = along.iter().map(|one| one.used).product();
     for number in 0..total {
@@ -81,7 +81,7 @@ pub(super) fn add_state(
         .zip(state)
         .map(|(axis, &x)| place_of(axis, x))
         .collect();
-    let mut chosen: Option<(isize, Vec<Along>)> = None;
+    let mut chosen: Option<(isize, Vec<AxisWeights>)> = None;
     let shifts = SHIFTS.len().pow(dimension as u32);
     for number in 0..shifts {
         let mut rest = number;
@@ -204,7 +204,7 @@ pub(super) fn add_density(
             if cut && region.is_some_and(|region| region.at(&state[..dimension]) >= 0.0) {
                 continue;
             }
-            let product: Vec<Along> = points
+            let product: Vec<AxisWeights> = points
                 .iter()
                 .zip(&shape)
                 .map(|(&place, &count)| along(count, place, 0, NODES))

@@ -7,7 +7,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::PassageError;
+use super::{PassageError, dot};
 use crate::cancellation::Cancellation;
 use crate::generator::AbsorbingGenerator;
 use crate::space::CellSpace;
@@ -86,14 +86,10 @@ fn normalise(vector: &mut [f64]) {
     }
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
-}
-
 /// A model, and one with fewer vectors, by which the first is judged.
 pub(super) struct Survival {
-    whole: Model,
-    fewer: Model,
+    whole: ReducedModel,
+    fewer: ReducedModel,
 }
 
 impl Survival {
@@ -114,8 +110,8 @@ impl Survival {
         let less = [thinned(&columns), thinned(&rows)];
         let [few_columns, few_rows] = less;
         Self {
-            whole: Model::new(generator, start, columns, rows),
-            fewer: Model::new(generator, start, few_columns, few_rows),
+            whole: ReducedModel::new(generator, start, columns, rows),
+            fewer: ReducedModel::new(generator, start, few_columns, few_rows),
         }
     }
 
@@ -133,13 +129,13 @@ impl Survival {
 }
 
 /// S(t) = weights · e^{rates t} start.
-struct Model {
+struct ReducedModel {
     rates: DMatrix<f64>,
     start: DVector<f64>,
     weights: DVector<f64>,
 }
 
-impl Model {
+impl ReducedModel {
     /// The model of these vectors, or of fewer where it would grow.
     fn new(
         generator: &AbsorbingGenerator,
@@ -152,7 +148,8 @@ impl Model {
             let size = columns.len().min(rows.len());
             columns.truncate(size);
             rows.truncate(size);
-            if let Some(model) = Self::of(generator, start, &columns, &rows)
+            if size > 0
+                && let Some(model) = Self::of(generator, start, &columns, &rows)
                 && (model.is_stable() || size <= 2)
             {
                 return model;
@@ -193,8 +190,11 @@ impl Model {
         let rates = DMatrix::from_fn(size, size, |row, column| dot(&rows[row], &images[column]));
         let tested = DVector::from_fn(size, |row, _| dot(&rows[row], start));
         let inverse = overlaps.full_piv_lu();
+        // Eigenvalues of a matrix that is not finite are looked for without end.
+        let rates = inverse.solve(&rates)?;
+        rates.iter().all(|rate| rate.is_finite()).then_some(())?;
         Some(Self {
-            rates: inverse.solve(&rates)?,
+            rates,
             start: inverse.solve(&tested)?,
             weights: DVector::from_fn(size, |column, _| {
                 dot(&columns[column], &generator.weights[0])

@@ -102,7 +102,7 @@ pub fn regions(model: &Model, given: &[(&str, &str)]) -> Result<Vec<Region>, Vec
     let names: Vec<&str> = given.iter().map(|(name, _)| *name).collect();
     let (mut levels, mut errors) = (Vec::new(), Vec::new());
     for (index, (_, text)) in given.iter().enumerate() {
-        let mut level = Level {
+        let mut level = LevelWriter {
             names: &names,
             whole: text,
             written: String::new(),
@@ -159,7 +159,7 @@ fn given_span(pieces: &[Piece], span: &Range<usize>) -> Option<Range<usize>> {
 }
 
 /// A level in the making.
-struct Level<'a> {
+struct LevelWriter<'a> {
     names: &'a [&'a str],
     whole: &'a str,
     written: String,
@@ -169,7 +169,7 @@ struct Level<'a> {
 /// What was read, or what is wrong and where.
 type Read<T = ()> = Result<T, (Range<usize>, RegionFault)>;
 
-impl Level<'_> {
+impl LevelWriter<'_> {
     /// Parts joined by `or`.
     fn any_of(&mut self, span: Range<usize>) -> Read {
         self.joined(span, "or", "min(", |level, part| {
