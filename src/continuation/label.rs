@@ -1,8 +1,10 @@
 //! Labelled points of a sweep: AUTO's habit of a type and an ordinal for everything worth a row.
 
+use super::LevelCrossing;
 use super::doubt::{BifurcationStatus, Doubt, status_of};
 use super::{ErrorParts, Point};
 use crate::density::Observable;
+use crate::system::Family;
 use crate::topology::{IndicatorKind, Signature, Step};
 
 /// A labelled point of a sweep, a row of `bifurcations.csv`.
@@ -26,6 +28,25 @@ pub enum Label {
     },
     /// A P-bifurcation.
     Bifurcation(Box<Located>),
+    /// A measure crosses a level that was asked for.
+    Level(Box<LevelCrossing>),
+}
+
+/// What a row says beside its value, as tables have it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RowWords {
+    /// The density or the measure that it is of.
+    pub of: String,
+    /// What is below the value.
+    pub before: String,
+    /// What is above the value.
+    pub after: String,
+    /// What happens there as the parameter rises.
+    pub change: String,
+    /// What it was located by.
+    pub method: &'static str,
+    /// How well it is known.
+    pub status: BifurcationStatus,
 }
 
 /// A P-bifurcation of a sweep.
@@ -74,6 +95,58 @@ impl Label {
         match self {
             Self::End { label, .. } | Self::Failure { label, .. } => label,
             Self::Bifurcation(located) => &located.label,
+            Self::Level(crossing) => &crossing.label,
+        }
+    }
+
+    /// The words of a change; `None` for ends and failures.
+    pub fn words(&self, family: &Family) -> Option<RowWords> {
+        match self {
+            Self::Bifurcation(one) => Some(RowWords {
+                of: one.observable.name(family),
+                before: one.before.to_string(),
+                after: one.after.to_string(),
+                change: one.change().to_owned(),
+                method: one.method(),
+                status: one.status(),
+            }),
+            Self::Level(one) => {
+                let level = one.asked.level;
+                let [below, above] = [format!("< {level}"), format!("> {level}")];
+                let (before, after) = if one.rises {
+                    (below, above)
+                } else {
+                    (above, below)
+                };
+                let way = if one.rises { "rises" } else { "falls" };
+                Some(RowWords {
+                    of: one.asked.measure.clone(),
+                    before,
+                    after,
+                    change: format!("{way} through {level}"),
+                    method: "level",
+                    status: one.status(),
+                })
+            }
+            Self::End { .. } | Self::Failure { .. } => None,
+        }
+    }
+
+    /// Why it is not located; `None` where it is.
+    pub fn reason(&self) -> Option<&Doubt> {
+        match self {
+            Self::Bifurcation(one) => one.reason(),
+            Self::Level(one) => one.doubts.first(),
+            Self::End { .. } | Self::Failure { .. } => None,
+        }
+    }
+
+    /// How well a change is known; `None` for ends and failures.
+    pub fn status(&self) -> Option<BifurcationStatus> {
+        match self {
+            Self::Bifurcation(one) => Some(one.status()),
+            Self::Level(one) => Some(one.status()),
+            Self::End { .. } | Self::Failure { .. } => None,
         }
     }
 
@@ -81,6 +154,7 @@ impl Label {
     pub fn value(&self) -> f64 {
         match self {
             Self::Bifurcation(located) => located.value,
+            Self::Level(crossing) => crossing.value,
             _ => {
                 let (lower, upper) = self.bracket();
                 0.5 * (lower + upper)
@@ -92,6 +166,7 @@ impl Label {
     pub fn error(&self) -> f64 {
         match self {
             Self::Bifurcation(located) => located.error,
+            Self::Level(crossing) => crossing.error,
             _ => {
                 let (lower, upper) = self.bracket();
                 0.5 * (upper - lower)
@@ -105,6 +180,7 @@ impl Label {
             Self::End { value, .. } => (*value, *value),
             Self::Failure { lower, upper, .. } => (*lower, *upper),
             Self::Bifurcation(located) => (located.lower, located.upper),
+            Self::Level(crossing) => (crossing.lower, crossing.upper),
         }
     }
 
@@ -181,10 +257,11 @@ pub(super) fn failures(points: &[Point]) -> impl Iterator<Item = Label> {
 /// Sorts rows by parameter and numbers each type from 1.
 pub(super) fn number(mut labels: Vec<Label>) -> Vec<Label> {
     labels.sort_by(|a, b| a.value().total_cmp(&b.value()));
-    let mut counts = [0; 3];
+    let mut counts = [0; 4];
     for row in &mut labels {
         let (label, prefix, count) = match row {
             Label::Bifurcation(located) => (&mut located.label, "PB", &mut counts[0]),
+            Label::Level(crossing) => (&mut crossing.label, "LV", &mut counts[3]),
             Label::End { label, .. } => (label, "EP", &mut counts[1]),
             Label::Failure { label, .. } => (label, "MX", &mut counts[2]),
         };

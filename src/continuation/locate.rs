@@ -7,6 +7,7 @@ use super::follow::{Course, Crossing};
 use super::grid::{Checked, Checks, share_of_distance};
 use super::jump::instead_of_zero;
 use super::label::{self, Label, Located, Zero};
+use super::levels::crossings;
 use super::measure::NUMERICAL_DIFFUSION;
 use super::root::{Root, root};
 use super::rows::{doubt_what_does_not_continue, in_order, inseparable, merge, without_flicker};
@@ -65,8 +66,10 @@ pub(super) fn label_points(
     doubt_what_does_not_continue(&mut rows, &solved, observables);
     let rows = rows.into_iter();
     let rows = rows.map(|row| Label::Bifurcation(Box::new(row)));
+    let levels = crossings(points, subject.family.levels(), options.tolerance);
+    let levels = levels.into_iter().map(|row| Label::Level(Box::new(row)));
     let others = label::end_points(points).chain(label::failures(points));
-    label::number(others.chain(rows).collect())
+    label::number(others.chain(rows).chain(levels).collect())
 }
 
 /// A row that no indicator tells the value of.

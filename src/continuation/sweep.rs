@@ -6,6 +6,7 @@ use super::change::{Change, changes, crossings_at_centre};
 use super::dips::{self, Flanks};
 use super::follow::Course;
 use super::grid::CheckedIndicator;
+use super::levels;
 use super::live::Live;
 use super::locate::label_points;
 use super::root::{beyond_doubt, next_value, root};
@@ -268,7 +269,12 @@ impl Run<'_> {
             }
         };
         let mut changes = changes.iter();
-        changes.find_map(|change| wanted(change).filter(|value| self.is_new(value)))
+        let value = changes.find_map(|change| wanted(change).filter(|value| self.is_new(value)));
+        value.or_else(|| {
+            let levels = self.source.subject().family.levels();
+            let value = levels::next_value(&self.points, levels, tolerance);
+            value.filter(|value| self.is_new(value))
+        })
     }
 
     /// A value between, at which a pair of peak and valley may be there, or not be there, for a while.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::continuation::{self, Located, Subject};
+use crate::continuation::{self, Subject};
 use crate::density::Observable;
 use crate::formula::mathml::{Content, Element};
 use crate::sweep_file::Sweep;
@@ -89,7 +89,7 @@ pub(super) struct Label {
     before: Option<String>,
     after: Option<String>,
     status: Option<&'static str>,
-    change: &'static str,
+    change: String,
     method: &'static str,
 }
 
@@ -202,11 +202,13 @@ impl Label {
             observables.position(|&observable| observable == wanted)
         };
         let located = row.bifurcation();
+        let words = row.words(&subject.family);
         let (lower, upper) = row.bracket();
         Self {
             label: row.name().to_owned(),
             kind: match row {
                 continuation::Label::Bifurcation(_) => "bifurcation",
+                continuation::Label::Level(_) => "level",
                 continuation::Label::End { .. } => "end",
                 continuation::Label::Failure { .. } => "failure",
             },
@@ -215,11 +217,13 @@ impl Label {
             lower,
             upper,
             observable: located.and_then(|one| number(one.observable)),
-            before: located.map(|one| one.before.to_string()),
-            after: located.map(|one| one.after.to_string()),
-            status: located.map(|one| one.status().word()),
-            change: located.map_or("", Located::change),
-            method: located.map_or("", Located::method),
+            status: words.as_ref().map(|one| one.status.word()),
+            method: words.as_ref().map_or("", |one| one.method),
+            change: words
+                .as_ref()
+                .map_or_else(String::new, |one| one.change.clone()),
+            before: words.as_ref().map(|one| one.before.clone()),
+            after: words.map(|one| one.after),
         }
     }
 }

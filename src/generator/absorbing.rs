@@ -46,6 +46,15 @@ pub enum Dissipation {
     Half,
 }
 
+/// How stencils go on past a border. What the two differ by is an error of the border.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Closure {
+    /// By a polynomial through four cells.
+    Fourth,
+    /// By a polynomial through three cells.
+    Third,
+}
+
 /// Assembles the generator of a process that ends where `level` becomes negative.
 ///
 /// # Errors
@@ -55,7 +64,7 @@ pub fn assemble_absorbing(
     space: &CellSpace,
     level: &BoundQuantity,
     options: &GeneratorOptions,
-    dissipation: Dissipation,
+    (dissipation, closure): (Dissipation, Closure),
 ) -> Result<AbsorbingGenerator, GeneratorError> {
     check(system, space)?;
     let geometry = |axis| geometry(system, axis, space, options.scheme, dissipation);
@@ -67,6 +76,10 @@ pub fn assemble_absorbing(
         level,
         axes: &axes,
         strides: &strides,
+        cells: match closure {
+            Closure::Fourth => 4,
+            Closure::Third => 3,
+        },
         levels: levels(space, level)?,
     };
     let weight = |cell: usize| f64::from(u8::from(border.keeps(cell)));
@@ -307,7 +320,13 @@ mod tests {
             let level = region.level().bind(&values).unwrap();
             let options = GeneratorOptions::default();
             for dissipation in [Dissipation::Full, Dissipation::Half] {
-                let found = assemble_absorbing(&*system, &space, &level, &options, dissipation);
+                let found = assemble_absorbing(
+                    &*system,
+                    &space,
+                    &level,
+                    &options,
+                    (dissipation, Closure::Fourth),
+                );
                 let found = found.unwrap();
                 for (cell, column) in found.matrix.outer_iterator().enumerate() {
                     let state = space.centre(cell);
@@ -343,7 +362,13 @@ mod tests {
             let axis = Axis::uniform(-1.5, 1.5, count).unwrap();
             let space = CellSpace::new(vec![axis.clone(), axis]).unwrap();
             let options = GeneratorOptions::default();
-            let found = assemble_absorbing(&*system, &space, &level, &options, Dissipation::Full);
+            let found = assemble_absorbing(
+                &*system,
+                &space,
+                &level,
+                &options,
+                (Dissipation::Full, Closure::Fourth),
+            );
             for weights in found.unwrap().weights {
                 let cells = weights
                     .iter()

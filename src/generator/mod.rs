@@ -41,7 +41,7 @@ mod scheme;
 mod smooth;
 
 pub(crate) use absorbing::levels;
-pub use absorbing::{AbsorbingGenerator, Dissipation, assemble_absorbing};
+pub use absorbing::{AbsorbingGenerator, Closure, Dissipation, assemble_absorbing};
 pub use assemble::assemble;
 pub use derivative::assemble_derivative;
 pub use grading::automatic_grading;

@@ -310,8 +310,9 @@ pub(crate) fn draw_sweep(sweep: &Sweep, found: &SweepResult) -> Vec<Figure> {
 
 /// How a sweep ended that has found this.
 pub(crate) fn sweep_outcome(found: &SweepResult, locate: &LocateOptions) -> Outcome {
-    let (mut points, mut rows) = (found.points.iter(), found.bifurcations());
+    let mut points = found.points.iter();
+    let mut statuses = found.labels.iter().filter_map(|row| row.status());
     let is_complete = points.all(|point| point.report.status.is_resolved())
-        && rows.all(|row| locate.is_met_by(row.status()));
+        && statuses.all(|status| locate.is_met_by(status));
     Outcome::of(found.interrupted, is_complete)
 }

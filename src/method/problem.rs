@@ -87,10 +87,11 @@ impl Problem {
                 _ => {}
             }
         }
+        let measures = passage_columns(&family);
         let subject = Subject {
             family,
             observables,
-            measures: Vec::new(),
+            measures,
             cell_check: CellCheck::Needless,
         };
         Ok(Self {

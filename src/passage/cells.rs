@@ -20,6 +20,12 @@ const BESIDE_BARRIER: f64 = 0.15;
 /// Fewest cells of an axis that is cut.
 const FEWEST: usize = 16;
 
+/// By which share cells may be wider or narrower than asked for so that faces lie where they should.
+const WIDTHS: f64 = 0.15;
+
+/// What it counts, in cells beside a face, that cells are twice as many.
+const NEARER: f64 = 1e-3;
+
 /// The cells of a passage.
 pub(super) struct PassageCells {
     /// The cells.
@@ -74,13 +80,15 @@ pub(super) fn cells(
         ];
         let range = [0, 1].map(|end| ends[end].unwrap_or(trimmed[end]));
         let marked = ends.map(|end| end.is_some());
+        let whole = [low <= MARGIN, high + 1 + MARGIN >= axis.count()];
+        let kinks: Vec<f64> = system.facts().surfaces_on(index).collect();
         let is_noisy = system.is_noisy(index);
         borders.push(if is_noisy { [false; 2] } else { marked });
         axes.push(match (is_noisy, axis.is_uniform()) {
             (false, _) if marked != [false; 2] => {
                 Axis::toward_ends(range[0], range[1], count, marked)?
             }
-            (_, true) => with_faces(range, count, marked)?,
+            (_, true) => with_faces(range, count, (marked, whole), &kinks)?,
             (_, false) if factor == 1.0 => axis.clone(),
             (_, false) => axis.refined(factor),
         });
@@ -92,12 +100,71 @@ pub(super) fn cells(
     })
 }
 
-/// Even cells with a face on each border, and some beyond it: so that what cells do changes evenly with their number.
-fn with_faces([from, to]: [f64; 2], count: usize, marked: [bool; 2]) -> Result<Axis, PassageError> {
+/// Even cells with a face on each border, and some beyond it, so that what cells do changes evenly with their number; and
+/// with faces on planes at which the drift is not smooth, which come first. Where all of them cannot be on faces, the
+/// width is the one near what was asked for at which they are nearest to them. An end is either a border (`marked`), an
+/// end of the sweep's cells (`whole`), or anywhere beyond what is kept.
+fn with_faces(
+    [from, to]: [f64; 2],
+    count: usize,
+    (marked, whole): ([bool; 2], [bool; 2]),
+    kinks: &[f64],
+) -> Result<Axis, PassageError> {
     let beyond = marked.map(|marked| if marked { MARGIN } else { 0 });
     let width = (to - from) / (count - beyond[0] - beyond[1]) as f64;
-    let [below, above] = beyond.map(|cells| cells as f64 * width);
-    Ok(Axis::uniform(from - below, to + above, count)?)
+    let inside = kinks.iter().filter(|&&at| from < at && at < to);
+    // Places that want faces, with how much: the first one gets one for certain.
+    let mut places: Vec<(f64, f64)> = inside.map(|&at| (at, 100.0)).collect();
+    let ends = [(from, marked[0], whole[0]), (to, marked[1], whole[1])];
+    let of_end = |&(at, marked, whole): &(f64, bool, bool)| match (marked, whole) {
+        (true, _) => Some((at, 10.0)),
+        (false, true) => Some((at, 1.0)),
+        (false, false) => None,
+    };
+    places.extend(ends.iter().filter_map(of_end));
+    places.sort_by(|one, other| other.1.total_cmp(&one.1));
+    let Some((&(first, _), others)) = places.split_first() else {
+        return Ok(Axis::uniform(from, to, count)?);
+    };
+    let off = |at: f64, width: f64| ((at - first) / width - ((at - first) / width).round()).abs();
+    let cost = |width: f64| -> f64 { others.iter().map(|&(at, much)| much * off(at, width)).sum() };
+    let width = match others.first() {
+        None => width,
+        Some(&(second, _)) => {
+            let length = (second - first).abs();
+            let cells = (length / width).round().max(1.0);
+            let most = (1.0 + WIDTHS) * cells;
+            let mut best = (f64::INFINITY, width);
+            let mut steps = ((1.0 - WIDTHS) * cells).floor().max(1.0);
+            while steps <= most.ceil() {
+                let tried = length / steps;
+                // Of several that do, the one nearest to what was asked for.
+                let found = cost(tried) + NEARER * (steps - cells).abs() / cells;
+                if found < best.0 {
+                    best = (found, tried);
+                }
+                steps += 1.0;
+            }
+            best.1
+        }
+    };
+    // Ends that are on no face move by less than one cell: inward from an end of the sweep's cells.
+    let steps = |at: f64, is_upper: bool, whole: bool| {
+        let steps = (at - first) / width;
+        match ((steps - steps.round()).abs() < 1e-6, whole == is_upper) {
+            (true, _) => steps.round(),
+            (false, true) => steps.floor(),
+            (false, false) => steps.ceil(),
+        }
+    };
+    let low = steps(from, false, !marked[0] && whole[0]) - beyond[0] as f64;
+    let high = steps(to, true, !marked[1] && whole[1]) + beyond[1] as f64;
+    let at = |steps: f64, end: f64| match first + steps * width {
+        at if (at - end).abs() < 1e-6 * width => end,
+        at => at,
+    };
+    let cells = (high - low).max(1.0) as usize;
+    Ok(Axis::uniform(at(low, from), at(high, to), cells)?)
 }
 
 /// Narrows even cells along a noisy axis toward the place at which the drift through a barrier changes its sign: for

@@ -37,19 +37,23 @@
 //! | --- | --- |
 //! | cells, graded toward a barrier of an oscillator | `cells.rs` |
 //! | weights of a start | `start.rs` |
+//! | what is known of the steady state, and what its errors do | `density_start.rs` |
+//! | masses of a density in a region | `spread.rs` |
 //! | numbers on one grid | `solve.rs` |
 //! | the rate, from the vectors of moments | `rate.rs` |
 //! | probabilities at times, and quantiles | `survival.rs` |
 //! | numbers with errors | `timed.rs` |
 
 mod cells;
+mod density_start;
 mod rate;
 mod solve;
+mod spread;
 mod start;
 mod survival;
 mod timed;
 
-use start::KnownDensity;
+pub use density_start::KnownDensity;
 pub use timed::{Timed, WithError, timed};
 
 use crate::generator::GeneratorError;
@@ -86,6 +90,18 @@ impl Passage {
             times: question.times.clone(),
             quantiles: question.quantiles.clone(),
         })
+    }
+}
+
+impl Passage {
+    /// Negative where a process that is spread as the steady state is starts: in the region of the start and outside of
+    /// the target.
+    fn start_level(&self, state: &[f64]) -> f64 {
+        let outside = -self.until.at(state);
+        match &self.start {
+            Start::Density(Some(region)) => outside.max(region.at(state)),
+            _ => outside,
+        }
     }
 }
 

@@ -3,13 +3,17 @@
 use std::sync::Arc;
 
 use super::cells::{PassageCells, cells};
+use super::density_start::DensityStart;
 use super::rate::largest_eigenvalue;
-use super::start::{FEWER_NODES, KnownDensity, NODES, add_density, add_state};
+use super::spread::add_density;
+use super::start::{FEWER_NODES, NODES, add_state};
 use super::survival::{Survival, models};
-use super::{Passage, PassageError, Start, dot};
+use super::{KnownDensity, Passage, PassageError, Start, dot};
 use crate::cancellation::Cancellation;
-use crate::generator::{AbsorbingGenerator, Dissipation, GeneratorOptions, assemble_absorbing};
-use crate::space::CellSpace;
+use crate::generator::{
+    AbsorbingGenerator, Closure, Dissipation, GeneratorOptions, assemble_absorbing,
+};
+use crate::space::{Axis, CellSpace};
 use crate::stationary::generator::{
     Absorbing, AbsorbingSolver, AbsorbingWork, Expected, RateOptions,
 };
@@ -27,6 +31,8 @@ pub(super) struct Numbers {
     pub(super) values: Vec<f64>,
     /// Errors beside those of the cells: of the start, and of the models behind the last numbers.
     pub(super) errors: Vec<f64>,
+    /// What of the mean's relative error comes from the density of the start, and from the border.
+    stretch: f64,
 }
 
 /// What a passage is solved with.
@@ -48,23 +54,42 @@ impl Question<'_> {
         let found = cells(self.system.as_ref(), self.space, until, factor)?;
         let enclosed = enclosed(self.system, &found);
         let space = found.space;
-        let assemble =
-            |dissipation| assemble_absorbing(&enclosed, &space, until, self.options, dissipation);
+        let assemble = |dissipation, closure| {
+            let scheme = (dissipation, closure);
+            assemble_absorbing(&enclosed, &space, until, self.options, scheme)
+        };
         let (full, half) = rayon::join(
-            || assemble(Dissipation::Full),
-            || assemble(Dissipation::Half),
+            || assemble(Dissipation::Full, Closure::Fourth),
+            || assemble(Dissipation::Half, Closure::Fourth),
         );
         let (full, half) = (full?, half?);
-        let start = [NODES, FEWER_NODES].map(|nodes| self.weights(&space, &full.kept, nodes));
-        let [start, coarse] = start;
-        let (start, coarse) = (start?, coarse?);
+        // Other grids are there for differences, and state no errors of their own.
+        let third = (factor == 1.0).then(|| assemble(Dissipation::Full, Closure::Third));
+        let third = third.transpose()?;
+        let spread = self.density.map(|density| density.unknowns);
+        let weights =
+            |nodes, spread: Option<&[f64]>| self.weights(&space, &full.kept, nodes, spread);
+        let (start, coarse) = (weights(NODES, spread)?, weights(FEWER_NODES, spread)?);
+        let by_second = self.density.and_then(|density| density.second());
+        let second = match &by_second {
+            Some(second) => weights(NODES, Some(second))?,
+            None => start.clone(),
+        };
         let mut solver = AbsorbingSolver::new(&space, *self.rates, self.cancellation);
-        let mut both = moments(&mut solver, [&full, &half], [&start, &coarse])?;
+        let of_density = DensityStart::new(self, (&space, &full.kept));
+        let starts = [start.as_slice(), &coarse];
+        let mut both = moments(
+            &mut solver,
+            ([&full, &half], third.as_ref()),
+            starts,
+            of_density.as_ref(),
+        )?;
         let mut work = solver.work;
         drop(solver);
         if let Some(times) = self.passage.times_asked(both[0].values[0]) {
             let settings = (self.rates, self.cancellation);
-            let (models, more) = models(&space, [&full, &half], &start, times, settings)?;
+            let starts = [start.as_slice(), &second];
+            let (models, more) = models(&space, [&full, &half], starts, times, settings)?;
             work.factorisations += more.factorisations;
             work.passes += more.passes;
             for (numbers, model) in both.iter_mut().zip(&models) {
@@ -74,12 +99,14 @@ impl Question<'_> {
         Ok((both, work))
     }
 
-    /// The weights of the cells at the start, Σ = 1; a state between so many nodes an axis.
+    /// The weights of the cells at the start, Σ = 1, by polynomials through so many nodes an axis; of a steady state with
+    /// these unknowns.
     fn weights(
         &self,
         space: &CellSpace,
         kept: &[bool],
         nodes: usize,
+        spread: Option<&[f64]>,
     ) -> Result<Vec<f64>, PassageError> {
         let mut weights = vec![0.0; space.n_cells()];
         let mass = match &self.passage.start {
@@ -89,9 +116,10 @@ impl Question<'_> {
                     && add_state(space, kept, (state, 1.0), nodes, &mut weights);
                 if found { 1.0 } else { 0.0 }
             }
-            Start::Density(region) => {
-                let density = self.density.ok_or(PassageError::NoDensity)?;
-                add_density(space, kept, density, region.as_ref(), &mut weights)
+            Start::Density(_) => {
+                let spread = (self.space, spread.ok_or(PassageError::NoDensity)?);
+                let region = |state: &[f64]| self.passage.start_level(state);
+                add_density((space, kept), spread, region, nodes, &mut weights)
             }
         };
         if !(mass > f64::MIN_POSITIVE && mass.is_finite()) {
@@ -103,12 +131,14 @@ impl Question<'_> {
     }
 }
 
-/// Mean, standard deviation and rate by a generator, and by another one to first order of what they differ by. The
-/// start is given by many nodes and by fewer.
+/// Mean, standard deviation and rate by a generator, and by another one to first order of what they differ by; a third
+/// one, with a border of lower order, adds what it changes to the errors. The
+/// start is given by many nodes and by fewer, and may be spread as a density that has errors of its own.
 fn moments(
     solver: &mut AbsorbingSolver<'_>,
-    [one, other]: [&AbsorbingGenerator; 2],
+    ([one, other], third): ([&AbsorbingGenerator; 2], Option<&AbsorbingGenerator>),
     [start, coarse]: [&[f64]; 2],
+    of_density: Option<&DensityStart<'_>>,
 ) -> Result<[Numbers; 2], PassageError> {
     if one.ends.iter().all(|&rate| rate == 0.0) {
         return Err(PassageError::Never);
@@ -121,26 +151,60 @@ fn moments(
     let rate = rate(solver, &stage, &mut powers)?;
     let expected = solver.expected(&stage, weights)?;
     let again = solver.expected(&stage, &expected.values())?;
-    let to = (&other.matrix, other.ends.as_slice());
-    let change = |expected: &Expected, times: &[f64]| stage.change(to, expected, times);
-    let mean_change = change(&expected, &powers[0]);
-    let square_change = 2.0 * (change(&expected, &powers[1]) + change(&again, &powers[0]));
-    let left = solver.expected(&stage, &again.scaled(1.0 / mean.powi(2)).values())?;
+    let scaled = again.values();
+    let scaled: Vec<f64> = scaled.iter().map(|value| value / mean.powi(2)).collect();
+    let left = solver.expected(&stage, &scaled)?;
     let lasting = &powers[powers.len() - 1];
-    let rate_change = -change(&left, lasting) / dot(&left.values(), lasting);
+    // Of mean, mean square and rate, by another generator.
+    let changes = |other: &AbsorbingGenerator| -> [f64; 3] {
+        let to = (&other.matrix, other.ends.as_slice());
+        let change = |expected: &Expected, times: &[f64]| stage.change(to, expected, times);
+        [
+            change(&expected, &powers[0]),
+            2.0 * (change(&expected, &powers[1]) + change(&again, &powers[0])),
+            -change(&left, lasting) / dot(&left.values(), lasting),
+        ]
+    };
+    let spread = (square - mean * mean).max(f64::MIN_POSITIVE).sqrt();
+    let of_border = third.map_or([0.0; 3], |third| {
+        let to = (&third.matrix, third.ends.as_slice());
+        let change = |expected: &Expected, times: &[f64]| stage.changes(to, expected, times);
+        let of_mean = change(&expected, &powers[0]);
+        let (early, late) = (change(&expected, &powers[1]), change(&again, &powers[0]));
+        let pairs = early.iter().zip(&late).zip(&of_mean);
+        let of_deviation =
+            pairs.map(|((early, late), of_mean)| (early + late - mean * of_mean) / spread);
+        let of_deviation: Vec<f64> = of_deviation.collect();
+        let [_, _, of_rate] = changes(third);
+        let size = |terms: &[f64]| sum(terms).abs() + by_chance(solver.space(), terms);
+        [size(&of_mean), size(&of_deviation), of_rate.abs()]
+    });
     // What fewer nodes change of the start, and another way to end sums at an oblique border.
     let of_start = expected.difference(start, coarse).abs();
-    let of_border = (dot(others, &powers[0]) - mean).abs();
-    let error = of_start + of_border;
+    let of_sums = (dot(others, &powers[0]) - mean).abs();
+    let squares: Vec<f64> = (again.beside().iter())
+        .zip(expected.beside())
+        .map(|(again, expected)| (again - mean * expected) / spread)
+        .collect();
+    let of_density = of_density.map_or([0.0; 2], |start| {
+        [start.error(expected.beside()), start.error(&squares)]
+    });
+    let errors = vec![
+        of_start + of_sums + of_density[0] + of_border[0],
+        of_start + of_sums + of_density[1] + of_border[1],
+        of_border[2],
+    ];
     let numbers = |mean: f64, square: f64, rate: f64| {
         let deviation = (square - mean * mean).max(0.0).sqrt();
         let values = vec![mean, deviation, rate];
         let is_finite = values.iter().all(|value| value.is_finite());
-        is_finite.then_some(Numbers {
+        is_finite.then(|| Numbers {
             values,
-            errors: vec![error, error, 0.0],
+            errors: errors.clone(),
+            stretch: (of_density[0] + of_border[0]) / mean,
         })
     };
+    let [mean_change, square_change, rate_change] = changes(other);
     let full = numbers(mean, square, rate);
     let half = numbers(
         mean + mean_change,
@@ -200,11 +264,17 @@ impl Passage {
     /// Adds the probabilities and the quantiles that are asked for.
     fn add(&self, numbers: &mut Numbers, model: &Survival) {
         let mean = numbers.values[0];
-        let probabilities = self.times.iter().map(|&time| model.at(time));
-        let quantiles = self
-            .quantiles
-            .iter()
-            .map(|&share| model.time(1.0 - share, mean));
+        // What start and border do to the mean, as a change of the unit of time.
+        let stretch = numbers.stretch;
+        let probabilities = self.times.iter().map(|&time| {
+            let (value, error) = model.at(time);
+            let slope = -value * value.max(f64::MIN_POSITIVE).ln();
+            (value, error + stretch * slope.max(0.0))
+        });
+        let quantiles = self.quantiles.iter().map(|&share| {
+            let (value, error) = model.time(1.0 - share, mean);
+            (value, error + stretch * value)
+        });
         for (value, error) in probabilities.chain(quantiles) {
             numbers.values.push(value);
             numbers.errors.push(error);
@@ -232,4 +302,26 @@ fn enclosed(system: &Arc<dyn System>, cells: &PassageCells) -> Enclosed {
         })
         .collect();
     Enclosed::new(Arc::clone(system), &ranges)
+}
+
+/// What an oblique border does here and there may cancel by chance in its sum: the sum of terms, one a cell, were those
+/// of one layer of cells across an axis independent of those of the next. Terms alternate along the normal of the border,
+/// so that the axis counts whose layers are nearest to normal to it: the least of all. Nothing on one axis.
+fn by_chance(space: &CellSpace, terms: &[f64]) -> f64 {
+    let of_axis = |(index, axis): (usize, &Axis)| {
+        let mut layers = vec![0.0; axis.count()];
+        for (cell, term) in terms.iter().enumerate() {
+            layers[space.position(cell, index)] += term;
+        }
+        layers.iter().map(|layer| layer * layer).sum::<f64>().sqrt()
+    };
+    match space.dimension() {
+        1 => 0.0,
+        _ => space
+            .axes()
+            .iter()
+            .enumerate()
+            .map(of_axis)
+            .fold(f64::INFINITY, f64::min),
+    }
 }

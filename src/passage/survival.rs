@@ -39,11 +39,12 @@ fn shifts((first, last): (f64, f64)) -> Vec<f64> {
         .collect()
 }
 
-/// Small models of two generators on the same cells, for times from one to another.
+/// Small models of two generators on the same cells, for times from one to another. The start is given in two ways, of
+/// which the second tells how well the first is known.
 pub(super) fn models(
     space: &CellSpace,
     generators: [&AbsorbingGenerator; 2],
-    start: &[f64],
+    starts: [&[f64]; 2],
     times: (f64, f64),
     (rates, cancellation): (&RateOptions, &Cancellation),
 ) -> Result<([Survival; 2], AbsorbingWork), PassageError> {
@@ -59,7 +60,7 @@ pub(super) fn models(
             }
         }
         let mut solver = AbsorbingSolver::new(space, *rates, cancellation);
-        let (stage, mut column) = solver.stage(&matrix, &ends, start)?;
+        let (stage, mut column) = solver.stage(&matrix, &ends, starts[0])?;
         let mut row = solver.expected(&stage, &first.weights[0])?.values();
         for vector in 0..VECTORS {
             normalise(&mut column);
@@ -75,7 +76,7 @@ pub(super) fn models(
         work.passes += solver.work.passes;
     }
     // The other scheme is projected on the same vectors: what it changes is right to first order.
-    let model = |generator| Survival::new(generator, start, columns.clone(), rows.clone());
+    let model = |generator| Survival::new(generator, starts, columns.clone(), rows.clone());
     Ok((generators.map(model), work))
 }
 
@@ -95,7 +96,7 @@ pub(super) struct Survival {
 impl Survival {
     fn new(
         generator: &AbsorbingGenerator,
-        start: &[f64],
+        starts: [&[f64]; 2],
         columns: Vec<Vec<f64>>,
         rows: Vec<Vec<f64>>,
     ) -> Self {
@@ -110,28 +111,30 @@ impl Survival {
         let less = [thinned(&columns), thinned(&rows)];
         let [few_columns, few_rows] = less;
         Self {
-            whole: ReducedModel::new(generator, start, columns, rows),
-            fewer: ReducedModel::new(generator, start, few_columns, few_rows),
+            whole: ReducedModel::new(generator, starts, columns, rows),
+            fewer: ReducedModel::new(generator, starts, few_columns, few_rows),
         }
     }
 
-    /// S at a time, with what fewer vectors change.
+    /// S at a time, with what fewer vectors and the other start change.
     pub(super) fn at(&self, time: f64) -> (f64, f64) {
-        let value = self.whole.at(time);
-        (value, (value - self.fewer.at(time)).abs())
+        let [value, other] = self.whole.at(time);
+        let [by_fewer, _] = self.fewer.at(time);
+        (value, (value - by_fewer).abs() + (value - other).abs())
     }
 
-    /// The time at which S has fallen to a share, with what fewer vectors change.
+    /// The time at which S has fallen to a share, with what fewer vectors and the other start change.
     pub(super) fn time(&self, share: f64, mean: f64) -> (f64, f64) {
-        let value = self.whole.time(share, mean);
-        (value, (value - self.fewer.time(share, mean)).abs())
+        let [value, other] = [0, 1].map(|start| self.whole.time(start, share, mean));
+        let by_fewer = self.fewer.time(0, share, mean);
+        (value, (value - by_fewer).abs() + (value - other).abs())
     }
 }
 
 /// S(t) = weights · e^{rates t} start.
 struct ReducedModel {
     rates: DMatrix<f64>,
-    start: DVector<f64>,
+    starts: [DVector<f64>; 2],
     weights: DVector<f64>,
 }
 
@@ -139,7 +142,7 @@ impl ReducedModel {
     /// The model of these vectors, or of fewer where it would grow.
     fn new(
         generator: &AbsorbingGenerator,
-        start: &[f64],
+        starts: [&[f64]; 2],
         columns: Vec<Vec<f64>>,
         rows: Vec<Vec<f64>>,
     ) -> Self {
@@ -149,7 +152,7 @@ impl ReducedModel {
             columns.truncate(size);
             rows.truncate(size);
             if size > 0
-                && let Some(model) = Self::of(generator, start, &columns, &rows)
+                && let Some(model) = Self::of(generator, starts, &columns, &rows)
                 && (model.is_stable() || size <= 2)
             {
                 return model;
@@ -157,7 +160,10 @@ impl ReducedModel {
             if size <= 1 {
                 return Self {
                     rates: DMatrix::zeros(1, 1),
-                    start: DVector::from_element(1, f64::NAN),
+                    starts: [
+                        DVector::from_element(1, f64::NAN),
+                        DVector::from_element(1, f64::NAN),
+                    ],
                     weights: DVector::from_element(1, 1.0),
                 };
             }
@@ -168,7 +174,7 @@ impl ReducedModel {
 
     fn of(
         generator: &AbsorbingGenerator,
-        start: &[f64],
+        starts: [&[f64]; 2],
         columns: &[Vec<f64>],
         rows: &[Vec<f64>],
     ) -> Option<Self> {
@@ -188,14 +194,14 @@ impl ReducedModel {
         let overlaps =
             DMatrix::from_fn(size, size, |row, column| dot(&rows[row], &columns[column]));
         let rates = DMatrix::from_fn(size, size, |row, column| dot(&rows[row], &images[column]));
-        let tested = DVector::from_fn(size, |row, _| dot(&rows[row], start));
+        let tested = starts.map(|start| DVector::from_fn(size, |row, _| dot(&rows[row], start)));
         let inverse = overlaps.full_piv_lu();
         // Eigenvalues of a matrix that is not finite are looked for without end.
         let rates = inverse.solve(&rates)?;
         rates.iter().all(|rate| rate.is_finite()).then_some(())?;
         Some(Self {
             rates,
-            start: inverse.solve(&tested)?,
+            starts: [inverse.solve(&tested[0])?, inverse.solve(&tested[1])?],
             weights: DVector::from_fn(size, |column, _| {
                 dot(&columns[column], &generator.weights[0])
             }),
@@ -211,16 +217,17 @@ impl ReducedModel {
         eigenvalues.iter().all(|one| one.re <= GROWTH * fastest)
     }
 
-    fn at(&self, time: f64) -> f64 {
-        let grown = (self.rates.clone() * time).exp() * &self.start;
-        self.weights.dot(&grown)
+    /// S at a time, from either start.
+    fn at(&self, time: f64) -> [f64; 2] {
+        let grown = (self.rates.clone() * time).exp();
+        [0, 1].map(|start| self.weights.dot(&(&grown * &self.starts[start])))
     }
 
     /// The time at which S has fallen to a share.
-    fn time(&self, share: f64, mean: f64) -> f64 {
+    fn time(&self, start: usize, share: f64, mean: f64) -> f64 {
         let mut high = mean;
         for _ in 0..60 {
-            if self.at(high) <= share {
+            if self.at(high)[start] <= share {
                 break;
             }
             high *= 2.0;
@@ -228,7 +235,7 @@ impl ReducedModel {
         let mut low = 0.0;
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
-            if self.at(middle) > share {
+            if self.at(middle)[start] > share {
                 low = middle;
             } else {
                 high = middle;

@@ -38,8 +38,8 @@ pub struct Timed {
     pub work: AbsorbingWork,
 }
 
-/// The numbers of a passage of a system on the cells of a sweep; `unknowns` are densities at nodes times local volumes
-/// of its steady state, where a start is weighted by that. They do not depend on what was solved before.
+/// The numbers of a passage of a system on the cells of a sweep; `density` is its steady state there, where a start is
+/// weighted by that. They do not depend on what was solved before.
 ///
 /// # Errors
 /// [`PassageError`].
@@ -47,7 +47,7 @@ pub fn timed(
     system: &Arc<dyn System>,
     space: &CellSpace,
     passage: &Passage,
-    unknowns: Option<&[f64]>,
+    density: Option<KnownDensity<'_>>,
     settings: (&GeneratorOptions, &RateOptions),
     cancellation: &Cancellation,
 ) -> Result<Timed, PassageError> {
@@ -55,7 +55,7 @@ pub fn timed(
         system,
         space,
         passage,
-        density: unknowns.map(|unknowns| KnownDensity { space, unknowns }),
+        density,
         options: settings.0,
         rates: settings.1,
         cancellation,

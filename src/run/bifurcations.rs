@@ -9,14 +9,16 @@ use super::{
     latex::{self, escape},
     number::format_with_error,
 };
-use crate::continuation::{ErrorParts, Label, Located};
+use crate::continuation::{ErrorParts, Label, RowWords};
 use crate::system::Family;
 
 /// The table's columns; numbers in full.
 fn columns<'a>(family: &'a Family) -> Columns<'a, Label> {
-    fn text(row: &Label, of: impl Fn(&Located) -> String) -> String {
-        row.bifurcation().map(of).unwrap_or_default()
-    }
+    let words = |name: &'static str, of: fn(RowWords) -> String| {
+        word(name, move |row: &Label| {
+            row.words(family).map(of).unwrap_or_default()
+        })
+    };
     fn part(row: &Label, of: impl Fn(&ErrorParts) -> f64) -> Option<f64> {
         let zero = row.bifurcation()?.zero.as_ref()?;
         Some(of(&zero.parts))
@@ -29,22 +31,12 @@ fn columns<'a>(family: &'a Family) -> Columns<'a, Label> {
         number("error", |row: &Row| row.error()),
         number("lower", |row: &Row| row.bracket().0),
         number("upper", |row: &Row| row.bracket().1),
-        word("observable", move |row: &Row| {
-            text(row, |one| one.observable.name(family))
-        }),
-        word("before", |row: &Row| {
-            text(row, |one| one.before.to_string())
-        }),
-        word("after", |row: &Row| text(row, |one| one.after.to_string())),
-        word("status", |row: &Row| {
-            text(row, |one| one.status().word().to_owned())
-        }),
-        word("change", |row: &Row| {
-            text(row, |one| one.change().to_owned())
-        }),
-        word("method", |row: &Row| {
-            text(row, |one| one.method().to_owned())
-        }),
+        words("observable", |one| one.of),
+        words("before", |one| one.before),
+        words("after", |one| one.after),
+        words("status", |one| one.status.word().to_owned()),
+        words("change", |one| one.change),
+        words("method", |one| one.method.to_owned()),
         optional("error_solver", |row: &Row| part(row, |parts| parts.solver)),
         optional("error_grid", |row: &Row| part(row, |parts| parts.grid)),
         optional("error_sampling", |row: &Row| {
@@ -52,8 +44,8 @@ fn columns<'a>(family: &'a Family) -> Columns<'a, Label> {
         }),
         optional("error_leak", |row: &Row| part(row, |parts| parts.leak)),
         word("reason", move |row: &Row| {
-            let reason = row.bifurcation().and_then(Located::reason);
-            reason.map_or_else(String::new, |doubt| doubt_in_words(family, doubt))
+            row.reason()
+                .map_or_else(String::new, |doubt| doubt_in_words(family, doubt))
         }),
     ])
 }
@@ -94,14 +86,11 @@ pub(crate) fn bifurcations_markdown(family: &Family, labels: &[Label]) -> String
     );
     for row in labels.iter().filter(|row| !row.is_end()) {
         let [value, error, lower, upper] = in_digits(row);
-        let cells = match row.bifurcation() {
-            Some(one) => [
-                one.observable.name(family),
-                one.before.to_string(),
-                one.after.to_string(),
-                one.change().to_owned(),
-                one.status().word().to_owned(),
-            ],
+        let cells = match row.words(family) {
+            Some(one) => {
+                let status = one.status.word().to_owned();
+                [one.of, one.before, one.after, one.change, status]
+            }
             None => ["", "", "", "", NO_DENSITY].map(str::to_owned),
         };
         text += &format!(
@@ -123,16 +112,19 @@ pub(crate) fn bifurcations_tex(family: &Family, labels: &[Label]) -> String {
     for row in labels.iter().filter(|row| !row.is_end()) {
         let [value, error, ..] = in_digits(row);
         let of_none = || vec![String::new(); 5];
-        let cells = row.bifurcation().map_or_else(of_none, |one| {
+        let cells = row.words(family).map_or_else(of_none, |one| {
+            let of = match row.bifurcation() {
+                Some(located) => format!("$p({})$", latex::observable(family, located.observable)),
+                None => escape(&one.of),
+            };
             let words = [
-                one.before.to_string(),
-                one.after.to_string(),
-                one.change().to_owned(),
-                one.status().word().to_owned(),
+                one.before,
+                one.after,
+                one.change,
+                one.status.word().to_owned(),
             ];
-            let density = format!("$p({})$", latex::observable(family, one.observable));
             let words = words.iter().map(|word| escape(word));
-            std::iter::once(density).chain(words).collect()
+            std::iter::once(of).chain(words).collect()
         });
         let cells = cells.join(" & ");
         text += &format!(

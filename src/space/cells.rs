@@ -90,6 +90,13 @@ impl CellSpace {
             .collect()
     }
 
+    /// Node of a cell: d coordinates.
+    pub(crate) fn node(&self, cell: usize) -> Vec<f64> {
+        let axes = self.axes.iter().enumerate();
+        axes.map(|(index, axis)| axis.nodes()[self.position(cell, index)])
+            .collect()
+    }
+
     /// Volume of a cell (length in one dimension, area in two).
     pub fn volume(&self, cell: usize) -> f64 {
         let axes = self.axes.iter().enumerate();

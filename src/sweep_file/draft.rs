@@ -202,6 +202,8 @@ pub(super) struct Draft {
     pub(super) averaged: Vec<(String, String)>,
     /// Names and inequalities of regions.
     pub(super) regions: Vec<(String, String)>,
+    /// Names of measures, and levels of which the crossings are wanted.
+    pub(super) levels: Vec<(String, f64)>,
     /// Questions of first passage, in the order given.
     pub(super) passages: Vec<PassageDraft>,
     pub(super) detect: DetectOptions,
@@ -233,6 +235,7 @@ impl Default for Draft {
             bins: Vec::new(),
             averaged: Vec::new(),
             regions: Vec::new(),
+            levels: Vec::new(),
             passages: Vec::new(),
             detect: DetectOptions::default(),
             locate: LocateOptions::default(),

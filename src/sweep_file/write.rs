@@ -50,6 +50,7 @@ fn names(key: &Key, draft: &Draft) -> Vec<String> {
         Some("<quantity>") => of(draft.bins.iter().map(|bins| &bins.name)),
         Some("<formula>") => of(draft.averaged.iter().map(|(name, _)| name)),
         Some("<region>") => of(draft.regions.iter().map(|(name, _)| name)),
+        Some("<measure>") => of(draft.levels.iter().map(|(name, _)| name)),
         Some("<axis>") => of(draft.axes.iter().map(|axis| &axis.name)),
         Some("<name>") => of(draft.equations.define.iter().map(|(name, _)| name)),
         Some("<passage>") if key.parts().any(|part| part == "<axis>") => {

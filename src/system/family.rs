@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use super::{Model, ParameterValues, PassageQuestion, Path, Quantity, Region, System, SystemError};
+use super::{
+    MeasureLevel, Model, ParameterValues, PassageQuestion, Path, Quantity, Region, System,
+    SystemError,
+};
 
 /// Systems along a path: one number in, a bound system out, with names and symbols for tables and figures.
 ///
@@ -28,6 +31,7 @@ pub struct Family {
     averaged: Vec<Arc<Quantity>>,
     regions: Vec<Region>,
     passages: Vec<PassageQuestion>,
+    levels: Vec<MeasureLevel>,
 }
 
 impl Family {
@@ -55,6 +59,7 @@ impl Family {
             averaged: Vec::new(),
             regions: Vec::new(),
             passages: Vec::new(),
+            levels: Vec::new(),
         };
         family.along()?;
         Ok(family)
@@ -83,6 +88,18 @@ impl Family {
         self
     }
 
+    /// The family with levels of measures, of which the crossings are wanted.
+    #[must_use]
+    pub fn with_levels(mut self, levels: Vec<MeasureLevel>) -> Self {
+        self.levels = levels;
+        self
+    }
+
+    /// The levels of measures of which the crossings are wanted.
+    pub fn levels(&self) -> &[MeasureLevel] {
+        &self.levels
+    }
+
     /// The regions that have names.
     pub fn regions(&self) -> &[Region] {
         &self.regions
@@ -107,6 +124,7 @@ impl Family {
             averaged: self.averaged.clone(),
             regions: self.regions.clone(),
             passages: self.passages.clone(),
+            levels: self.levels.clone(),
             ..Self::new(self.model.clone(), fixed, path)?
         })
     }

@@ -57,7 +57,7 @@ pub use model::Model;
 pub use noise::{Amplitude, Noise};
 pub use oscillator::VELOCITY;
 pub(crate) use oscillator::{DISPLACEMENT, FIRST_INTERNAL_STATE};
-pub use passage::{PassageQuestion, PassageStart};
+pub use passage::{MeasureLevel, PassageQuestion, PassageStart};
 pub use path::Path;
 pub use quantity::{BoundQuantity, Quantity, QuantityError, QuantityFault, quantities};
 pub use region::{Region, RegionError, RegionFault, regions};

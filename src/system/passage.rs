@@ -17,6 +17,15 @@ pub struct PassageQuestion {
     pub quantiles: Vec<f64>,
 }
 
+/// A level of a measure of the sweep: the values of the parameter are wanted at which the measure crosses it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasureLevel {
+    /// The measure's name, its column in `points.csv`: `exit_mean`, `sd_x`.
+    pub measure: String,
+    /// The level, in the measure's unit.
+    pub level: f64,
+}
+
 /// Where a process starts.
 #[derive(Debug, Clone)]
 pub enum PassageStart {

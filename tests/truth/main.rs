@@ -12,5 +12,6 @@ mod hard_cases;
 mod internal_states;
 mod located;
 mod location;
+mod passage_starts;
 mod passages;
 mod random_systems;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use comfy_table::{Table, presets};
 
-use crate::continuation::{Label, Located, Point, PointStatus, SweepResult};
+use crate::continuation::{Label, Point, PointStatus, RowWords, SweepResult};
 use crate::job::QUICK_POINTS;
 use crate::run::{doubt_in_words, format_number, format_with_error};
 use crate::system::Family;
@@ -73,14 +73,15 @@ fn table(family: &Family, rows: &[&Label]) -> String {
     for row in rows {
         let rounded = |value: f64| format_with_error(value, row.error());
         let ((value, error), bracket) = (rounded(row.value()), row.bracket());
-        let of = |words: &dyn Fn(&Located) -> String| row.bifurcation().map(words);
-        let change = |one: &Located| format!("{} → {}, {}", one.before, one.after, one.change());
-        let status = of(&|one| one.status().word().to_owned());
+        let words = row.words(family);
+        let of = |cell: &dyn Fn(&RowWords) -> String| words.as_ref().map(cell);
+        let change = |one: &RowWords| format!("{} → {}, {}", one.before, one.after, one.change);
+        let status = of(&|one| one.status.word().to_owned());
         table.add_row([
             row.name().to_owned(),
             format!("{value} ± {error}"),
             format!("[{}, {}]", rounded(bracket.0).0, rounded(bracket.1).0),
-            of(&|one| one.observable.name(family)).unwrap_or_default(),
+            of(&|one| one.of.clone()).unwrap_or_default(),
             of(&change).unwrap_or_default(),
             status.unwrap_or_else(|| "no steady state, or not converged".to_owned()),
         ]);
@@ -88,7 +89,7 @@ fn table(family: &Family, rows: &[&Label]) -> String {
     let lines = table.to_string();
     let trimmed: Vec<&str> = lines.lines().map(str::trim_end).collect();
     let reasons = rows.iter().filter_map(|row| {
-        let reason = doubt_in_words(family, row.bifurcation()?.reason()?);
+        let reason = doubt_in_words(family, row.reason()?);
         Some(format!(" {}: {reason}\n", row.name()))
     });
     trimmed.join("\n") + "\n" + &reasons.collect::<String>()

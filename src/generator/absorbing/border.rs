@@ -7,9 +7,6 @@ use crate::MAX_DIMENSION;
 use crate::space::CellSpace;
 use crate::system::{BoundQuantity, System};
 
-/// Cells of the polynomial that goes on past the border.
-const CELLS: usize = 4;
-
 /// A node nearer to the border than this share of a cell is left out of the polynomial.
 const TOO_NEAR: f64 = 0.15;
 
@@ -55,6 +52,8 @@ pub(super) struct Border<'a> {
     pub(super) level: &'a BoundQuantity,
     pub(super) axes: &'a [AxisGeometry],
     pub(super) strides: &'a [usize],
+    /// Cells of the polynomial that goes on past the border.
+    pub(super) cells: usize,
     /// The level at the nodes.
     pub(super) levels: Vec<f64>,
 }
@@ -84,7 +83,7 @@ impl Border<'_> {
         };
         let cells = self.share_of_a_cell(line.axis, inner, outer, crossing);
         let skip = usize::from(is_zero && cells < TOO_NEAR && to - from > 1);
-        let most = if skip > 0 { CELLS - 1 } else { CELLS };
+        let most = self.cells - skip;
         let used = most.min(to - from - skip);
         // Places of the nodes, and of the zero, with the end's last node at 0 and inward negative.
         let mut places: Vec<f64> = (skip..skip + used).map(|back| -(back as f64)).collect();

@@ -7,15 +7,15 @@ use crate::continuation::{Finding, Measure, MeasureColumn, PassageFault, SolveRe
 use crate::generator::GeneratorOptions;
 use crate::method::measures::columns_of_passage;
 use crate::method::{GeneratorMethodOptions, MethodError, Problem};
-use crate::passage::{Passage, PassageError, Timed, WithError, timed};
+use crate::passage::{KnownDensity, Passage, PassageError, Timed, WithError, timed};
 use crate::stationary::generator::{RateError, RateOptions};
 use crate::system::{PassageQuestion, System};
 
 /// Error at which times stop to be iterated, relative to their sum: below what cells change.
 const TOLERANCE: f64 = 1e-9;
 
-/// Adds the numbers of all passages at a value to a report, with findings where there are none. `unknowns` are the
-/// steady state's densities at nodes times local volumes.
+/// Adds the numbers of all passages at a value to a report, with findings where there are none. `density` is
+/// the steady state.
 ///
 /// # Errors
 /// [`MethodError::Cancelled`], and errors of values that the family does not have.
@@ -23,7 +23,7 @@ pub(super) fn add_passages(
     report: &mut SolveReport,
     (problem, value): (&Problem, f64),
     system: &Arc<dyn System>,
-    unknowns: Option<&[f64]>,
+    density: Option<KnownDensity<'_>>,
     options: &GeneratorMethodOptions,
     cancellation: &Cancellation,
 ) -> Result<(), MethodError> {
@@ -47,7 +47,7 @@ pub(super) fn add_passages(
             system,
             problem.space(),
             &passage,
-            unknowns,
+            density,
             settings,
             cancellation,
         ) {
@@ -87,4 +87,27 @@ fn fault(error: &PassageError) -> PassageFault {
             PassageFault::Unsolved
         }
     }
+}
+
+/// Densities at nodes times cell widths from the masses of the cells of an axis, to sixth order of the widths; and what
+/// fourth order differs by.
+pub(super) fn at_nodes(masses: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let last = masses.len().saturating_sub(1);
+    // Second differences; at an end those of the cell beside it.
+    let seconds = |of: &[f64]| -> Vec<f64> {
+        let at = |cell: usize| cell.clamp(1, last.max(2) - 1);
+        let one = |cell: usize| match of.get(at(cell) - 1..=at(cell) + 1) {
+            Some([before, own, after]) => before - 2.0 * own + after,
+            _ => 0.0,
+        };
+        (0..of.len()).map(one).collect()
+    };
+    let second = seconds(masses);
+    let change: Vec<f64> = seconds(&second)
+        .iter()
+        .map(|fourth| -3.0 * fourth / 640.0)
+        .collect();
+    let terms = masses.iter().zip(second).zip(&change);
+    let nodes = terms.map(|((mass, second), change)| mass - second / 24.0 - change);
+    (nodes.collect(), change)
 }

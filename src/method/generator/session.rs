@@ -11,7 +11,7 @@ use std::sync::Arc;
 use super::GeneratorSource;
 use super::coarse::rough_relaxation;
 use super::one_axis;
-use super::passages::add_passages;
+use super::passages::{add_passages, at_nodes};
 use super::relaxation::Relaxation;
 use super::second::{Second, SecondSolve, companion};
 use super::sensitivity::GeneratorSensitivity;
@@ -29,6 +29,7 @@ use crate::method::neighbours::Neighbours;
 use crate::method::report::{QUIET_ESCAPE, Reporter};
 use crate::method::watched::planes;
 use crate::method::{MethodError, Problem};
+use crate::passage::KnownDensity;
 use crate::stationary::generator::{Along, RateError, RateInfo, RateSolver, RateSteadyState};
 use crate::system::System;
 
@@ -91,7 +92,9 @@ impl GeneratorSession {
         }
         if let Some(found) = one_axis::masses(&self.source, system.as_ref()) {
             let mut solution = one_axis::solution(&self.source, value, system.as_ref(), &found)?;
-            self.add_passages(&mut solution.report, value, &system, Some(&found.masses))?;
+            let (unknowns, changes) = at_nodes(&found.masses);
+            let known = Some((unknowns.as_slice(), changes.as_slice()));
+            self.add_passages(&mut solution.report, value, &system, known)?;
             return Ok(solution);
         }
         let mut before = self.trails.nearest(value).cloned();
@@ -107,7 +110,8 @@ impl GeneratorSession {
         let mut solved = self.solved(value, system, guess.as_deref(), expected.as_deref())?;
         solved.steady.info.factorisations = self.solver.factorisations() - factorisations;
         let (mut solution, trail) = self.judge(&solved, before.as_ref())?;
-        let known = trail.is_some().then_some(solved.steady.mass.as_slice());
+        let newest = trail.as_ref().and_then(Trail::newest);
+        let known = newest.map(|newest| (newest.mass.as_slice(), newest.difference.as_slice()));
         self.add_passages(&mut solution.report, value, &solved.system, known)?;
         let Some(trail) = trail else {
             return Ok(solution);
@@ -125,20 +129,26 @@ impl GeneratorSession {
     }
 
     /// Adds what is asked of first passages at a value, unless densities are all that is asked for; `known` are the
-    /// unknowns of the steady state.
+    /// unknowns of the steady state, and by how much those of another discretisation differ.
     fn add_passages(
         &self,
         report: &mut SolveReport,
         value: f64,
         system: &Arc<dyn System>,
-        known: Option<&[f64]>,
+        known: Option<(&[f64], &[f64])>,
     ) -> Result<(), MethodError> {
         if self.source.checks {
             return Ok(());
         }
+        let planes = planes(&self.source.kinked);
+        let density = known.map(|(unknowns, changes)| KnownDensity {
+            unknowns,
+            changes: Some(changes),
+            planes: &planes,
+        });
         let (problem, options) = (&self.source.problem, &self.source.options);
         let asked = (problem, value);
-        add_passages(report, asked, system, known, options, &self.cancellation)
+        add_passages(report, asked, system, density, options, &self.cancellation)
     }
 
     /// Factorises ahead of a value in place of at it, where the sweep goes on: values on either side of the factorised

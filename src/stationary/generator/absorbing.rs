@@ -74,16 +74,14 @@ impl Expected {
         values.collect()
     }
 
+    /// From each cell, less than from the held one.
+    pub(crate) fn beside(&self) -> &[f64] {
+        &self.beside
+    }
+
     /// What two starts, each with Σ = 1, differ by.
     pub(crate) fn difference(&self, one: &[f64], other: &[f64]) -> f64 {
         dot(&self.beside, one) - dot(&self.beside, other)
-    }
-
-    /// In other units.
-    pub(crate) fn scaled(mut self, factor: f64) -> Self {
-        self.at_held *= factor;
-        self.beside.iter_mut().for_each(|value| *value *= factor);
-        self
     }
 }
 
@@ -106,6 +104,24 @@ impl Absorbing<'_> {
     }
 }
 
+impl Absorbing<'_> {
+    /// What each cell that is left adds to [`Absorbing::change`].
+    pub(crate) fn changes(
+        &self,
+        (matrix, ends): (&CsMat<f64>, &[f64]),
+        expected: &Expected,
+        times: &[f64],
+    ) -> Vec<f64> {
+        let [others, own] = [matrix, self.matrix].map(|matrix| product(matrix, &expected.beside));
+        let out = ends.iter().zip(self.ends).map(|(other, own)| other - own);
+        let within = others.iter().zip(&own).map(|(other, own)| other - own);
+        let change = within.zip(out).zip(times);
+        change
+            .map(|((within, out), time)| time * (within - expected.at_held * out))
+            .collect()
+    }
+}
+
 impl<'s> AbsorbingSolver<'s> {
     /// A solver without a factorisation yet.
     pub(crate) fn new(
@@ -120,6 +136,11 @@ impl<'s> AbsorbingSolver<'s> {
             work: AbsorbingWork::default(),
             cancellation: cancellation.clone(),
         }
+    }
+
+    /// The cells.
+    pub(crate) fn space(&self) -> &'s CellSpace {
+        self.space
     }
 
     /// Makes ready to solve a matrix, `n × n` by columns, column j the rates out of cell j, summing to -`ends[j]`, and

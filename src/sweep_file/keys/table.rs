@@ -215,6 +215,17 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
         "Times at which the probability is wanted that a passage still goes on."),
     key("passage.<passage>.quantiles", Kind::List(&Kind::Number(OPEN_UNIT)), Rule("none"), of_passage!(quantiles),
         "Shares of passages: the times by which so many have ended are wanted, 0.5 for the median."),
+    key("levels.<measure>", Kind::Number(ANY), Rule("none"),
+        Field {
+            get: |draft, name| draft.levels.iter().find(|(known, _)| known == name).map(|(_, level)| level.to_plain()),
+            set: |draft, name, plain| {
+                if let Some(level) = plain.number() {
+                    draft.levels.retain(|(known, _)| known != name);
+                    draft.levels.push((name.to_owned(), level));
+                }
+            },
+        },
+        "A level of a column of `points.csv` that has an error, such as `exit_mean = 1000`: the values of the parameter at which it is crossed are rows `LV` of the table."),
     key("locate.tolerance", Kind::Number(POSITIVE), Rule("`locate.relative_tolerance` of the swept range"), optional!(locate.tolerance),
         "Wanted width of a P-bifurcation's bracket, in units of the swept parameter."),
     key("locate.relative_tolerance", Kind::Number(OPEN_UNIT), OfOptions, always!(locate.relative_tolerance),

@@ -48,6 +48,7 @@ impl Settings {
             bins: self.bins_draft(),
             averaged: self.averaged(),
             regions: self.regions_draft(),
+            levels: self.levels_draft(),
             passages: self.passages_draft(),
             detect: self.detect.clone(),
             locate: self.locate.clone(),
@@ -103,6 +104,11 @@ impl Settings {
         texts
             .map(|(name, text)| (name.to_owned(), text.to_owned()))
             .collect()
+    }
+
+    fn levels_draft(&self) -> Vec<(String, f64)> {
+        let levels = self.family.levels().iter();
+        levels.map(|one| (one.measure.clone(), one.level)).collect()
     }
 
     fn regions_draft(&self) -> Vec<(String, String)> {

@@ -10,6 +10,7 @@ mod equations;
 #[cfg(feature = "figures")]
 mod figure_names;
 mod figures;
+mod levels;
 mod map;
 mod method;
 mod modes_of;
@@ -125,6 +126,8 @@ impl Settings {
         swept.family = family.with_averaged(watched.averaged);
         let (regions, questions) = passages::read(&mut reader, &draft, swept.family.model());
         swept.family = swept.family.with_passages(regions, questions);
+        let levels = levels::read(&mut reader, &draft, &swept.family, &watched.observables);
+        swept.family = swept.family.with_levels(levels);
         let bins = quantities::read_bins(&mut reader, &draft, &swept.family);
         if !reader.is_clean() {
             return Err(reader.into_report());

@@ -1,0 +1,222 @@
+//! Where a number of the solved values, such as a mean time of first passage, crosses a level that is asked for.
+//!
+//! The number is a smooth function of the parameter with a known error at every value, so its crossing is the root of
+//! the polynomial through the values around: of its logarithm where it is positive, because rates and times change by
+//! orders of magnitude. The error of the root is what one value less changes, and the number's own error over its slope.
+
+use super::Point;
+use super::doubt::{BifurcationStatus, Doubt, status_of};
+use crate::system::MeasureLevel;
+
+/// Values through which the polynomial goes, half of them on either side.
+const NODES: usize = 4;
+
+/// Share of the wanted width that interpolation may leave.
+const INTERPOLATED: f64 = 0.1;
+
+/// Halvings of a bracket in which a polynomial's root is found.
+const HALVINGS: usize = 80;
+
+/// A crossing of a level.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LevelCrossing {
+    /// `LV` and its ordinal.
+    pub label: String,
+    /// The measure and its level.
+    pub asked: MeasureLevel,
+    /// The parameter's value.
+    pub value: f64,
+    /// Half-width of the interval that is believed to hold the true value.
+    pub error: f64,
+    /// Solved values beside it.
+    pub lower: f64,
+    /// Solved values beside it.
+    pub upper: f64,
+    /// Whether the measure rises through the level as the parameter does.
+    pub rises: bool,
+    /// Why it may not be what it says; the first decides its status.
+    pub doubts: Vec<Doubt>,
+}
+
+impl LevelCrossing {
+    /// How well it is known.
+    pub fn status(&self) -> BifurcationStatus {
+        status_of(&self.doubts)
+    }
+}
+
+/// A measure less its level at one value of the parameter, with its error.
+#[derive(Clone, Copy)]
+struct Sample {
+    at: f64,
+    over: f64,
+    error: f64,
+    is_judged: bool,
+}
+
+/// The root of a polynomial through samples.
+struct Root {
+    /// The samples beside it.
+    ends: [Sample; 2],
+    value: f64,
+    /// What one sample less changes.
+    interpolation: f64,
+    /// The error of the measure over its slope.
+    of_measure: f64,
+}
+
+impl Root {
+    fn error(&self) -> f64 {
+        self.interpolation + self.of_measure
+    }
+}
+
+/// All crossings of the levels that are asked for, unnumbered.
+pub(super) fn crossings(
+    points: &[Point],
+    asked: &[MeasureLevel],
+    tolerance: f64,
+) -> Vec<LevelCrossing> {
+    let of_level = |asked: &MeasureLevel| {
+        let mut found: Vec<LevelCrossing> = Vec::new();
+        for root in roots(&samples(points, asked)) {
+            let row = row(asked, &root, tolerance);
+            match found.last_mut() {
+                Some(last) if row.value - last.value <= last.error + row.error => merge(last, &row),
+                _ => found.push(row),
+            }
+        }
+        found
+    };
+    asked.iter().flat_map(of_level).collect()
+}
+
+/// The value to solve next, where interpolation leaves more than is wanted.
+pub(super) fn next_value(points: &[Point], asked: &[MeasureLevel], tolerance: f64) -> Option<f64> {
+    let roots = asked
+        .iter()
+        .flat_map(|asked| roots(&samples(points, asked)));
+    let mut wide =
+        roots.filter(|root| root.interpolation > INTERPOLATED * tolerance.max(root.of_measure));
+    wide.find_map(|root| {
+        let [a, b] = root.ends.map(|end| end.at);
+        let aside = 0.05 * (b - a);
+        let value = root.value.clamp(a + aside, b - aside);
+        (value > a && value < b).then_some(value)
+    })
+}
+
+/// The measure at all points that have it.
+fn samples(points: &[Point], asked: &MeasureLevel) -> Vec<Sample> {
+    let known = points.iter().filter_map(|point| {
+        let mut measures = point.report.measures.iter();
+        let one = measures.find(|one| one.name == asked.measure)?;
+        let is_finite = one.value.is_finite() && one.error.is_none_or(f64::is_finite);
+        is_finite.then_some((point.value, one.value, one.error))
+    });
+    let known: Vec<(f64, f64, Option<f64>)> = known.collect();
+    let is_positive = asked.level > 0.0 && known.iter().all(|(_, value, _)| *value > 0.0);
+    let sample = |(at, value, error): (f64, f64, Option<f64>)| {
+        let size = if is_positive { value } else { 1.0 };
+        Sample {
+            at,
+            over: match is_positive {
+                true => (value / asked.level).ln(),
+                false => value - asked.level,
+            },
+            error: error.unwrap_or(0.0) / size,
+            is_judged: error.is_some(),
+        }
+    };
+    known.into_iter().map(sample).collect()
+}
+
+/// All roots between neighbouring samples, ascending.
+fn roots(samples: &[Sample]) -> Vec<Root> {
+    let crosses = |pair: &[Sample]| (pair[0].over < 0.0) != (pair[1].over < 0.0);
+    let pairs = samples.windows(2).enumerate();
+    let found = pairs.filter(|(_, pair)| crosses(pair)).map(|(left, pair)| {
+        let nodes = |count: usize| -> &[Sample] {
+            let used = count.min(samples.len());
+            let first = (left + 1)
+                .saturating_sub(used / 2)
+                .min(samples.len() - used);
+            &samples[first..first + used]
+        };
+        let ends = [pair[0], pair[1]];
+        let (many, few) = (nodes(NODES), nodes(NODES - 1));
+        let value = root(many, ends);
+        let width = ends[1].at - ends[0].at;
+        let step = 1e-3 * width;
+        let slope = (through(many, value + step) - through(many, value - step)) / (2.0 * step);
+        Root {
+            value,
+            interpolation: match samples.len() {
+                0..NODES => width,
+                _ => (root(few, ends) - value).abs(),
+            },
+            of_measure: ends[0].error.max(ends[1].error) / slope.abs(),
+            ends,
+        }
+    });
+    found.collect()
+}
+
+/// The root between two samples of the polynomial through some.
+fn root(nodes: &[Sample], ends: [Sample; 2]) -> f64 {
+    let [mut a, mut b] = ends.map(|end| end.at);
+    let is_below = ends[0].over < 0.0;
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (a + b);
+        match (through(nodes, middle) < 0.0) == is_below {
+            true => a = middle,
+            false => b = middle,
+        }
+    }
+    0.5 * (a + b)
+}
+
+/// The polynomial through some samples, at a value.
+fn through(nodes: &[Sample], at: f64) -> f64 {
+    let term = |(number, node): (usize, &Sample)| {
+        let others = nodes
+            .iter()
+            .enumerate()
+            .filter(|(other, _)| *other != number);
+        let weight = |product: f64, (_, other): (usize, &Sample)| {
+            product * (at - other.at) / (node.at - other.at)
+        };
+        node.over * others.fold(1.0, weight)
+    };
+    nodes.iter().enumerate().map(term).sum()
+}
+
+fn row(asked: &MeasureLevel, root: &Root, tolerance: f64) -> LevelCrossing {
+    let error = root.error();
+    let is_judged = root.ends.iter().all(|end| end.is_judged);
+    let is_known = error <= tolerance;
+    let doubt = match (is_known, is_judged) {
+        (false, _) => Some(Doubt::SolverError(error)),
+        (true, false) => Some(Doubt::CheckMissing),
+        (true, true) => None,
+    };
+    LevelCrossing {
+        label: String::new(),
+        asked: asked.clone(),
+        value: root.value,
+        error,
+        lower: root.ends[0].at,
+        upper: root.ends[1].at,
+        rises: root.ends[0].over < 0.0,
+        doubts: doubt.into_iter().collect(),
+    }
+}
+
+/// Two crossings that cannot be told apart are one band.
+fn merge(last: &mut LevelCrossing, next: &LevelCrossing) {
+    last.lower = (last.value - last.error).min(last.lower);
+    last.upper = (next.value + next.error).max(next.upper);
+    last.value = 0.5 * (last.lower + last.upper);
+    last.error = 0.5 * (last.upper - last.lower);
+    last.doubts = vec![Doubt::Stages];
+}

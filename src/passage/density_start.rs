@@ -1,0 +1,80 @@
+//! Starts that are spread as the steady state is, and what the errors of its density do to numbers of a passage.
+
+use super::solve::Question;
+use super::start::at_nodes_of;
+use super::{Passage, Start};
+use crate::density::Roughness;
+use crate::space::CellSpace;
+
+/// A steady state on the cells of a sweep, as it is known to a solve.
+#[derive(Debug, Clone, Copy)]
+pub struct KnownDensity<'a> {
+    /// Density at a node times the local volume, one a cell.
+    pub unknowns: &'a [f64],
+    /// By how much those of a second discretisation differ, Σ = 0; `None` where the density has all its digits.
+    pub changes: Option<&'a [f64]>,
+    /// Axes with coordinates of planes on which the derivative of the density jumps.
+    pub planes: &'a [(usize, f64)],
+}
+
+impl KnownDensity<'_> {
+    /// The unknowns of the second discretisation.
+    pub(super) fn second(&self) -> Option<Vec<f64>> {
+        let changes = self.changes?;
+        let pairs = self.unknowns.iter().zip(changes);
+        Some(pairs.map(|(own, change)| own + change).collect())
+    }
+}
+
+/// A start that is spread as a density with errors of its own.
+pub(super) struct DensityStart<'a> {
+    question: &'a Question<'a>,
+    density: KnownDensity<'a>,
+    changes: &'a [f64],
+    passage: &'a Passage,
+    /// The cells on which the passage is solved, and which of them are kept.
+    cells: (&'a CellSpace, &'a [bool]),
+}
+
+impl<'a> DensityStart<'a> {
+    /// `None` where the start is a state, or its density has all its digits.
+    pub(super) fn new(
+        question: &'a Question<'a>,
+        cells: (&'a CellSpace, &'a [bool]),
+    ) -> Option<Self> {
+        let density = question.density?;
+        matches!(question.passage.start, Start::Density(_)).then_some(Self {
+            question,
+            density,
+            changes: density.changes?,
+            passage: question.passage,
+            cells,
+        })
+    }
+
+    /// Error of the average over the start of a field that is known at the kept cells: what the second discretisation
+    /// changes, and what its changes would do were those of neighbouring layers of cells independent.
+    pub(super) fn error(&self, field: &[f64]) -> f64 {
+        let space = self.question.space;
+        let field = at_nodes_of(space, self.cells, &self.passage.until, field);
+        let starts = |cell: usize| self.passage.start_level(&space.node(cell)) < 0.0;
+        let inside = |(cell, value): (usize, Option<f64>)| value.filter(|_| starts(cell));
+        let field: Vec<Option<f64>> = field.into_iter().enumerate().map(inside).collect();
+        let weighed = || field.iter().zip(self.density.unknowns);
+        let mass: f64 = weighed()
+            .filter_map(|(value, mass)| value.map(|_| mass))
+            .sum();
+        let sum: f64 = weighed()
+            .filter_map(|(value, mass)| value.map(|value| value * mass))
+            .sum();
+        let aside = |value: &Option<f64>| value.map_or(0.0, |value| (value - sum / mass) / mass);
+        let values: Vec<f64> = field.iter().map(aside).collect();
+        let roughness = Roughness {
+            space,
+            weights: self.density.unknowns,
+            differences: self.changes,
+            planes: self.density.planes,
+        };
+        super::dot(&values, self.changes).abs() + roughness.of(&values)
+    }
+}

@@ -1,0 +1,48 @@
+//! Levels of measures as a file has them.
+
+use crate::continuation::measure::{DEVIATION, MEAN};
+use crate::density::Observable;
+use crate::method::passage_columns;
+use crate::sweep_file::diagnostic::Diagnostic;
+use crate::sweep_file::draft::Draft;
+use crate::sweep_file::names::quotable;
+use crate::sweep_file::reader::Reader;
+use crate::system::{Family, MeasureLevel};
+
+/// Checks `[levels]`: each is of a number that the sweep has, with an error.
+pub(super) fn read(
+    reader: &mut Reader<'_>,
+    draft: &Draft,
+    family: &Family,
+    observables: &[Observable],
+) -> Vec<MeasureLevel> {
+    let derived = draft.measures.iter().flatten();
+    let derived = derived.flat_map(|measure| measure.columns(family, observables));
+    let columns = passage_columns(family).into_iter().chain(derived);
+    let names = columns.map(|column| column.kind.name(&column.of));
+    let averages = family.averages();
+    let moments = averages.flat_map(|name| [&MEAN, &DEVIATION].map(|kind| kind.name(name)));
+    let known: Vec<String> = names.chain(moments).collect();
+    let mut levels = Vec::new();
+    for (measure, level) in &draft.levels {
+        if known.contains(measure) {
+            levels.push(MeasureLevel {
+                measure: measure.clone(),
+                level: *level,
+            });
+            continue;
+        }
+        let title = format!(
+            "`{}` is no number of this sweep that has an error",
+            quotable(measure)
+        );
+        let remedy = format!("take one of {}", known.join(", "));
+        let diagnostic = Diagnostic::new(title).remedy(remedy);
+        let entry = reader.entry(&["levels", measure]);
+        reader.report(match entry {
+            Some(entry) => diagnostic.at(&entry.key_place, "this number"),
+            None => diagnostic,
+        });
+    }
+    levels
+}
