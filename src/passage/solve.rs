@@ -13,7 +13,7 @@ use crate::cancellation::Cancellation;
 use crate::generator::{
     AbsorbingGenerator, Closure, Dissipation, GeneratorOptions, assemble_absorbing,
 };
-use crate::space::{Axis, CellSpace};
+use crate::space::CellSpace;
 use crate::stationary::generator::{
     Absorbing, AbsorbingSolver, AbsorbingWork, Expected, RateOptions,
 };
@@ -31,6 +31,8 @@ pub(super) struct Numbers {
     pub(super) values: Vec<f64>,
     /// Errors beside those of the cells: of the start, and of the models behind the last numbers.
     pub(super) errors: Vec<f64>,
+    /// What a border of lower order changes of mean, standard deviation and rate.
+    pub(super) border: [f64; 3],
     /// What of the mean's relative error comes from the density of the start, and from the border.
     stretch: f64,
 }
@@ -63,9 +65,7 @@ impl Question<'_> {
             || assemble(Dissipation::Half, Closure::Fourth),
         );
         let (full, half) = (full?, half?);
-        // Other grids are there for differences, and state no errors of their own.
-        let third = (factor == 1.0).then(|| assemble(Dissipation::Full, Closure::Third));
-        let third = third.transpose()?;
+        let third = assemble(Dissipation::Full, Closure::Third)?;
         let spread = self.density.map(|density| density.unknowns);
         let weights =
             |nodes, spread: Option<&[f64]>| self.weights(&space, &full.kept, nodes, spread);
@@ -80,7 +80,7 @@ impl Question<'_> {
         let starts = [start.as_slice(), &coarse];
         let mut both = moments(
             &mut solver,
-            ([&full, &half], third.as_ref()),
+            [&full, &half, &third],
             starts,
             of_density.as_ref(),
         )?;
@@ -136,7 +136,7 @@ impl Question<'_> {
 /// start is given by many nodes and by fewer, and may be spread as a density that has errors of its own.
 fn moments(
     solver: &mut AbsorbingSolver<'_>,
-    ([one, other], third): ([&AbsorbingGenerator; 2], Option<&AbsorbingGenerator>),
+    [one, other, third]: [&AbsorbingGenerator; 3],
     [start, coarse]: [&[f64]; 2],
     of_density: Option<&DensityStart<'_>>,
 ) -> Result<[Numbers; 2], PassageError> {
@@ -166,19 +166,9 @@ fn moments(
         ]
     };
     let spread = (square - mean * mean).max(f64::MIN_POSITIVE).sqrt();
-    let of_border = third.map_or([0.0; 3], |third| {
-        let to = (&third.matrix, third.ends.as_slice());
-        let change = |expected: &Expected, times: &[f64]| stage.changes(to, expected, times);
-        let of_mean = change(&expected, &powers[0]);
-        let (early, late) = (change(&expected, &powers[1]), change(&again, &powers[0]));
-        let pairs = early.iter().zip(&late).zip(&of_mean);
-        let of_deviation =
-            pairs.map(|((early, late), of_mean)| (early + late - mean * of_mean) / spread);
-        let of_deviation: Vec<f64> = of_deviation.collect();
-        let [_, _, of_rate] = changes(third);
-        let size = |terms: &[f64]| sum(terms).abs() + by_chance(solver.space(), terms);
-        [size(&of_mean), size(&of_deviation), of_rate.abs()]
-    });
+    let [of_mean, of_square, of_rate] = changes(third);
+    let of_deviation = (0.5 * of_square - mean * of_mean) / spread;
+    let border = [of_mean, of_deviation, of_rate].map(f64::abs);
     // What fewer nodes change of the start, and another way to end sums at an oblique border.
     let of_start = expected.difference(start, coarse).abs();
     let of_sums = (dot(others, &powers[0]) - mean).abs();
@@ -190,9 +180,9 @@ fn moments(
         [start.error(expected.beside()), start.error(&squares)]
     });
     let errors = vec![
-        of_start + of_sums + of_density[0] + of_border[0],
-        of_start + of_sums + of_density[1] + of_border[1],
-        of_border[2],
+        of_start + of_sums + of_density[0],
+        of_start + of_sums + of_density[1],
+        0.0,
     ];
     let numbers = |mean: f64, square: f64, rate: f64| {
         let deviation = (square - mean * mean).max(0.0).sqrt();
@@ -201,7 +191,8 @@ fn moments(
         is_finite.then(|| Numbers {
             values,
             errors: errors.clone(),
-            stretch: (of_density[0] + of_border[0]) / mean,
+            border,
+            stretch: (of_density[0] + border[0]) / mean,
         })
     };
     let [mean_change, square_change, rate_change] = changes(other);
@@ -302,26 +293,4 @@ fn enclosed(system: &Arc<dyn System>, cells: &PassageCells) -> Enclosed {
         })
         .collect();
     Enclosed::new(Arc::clone(system), &ranges)
-}
-
-/// What an oblique border does here and there may cancel by chance in its sum: the sum of terms, one a cell, were those
-/// of one layer of cells across an axis independent of those of the next. Terms alternate along the normal of the border,
-/// so that the axis counts whose layers are nearest to normal to it: the least of all. Nothing on one axis.
-fn by_chance(space: &CellSpace, terms: &[f64]) -> f64 {
-    let of_axis = |(index, axis): (usize, &Axis)| {
-        let mut layers = vec![0.0; axis.count()];
-        for (cell, term) in terms.iter().enumerate() {
-            layers[space.position(cell, index)] += term;
-        }
-        layers.iter().map(|layer| layer * layer).sum::<f64>().sqrt()
-    };
-    match space.dimension() {
-        1 => 0.0,
-        _ => space
-            .axes()
-            .iter()
-            .enumerate()
-            .map(of_axis)
-            .fold(f64::INFINITY, f64::min),
-    }
 }

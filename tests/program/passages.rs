@@ -82,6 +82,47 @@ fn a_sweep_has_the_numbers_of_its_passages_and_again_after_it_is_read_back() {
 }
 
 #[test]
+fn a_level_of_a_mean_time_is_located_where_the_formula_crosses_it() {
+    let room = Room::new();
+    // Between two of the sweep's values; the logarithm of the time is no straight line between them.
+    let (at, level) = (0.83, exact(0.83));
+    let levels = format!("[levels]\nleave_mean = {level}\nsd_x = 1.2\n[passage]");
+    room.write(
+        "a.toml",
+        FILE.replace("points = 3", "points = 5")
+            .replace("[passage]", &levels),
+    );
+    let printed = room.done("sweep a.toml --out run");
+    assert_says(
+        &printed.text(),
+        &["LV1", "LV2", "leave_mean", "rises through", "located"],
+    );
+    let table = room.table("run/bifurcations.csv");
+    let row = |of: &str| table.0.iter().find(|row| &row["observable"] == of).unwrap();
+    let [value, error, lower, upper] =
+        row("leave_mean").numbers(["value", "error", "lower", "upper"]);
+    assert!(
+        (value - at).abs() <= error && error < 1e-3,
+        "{value} ± {error}"
+    );
+    assert!(lower <= value && value <= upper && upper - lower <= 0.125);
+    let texts = row("leave_mean").texts(["status", "method", "reason"]);
+    assert_eq!(texts, ["located", "level", ""]);
+    // The deviation is 1/√k.
+    let [value, error] = row("sd_x").numbers(["value", "error"]);
+    assert!(
+        (value - 1.0 / 1.44).abs() <= error + 1e-6 && error < 1e-3,
+        "{value} ± {error}"
+    );
+    assert_says(&row("sd_x")["change"], &["falls through 1.2"]);
+    // From the stored values the same rows follow.
+    room.done("detect run");
+    assert_eq!(room.table("run/bifurcations.csv"), table);
+    let complete = room.done("show run --sweep").out;
+    assert_says(&complete, &["[levels]", "sd_x = 1.2"]);
+}
+
+#[test]
 fn a_question_without_an_answer_leaves_the_rest_and_says_why() {
     let room = Room::new();
     for (old, new, code, words) in [
@@ -137,6 +178,11 @@ fn wrong_questions_are_refused_with_their_place_and_a_remedy() {
             ["an inequality is missing", "between"],
         ),
         ("x > 2 or far", "fra", ["`fra` is neither", "between"]),
+        (
+            "[passage]",
+            "[levels]\nleve_mean = 3.0\n[passage]",
+            ["`leve_mean` is no number of this sweep", "leave_mean"],
+        ),
         (
             "start = { x = 0 }, ",
             "",

@@ -104,24 +104,6 @@ impl Absorbing<'_> {
     }
 }
 
-impl Absorbing<'_> {
-    /// What each cell that is left adds to [`Absorbing::change`].
-    pub(crate) fn changes(
-        &self,
-        (matrix, ends): (&CsMat<f64>, &[f64]),
-        expected: &Expected,
-        times: &[f64],
-    ) -> Vec<f64> {
-        let [others, own] = [matrix, self.matrix].map(|matrix| product(matrix, &expected.beside));
-        let out = ends.iter().zip(self.ends).map(|(other, own)| other - own);
-        let within = others.iter().zip(&own).map(|(other, own)| other - own);
-        let change = within.zip(out).zip(times);
-        change
-            .map(|((within, out), time)| time * (within - expected.at_held * out))
-            .collect()
-    }
-}
-
 impl<'s> AbsorbingSolver<'s> {
     /// A solver without a factorisation yet.
     pub(crate) fn new(
@@ -136,11 +118,6 @@ impl<'s> AbsorbingSolver<'s> {
             work: AbsorbingWork::default(),
             cancellation: cancellation.clone(),
         }
-    }
-
-    /// The cells.
-    pub(crate) fn space(&self) -> &'s CellSpace {
-        self.space
     }
 
     /// Makes ready to solve a matrix, `n × n` by columns, column j the rates out of cell j, summing to -`ends[j]`, and
