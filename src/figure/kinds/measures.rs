@@ -2,8 +2,8 @@
 //! (`measures`), or one by its name (`measures_sd_x`). What is zero all along is left out.
 
 use super::{Drawn, Kind, Sketch};
-use crate::continuation::SweepResult;
-use crate::figure::canvas::style::Stroke;
+use crate::continuation::{Label, LevelCrossing, SweepResult};
+use crate::figure::canvas::style::{FRAME_LINE, GREY, Stroke};
 use crate::figure::canvas::symbols;
 use crate::figure::figures::Print;
 use crate::figure::parts::along::{self, Curve, Track};
@@ -16,6 +16,11 @@ const SINGLE: f64 = 190.0;
 const ROUNDING: f64 = 1e-9;
 /// A panel is as high as so many of the largest error, so that its band is seen whole.
 const ERRORS: f64 = 2.4;
+/// A measure that grows by more than this has a logarithmic axis.
+const DECADES: f64 = 50.0;
+/// Dashes of a level, and of the line from where it is crossed.
+const LEVEL: &[f64] = &[6.0, 3.0];
+const DROP: &[f64] = &[1.5, 2.0];
 
 /// A sheet of all measures, then one figure each.
 pub(super) const KIND: Kind = Kind {
@@ -47,6 +52,14 @@ struct Along {
 }
 
 impl Along {
+    /// Whether it is known to be positive, and changes by more than a linear axis shows.
+    fn is_over_decades(&self) -> bool {
+        let is_positive = self.values.iter().all(|(_, value, error)| value > error);
+        let values = self.values.iter().map(|(_, value, _)| *value);
+        let least = values.fold(f64::INFINITY, f64::min);
+        is_positive && self.largest() > DECADES * least
+    }
+
     fn largest(&self) -> f64 {
         let sizes = self.values.iter().map(|(_, value, _)| value.abs());
         sizes.fold(0.0, f64::max)
@@ -84,6 +97,39 @@ fn measures(result: &SweepResult) -> Vec<Along> {
     found
 }
 
+fn crossings(result: &SweepResult) -> impl Iterator<Item = &LevelCrossing> {
+    result.labels.iter().filter_map(|row| match row {
+        Label::Level(crossing) => Some(&**crossing),
+        _ => None,
+    })
+}
+
+/// Lines at the levels of a measure, and down to the parameter's values at which they are crossed.
+fn levels(result: &SweepResult, measure: &Along) -> Vec<Curve> {
+    let at = |end: Option<&(f64, f64, f64)>| end.map_or(0.0, |place| place.0);
+    let (from, to) = (at(measure.values.first()), at(measure.values.last()));
+    let values = measure.values.iter().map(|(_, value, _)| *value);
+    let least = values.fold(f64::INFINITY, f64::min);
+    let line = |name: String, dash: &'static [f64], places: [(f64, f64); 2]| Curve {
+        name,
+        stroke: Stroke::solid(GREY, FRAME_LINE).dashed(dash),
+        places: places.to_vec(),
+        errors: Vec::new(),
+    };
+    let asked = result.subject.family.levels().iter();
+    let own = asked.filter(|one| one.measure == measure.name);
+    let lines = own.map(|one| {
+        let name = format!("level {}", number(one.level));
+        line(name, LEVEL, [(from, one.level), (to, one.level)])
+    });
+    let of_measure = crossings(result).filter(|one| one.asked.measure == measure.name);
+    let drops = of_measure.map(|one| {
+        let places = [(one.value, one.asked.level), (one.value, least)];
+        line(String::new(), DROP, places)
+    });
+    lines.chain(drops).collect()
+}
+
 /// A panel each; `None` without a measure.
 fn draw(result: &SweepResult, all: &[Along], (height, print): (f64, &Print<'_>)) -> Drawn {
     let track = |one: &Along| {
@@ -94,29 +140,40 @@ fn draw(result: &SweepResult, all: &[Along], (height, print): (f64, &Print<'_>))
             format!(" [{}]", one.unit)
         };
         let errors: Vec<f64> = values.clone().map(|(_, _, error)| *error).collect();
+        let mut curves = vec![Curve {
+            name: String::new(),
+            stroke: Stroke::curve(0),
+            places: values.map(|(at, value, _)| (*at, *value)).collect(),
+            errors: errors.clone(),
+        }];
+        curves.extend(levels(result, one));
         Track {
             title: symbols::plain(&format!("{}{unit}", one.name)),
-            is_logarithmic: false,
+            is_logarithmic: one.is_over_decades(),
             has_zero: false,
             least: errors
                 .iter()
                 .fold(one.least, |least, error| least.max(ERRORS * error)),
             share: 1.0,
-            curves: vec![Curve {
-                name: String::new(),
-                stroke: Stroke::curve(0),
-                places: values.map(|(at, value, _)| (*at, *value)).collect(),
-                errors,
-            }],
+            curves,
         }
     };
     let tracks: Vec<Track> = all.iter().map(track).collect();
     let names: Vec<&str> = all.iter().map(|one| one.name.as_str()).collect();
     let parameter = result.subject.family.parameter();
-    let seen = format!(
+    let mut seen = format!(
         "Measures of the steady state over {parameter}, each with the band of its error: {}.",
         names.join(", ")
     );
+    for crossing in crossings(result).filter(|one| names.contains(&one.asked.measure.as_str())) {
+        let way = if crossing.rises { "rises" } else { "falls" };
+        let [value, error] = [crossing.value, crossing.error].map(number);
+        let (measure, level) = (&crossing.asked.measure, number(crossing.asked.level));
+        let label = &crossing.label;
+        seen += &format!(
+            " {label}: {measure} {way} through {level} at {parameter} = {value} ± {error}."
+        );
+    }
     let rows = all.iter().flat_map(|one| {
         one.values.iter().map(|&(at, value, error)| {
             let [at, value, error] = [at, value, error].map(number);
