@@ -1,4 +1,4 @@
-//! The shortest sweep: where does the density of x change its topology? The README shows this program.
+//! The shortest sweep: where does the density of x change its topology? docs/library.md shows this program.
 //!
 //! Run with `cargo run --release --example bifurcations`.
 

@@ -2,7 +2,7 @@
 //! what is said of mistakes; a stored run opened again.
 //!
 //! Run with `cargo run --release --example sweep_file [FOLDER]`, where FOLDER is for the run that the job leaves, or
-//! has it from an earlier time. The README shows the middle of this program.
+//! has it from an earlier time. docs/library.md shows the middle of this program.
 
 #![allow(clippy::print_stdout)] // An example talks to its reader.
 

@@ -130,7 +130,7 @@ pub enum RunError {
     Export {
         /// The file.
         path: PathBuf,
-        /// What the format's library says.
+        /// What it cannot hold.
         message: String,
     },
     /// A folder without shards.

@@ -1,4 +1,4 @@
-//! Exports, read back by the same libraries and byte by byte.
+//! Exports, read back by a library of the format and byte by byte.
 
 use super::*;
 use crate::continuation::measure::{DEVIATION, MEAN};
@@ -88,6 +88,25 @@ fn netcdf_holds_every_array_with_its_dimensions() {
     assert_eq!((read("mean_y"), read("sd_y")), (vec![0.5; 2], vec![2.0; 2]));
     assert_eq!(read("sd_y_error"), [0.25; 2]);
     assert!(read("mean_y_error").iter().all(|error| error.is_nan()));
+}
+
+#[test]
+fn netcdf_says_what_it_cannot_hold() {
+    let array = |name: &str, values: Vec<f64>| Array::line(name, values, String::new());
+    let twice = Array {
+        dimensions: vec![("x".to_owned(), 1)],
+        ..array("other", vec![0.0])
+    };
+    for (second, word) in [(array("x", vec![0.0; 2]), "`x`"), (twice, "two lengths")] {
+        let data = DataSet {
+            title: String::new(),
+            arrays: vec![array("x", vec![0.0; 2]), second],
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let error = netcdf::write(&data, &folder.path().join("export.nc")).unwrap_err();
+        assert!(error.to_string().contains(word), "{error}");
+        assert_eq!(folder.path().read_dir().unwrap().count(), 0);
+    }
 }
 
 #[test]
