@@ -214,8 +214,10 @@ impl StoredArray {
             lengths.try_fold(NUMBER, |product, length| product.checked_mul(*length))
         };
         let (whole, part) = (product(&self.chunk), product(&self.chunk[1..]));
-        let (Some(part), true) = (part, whole == Some(file.metadata()?.len())) else {
-            let words = format!("the chunk {} has another length", name.display());
+        let found = file.metadata()?.len();
+        let (Some(part), true) = (part, whole == Some(found)) else {
+            let name = name.display();
+            let words = format!("the chunk {name} has another length, {found} bytes");
             return Err(Error::other(words));
         };
         let mut bytes = Vec::new();

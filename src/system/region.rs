@@ -69,6 +69,14 @@ pub enum RegionFault {
 }
 
 impl RegionFault {
+    /// What is allowed there.
+    pub(crate) fn allowed(&self) -> Option<String> {
+        match self {
+            Self::Formula(fault) => fault.allowed(),
+            _ => None,
+        }
+    }
+
     /// What to write instead.
     pub fn remedy(&self) -> Option<String> {
         match self {

@@ -234,6 +234,10 @@ fn diagnostic(reader: &Reader<'_>, one: &Given, error: &RegionError) -> Diagnost
         }
         None => diagnostic.at(&one.place, "this region"),
     };
+    let diagnostic = match error.fault.allowed() {
+        Some(allowed) => diagnostic.allowed(allowed),
+        None => diagnostic,
+    };
     match error.fault.remedy() {
         Some(remedy) => diagnostic.remedy(remedy),
         None => diagnostic,
