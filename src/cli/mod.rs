@@ -28,6 +28,7 @@ mod systems;
 mod terminal;
 mod verify;
 
+use std::error::Error as _;
 use std::io::{self, IsTerminal as _, Write as _};
 use std::path::Path;
 use std::process::ExitCode;
@@ -252,6 +253,16 @@ const PATIENCE: Duration = Duration::from_secs(1);
 
 /// A sweep that is ready to run; says on stderr which part of its preparation takes longer than a second.
 fn prepared(settings: Settings, quiet: bool) -> Result<Sweep, Report> {
+    // The preparation runs on the threads of the process, which would otherwise be made when they are first asked for,
+    // where there is no way to refuse. That they are there already has no source.
+    if let Err(error) = rayon::ThreadPoolBuilder::new().build_global()
+        && error.source().is_some()
+    {
+        let found = Diagnostic::new(format!("cannot start the threads: {error}"));
+        return Err(found
+            .remedy("a higher limit on processes (`ulimit -u`)")
+            .into());
+    }
     let (part, parts) = mpsc::channel::<String>();
     let told = move || {
         let mut words = String::new();
