@@ -2,7 +2,8 @@
 //!
 //! The number is a smooth function of the parameter with a known error at every value, so its crossing is the root of
 //! the polynomial through the values around: of its logarithm where it is positive, because rates and times change by
-//! orders of magnitude. The error of the root is what one value less changes, and the number's own error over its slope.
+//! orders of magnitude. The error of the root is what one value less changes, and the number's own error over its
+//! slope.
 
 use super::Point;
 use super::doubt::{BifurcationStatus, Doubt, status_of};

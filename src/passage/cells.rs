@@ -100,10 +100,10 @@ pub(super) fn cells(
     })
 }
 
-/// Even cells with a face on each border, and some beyond it, so that what cells do changes evenly with their number; and
-/// with faces on planes at which the drift is not smooth, which come first. Where all of them cannot be on faces, the
-/// width is the one near what was asked for at which they are nearest to them. An end is either a border (`marked`), an
-/// end of the sweep's cells (`whole`), or anywhere beyond what is kept.
+/// Even cells with a face on each border, and some beyond it, so that what cells do changes evenly with their number;
+/// and with faces on planes at which the drift is not smooth, which come first. Where all of them cannot be on faces,
+/// the width is the one near what was asked for at which they are nearest to them. An end is either a border
+/// (`marked`), an end of the sweep's cells (`whole`), or anywhere beyond what is kept.
 fn with_faces(
     [from, to]: [f64; 2],
     count: usize,

@@ -1,6 +1,5 @@
 //! Starts that are spread as the steady state is, and what the errors of its density do to numbers of a passage.
 
-use super::solve::Question;
 use super::start::at_nodes_of;
 use super::{Passage, Start};
 use crate::density::Roughness;
@@ -28,10 +27,11 @@ impl KnownDensity<'_> {
 
 /// A start that is spread as a density with errors of its own.
 pub(super) struct DensityStart<'a> {
-    question: &'a Question<'a>,
     density: KnownDensity<'a>,
     changes: &'a [f64],
     passage: &'a Passage,
+    /// The cells of the density.
+    space: &'a CellSpace,
     /// The cells on which the passage is solved, and which of them are kept.
     cells: (&'a CellSpace, &'a [bool]),
 }
@@ -39,15 +39,16 @@ pub(super) struct DensityStart<'a> {
 impl<'a> DensityStart<'a> {
     /// `None` where the start is a state, or its density has all its digits.
     pub(super) fn new(
-        question: &'a Question<'a>,
+        passage: &'a Passage,
+        density: KnownDensity<'a>,
+        space: &'a CellSpace,
         cells: (&'a CellSpace, &'a [bool]),
     ) -> Option<Self> {
-        let density = question.density?;
-        matches!(question.passage.start, Start::Density(_)).then_some(Self {
-            question,
+        matches!(passage.start, Start::Density(_)).then_some(Self {
             density,
             changes: density.changes?,
-            passage: question.passage,
+            passage,
+            space,
             cells,
         })
     }
@@ -55,7 +56,7 @@ impl<'a> DensityStart<'a> {
     /// Error of the average over the start of a field that is known at the kept cells: what the second discretisation
     /// changes, and what its changes would do were those of neighbouring layers of cells independent.
     pub(super) fn error(&self, field: &[f64]) -> f64 {
-        let space = self.question.space;
+        let space = self.space;
         let field = at_nodes_of(space, self.cells, &self.passage.until, field);
         let starts = |cell: usize| self.passage.start_level(&space.node(cell)) < 0.0;
         let inside = |(cell, value): (usize, Option<f64>)| value.filter(|_| starts(cell));

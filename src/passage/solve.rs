@@ -76,7 +76,10 @@ impl Question<'_> {
             None => start.clone(),
         };
         let mut solver = AbsorbingSolver::new(&space, *self.rates, self.cancellation);
-        let of_density = DensityStart::new(self, (&space, &full.kept));
+        let cells = (&space, full.kept.as_slice());
+        let of_density = self
+            .density
+            .and_then(|density| DensityStart::new(self.passage, density, self.space, cells));
         let starts = [start.as_slice(), &coarse];
         let mut both = moments(
             &mut solver,
@@ -99,8 +102,8 @@ impl Question<'_> {
         Ok((both, work))
     }
 
-    /// The weights of the cells at the start, Σ = 1, by polynomials through so many nodes an axis; of a steady state with
-    /// these unknowns.
+    /// The weights of the cells at the start, Σ = 1, by polynomials through so many nodes an axis; of a steady state
+    /// with these unknowns.
     fn weights(
         &self,
         space: &CellSpace,

@@ -1,7 +1,8 @@
-//! A start that is spread as a density: its mass in a region, brought from the cells of the density to those of a passage.
+//! A start that is spread as a density: its mass in a region, brought from the cells of the density to those of a
+//! passage.
 //!
-//! Cells that the region's border cuts are integrated up to it: along the axis that is steepest across the border to the
-//! place where each line crosses it, over lines that lie close to each other.
+//! Cells that the region's border cuts are integrated up to it: along the axis that is steepest across the border to
+//! the place where each line crosses it, over lines that lie close to each other.
 
 use super::start::{AtCoordinate as _, AxisWeights, NODES, add_state, along, each};
 use crate::MAX_DIMENSION;

@@ -60,7 +60,8 @@ pub(super) fn each(space: &CellSpace, along: &[AxisWeights], mut visit: impl FnM
     }
 }
 
-/// Visits the nodes around a state that are kept, with the weights of interpolation there: numbers of cells, and weights.
+/// Visits the nodes around a state that are kept, with the weights of interpolation there: numbers of cells, and
+/// weights.
 /// `false` where there are none.
 fn around(
     space: &CellSpace,

@@ -17,7 +17,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("density", &["bytes", "system", "space"]),
     ("generator", &["system", "space", "density"]),
     ("stationary", &["cancellation", "space", "sampling"]),
-    ("passage", &["cancellation", "system", "space", "generator", "stationary"]),
+    ("passage", &["cancellation", "system", "space", "density", "generator", "stationary"]),
     ("topology", &["space", "density"]),
     ("continuation", &["cancellation", "system", "space", "density", "topology", "bytes"]),
     ("method", &[
