@@ -6,7 +6,7 @@ use std::io;
 use std::path::Path;
 
 use crate::continuation::evenly_spaced;
-use crate::method::{Cost, GeneratorCost, MonteCarloCost, SgcmCost};
+use crate::method::{Cost, GeneratorCost, MonteCarloCost, SgcmCost, StepChoice};
 use crate::stationary::generator::RateError;
 use crate::sweep_file::{MethodKind, Sweep, bytes_in_words, machine_memory};
 
@@ -123,7 +123,20 @@ fn monte_carlo_costs(spec: &Sweep, cost: &MonteCarloCost) -> Vec<String> {
             spec.settings.method.monte_carlo.error
         ),
     };
-    vec![format!("memory: {}", bytes_in_words(cost.bytes)), steps]
+    let mut costs = vec![format!("memory: {}", bytes_in_words(cost.bytes)), steps];
+    let passages = spec.problem.family().passages().len();
+    if passages > 0 {
+        let options = &spec.settings.method.monte_carlo;
+        let seconds = match options.longest_passage {
+            StepChoice::Auto => format!(", at most {:.0} s", MonteCarloCost::PASSAGE_SECONDS),
+            StepChoice::Fixed(_) => String::new(),
+        };
+        let paths = options.passages;
+        costs.push(format!(
+            "passages: {passages} a point, {paths} paths{seconds} each"
+        ));
+    }
+    costs
 }
 
 /// How many points, and where the first lie.

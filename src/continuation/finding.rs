@@ -178,6 +178,15 @@ pub enum Finding {
         /// Why.
         fault: PassageFault,
     },
+    /// Paths of a passage still went on when they were given up.
+    PassageCut {
+        /// Its number among those that were asked for.
+        passage: usize,
+        /// Share of the paths.
+        share: f64,
+        /// When they were given up.
+        longest: f64,
+    },
     /// Sentences of a stored run that has no numbers for them.
     Told(String),
 }
@@ -198,17 +207,23 @@ pub enum PassageFault {
     Never,
     /// The equations of the passage were not solved.
     Unsolved,
+    /// Hardly a path entered the region in the time that it had.
+    Rare,
+    /// Paths run away without entering the region.
+    RunsAway,
 }
 
 impl PassageFault {
     /// All of them, with their codes.
-    const CODES: [(Self, &'static str); 6] = [
+    const CODES: [(Self, &'static str); 8] = [
         (Self::Nowhere, "passage-nowhere"),
         (Self::Everywhere, "passage-everywhere"),
         (Self::Start, "passage-start"),
         (Self::NoDensity, "passage-no-density"),
         (Self::Never, "passage-never"),
         (Self::Unsolved, "passage-unsolved"),
+        (Self::Rare, "passage-rare"),
+        (Self::RunsAway, "passage-runs-away"),
     ];
 
     fn code(self) -> &'static str {
@@ -301,6 +316,11 @@ impl Finding {
                 plain("few-replicates", &[usable as f64, wanted as f64])
             }
             Self::NoPassage { passage, fault } => plain(fault.code(), &[passage as f64]),
+            Self::PassageCut {
+                passage,
+                share,
+                longest,
+            } => plain("passage-cut", &[passage as f64, share, longest]),
             Self::Told(_) => plain("told", &[]),
         }
     }
@@ -352,6 +372,11 @@ impl Finding {
             ("few-replicates", None, &[usable, wanted]) => Self::FewReplicates {
                 usable: usable as usize,
                 wanted: wanted as usize,
+            },
+            ("passage-cut", None, &[passage, share, longest]) => Self::PassageCut {
+                passage: passage as usize,
+                share,
+                longest,
             },
             (code, None, &[passage]) => Self::NoPassage {
                 passage: passage as usize,

@@ -24,6 +24,9 @@ pub(super) enum Purpose {
     Ensemble = 4,
     Starts = 5,
     Path = 6,
+    Passage = 7,
+    PassageStart = 8,
+    Chance = 9,
 }
 
 /// Key of one batch's stream.

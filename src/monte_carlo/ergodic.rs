@@ -108,11 +108,7 @@ pub fn ergodic(
         stepper: Stepper::new(system, run.integrator, run.time_step, cancellation),
         lookup: &lookup,
         limits: Limits::new(space),
-        starts: if starts.is_empty() {
-            Starts::Box(whole(space))
-        } else {
-            Starts::Among(starts)
-        },
+        starts: Starts::among(starts, space),
         purpose: Purpose::Ergodic,
         run,
     };
@@ -125,6 +121,39 @@ pub(super) enum Starts<'a> {
     Among(&'a [Vec<f64>]),
     /// Uniform in a box, one range an axis.
     Box(Vec<(f64, f64)>),
+}
+
+impl Starts<'_> {
+    /// Among these states; without any, all over Ω.
+    pub(super) fn among<'s>(states: &'s [Vec<f64>], space: &CellSpace) -> Starts<'s> {
+        if states.is_empty() {
+            Starts::Box(whole(space))
+        } else {
+            Starts::Among(states)
+        }
+    }
+
+    /// The states in which the trajectories of a batch start.
+    pub(super) fn batch(&self, seed: u64, number: usize, dimension: usize) -> Vec<Lanes> {
+        let mut states = vec![[0.0; LANES]; dimension];
+        for lane in 0..LANES {
+            let trajectory = (number * LANES + lane) as u64;
+            // Offset, so that no start is shared with the trajectories that measured the relaxation.
+            let point = random_point(seed, (1 << 40) + trajectory, dimension);
+            for (axis, lanes) in states.iter_mut().enumerate() {
+                lanes[lane] = match self {
+                    Starts::Among(states) => {
+                        states[(point[0] * states.len() as f64) as usize][axis]
+                    }
+                    Starts::Box(ranges) => {
+                        let (from, to) = ranges[axis];
+                        from + point[axis] * (to - from)
+                    }
+                };
+            }
+        }
+        states
+    }
 }
 
 /// Ω as a box.
@@ -162,32 +191,13 @@ impl Worker<'_> {
         Ok(tally)
     }
 
-    fn start(&self, number: usize) -> Vec<Lanes> {
-        let dimension = self.limits.dimension();
-        let mut states = vec![[0.0; LANES]; dimension];
-        for lane in 0..LANES {
-            let trajectory = (number * LANES + lane) as u64;
-            // Offset, so that no start is shared with the trajectories that measured the relaxation.
-            let point = random_point(self.run.seed, (1 << 40) + trajectory, dimension);
-            for (axis, lanes) in states.iter_mut().enumerate() {
-                lanes[lane] = match &self.starts {
-                    Starts::Among(states) => {
-                        states[(point[0] * states.len() as f64) as usize][axis]
-                    }
-                    Starts::Box(ranges) => {
-                        let (from, to) = ranges[axis];
-                        from + point[axis] * (to - from)
-                    }
-                };
-            }
-        }
-        states
-    }
-
     fn batch(&self, number: usize, tally: &mut Tally) -> Result<(), Cancelled> {
         let run = self.run;
         let key = key(run.seed, self.purpose, number as u64);
-        let mut batch = Batch::new(self.start(number), key);
+        let mut batch = Batch::new(
+            self.starts.batch(run.seed, number, self.limits.dimension()),
+            key,
+        );
         let stretch = run.stride * LOOKS_A_CHECK;
         let mut burn_in = (run.burn_in / run.time_step).ceil() as usize;
         burn_in += burn_in % 2;

@@ -158,6 +158,21 @@ pub(crate) fn automatic_step(
     Ok((time_step, bias))
 }
 
+/// Normals of steps from those of steps half as long: ΔW over a step is the sum over its two halves.
+pub(super) fn over_two_steps(normals: &[Lanes], channels: usize) -> Vec<Lanes> {
+    let mut sums = vec![[0.0; LANES]; normals.len() / 2];
+    for (step, rows) in normals.chunks(2 * channels.max(1)).enumerate() {
+        for channel in 0..channels {
+            let sum = &mut sums[step * channels + channel];
+            for (lane, sum) in sum.iter_mut().enumerate() {
+                let both = rows[channel][lane] + rows[channels + channel][lane];
+                *sum = both * std::f64::consts::FRAC_1_SQRT_2;
+            }
+        }
+    }
+    sums
+}
+
 /// Both paths and what is compared.
 struct Comparison<'a> {
     coarse: Stepper<'a>,
@@ -245,17 +260,7 @@ impl<'a> Comparison<'a> {
         let channels = self.channels;
         let mut normals = vec![[0.0; LANES]; 2 * LOOK * channels];
         stream.fill(&mut normals);
-        // ΔW over a coarse step is the sum over its two halves.
-        let mut sums = vec![[0.0; LANES]; LOOK * channels];
-        for (step, rows) in normals.chunks(2 * channels.max(1)).enumerate() {
-            for channel in 0..channels {
-                let sum = &mut sums[step * channels + channel];
-                for (lane, sum) in sum.iter_mut().enumerate() {
-                    let both = rows[channel][lane] + rows[channels + channel][lane];
-                    *sum = both * std::f64::consts::FRAC_1_SQRT_2;
-                }
-            }
-        }
+        let sums = over_two_steps(&normals, channels);
         self.fine.advance_with(fine, 2 * first, 2 * LOOK, &normals);
         self.coarse.advance_with(coarse, first, LOOK, &sums);
     }

@@ -1,8 +1,8 @@
 //! Free trajectories as a reference: densities by counting visits, without a cell map and without a generator.
 //!
 //! [`relaxation()`] measures how long a system remembers; [`ergodic()`] averages a fixed number of long trajectories
-//! over time, [`ensemble()`] counts many at one time; [`sample_path`] follows a single one, to be looked at;
-//! `step_bias` finds what a time step does to the density.
+//! over time, [`ensemble()`] counts many at one time; [`first_passages`] follows paths until they enter a region;
+//! [`sample_path`] follows a single one, to be looked at; `step_bias` finds what a time step does to the density.
 //!
 //! # Decisions
 //!
@@ -14,18 +14,23 @@ mod batch;
 mod ensemble;
 mod ergodic;
 mod estimate;
+mod exit_times;
 mod halving;
 mod lookup;
+mod passage;
 mod path;
 mod relaxation;
 #[cfg(test)]
 mod tests;
+mod walk;
 
 pub use ensemble::{EnsembleRun, ensemble};
 pub use ergodic::{ErgodicRun, ergodic};
 pub(crate) use estimate::BLOCKS;
 pub use estimate::Estimate;
+pub use exit_times::{ExitNumber, ExitTimes};
 pub(crate) use halving::{BiasedQuantity, StepBias, TOLERATED_BIAS, automatic_step, step_bias};
+pub use passage::{PassageRun, PassageStart, SteadyStart, first_passages};
 pub use path::{PathRun, SamplePath, sample_path};
 pub use relaxation::{Relaxation, relaxation};
 
@@ -49,6 +54,9 @@ pub enum MonteCarloError {
     /// A start that does not have a finite value for each axis.
     #[error("a state to start from does not have one finite value an axis")]
     Start,
+    /// No path can start: the state is inside the region that ends it, or the region to start from is hardly visited.
+    #[error("no path starts outside of the region that ends it")]
+    NoStart,
     /// The system and the cell space differ in dimension.
     #[error("the system has {system} axes, the cell space {space}")]
     Dimension {

@@ -97,6 +97,7 @@ impl Layout {
             "compare.tex",
             "distances.csv",
             "agreement.csv",
+            "measures.csv",
             "accuracy.csv",
             "densities.csv",
             "figures",

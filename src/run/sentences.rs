@@ -200,15 +200,30 @@ fn solve_in_words(family: &Family, finding: &Finding) -> String {
             format!("the sampling error rests on {usable} of {wanted} groups of samples")
         }
         Finding::NoPassage { passage, fault } => passage_in_words(family, passage, fault),
+        Finding::PassageCut {
+            passage,
+            share,
+            longest,
+        } => {
+            let name = passage_name(family, passage);
+            format!(
+                "passage `{name}`: {:.2} % of the paths still went on at {longest:.4}, when they were given up; what comes after is taken for exponential",
+                100.0 * share
+            )
+        }
         Finding::Told(ref text) => text.clone(),
         // The others are worded above.
         _ => finding.kind().0.to_owned(),
     }
 }
 
+fn passage_name(family: &Family, passage: usize) -> &str {
+    family.passages().get(passage).map_or("", |one| &one.name)
+}
+
 /// Why a passage has no numbers, and what to do.
 fn passage_in_words(family: &Family, passage: usize, fault: PassageFault) -> String {
-    let name = family.passages().get(passage).map_or("", |one| &one.name);
+    let name = passage_name(family, passage);
     let why = match fault {
         PassageFault::Nowhere => {
             "no cell is inside the region that is waited for: widen the ranges until it is, or use more cells"
@@ -225,6 +240,12 @@ fn passage_in_words(family: &Family, passage: usize, fault: PassageFault) -> Str
         PassageFault::Never => "the region that is waited for is never entered from its start",
         PassageFault::Unsolved => {
             "its equations were not solved: use more cells, or give it more memory (`method.memory_limit`)"
+        }
+        PassageFault::Rare => {
+            "hardly a path entered the region that is waited for: give them more time (`method.longest_passage`), or use the generator"
+        }
+        PassageFault::RunsAway => {
+            "paths run away without entering the region that is waited for, so that it has no mean time"
         }
     };
     format!("passage `{name}` has no numbers: {why}")

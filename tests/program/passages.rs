@@ -228,3 +228,85 @@ fn wrong_questions_are_refused_with_their_place_and_a_remedy() {
         room.refused("sweep a.toml", &words);
     }
 }
+
+/// The numbers of passages of a row, each with its error.
+fn numbers(row: &crate::common::table::Row) -> Vec<(f64, f64)> {
+    let names = [
+        "mean",
+        "sd",
+        "rate",
+        "0.5_survival",
+        "1_survival",
+        "0.5_quantile",
+    ];
+    let leave = names.map(|name| format!("leave_{name}"));
+    let between = ["between_mean", "between_sd", "between_rate"].map(str::to_owned);
+    let all = leave.into_iter().chain(between);
+    let one = |name: String| (row.number(&name), row.number(&format!("{name}_error")));
+    all.map(one).collect()
+}
+
+#[test]
+fn monte_carlo_and_a_comparison_give_the_numbers_of_the_generator() {
+    let room = Room::new();
+    let few = "\nerror = 0.02\npassages = 8192\n[figures]\nat = [0.5]\n";
+    let by = |kind: &str| FILE.replace("[figures]\n", &format!("[method]\nkind = \"{kind}\"{few}"));
+    room.write("a.toml", by("generator"));
+    room.write("b.toml", by("monte-carlo"));
+    assert_says(
+        &room.done("check b.toml").out,
+        &["passages: 2 a point, 8192 paths"],
+    );
+    room.done("sweep a.toml --out a --points 2");
+    room.done("sweep b.toml --out b --points 2");
+    let rows = [room.table("a/points.csv").0, room.table("b/points.csv").0];
+    for (exact, sampled) in rows[0].iter().zip(&rows[1]) {
+        assert_eq!(&sampled["findings"], "");
+        for (exact, sampled) in numbers(exact).into_iter().zip(numbers(sampled)) {
+            let off = (exact.0 - sampled.0).abs() / sampled.1.hypot(exact.1);
+            println!("{exact:?} {sampled:?} off by {off:.2}");
+            assert!(
+                off < 4.0 && sampled.1 < 0.05 * sampled.0,
+                "{exact:?} {sampled:?}"
+            );
+        }
+    }
+    let printed = room.done("compare a.toml --out c").out;
+    assert_says(&printed, &["Times of first passage", "leave_mean"]);
+    let table = room.table("c/measures.csv").0;
+    let row = table
+        .iter()
+        .find(|row| &row["measure"] == "leave_mean")
+        .unwrap();
+    assert!(row.number("errors_apart").abs() < 4.0);
+    assert_eq!(
+        row.number("generator_error"),
+        rows[0][0].number("leave_mean_error")
+    );
+    assert_eq!(row.number("monte_carlo"), rows[1][0].number("leave_mean"));
+}
+
+#[test]
+fn paths_that_go_on_for_too_long_are_told() {
+    let room = Room::new();
+    let method = "[method]\nkind = \"monte-carlo\"\nerror = 0.05\npassages = 1024\nlongest_passage = 2.0\n[figures]";
+    room.write("a.toml", FILE.replace("[figures]", method));
+    let printed = room.done("sweep a.toml --out run --points 2");
+    assert_says(
+        &printed.text(),
+        &["still went on at 2.0", "passage `leave`"],
+    );
+    let row = &room.table("run/points.csv").0[0];
+    assert_says(&row["findings"], &["passage-cut"]);
+    let [mean, error] = row.numbers(["leave_mean", "leave_mean_error"]);
+    assert!((mean - exact(0.5)).abs() < 4.0 * error && error < 0.1 * mean);
+    room.write(
+        "a.toml",
+        FILE.replace("[figures]", &method.replace("2.0", "0.01")),
+    );
+    let printed = room.solved("sweep a.toml --out again --points 2");
+    assert_says(
+        &printed.text(),
+        &["hardly a path entered", "method.longest_passage"],
+    );
+}

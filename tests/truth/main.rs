@@ -15,3 +15,4 @@ mod location;
 mod passage_starts;
 mod passages;
 mod random_systems;
+mod sampled_passages;

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use crate::cancellation::Cancellation;
-use crate::continuation::{Finding, Measure, MeasureColumn, PassageFault, SolveReport};
+use crate::continuation::{Finding, Measure, PassageFault, SolveReport};
 use crate::generator::GeneratorOptions;
-use crate::method::measures::columns_of_passage;
+use crate::method::measures::measures_of_passage;
 use crate::method::{GeneratorMethodOptions, MethodError, Problem};
-use crate::passage::{KnownDensity, Passage, PassageError, Timed, WithError, timed};
+use crate::passage::{KnownDensity, Passage, PassageError, Timed, timed};
 use crate::stationary::generator::{RateError, RateOptions};
 use crate::system::{PassageQuestion, System};
 
@@ -67,13 +67,7 @@ pub(super) fn add_passages(
 fn measures(question: &PassageQuestion, timed: &Timed) -> Vec<Measure> {
     let moments = [timed.mean, timed.deviation, timed.rate];
     let more = timed.survival.iter().chain(&timed.quantiles);
-    let numbers = moments.into_iter().chain(more.copied());
-    let pairs = columns_of_passage(question).into_iter().zip(numbers);
-    let one = |(column, (value, error)): (MeasureColumn, WithError)| Measure {
-        error: Some(error),
-        ..column.kind.measure(&column.of, value)
-    };
-    pairs.map(one).collect()
+    measures_of_passage(question, moments.into_iter().chain(more.copied()))
 }
 
 fn fault(error: &PassageError) -> PassageFault {

@@ -4,7 +4,7 @@ mod balance;
 mod entropy;
 mod passage;
 
-pub(super) use passage::columns as columns_of_passage;
+pub(super) use passage::measures as measures_of_passage;
 pub(crate) use passage::passage_columns;
 
 pub(super) use balance::broken;

@@ -3,7 +3,8 @@
 use crate::continuation::measure::{
     PASSAGE_DEVIATION, PASSAGE_MEAN, PASSAGE_QUANTILE, PASSAGE_RATE, PASSAGE_SURVIVAL,
 };
-use crate::continuation::{MeasureColumn, MeasureKind};
+use crate::continuation::{Measure, MeasureColumn, MeasureKind};
+use crate::passage::WithError;
 use crate::system::{Family, PassageQuestion};
 
 /// The columns of all passages.
@@ -24,4 +25,17 @@ pub(in crate::method) fn columns(question: &PassageQuestion) -> Vec<MeasureColum
         .iter()
         .map(|share| at(PASSAGE_QUANTILE, share));
     moments.into_iter().chain(times).chain(shares).collect()
+}
+
+/// The numbers of a passage as measures, from the order of its columns.
+pub(in crate::method) fn measures(
+    question: &PassageQuestion,
+    numbers: impl Iterator<Item = WithError>,
+) -> Vec<Measure> {
+    let pairs = columns(question).into_iter().zip(numbers);
+    let one = |(column, (value, error)): (MeasureColumn, WithError)| Measure {
+        error: Some(error),
+        ..column.kind.measure(&column.of, value)
+    };
+    pairs.map(one).collect()
 }

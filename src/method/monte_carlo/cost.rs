@@ -8,6 +8,9 @@ use crate::monte_carlo::BLOCKS;
 /// factor of two.
 const STEPS_A_SECOND: f64 = 3e8;
 
+/// The same of paths that look at the border of a region after each step (0.5e8 to 1e8 measured).
+const PASSAGE_STEPS_A_SECOND: f64 = 7e7;
+
 /// What a point costs by Monte Carlo.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MonteCarloCost {
@@ -18,6 +21,10 @@ pub struct MonteCarloCost {
 }
 
 impl MonteCarloCost {
+    /// Seconds of one passage at most, where its longest time is left to the program; good to a factor of two.
+    pub(crate) const PASSAGE_SECONDS: f64 =
+        MonteCarloOptions::PASSAGE_STEPS / PASSAGE_STEPS_A_SECOND;
+
     /// Seconds on two ordinary cores, good to a factor of two, where the steps are known.
     pub(crate) fn seconds(&self) -> Option<f64> {
         self.steps.map(|steps| steps / STEPS_A_SECOND)

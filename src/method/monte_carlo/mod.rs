@@ -2,6 +2,7 @@
 
 mod cost;
 mod options;
+mod passages;
 mod plan;
 mod source;
 

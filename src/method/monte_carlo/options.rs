@@ -31,6 +31,10 @@ pub struct MonteCarloOptions {
     pub error: f64,
     /// Number of trajectories.
     pub trajectories: StepChoice,
+    /// Paths that are followed for each passage that is asked for.
+    pub passages: usize,
+    /// Time at which a path of a passage that still goes on is given up.
+    pub longest_passage: StepChoice,
     /// Seed of the random streams.
     pub seed: u64,
     /// Integrator of the trajectories.
@@ -43,6 +47,9 @@ pub struct MonteCarloOptions {
 impl MonteCarloOptions {
     /// It need not be checked: cells only count.
     pub(crate) const CELL_CHECK: CellCheck = CellCheck::Needless;
+
+    /// Integrator steps of the paths of a passage, at most, where nothing else is said.
+    pub(super) const PASSAGE_STEPS: f64 = 1e9;
 }
 
 impl Default for MonteCarloOptions {
@@ -55,6 +62,9 @@ impl Default for MonteCarloOptions {
             // About ten seconds for the paper's first example on two cores.
             error: 0.002,
             trajectories: StepChoice::Auto,
+            // A mean time of an exponential distribution to 0.8 %.
+            passages: 16_384,
+            longest_passage: StepChoice::Auto,
             seed: 1,
             integrator: Integrator::StochasticHeun,
             escape_limit: ESCAPE_LIMIT,

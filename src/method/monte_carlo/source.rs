@@ -1,10 +1,11 @@
 //! Free trajectories as a source of densities: the reference that shares neither cells' transitions nor solver with the
 //! other methods.
 
+use super::passages::Setting;
 use super::{Estimator, MonteCarloOptions, MonteCarloPlan};
 use crate::cancellation::Cancellation;
 use crate::continuation::measure::{ESCAPE_RATE, TIME_STEP_BIAS};
-use crate::continuation::{DensitySource, Finding, Session, Solution, Subject};
+use crate::continuation::{DensitySource, Finding, Session, Solution, Subject, Want};
 use crate::density::{EstimatedDensity, Moments};
 use crate::method::measures::{Cells, Others};
 use crate::method::problem::Maps;
@@ -76,10 +77,13 @@ impl MonteCarloSource {
         })
     }
 
-    /// The same trajectories for a share of the time during which states are counted; what was measured is not measured
-    /// again.
+    /// The same trajectories for a share of the time during which states are counted, for densities alone; what was
+    /// measured is not measured again.
     pub(crate) fn shortened(&self, share: f64) -> Self {
         let mut source = self.clone();
+        source.problem = self
+            .problem
+            .wanting(&Want::densities(self.problem.observables()));
         source.plan.length *= share;
         source.plan.error /= share.sqrt();
         source
@@ -139,7 +143,17 @@ impl MonteCarloSource {
     ) -> Result<(Solution<'static>, Estimate), MethodError> {
         let system = self.problem.family().at(value)?;
         let found = self.run(system.as_ref(), cancellation)?;
-        Ok((self.solution((value, system.as_ref()), &found)?, found))
+        let at = (value, system.as_ref());
+        let mut solution = self.solution(at, &found)?;
+        let setting = Setting {
+            problem: &self.problem,
+            options: &self.options,
+            plan: &self.plan,
+            states: &self.starts,
+        };
+        let is_steady = solution.report.status.is_resolved();
+        setting.add_passages(&mut solution.report, at, is_steady, cancellation)?;
+        Ok((solution, found))
     }
 
     fn densities(

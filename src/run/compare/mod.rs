@@ -1,10 +1,12 @@
 //! The tables of a comparison of methods, for programs in full and for people rounded.
 
+mod measures;
 mod people;
 mod rows;
 
 pub(crate) use people::compare_tables;
 
+use measures::measures_csv;
 use people::{compare_markdown, compare_tex};
 use rows::{accuracy_csv, agreement_csv, compare_csv, compare_json, densities_csv, distances_csv};
 
@@ -49,6 +51,7 @@ pub(crate) fn compare_files(run: &ComparedRun<'_>) -> Result<Vec<(String, String
         ("compare.json", compare_json(run)?),
         ("distances.csv", distances_csv(run)?),
         ("agreement.csv", agreement_csv(run)?),
+        ("measures.csv", measures_csv(run)?),
         ("accuracy.csv", accuracy_csv(run)?),
         ("densities.csv", densities_csv(run)?),
     ];

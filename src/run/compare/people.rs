@@ -2,7 +2,8 @@
 
 use super::rows::factorisations;
 use super::{ComparedRun, partner};
-use crate::compare::{ComparedValue, Distance, Method, Pair, Solved};
+use crate::compare::{ComparedValue, Distance, MeasurePair, Method, Pair, Solved};
+use crate::method::passage_columns;
 use crate::run::latex::escape;
 use crate::run::{format_number, format_with_error};
 
@@ -192,16 +193,58 @@ fn agreement(run: &ComparedRun<'_>) -> CompareTable {
     }
 }
 
-/// The tables: methods, total variation, Hellinger distance, agreement of generator and Monte Carlo.
+fn passages(run: &ComparedRun<'_>) -> CompareTable {
+    let parameter = run.family().parameter();
+    let header = [
+        parameter,
+        "number",
+        "generator",
+        "Monte Carlo",
+        "errors apart",
+    ];
+    let columns = passage_columns(run.family());
+    let in_words = |(value, error)| {
+        let (value, error) = format_with_error(value, error);
+        format!("{value} ± {error}")
+    };
+    let is_of_passage = |one: &MeasurePair| {
+        let mut columns = columns.iter();
+        columns.any(|column| column.kind.name(&column.of) == one.name)
+    };
+    let mut rows = Vec::new();
+    for value in &run.comparison.values {
+        for one in value.measures().into_iter().filter(is_of_passage) {
+            rows.push(vec![
+                format_number(value.value),
+                one.name.clone(),
+                in_words(one.generator),
+                in_words(one.monte_carlo),
+                format!("{:.1}", one.apart()),
+            ]);
+        }
+    }
+    CompareTable {
+        caption: "Times of first passage by generator and Monte Carlo".to_owned(),
+        header: header.map(str::to_owned).to_vec(),
+        rows,
+    }
+}
+
+/// The tables: methods, total variation, Hellinger distance, agreement of generator and Monte Carlo;
+/// passages where there are some.
 pub(crate) fn compare_tables(run: &ComparedRun<'_>) -> Vec<CompareTable> {
-    vec![
+    let mut tables = vec![
         methods(run),
         pairs(run, "Total variation", |pair| {
             &pair.distances.total_variation
         }),
         pairs(run, "Hellinger distance", |pair| &pair.distances.hellinger),
         agreement(run),
-    ]
+    ];
+    if !run.family().passages().is_empty() {
+        tables.push(passages(run));
+    }
+    tables
 }
 
 /// The tables as Markdown.

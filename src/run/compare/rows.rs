@@ -2,6 +2,7 @@
 
 use serde_json::json;
 
+use super::measures::measures_json;
 use super::{ComparedRun, partner};
 use crate::compare::{
     Accuracy, AccuracyPoint, Agreement, ComparedValue, Distance, Distances, Method, Pair,
@@ -334,6 +335,7 @@ pub(super) fn compare_json(run: &ComparedRun<'_>) -> Result<String, RunError> {
         "methods": methods(run).json(&records(run, |value| &value.solved)),
         "distances": distances(run).json(&records(run, |value| &value.pairs)),
         "agreement": agreement(run).json(&records(run, |value| &value.agreement)),
+        "measures": measures_json(run),
         "accuracy": accuracy(run).json(&measured(run)),
     });
     Ok(serde_json::to_string_pretty(&object)? + "\n")

@@ -88,19 +88,18 @@ fn ascending(given: Option<&Vec<f64>>) -> Vec<f64> {
     all
 }
 
-/// Passages are solved by the generator alone.
+/// The cell map of SGCM knows where a path is once a map step, and not when it has met a border.
 fn check_method(reader: &mut Reader<'_>, draft: &Draft) {
     let Some(first) = draft.passages.first() else {
         return;
     };
-    if draft.method.kind == MethodKind::Generator {
+    if draft.method.kind != MethodKind::Sgcm {
         return;
     }
-    let title = format!(
-        "times of first passage are worked out by `generator`, not by `{}`",
-        draft.method.kind.name()
-    );
-    let diagnostic = Diagnostic::new(title).remedy("set `method.kind = \"generator\"`");
+    let title =
+        "times of first passage are worked out by `generator` and `monte-carlo`, not by `sgcm`";
+    let remedy = "set `method.kind = \"generator\"`, or `\"monte-carlo\"`";
+    let diagnostic = Diagnostic::new(title).remedy(remedy);
     let entry = reader.entry(&["passage", &first.name]);
     reader.report(match entry {
         Some(entry) => diagnostic.at(&entry.key_place, "this passage"),

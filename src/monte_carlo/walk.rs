@@ -1,0 +1,199 @@
+//! Paths on their way to the border of a region, a batch at a time, each at an age of its own.
+//!
+//! Where noise acts on the region's level, a path may have been inside between two states that are outside: of a
+//! Brownian bridge that is so with probability exp(-2 a b/dt), with a and b the levels at both ends over the strength
+//! of the noise that acts on them there (E. Gobet, Stochastic Processes and their Applications 87, 2000). A path ends
+//! when the probability that it has not been inside falls below a random number of its own.
+
+use super::batch::{Limits, Purpose, key};
+use crate::sampling::{Stepper, mix, unit};
+use crate::space::CellSpace;
+use crate::system::{BoundQuantity, LANES, Lanes, System};
+
+/// Distance over which the slope of a level is taken, over the range of an axis.
+const SLOPE: f64 = 1e-7;
+
+/// The border of the region.
+pub(super) struct Border<'a> {
+    system: &'a dyn System,
+    pub(super) until: &'a BoundQuantity,
+    /// Axes with noise on which the level depends, and how far a state is moved along each to see its slope.
+    pub(super) noisy: Vec<(usize, f64)>,
+}
+
+impl<'a> Border<'a> {
+    pub(super) fn new(system: &'a dyn System, space: &CellSpace, until: &'a BoundQuantity) -> Self {
+        let axes = space.axes().iter().zip(until.states()).enumerate();
+        let noisy = axes.filter(|(axis, (_, matters))| **matters && system.is_noisy(*axis));
+        Self {
+            noisy: noisy
+                .map(|(number, (axis, _))| (number, SLOPE * (axis.to() - axis.from())))
+                .collect(),
+            system,
+            until,
+        }
+    }
+
+    /// Levels of a batch of states, and the root of the variance that noise gives each per unit of time.
+    pub(super) fn at(&self, states: &[Lanes]) -> (Lanes, Lanes) {
+        let levels = self.until.values(states);
+        let mut squares = [0.0; LANES];
+        if self.noisy.is_empty() {
+            return (levels, squares);
+        }
+        let mut moved = states.to_vec();
+        for &(axis, shift) in &self.noisy {
+            moved[axis].iter_mut().for_each(|value| *value += shift);
+            let beside = self.until.values(&moved);
+            moved[axis] = states[axis];
+            for noise in self.system.noises_on(axis) {
+                let amplitudes = noise.amplitudes(0.0, states);
+                for lane in 0..LANES {
+                    let slope = (beside[lane] - levels[lane]) / shift;
+                    squares[lane] += (slope * amplitudes[lane]).powi(2);
+                }
+            }
+        }
+        (levels, squares.map(f64::sqrt))
+    }
+}
+
+/// The random numbers of a path beside its noise.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Chance {
+    /// The path ends when the probability that it has not been inside falls below this.
+    unmet: f64,
+    /// Square of a standard normal, and a uniform number: when within a step it ends.
+    square: f64,
+    uniform: f64,
+}
+
+impl Chance {
+    pub(super) fn new(seed: u64, path: usize) -> Self {
+        let word = key(seed, Purpose::Chance, path as u64).word();
+        let [unmet, radius, angle, uniform] = [1, 2, 3, 4].map(|n| unit(mix(word.wrapping_add(n))));
+        let cosine = (std::f64::consts::TAU * angle).cos();
+        Self {
+            unmet,
+            square: -2.0 * (1.0 - radius).ln() * cosine * cosine,
+            uniform,
+        }
+    }
+
+    /// When, as a share of a step, Brownian motion from a > 0 to -b first meets 0, given that it ends there: `ratio` is
+    /// b/a, `spread` its variance over the step as a share of a²; without any it moves evenly. The odds of that share
+    /// have an inverse Gaussian distribution, drawn as by J. R. Michael, W. R. Schucany and R. W. Haas, The American
+    /// Statistician 30, 1976.
+    fn crossing(&self, ratio: f64, spread: f64) -> f64 {
+        let square = spread * self.square;
+        let least = 2.0 / (2.0 * ratio + square + (square * (square + 4.0 * ratio)).sqrt());
+        let is_least = self.uniform * (1.0 + ratio * least) <= 1.0;
+        let odds = if is_least {
+            least
+        } else {
+            1.0 / (ratio * ratio * least)
+        };
+        1.0 / (1.0 + 1.0 / odds)
+    }
+}
+
+/// Paths with one time step, all of a batch at different ages.
+pub(super) struct Walk<'a> {
+    border: &'a Border<'a>,
+    stepper: Stepper<'a>,
+    time_step: f64,
+    states: Vec<Lanes>,
+    levels: Lanes,
+    speeds: Lanes,
+    /// Probability that a path has not been inside between its states.
+    unmet: Lanes,
+    /// Steps since a path has started.
+    ages: [u64; LANES],
+    pub(super) going: [bool; LANES],
+    /// When it ended; infinite where it did not.
+    pub(super) times: Lanes,
+}
+
+impl<'a> Walk<'a> {
+    pub(super) fn new(border: &'a Border<'a>, stepper: Stepper<'a>, time_step: f64) -> Self {
+        Self {
+            border,
+            stepper,
+            time_step,
+            states: vec![[0.0; LANES]; border.system.dimension()],
+            levels: [0.0; LANES],
+            speeds: [0.0; LANES],
+            unmet: [1.0; LANES],
+            ages: [0; LANES],
+            going: [false; LANES],
+            times: [f64::INFINITY; LANES],
+        }
+    }
+
+    pub(super) fn start(&mut self, lane: usize, state: &[f64]) {
+        for (lanes, value) in self.states.iter_mut().zip(state) {
+            lanes[lane] = *value;
+        }
+        self.unmet[lane] = 1.0;
+        self.ages[lane] = 0;
+        self.going[lane] = true;
+        self.times[lane] = f64::INFINITY;
+    }
+
+    pub(super) fn step(&mut self, normals: &[Lanes], chances: &[Chance; LANES]) {
+        self.stepper.advance_with(&mut self.states, 0, 1, normals);
+        let before = (self.levels, self.speeds);
+        self.look();
+        for (lane, chance) in chances.iter().enumerate() {
+            if !self.going[lane] {
+                continue;
+            }
+            let from = (before.0[lane], before.1[lane]);
+            let to = (self.levels[lane], self.speeds[lane]);
+            let is_noisy = from.1 > 0.0 && to.1 > 0.0;
+            let units = if is_noisy { (from.1, to.1) } else { (1.0, 1.0) };
+            let (a, b) = (from.0 / units.0, to.0.abs() / units.1);
+            if is_noisy {
+                self.unmet[lane] *= -(-2.0 * a * b / self.time_step).exp_m1();
+            }
+            if to.0 < 0.0 || self.unmet[lane] < chance.unmet {
+                let spread = if is_noisy {
+                    self.time_step / (a * a)
+                } else {
+                    0.0
+                };
+                let share = if a > 0.0 {
+                    chance.crossing(b / a, spread)
+                } else {
+                    0.0
+                };
+                self.going[lane] = false;
+                self.times[lane] = (self.ages[lane] as f64 + share) * self.time_step;
+            }
+            self.ages[lane] += 1;
+        }
+    }
+
+    /// Looks at the border from where paths are.
+    pub(super) fn look(&mut self) {
+        (self.levels, self.speeds) = self.border.at(&self.states);
+    }
+
+    /// Gives up paths that have gone on for the longest time; says how many have run away.
+    pub(super) fn give_up(&mut self, longest: f64, limits: &Limits) -> usize {
+        let mut runaways = 0;
+        for lane in 0..LANES {
+            if self.times[lane] > longest {
+                self.times[lane] = f64::INFINITY;
+            }
+            if !self.going[lane] {
+                continue;
+            }
+            let state: Vec<f64> = self.states.iter().map(|lanes| lanes[lane]).collect();
+            let is_near = limits.hold(&state);
+            runaways += usize::from(!is_near);
+            self.going[lane] = is_near && (self.ages[lane] as f64) * self.time_step < longest;
+        }
+        runaways
+    }
+}

@@ -1,0 +1,45 @@
+//! `measures.csv`: numbers beside densities by generator and Monte Carlo, in full.
+
+use serde_json::Value;
+
+use super::ComparedRun;
+use crate::compare::{ComparedValue, MeasurePair};
+use crate::run::RunError;
+use crate::run::columns::{Columns, number, word};
+
+/// Numbers by generator and Monte Carlo, a row a value and measure.
+fn measures<'a>(run: &ComparedRun<'a>) -> Columns<'a, (f64, MeasurePair)> {
+    type Row = (f64, MeasurePair);
+    Columns(vec![
+        number(run.family().parameter(), |(value, _): &Row| *value),
+        word("measure", |(_, one): &Row| one.name.clone()),
+        number("generator", |(_, one): &Row| one.generator.0),
+        number("generator_error", |(_, one): &Row| one.generator.1),
+        number("monte_carlo", |(_, one): &Row| one.monte_carlo.0),
+        number("monte_carlo_error", |(_, one): &Row| one.monte_carlo.1),
+        number("errors_apart", |(_, one): &Row| one.apart()),
+    ])
+}
+
+/// The numbers of all values.
+fn records(run: &ComparedRun<'_>) -> Vec<(f64, MeasurePair)> {
+    let values = run.comparison.values.iter();
+    let at = |value: &ComparedValue| {
+        let all = value.measures().into_iter();
+        all.map(|one| (value.value, one)).collect::<Vec<_>>()
+    };
+    values.flat_map(at).collect()
+}
+
+/// `measures.csv`: numbers by generator and Monte Carlo, a row a value and measure.
+///
+/// # Errors
+/// [`RunError::Table`].
+pub(super) fn measures_csv(run: &ComparedRun<'_>) -> Result<String, RunError> {
+    measures(run).csv(&records(run))
+}
+
+/// The same as JSON.
+pub(super) fn measures_json(run: &ComparedRun<'_>) -> Value {
+    measures(run).json(&records(run))
+}
