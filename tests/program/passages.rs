@@ -257,8 +257,8 @@ fn monte_carlo_and_a_comparison_give_the_numbers_of_the_generator() {
         &room.done("check b.toml").out,
         &["passages: 2 a point, 8192 paths"],
     );
-    room.done("sweep a.toml --out a --points 2");
-    room.done("sweep b.toml --out b --points 2");
+    room.done("sweep a.toml --out a");
+    room.done("sweep b.toml --out b");
     let rows = [room.table("a/points.csv").0, room.table("b/points.csv").0];
     for (exact, sampled) in rows[0].iter().zip(&rows[1]) {
         assert_eq!(&sampled["findings"], "");
@@ -279,11 +279,12 @@ fn monte_carlo_and_a_comparison_give_the_numbers_of_the_generator() {
         .find(|row| &row["measure"] == "leave_mean")
         .unwrap();
     assert!(row.number("errors_apart").abs() < 4.0);
-    assert_eq!(
-        row.number("generator_error"),
-        rows[0][0].number("leave_mean_error")
-    );
-    assert_eq!(row.number("monte_carlo"), rows[1][0].number("leave_mean"));
+    // On other cells, so that time steps are the same but for rounding.
+    for (by, run) in ["generator", "monte_carlo"].iter().zip(&rows) {
+        let [value, error] = run[0].numbers(["leave_mean", "leave_mean_error"]);
+        assert!((row.number(by) - value).abs() < 0.1 * error, "{by}");
+        assert!((row.number(&format!("{by}_error")) - error).abs() < 0.1 * error);
+    }
 }
 
 #[test]
@@ -291,7 +292,7 @@ fn paths_that_go_on_for_too_long_are_told() {
     let room = Room::new();
     let method = "[method]\nkind = \"monte-carlo\"\nerror = 0.05\npassages = 1024\nlongest_passage = 2.0\n[figures]";
     room.write("a.toml", FILE.replace("[figures]", method));
-    let printed = room.done("sweep a.toml --out run --points 2");
+    let printed = room.done("sweep a.toml --out run");
     assert_says(
         &printed.text(),
         &["still went on at 2.0", "passage `leave`"],
@@ -304,7 +305,7 @@ fn paths_that_go_on_for_too_long_are_told() {
         "a.toml",
         FILE.replace("[figures]", &method.replace("2.0", "0.01")),
     );
-    let printed = room.solved("sweep a.toml --out again --points 2");
+    let printed = room.solved("sweep a.toml --out again");
     assert_says(
         &printed.text(),
         &["hardly a path entered", "method.longest_passage"],
