@@ -156,7 +156,7 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
         "time during which `ergodic` counts the states of one trajectory; chosen for `error` by itself."),
     key("method.trajectories", Kind::Step, OfOptions, of_methods!(trajectories: MonteCarlo monte_carlo),
         "trajectories, rounded up to a multiple of 64; 2048 by themselves, in an ensemble as many as `error` takes."),
-    key("method.passages", Kind::Integer(1024, 1_000_000_000), OfOptions, of_methods!(passages: MonteCarlo monte_carlo),
+    key("method.passages", Kind::Integer(64, 1_000_000_000), OfOptions, of_methods!(passages: MonteCarlo monte_carlo),
         "paths that are followed for each passage of `[passage]`."),
     key("method.longest_passage", Kind::Step, OfOptions, of_methods!(longest_passage: MonteCarlo monte_carlo),
         "time at which a path of a passage that still goes on is given up; by itself as long as 1e9 integrator steps allow."),
