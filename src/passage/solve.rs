@@ -69,17 +69,22 @@ impl Question<'_> {
         let spread = self.density.map(|density| density.unknowns);
         let weights =
             |nodes, spread: Option<&[f64]>| self.weights(&space, &full.kept, nodes, spread);
-        let (start, coarse) = (weights(NODES, spread)?, weights(FEWER_NODES, spread)?);
-        let by_second = self.density.and_then(|density| density.second());
+        let start = weights(NODES, spread)?;
+        // The other grids are there for differences, and state no errors of their starts.
+        let judged = self.density.filter(|_| factor == 1.0);
+        let coarse = match factor == 1.0 {
+            true => weights(FEWER_NODES, spread)?,
+            false => start.clone(),
+        };
+        let by_second = judged.and_then(|density| density.second());
         let second = match &by_second {
             Some(second) => weights(NODES, Some(second))?,
             None => start.clone(),
         };
         let mut solver = AbsorbingSolver::new(&space, *self.rates, self.cancellation);
         let cells = (&space, full.kept.as_slice());
-        let of_density = self
-            .density
-            .and_then(|density| DensityStart::new(self.passage, density, self.space, cells));
+        let of_density =
+            judged.and_then(|density| DensityStart::new(self.passage, density, self.space, cells));
         let starts = [start.as_slice(), &coarse];
         let mut both = moments(
             &mut solver,
