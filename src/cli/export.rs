@@ -34,13 +34,7 @@ pub(super) fn run(arguments: &ExportArguments) -> Result<Outcome, CommandError> 
         })?;
     }
     let title = &stored.spec.settings.title;
-    export(
-        &result.subject,
-        &result.points,
-        title,
-        arguments.format,
-        &out,
-    )?;
+    export(result, title, arguments.format, &out)?;
     let points = result
         .points
         .iter()

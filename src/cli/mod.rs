@@ -29,6 +29,7 @@ mod terminal;
 mod verify;
 
 use std::error::Error as _;
+use std::ffi::OsString;
 use std::io::{self, IsTerminal as _, Write as _};
 use std::path::Path;
 use std::process::ExitCode;
@@ -123,31 +124,35 @@ impl From<Report> for CommandError {
     }
 }
 
-/// Reads the command line, does what it says, and gives the exit code: 0 done, 1 finished with something
-/// unresolved, 2 bad usage or input, 70 a fault of the program itself, 130 interrupted.
+/// Reads the command line, does what it says, and gives the exit code: see [`run_with`].
 pub fn run() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
+    ExitCode::from(run_with(std::env::args_os()))
+}
+
+/// Does what the words of a command line say, the program's name first, and gives the status that a process ends with:
+/// 0 done, 1 finished with something unresolved, 2 bad usage or input, 70 a fault of the program itself, 130
+/// interrupted. It takes signals and the words of panics for itself, as the last thing that a process does may.
+pub fn run_with(words: impl IntoIterator<Item = OsString>) -> u8 {
+    let arguments = match Arguments::try_parse_from(words) {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and the version come this way too, with code 0. A closed pipe is no failure.
             let _ = error.print();
-            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+            return u8::try_from(error.exit_code()).unwrap_or(2);
         }
     };
     interrupts::hear_of_full_files();
     let command = &arguments.command;
     let Some(ended) = fault::guard(command.target(), || dispatch(command)) else {
-        return ExitCode::from(fault::STATUS);
+        return fault::STATUS;
     };
     match ended {
-        Ok(outcome) => ExitCode::from(exit_code(outcome)),
+        Ok(outcome) => exit_code(outcome),
         // The reader of a pipe may stop early, as `head` does.
-        Err(CommandError::Print(error)) if error.kind() == io::ErrorKind::BrokenPipe => {
-            ExitCode::SUCCESS
-        }
+        Err(CommandError::Print(error)) if error.kind() == io::ErrorKind::BrokenPipe => 0,
         Err(error) => {
             tell_styled(&render(error, is_styled()));
-            ExitCode::from(2)
+            2
         }
     }
 }

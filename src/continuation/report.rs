@@ -23,7 +23,7 @@ pub enum PointStatus {
 }
 
 words! {
-    PointStatus, pub(crate) word:
+    PointStatus, pub word:
     Solved: "solved",
     Escaping: "escaping",
     NotConverged: "not-converged",

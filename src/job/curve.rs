@@ -2,7 +2,8 @@
 
 mod refusals;
 
-pub(crate) use refusals::{check_curves, curve_rows};
+pub(crate) use refusals::check_curves;
+pub use refusals::curve_rows;
 
 use super::{Context, Job, JobError, Outcome};
 use crate::continuation::curve::{

@@ -51,7 +51,8 @@ use crate::sweep_file::{Report, Sweep};
 
 pub use compare::CompareJob;
 pub use curve::CurveJob;
-pub(crate) use curve::{check_curves, curve_rows};
+pub(crate) use curve::check_curves;
+pub use curve::curve_rows;
 pub use map::{MapJob, MapShardJob};
 pub use sweep::SweepJob;
 pub(crate) use sweep::{QUICK_POINTS, draw_sweep, sweep_outcome};

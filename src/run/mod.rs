@@ -119,7 +119,7 @@ pub(crate) use curve::point_labels;
 pub(crate) use date::date_in_utc;
 pub use doubts::doubt_in_words;
 pub use error::{Damage, RunError};
-pub use export::{ExportFormat, export};
+pub use export::{Attribute, DataSet, ExportFormat, NamedArray, export};
 pub(crate) use features_table::features_csv;
 pub(crate) use folder::{RunFolder, sweep_files};
 pub use job_folder::{JobFolder, check_folder};

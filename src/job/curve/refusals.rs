@@ -33,7 +33,7 @@ pub(crate) fn check_curves(sweep: &Sweep) -> Result<(), Report> {
 ///
 /// # Errors
 /// A report where one is not there, or which one is not clear.
-pub(crate) fn curve_rows<'r>(
+pub fn curve_rows<'r>(
     sweep: &Sweep,
     result: &'r SweepResult,
     only: bool,

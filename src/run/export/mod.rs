@@ -5,11 +5,11 @@ mod netcdf;
 
 use std::path::Path;
 
-use super::RunError;
-use super::arrays;
+use super::{RunError, arrays, bifurcations_csv};
 use crate::continuation::measure::{DEVIATION, MEAN};
-use crate::continuation::{MeasureKind, Point, Subject};
+use crate::continuation::{MeasureKind, Point, SweepResult};
 use crate::density::{EstimatedDensity, Variants};
+use crate::space::Axis;
 use crate::system::Family;
 
 /// What a run can be written as.
@@ -33,100 +33,169 @@ impl ExportFormat {
     }
 }
 
-/// A named array with its dimensions.
-struct Array {
-    name: String,
-    /// Names and lengths, the slowest first.
-    dimensions: Vec<(String, usize)>,
-    values: Vec<f64>,
-    long_name: String,
+/// Name of the dimension of both ends of a cell.
+const BOUNDS: &str = "bounds";
+
+/// What is said of an array or of all of them.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Attribute {
+    /// In words.
+    Text(String),
+    /// By a number.
+    Number(f64),
 }
 
-impl Array {
-    fn line(name: &str, values: Vec<f64>, long_name: String) -> Self {
+impl From<String> for Attribute {
+    fn from(text: String) -> Self {
+        Self::Text(text)
+    }
+}
+
+/// A named array with its dimensions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedArray {
+    /// Its name, as in `densities.zarr`.
+    pub name: String,
+    /// Names and lengths, the slowest first.
+    pub dimensions: Vec<(String, usize)>,
+    /// The numbers, the last dimension the fastest; NaN where there is none.
+    pub values: Vec<f64>,
+    /// What it is, by the conventions CF (`long_name`, `units`, `bounds`, `valid_min`).
+    pub attributes: Vec<(&'static str, Attribute)>,
+}
+
+impl NamedArray {
+    fn new(name: String, dimensions: Vec<(String, usize)>, values: Vec<f64>, long: String) -> Self {
+        let units = Attribute::Text("1".to_owned());
         Self {
-            name: name.to_owned(),
-            dimensions: vec![(name.to_owned(), values.len())],
+            name,
+            dimensions,
             values,
-            long_name,
+            attributes: vec![("long_name", long.into()), ("units", units)],
         }
+    }
+
+    fn line(name: &str, values: Vec<f64>, long_name: String) -> Self {
+        let dimensions = vec![(name.to_owned(), values.len())];
+        Self::new(name.to_owned(), dimensions, values, long_name)
+    }
+
+    fn with(mut self, name: &'static str, attribute: Attribute) -> Self {
+        self.attributes.push((name, attribute));
+        self
     }
 }
 
 /// Everything that is exported: coordinates first, then moments, then densities, one value of the parameter after the
 /// other.
-struct DataSet {
-    title: String,
-    arrays: Vec<Array>,
+#[derive(Debug, Clone, PartialEq)]
+pub struct DataSet {
+    /// Title, source, equations, the parameters that are held (JSON) and the table of changes (CSV).
+    pub attributes: Vec<(&'static str, String)>,
+    /// The arrays.
+    pub arrays: Vec<NamedArray>,
 }
 
 /// Writes the densities and moments of a run's points to a file, or to a folder of tables. Points without a density are
 /// left out. The arrays have the names of `densities.zarr`: `p_x` with dimensions of the parameter and `x`, normalised
 /// to ∫ = 1, its standard error `p_x_error`, its second discretisation `p_x_second`; centres `x` and edges `x_edges` of
-/// the cells; `mean_x` and `sd_x` with their errors `mean_x_error` and `sd_x_error`.
+/// the cells; `mean_x` and `sd_x` with their errors `mean_x_error` and `sd_x_error`. See [`DataSet::new`].
 ///
 /// # Errors
 /// [`RunError::Write`], [`RunError::Export`] when the format cannot hold it, [`RunError::NothingToExport`] when no
 /// point has a density.
 pub fn export(
-    subject: &Subject,
-    points: &[Point],
+    result: &SweepResult,
     title: &str,
     format: ExportFormat,
     path: &Path,
 ) -> Result<(), RunError> {
-    let solved = points.iter().filter(|point| !point.densities.is_empty());
-    let solved: Vec<&Point> = solved.collect();
-    if solved.is_empty() {
-        return Err(RunError::NothingToExport);
-    }
     match format {
-        ExportFormat::Csv => csv::write(subject, &solved, path),
-        ExportFormat::NetCdf => netcdf::write(&data_set(subject, &solved, title), path),
+        ExportFormat::Csv => csv::write(&result.subject, &solved(result)?, path),
+        ExportFormat::NetCdf => netcdf::write(&DataSet::new(result, title)?, path),
     }
 }
 
-fn data_set(subject: &Subject, points: &[&Point], title: &str) -> DataSet {
-    let family = &subject.family;
-    let parameter = family.parameter();
-    let values = points.iter().map(|point| point.value).collect();
-    let mut arrays = vec![Array::line(
-        parameter,
-        values,
-        format!("parameter {parameter}"),
-    )];
-    let Some(first) = points.first() else {
-        return DataSet {
-            title: title.to_owned(),
-            arrays,
-        };
-    };
-    for density in &first.densities {
-        for (number, axis) in density.observable.axes().iter().zip(&density.density.axes) {
-            let name = family.axis(*number);
-            if arrays.iter().all(|known| known.name != name) {
-                let edges = arrays::edges(name);
-                arrays.push(Array::line(
-                    name,
-                    axis.centres(),
-                    format!("centres of the cells of {name}"),
-                ));
-                arrays.push(Array::line(
-                    &edges,
-                    axis.edges().to_vec(),
-                    format!("edges of the cells of {name}"),
-                ));
+/// The points with a density.
+fn solved(result: &SweepResult) -> Result<Vec<&Point>, RunError> {
+    let points = result.points.iter();
+    let solved: Vec<&Point> = points.filter(|point| !point.densities.is_empty()).collect();
+    if solved.is_empty() {
+        return Err(RunError::NothingToExport);
+    }
+    Ok(solved)
+}
+
+impl DataSet {
+    /// The densities and moments of a result. Cells have bounds beside their edges. What the solver leaves below zero
+    /// in a density is zero here, so that `valid_min` holds and a map of it runs from one end of its colours.
+    ///
+    /// # Errors
+    /// [`RunError::NothingToExport`] when no point has a density; [`RunError::Table`].
+    pub fn new(result: &SweepResult, title: &str) -> Result<Self, RunError> {
+        let points = &solved(result)?;
+        let family = &result.subject.family;
+        let parameter = family.parameter();
+        let values = points.iter().map(|point| point.value).collect();
+        let mut arrays = vec![NamedArray::line(
+            parameter,
+            values,
+            format!("parameter {parameter}"),
+        )];
+        let first = points.first().into_iter();
+        let densities = first.flat_map(|point| &point.densities);
+        for density in densities.clone() {
+            for (number, axis) in density.observable.axes().iter().zip(&density.density.axes) {
+                let name = family.axis(*number);
+                if arrays.iter().all(|known| known.name != name) {
+                    arrays.extend(axis_arrays(name, axis));
+                }
             }
         }
+        arrays.extend(moments_at(family, points));
+        for (index, density) in densities.enumerate() {
+            arrays.extend(density_arrays(family, points, index, density));
+        }
+        let held: serde_json::Map<String, serde_json::Value> = family
+            .fixed()
+            .map(|(name, value)| (name.to_owned(), value.into()))
+            .collect();
+        let attributes = vec![
+            ("title", title.to_owned()),
+            ("Conventions", "CF-1.8".to_owned()),
+            (
+                "source",
+                concat!("pbif ", env!("CARGO_PKG_VERSION")).to_owned(),
+            ),
+            ("equations", family.model().equations.join("\n")),
+            ("parameters", serde_json::Value::Object(held).to_string()),
+            ("changes", bifurcations_csv(family, &result.labels)?),
+        ];
+        Ok(Self { attributes, arrays })
     }
-    arrays.extend(moments_at(family, points));
-    for (index, density) in first.densities.iter().enumerate() {
-        arrays.extend(densities(family, points, index, density));
-    }
-    DataSet {
-        title: title.to_owned(),
-        arrays,
-    }
+}
+
+/// Centres, edges and bounds of the cells of an axis.
+fn axis_arrays(name: &str, axis: &Axis) -> [NamedArray; 3] {
+    let (edges, bounds) = (arrays::edges(name), format!("{name}_{BOUNDS}"));
+    let centres = NamedArray::line(
+        name,
+        axis.centres(),
+        format!("centres of the cells of {name}"),
+    );
+    let of_edges = format!("edges of the cells of {name}");
+    let dimensions = vec![(name.to_owned(), axis.count()), (BOUNDS.to_owned(), 2)];
+    let ends = axis.edges().windows(2).flatten().copied().collect();
+    [
+        centres.with("bounds", bounds.clone().into()),
+        NamedArray::line(&edges, axis.edges().to_vec(), of_edges),
+        NamedArray::new(
+            bounds,
+            dimensions,
+            ends,
+            format!("ends of the cells of {name}"),
+        ),
+    ]
 }
 
 /// Names of means, standard deviations and their errors, with what they are.
@@ -142,7 +211,7 @@ pub(super) fn moments(family: &Family) -> impl Iterator<Item = (String, String)>
     })
 }
 
-fn moments_at(family: &Family, points: &[&Point]) -> Vec<Array> {
+fn moments_at(family: &Family, points: &[&Point]) -> Vec<NamedArray> {
     let array = |(name, long_name): (String, String)| {
         let value = |point: &&Point| {
             let found = match name.strip_suffix("_error") {
@@ -151,23 +220,20 @@ fn moments_at(family: &Family, points: &[&Point]) -> Vec<Array> {
             };
             found.unwrap_or(f64::NAN)
         };
-        Array {
-            dimensions: vec![(family.parameter().to_owned(), points.len())],
-            values: points.iter().map(value).collect(),
-            long_name,
-            name,
-        }
+        let dimensions = vec![(family.parameter().to_owned(), points.len())];
+        let values = points.iter().map(value).collect();
+        NamedArray::new(name, dimensions, values, long_name)
     };
     moments(family).map(array).collect()
 }
 
 /// A density, its error, and its second discretisation where there is one.
-fn densities(
+fn density_arrays(
     family: &Family,
     points: &[&Point],
     index: usize,
     like: &EstimatedDensity,
-) -> Vec<Array> {
+) -> Vec<NamedArray> {
     let mut dimensions = vec![(family.parameter().to_owned(), points.len())];
     let mut cells = 1;
     for (number, axis) in like.observable.axes().iter().zip(&like.density.axes) {
@@ -182,22 +248,23 @@ fn densities(
                 .unwrap_or(vec![f64::NAN; cells])
         });
         let observable = like.observable.name(family);
-        Array {
-            name,
-            dimensions: dimensions.clone(),
-            values: values.collect(),
-            long_name: format!("{long} of {observable}"),
-        }
+        let long_name = format!("{long} of {observable}");
+        NamedArray::new(name, dimensions.clone(), values.collect(), long_name)
     };
     let observable = like.observable;
-    let density = |one: &EstimatedDensity| Some(one.density.values.clone());
+    let density = |one: &EstimatedDensity| {
+        let values = one.density.values.iter();
+        let clipped = values.map(|&value| if value < 0.0 { 0.0 } else { value });
+        Some(clipped.collect())
+    };
     let error = |one: &EstimatedDensity| Some(one.standard_error.clone());
     let second = |one: &EstimatedDensity| match &one.variants {
         Variants::Scheme(second) => Some(second.clone()),
         _ => None,
     };
     let mut arrays = vec![
-        all(arrays::density(family, observable), &density, "density"),
+        all(arrays::density(family, observable), &density, "density")
+            .with("valid_min", Attribute::Number(0.0)),
         all(
             arrays::error(family, observable),
             &error,

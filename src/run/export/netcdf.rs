@@ -8,7 +8,7 @@ use std::io::{BufWriter, Error, Write};
 use std::path::Path;
 
 use super::super::RunError;
-use super::{Array, DataSet};
+use super::{Attribute, DataSet, NamedArray};
 
 /// Magic number of the variant in which places of data have 64 bits.
 const OFFSET_64: &[u8; 4] = b"CDF\x02";
@@ -79,11 +79,10 @@ fn written(data: &DataSet, dimensions: &[(&str, usize)], begin: u64) -> Vec<u8> 
         header.text(name);
         header.number(*length as u32);
     }
-    header.attributes(&[
-        ("title", &data.title),
-        ("Conventions", "CF-1.8"),
-        ("source", concat!("pbif ", env!("CARGO_PKG_VERSION"))),
-    ]);
+    header.list(ATTRIBUTES, data.attributes.len());
+    for (name, value) in &data.attributes {
+        header.text_attribute(name, value);
+    }
     header.list(VARIABLES, data.arrays.len());
     let mut place = begin;
     for array in &data.arrays {
@@ -93,7 +92,13 @@ fn written(data: &DataSet, dimensions: &[(&str, usize)], begin: u64) -> Vec<u8> 
             let number = dimensions.iter().position(|known| known.0 == name);
             header.number(number.unwrap_or_default() as u32);
         }
-        header.attributes(&[("long_name", &array.long_name)]);
+        header.list(ATTRIBUTES, array.attributes.len());
+        for (name, value) in &array.attributes {
+            match value {
+                Attribute::Text(text) => header.text_attribute(name, text),
+                Attribute::Number(number) => header.number_attribute(name, *number),
+            }
+        }
         header.number(DOUBLE);
         header.number(bytes(array) as u32);
         header.0.extend(place.to_be_bytes());
@@ -102,7 +107,7 @@ fn written(data: &DataSet, dimensions: &[(&str, usize)], begin: u64) -> Vec<u8> 
     header.0
 }
 
-fn bytes(array: &Array) -> u64 {
+fn bytes(array: &NamedArray) -> u64 {
     8 * array.values.len() as u64
 }
 
@@ -125,17 +130,21 @@ impl Header {
         self.0.resize(self.0.len().next_multiple_of(4), 0);
     }
 
-    fn attributes(&mut self, attributes: &[(&str, &str)]) {
-        self.list(ATTRIBUTES, attributes.len());
-        for (name, value) in attributes {
-            self.text(name);
-            self.number(TEXT);
-            self.text(value);
-        }
+    fn text_attribute(&mut self, name: &str, value: &str) {
+        self.text(name);
+        self.number(TEXT);
+        self.text(value);
+    }
+
+    fn number_attribute(&mut self, name: &str, value: f64) {
+        self.text(name);
+        self.number(DOUBLE);
+        self.number(1);
+        self.0.extend(value.to_be_bytes());
     }
 }
 
-fn fill(header: &[u8], arrays: &[Array], path: &Path) -> Result<(), Error> {
+fn fill(header: &[u8], arrays: &[NamedArray], path: &Path) -> Result<(), Error> {
     let mut file = BufWriter::new(File::create_new(path)?);
     file.write_all(header)?;
     for value in arrays.iter().flat_map(|array| &array.values) {

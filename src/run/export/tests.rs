@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::continuation::measure::{DEVIATION, MEAN};
-use crate::continuation::{CellCheck, Measure, SolveReport};
+use crate::continuation::{CellCheck, Measure, SolveReport, Subject};
 use crate::density::{Density, NEGLIGIBLE, Observable, Structure};
 use crate::space::Axis;
 use crate::system::test_families::coulomb;
@@ -58,11 +58,21 @@ fn point(value: f64, solved: bool) -> Point {
     }
 }
 
+fn result(points: Vec<Point>) -> SweepResult {
+    SweepResult {
+        subject: subject(),
+        points,
+        labels: Vec::new(),
+        checks: None,
+        interrupted: false,
+    }
+}
+
 fn exported(format: ExportFormat) -> (tempfile::TempDir, std::path::PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("export");
     let points = [point(0.125, true), point(0.25, false), point(0.5, true)];
-    export(&subject(), &points, "a title", format, &path).unwrap();
+    export(&result(points.to_vec()), "a title", format, &path).unwrap();
     (folder, path)
 }
 
@@ -77,7 +87,18 @@ fn netcdf_holds_every_array_with_its_dimensions() {
     let names = |array: &str| file.data_set().get_var(array).unwrap().dim_names();
     assert_eq!(names("p_xy"), ["f_c", "x", "y"]);
     assert_eq!(names("x_edges"), ["x_edges"]);
+    let text = |name: &str| file.data_set().get_global_attr_as_string(name).unwrap();
+    assert!(text("equations").contains("f_c"), "{}", text("equations"));
+    assert!(text("parameters").contains("\"kappa\":"));
+    assert!(text("changes").starts_with("label,parameter,value,error"));
+    let p_x = file.data_set().get_var("p_x").unwrap();
+    let least = p_x.get_attr_f64("valid_min");
+    assert_eq!(least, Some(&[0.0][..]));
+    let x = file.data_set().get_var("x").unwrap();
+    assert_eq!(x.get_attr_as_string("bounds"), Some("x_bounds".to_owned()));
+    assert_eq!(names("x_bounds"), ["x", "bounds"]);
     let mut read = |name: &str| file.read_var_f64(name).unwrap();
+    assert_eq!(read("x_bounds"), [-1.0, 0.0, 0.0, 1.0]);
     assert_eq!(read("f_c"), [0.125, 0.5]);
     assert_eq!(read("x"), [-0.5, 0.5]);
     assert_eq!(read("y_edges"), [0.0, 1.0, 2.0, 3.0]);
@@ -92,14 +113,14 @@ fn netcdf_holds_every_array_with_its_dimensions() {
 
 #[test]
 fn netcdf_says_what_it_cannot_hold() {
-    let array = |name: &str, values: Vec<f64>| Array::line(name, values, String::new());
-    let twice = Array {
+    let array = |name: &str, values: Vec<f64>| NamedArray::line(name, values, String::new());
+    let twice = NamedArray {
         dimensions: vec![("x".to_owned(), 1)],
         ..array("other", vec![0.0])
     };
     for (second, word) in [(array("x", vec![0.0; 2]), "`x`"), (twice, "two lengths")] {
         let data = DataSet {
-            title: String::new(),
+            attributes: Vec::new(),
             arrays: vec![array("x", vec![0.0; 2]), second],
         };
         let folder = tempfile::tempdir().unwrap();
@@ -129,7 +150,20 @@ fn a_run_without_densities_has_nothing_to_export() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("export");
     let points = [point(0.25, false)];
-    let error = export(&subject(), &points, "", ExportFormat::NetCdf, &path).unwrap_err();
+    let error = export(&result(points.to_vec()), "", ExportFormat::NetCdf, &path).unwrap_err();
     assert!(matches!(error, RunError::NothingToExport));
     assert!(!path.exists());
+}
+
+#[test]
+fn what_a_solver_leaves_below_zero_is_zero_and_the_run_keeps_it() {
+    let mut one = point(0.5, true);
+    one.densities[0].density.values = vec![-1e-18, -0.0];
+    let data = DataSet::new(&result(vec![one]), "").unwrap();
+    let p_x = data
+        .arrays
+        .iter()
+        .find(|array| array.name == "p_x")
+        .unwrap();
+    assert!(p_x.values.iter().all(|value| *value == 0.0), "{p_x:?}");
 }
