@@ -34,7 +34,7 @@ pub use moments::moments;
 pub(crate) use moments::{EstimatedMoments, Roughness, excess_variances, jackknife};
 pub use profile::{Extremum, Profile, SlopeJump, Turn};
 pub use projection::Projection;
-pub(crate) use projection::QuantityMoments;
+pub(crate) use projection::{QuantityMoments, phase_factors, times};
 pub(crate) use series_map::laid_out;
 pub(crate) use spread::{Coordinate, Detail};
 pub use structure::{Kink, Structure, Variants};

@@ -18,6 +18,8 @@ pub struct Projection {
     spread: Option<Arc<Spread>>,
     /// The same for axes of modes.
     series: Option<Arc<SeriesMap>>,
+    /// What the masses of all cells are multiplied by first, for a density at a phase.
+    factors: Option<Arc<Vec<f64>>>,
     volumes: Vec<f64>,
 }
 
@@ -80,9 +82,23 @@ impl Projection {
             sums: Sums::new(space, &kept),
             spread: None,
             series: None,
+            factors: None,
             volumes: cell_volumes(&axes),
             axes,
         })
+    }
+
+    /// The same at a place on an axis of the space that closes on itself, where the state spends the same time
+    /// everywhere along it: the conditional density there. The coarser map leaves the last harmonic out.
+    pub(crate) fn at_phase(
+        mut self,
+        space: &CellSpace,
+        axis: usize,
+        phase: f64,
+        is_coarse: bool,
+    ) -> Self {
+        self.factors = Some(Arc::new(phase_factors(space, axis, phase, is_coarse)));
+        self
     }
 
     /// Works out the map with bins of equal width along axes of modes, of which the masses are integrals of the series;
@@ -144,6 +160,7 @@ impl Projection {
             sums: Sums::new(space, spread.axes()),
             spread: Some(Arc::new(spread)),
             series: None,
+            factors: None,
             volumes: cell_volumes(&axes),
             axes,
         })
@@ -165,7 +182,10 @@ impl Projection {
     /// # Errors
     /// [`DensityError::Length`].
     pub fn masses(&self, mass: &[f64]) -> Result<Vec<f64>, DensityError> {
-        let sums = self.sums.of(mass)?;
+        let sums = match &self.factors {
+            Some(factors) => self.sums.of(&times(mass, factors))?,
+            None => self.sums.of(mass)?,
+        };
         if let Some(series) = &self.series {
             return Ok(series.masses(sums));
         }
@@ -191,6 +211,28 @@ impl Projection {
             values,
         })
     }
+}
+
+/// What masses of all cells are multiplied by, so that their sums along an axis that closes on itself are the density
+/// at a place on it.
+pub(crate) fn phase_factors(
+    space: &CellSpace,
+    axis: usize,
+    phase: f64,
+    is_coarse: bool,
+) -> Vec<f64> {
+    let along = &space.axes()[axis];
+    let harmonics = along.mode_number() - usize::from(is_coarse);
+    let weights = along.weights_at(phase, harmonics);
+    let cells = 0..space.n_cells();
+    cells
+        .map(|cell| weights[space.position(cell, axis)])
+        .collect()
+}
+
+/// Products of two lists, one by one.
+pub(crate) fn times(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a * b).collect()
 }
 
 /// Mean and standard deviation of a quantity from the masses of cells, worked out once and applied to as many mass

@@ -21,7 +21,9 @@ use crate::system::System;
 /// what flows or diffuses out through any other end is lost and counted in [`Generator::escape`]. An axis of modes
 /// ([`crate::space::Axis::modes`]) lies between two such ends, and no noise drives it; one of Hermite modes
 /// ([`crate::space::Axis::hermite`]) is white noise behind a linear filter, or a state that relaxes linearly
-/// ([`Facts::relaxation_rates`](crate::system::Facts::relaxation_rates)), and nothing leaves along it.
+/// ([`Facts::relaxation_rates`](crate::system::Facts::relaxation_rates)), and nothing leaves along it. An
+/// axis that closes on itself ([`crate::space::Axis::fourier`]) is one turn
+/// ([`Facts::turns`](crate::system::Facts::turns)), with or without noise.
 ///
 /// # Errors
 /// Any [`GeneratorError`] but [`GeneratorError::System`].

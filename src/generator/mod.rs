@@ -123,6 +123,12 @@ pub enum GeneratorError {
         /// The axis.
         axis: usize,
     },
+    /// An axis of harmonics that is no turn of the system.
+    #[error("axis {axis} cannot have harmonics: they are for angles and phases, over one turn")]
+    Turn {
+        /// The axis.
+        axis: usize,
+    },
     /// An axis of Hermite modes that is neither white noise behind a linear filter, with the mean and deviation of the
     /// axis, nor a state without noise that relaxes linearly.
     #[error(
@@ -154,6 +160,7 @@ impl GeneratorError {
         | Self::NotFinite { axis, .. }
         | Self::Overflow { axis }
         | Self::Modes { axis }
+        | Self::Turn { axis }
         | Self::Filter { axis }) = self
         else {
             return words;

@@ -9,6 +9,8 @@
 //! White noise behind a linear filter has D f'' more, at the nodes of Hermite polynomials, which are its
 //! eigenfunctions: exact. A state without noise that relaxes linearly has the same polynomials without that term: the
 //! moments along it then couple downwards only, so those up to the last are exact wherever nothing else depends on it.
+//!
+//! On an axis that closes on itself f is a trigonometric polynomial, and any noise adds D f''.
 
 use super::GeneratorError;
 use crate::space::{Axis, Series};
@@ -22,8 +24,18 @@ const ROUNDING: f64 = 1e-9;
 pub(super) struct ModeAxis {
     /// Derivatives of the Lagrange polynomials at the nodes, [`Axis::differentiation`].
     first: Vec<f64>,
-    /// Their second derivatives, mean and standard deviation of the normal density, for Hermite modes.
-    normal: Option<(Vec<f64>, f64, f64)>,
+    tests: Tests,
+}
+
+/// What an axis of modes has beside first derivatives.
+#[derive(Debug, Clone)]
+enum Tests {
+    /// Legendre polynomials: nothing.
+    Bounded,
+    /// Hermite polynomials: their second derivatives, mean and standard deviation of the normal density.
+    Normal(Vec<f64>, f64, f64),
+    /// Sines and cosines over the turn between two places: their second derivatives.
+    Closed(Vec<f64>, (f64, f64)),
 }
 
 impl ModeAxis {
@@ -31,13 +43,13 @@ impl ModeAxis {
     pub(super) fn new(axis: &Axis) -> Option<Self> {
         let series = axis.series()?;
         let first = axis.differentiation();
-        let normal = match series {
-            Series::Legendre => None,
-            Series::Hermite { mean, deviation } => {
-                Some((square(&first, axis.count()), mean, deviation))
-            }
+        let second = || square(&first, axis.count());
+        let tests = match series {
+            Series::Legendre => Tests::Bounded,
+            Series::Hermite { mean, deviation } => Tests::Normal(second(), mean, deviation),
+            Series::Fourier => Tests::Closed(second(), (axis.from(), axis.to())),
         };
-        Some(Self { first, normal })
+        Some(Self { first, tests })
     }
 
     /// Whether the axis number `axis` of a system, with or without walls at both ends, can have these modes.
@@ -48,11 +60,14 @@ impl ModeAxis {
         is_walled: bool,
     ) -> Result<(), GeneratorError> {
         let (is_noisy, facts) = (system.is_noisy(axis), system.facts());
-        match &self.normal {
-            None if is_noisy || !is_walled => Err(GeneratorError::Modes { axis }),
+        match &self.tests {
+            Tests::Bounded if is_noisy || !is_walled => Err(GeneratorError::Modes { axis }),
+            Tests::Bounded => Ok(()),
+            Tests::Closed(_, range) if facts.turns.get(&axis) == Some(range) => Ok(()),
+            Tests::Closed(..) => Err(GeneratorError::Turn { axis }),
             // However wide the normal density is: more modes make up for it.
-            Some(_) if !is_noisy && facts.relaxation_rates.contains_key(&axis) => Ok(()),
-            Some((_, mean, deviation)) => {
+            Tests::Normal(..) if !is_noisy && facts.relaxation_rates.contains_key(&axis) => Ok(()),
+            Tests::Normal(_, mean, deviation) => {
                 let same = |&(m, d): &(f64, f64)| {
                     (m - mean).abs() <= ROUNDING * deviation
                         && (d / deviation - 1.0).abs() <= ROUNDING
@@ -62,7 +77,6 @@ impl ModeAxis {
                     .then_some(())
                     .ok_or(GeneratorError::Filter { axis })
             }
-            _ => Ok(()),
         }
     }
 
@@ -76,8 +90,18 @@ impl ModeAxis {
         rates: &mut [f64],
     ) -> Result<(), GeneratorError> {
         block(&self.first, drift, rates);
-        let Some((second, mean, deviation)) = &self.normal else {
-            return Ok(());
+        let (second, mean, deviation) = match &self.tests {
+            Tests::Bounded => return Ok(()),
+            Tests::Closed(second, _) => {
+                let rows = second.chunks_exact(drift.len()).zip(diffusion);
+                let added = rows.flat_map(|(row, noise)| row.iter().map(move |f| noise * f));
+                rates
+                    .iter_mut()
+                    .zip(added)
+                    .for_each(|(rate, more)| *rate += more);
+                return Ok(());
+            }
+            Tests::Normal(second, mean, deviation) => (second, mean, deviation),
         };
         // An axis without noise has no diffusion: a state that relaxes at a rate of its own, or one of a filter's.
         let first = diffusion.first().copied().unwrap_or(0.0);

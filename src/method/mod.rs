@@ -83,6 +83,34 @@ pub enum MethodError {
     /// The drift depends on time.
     #[error(transparent)]
     Periodic(#[from] crate::system::PeriodicDrift),
+    /// A method that follows trajectories, of a system with an axis that closes on itself.
+    #[error(
+        "axis `{axis}` closes on itself: phases and angles are for the generator (`method.kind = \"generator\"`)"
+    )]
+    Turn {
+        /// Name of the axis.
+        axis: String,
+    },
+    /// Times of first passage of a system with an axis that closes on itself.
+    #[error(
+        "axis `{axis}` closes on itself: times of first passage are not worked out over phases and angles yet; leave `[passage]` out"
+    )]
+    TurnOfPassage {
+        /// Name of the axis.
+        axis: String,
+    },
+    /// A forcing whose phase does not move, or runs backwards.
+    #[error(
+        "the frequency of the forcing is {frequency} periods per unit of time at {parameter} = {value}; it must be positive"
+    )]
+    Standing {
+        /// Periods per unit of time.
+        frequency: f64,
+        /// The swept parameter.
+        parameter: String,
+        /// Its value.
+        value: f64,
+    },
     /// States stay on a switching surface for a time, so that there is no density.
     #[error(
         "friction sticks: beside {axis} = {at} the drift of `{axis}` points toward {axis} = {at} from both sides (as at {state}), and no \
@@ -139,9 +167,42 @@ fn has_densities(problem: &Problem) -> Result<(), MethodError> {
     for system in problem.family().along()? {
         system.facts().autonomous()?;
     }
+    let family = problem.family();
+    if let (false, Err(MethodError::Turn { axis })) =
+        (family.passages().is_empty(), has_no_turns(problem))
+    {
+        return Err(MethodError::TurnOfPassage { axis });
+    }
+    let (from, to) = family.ends();
+    for value in [from, 0.5 * (from + to), to] {
+        let system = family.at(value)?;
+        let Some(phase) = system.facts().phase else {
+            break;
+        };
+        let frequency = system.drift_at(0.0, &vec![0.0; system.dimension()])[phase];
+        if !(frequency.is_finite() && frequency > 0.0) {
+            let parameter = family.parameter().to_owned();
+            return Err(MethodError::Standing {
+                frequency,
+                parameter,
+                value,
+            });
+        }
+    }
     let axes = problem.space().axes().iter();
     let ranges: Vec<(f64, f64)> = axes.map(|axis| (axis.from(), axis.to())).collect();
     check_sticking(problem.family(), &ranges)
+}
+
+/// Nothing, if no axis closes on itself: trajectories would leave the turn.
+fn has_no_turns(problem: &Problem) -> Result<(), MethodError> {
+    for system in problem.family().along()? {
+        if let Some(&axis) = system.facts().turns.keys().next() {
+            let axis = problem.family().axis(axis).to_owned();
+            return Err(MethodError::Turn { axis });
+        }
+    }
+    Ok(())
 }
 
 // Whatever part of a method was asked to stop, the method was.

@@ -7,7 +7,7 @@ use super::measures::{DerivedMeasure, passage_columns};
 use crate::continuation::{CellCheck, Subject, Want};
 use crate::density::{DensityError, Observable, Projection, QuantityMoments, laid_out};
 use crate::space::{Axis, CellSpace};
-use crate::system::{BoundQuantity, Family};
+use crate::system::{AtPhase, BoundQuantity, Family};
 
 /// What quantities need at one value of the path.
 #[derive(Debug)]
@@ -70,6 +70,13 @@ impl Problem {
         if axes != cells {
             return Err(MethodError::Dimension { axes, cells });
         }
+        // An axis at a phase has the cells of the axis.
+        let own = family.quantities().iter().map(|quantity| quantity.phase());
+        let cells = |(at, bins): (Option<AtPhase>, Axis)| match at {
+            Some(at) => space.axes()[at.axis].clone(),
+            None => bins,
+        };
+        let bins: Vec<Axis> = own.zip(bins).map(cells).collect();
         let known = axes + bins.len().min(family.quantities().len());
         for &observable in &observables {
             let beyond = observable.axes().into_iter().find(|&axis| axis >= known);
@@ -172,6 +179,19 @@ impl Problem {
             .collect()
     }
 
+    /// What an observable at a phase of the forcing keeps, the phase, and the axis along which it runs; `None` for any
+    /// other observable.
+    pub(super) fn at_phase(&self, observable: Observable) -> Option<(Observable, f64, usize)> {
+        let family = self.family();
+        let (kept, phase) = family.at_phase(&observable.axes())?;
+        let kept = match kept[..] {
+            [axis] => Observable::Marginal(axis),
+            [one, other] => Observable::Joint(one, other),
+            _ => return None,
+        };
+        Some((kept, phase, family.model().phase_axis()?))
+    }
+
     pub(super) fn fixed(&self) -> &Fixed {
         &self.fixed
     }
@@ -195,7 +215,12 @@ impl Problem {
     /// The same with so many times as many bins.
     #[must_use]
     pub(super) fn with_finer_bins(mut self, factor: f64) -> Self {
-        self.bins = self.bins.iter().map(|bins| bins.refined(factor)).collect();
+        let own = self.subject.family.quantities().iter().zip(&self.bins);
+        let finer = own.map(|(quantity, bins)| match quantity.phase() {
+            Some(at) => self.space.axes()[at.axis].clone(),
+            None => bins.refined(factor),
+        });
+        self.bins = finer.collect();
         self.fixed = Fixed::default();
         self
     }

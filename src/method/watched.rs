@@ -5,15 +5,15 @@ use std::sync::Arc;
 
 use super::lattice::values_at_nodes;
 use super::problem::{AveragedMap, Maps};
-use super::structure::structure;
+use super::structure::{Moment, structure};
 use super::{MethodError, Problem};
 use crate::density::{
     Coordinate, Detail, EstimatedDensity, EstimatedMoments, Moments, NEGLIGIBLE_OF_QUANTITIES,
     Observable, Projection, QuantityMoments, Roughness, Structure, estimate_from_difference,
-    estimate_from_second, estimate_projected, moments, total_variation,
+    estimate_from_second, estimate_projected, moments, phase_factors, times, total_variation,
 };
 use crate::space::CellSpace;
-use crate::system::{BoundQuantity, LANES, SwitchingSurface, System, proved_symmetry};
+use crate::system::{BoundQuantity, LANES, SwitchingSurface, System, symmetry_over_a_period};
 
 /// Whether masses carry noise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -67,6 +67,13 @@ impl Problem {
         };
         let watched = self.observables().iter().map(|observable| {
             let axes = observable.axes();
+            if let Some((kept, phase, along)) = self.at_phase(*observable) {
+                let map = |is_coarse| {
+                    let plain = Projection::of_series(space, kept, is_coarse)?;
+                    Ok::<_, MethodError>(plain.at_phase(space, along, phase, is_coarse))
+                };
+                return Ok(Some((map(false)?, Some(map(true)?))));
+            }
             if axes.iter().all(|&axis| axis < space.dimension()) {
                 let has_modes = |&axis: &usize| space.axes()[axis].is_modes();
                 if !axes.iter().any(has_modes) {
@@ -135,7 +142,10 @@ impl Maps {
         for (observable, maps) in problem.observables().iter().zip(&self.watched) {
             let axes = observable.axes().into_iter();
             let carried = |&axis: &usize| axis < space.dimension() && space.axes()[axis].is_modes();
-            let carried: Vec<usize> = axes.filter(carried).collect();
+            let carried: Vec<usize> = match problem.at_phase(*observable) {
+                Some((.., along)) => vec![along],
+                None => axes.filter(carried).collect(),
+            };
             if let (false, Some((all, Some(fewer)))) = (carried.is_empty(), maps) {
                 let change = total_variation(&all.density(masses)?, &fewer.density(masses)?)?;
                 changes.extend(carried.into_iter().map(|axis| (axis, change)));
@@ -249,8 +259,12 @@ impl Maps {
     ) -> Structure {
         let space = problem.space();
         let axes = observable.axes();
+        if let Some((kept, phase, along)) = problem.at_phase(observable) {
+            let there = times(masses, &phase_factors(space, along, phase, false));
+            return structure(system, space, &there, kept, kinked, Moment::Phase);
+        }
         if axes.iter().all(|&axis| axis < space.dimension()) {
-            return structure(system, space, masses, observable, kinked);
+            return structure(system, space, masses, observable, kinked, Moment::Mean);
         }
         Structure {
             centre: self.centre(system, problem, &axes, kinked),
@@ -269,7 +283,7 @@ impl Maps {
     ) -> Option<Vec<f64>> {
         let space = problem.space();
         let ends: Vec<(f64, f64)> = space.axes().iter().map(|a| (a.from(), a.to())).collect();
-        let symmetry = proved_symmetry(system, &ends)?;
+        let symmetry = symmetry_over_a_period(system, &ends)?;
         let of = |&axis: &usize| match axis.checked_sub(space.dimension()) {
             None => symmetry.reflected[axis].then(|| symmetry.centre[axis]),
             Some(number) => {

@@ -10,7 +10,7 @@
 
 use super::SpaceError;
 use super::grading::{BULK_SHARE, Grading, Piece, cubic_term, grading_terms};
-use super::series::{MOST_MODES, Series};
+use super::series::Series;
 
 /// The cells of one axis. Cell `i` is `[edges[i], edges[i + 1])`; the last one includes its upper edge.
 #[derive(Debug, Clone, PartialEq)]
@@ -175,9 +175,9 @@ impl Axis {
     /// that a face stays in the middle. An axis of modes gets a quarter more of them, at least one (none below 1).
     pub(crate) fn refined(&self, factor: f64) -> Self {
         if self.is_modes() {
-            let more = (self.count() / MODES_A_FINER_MODE).max(1);
-            let count = self.count() + if factor > 1.0 { more } else { 0 };
-            let finer = self.with_modes(count.min(MOST_MODES));
+            let more = (self.mode_number() / MODES_A_FINER_MODE).max(1);
+            let count = self.mode_number() + if factor > 1.0 { more } else { 0 };
+            let finer = self.with_modes(count.min(self.most_modes()));
             return finer.unwrap_or_else(|_| self.clone());
         }
         let finer = |cells: usize| {

@@ -9,9 +9,15 @@
 //! with Legendre coefficients, to the last digit where the drift is a polynomial of degree two. `Axis::modes` therefore
 //! is an axis whose cells are as wide as the weights, and no other module asks, but those that reconstruct along an
 //! axis. The dissection never cuts across modes.
+//!
+//! The same holds of an axis that closes on itself (`fourier.rs`): 2K + 1 even nodes carry K harmonics. What other axes
+//! do at a node may depend on the phase in any smooth way, by however many harmonics: nothing is projected by hand. Of
+//! the products that Galerkin's method has, the highest harmonic of the density with the highest of the drift alone is
+//! taken for another, an error of the size of what is left out anyway.
 
 mod axis;
 mod cells;
+mod fourier;
 mod grading;
 mod hermite;
 mod series;
@@ -44,6 +50,14 @@ pub enum SpaceError {
     #[error("{count} modes on an axis; 2 to {most} are possible")]
     Modes {
         /// Number of modes that was given.
+        count: usize,
+        /// The largest number.
+        most: usize,
+    },
+    /// Too few or too many harmonics.
+    #[error("{count} harmonics along an axis that closes on itself; 1 to {most} are possible")]
+    Harmonics {
+        /// Number of harmonics that was given.
         count: usize,
         /// The largest number.
         most: usize,

@@ -26,6 +26,8 @@ pub enum Series {
         /// Its standard deviation.
         deviation: f64,
     },
+    /// Sines and cosines over one turn, the range, whose ends are one place.
+    Fourier,
 }
 
 /// A rule on [-1, 1]: nodes, ascending, and weights, Σ = 2, exact for polynomials of degree 2 count - 1.

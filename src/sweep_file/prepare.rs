@@ -13,7 +13,7 @@ use crate::method::{
     PILOT_BOX, Problem, RangeError, SgcmOptions, automatic_modes, automatic_ranges,
     change_by_more_modes, check_sticking,
 };
-use crate::space::Axis;
+use crate::space::{Axis, CellSpace};
 use crate::system::{ParameterValues, System};
 
 impl Settings {
@@ -66,7 +66,7 @@ impl Settings {
         let space = cell_space(&self.document, &self.family, &self.axes, method)
             .map_err(|diagnostic| self.refuse(*diagnostic))?;
         let bins = self
-            .bin_axes()
+            .bin_axes(&space)
             .map_err(|diagnostic| self.refuse(*diagnostic))?;
         let problem = Problem::watching(self.family.clone(), space, self.observables.clone(), bins)
             .map(|problem| {
@@ -83,9 +83,12 @@ impl Settings {
     }
 
     /// The bins of all quantities.
-    fn bin_axes(&self) -> Result<Vec<Axis>, Box<Diagnostic>> {
+    fn bin_axes(&self, space: &CellSpace) -> Result<Vec<Axis>, Box<Diagnostic>> {
         let named = self.family.quantities().iter().zip(&self.bins);
         let bins = named.map(|(quantity, bins)| {
+            if let Some(at) = quantity.phase() {
+                return Ok(space.axes()[at.axis].clone());
+            }
             let name = quantity.name();
             let Some((from, to)) = bins.range else {
                 let open = Diagnostic::new(format!("the bins of `{name}` have no range"));

@@ -1,5 +1,7 @@
 //! What is said of the axes and parameters of a model: names, symbols, meaning, and the values that are allowed.
 
+use super::typed::PHASE_AXIS;
+
 /// One axis of a model's state.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AxisDescription {
@@ -10,7 +12,8 @@ pub struct AxisDescription {
     /// Meaning in words.
     pub meaning: String,
     /// Whether modes carry it unless a file says otherwise: the density along it is smooth inside its bounds and no
-    /// noise drives it, or it relaxes linearly without noise, or it is white noise behind a filter.
+    /// noise drives it, or it relaxes linearly without noise, or it is white noise behind a filter, or it closes on
+    /// itself.
     pub by_modes: bool,
 }
 
@@ -27,6 +30,11 @@ impl AxisDescription {
             meaning: meaning.into(),
             by_modes: false,
         }
+    }
+
+    /// The axis of the phase of a forcing, in periods.
+    pub(crate) fn phase() -> Self {
+        Self::new(PHASE_AXIS, "t/T", "phase of the forcing, in periods").carried_by_modes()
     }
 
     /// The axis of an internal state that modes carry; a series in place of cells. The state has no noise, and either

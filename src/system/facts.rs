@@ -30,6 +30,12 @@ pub struct Facts {
     /// oscillator drives is one, and the force of a Maxwell element. Hermite modes can carry it
     /// ([`crate::space::Axis::hermite`]).
     pub relaxation_rates: BTreeMap<usize, f64>,
+    /// Axes that close on themselves, each with the ends of one turn, which are one place: angles, and the phase of a
+    /// forcing. Drift and noise are periodic in them.
+    pub turns: BTreeMap<usize, (f64, f64)>,
+    /// The axis that is the phase of a periodic forcing, in periods: its drift is the forcing's frequency (in periods
+    /// per unit of time), the same everywhere.
+    pub phase: Option<usize>,
     /// Planes where the drift is not smooth.
     pub switching_surfaces: Vec<SwitchingSurface>,
     /// A reflection under which the steady state is invariant.
@@ -43,6 +49,8 @@ pub(super) static NOTHING: Facts = Facts {
     bounds: BTreeMap::new(),
     filtered_noise: BTreeMap::new(),
     relaxation_rates: BTreeMap::new(),
+    turns: BTreeMap::new(),
+    phase: None,
     switching_surfaces: Vec::new(),
     symmetry: None,
     period: None,
@@ -58,9 +66,12 @@ impl Facts {
     }
 
     /// Whether the lower and the upper end of a range of an axis are walls: values that the coordinate never leaves
-    /// (`Facts::bounds`), to a billionth of the range.
+    /// (`Facts::bounds`), to a billionth of the range. Nothing leaves a turn through its ends either.
     pub(crate) fn walls(&self, axis: usize, (from, to): (f64, f64)) -> [bool; 2] {
         let tolerance = AT_A_BOUND * (to - from);
+        if self.turns.get(&axis) == Some(&(from, to)) {
+            return [true; 2];
+        }
         self.bounds(axis).map_or([false; 2], |(low, high)| {
             [from <= low + tolerance, to >= high - tolerance]
         })

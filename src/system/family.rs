@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{
-    MeasureLevel, Model, ParameterValues, PassageQuestion, Path, Quantity, Region, System,
+    AtPhase, MeasureLevel, Model, ParameterValues, PassageQuestion, Path, Quantity, Region, System,
     SystemError,
 };
 
@@ -148,6 +148,17 @@ impl Family {
     pub(crate) fn quantity(&self, number: usize) -> Option<&Arc<Quantity>> {
         self.quantities
             .get(number.checked_sub(self.model.axes.len())?)
+    }
+
+    /// The axes of the state that an observable keeps at one phase of the forcing, and the phase in periods; `None` for
+    /// any other observable.
+    pub(crate) fn at_phase(&self, axes: &[usize]) -> Option<(Vec<usize>, f64)> {
+        let at = |&axis: &usize| self.quantity(axis)?.phase();
+        let all: Option<Vec<AtPhase>> = axes.iter().map(at).collect();
+        let all = all?;
+        let phase = all.first()?.phase;
+        let is_one = all.iter().all(|one| one.phase == phase);
+        is_one.then(|| (all.iter().map(|one| one.axis).collect(), phase))
     }
 
     /// The model.

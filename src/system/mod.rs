@@ -59,13 +59,14 @@ pub use oscillator::VELOCITY;
 pub(crate) use oscillator::{DISPLACEMENT, FIRST_INTERNAL_STATE};
 pub use passage::{MeasureLevel, PassageQuestion, PassageStart};
 pub use path::Path;
-pub use quantity::{BoundQuantity, Quantity, QuantityError, QuantityFault, quantities};
+pub use quantity::{AtPhase, BoundQuantity, Quantity, QuantityError, QuantityFault, quantities};
 pub use region::{Region, RegionError, RegionFault, regions};
-pub(crate) use symmetry::proved_symmetry;
-pub(crate) use typed::FormulaHazard;
+pub(crate) use symmetry::{proved_symmetry, symmetry_over_a_period};
 pub use typed::{
-    CompiledDrift, FormulaPlace, Interpretation, TypedEquations, TypedModel, TypedModelError,
+    CompiledDrift, FormulaPlace, Interpretation, PeriodFault, TypedEquations, TypedModel,
+    TypedModelError,
 };
+pub(crate) use typed::{FormulaHazard, PHASE_AXIS};
 
 /// An Itô equation dX = a(X, t) dt + Σ_k b_k(X, t) e_{axis(k)} dW_k with bound parameters.
 ///

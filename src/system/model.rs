@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::typed::statement::Statement;
-use super::{AxisDescription, NoiseKind, ParameterDescription, System, TypedEquations};
+use super::{AxisDescription, NoiseKind, PHASE_AXIS, ParameterDescription, System, TypedEquations};
 use crate::formula::mathml::{Element, words};
 
 /// Binds checked values, given in the order of a model's parameters.
@@ -97,6 +97,11 @@ impl Model {
             bind: Box::new(bind),
             typed: None,
         }
+    }
+
+    /// The axis of the phase of a periodic forcing, where there is one.
+    pub(crate) fn phase_axis(&self) -> Option<usize> {
+        self.axes.iter().position(|axis| axis.name == PHASE_AXIS)
     }
 
     /// The equations as formulas, where the model is made of nothing else: not those of one whose drift is compiled.

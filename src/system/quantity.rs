@@ -4,8 +4,8 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::{LANES, Lanes, Model, SystemError};
-use crate::formula::graph::{Expression, Symbol};
+use super::{LANES, Lanes, Model, PHASE_AXIS, SystemError};
+use crate::formula::graph::{Expression, Graph, Symbol};
 use crate::formula::language::FormulaError;
 use crate::formula::scope::{DefinitionError, DefinitionFault, Scope, SymbolError, Symbols};
 use crate::formula::tape::{Program, Tape};
@@ -19,6 +19,32 @@ pub struct Quantity {
     program: Program,
     states: Vec<bool>,
     parameters: Vec<String>,
+    at_phase: Option<AtPhase>,
+}
+
+/// An axis of the state at a phase of the forcing, in place of the whole period.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AtPhase {
+    /// The axis.
+    pub axis: usize,
+    /// The phase, in periods, from 0 to below 1.
+    pub phase: f64,
+}
+
+/// Largest denominator of a phase that is written as a fraction.
+const DENOMINATORS: u32 = 24;
+
+impl AtPhase {
+    /// The phase as a text: a fraction with a small denominator, or decimals.
+    fn fraction(self) -> String {
+        let mut denominators = (1..=DENOMINATORS).map(f64::from);
+        let whole = |q: &f64| (self.phase * q - (self.phase * q).round()).abs() < 1e-12;
+        match denominators.find(whole) {
+            Some(1.0) => "0".to_owned(),
+            Some(q) => format!("{}/{q}", (self.phase * q).round()),
+            None => format!("{}", self.phase),
+        }
+    }
 }
 
 /// A quantity with values of all parameters.
@@ -136,7 +162,11 @@ pub fn quantities(
         errors.extend(taken.map_err(|error| at(0)(error.into())).err());
     };
     for axis in &model.axes {
-        whole(symbols.add_state(&axis.name).map(drop));
+        match axis.name == PHASE_AXIS {
+            // No formula can name it: there `t` is time.
+            true => drop(symbols.add_unnamed_state(PHASE_AXIS)),
+            false => whole(symbols.add_state(&axis.name).map(drop)),
+        }
     }
     for parameter in &model.parameters {
         whole(symbols.add_parameter(&parameter.name).map(drop));
@@ -217,7 +247,44 @@ impl Quantity {
             program,
             states,
             parameters: parameters.collect(),
+            at_phase: None,
         })
+    }
+
+    /// An axis of a model at a phase of its forcing; `None` where the model has no such axis or no phase.
+    pub fn at_phase(model: &Model, at: AtPhase) -> Option<Self> {
+        let phase = model.phase_axis()?;
+        let own = model.axes.get(at.axis).filter(|_| at.axis != phase)?;
+        let mut graph = Graph::default();
+        let state = Symbol::State(at.axis);
+        let expression = graph.build(|builder| builder.symbol(state)).ok()?;
+        let (states, parameters) = (model.axes.len(), model.parameters.len());
+        let fraction = at.fraction();
+        let letters = fraction.replace(['/', '.'], "_");
+        Some(Self {
+            name: format!("{}_phase_{letters}", own.name),
+            symbol: match fraction.as_str() {
+                "0" => format!("{}(0)", own.symbol),
+                fraction => format!("{}({fraction} T)", own.symbol),
+            },
+            formula: None,
+            program: Program::new(&graph, &[expression], states, parameters),
+            states: (0..states).map(|axis| axis == at.axis).collect(),
+            parameters: Vec::new(),
+            at_phase: Some(at),
+        })
+    }
+
+    /// The axis and the phase, of an axis at a phase of the forcing.
+    pub fn phase(&self) -> Option<AtPhase> {
+        self.at_phase
+    }
+
+    /// How a sweep file says an axis at a phase.
+    pub(crate) fn phase_text(&self, model: &Model) -> Option<String> {
+        let at = self.at_phase?;
+        let axis = &model.axes.get(at.axis)?.name;
+        Some(format!("{axis} @ phase {}", at.fraction()))
     }
 
     /// Its name, as given.

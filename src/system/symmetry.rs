@@ -12,8 +12,20 @@ const BATCHES: usize = 2;
 /// else one about the origin or the middle of the box that is found by trial, with the most axes reflected. Trial
 /// cannot tell a symmetry that fails only in a part of the box that no tried state lies in.
 pub(crate) fn proved_symmetry(system: &dyn System, ends: &[(f64, f64)]) -> Option<Symmetry> {
+    symmetry(system, ends, None)
+}
+
+/// As [`proved_symmetry`], of densities over a whole period of a forcing: the reflection may need half a period, as x →
+/// -x of x' = f(x) + cos(ω t) with an odd f does.
+pub(crate) fn symmetry_over_a_period(system: &dyn System, ends: &[(f64, f64)]) -> Option<Symmetry> {
+    let at_any_phase = proved_symmetry(system, ends);
+    at_any_phase.or_else(|| symmetry(system, ends, Some(system.facts().phase?)))
+}
+
+/// The reflection, together with half a turn of an axis where one is given.
+fn symmetry(system: &dyn System, ends: &[(f64, f64)], shifted: Option<usize>) -> Option<Symmetry> {
     if let Some(declared) = system.facts().symmetry.clone() {
-        return holds(system, &declared, ends).then_some(declared);
+        return holds(system, &declared, ends, shifted).then_some(declared);
     }
     let axes = system.dimension();
     let middle: Vec<f64> = ends.iter().map(|(from, to)| 0.5 * (from + to)).collect();
@@ -24,7 +36,7 @@ pub(crate) fn proved_symmetry(system: &dyn System, ends: &[(f64, f64)]) -> Optio
                 centre: centre.clone(),
                 reflected: (0..axes).map(|axis| subset >> axis & 1 == 1).collect(),
             };
-            if holds(system, &candidate, ends) {
+            if holds(system, &candidate, ends, shifted) {
                 found.push(candidate);
             }
         }
@@ -36,7 +48,12 @@ pub(crate) fn proved_symmetry(system: &dyn System, ends: &[(f64, f64)]) -> Optio
 }
 
 /// Whether drift and noise at the images of states are the images of those at the states.
-fn holds(system: &dyn System, symmetry: &Symmetry, ends: &[(f64, f64)]) -> bool {
+fn holds(
+    system: &dyn System,
+    symmetry: &Symmetry,
+    ends: &[(f64, f64)],
+    shifted: Option<usize>,
+) -> bool {
     let axes = system.dimension();
     if symmetry.centre.len() != axes || symmetry.reflected.len() != axes || ends.len() != axes {
         return false;
@@ -46,7 +63,15 @@ fn holds(system: &dyn System, symmetry: &Symmetry, ends: &[(f64, f64)]) -> bool 
             .map(|axis| spread(batch, axis, ends[axis]))
             .collect();
         let images: Vec<Lanes> = (0..axes)
-            .map(|axis| states[axis].map(|value| symmetry.image(axis, value)))
+            .map(|axis| {
+                let moves = shifted == Some(axis);
+                let half_a_turn = if moves {
+                    0.5 * (ends[axis].1 - ends[axis].0)
+                } else {
+                    0.0
+                };
+                states[axis].map(|value| symmetry.image(axis, value) + half_a_turn)
+            })
             .collect();
         drifts_agree(system, symmetry, &states, &images) && noise_agrees(system, &states, &images)
     })

@@ -8,11 +8,13 @@ mod interval;
 mod kink;
 mod noise;
 mod parity;
+mod periodic;
 mod reflection;
 
 pub use hazard::{Domain, Hazard, HazardKind};
 pub use interval::Interval;
 pub use kink::{Kink, KinkKind, KinkPlace, Surface};
+pub(crate) use periodic::{NotPeriodic, Wave};
 pub(crate) use reflection::Reflection;
 
 #[cfg(test)]

@@ -81,6 +81,11 @@ impl Scope {
         &self.symbols
     }
 
+    /// Adds a coordinate of the state that no formula can name, such as the phase of a forcing.
+    pub(crate) fn add_state(&mut self, shown: &str) -> Symbol {
+        self.symbols.add_unnamed_state(shown)
+    }
+
     /// The graph of all expressions.
     pub fn graph(&self) -> &Graph {
         &self.graph

@@ -119,6 +119,12 @@ impl Symbols {
         Ok(Symbol::State(self.states.len() - 1))
     }
 
+    /// Adds a coordinate of the state that no formula can name; it is shown as this.
+    pub(crate) fn add_unnamed_state(&mut self, shown: &str) -> Symbol {
+        self.states.push(shown.to_owned());
+        Symbol::State(self.states.len() - 1)
+    }
+
     /// Adds a parameter; they are numbered in the order in which they are added.
     ///
     /// # Errors

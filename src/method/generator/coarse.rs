@@ -56,7 +56,9 @@ pub(super) fn rough_relaxation(
     }
     let half = |axis: &Axis| match axis.is_modes() {
         true => axis
-            .with_modes((axis.count() / 2).clamp(LEAST_MODES.min(axis.count()), MOST_MODES))
+            .with_modes(
+                (axis.mode_number() / 2).clamp(LEAST_MODES.min(axis.mode_number()), MOST_MODES),
+            )
             .ok(),
         false => Some(axis.refined(0.5)),
     };

@@ -18,6 +18,8 @@ mod session;
 mod source;
 mod stand;
 mod trail;
+#[cfg(test)]
+mod turns_tests;
 mod unknowns;
 
 pub(super) use coarse::rough_masses;

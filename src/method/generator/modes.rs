@@ -7,7 +7,6 @@
 use super::GeneratorMethodOptions;
 use super::source::GeneratorSource;
 use crate::cancellation::Cancellation;
-use crate::density::Projection;
 use crate::generator::cell_masses;
 use crate::method::{MethodError, Problem};
 use crate::space::{Axis, CellSpace};
@@ -69,7 +68,7 @@ pub(crate) fn change_by_more_modes(
     }
     let mut trials = Trials::giving_up_after(1);
     let mut solve = |count: &dyn Fn(usize) -> usize| {
-        let modes = |_: usize, axis: &Axis| count(axis.count());
+        let modes = |_: usize, axis: &Axis| count(axis.mode_number());
         let source = GeneratorSource::new(&coarse(problem, COARSER, &modes)?, options)?;
         trials.densities(&source, cancellation)
     };
@@ -105,7 +104,7 @@ pub(crate) fn automatic_modes(
     for count in TRIED.into_iter().filter(affordable) {
         let modes = |index: usize, axis: &Axis| match open.contains(&index) {
             true => count,
-            false => axis.count(),
+            false => axis.mode_number(),
         };
         let source = GeneratorSource::new(&coarse(problem, COARSE, &modes)?, options)?;
         let now = trials.densities(&source, cancellation)?;
@@ -193,12 +192,7 @@ fn densities(
         return Ok(None);
     }
     let masses = cell_masses(system.as_ref(), problem.space(), &steady.mass);
-    let density = |&observable| {
-        let projection = Projection::of_series(problem.space(), observable, false)?;
-        Ok(projection.density(&masses)?.values)
-    };
-    let densities: Result<_, MethodError> = problem.observables().iter().map(density).collect();
-    densities.map(Some)
+    source.maps(value)?.changes(problem, &masses).map(Some)
 }
 
 /// Largest change between two tries, relative to the largest value of each density.

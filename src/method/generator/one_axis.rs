@@ -23,11 +23,17 @@ const LARGEST_ERROR: f64 = 1e-6;
 const STEP: f64 = 2e-3;
 const LEAST: f64 = 1e-2;
 
+/// The only axis of a space, where it is a line.
+fn line(space: &CellSpace) -> Option<&Axis> {
+    match space.axes() {
+        [axis] => Some(axis).filter(|axis| !axis.is_closed()),
+        _ => None,
+    }
+}
+
 /// The natural end of the axis that takes all mass, if there is one.
 pub(super) fn absorbed(source: &GeneratorSource, system: &dyn System) -> Option<Finding> {
-    let [axis] = source.problem.space().axes() else {
-        return None;
-    };
+    let axis = line(source.problem.space())?;
     End::ALL.into_iter().find_map(|end| {
         let exponent = exponent_at(system, axis, end).filter(|exponent| *exponent <= -1.0)?;
         let at = end.of(axis);
@@ -48,9 +54,7 @@ pub(super) fn without_density(source: &GeneratorSource, why: Finding) -> Solutio
 
 /// Masses by quadrature; `None` where the system has more axes, or pushes mass out of the range.
 pub(super) fn masses(source: &GeneratorSource, system: &dyn System) -> Option<OneAxis> {
-    let [axis] = source.problem.space().axes() else {
-        return None;
-    };
+    let axis = line(source.problem.space())?;
     between_ends(system, axis, source.closed_ends.first().copied()?)
 }
 
@@ -77,9 +81,7 @@ pub(crate) struct OneAxisFamily {
 impl OneAxisFamily {
     /// `None` for a family with more axes.
     pub(crate) fn new(family: &Family, space: &CellSpace) -> Option<Self> {
-        if space.dimension() != 1 {
-            return None;
-        }
+        line(space)?;
         let systems = family.along().ok()?;
         let closed = closed_ends(&systems, space);
         Some(Self {

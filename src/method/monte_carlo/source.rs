@@ -12,7 +12,7 @@ use crate::method::problem::Maps;
 use crate::method::report::Reporter;
 use crate::method::structure::{closed_ends, kinked_surfaces};
 use crate::method::watched::Masses;
-use crate::method::{MethodError, Problem, has_densities};
+use crate::method::{MethodError, Problem, has_densities, has_no_turns};
 use crate::monte_carlo::{
     EnsembleRun, ErgodicRun, Estimate, MonteCarloError, Relaxation, ensemble, ergodic, relaxation,
 };
@@ -44,6 +44,7 @@ impl MonteCarloSource {
         cancellation: &Cancellation,
     ) -> Result<Self, MethodError> {
         let (systems, space) = (problem.family().along()?, problem.space());
+        has_no_turns(problem)?;
         has_densities(problem)?;
         let mut relaxed: Vec<Relaxation> = Vec::new();
         for system in &systems {

@@ -5,7 +5,7 @@ use super::SgcmOptions;
 use crate::cancellation::Cancellation;
 use crate::method::structure::{closed_ends, kinked_surfaces};
 use crate::method::time_step::time_step;
-use crate::method::{MethodError, Problem, has_densities};
+use crate::method::{MethodError, Problem, has_densities, has_no_turns};
 use crate::monte_carlo::{Relaxation, StepBias, TOLERATED_BIAS, relaxation};
 use crate::sampling::{Pilot, pilot};
 use crate::system::SwitchingSurface;
@@ -35,6 +35,7 @@ pub(super) fn choose_steps(
     cancellation: &Cancellation,
 ) -> Result<Steps, MethodError> {
     let (systems, space) = (problem.family().along()?, problem.space());
+    has_no_turns(problem)?;
     has_densities(problem)?;
     let (mut pilots, mut relaxed) = (Vec::<Pilot>::new(), Vec::<Relaxation>::new());
     for system in &systems {

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crate::density::{Kink, Observable, Structure};
 use crate::space::CellSpace;
-use crate::system::{SwitchingSurface, System, proved_symmetry};
+use crate::system::{SwitchingSurface, System, proved_symmetry, symmetry_over_a_period};
 use kink::kink;
 use smoothness::{Break, break_at};
 
@@ -76,6 +76,13 @@ pub(super) fn closed_ends(systems: &[Arc<dyn System>], space: &CellSpace) -> Vec
     .collect()
 }
 
+/// Whether a density is one over a whole period of the forcing, or at one phase of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Moment {
+    Mean,
+    Phase,
+}
+
 /// Structure of the density of an observable; `masses` are those of all cells, `surfaces` those with a kink.
 pub(super) fn structure(
     system: &dyn System,
@@ -83,6 +90,7 @@ pub(super) fn structure(
     masses: &[f64],
     observable: Observable,
     surfaces: &[SwitchingSurface],
+    moment: Moment,
 ) -> Structure {
     let axes = observable.axes();
     let mut kinks: Vec<Kink> = Vec::new();
@@ -95,7 +103,7 @@ pub(super) fn structure(
         known.extend(found.is_some().then_some((surface.axis, surface.at)));
         kinks.extend(found);
     }
-    let mut centre = centre(system, space, &axes);
+    let mut centre = centre(system, space, &axes, moment);
     let declared = &system.facts().switching_surfaces;
     let others = (declared.iter())
         .filter(|one| !known.contains(&(one.axis, one.at)))
@@ -136,13 +144,21 @@ pub(super) fn structure(
 }
 
 /// The point of symmetry, where all axes that are kept are reflected.
-fn centre(system: &dyn System, space: &CellSpace, axes: &[usize]) -> Option<Vec<f64>> {
+fn centre(
+    system: &dyn System,
+    space: &CellSpace,
+    axes: &[usize],
+    moment: Moment,
+) -> Option<Vec<f64>> {
     let ends: Vec<(f64, f64)> = space
         .axes()
         .iter()
         .map(|axis| (axis.from(), axis.to()))
         .collect();
-    let symmetry = proved_symmetry(system, &ends)?;
+    let symmetry = match moment {
+        Moment::Mean => symmetry_over_a_period(system, &ends)?,
+        Moment::Phase => proved_symmetry(system, &ends)?,
+    };
     let all = axes.iter().all(|&axis| symmetry.reflected[axis]);
     all.then(|| axes.iter().map(|&axis| symmetry.centre[axis]).collect())
 }
@@ -179,7 +195,14 @@ mod tests {
             (Observable::Joint(0, 1), 1, 6),
             (Observable::Joint(1, 0), 0, 6),
         ] {
-            let structure = structure(system.as_ref(), &space, &masses, observable, &surfaces);
+            let structure = structure(
+                system.as_ref(),
+                &space,
+                &masses,
+                observable,
+                &surfaces,
+                Moment::Mean,
+            );
             let [kink] = structure.kinks.as_slice() else {
                 panic!("one kink");
             };
@@ -189,7 +212,7 @@ mod tests {
             assert_eq!(structure.centre, Some(vec![0.0; observable.axes().len()]));
         }
         let x = Observable::Marginal(0);
-        let of_x = structure(system.as_ref(), &space, &masses, x, &surfaces);
+        let of_x = structure(system.as_ref(), &space, &masses, x, &surfaces, Moment::Mean);
         assert!(of_x.kinks.is_empty());
     }
 }

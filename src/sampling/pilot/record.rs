@@ -53,7 +53,10 @@ impl Record {
         rates: bool,
     ) {
         for lane in 0..LANES {
-            let state: Vec<f64> = states.iter().map(|lanes| lanes[lane]).collect();
+            let mut state: Vec<f64> = states.iter().map(|lanes| lanes[lane]).collect();
+            for (&axis, &(from, to)) in &system.facts().turns {
+                state[axis] = from + (state[axis] - from).rem_euclid(to - from);
+            }
             self.visit(system, space, &state);
             if rates && lane % 4 == 0 {
                 self.rates.extend(local_rates(system, space, &state));

@@ -2,6 +2,7 @@
 
 use super::Axis;
 use crate::space::SpaceError;
+use crate::space::fourier::{cardinal, fourier_derivatives, fourier_integrals};
 use crate::space::hermite::{
     NORMAL_RANGE, gauss_hermite, hermite_integrals, hermite_values, normal_edges,
 };
@@ -75,18 +76,60 @@ impl Axis {
         Self::hermite(mean, half / DEVIATIONS_OF_A_RANGE, count)
     }
 
-    /// The same axis with another number of modes.
+    /// An axis that closes on itself: the density along it is a trigonometric polynomial with `harmonics` harmonics of
+    /// the turn from `from` to `to`, given by its values at 2 `harmonics` + 1 places in the middle of equal cells. For
+    /// angles, and for the phase of a forcing.
     ///
     /// # Errors
-    /// [`SpaceError::Modes`]; an axis of cells becomes one of Legendre modes.
+    /// [`SpaceError::Range`] or [`SpaceError::Modes`].
+    pub fn fourier(from: f64, to: f64, harmonics: usize) -> Result<Self, SpaceError> {
+        let most = MOST_MODES / 2 - 1;
+        if !(1..=most).contains(&harmonics) {
+            let count = harmonics;
+            return Err(SpaceError::Harmonics { count, most });
+        }
+        let even = Self::uniform(from, to, 2 * harmonics + 1)?;
+        Ok(Self {
+            pieces: Vec::new(),
+            series: Some(Series::Fourier),
+            ..even
+        })
+    }
+
+    /// The same axis with another number of modes, of harmonics for an axis that closes on itself.
+    ///
+    /// # Errors
+    /// [`SpaceError::Modes`], [`SpaceError::Harmonics`]; an axis of cells becomes one of Legendre modes.
     pub fn with_modes(&self, count: usize) -> Result<Self, SpaceError> {
         match self.series {
+            Some(Series::Fourier) => Self::fourier(self.from(), self.to(), count),
             Some(Series::Hermite { mean, deviation }) => Self::hermite(mean, deviation, count),
             Some(Series::Legendre) | None => Self::modes(self.from(), self.to(), count),
         }
     }
 
-    /// Whether it carries a series in place of cells: see [`Axis::modes`] and [`Axis::hermite`].
+    /// The number of modes as it is given: of an axis that closes on itself that of its harmonics.
+    pub fn mode_number(&self) -> usize {
+        match self.series {
+            Some(Series::Fourier) => self.count() / 2,
+            _ => self.count(),
+        }
+    }
+
+    /// The largest number of modes it may have.
+    pub(in crate::space) fn most_modes(&self) -> usize {
+        match self.series {
+            Some(Series::Fourier) => MOST_MODES / 2 - 1,
+            _ => MOST_MODES,
+        }
+    }
+
+    /// Whether it closes on itself: see [`Axis::fourier`].
+    pub fn is_closed(&self) -> bool {
+        self.series == Some(Series::Fourier)
+    }
+
+    /// Whether it carries a series in place of cells: see [`Axis::modes`], [`Axis::hermite`] and [`Axis::fourier`].
     pub fn is_modes(&self) -> bool {
         self.series.is_some()
     }
@@ -99,9 +142,15 @@ impl Axis {
     /// Of an axis of modes, the integrals of the series over bins with these edges: entry `bin · count + node` is what
     /// the mass at a node adds to a bin, by the first `used` modes.
     pub(crate) fn series_weights(&self, edges: &[f64], used: usize) -> Vec<f64> {
+        if self.is_closed() {
+            let turn = |x: &f64| (x - self.from()) / (self.to() - self.from());
+            let edges: Vec<f64> = edges.iter().map(turn).collect();
+            let nodes: Vec<f64> = self.nodes.iter().map(turn).collect();
+            return fourier_integrals(&nodes, &edges, used / 2);
+        }
         let (middle, half, is_hermite) = match self.series {
             Some(Series::Hermite { mean, deviation }) => (mean, deviation, true),
-            Some(Series::Legendre) | None => {
+            Some(Series::Legendre | Series::Fourier) | None => {
                 let (from, to) = (self.from(), self.to());
                 (0.5 * (from + to), 0.5 * (to - from), false)
             }
@@ -134,8 +183,17 @@ impl Axis {
                 let half = NORMAL_RANGE * deviation;
                 (mean - half, mean + half)
             }
-            Some(Series::Legendre) | None => (self.from(), self.to()),
+            Some(Series::Legendre | Series::Fourier) | None => (self.from(), self.to()),
         }
+    }
+
+    /// Of an axis that closes on itself, what the mass at each node adds to the density at a place, times the length of
+    /// the turn, by so many harmonics.
+    pub(crate) fn weights_at(&self, x: f64, harmonics: usize) -> Vec<f64> {
+        let turn = |x: f64| (x - self.from()) / (self.to() - self.from());
+        let nodes = self.nodes.iter();
+        let weights = nodes.map(|&node| cardinal(turn(x) - turn(node), harmonics));
+        weights.collect()
     }
 
     fn check_modes(count: usize) -> Result<(), SpaceError> {
@@ -164,9 +222,13 @@ impl Axis {
         self.nodes.iter().flat_map(at).collect()
     }
 
-    /// Of an axis of modes, the derivatives of the Lagrange polynomials of its nodes: entry `k · count + i` is
+    /// Of an axis of modes, the derivatives of the polynomials (trigonometric ones, where it closes on itself) that are
+    /// one at a node and zero at the others: entry `k · count + i` is
     /// ℓ_i'(node k).
     pub(crate) fn differentiation(&self) -> Vec<f64> {
+        if self.is_closed() {
+            return fourier_derivatives(self.count(), self.to() - self.from());
+        }
         differentiation(&self.nodes)
     }
 }

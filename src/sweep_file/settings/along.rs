@@ -46,12 +46,20 @@ impl<'a> Along<'a> {
         !self.corners.is_empty() && corners.all(relaxes)
     }
 
+    /// The ends of a turn of an axis that closes on itself.
+    pub(super) fn turn(&self, axis: usize) -> Option<(f64, f64)> {
+        self.corners.first()?.facts().turns.get(&axis).copied()
+    }
+
     /// The widest range that the model's bounds of an axis take at the corners; of coloured noise, what holds nearly
-    /// all of it.
+    /// all of it, and of what closes on itself a turn.
     pub(super) fn bounds(&self, axis: usize) -> Option<(f64, f64)> {
         if let Some((mean, deviation)) = filter(self.family, axis) {
             let half = NORMAL_RANGE * deviation;
             return Some((mean - half, mean + half));
+        }
+        if let Some(turn) = self.turn(axis) {
+            return Some(turn);
         }
         let bounds: Option<Vec<(f64, f64)>> = self
             .corners

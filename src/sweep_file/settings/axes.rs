@@ -74,7 +74,7 @@ fn read_axis(
         return Some(AxisSettings {
             range: match series {
                 ModesOf::Relaxing => bounds,
-                ModesOf::Bounded | ModesOf::Noise { .. } => Some(bounds?),
+                ModesOf::Bounded | ModesOf::Noise { .. } | ModesOf::Turn => Some(bounds?),
             },
             count: None,
             grade: Grade::Even,

@@ -71,6 +71,14 @@ pub(super) fn check_modes(
     let (why, remedy) = if along.relaxes(index) {
         // Its range is any that holds it.
         return Some(());
+    } else if along.turn(index).is_some() {
+        if range == along.bounds(index) {
+            return Some(());
+        }
+        (
+            "its range is one turn",
+            "leave `from` and `to` out: the turn is known".to_owned(),
+        )
     } else if filter(family, index).is_some() {
         if range == along.bounds(index) {
             return Some(());
@@ -105,8 +113,8 @@ pub(super) fn check_modes(
     };
     let diagnostic = Diagnostic::new(format!("axis `{name}` cannot have modes: {why}"))
         .allowed(
-            "modes carry a state without noise that relaxes linearly or has bounds that the model knows, or coloured \
-             noise",
+            "modes carry a state without noise that relaxes linearly or has bounds that the model knows, coloured \
+             noise, an angle, or the phase of a forcing",
         )
         .remedy(remedy);
     let place = reader.place(&["cells", name, "modes"]);

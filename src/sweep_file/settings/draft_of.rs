@@ -89,6 +89,7 @@ impl Settings {
 
     fn bins_draft(&self) -> Vec<BinsDraft> {
         let all = self.family.quantities().iter().zip(&self.bins);
+        let all = all.filter(|(quantity, _)| quantity.phase().is_none());
         let draft = all.map(|(quantity, bins)| BinsDraft {
             name: quantity.name().to_owned(),
             from: bins.range.map(|range| range.0),
@@ -152,6 +153,11 @@ impl Settings {
 
     /// How a file says an axis or a quantity: with the formula, where its name alone does not say it.
     fn coordinate(&self, axis: usize, is_known: bool) -> String {
+        let model = self.family.model();
+        let own = self.family.quantity(axis);
+        if let Some(text) = own.and_then(|one| one.phase_text(model)) {
+            return text;
+        }
         let quantity = self.family.quantity(axis).filter(|_| !is_known);
         match quantity.and_then(|quantity| Some((quantity.name(), quantity.formula()?))) {
             Some((name, formula)) => format!("{name} = {formula}"),

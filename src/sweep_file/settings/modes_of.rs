@@ -17,6 +17,8 @@ pub enum ModesOf {
         /// Standard deviation.
         deviation: f64,
     },
+    /// What closes on itself: sines and cosines over a turn.
+    Turn,
     /// A state without noise and bounds that relaxes linearly: Hermite's, as wide as the range says.
     Relaxing,
 }
@@ -28,6 +30,7 @@ impl ModesOf {
             return Self::Bounded;
         };
         match filter(along.family, axis) {
+            _ if along.turn(axis).is_some() => Self::Turn,
             Some((mean, deviation)) => Self::Noise { mean, deviation },
             None if along.relaxes(axis) => Self::Relaxing,
             None => Self::Bounded,
@@ -39,6 +42,7 @@ impl ModesOf {
         match self {
             Self::Bounded => Axis::modes(from, to, count),
             Self::Noise { mean, deviation } => Axis::hermite(mean, deviation, count),
+            Self::Turn => Axis::fourier(from, to, count),
             Self::Relaxing => Axis::hermite_over(from, to, count),
         }
     }

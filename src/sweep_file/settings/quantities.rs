@@ -13,6 +13,8 @@ use crate::system::{Family, Model, Quantity, QuantityError, quantities};
 #[derive(Debug, Clone)]
 pub(super) struct Given {
     pub(super) name: String,
+    /// An axis at a phase of the forcing, which needs no formula.
+    pub(super) at_phase: Option<Quantity>,
     /// The formula, and where it begins in the string; `None` for a definition of the model.
     pub(super) formula: Option<(String, usize)>,
     pub(super) name_place: Place,
@@ -62,7 +64,8 @@ pub(super) fn read_all(
     model: &Model,
     given: &[Given],
 ) -> Vec<Arc<Quantity>> {
-    let texts: Vec<(&str, Option<&str>)> = given
+    let formulas: Vec<&Given> = given.iter().filter(|one| one.at_phase.is_none()).collect();
+    let texts: Vec<(&str, Option<&str>)> = formulas
         .iter()
         .map(|one| {
             let formula = one.formula.as_ref().map(|(formula, _)| formula.as_str());
@@ -70,10 +73,17 @@ pub(super) fn read_all(
         })
         .collect();
     match quantities(model, &texts) {
-        Ok(read) => read,
+        Ok(read) => {
+            let mut read = read.into_iter();
+            let all = given.iter().filter_map(|one| match &one.at_phase {
+                Some(at_phase) => Some(Arc::new(at_phase.clone())),
+                None => read.next(),
+            });
+            all.collect()
+        }
         Err(errors) => {
             for error in errors {
-                if let Some(one) = given.get(error.index) {
+                if let Some(one) = formulas.get(error.index) {
                     let diagnostic = diagnostic(reader, one, &error);
                     reader.report(diagnostic);
                 }

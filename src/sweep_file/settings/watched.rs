@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::AxisSettings;
 use super::equations::model_in_words;
+use super::modes_of::ModesOf;
 use super::quantities::{Given, read_all, split};
 use crate::density::Observable;
 use crate::formula::language::check_name;
@@ -11,7 +12,7 @@ use crate::sweep_file::diagnostic::{Diagnostic, Place};
 use crate::sweep_file::draft::Draft;
 use crate::sweep_file::names::{nearest_name, quotable};
 use crate::sweep_file::reader::Reader;
-use crate::system::{Model, Quantity};
+use crate::system::{AtPhase, Model, Quantity};
 
 /// What is watched.
 #[derive(Debug, Default)]
@@ -35,6 +36,15 @@ pub(super) fn read(
         let settings = axes.and_then(|axes| axes.get(axis));
         settings.is_some_and(|axis| axis.modes_by(draft.method.kind).is_some())
     };
+    // What closes on itself is looked at, but for the phase of a forcing, in which nothing has a shape.
+    let is_angle = |axis: usize| {
+        let settings = axes.and_then(|axes| axes.get(axis));
+        let is_turn = settings.is_some_and(|axis| axis.series == ModesOf::Turn);
+        is_turn && model.phase_axis() != Some(axis)
+    };
+    let is_shown =
+        |axis: usize| !has_modes(axis) && model.phase_axis() != Some(axis) || is_angle(axis);
+    let whole = reader.document().root.place.clone();
     let mut observables: Vec<Observable> = Vec::new();
     let mut given: Vec<Given> = Vec::new();
     match &draft.marginals {
@@ -48,8 +58,12 @@ pub(super) fn read(
             }
         }
         None => {
-            let cut = (0..dimension).filter(|&axis| !has_modes(axis));
-            observables.extend(cut.map(Observable::Marginal));
+            let cut: Vec<usize> = (0..dimension).filter(|&axis| is_shown(axis)).collect();
+            observables.extend(cut.iter().copied().map(Observable::Marginal));
+            let at_zero = cut
+                .iter()
+                .filter_map(|&axis| at_zero(model, &mut given, axis, &whole));
+            observables.extend(at_zero.map(Observable::Marginal));
         }
     }
     match &draft.joint {
@@ -60,10 +74,18 @@ pub(super) fn read(
                 let one = coordinate(reader, model, &mut given, one, &place(0));
                 let other = coordinate(reader, model, &mut given, other, &place(1));
                 if let (Some(one), Some(other)) = (one, other) {
+                    let Some((one, other)) =
+                        of_one_moment(reader, model, &mut given, (one, other), &item.place)
+                    else {
+                        continue;
+                    };
                     let carried = [one, other]
                         .into_iter()
                         .find(|&axis| axis < dimension && has_modes(axis));
-                    let quantity = [one, other].into_iter().find(|&axis| axis >= dimension);
+                    let is_formula = |axis: &usize| {
+                        *axis >= dimension && given[axis - dimension].at_phase.is_none()
+                    };
+                    let quantity = [one, other].into_iter().find(is_formula);
                     if let (Some(axis), Some(quantity)) = (carried, quantity) {
                         let quantity = given[quantity - dimension].name.clone();
                         let name = &model.axes[axis].name;
@@ -75,8 +97,12 @@ pub(super) fn read(
                 }
             }
         }
-        None if dimension >= 2 && !has_modes(0) && !has_modes(1) => {
+        None if dimension >= 2 && is_shown(0) && is_shown(1) => {
             observables.push(Observable::Joint(0, 1));
+            let at_zero = [0, 1].map(|axis| at_zero(model, &mut given, axis, &whole));
+            if let [Some(one), Some(other)] = at_zero {
+                observables.push(Observable::Joint(one, other));
+            }
         }
         None => {}
     }
@@ -92,6 +118,7 @@ pub(super) fn read(
         .filter_map(|entry| {
             let known = draft.averaged.iter().find(|(name, _)| *name == entry.key);
             known.map(|(name, text)| Given {
+                at_phase: None,
                 name: name.clone(),
                 formula: Some((text.clone(), 0)),
                 name_place: entry.key_place.clone(),
@@ -102,7 +129,10 @@ pub(super) fn read(
     let averaged = read_all(reader, model, &averaged);
     for quantity in quantities.iter().chain(&averaged) {
         let mut axes = quantity.states().iter().enumerate();
-        if let Some((axis, _)) = axes.find(|(axis, depends)| **depends && has_modes(*axis)) {
+        let is_plain = quantity.phase().is_some();
+        if let Some((axis, _)) =
+            axes.find(|(axis, depends)| **depends && has_modes(*axis) && !is_plain)
+        {
             refuse_modes(reader, quantity.name(), &model.axes[axis].name, None);
         }
     }
@@ -138,11 +168,15 @@ fn coordinate(
         known.map(|number| dimension + number)
     };
     let new = |name: &str, formula: Option<(String, usize)>| Given {
+        at_phase: None,
         name: name.to_owned(),
         formula,
         name_place: at.clone(),
         place: at.clone(),
     };
+    if let Some((axis, when)) = text.split_once('@') {
+        return moment(reader, model, given, (axis, when), at);
+    }
     if let Some((name, formula, offset)) = split(text) {
         if let Some(known) = number(given, name) {
             let first = given[known - dimension].formula.as_ref();
@@ -170,6 +204,132 @@ fn coordinate(
     }
     unknown(reader, model, given, text, at);
     None
+}
+
+/// An axis at phase 0 of the forcing, where there is one.
+fn at_zero(model: &Model, given: &mut Vec<Given>, axis: usize, at: &Place) -> Option<usize> {
+    let quantity = Quantity::at_phase(model, AtPhase { axis, phase: 0.0 })?;
+    let known = given.iter().position(|one| one.name == quantity.name());
+    let number = known.unwrap_or_else(|| {
+        given.push(Given {
+            name: quantity.name().to_owned(),
+            at_phase: Some(quantity),
+            formula: None,
+            name_place: at.clone(),
+            place: at.clone(),
+        });
+        given.len() - 1
+    });
+    Some(model.axes.len() + number)
+}
+
+/// Both coordinates at the phase of the one that has one; `None` where they have two.
+fn of_one_moment(
+    reader: &mut Reader<'_>,
+    model: &Model,
+    given: &mut Vec<Given>,
+    (one, other): (usize, usize),
+    at: &Place,
+) -> Option<(usize, usize)> {
+    let dimension = model.axes.len();
+    let phase = |number: usize, given: &[Given]| {
+        let known = given.get(number.checked_sub(dimension)?)?;
+        known.at_phase.as_ref()?.phase()
+    };
+    let (first, second) = (phase(one, given), phase(other, given));
+    let mut as_well = |axis: usize, at_phase: AtPhase| {
+        let when = format!("phase {}", at_phase.phase);
+        let name = model.axes.get(axis).map(|axis| axis.name.clone());
+        match name {
+            Some(name) => moment(reader, model, given, (&name, &when), at),
+            None => {
+                let title = "a joint density of a quantity and of an axis at a phase";
+                let found = Diagnostic::new(title).at(at, "of two kinds");
+                reader.report(found.remedy("watch axes, both at the phase"));
+                None
+            }
+        }
+    };
+    match (first, second) {
+        (None, None) => Some((one, other)),
+        (Some(phase), None) => Some((one, as_well(other, phase)?)),
+        (None, Some(phase)) => Some((as_well(one, phase)?, other)),
+        (Some(a), Some(b)) if a.phase == b.phase => Some((one, other)),
+        (Some(_), Some(_)) => {
+            let found =
+                Diagnostic::new("a joint density of two phases").at(at, "not of one moment");
+            reader.report(found.remedy("give both the same phase"));
+            None
+        }
+    }
+}
+
+/// The number of an axis at a phase of the forcing, or over the period: `x @ phase 1/4`, `x @ mean`.
+fn moment(
+    reader: &mut Reader<'_>,
+    model: &Model,
+    given: &mut Vec<Given>,
+    (axis, when): (&str, &str),
+    at: &Place,
+) -> Option<usize> {
+    let (axis, when) = (axis.trim(), when.trim());
+    let phase_axis = model.phase_axis();
+    let known = model.axes.iter().position(|one| one.name == axis);
+    let number = known.filter(|&axis| Some(axis) != phase_axis);
+    let phase = when
+        .strip_prefix("phase")
+        .and_then(|text| fraction(text.trim()));
+    let refused = |title: String, remedy: &str| {
+        Diagnostic::new(title)
+            .at(at, "not at a phase")
+            .remedy(remedy)
+    };
+    let found = match (number, phase_axis, phase) {
+        (_, None, _) => refused(
+            format!("`{}` is of a system without forcing", quotable(axis)),
+            "leave `@` out: densities at phases are of systems with sin or cos of `t` in their equations",
+        ),
+        (None, ..) => refused(
+            format!(
+                "`{}` is no axis that has a density at a phase",
+                quotable(axis)
+            ),
+            "name an axis of the state before `@`",
+        ),
+        (Some(axis), ..) if when == "mean" => return Some(axis),
+        (Some(_), _, None) => refused(
+            format!("`{}` is no phase", quotable(when)),
+            "write `phase` and a part of the period from 0 to below 1, as `x @ phase 0` or `x @ phase 1/4`; or `mean`",
+        ),
+        (Some(axis), _, Some(phase)) => {
+            let quantity = Quantity::at_phase(model, AtPhase { axis, phase })?;
+            let name = quantity.name().to_owned();
+            let place = given.iter().position(|one| one.name == name);
+            let place = place.unwrap_or_else(|| {
+                given.push(Given {
+                    name,
+                    at_phase: Some(quantity),
+                    formula: None,
+                    name_place: at.clone(),
+                    place: at.clone(),
+                });
+                given.len() - 1
+            });
+            return Some(model.axes.len() + place);
+        }
+    };
+    reader.report(found);
+    None
+}
+
+/// A number from 0 to below 1, as a fraction or in decimals.
+fn fraction(text: &str) -> Option<f64> {
+    let number = |text: &str| text.trim().parse::<f64>().ok();
+    let value = match text.split_once('/') {
+        Some((above, below)) => number(above)? / number(below)?,
+        None => number(text)?,
+    };
+    (0.0..1.0).contains(&value).then_some(value)
 }
 
 /// Reports a text that is neither a name nor a quantity.

@@ -34,6 +34,7 @@ pub(super) fn check(
         }
     }
     let declared = facts.bounds.keys().chain(facts.filtered_noise.keys());
+    let declared = declared.chain(facts.turns.keys()).chain(&facts.phase);
     let mut declared = declared.chain(facts.relaxation_rates.keys());
     if let Some(&axis) = declared.find(|&&axis| axis >= dimension) {
         return Err(ContractViolation::Axis { axis, dimension });

@@ -84,6 +84,8 @@ impl Typed {
             relaxation_rates: rates
                 .filter(|(_, rate)| *rate > 0.0 && rate.is_finite())
                 .collect(),
+            turns: reading.turns.of_axes.clone(),
+            phase: reading.turns.phase,
             switching_surfaces: self.surfaces(),
             period: reading.period.map(|period| self.value(period)),
             ..Facts::default()

@@ -65,9 +65,9 @@ impl TypedEquations {
         let (scope, reading) = (&self.reading.scope, &self.reading);
         let axes = scope.symbols().states();
         let mut lines = Vec::new();
-        for (axis, name) in axes.iter().enumerate() {
+        for (axis, (name, drift)) in axes.iter().zip(&reading.typed_drift).enumerate() {
             let mut line = format!("{}' = ", typeset_name(name));
-            line += &scope.typeset(reading.typed_drift[axis]);
+            line += &scope.typeset(*drift);
             for (process, amplitudes) in reading.noise.iter().enumerate() {
                 if reading.noise_axes[process] == axis {
                     let amplitude = factor(&scope.typeset(amplitudes[axis]));
@@ -80,8 +80,8 @@ impl TypedEquations {
             let name = typeset_name(name);
             lines.push(format!("{name} = {}", scope.typeset(defined)));
         }
-        let drifts = reading.typed_drift.iter().zip(&reading.drift_expressions);
-        for (name, (_, ito)) in axes.iter().zip(drifts).filter(|(_, (a, b))| a != b) {
+        let drifts = reading.drift_expressions.iter().zip(&reading.corrected);
+        for (name, (ito, _)) in axes.iter().zip(drifts).filter(|(_, (_, is))| **is) {
             let (name, ito) = (typeset_name(name), scope.typeset(*ito));
             lines.push(format!("Itô drift of {name}: {ito}"));
         }

@@ -8,6 +8,7 @@ use crate::formula::language::FormulaError;
 use crate::formula::limits;
 use crate::formula::scope::SymbolError;
 use crate::system::ColouredNoiseError;
+use crate::system::typed::PHASE_AXIS;
 
 /// Where a formula of a model stands.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -145,11 +146,13 @@ pub enum TypedModelError {
         /// What is zero where it may jump.
         argument: String,
     },
-    /// Time in an equation or an amplitude, without a period.
-    #[error("{place} contains the time t; a model that depends on time needs a period")]
-    TimeWithoutPeriod {
+    /// A formula that is not periodic in time or in an angle.
+    #[error("{place}: {fault}")]
+    Periodic {
         /// Where it stands.
         place: FormulaPlace,
+        /// What is wrong.
+        fault: PeriodFault,
     },
     /// States or time in a bound or a period.
     #[error("{place} contains `{symbol}`; it may contain parameters and numbers only")]
@@ -181,4 +184,103 @@ pub enum TypedModelError {
         limits::REGISTERS
     )]
     TooWide,
+}
+
+/// Why formulas have no period in time, or not that of an angle.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PeriodFault {
+    /// The symbol stands outside sines and cosines.
+    #[error("`{symbol}` stands outside of sin and cos in {part}")]
+    Bare {
+        /// Time or the angle.
+        symbol: String,
+        /// The part of the formula, typeset.
+        part: String,
+    },
+    /// The argument of a sine or cosine is no straight line in the symbol.
+    #[error(
+        "in {part} the argument is not a constant frequency times `{symbol}`, plus what does not contain it"
+    )]
+    Bent {
+        /// Time or the angle.
+        symbol: String,
+        /// The part of the formula, typeset.
+        part: String,
+    },
+    /// A jump or kink depends on the symbol.
+    #[error("{part} jumps or bends where `{symbol}` says so")]
+    Torn {
+        /// Time or the angle.
+        symbol: String,
+        /// The part of the formula, typeset.
+        part: String,
+    },
+    /// A sine or cosine of an angle that has another period.
+    #[error("{part} does not have the period {period} of `{symbol}`{}", in_turns(.turns))]
+    Other {
+        /// The angle.
+        symbol: String,
+        /// The part of the formula, typeset.
+        part: String,
+        /// The period that was given.
+        period: f64,
+        /// Waves of it in that period, where it is a number.
+        turns: Option<f64>,
+    },
+    /// Two frequencies of which no common period is known.
+    #[error(
+        "the frequencies {one} and {other} have no common period: no ratio of whole numbers up to {most} at all parameters"
+    )]
+    NoCommonPeriod {
+        /// The one.
+        one: String,
+        /// The other.
+        other: String,
+        /// The largest of these numbers.
+        most: i32,
+    },
+    /// There is no room for a phase.
+    #[error(
+        "the phase of a forcing is one axis more than the {axes} of the state; at most {MAX_DIMENSION} are possible"
+    )]
+    Axes {
+        /// Axes of the state.
+        axes: usize,
+    },
+}
+
+fn in_turns(turns: &Option<f64>) -> String {
+    turns.map_or(String::new(), |turns| {
+        format!(": it has {turns} waves in it")
+    })
+}
+
+impl PeriodFault {
+    /// What to write instead.
+    pub(crate) fn remedy(&self) -> String {
+        match self {
+            Self::Bare { symbol, .. } if symbol == PHASE_AXIS => {
+                "write the forcing with sin and cos, as cos(w t) or sin(2 w t + 0.5): a density over a period needs one".to_owned()
+            }
+            Self::Bare { symbol, .. } => format!(
+                "an angle comes back after a turn, and so must what depends on it: write sin({symbol}) or cos({symbol}); \
+                 or leave its period out, for a coordinate on a line"
+            ),
+            Self::Bent { symbol, .. } => {
+                format!("write a frequency of parameters alone, as in cos(w {symbol} + x)")
+            }
+            Self::Torn { .. } => {
+                "use a smooth function, such as tanh(u/v) for sign(u) with a small v: the series over a period of what jumps does \
+                 not end".to_owned()
+            }
+            Self::Other { symbol, .. } => format!(
+                "write a whole number of waves a period, as sin(2 {symbol}) for an angle of period 2 pi, or give the period that \
+                 the formulas have"
+            ),
+            Self::NoCommonPeriod { .. } => {
+                "write the one as a multiple of the other, as w t and 3/2 w t; two independent frequencies would need two phases".to_owned()
+            }
+            Self::Axes { .. } => "leave out a state that the others do not need".to_owned(),
+        }
+    }
 }

@@ -25,7 +25,7 @@ use compiled::Extras;
 pub use compiled::CompiledDrift;
 pub(crate) use equations::FormulaHazard;
 pub use equations::TypedEquations;
-pub use error::{FormulaPlace, TypedModelError};
+pub use error::{FormulaPlace, PeriodFault, TypedModelError};
 
 /// How a stochastic integral is read where the amplitude of a noise depends on the state that it drives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -92,6 +92,8 @@ pub struct TypedModel {
     /// Axis, lower and upper bound.
     bounds: Vec<(String, String, String)>,
     period: Option<String>,
+    /// Axis and period of angles.
+    turns: Vec<(String, f64)>,
     source: String,
     notes: Vec<String>,
     extras: Extras,
@@ -117,6 +119,7 @@ impl TypedModel {
             noise_kind: NoiseKind::White,
             bounds: Vec::new(),
             period: None,
+            turns: Vec::new(),
             source: String::new(),
             notes: Vec::new(),
             extras: Extras::default(),
@@ -194,7 +197,17 @@ impl TypedModel {
         self
     }
 
-    /// The period in time of formulas that contain `t`, as a formula of the parameters.
+    /// An axis that is an angle: it closes on itself after a period, and drift and noise are periodic in it. It runs
+    /// from minus half of the period to half of it.
+    #[must_use]
+    pub fn with_angle(mut self, axis: impl Into<String>, period: f64) -> Self {
+        self.turns.push((axis.into(), period));
+        self
+    }
+
+    /// The period in time of formulas that contain `t`, as a formula of the parameters, of a system that is not to be
+    /// solved. Without it `t` may stand in sines and cosines of multiples of one frequency, whose phase is an axis of
+    /// the model, `t`, in periods.
     #[must_use]
     pub fn with_period(mut self, period: impl Into<String>) -> Self {
         self.period = Some(period.into());
@@ -259,12 +272,14 @@ impl TypedModel {
         let axes = self.axes.iter().enumerate();
         let axes = axes.map(|(index, axis)| {
             let axis = axis.clone();
-            if is_internal(&reading, index) {
+            if is_internal(&reading, index) || reading.turns.of_axes.contains_key(&index) {
                 axis.carried_by_modes()
             } else {
                 axis
             }
         });
+        let phase = reading.turns.phase.map(|_| AxisDescription::phase());
+        let axes = axes.chain(phase);
         let model = Model::new(self.name.as_str(), self.title.as_str(), bind)
             .with_statements(statements)
             .with_axes(axes.collect::<Vec<_>>())
@@ -281,6 +296,9 @@ impl TypedModel {
         coloured.map(Arc::new).map_err(|error| vec![error.into()])
     }
 }
+
+/// Name of the axis of a forcing's phase: that of time in formulas.
+pub(crate) const PHASE_AXIS: &str = "t";
 
 /// Axes from this one on are internal states; those before it are the oscillator's, which are looked at.
 const FIRST_INTERNAL_AXIS: usize = 2;

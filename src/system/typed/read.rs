@@ -2,6 +2,9 @@
 
 mod joined;
 mod names;
+mod turns;
+
+use std::collections::BTreeMap;
 
 use super::{Extras, FormulaPlace, TypedModel, TypedModelError};
 use crate::formula::graph::{Expression, Symbol, TooLarge};
@@ -12,13 +15,24 @@ use names::scope;
 /// Axes and the coordinates on them that are constant on planes.
 type Planes = Vec<(usize, Expression)>;
 
+/// Axes that close on themselves, with the ends of one turn, and the phase of the forcing among them.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Turns {
+    pub(super) of_axes: BTreeMap<usize, (f64, f64)>,
+    pub(super) phase: Option<usize>,
+}
+
 /// Everything of a typed model but the values of its parameters.
 #[derive(Debug)]
 pub(super) struct Reading {
     /// All names and expressions.
     pub(super) scope: Scope,
-    /// Drift as it was typed, one expression an axis.
+    /// Drift as it was typed, one expression an axis that was typed.
     pub(super) typed_drift: Vec<Expression>,
+    /// Itô drift where it is not what was typed, one entry an axis.
+    pub(super) corrected: Vec<bool>,
+    /// Axes that close on themselves.
+    pub(super) turns: Turns,
     /// Itô drift, one expression an axis.
     pub(super) drift_expressions: Vec<Expression>,
     /// Amplitude of each Wiener process on each axis: `noise[process][axis]`.

@@ -112,15 +112,8 @@ pub(super) fn diagnostic(
             coloured_remedy(plain("coloured noise", place.cloned()), error)
         }
         TypedModelError::JumpingNoise { .. } => plain("these noises", table_place(reader, "noise")),
-        TypedModelError::TimeWithoutPeriod { place } => {
-            let title = format!("{place} contains the time `t`");
-            let diagnostic = Diagnostic::new(title).remedy(
-                "stationary densities are of systems that do not change with time: a forcing can be made an axis of its own, a phase",
-            );
-            match value(place) {
-                Some(place) => diagnostic.at(&place, "depends on time"),
-                None => diagnostic,
-            }
+        TypedModelError::Periodic { place, fault } => {
+            plain("not periodic", value(place)).remedy(fault.remedy())
         }
         TypedModelError::NotOfParameters { place, .. } => plain("a bound", value(place)),
         TypedModelError::Axes { .. } => plain("these equations", None)

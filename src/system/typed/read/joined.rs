@@ -13,15 +13,25 @@ impl Reader<'_> {
         mut self,
         typed_drift: Vec<Expression>,
         (noise, noise_axes, typed_processes): Noise,
-        bounds: Vec<Option<(Expression, Expression)>>,
+        mut bounds: Vec<Option<(Expression, Expression)>>,
     ) -> Result<(Reading, Vec<String>), TypedModelError> {
         let period = self.period(&typed_drift, &noise)?;
-        let drift_expressions = self.ito_drift(&typed_drift, &noise)?;
+        let (turns, forced) = self.turns(&typed_drift, &noise)?;
+        let (moving_drift, noise) = match forced {
+            Some(forced) => (forced.drift, forced.noise),
+            None => (typed_drift.clone(), noise),
+        };
+        bounds.resize(moving_drift.len(), None);
+        let drift_expressions = self.ito_drift(&moving_drift, &noise)?;
+        let both = drift_expressions.iter().zip(&moving_drift);
+        let corrected = both.map(|(ito, typed)| ito != typed).collect();
         // Where an amplitude bends, so does the density; and an amplitude of coloured noise is a part of the drift.
         let mut rough = drift_expressions.clone();
         rough.extend(noise.iter().flatten());
         let (surfaces, notes) = self.surfaces(&rough)?;
-        let free = |axis: usize| bounds[axis].is_none() && !noise_axes.contains(&axis);
+        let is_turn = |axis: usize| turns.of_axes.contains_key(&axis);
+        let free =
+            |axis: usize| bounds[axis].is_none() && !is_turn(axis) && !noise_axes.contains(&axis);
         let relaxation = relaxation::rates(self.scope.graph_mut(), &drift_expressions, &free)?;
         let friction = self.friction()?;
         let scope = self.scope;
@@ -39,6 +49,8 @@ impl Reader<'_> {
         let reading = Reading {
             scope,
             typed_drift,
+            corrected,
+            turns,
             drift_expressions,
             noise,
             typed_processes,
@@ -56,7 +68,7 @@ impl Reader<'_> {
         Ok((reading, notes))
     }
 
-    /// The period, where anything depends on time.
+    /// The period that is given, where anything depends on time.
     fn period(
         &mut self,
         drift: &[Expression],
@@ -71,25 +83,9 @@ impl Reader<'_> {
             }
         }
         let graph = self.scope.graph();
-        let moves = |expression: Expression| graph.contains(expression, Symbol::Time);
-        let name = |axis: usize| self.model.axes[axis].name.clone();
-        let equation = |axis| FormulaPlace::Equation { axis: name(axis) };
-        let mut place = (0..drift.len())
-            .find(|&axis| moves(drift[axis]))
-            .map(equation);
-        for (process, amplitudes) in noise.iter().enumerate() {
-            let axis = (0..amplitudes.len()).find(|&axis| moves(amplitudes[axis]));
-            let noise = axis.map(|axis| FormulaPlace::Noise {
-                axis: name(axis),
-                process,
-            });
-            place = place.or(noise);
-        }
-        match (place, period) {
-            (None, _) => Ok(None),
-            (Some(_), Some(period)) => Ok(Some(period)),
-            (Some(place), None) => Err(TypedModelError::TimeWithoutPeriod { place }),
-        }
+        let mut formulas = drift.iter().chain(noise.iter().flatten());
+        let moves = formulas.any(|&one| graph.contains(one, Symbol::Time));
+        Ok(period.filter(|_| moves))
     }
 
     /// The drift of the Itô equation.
