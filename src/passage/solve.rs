@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::cells::{PassageCells, cells};
 use super::density_start::DensityStart;
-use super::rate::largest_eigenvalue;
+use super::rate::slowest;
 use super::spread::add_density;
 use super::start::{FEWER_NODES, NODES, add_state};
 use super::survival::{Survival, models};
@@ -14,16 +14,8 @@ use crate::generator::{
     AbsorbingGenerator, Closure, Dissipation, GeneratorOptions, assemble_absorbing,
 };
 use crate::space::CellSpace;
-use crate::stationary::generator::{
-    Absorbing, AbsorbingSolver, AbsorbingWork, Expected, RateOptions,
-};
+use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, Expected, RateOptions};
 use crate::system::{Enclosed, System};
-
-/// Relative change of the rate by one more vector at which it stands.
-const RATE_TOLERANCE: f64 = 1e-6;
-
-/// Most vectors that are made for a rate.
-const VECTORS: usize = 24;
 
 /// Numbers of a passage: mean, standard deviation, the rate of the quasi-stationary density; then the probabilities at
 /// times and the quantiles that are asked for.
@@ -140,8 +132,8 @@ impl Question<'_> {
 }
 
 /// Mean, standard deviation and rate by a generator, and by another one to first order of what they differ by; a third
-/// one, with a border of lower order, adds what it changes to the errors. The
-/// start is given by many nodes and by fewer, and may be spread as a density that has errors of its own.
+/// one, with a border of lower order, adds what it changes to the errors. The start is given by many nodes and by
+/// fewer, and may be spread as a density that has errors of its own.
 fn moments(
     solver: &mut AbsorbingSolver<'_>,
     [one, other, third]: [&AbsorbingGenerator; 3],
@@ -155,22 +147,20 @@ fn moments(
     let second = solver.times(&stage, &first)?;
     let [weights, others] = &one.weights;
     let (mean, square) = (dot(weights, &first), 2.0 * dot(weights, &second));
-    let mut powers = vec![first, second];
-    let rate = rate(solver, &stage, &mut powers)?;
+    let (rate, lasting) = slowest(&second, |vector| solver.times(&stage, vector))?;
     let expected = solver.expected(&stage, weights)?;
     let again = solver.expected(&stage, &expected.values())?;
     let scaled = again.values();
     let scaled: Vec<f64> = scaled.iter().map(|value| value / mean.powi(2)).collect();
     let left = solver.expected(&stage, &scaled)?;
-    let lasting = &powers[powers.len() - 1];
     // Of mean, mean square and rate, by another generator.
     let changes = |other: &AbsorbingGenerator| -> [f64; 3] {
         let to = (&other.matrix, other.ends.as_slice());
         let change = |expected: &Expected, times: &[f64]| stage.change(to, expected, times);
         [
-            change(&expected, &powers[0]),
-            2.0 * (change(&expected, &powers[1]) + change(&again, &powers[0])),
-            -change(&left, lasting) / dot(&left.values(), lasting),
+            change(&expected, &first),
+            2.0 * (change(&expected, &second) + change(&again, &first)),
+            -change(&left, &lasting) / dot(&left.values(), &lasting),
         ]
     };
     let spread = (square - mean * mean).max(f64::MIN_POSITIVE).sqrt();
@@ -179,7 +169,7 @@ fn moments(
     let border = [of_mean, of_deviation, of_rate].map(f64::abs);
     // What fewer nodes change of the start, and another way to end sums at an oblique border.
     let of_start = expected.difference(start, coarse).abs();
-    let of_sums = (dot(others, &powers[0]) - mean).abs();
+    let of_sums = (dot(others, &first) - mean).abs();
     let squares: Vec<f64> = (again.beside().iter())
         .zip(expected.beside())
         .map(|(again, expected)| (again - mean * expected) / spread)
@@ -214,31 +204,6 @@ fn moments(
         (Some(full), Some(half)) => Ok([full, half]),
         _ => Err(PassageError::Never),
     }
-}
-
-/// The rate at which processes end that have lasted long; makes as many more vectors as it takes.
-fn rate(
-    solver: &mut AbsorbingSolver<'_>,
-    stage: &Absorbing<'_>,
-    powers: &mut Vec<Vec<f64>>,
-) -> Result<f64, PassageError> {
-    let mut rate = 0.0;
-    while powers.len() < VECTORS {
-        let last = &powers[powers.len() - 1];
-        let size = sum(last);
-        let last: Vec<f64> = last.iter().map(|value| value / size).collect();
-        let next = solver.times(stage, &last)?;
-        // Lengths do not matter to what the vectors span, but large ones would overflow.
-        powers.push(next.iter().map(|value| value * size).collect());
-        let Some(time) = largest_eigenvalue(powers) else {
-            continue;
-        };
-        let change = 1.0 / time - std::mem::replace(&mut rate, 1.0 / time);
-        if change.abs() <= RATE_TOLERANCE * rate {
-            break;
-        }
-    }
-    Ok(rate)
 }
 
 impl Passage {

@@ -13,7 +13,7 @@ use sprs::CsMat;
 
 use super::balance::{add_product, dot};
 use super::narrowing;
-use super::newton::linear;
+use super::newton::refined;
 use super::passes::{Seat, run_alone};
 use super::preconditioner::{LARGE, Preconditioner, Structure, estimate_of};
 use super::solver::{largest, shape};
@@ -277,7 +277,7 @@ impl<'s> AbsorbingSolver<'s> {
         };
         let seat = Seat::default();
         let effort = (self.options.tolerance, self.options.max_iterations);
-        let work = linear(&seat, &operator, (source, None), effort, &self.cancellation);
+        let work = refined(&seat, &operator, source, effort, &self.cancellation);
         let apply = |rest: &[f64]| {
             if is_transposed {
                 kept.apply_transposed(rest)

@@ -50,7 +50,7 @@ mod triangular;
 mod updates;
 
 pub use absorbing::AbsorbingWork;
-pub(crate) use absorbing::{Absorbing, AbsorbingSolver, Expected};
+pub(crate) use absorbing::{AbsorbingSolver, Expected};
 pub(crate) use memory::SolverMemory;
 pub use preconditioner::{Estimate, RateMethod, estimate};
 pub use symmetric::{Along, RateSolver};

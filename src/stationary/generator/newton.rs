@@ -158,6 +158,47 @@ pub(super) async fn linear(
     Ok(None)
 }
 
+/// Solves A x = source with the factors of A itself, which refinement makes exact: as long as each correction is much
+/// smaller than the one before, the next one is as much smaller again and need not be made. Where corrections do not
+/// shrink so, [`linear`] goes on.
+///
+/// # Errors
+/// [`Cancelled`].
+pub(super) async fn refined(
+    seat: &Seat,
+    operator: &Operator<'_>,
+    source: &[f64],
+    (tolerance, limit): (f64, usize),
+    cancellation: &Cancellation,
+) -> Result<Option<(Vec<f64>, usize)>, Cancelled> {
+    let mut solution = seat.pass(source.to_vec()).await;
+    let (mut used, mut before) = (1, norm(&solution));
+    while used < limit {
+        cancellation.check()?;
+        let mut rest = source.to_vec();
+        let product = operator(&solution);
+        rest.iter_mut().zip(product).for_each(|(a, b)| *a -= b);
+        let correction = seat.pass(rest).await;
+        used += 1;
+        let size = norm(&correction);
+        let contraction = size / before;
+        // What is not a number contracts neither.
+        if !(contraction <= FAST || size == 0.0) {
+            break;
+        }
+        add(&mut solution, &correction);
+        if size * contraction <= tolerance * norm(&solution) {
+            return Ok(Some((solution, used)));
+        }
+        before = size;
+    }
+    let start = solution.iter().all(|value| value.is_finite());
+    let start = start.then_some(solution);
+    let left = (tolerance, limit.saturating_sub(used));
+    let found = linear(seat, operator, (source, start), left, cancellation).await?;
+    Ok(found.map(|(solution, more)| (solution, used + more)))
+}
+
 fn add(mass: &mut [f64], step: &[f64]) {
     mass.iter_mut().zip(step).for_each(|(p, z)| *p += z);
 }
