@@ -308,19 +308,22 @@ fn stated_errors_hold_on_random_wells() {
     }
 }
 
+/// The probability that Brownian motion from the middle of (-1, 1) is still inside after a time:
+/// S(t) = (4/π) Σ (-1)ᵏ e^{-(2k + 1)² π² D t/4} / (2k + 1), D = 1/2.
+pub(crate) fn brownian_survival(t: f64) -> f64 {
+    let terms = (0..200).map(|k| {
+        let odd = f64::from(2 * k + 1);
+        let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+        sign * (-(odd * PI).powi(2) * t / 8.0).exp() / odd
+    });
+    4.0 / PI * terms.sum::<f64>()
+}
+
 #[test]
 fn the_probability_to_go_on_is_that_of_the_series() {
-    // Brownian motion from the middle of (-1, 1): S(t) = (4/π) Σ (-1)ᵏ e^{-(2k + 1)² π² D t/4} / (2k + 1), D = 1/2.
     let free = model(&[("x", "0 x")], &[("x", "1")]);
     let times = [0.05, 0.2, 0.5, 1.0, 4.0];
-    let series = |t: f64| {
-        let terms = (0..200).map(|k| {
-            let odd = f64::from(2 * k + 1);
-            let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
-            sign * (-(odd * PI).powi(2) * t / 8.0).exp() / odd
-        });
-        4.0 / PI * terms.sum::<f64>()
-    };
+    let series = brownian_survival;
     let found = asked(
         &free,
         "abs(x) > 1",

@@ -10,6 +10,8 @@ use pbif::sampling::Integrator;
 use pbif::space::{Axis, CellSpace};
 use pbif::system::{TypedModel, regions};
 
+use crate::passages::brownian_survival;
+
 /// Axes with their drifts, or with the amplitudes of their noises.
 type Given<'a> = &'a [(&'a str, &'a str)];
 
@@ -100,14 +102,7 @@ const FREE: (Given<'static>, Given<'static>) = (&[("x", "0 x")], &[("x", "1")]);
 #[test]
 fn brownian_motion_leaves_an_interval_as_the_series_says() {
     // From the middle of (-1, 1): T = 1, its variance 2/3, its rate π²/8.
-    let series = |t: f64| {
-        let terms = (0..200).map(|k| {
-            let odd = f64::from(2 * k + 1);
-            let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
-            sign * (-(odd * PI).powi(2) * t / 8.0).exp() / odd
-        });
-        4.0 / PI * terms.sum::<f64>()
-    };
+    let series = brownian_survival;
     let found = follow(
         FREE,
         (From::State(&[0.0]), "abs(x) > 1"),
