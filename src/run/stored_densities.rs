@@ -13,7 +13,7 @@ use crate::density::{
 };
 use crate::method::OneAxisFamily;
 use crate::space::{Axis, CellSpace};
-use crate::system::{Family, Symmetry, proved_symmetry};
+use crate::system::{Family, Symmetry, symmetry_over_a_period};
 
 /// The store of a run, opened for the observables that are wanted of it.
 pub(super) struct StoredDensities {
@@ -94,7 +94,7 @@ impl StoredDensities {
         let with_centre = self.observed.iter().any(|one| one.centre.is_some());
         let symmetric = system.as_deref().filter(|_| with_centre);
         // The centre that is stored is that of the value that was solved first, and others need not have it.
-        let symmetry = symmetric.and_then(|system| proved_symmetry(system, &self.ends));
+        let symmetry = symmetric.and_then(|system| symmetry_over_a_period(system, &self.ends));
         let densities = self.observed.iter();
         densities
             .map(|observed| {
