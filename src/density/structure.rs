@@ -15,8 +15,8 @@ pub struct Structure {
     /// Of the density of a system with one axis that is known by quadrature: its extrema, free of the cells.
     #[cfg_attr(feature = "serde", serde(with = "crate::bytes"))]
     pub profile: Option<Arc<Profile>>,
-    /// Whether masses of cells are spread over bins of a formula: what that does to bins has no order in the cells, and
-    /// differs from bin to bin.
+    /// Whether masses of cells are spread over bins of a formula, or carried to and fro by a periodic forcing: what
+    /// that does to bins has no order in the cells, and differs from bin to bin, so that two grids may agree by chance.
     pub is_spread: bool,
 }
 

@@ -261,10 +261,16 @@ impl Maps {
         let axes = observable.axes();
         if let Some((kept, phase, along)) = problem.at_phase(observable) {
             let there = times(masses, &phase_factors(space, along, phase, false));
-            return structure(system, space, &there, kept, kinked, Moment::Phase);
+            return Structure {
+                is_spread: true,
+                ..structure(system, space, &there, kept, kinked, Moment::Phase)
+            };
         }
         if axes.iter().all(|&axis| axis < space.dimension()) {
-            return structure(system, space, masses, observable, kinked, Moment::Mean);
+            return Structure {
+                is_spread: system.facts().phase.is_some(),
+                ..structure(system, space, masses, observable, kinked, Moment::Mean)
+            };
         }
         Structure {
             centre: self.centre(system, problem, &axes, kinked),

@@ -86,7 +86,7 @@ fn largest(projected: &DMatrix<f64>) -> Option<f64> {
     let eigenvalues = projected.complex_eigenvalues();
     let real = eigenvalues
         .iter()
-        .filter(|one| one.im.abs() <= 1e-9 * one.re);
+        .filter(|one| one.re > 0.0 && one.im.abs() <= 1e-9 * one.re);
     real.map(|one| one.re).max_by(f64::total_cmp)
 }
 

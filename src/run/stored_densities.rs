@@ -101,7 +101,11 @@ impl StoredDensities {
                 let mut estimate =
                     observed.estimate(&self.path, index as u64, symmetry.as_ref())?;
                 let mut axes = observed.observable.axes().into_iter();
-                estimate.structure.is_spread = axes.any(|axis| axis >= self.ends.len());
+                let is_forced = system
+                    .as_ref()
+                    .is_some_and(|one| one.facts().phase.is_some());
+                estimate.structure.is_spread =
+                    is_forced || axes.any(|axis| axis >= self.ends.len());
                 // Which of its values were solved by quadrature, the store does not say; only the generator has a
                 // second scheme.
                 let is_solved = estimate.variants.second_scheme().is_some();

@@ -20,7 +20,9 @@ fn shipped_sweeps_are_sound_and_their_resolved_files_give_the_same() {
     let room = Room::new();
     let entries = std::fs::read_dir(shipped("sweeps")).unwrap();
     let files = entries.map(|entry| entry.unwrap().path());
+    let mut checked = 0;
     for file in files.filter(|file| file.is_file()) {
+        checked += 1;
         let name = file.file_name().unwrap().to_str().unwrap();
         let text = room.done(&format!("check sweeps/{name}")).out;
         assert!(!text.contains("lies inside"), "{name}:\n{text}");
@@ -29,7 +31,8 @@ fn shipped_sweeps_are_sound_and_their_resolved_files_give_the_same() {
         assert_eq!(resolved(&again), resolved(&text));
     }
     // Nothing was run, so nothing but the copies is there.
-    assert_eq!(room.names().len(), 14);
+    assert!(checked > 0);
+    assert_eq!(room.names().len(), checked);
 }
 
 #[test]
