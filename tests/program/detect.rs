@@ -283,3 +283,15 @@ fn what_cannot_be_done_is_said_with_the_remedy() {
     std::fs::remove_dir_all(room.path("run/densities.zarr")).unwrap();
     refused(&room, "detect run", &["cannot read the array store"]);
 }
+
+#[test]
+fn a_forced_system_is_detected_again_with_the_symmetry_of_its_period() {
+    // What the equations say of half a period is not stored: a run that is read back works it out anew.
+    let room = swept("forced_linear", "sweep.points=5");
+    let before = room.table("run/bifurcations.csv");
+    room.done("detect run --quiet");
+    let after = room.table("run/bifurcations.csv");
+    assert_eq!(before.column("status"), after.column("status"));
+    assert_eq!(before.column("value"), after.column("value"));
+    assert!(after.column("status").contains(&"located"));
+}

@@ -6,6 +6,7 @@
 mod common;
 
 mod coloured_noise;
+mod forced;
 mod friction_laws;
 mod gallery;
 mod hard_cases;
