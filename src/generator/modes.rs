@@ -24,12 +24,12 @@ const ROUNDING: f64 = 1e-9;
 pub(super) struct ModeAxis {
     /// Derivatives of the Lagrange polynomials at the nodes, [`Axis::differentiation`].
     first: Vec<f64>,
-    tests: Tests,
+    basis: Basis,
 }
 
-/// What an axis of modes has beside first derivatives.
+/// The functions that carry an axis of modes, with what they have beside first derivatives.
 #[derive(Debug, Clone)]
-enum Tests {
+enum Basis {
     /// Legendre polynomials: nothing.
     Bounded,
     /// Hermite polynomials: their second derivatives, mean and standard deviation of the normal density.
@@ -44,12 +44,12 @@ impl ModeAxis {
         let series = axis.series()?;
         let first = axis.differentiation();
         let second = || square(&first, axis.count());
-        let tests = match series {
-            Series::Legendre => Tests::Bounded,
-            Series::Hermite { mean, deviation } => Tests::Normal(second(), mean, deviation),
-            Series::Fourier => Tests::Closed(second(), (axis.from(), axis.to())),
+        let basis = match series {
+            Series::Legendre => Basis::Bounded,
+            Series::Hermite { mean, deviation } => Basis::Normal(second(), mean, deviation),
+            Series::Fourier => Basis::Closed(second(), (axis.from(), axis.to())),
         };
-        Some(Self { first, tests })
+        Some(Self { first, basis })
     }
 
     /// Whether the axis number `axis` of a system, with or without walls at both ends, can have these modes.
@@ -60,14 +60,14 @@ impl ModeAxis {
         is_walled: bool,
     ) -> Result<(), GeneratorError> {
         let (is_noisy, facts) = (system.is_noisy(axis), system.facts());
-        match &self.tests {
-            Tests::Bounded if is_noisy || !is_walled => Err(GeneratorError::Modes { axis }),
-            Tests::Bounded => Ok(()),
-            Tests::Closed(_, range) if facts.turns.get(&axis) == Some(range) => Ok(()),
-            Tests::Closed(..) => Err(GeneratorError::Turn { axis }),
+        match &self.basis {
+            Basis::Bounded if is_noisy || !is_walled => Err(GeneratorError::Modes { axis }),
+            Basis::Bounded => Ok(()),
+            Basis::Closed(_, range) if facts.turns.get(&axis) == Some(range) => Ok(()),
+            Basis::Closed(..) => Err(GeneratorError::Turn { axis }),
             // However wide the normal density is: more modes make up for it.
-            Tests::Normal(..) if !is_noisy && facts.relaxation_rates.contains_key(&axis) => Ok(()),
-            Tests::Normal(_, mean, deviation) => {
+            Basis::Normal(..) if !is_noisy && facts.relaxation_rates.contains_key(&axis) => Ok(()),
+            Basis::Normal(_, mean, deviation) => {
                 let same = |&(m, d): &(f64, f64)| {
                     (m - mean).abs() <= ROUNDING * deviation
                         && (d / deviation - 1.0).abs() <= ROUNDING
@@ -90,9 +90,9 @@ impl ModeAxis {
         rates: &mut [f64],
     ) -> Result<(), GeneratorError> {
         block(&self.first, drift, rates);
-        let (second, mean, deviation) = match &self.tests {
-            Tests::Bounded => return Ok(()),
-            Tests::Closed(second, _) => {
+        let (second, mean, deviation) = match &self.basis {
+            Basis::Bounded => return Ok(()),
+            Basis::Closed(second, _) => {
                 let rows = second.chunks_exact(drift.len()).zip(diffusion);
                 let added = rows.flat_map(|(row, noise)| row.iter().map(move |f| noise * f));
                 rates
@@ -101,7 +101,7 @@ impl ModeAxis {
                     .for_each(|(rate, more)| *rate += more);
                 return Ok(());
             }
-            Tests::Normal(second, mean, deviation) => (second, mean, deviation),
+            Basis::Normal(second, mean, deviation) => (second, mean, deviation),
         };
         // An axis without noise has no diffusion: a state that relaxes at a rate of its own, or one of a filter's.
         let first = diffusion.first().copied().unwrap_or(0.0);
