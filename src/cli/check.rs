@@ -75,13 +75,18 @@ fn unknowns(spec: &Sweep) -> String {
 }
 
 fn generator_costs(spec: &Sweep, cost: &GeneratorCost) -> Vec<String> {
+    let sessions = spec.sessions();
     vec![
         unknowns(spec),
         format!(
-            "memory: {}, {} of it for factors ({})",
-            bytes_in_words(cost.bytes),
-            bytes_in_words(cost.factors.factor_bytes as f64),
-            cost.factors.method.name()
+            "memory: {}, {} of it for factors ({}){}",
+            bytes_in_words(sessions as f64 * cost.bytes),
+            bytes_in_words(sessions as f64 * cost.factors.factor_bytes as f64),
+            cost.factors.method.name(),
+            match sessions {
+                1 => String::new(),
+                sessions => format!("; {sessions} parts of the sweep are solved side by side"),
+            }
         ),
         format!(
             "time: a factorisation takes {:.1e} operations, about {:.2} s on two cores; most points reuse a neighbour's",
@@ -182,7 +187,7 @@ fn notes(spec: &Sweep) -> Vec<String> {
         ));
     }
     let at_work = costs_of_a_point(spec).map_or(0.0, |cost| cost.most_bytes());
-    let most = at_work + spec.kept_bytes();
+    let most = spec.sessions() as f64 * at_work + spec.kept_bytes();
     if let Some(memory) = machine_memory().filter(|&memory| most > memory) {
         let memory = bytes_in_words(memory);
         let remedy = match spec.settings.method.kind {

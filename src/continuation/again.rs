@@ -2,10 +2,10 @@
 
 use rayon::prelude::*;
 
+use super::distances::fill_all_distances;
 use super::doubt::{CheckedBy, Doubt};
 use super::grid::{Checked, CheckedIndicator, Checks, FinerZero, Seen, check, known, leak};
 use super::span::Span;
-use super::sweep::distance_between;
 use super::{Goal, LocateOptions, Point, Subject, SweepResult, locate::label_points};
 use crate::topology::Detector;
 
@@ -24,10 +24,9 @@ pub(crate) fn detect_again(
     options: &LocateOptions,
 ) -> SweepResult {
     points.sort_by(|a, b| a.value.total_cmp(&b.value));
-    points.par_iter_mut().for_each(|point| {
-        point.detect(detector);
-        point.distance = None;
-    });
+    points
+        .par_iter_mut()
+        .for_each(|point| point.detect(detector));
     fill_all_distances(&mut points);
     let span = Span::new(&subject, given);
     let options = &options.goal(span.length());
@@ -43,19 +42,6 @@ pub(crate) fn detect_again(
         labels,
         checks,
         interrupted: false,
-    }
-}
-
-/// Fills all distances, each from the point with densities before it.
-fn fill_all_distances(points: &mut [Point]) {
-    let has = |index: &usize| !points[*index].densities.is_empty();
-    let solved: Vec<usize> = (0..points.len()).filter(has).collect();
-    let pairs = solved.par_windows(2);
-    let distances: Vec<Option<f64>> = pairs
-        .map(|pair| distance_between(&points[pair[0]], &points[pair[1]]))
-        .collect();
-    for (&place, distance) in solved.iter().skip(1).zip(distances) {
-        points[place].distance = distance;
     }
 }
 

@@ -151,7 +151,7 @@ fn by_persistence(
     )
 }
 
-fn by_indicator(
+pub(super) fn by_indicator(
     points: &[&Point],
     subject: &Subject,
     (change, crossing): (&Change, &Crossing),

@@ -14,6 +14,13 @@
 //! (`continuation::Finding`). `points.csv` stores code and numbers, so that a stored run still knows them; sentences
 //! are made last, in `run::finding_in_words`. Warnings of a sweep are gathered by kind of finding and axis.
 //!
+//! **Segments, not threads.** A sweep is a chain of warm starts, which one core walks. Its values are cut into
+//! segments, each with a session of its own, walked from its middle outward, and then what narrows changes that do not
+//! touch is solved side by side, and rows far from each other are checked so. How many segments there are follows from
+//! the values and the source (`DensitySource::segments`: its cells and its memory limit), never from the number of
+//! threads, so that results are the same bit for bit on any. A segment's first solve has no neighbour: half the root of
+//! the number of values keeps that below a tenth of the work.
+//!
 //! **An indicator's zero is the bifurcation.** At a centre of symmetry the signs of curvatures (at a kink, of the
 //! slope) give the type of the critical point, and with it the signature, long before persistence can. `continuation`
 //! brackets the change of sign, not the change of count; `docs/location.md` has the rules and the measured errors. It
@@ -25,11 +32,14 @@
 //! persistence to zero and states the band from there to the last point where the feature is present.
 
 mod again;
+mod beside;
 mod bracket;
 mod change;
 pub mod curve;
 mod dips;
+mod distances;
 mod doubt;
+mod error;
 mod events;
 mod finding;
 mod follow;
@@ -47,13 +57,16 @@ mod point;
 mod report;
 mod root;
 mod rows;
+mod segment;
 mod shard;
 mod source;
 mod span;
 mod sweep;
+mod wanted;
 
 pub(crate) use again::detect_again;
 pub use doubt::{BifurcationStatus, CheckedBy, Doubt, WiderRange};
+pub use error::SweepError;
 #[cfg(test)]
 pub(crate) use finding::tests::every_finding;
 pub use finding::{Finding, PassageFault, ShiftedQuantity, SteadyClass};
@@ -70,7 +83,7 @@ pub use source::{
     CellCheck, DensitySource, Sensitivity, Session, Solution, SourceError, Subject, Want,
 };
 pub(crate) use sweep::sweep_shard;
-pub use sweep::{SweepError, evenly_spaced, sweep};
+pub use sweep::{evenly_spaced, sweep};
 
 #[cfg(test)]
 mod location_tests;

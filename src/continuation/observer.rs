@@ -3,8 +3,9 @@
 use super::{CheckedIndicator, Point};
 
 /// Receives every point as soon as it is done, and may stop the sweep with an error, or by cancelling
-/// it ([`Cancellation`](crate::cancellation::Cancellation)). All methods have defaults.
-pub trait Observer {
+/// it ([`Cancellation`](crate::cancellation::Cancellation)). Points are solved side by side: they come in the order in
+/// which they are done, from whatever thread, one at a time. All methods have defaults.
+pub trait Observer: Send {
     /// The sweep starts; `planned` is the number of given parameter values.
     fn begin(&mut self, planned: usize) {
         let _ = planned;

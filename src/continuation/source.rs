@@ -144,6 +144,10 @@ impl<S: DensitySource + ?Sized> DensitySource for Box<S> {
         self.as_ref().open(cancellation)
     }
 
+    fn segments(&self, values: usize) -> usize {
+        self.as_ref().segments(values)
+    }
+
     fn finer(&self, want: &Want) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
         self.as_ref().finer(want)
     }
@@ -245,6 +249,14 @@ pub trait DensitySource: Send + Sync {
 
     /// Opens a session, which ends its work when `cancellation` is cancelled.
     fn open(&self, cancellation: &Cancellation) -> Box<dyn Session>;
+
+    /// Into how many segments so many neighbouring values are best cut, each with a session of its own, all of them
+    /// side by side: one where a solve has work for all cores, or lives on its neighbour's. It must not depend on the
+    /// number of threads, because what is solved depends on it.
+    fn segments(&self, values: usize) -> usize {
+        let _ = values;
+        1
+    }
 
     /// The same source on finer cells, to check what was found; `None` where there is none, or it would say nothing
     /// (sampling errors differ from grid to grid). Its sessions solve only what is wanted.

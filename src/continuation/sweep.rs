@@ -1,22 +1,23 @@
-//! The sweep itself: solves the given values in order, each warm-started from its neighbour, with values between
-//! where neighbouring densities differ much; then narrows every change of signature.
+//! The sweep itself: solves the given values, each warm-started from its neighbour, with values between where
+//! neighbouring densities differ much; then narrows every change of signature. What does not depend on each other is
+//! solved side by side.
 
-use super::bracket::is_settled;
-use super::change::{Change, changes, crossings_at_centre};
-use super::dips::{self, Flanks};
-use super::follow::Course;
+use rayon::prelude::*;
+
+use super::beside::Beside;
+use super::dips::Flanks;
+use super::distances::{fill_all_distances, fill_distances};
 use super::grid::CheckedIndicator;
-use super::levels;
 use super::live::Live;
 use super::locate::label_points;
-use super::root::{beyond_doubt, next_value, root};
+use super::segment::{Segment, Solved, Work};
 use super::span::Span;
+use super::wanted::Search;
 use super::{
-    CellCheck, DensitySource, Goal, Label, LocateOptions, Observer, Point, Session, Shard,
-    SourceError, SweepResult,
+    CellCheck, DensitySource, Goal, Label, LocateOptions, Observer, Point, Shard, SweepError,
+    SweepResult,
 };
 use crate::cancellation::Cancellation;
-use crate::density::hellinger;
 use crate::topology::Detector;
 
 /// Evenly spaced values (at least 2), both ends exact. Weights are whole numbers and values are rounded to 15 digits,
@@ -32,32 +33,6 @@ pub fn evenly_spaced((from, to): (f64, f64), points: usize) -> Vec<f64> {
         }
     };
     (0..=steps).map(value).collect()
-}
-
-/// Why a sweep ended without a result.
-#[derive(Debug, thiserror::Error)]
-pub enum SweepError {
-    /// A parameter value that the source does not accept.
-    #[error("{parameter} = {value}: {source}")]
-    Source {
-        /// The swept parameter.
-        parameter: String,
-        /// Its value.
-        value: f64,
-        /// What the source says.
-        source: SourceError,
-    },
-    /// More shards than there are steps between the given values.
-    #[error("a sweep of {steps} steps cannot be cut into {shards} shards")]
-    Shards {
-        /// The shards that were asked for.
-        shards: usize,
-        /// Steps between the given values.
-        steps: usize,
-    },
-    /// The observer could not go on.
-    #[error("{0}")]
-    Observer(Box<dyn std::error::Error + Send + Sync>),
 }
 
 /// Sweeps a source along its path from end to end, with `points` evenly spaced values (at least 2).
@@ -99,232 +74,168 @@ pub(crate) fn sweep_shard(
         shards: shard.of(),
         steps: given.len() - 1,
     })?;
-    let values = given[places].to_vec();
+    let values = &given[places];
     observer.begin(values.len());
+    let known = observer.known_checks();
+    let options = options.goal(span.length());
+    let work = Work::new(
+        (source, detector),
+        cancellation,
+        (observer, values.len()),
+        options.largest_distance,
+        // Where it is not the first of the sweep, the first value may fail.
+        values.first().copied().filter(|_| shard.number() == 1),
+    );
     let mut run = Run {
+        work: &work,
+        segments: Segment::cut(&work, values),
         source,
-        session: source.open(cancellation),
         detector,
         span,
-        options: options.goal(span.length()),
-        cancellation,
-        observer,
-        remaining: values.len(),
-        most_extra: MOST_EXTRA.max(MOST_EXTRA_A_VALUE * values.len()),
-        may_fail: shard.number() > 1,
+        options,
         points: Vec::new(),
         flanks: Vec::new(),
-        interrupted: false,
     };
-    let mut previous: Option<f64> = None;
-    for value in values {
-        run.remaining -= 1;
-        run.solve(value)?;
-        if let Some(previous) = previous {
-            run.follow(previous, value, HALVINGS)?;
-        }
-        if run.interrupted {
-            break;
-        }
-        previous = Some(value);
-    }
-    run.narrow()?;
-    let (labels, checks) = run.labels();
+    run.walk()?;
+    run.narrow(MOST_EXTRA.max(MOST_EXTRA_A_VALUE * values.len()))?;
+    // Checks are solved in sessions of their own.
+    run.segments.clear();
+    let (labels, checks, unchecked) = run.labels(cancellation, known);
     Ok(SweepResult {
         subject: subject.clone(),
         points: run.points,
         labels,
         checks,
-        interrupted: run.interrupted,
+        interrupted: work.has_ended() || unchecked,
     })
 }
 
-/// How often a step between given values is halved at most, where densities change fast.
-const HALVINGS: usize = 4;
 /// Solves beyond the given values at most, for any sweep, and for each of its values.
 const MOST_EXTRA: usize = 400;
 const MOST_EXTRA_A_VALUE: usize = 10;
 
 struct Run<'a> {
+    work: &'a Work<'a>,
+    /// In the direction of the sweep.
+    segments: Vec<Segment<'a>>,
     source: &'a dyn DensitySource,
-    session: Box<dyn Session>,
     detector: &'a dyn Detector,
     span: Span,
     options: Goal,
-    cancellation: &'a Cancellation,
-    observer: &'a mut dyn Observer,
-    remaining: usize,
-    most_extra: usize,
-    /// Whether the first value may fail: where it is not the first of the sweep.
-    may_fail: bool,
     /// Ascending in the parameter.
     points: Vec<Point>,
     /// One a point, in the same order.
     flanks: Vec<Flanks>,
-    interrupted: bool,
 }
 
 impl Run<'_> {
-    /// Solves one value, tells the observer and keeps the point.
-    fn solve(&mut self, value: f64) -> Result<(), SweepError> {
-        if self.interrupted || self.cancellation.is_cancelled() {
-            self.interrupted = true;
-            return Ok(());
+    /// Solves the given values, and between neighbours that differ much.
+    fn walk(&mut self) -> Result<(), SweepError> {
+        let segments = self.segments.par_iter_mut();
+        let walked: Result<Vec<Vec<Solved>>, SweepError> = segments.map(Segment::walk).collect();
+        let mut solved: Vec<Solved> = walked?.into_iter().flatten().collect();
+        solved.sort_by(|a, b| a.point.value.total_cmp(&b.point.value));
+        for one in solved {
+            self.points.push(one.point);
+            self.flanks.push(one.flanks);
         }
-        let method = self.source.method();
-        let solved = Point::solve(self.session.as_mut(), method, self.detector, value);
-        let Some((point, refusal)) = solved else {
-            self.interrupted = true;
-            return Ok(());
-        };
-        // One value that fails takes nothing from the others; a first one that does is a mistake.
-        if let Some(error) = refusal
-            && !self.may_fail
-            && self.points.is_empty()
-        {
-            return Err(SweepError::Source {
-                parameter: self.source.subject().family.parameter().to_owned(),
-                value,
-                source: SourceError::Method(error),
-            });
+        fill_all_distances(&mut self.points);
+        self.follow_across_borders()
+    }
+
+    /// Solves between the last value of each segment and the first of the next one.
+    fn follow_across_borders(&mut self) -> Result<(), SweepError> {
+        let ends: Vec<Option<[f64; 2]>> = self.segments.iter().map(Segment::ends).collect();
+        let points = &self.points;
+        let at = |value: f64| points.iter().find(|point| point.value == value);
+        let borders = ends.windows(2).map(|pair| {
+            let ([_, last], [first, _]) = (pair[0]?, pair[1]?);
+            Some([at(last)?, at(first)?])
+        });
+        let borders: Vec<Option<[&Point; 2]>> = borders.collect();
+        let pairs = self.segments.par_iter_mut().zip(borders);
+        let found = pairs.map(|(segment, border)| match border {
+            Some(ends) => segment.follow(ends),
+            None => Ok(Vec::new()),
+        });
+        let found: Result<Vec<Vec<Solved>>, SweepError> = found.collect();
+        self.keep(found?);
+        Ok(())
+    }
+
+    fn keep(&mut self, found: Vec<Vec<Solved>>) {
+        for one in found.into_iter().flatten() {
+            let value = one.point.value;
+            let place = self.points.partition_point(|point| point.value < value);
+            self.flanks.insert(place, one.flanks);
+            self.points.insert(place, one.point);
+            fill_distances(&mut self.points, place);
         }
-        let densities = point.densities.iter();
-        let flanks = densities.map(|d| self.detector.flanks(d)).collect();
-        let place = self.points.partition_point(|point| point.value < value);
-        self.flanks.insert(place, flanks);
-        self.points.insert(place, point);
-        fill_distances(&mut self.points, place);
-        let done = self.points.len();
-        self.observer
-            .point(&self.points[place], done, self.remaining)
-            .map_err(SweepError::Observer)
     }
 
-    /// Whether a value is yet to be solved: asked for again, it would give nothing new.
-    fn is_new(&self, value: &f64) -> bool {
-        self.at(*value).is_none()
-    }
-
-    fn at(&self, value: f64) -> Option<&Point> {
-        self.points.iter().find(|point| point.value == value)
-    }
-
-    /// Solves between two neighbours whose densities differ by more than wanted.
-    fn follow(&mut self, from: f64, to: f64, halvings: usize) -> Result<(), SweepError> {
-        let (Some(a), Some(b)) = (self.at(from), self.at(to)) else {
-            return Ok(());
-        };
-        let distance = distance_between(a, b).unwrap_or(0.0);
-        let middle = 0.5 * (from + to);
-        let wide = distance > self.options.largest_distance && middle != from && middle != to;
-        if halvings == 0 || self.interrupted || !wide {
-            return Ok(());
-        }
-        self.solve(middle)?;
-        self.follow(from, middle, halvings - 1)?;
-        self.follow(middle, to, halvings - 1)
-    }
-
-    /// Solves further values until every change is as narrow as wanted, or as the data allow.
-    fn narrow(&mut self) -> Result<(), SweepError> {
-        for _ in 0..self.most_extra {
-            let Some(value) = self.next() else {
-                break;
-            };
-            self.solve(value)?;
-            if self.interrupted {
+    /// Solves further values, at most so many, until every change is as narrow as wanted, or as the data allow.
+    fn narrow(&mut self, most: usize) -> Result<(), SweepError> {
+        let mut left = most;
+        while left > 0 && !self.work.has_ended() {
+            let mut wanted = Search {
+                points: &self.points,
+                flanks: &self.flanks,
+                detector: self.detector,
+                levels: self.source.subject().family.levels(),
+                span: self.span,
+                options: &self.options,
+            }
+            .values();
+            if wanted.is_empty() {
                 break;
             }
+            wanted.truncate(left);
+            left -= wanted.len();
+            self.solve(&wanted)?;
         }
         Ok(())
     }
 
-    /// The value to solve next.
-    fn next(&self) -> Option<f64> {
-        let solved: Vec<&Point> = (self.points.iter())
-            .filter(|point| !point.detections.is_empty())
-            .collect();
-        let tolerance = self.options.tolerance;
-        let dip = dips::at_centre(&solved, tolerance).or_else(|| self.dip_on_flanks());
-        let dip = dip.filter(|value| self.is_new(value));
-        if let Some(value) = dip.or_else(|| self.next_at_centre(&solved)) {
-            return Some(value);
+    /// Solves further values, each in the segment that is nearest to it.
+    fn solve(&mut self, values: &[f64]) -> Result<(), SweepError> {
+        let mut lists = vec![Vec::new(); self.segments.len()];
+        for &value in values {
+            let distances = self.segments.iter().map(|one| one.distance_to(value));
+            let nearest = distances.zip(&mut lists).min_by(|a, b| a.0.total_cmp(&b.0));
+            if let Some((_, list)) = nearest {
+                list.push(value);
+            }
         }
-        let changes = changes(&solved, self.detector);
-        let wanted = |change: &Change| match &change.course {
-            Some(Course::Crossing(crossing)) => {
-                next_value(&solved, crossing, self.detector.confidence(), tolerance)
-            }
-            Some(Course::Lost(at)) => {
-                let (a, b) = (solved[*at].value, solved[*at + 1].value);
-                let middle = 0.5 * (a + b);
-                (b - a > tolerance && middle > a && middle < b).then_some(middle)
-            }
-            Some(Course::Sunk(_) | Course::Beyond(_)) => None,
-            None => {
-                let (a, b) = (solved[change.left], solved[change.left + 1]);
-                let middle = 0.5 * (a.value + b.value);
-                let settled = is_settled(a, b, self.span.step, &self.options);
-                (!settled && middle > a.value && middle < b.value).then_some(middle)
-            }
-        };
-        let mut changes = changes.iter();
-        let value = changes.find_map(|change| wanted(change).filter(|value| self.is_new(value)));
-        value.or_else(|| {
-            let levels = self.source.subject().family.levels();
-            let value = levels::next_value(&self.points, levels, tolerance);
-            value.filter(|value| self.is_new(value))
-        })
+        let pairs = self.segments.par_iter_mut().zip(&lists);
+        let found = pairs.map(|(segment, values)| segment.solve(values));
+        let found: Result<Vec<Vec<Solved>>, SweepError> = found.collect();
+        self.keep(found?);
+        Ok(())
     }
 
-    /// A value between, at which a pair of peak and valley may be there, or not be there, for a while.
-    fn dip_on_flanks(&self) -> Option<f64> {
-        let pairs = self.points.iter().zip(&self.flanks);
-        let solved: Vec<(&Point, &Flanks)> = pairs
-            .filter(|(point, _)| !point.detections.is_empty())
-            .collect();
-        let tolerance = self.options.tolerance;
-        dips::between_flanks(&solved, tolerance)
-            .or_else(|| dips::beside_centre(&solved, tolerance))
-            .or_else(|| dips::on_flanks(&solved, tolerance))
-    }
-
-    /// Narrows every change of sign at a centre of symmetry, and looks at the stage between two of them.
-    fn next_at_centre(&self, solved: &[&Point]) -> Option<f64> {
-        let (confidence, tolerance) = (self.detector.confidence(), self.options.tolerance);
-        crossings_at_centre(solved).iter().find_map(|crossings| {
-            let narrower = crossings
-                .iter()
-                .filter_map(|crossing| next_value(solved, crossing, confidence, tolerance))
-                .find(|value| self.is_new(value));
-            let mut roots: Vec<f64> = (crossings.iter())
-                .map(|crossing| root(solved, crossing, confidence).value)
-                .collect();
-            roots.sort_by(f64::total_cmp);
-            let unseen = |pair: &[f64]| {
-                let quarter = 0.25 * (pair[1] - pair[0]);
-                let inside = pair[0] + quarter..pair[1] - quarter;
-                let seen = solved.iter().any(|point| inside.contains(&point.value));
-                (4.0 * quarter > tolerance && !seen).then_some(0.5 * (pair[0] + pair[1]))
+    /// The rows, each checked where the source can be, what was seen in the checks, and whether there was no time for
+    /// them.
+    fn labels(&self, cancellation: &Cancellation, mut known: Vec<CheckedIndicator>) -> Labelled {
+        let wanted = self.options.grid_check && !self.work.has_ended();
+        if wanted {
+            let solved = self.points.iter();
+            let solved: Vec<&Point> = solved.filter(|one| !one.detections.is_empty()).collect();
+            let beside = Beside {
+                points: &solved,
+                source: self.source,
+                detector: self.detector,
+                options: &self.options,
+                span: self.span,
+                cancellation,
+                known: &known,
             };
-            let beside = || {
-                let mut settled = crossings.iter();
-                settled.find_map(|one| beyond_doubt(solved, one, self.detector, tolerance))
-            };
-            narrower
-                .or_else(|| roots.windows(2).find_map(unseen))
-                .or_else(|| beside().filter(|value| self.is_new(value)))
-        })
-    }
-
-    /// The rows, each checked where the source can be, and what was seen in the checks.
-    fn labels(&mut self) -> Labelled {
-        let wanted = self.options.grid_check && !self.interrupted;
+            known.extend(beside.seen());
+        }
         let effort = self.options.effort * self.points.len() as f64;
         let mut checks = Live::new(
             wanted.then_some(self.source),
             self.detector,
-            (self.cancellation, self.observer.known_checks()),
+            (cancellation, known),
             (self.span, self.options.tolerance, effort),
         );
         let labels = label_points(
@@ -340,33 +251,10 @@ impl Run<'_> {
         );
         let seen = checks.seen();
         // What is not checked yet is checked by a run that goes on.
-        self.interrupted |= wanted && self.cancellation.is_cancelled();
-        (labels, seen.filter(|_| can_check))
+        let unchecked = wanted && cancellation.is_cancelled();
+        (labels, seen.filter(|_| can_check), unchecked)
     }
 }
 
-/// Rows, and what was seen in their checks.
-type Labelled = (Vec<Label>, Option<Vec<CheckedIndicator>>);
-
-/// Largest Hellinger distance over the watched densities of two points; `None` when one has none.
-pub(super) fn distance_between(a: &Point, b: &Point) -> Option<f64> {
-    let pairs = a.densities.iter().zip(&b.densities);
-    pairs
-        .filter_map(|(a, b)| hellinger(&a.density, &b.density).ok())
-        .reduce(f64::max)
-}
-
-/// Fills the distances that a new point at `place` changes: its own, and that of the next one with densities.
-fn fill_distances(points: &mut [Point], place: usize) {
-    if points[place].densities.is_empty() {
-        return;
-    }
-    let has = |index: &usize| !points[*index].densities.is_empty();
-    let before = (0..place).rev().find(has);
-    let after = (place + 1..points.len()).find(has);
-    points[place].distance =
-        before.and_then(|index| distance_between(&points[index], &points[place]));
-    if let Some(after) = after {
-        points[after].distance = distance_between(&points[place], &points[after]);
-    }
-}
+/// Rows, what was seen in their checks, and whether there was no time for them.
+type Labelled = (Vec<Label>, Option<Vec<CheckedIndicator>>, bool);

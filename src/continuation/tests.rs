@@ -15,6 +15,9 @@ struct Ramp {
     subject: Subject,
     /// Values without a steady state.
     failing: Option<(f64, f64)>,
+    /// Values that are refused.
+    refused: Option<(f64, f64)>,
+    segments: usize,
 }
 
 impl Ramp {
@@ -28,6 +31,8 @@ impl Ramp {
         Self {
             subject,
             failing: None,
+            refused: None,
+            segments: 1,
         }
     }
 
@@ -64,7 +69,19 @@ impl DensitySource for Ramp {
 
     fn open(&self, _: &Cancellation) -> Box<dyn Session> {
         let source = self.clone();
-        Box::new(move |value: f64| Ok(source.solve(value)))
+        let is_refused = move |value: f64| {
+            let refused = source.refused;
+            refused.is_some_and(|(a, b)| (a..=b).contains(&value))
+        };
+        let source = self.clone();
+        Box::new(move |value: f64| match is_refused(value) {
+            true => Err(SourceError::Method("refused".into())),
+            false => Ok(source.solve(value)),
+        })
+    }
+
+    fn segments(&self, values: usize) -> usize {
+        self.segments.min(values)
     }
 }
 
@@ -247,6 +264,50 @@ fn an_interruption_keeps_the_points_so_far() {
     .unwrap();
     assert!(result.interrupted);
     assert_eq!(result.points.len(), 7);
+}
+
+#[test]
+fn segments_side_by_side_give_what_one_gives() {
+    let detector = SquareLaw {
+        birth: 0.1,
+        noise: 1e-6,
+    };
+    let found = |source: &Ramp| {
+        let options = LocateOptions {
+            // Neighbours are farther apart, within segments and across their borders.
+            largest_distance: 2e-3,
+            tolerance: Some(1e-3),
+            ..LocateOptions::default()
+        };
+        let never = Cancellation::new();
+        sweep(source, &detector, 41, &options, &never, &mut ())
+    };
+    let table = |result: &SweepResult| {
+        let points = result.points.iter();
+        let points: Vec<(f64, Option<f64>)> = points.map(|one| (one.value, one.distance)).collect();
+        (points, format!("{:?}", result.labels))
+    };
+    for (from, to) in [(-1.0, 1.0), (1.0, -1.0)] {
+        let whole = found(&Ramp::new(from, to)).unwrap();
+        assert!(whole.points.len() > 2 * 41 && bifurcations(&whole).len() == 1);
+        for segments in [2, 3, 7, 41] {
+            let source = Ramp {
+                segments,
+                ..Ramp::new(from, to)
+            };
+            assert_eq!(table(&found(&source).unwrap()), table(&whole), "{segments}");
+            // What is refused at the first value is a mistake, elsewhere it is a row.
+            let refusing = |refused| Ramp {
+                refused: Some(refused),
+                ..source.clone()
+            };
+            let first = found(&refusing((from - 0.01, from + 0.01)));
+            assert!(matches!(first, Err(SweepError::Source { value, .. }) if value == from));
+            let later = found(&refusing((-0.01, 0.01))).unwrap();
+            let mut points = later.points.iter();
+            assert!(points.any(|one| one.report.status == PointStatus::Failed));
+        }
+    }
 }
 
 #[test]

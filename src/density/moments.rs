@@ -87,8 +87,9 @@ pub(crate) fn excess_variances(space: &CellSpace, mass: &[f64]) -> Result<Vec<f6
 fn largest_of_layers(space: &CellSpace, differences: &[f64], values: &[f64]) -> f64 {
     let axes = space.axes().iter().enumerate().map(|(index, axis)| {
         let mut layers = vec![0.0; axis.count()];
-        for (cell, (difference, value)) in differences.iter().zip(values).enumerate() {
-            layers[space.position(cell, index)] += difference * value;
+        let cells = differences.iter().zip(values).zip(space.positions(index));
+        for ((difference, value), position) in cells {
+            layers[position] += difference * value;
         }
         layers.iter().map(|layer| layer * layer).sum::<f64>().sqrt()
     });
@@ -107,7 +108,8 @@ fn at_kinks(space: &CellSpace, planes: &[(usize, f64)], weights: &[f64], values:
         let face = axis
             .face_at(at)
             .filter(|face| (2..axis.count() - 1).contains(face))?;
-        let above = (0..space.n_cells()).filter(|&cell| space.position(cell, index) == face);
+        let cells = space.positions(index).enumerate();
+        let above = cells.filter_map(|(cell, position)| (position == face).then_some(cell));
         let jumps = above.map(|cell| {
             let product = |cell: usize| weights[cell] * values[cell];
             let [far, near] = [2, 1].map(|steps| product(cell - steps * stride));

@@ -1,6 +1,8 @@
 //! The figures of a sweep, a comparison, a map, curves or a friction law as values: listed by name, drawn one by one or
 //! all.
 
+use rayon::prelude::*;
+
 use super::FigureError;
 use super::canvas::drawing::Drawing;
 use super::canvas::{pdf, raster, svg};
@@ -191,10 +193,9 @@ impl<'a> Figures<'a> {
             let mut words = words.iter().map(AsRef::as_ref);
             words.any(|word| names::matches(word, &sketch.name))
         };
-        let wanted = self.sketches.iter().filter(is_wanted);
-        wanted
-            .filter_map(|sketch| sketch.draw(&self.print))
-            .collect()
+        let wanted: Vec<&Sketch<'_>> = self.sketches.iter().filter(is_wanted).collect();
+        let drawn = wanted.par_iter().map(|sketch| sketch.draw(&self.print));
+        drawn.flatten().collect()
     }
 
     /// Draws all figures, in their order; those without any density are left out.

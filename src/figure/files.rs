@@ -3,6 +3,8 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use rayon::prelude::*;
+
 use super::error::FigureError;
 use super::figures::Figure;
 use super::settings::Format;
@@ -18,13 +20,11 @@ pub fn write_figures(
     formats: &[Format],
     folder: &Path,
 ) -> Result<Vec<PathBuf>, FigureError> {
-    let mut paths = Vec::new();
-    for figure in figures {
-        for &format in formats {
-            paths.extend(write(figure, format, folder)?);
-        }
-    }
-    Ok(paths)
+    let all = figures.par_iter().flat_map_iter(|figure| {
+        let formats = formats.iter();
+        formats.filter_map(|&format| write(figure, format, folder).transpose())
+    });
+    all.collect()
 }
 
 /// Writes a figure under a temporary name and renames it; nothing where it has nothing in this format.

@@ -48,9 +48,9 @@ pub fn unknown_moments(space: &CellSpace, unknowns: &[f64]) -> Vec<(f64, f64)> {
     let axes = space.axes().iter().enumerate();
     axes.map(|(index, axis)| {
         let average = |value: &dyn Fn(f64) -> f64| -> f64 {
-            let cells = unknowns.iter().enumerate();
-            let terms = cells.map(|(cell, u)| u * value(axis.nodes()[space.position(cell, index)]));
-            terms.sum::<f64>() / total
+            let nodes: Vec<f64> = axis.nodes().iter().map(|&node| value(node)).collect();
+            let cells = unknowns.iter().zip(space.positions(index));
+            cells.map(|(u, position)| u * nodes[position]).sum::<f64>() / total
         };
         let mean = average(&|x| x);
         (mean, average(&|x| (x - mean).powi(2)))

@@ -2,7 +2,7 @@
 
 use super::geometry::surface_faces;
 use crate::space::CellSpace;
-use crate::system::{SwitchingSurface, System};
+use crate::system::{LANES, SwitchingSurface, System};
 
 /// Share of the heaviest mass density below which a cell does not count.
 const WEIGHT: f64 = 1e-4;
@@ -55,8 +55,10 @@ pub(crate) fn resolution(
 
 fn judge(system: &dyn System, space: &CellSpace, masses: &[f64], index: usize) -> Resolution {
     let axis = &space.axes()[index];
-    let densities = (0..masses.len()).map(|cell| masses[cell] / space.volume(cell));
-    let lightest = WEIGHT * densities.fold(0.0, f64::max);
+    let densities = masses.iter().zip(space.volumes());
+    let densities: Vec<f64> = densities.map(|(mass, volume)| mass / volume).collect();
+    let lightest = WEIGHT * densities.iter().copied().fold(0.0, f64::max);
+    let counts = |cell: usize| densities[cell] > lightest;
     let stride: usize = space.shape()[index + 1..].iter().product();
     let mut seen = Seen {
         system,
@@ -68,9 +70,9 @@ fn judge(system: &dyn System, space: &CellSpace, masses: &[f64], index: usize) -
         layer: 0.0,
         weight: 0.0,
     };
-    for first in (0..masses.len()).filter(|&cell| space.position(cell, index) == 0) {
+    let firsts = space.positions(index).enumerate();
+    for (first, _) in firsts.filter(|(_, position)| *position == 0) {
         let line = (0..axis.count()).map(|position| first + position * stride);
-        let counts = |cell: usize| masses[cell] / space.volume(cell) > lightest;
         if line.clone().any(counts) {
             let cells: Vec<usize> = line.collect();
             let masses: Vec<Option<f64>> = cells
@@ -82,9 +84,7 @@ fn judge(system: &dyn System, space: &CellSpace, masses: &[f64], index: usize) -
     }
     let surfaces = system.facts().surfaces_on(index);
     let off_faces: Vec<f64> = surfaces.filter(|&at| axis.is_inside_cell(at)).collect();
-    let counting: Vec<usize> = (0..masses.len())
-        .filter(|&cell| masses[cell] / space.volume(cell) > lightest)
-        .collect();
+    let counting: Vec<usize> = (0..masses.len()).filter(|&cell| counts(cell)).collect();
     let jumps = off_faces.iter().copied();
     let jumps = jumps.filter(|&at| jumps_inside_cells(system, space, &counting, (index, at)));
     Resolution {
@@ -135,9 +135,7 @@ impl Seen<'_> {
     /// Adds a grid line: its cells, and the masses of those that count.
     fn look_at(&mut self, cells: &[usize], masses: &[Option<f64>]) {
         let axis = &self.space.axes()[self.index];
-        let drift_at =
-            |&cell: &usize| self.system.drift_at(0.0, &self.space.centre(cell))[self.index];
-        let drifts: Vec<f64> = cells.iter().map(drift_at).collect();
+        let drifts = self.drifts(cells);
         let weighted = drifts.iter().enumerate();
         let weighted = weighted.map(|(position, drift)| drift * axis.width(position));
         let mean = weighted.sum::<f64>() / (axis.to() - axis.from());
@@ -152,6 +150,26 @@ impl Seen<'_> {
                 self.weight += mass;
             }
         }
+    }
+
+    /// The drift along the axis in the middle of cells.
+    fn drifts(&self, cells: &[usize]) -> Vec<f64> {
+        let dimension = self.space.dimension();
+        let (mut states, mut drift) =
+            (vec![[0.0; LANES]; dimension], vec![[0.0; LANES]; dimension]);
+        let mut found = Vec::with_capacity(cells.len());
+        for batch in cells.chunks(LANES) {
+            for (lane, &cell) in batch.iter().enumerate() {
+                let centre = self.space.centre(cell).into_iter();
+                states
+                    .iter_mut()
+                    .zip(centre)
+                    .for_each(|(lanes, value)| lanes[lane] = value);
+            }
+            self.system.drift(0.0, &states, &mut drift);
+            found.extend_from_slice(&drift[self.index][..batch.len()]);
+        }
+        found
     }
 
     /// Whether the drift jumps across a face of the cell. Dahl's friction bends other components with the sign of the

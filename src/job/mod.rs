@@ -321,7 +321,10 @@ pub fn carry_out<J: Job>(
     let has_time = job.has_time(&found);
     if has_time {
         let formats = &job.sweep().settings.figures.formats;
-        let figures = job.figures(&found, &context);
+        let figures = match formats.is_empty() {
+            true => Vec::new(),
+            false => job.figures(&found, &context),
+        };
         folder.check()?;
         write_figures(&figures, formats, &folder.figures()?)?;
     }

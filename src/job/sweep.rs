@@ -200,7 +200,8 @@ impl Job for SweepJob<'_> {
             manifest,
             context,
             checks: checks.unwrap_or_default(),
-            given: Vec::new(),
+            missing: journal.points(),
+            held: Vec::new(),
             source: &source,
         };
         let shard = self.number().unwrap_or(Shard::WHOLE);
@@ -219,10 +220,10 @@ impl Job for SweepJob<'_> {
             return Err(error.into());
         }
         // What is stored was not read to its end: it stays as it is.
-        if result.interrupted && !recorder.given.is_empty() {
+        if result.interrupted && recorder.missing > 0 {
             return Ok(None);
         }
-        recorder.write_given()?;
+        recorder.write_held()?;
         self.begun = Some((recorder.run, recorder.manifest));
         if is_merged {
             let solves = source.solves();

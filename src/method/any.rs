@@ -72,6 +72,10 @@ impl DensitySource for MethodSource {
         self.source().open(cancellation)
     }
 
+    fn segments(&self, values: usize) -> usize {
+        self.source().segments(values)
+    }
+
     fn finer(&self, want: &Want) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
         self.source().finer(want)
     }

@@ -41,6 +41,14 @@ impl MethodOptions {
         })
     }
 
+    /// Into how many segments so many values of a sweep are cut, each with a session of its own.
+    pub(crate) fn segments(&self, space: &CellSpace, values: usize) -> usize {
+        match self {
+            Self::Generator(options) => options.segments(space, values),
+            Self::Sgcm(_) | Self::MonteCarlo(_) => 1,
+        }
+    }
+
     /// Bytes of the densities of a point on so many bins, as they are kept until a sweep ends: values, their errors,
     /// and the other estimates of each.
     pub(crate) fn kept_bytes(&self, bins: f64) -> f64 {

@@ -24,6 +24,11 @@ impl<T> Neighbours<T> {
         nearest.map(|(_, start)| start)
     }
 
+    /// All starts, in the order in which they were solved.
+    pub(super) fn all(&self) -> impl Iterator<Item = &T> {
+        self.kept.iter().map(|(_, start)| start)
+    }
+
     /// The start that was kept last; it is there at any rate.
     pub(super) fn newest(&self) -> Option<&(f64, T)> {
         self.kept.last()

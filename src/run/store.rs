@@ -6,7 +6,8 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use serde_json::{Map, json};
+use rayon::prelude::*;
+use serde_json::{Map, Value, json};
 
 use super::RunError;
 use super::arrays::Layout;
@@ -138,16 +139,17 @@ impl<'a> Store<'a> {
     /// Writes all arrays, and what readers need not look for then: the metadata of all of them in one place.
     fn write(mut self, family: &Family, folder: &Path) -> std::io::Result<()> {
         let values = self.arrays.first().map_or(0, |(_, rows)| rows.len());
-        let mut metadata = Map::new();
-        for (layout, rows) in &mut self.arrays {
+        let written = self.arrays.par_iter_mut().map(|(layout, rows)| {
             if layout.is_along(family) {
                 rows.resize(values, Vec::new());
             }
             layout.dimensions[0].1 = rows.len() as u64;
             let folder = folder.join(&layout.name);
             let about = zarr::write(&folder, &layout.dimensions, &layout.attributes, rows)?;
-            metadata.insert(layout.name.clone(), about);
-        }
+            Ok((layout.name.clone(), about))
+        });
+        let metadata: std::io::Result<Vec<(String, Value)>> = written.collect();
+        let metadata: Map<String, Value> = metadata?.into_iter().collect();
         let root = json!({
             "zarr_format": 3,
             "node_type": "group",

@@ -69,8 +69,9 @@ pub(super) fn write(
     for (number, rows) in rows.chunks(long as usize).enumerate() {
         let mut bytes = Vec::with_capacity((long * length * NUMBER) as usize);
         for (index, row) in rows.iter().enumerate() {
-            let numbers = row.iter().flat_map(|part| part.iter());
-            bytes.extend(numbers.flat_map(|number| number.to_le_bytes()));
+            for number in row.iter().flat_map(|part| part.iter()) {
+                bytes.extend_from_slice(&number.to_le_bytes());
+            }
             fill(&mut bytes, (index as u64 + 1) * length);
         }
         fill(&mut bytes, long * length);

@@ -65,6 +65,29 @@ impl CellSpace {
         cell / self.strides[axis] % self.axes[axis].count()
     }
 
+    /// Positions of all cells along one axis, in their order.
+    pub(crate) fn positions(&self, axis: usize) -> impl Iterator<Item = usize> + use<> {
+        let (stride, count) = (self.strides[axis], self.axes[axis].count());
+        let blocks = self.n_cells / (stride * count).max(1);
+        (0..blocks).flat_map(move |_| {
+            (0..count).flat_map(move |position| std::iter::repeat_n(position, stride))
+        })
+    }
+
+    /// Volumes of all cells, in their order.
+    pub(crate) fn volumes(&self) -> Vec<f64> {
+        let mut volumes = vec![1.0; self.n_cells];
+        for (index, axis) in self.axes.iter().enumerate() {
+            let positions = self.positions(index);
+            let widths = positions.map(|position| axis.width(position));
+            volumes
+                .iter_mut()
+                .zip(widths)
+                .for_each(|(volume, width)| *volume *= width);
+        }
+        volumes
+    }
+
     /// Number of the cell at the given positions, one an axis.
     pub fn number(&self, positions: &[usize]) -> usize {
         positions
@@ -123,6 +146,14 @@ mod tests {
             let positions = [space.position(cell, 0), space.position(cell, 1)];
             assert_eq!(space.number(&positions), cell);
             assert_eq!(space.find(&space.centre(cell)), Some(cell));
+        }
+        for (cell, volume) in space.volumes().into_iter().enumerate() {
+            assert_eq!(volume, space.volume(cell));
+            let positions = [0, 1].map(|axis| space.positions(axis).nth(cell));
+            assert_eq!(
+                positions,
+                [0, 1].map(|axis| Some(space.position(cell, axis)))
+            );
         }
         let total: f64 = (0..12).map(|cell| space.volume(cell)).sum();
         assert!((total - 6.0).abs() < 1e-12);

@@ -8,7 +8,7 @@ use super::settings::{AxisSettings, Modes, Settings};
 use super::sweep::Sweep;
 use crate::stationary::generator::RateError;
 
-/// Room that is tried for, in units of what a point takes: finer cells check what is located.
+/// Room that is tried for at least, in units of what a point takes: finer cells check what is located.
 const TRIED: f64 = 3.0;
 /// Bytes of half a machine whose memory is not known.
 const SMALL_MACHINE: f64 = 2e9;
@@ -35,7 +35,7 @@ impl Settings {
         // What is more than the machine has is told elsewhere, and may be a bound that is never reached.
         let most = machine_memory().map_or(SMALL_MACHINE, |memory| 0.5 * memory);
         let beside = BESIDE + A_THREAD * rayon::current_num_threads() as f64;
-        let bytes = (TRIED * at_work + kept + beside).min(most);
+        let bytes = (at_work + kept + beside).min(most);
         // Nothing is written to it: only room among the addresses is asked for.
         let mut room = Vec::<u8>::new();
         if room.try_reserve_exact(bytes as usize).is_ok() {
@@ -79,7 +79,10 @@ impl Settings {
     /// Refuses cells whose factors exceed the memory that they may take, or that the system gives this process.
     pub(super) fn check_factors(&self, sweep: &Sweep) -> Result<(), Report> {
         let error = match self.method.chosen().cost(sweep.problem.space()) {
-            Ok(cost) => return self.check_given(cost.most_bytes(), sweep.kept_bytes()),
+            Ok(cost) => {
+                let at_work = (sweep.sessions() as f64).max(TRIED) * cost.most_bytes();
+                return self.check_given(at_work, sweep.kept_bytes());
+            }
             Err(error) => error,
         };
         let memory = machine_memory();

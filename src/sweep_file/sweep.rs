@@ -61,6 +61,17 @@ impl Sweep {
         PersistenceDetector::new(settings.detect.clone(), looks)
     }
 
+    /// How many sessions solve it side by side.
+    pub(crate) fn sessions(&self) -> usize {
+        match self.settings.map {
+            Some(_) => 1,
+            None => {
+                let method = self.settings.method.chosen();
+                method.segments(self.problem.space(), self.settings.points)
+            }
+        }
+    }
+
     /// Bytes of the densities that are kept until the sweep ends; a map lets go of them before.
     pub(crate) fn kept_bytes(&self) -> f64 {
         if self.settings.map.is_some() {

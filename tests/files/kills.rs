@@ -77,10 +77,13 @@ fn files(room: &Room, folder: &str) -> BTreeMap<String, Vec<u8>> {
     files
 }
 
+/// Files that say when a job began and ended, in whole seconds: two short jobs may share them by chance.
+const DATED: [&str; 3] = ["run.json", "ro-crate-metadata.json", "checksums.sha256"];
+
 /// What is left of a job that was not killed.
 struct Whole {
     files: BTreeMap<String, Vec<u8>>,
-    /// Files that two such jobs do not share: they hold times.
+    /// Files that hold times, by the clock or of work: those of `DATED`, and all that two such jobs do not share.
     timed: BTreeSet<String>,
 }
 
@@ -90,7 +93,8 @@ impl Whole {
         let (files, again) = (files(room, one), files(room, other));
         assert!(files.keys().eq(again.keys()));
         let differs = |name: &&String| files[*name] != again[*name];
-        let timed = files.keys().filter(differs).cloned().collect();
+        let differing = files.keys().filter(differs).cloned();
+        let timed = differing.chain(DATED.map(str::to_owned)).collect();
         Self { files, timed }
     }
 

@@ -1,11 +1,12 @@
 //! Work of a fine sweep by the generator: factorisations and iterations, point by point.
 
 use pbif::cancellation::Cancellation;
-use pbif::continuation::{DensitySource, PointStatus, Solution};
+use pbif::continuation::{self, DensitySource, LocateOptions, PointStatus, Solution, SolveReport};
 use pbif::density::Observable;
 use pbif::method::{GeneratorMethodOptions, GeneratorSource, Problem};
 use pbif::space::{Axis, CellSpace, Grading};
 use pbif::system::{Family, Path, registry};
+use pbif::topology::{DetectOptions, PersistenceDetector};
 
 const OBSERVABLES: [Observable; 2] = [Observable::Marginal(0), Observable::Marginal(1)];
 
@@ -50,12 +51,38 @@ fn work_counters_are_as_they_were() {
         .collect();
     let lines: Vec<String> = counts.chunks(10).map(|chunk| chunk.join(" ")).collect();
     insta::assert_snapshot!(lines.join("\n"), @r"
-    1+3 0+5 0+5 0+4 0+4 1+1 0+1 0+1 0+1 0+1
+    1+3 0+8 0+5 0+4 0+4 1+1 0+1 0+1 0+1 0+1
     0+1 0+1 0+1 0+1 0+1 0+1 0+1 0+1 0+1 0+3
     0+3 0+3 0+1 0+1 0+3 0+3 0+3 0+3 0+1 0+1
     0+4 1+4 0+3 0+1 0+3 0+1 0+1 0+1 0+1 0+1
     0+1
     ");
+}
+
+/// The same by a sweep, which is cut into four segments.
+#[test]
+fn segments_take_little_more_work_than_one_session() {
+    let (found, alone) = with_source(|source| {
+        let never = Cancellation::new();
+        let detector = PersistenceDetector::new(DetectOptions::default(), 41);
+        let options = LocateOptions {
+            tolerance: Some(1.0),
+            ..LocateOptions::default()
+        };
+        assert_eq!(source.segments(41), 4);
+        let found = continuation::sweep(source, &detector, 41, &options, &never, &mut ());
+        (found.unwrap().points, sweep(source))
+    });
+    let work = |reports: Vec<&SolveReport>| {
+        let factorisations = reports
+            .iter()
+            .map(|one| one.measure("factorisations").unwrap());
+        let iterations: usize = reports.iter().map(|one| one.iterations).sum();
+        format!("{} + {iterations}", factorisations.sum::<f64>())
+    };
+    let alone = work(alone.iter().map(|one| &one.report).collect());
+    let found = work(found.iter().map(|one| &one.report).collect());
+    insta::assert_snapshot!(format!("{alone}, in segments {found}"), @"3 + 84, in segments 7 + 108");
 }
 
 /// The prediction saves work and changes nothing: every solve is checked to its tolerance, 1e-8 in L1, and differences

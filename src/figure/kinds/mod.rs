@@ -142,12 +142,15 @@ pub(super) type Drawn = Option<Figure>;
 pub(super) struct Sketch<'a> {
     /// Its name: that of its file without the extension.
     pub(super) name: String,
-    draw: Box<dyn Fn(&Print<'_>) -> Drawn + 'a>,
+    draw: Box<dyn Fn(&Print<'_>) -> Drawn + Sync + 'a>,
 }
 
 impl<'a> Sketch<'a> {
     /// A figure of that name, which `draw` draws.
-    pub(super) fn new(name: impl Into<String>, draw: impl Fn(&Print<'_>) -> Drawn + 'a) -> Self {
+    pub(super) fn new(
+        name: impl Into<String>,
+        draw: impl Fn(&Print<'_>) -> Drawn + Sync + 'a,
+    ) -> Self {
         Self {
             name: name.into(),
             draw: Box::new(draw),

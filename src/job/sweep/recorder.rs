@@ -18,18 +18,21 @@ pub(super) struct Recorder<'a> {
     pub(super) source: &'a JournalledSource,
     /// What shards saw in their checks.
     pub(super) checks: Vec<CheckedIndicator>,
-    /// Points that came from the journal. The tables that are there are replaced when all have come.
-    pub(super) given: Vec<Point>,
+    /// Points of earlier processes that have not come from the journal yet. Then the tables that are there are
+    /// replaced.
+    pub(super) missing: usize,
+    /// Points that wait for those.
+    pub(super) held: Vec<Point>,
 }
 
 impl Recorder<'_> {
-    /// Writes what came from the journal, in the place of what is there.
-    pub(super) fn write_given(&mut self) -> Result<(), RunError> {
-        let given = std::mem::take(&mut self.given);
-        if given.is_empty() {
+    /// Writes the points that are held, in the place of what is there.
+    pub(super) fn write_held(&mut self) -> Result<(), RunError> {
+        let held = std::mem::take(&mut self.held);
+        if held.is_empty() {
             return Ok(());
         }
-        self.run.add_points(self.sweep.problem.subject(), &given)
+        self.run.add_points(self.sweep.problem.subject(), &held)
     }
 
     /// A point in words: its value, and what was found there.
@@ -61,12 +64,18 @@ impl Recorder<'_> {
 
 impl Observer for Recorder<'_> {
     fn point(&mut self, point: &Point, done: usize, remaining: usize) -> Result<(), Failure> {
-        if self.source.is_stored() {
-            self.given.push(point.clone());
+        if self.source.is_stored(point.value) {
+            self.missing = self.missing.saturating_sub(1);
+            self.held.push(point.clone());
+            return Ok(());
+        }
+        if self.missing > 0 {
+            self.held.push(point.clone());
+            self.say(point, done, done + remaining);
             return Ok(());
         }
         self.folder.check()?;
-        self.write_given()?;
+        self.write_held()?;
         self.run.add_point(self.sweep.problem.subject(), point)?;
         self.say(point, done, done + remaining);
         self.manifest.points = done;

@@ -28,21 +28,42 @@ pub(in crate::method) fn rough_masses(
     (whole.is_finite() && whole > 0.0).then(|| sizes.iter().map(|size| size / whole).collect())
 }
 
+/// Fewer cells.
+pub(super) struct Coarseness {
+    /// Cells of an axis there over those here.
+    share: f64,
+    /// Factor by which a relaxation time may be off there.
+    pub(super) off: f64,
+}
+
+/// What is tried, from the fewest cells on.
+pub(super) const COARSE: [Coarseness; 2] = [
+    Coarseness {
+        share: 0.3,
+        off: 5.0,
+    },
+    Coarseness {
+        share: 0.5,
+        off: 1.5,
+    },
+];
+
 /// Unknowns up to which a relaxation time is worked out on the cells themselves, and the same where axes have modes,
 /// whose fronts are larger.
-const FEW: usize = 20_000;
+const FEW: usize = 5000;
 const FEW_WITH_MODES: usize = 8000;
 
 /// Least and most modes with which it is worked out on fewer cells: many are for the shape of a density along them.
 const LEAST_MODES: usize = 3;
 const MOST_MODES: usize = 8;
 
-/// Time in which deviations from the steady state die out, on half as many cells an axis, with half as many modes,
-/// eight at most: many times as fast as on all of them. `None` where all of them are few enough, or half of them have
-/// no steady state to show.
+/// Time in which deviations from the steady state die out, on fewer cells an axis, with half as many modes, eight at
+/// most: many times as fast as on all of them. `None` where all of them are few enough, or so few have no steady state
+/// to show.
 pub(super) fn rough_relaxation(
     source: &GeneratorSource,
     value: f64,
+    coarseness: &Coarseness,
     cancellation: &Cancellation,
 ) -> Option<f64> {
     let space = source.problem.space();
@@ -54,20 +75,20 @@ pub(super) fn rough_relaxation(
     if space.n_cells() <= few {
         return None;
     }
-    let half = |axis: &Axis| match axis.is_modes() {
+    let fewer = |axis: &Axis| match axis.is_modes() {
         true => axis
             .with_modes(
                 (axis.mode_number() / 2).clamp(LEAST_MODES.min(axis.mode_number()), MOST_MODES),
             )
             .ok(),
-        false => Some(axis.refined(0.5)),
+        false => Some(axis.refined(coarseness.share)),
     };
-    let axes: Option<Vec<Axis>> = space.axes().iter().map(half).collect();
+    let axes: Option<Vec<Axis>> = space.axes().iter().map(fewer).collect();
     let problem = source.problem.on(CellSpace::new(axes?).ok()?);
-    let half = GeneratorSource::new(&problem.ok()?, &source.options).ok()?;
-    let system = half.system_at(value).ok()?;
-    let generator = half.assemble(system.as_ref(), half.options.scheme).ok()?;
-    let mut solver = half.solver(cancellation);
+    let fewer = GeneratorSource::new(&problem.ok()?, &source.options).ok()?;
+    let system = fewer.system_at(value).ok()?;
+    let generator = fewer.assemble(system.as_ref(), fewer.options.scheme).ok()?;
+    let mut solver = fewer.solver(cancellation);
     let steady = solver
         .solve(&generator.matrix, &generator.escape, None)
         .ok()?;
@@ -103,7 +124,6 @@ mod tests {
         let options = GeneratorMethodOptions::default();
         let source = GeneratorSource::new(&problem, &options).unwrap();
         for value in [0.5, -0.25, -1.0] {
-            let rough = rough_relaxation(&source, value, &Cancellation::new()).unwrap();
             let system = source.system_at(value).unwrap();
             let generator = source.assemble(system.as_ref(), options.scheme).unwrap();
             let mut solver = source.solver(&Cancellation::new());
@@ -111,13 +131,17 @@ mod tests {
                 .solve(&generator.matrix, &generator.escape, None)
                 .unwrap();
             let exact = Relaxation::compute(&mut solver, &steady.mass, None).unwrap();
-            // What is made of it allows for a factor 1.5.
-            let ratio = rough / exact.time;
-            assert!(
-                (ratio - 1.0).abs() < 0.25,
-                "{value}: {rough} {}",
-                exact.time
-            );
+            for coarseness in &COARSE {
+                let rough = rough_relaxation(&source, value, coarseness, &Cancellation::new());
+                let ratio = rough.unwrap() / exact.time;
+                // What is made of it allows for more.
+                let allowed = 1.0 + 0.5 * (coarseness.off - 1.0);
+                assert!(
+                    ratio < allowed && ratio > 1.0 / allowed,
+                    "{value}: {ratio} of {}",
+                    exact.time
+                );
+            }
         }
     }
 }

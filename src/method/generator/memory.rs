@@ -42,7 +42,7 @@ pub(super) fn recall(
     let mut known: Vec<Arc<TrailPoint>> = Vec::new();
     let mut last = None;
     for (value, bytes) in left.iter().filter(|(_, bytes)| !bytes.is_empty()) {
-        let left: Left<News<TrailPoint, Vec<f64>, Relaxation>> = from_bytes(bytes)?;
+        let left: Left<News<TrailPoint, Relaxation>> = from_bytes(bytes)?;
         if let Some(news) = left.trail {
             let trail = Trail::of_news(news, &known).ok_or(NotWhatWasWritten)?;
             check(session, &trail)?;

@@ -20,6 +20,10 @@ impl DensitySource for GeneratorSource {
         Box::new(GeneratorSession::new(self, cancellation))
     }
 
+    fn segments(&self, values: usize) -> usize {
+        self.options.segments(self.problem.space(), values)
+    }
+
     fn finer(&self, want: &Want) -> Result<Option<Box<dyn DensitySource>>, SourceError> {
         Ok(Some(Box::new(self.refined(want)?)))
     }

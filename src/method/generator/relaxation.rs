@@ -24,23 +24,20 @@ const UNKNOWN_CHANGE: f64 = 3.0;
 /// The same on top of twice the change that was seen before.
 const LEAST_CHANGE: f64 = 1.05;
 
-/// Factor by which a time that is known roughly may be off: fewer cells change it.
-const ROUGHNESS: f64 = 1.5;
-
 /// How fast deviations from a steady state die out.
 #[derive(Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Relaxation {
     /// Time in which they shrink by e.
     pub(super) time: f64,
-    /// The deviation that lives longest, Σ = 0.
+    /// The deviation that lives longest, Σ = 0; nothing where the time is that of fewer cells.
     mode: Vec<f64>,
     /// Factor by which the time may change from point to point.
     change: f64,
     /// Points of the sweep since it was computed.
     age: i32,
-    /// Whether it is that of fewer cells.
-    rough: bool,
+    /// Factor by which the time may be off: fewer cells change it.
+    pub(super) off: f64,
 }
 
 impl Relaxation {
@@ -48,38 +45,32 @@ impl Relaxation {
     /// within it. (A share that is reported must be that of the point itself.)
     pub(super) fn carry_over(neighbour: &Self, escape_rate: f64, limit: f64) -> Option<Self> {
         let age = neighbour.age + 1;
-        let off = if neighbour.rough { ROUGHNESS } else { 1.0 };
-        let largest_time = neighbour.time * off * neighbour.change.powi(age);
+        let largest_time = neighbour.time * neighbour.off * neighbour.change.powi(age);
         (escape_rate * largest_time < limit).then(|| Self {
             time: neighbour.time,
             mode: neighbour.mode.clone(),
             change: neighbour.change,
             age,
-            rough: neighbour.rough,
+            off: neighbour.off,
         })
     }
 
-    /// A time that fewer cells gave, of a steady state with these masses.
-    pub(super) fn rough(time: f64, mass: &[f64], neighbour: Option<&Self>) -> Self {
+    /// A time that fewer cells gave, which may be off by a factor.
+    pub(super) fn rough(time: f64, off: f64, neighbour: Option<&Self>) -> Self {
         let change = neighbour.map_or(UNKNOWN_CHANGE, |known| LEAST_CHANGE * known.change_to(time));
         Self {
             time,
-            mode: uneven(mass),
+            mode: Vec::new(),
             change,
             age: 0,
-            rough: true,
+            off,
         }
     }
 
     /// Whether less than `limit` of the mass leaves within it for sure, at this escape rate, at the point that it is
     /// of.
     pub(super) fn is_quiet(&self, escape_rate: f64, limit: f64) -> bool {
-        escape_rate * self.time * if self.rough { ROUGHNESS } else { 1.0 } < limit
-    }
-
-    /// Whether it is that of fewer cells.
-    pub(super) fn is_rough(&self) -> bool {
-        self.rough
+        escape_rate * self.time * self.off < limit
     }
 
     /// Twice the change a point, as a factor, that has led from here to a time.
@@ -88,9 +79,9 @@ impl Relaxation {
         (2.0 * seen).exp()
     }
 
-    /// Number of cells that it is on.
-    pub(super) fn cells(&self) -> usize {
-        self.mode.len()
+    /// Number of cells that it is on; `None` where it knows of none.
+    pub(super) fn cells(&self) -> Option<usize> {
+        Some(self.mode.len()).filter(|&cells| cells > 0)
     }
 
     /// From x ← Q⁻¹ x on vectors of sum zero: the mean growth over the last iterations is 1/|λ₂|. Rough (a few per
@@ -101,7 +92,8 @@ impl Relaxation {
         mass: &[f64],
         neighbour: Option<&Self>,
     ) -> Option<Self> {
-        let mut mode = neighbour.map_or_else(|| uneven(mass), |known| known.mode.clone());
+        let known = neighbour.filter(|known| !known.mode.is_empty());
+        let mut mode = known.map_or_else(|| uneven(mass), |known| known.mode.clone());
         let mut growth: Vec<f64> = Vec::with_capacity(ITERATIONS);
         while growth.len() < ITERATIONS && !is_settled(&growth) {
             let size: f64 = mode.iter().map(|value| value.abs()).sum();
@@ -119,7 +111,7 @@ impl Relaxation {
             mode,
             change,
             age: 0,
-            rough: false,
+            off: 1.0,
         })
     }
 }

@@ -1,15 +1,15 @@
 //! The generator at work: assemble Q, solve Q u = 0 with the neighbour's factorisation, and state the error of the grid
 //! as the difference to a second scheme.
 //!
-//! The slope du/dθ, which predicts the neighbour, and the difference to the second scheme come from the factorisation
-//! that is there: Q du = -(dQ/dθ) u, and with the second scheme's Q' = Q + δQ to first order Q δu = -(δQ) u. After the
-//! first point a polynomial through the last few points replaces the tangent: it predicts better and costs nothing.
-//! The difference is predicted likewise, and iterated only as far as the prediction is not good enough.
+//! A polynomial through the last few points predicts the next one. (The tangent at the first point would save fewer
+//! iterations than it takes.) The difference to the second scheme comes from the factorisation that is there: with the
+//! second scheme's Q' = Q + δQ it is Q δu = -(δQ) u to first order. It is predicted likewise, and iterated only as far
+//! as the prediction is not good enough.
 
 use std::sync::Arc;
 
 use super::GeneratorSource;
-use super::coarse::rough_relaxation;
+use super::coarse::{COARSE, Coarseness, rough_relaxation};
 use super::one_axis;
 use super::passages::{add_passages, at_nodes};
 use super::relaxation::Relaxation;
@@ -23,20 +23,20 @@ use crate::cancellation::Cancellation;
 use crate::continuation::measure::{ESCAPE_RATE, FACTORISATIONS, NEGATIVE_MASS};
 use crate::continuation::{Solution, SolveReport};
 use crate::density::EstimatedDensity;
-use crate::generator::{Generator, GeneratorOptions, assemble_derivative, cell_masses, resolution};
+use crate::generator::{Generator, cell_masses, resolution};
 use crate::method::measures::{Cells, Others};
 use crate::method::neighbours::Neighbours;
 use crate::method::report::{QUIET_ESCAPE, Reporter};
 use crate::method::watched::planes;
 use crate::method::{MethodError, Problem};
 use crate::passage::KnownDensity;
-use crate::stationary::generator::{Along, RateError, RateInfo, RateSolver, RateSteadyState};
+use crate::stationary::generator::{Along, RateInfo, RateSolver, RateSteadyState};
 use crate::system::System;
 
 /// Escape per unit time below which mass is said to stay in Ω, and relaxation is not looked at.
 const NO_ESCAPE: f64 = 1e-12;
 
-/// Relative error of slopes, which predict, and of differences between schemes, which estimate errors.
+/// Relative error of differences between schemes, which estimate errors.
 const ROUGH: f64 = 1e-2;
 
 /// Distance in L1 of the unknowns that were expected to those that were found up to which a difference between schemes
@@ -97,10 +97,8 @@ impl GeneratorSession {
             self.add_passages(&mut solution.report, value, &system, known)?;
             return Ok(solution);
         }
-        let mut before = self.trails.nearest(value).cloned();
-        if let Some(trail) = &mut before {
-            trail.slope = self.slope(trail)?.map(Arc::new);
-        }
+        let nearest = self.trails.nearest(value).cloned();
+        let before = nearest.map(|trail| trail.completed(value, self.trails.all()));
         let guess = before.as_ref().and_then(|trail| trail.mass_at(value));
         let expected = before.as_ref().and_then(|trail| trail.difference_at(value));
         let factorisations = self.solver.factorisations();
@@ -296,14 +294,18 @@ impl GeneratorSession {
         }
         let neighbour = before.and_then(|trail| trail.relaxation.as_deref());
         let carried = |known: &Relaxation| Relaxation::carry_over(known, rate, QUIET_ESCAPE);
-        let of_fewer_cells = || {
-            let time = rough_relaxation(&self.source, solved.value, &self.cancellation)?;
-            Some(Relaxation::rough(time, mass, neighbour))
+        let of_fewer_cells = |coarseness: &Coarseness| {
+            let time =
+                rough_relaxation(&self.source, solved.value, coarseness, &self.cancellation)?;
+            Some(Relaxation::rough(time, coarseness.off, neighbour))
                 .filter(|found| found.is_quiet(rate, QUIET_ESCAPE))
         };
         let near = neighbour.and_then(carried).or_else(|| {
-            let rough = neighbour.is_none_or(Relaxation::is_rough);
-            rough.then(of_fewer_cells).flatten()
+            // Where so few cells did not do before, they do not do here.
+            let will_do = COARSE.iter();
+            will_do
+                .filter(|one| neighbour.is_none_or(|known| one.off <= known.off))
+                .find_map(of_fewer_cells)
         });
         near.or_else(|| Relaxation::compute(&mut self.solver, mass, neighbour))
     }
@@ -340,32 +342,6 @@ impl GeneratorSession {
             masses: by_second,
         });
         Ok((densities, Second { change, solved }))
-    }
-
-    /// du/dθ at the only point of a trail, for the first step from it: worked out when there is one, as long as the
-    /// solver stands at that point. `None` where Q cannot be varied (at an end of the parameter's range) or the solve
-    /// fails: the next point then starts without a prediction.
-    fn slope(&mut self, trail: &Trail) -> Result<Option<Vec<f64>>, MethodError> {
-        let only = trail
-            .only()
-            .filter(|point| self.stand.solved == Some(point.value));
-        let Some(point) = only.filter(|_| !self.source.checks) else {
-            return Ok(None);
-        };
-        let options = GeneratorOptions {
-            scheme: self.source.options.scheme,
-        };
-        let at = |value: f64| self.source.system_at(value);
-        let space = self.source.problem.space();
-        let Ok(derivative) = assemble_derivative(at, point.value, space, &options) else {
-            return Ok(None);
-        };
-        let (matrix, mass) = (&derivative.matrix, &point.mass);
-        match self.solver.sensitivity_within(matrix, mass, None, ROUGH) {
-            Ok(slope) => Ok(Some(slope)),
-            Err(RateError::Cancelled(cancelled)) => Err(cancelled.into()),
-            Err(_) => Ok(None),
-        }
     }
 }
 

@@ -33,8 +33,6 @@ pub(super) struct TrailPoint {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(in crate::method) struct Trail {
     points: Vec<Arc<TrailPoint>>,
-    /// Derivative of the unknowns by the parameter at the only point, Σ = 0: predicts the second one.
-    pub(super) slope: Option<Arc<Vec<f64>>>,
     /// How fast deviations die out, where it was needed.
     pub(super) relaxation: Option<Arc<Relaxation>>,
 }
@@ -42,10 +40,9 @@ pub(in crate::method) struct Trail {
 /// What a trail has that those before it do not have, lent or owned.
 #[cfg(feature = "serde")]
 #[derive(serde::Serialize, serde::Deserialize)]
-pub(super) struct News<Point, Unknowns, Time> {
+pub(super) struct News<Point, Time> {
     newest: Option<Point>,
     older: Vec<f64>,
-    slope: Option<Unknowns>,
     relaxation: Option<Time>,
 }
 
@@ -57,16 +54,34 @@ impl Trail {
         let older = older.filter(|older| older.value != points[0].value);
         let older: Vec<_> = older.take(POINTS - 1).cloned().collect();
         points.extend(older);
-        Self {
-            points,
-            slope: None,
-            relaxation,
+        Self { points, relaxation }
+    }
+
+    /// The trail with the newest points of others, as many as it may have, the nearest to a value first: where a walk
+    /// turns, what lies behind tells where to go.
+    pub(super) fn completed<'t>(
+        mut self,
+        value: f64,
+        others: impl Iterator<Item = &'t Self>,
+    ) -> Self {
+        if self.points.len() >= POINTS {
+            return self;
         }
+        let newest = others.filter_map(Self::newest);
+        let is_known =
+            |point: &&Arc<TrailPoint>| self.points.iter().any(|one| one.value == point.value);
+        let mut more: Vec<&Arc<TrailPoint>> = newest.filter(|point| !is_known(point)).collect();
+        let distance = |point: &TrailPoint| (point.value - value).abs();
+        more.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let room = POINTS - self.points.len();
+        let more: Vec<_> = more.into_iter().take(room).cloned().collect();
+        self.points.extend(more);
+        self
     }
 
     /// What is new in it, and the values of the older points.
     #[cfg(feature = "serde")]
-    pub(super) fn news(&self) -> News<&TrailPoint, &Vec<f64>, &Relaxation> {
+    pub(super) fn news(&self) -> News<&TrailPoint, &Relaxation> {
         News {
             newest: self.newest().map(AsRef::as_ref),
             older: self
@@ -75,7 +90,6 @@ impl Trail {
                 .skip(1)
                 .map(|point| point.value)
                 .collect(),
-            slope: self.slope.as_deref(),
             relaxation: self.relaxation.as_deref(),
         }
     }
@@ -83,7 +97,7 @@ impl Trail {
     /// The trail with this news, its older points among those that are `known`; `None` where one is not.
     #[cfg(feature = "serde")]
     pub(super) fn of_news(
-        news: News<TrailPoint, Vec<f64>, Relaxation>,
+        news: News<TrailPoint, Relaxation>,
         known: &[Arc<TrailPoint>],
     ) -> Option<Self> {
         let find = |value| known.iter().rev().find(|point| point.value == value);
@@ -93,7 +107,6 @@ impl Trail {
         points.extend(older?);
         Some(Self {
             points,
-            slope: news.slope.map(Arc::new),
             relaxation: news.relaxation.map(Arc::new),
         })
     }
@@ -104,8 +117,7 @@ impl Trail {
         let mut lengths: Vec<usize> = points
             .flat_map(|point| [point.mass.len(), point.difference.len()])
             .collect();
-        lengths.extend(self.slope.iter().map(|slope| slope.len()));
-        lengths.extend(self.relaxation.iter().map(|one| one.cells()));
+        lengths.extend(self.relaxation.iter().filter_map(|one| one.cells()));
         lengths
     }
 
@@ -114,24 +126,9 @@ impl Trail {
         self.points.first()
     }
 
-    /// The point, where there is no other.
-    pub(super) fn only(&self) -> Option<&Arc<TrailPoint>> {
-        match self.points.as_slice() {
-            [only] => Some(only),
-            _ => None,
-        }
-    }
-
     /// Unknowns expected at a value; `None` without any point.
     pub(super) fn mass_at(&self, value: f64) -> Option<Vec<f64>> {
-        let Some(only) = self.only() else {
-            return self.extrapolated(value, POINTS, |point| &point.mass);
-        };
-        let mut mass = only.mass.clone();
-        if let Some(slope) = &self.slope {
-            add_scaled(&mut mass, value - only.value, slope);
-        }
-        Some(mass)
+        self.extrapolated(value, POINTS, |point| &point.mass)
     }
 
     /// Difference between the schemes expected at a value; `None` without any point.
@@ -238,11 +235,19 @@ mod tests {
     }
 
     #[test]
-    fn a_single_point_predicts_along_its_slope() {
-        let mut trail = trail(&[1.0], |x| vec![x * x, 0.0]);
-        assert_eq!(trail.mass_at(1.5), Some(vec![1.0, 0.0]));
-        trail.slope = Some(Arc::new(vec![2.0, 0.0]));
-        assert_eq!(trail.mass_at(1.5), Some(vec![2.0, 0.0]));
+    fn a_walk_that_turns_goes_on_from_what_lies_behind() {
+        let curve = |x: f64| vec![x.exp(), 3.0 - x.exp()];
+        // From 0 upward, and back to what is below.
+        let ways: Vec<Trail> = (1..=POINTS)
+            .map(|count| {
+                let values: Vec<f64> = (0..count).map(|step| 0.1 * step as f64).collect();
+                trail(&values, curve)
+            })
+            .collect();
+        assert_eq!(ways[0].mass_at(-0.1), Some(curve(0.0)));
+        let turned = ways[0].clone().completed(-0.1, ways.iter());
+        assert!(distance(&turned.mass_at(-0.1).unwrap(), &curve(-0.1)) < 1e-4);
+        assert_eq!(turned.points.len(), POINTS);
         assert_eq!(Trail::default().mass_at(1.0), None);
     }
 }

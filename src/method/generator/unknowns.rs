@@ -50,10 +50,8 @@ pub(super) fn by_schemes(
     let differences = differences(unknowns, second);
     let estimated = own.into_iter().zip(&others).zip(space.axes()).enumerate();
     let estimated = estimated.map(|(index, ((own, other), axis))| {
-        let cells = 0..space.n_cells();
-        let values: Vec<f64> = cells
-            .map(|cell| axis.nodes()[space.position(cell, index)])
-            .collect();
+        let positions = space.positions(index);
+        let values: Vec<f64> = positions.map(|position| axis.nodes()[position]).collect();
         let roughness = Roughness {
             space,
             weights: unknowns,

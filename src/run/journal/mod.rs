@@ -104,6 +104,12 @@ impl Journal {
         solves.count()
     }
 
+    /// Points of a sweep that earlier processes have left.
+    pub(crate) fn points(&self) -> usize {
+        let shared = self.lock();
+        shared.places.keys().filter(|key| key.is_of_point()).count()
+    }
+
     /// Why a session ended, where it was not interrupted. It is told once.
     pub fn failure(&self) -> Option<RunError> {
         self.lock().failure.take()

@@ -6,7 +6,7 @@
 
 use std::collections::HashMap;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use super::kept::{Kept, KeptSolution, Question, in_words};
@@ -49,7 +49,6 @@ impl Session for JournalledSession {
     fn solve(&mut self, value: f64) -> Result<Solution<'_>, SourceError> {
         self.settle()?;
         if let Some(point) = self.known.points.get(&value.to_bits()) {
-            self.known.is_stored.store(false, Ordering::Relaxed);
             self.seconds = Some(point.seconds);
             let written = self.journal.write_known(&self.family, point);
             written.map_err(|error| self.journal.end(error))?;
@@ -62,9 +61,6 @@ impl Session for JournalledSession {
         let key = self.key.of_value(&self.family, value);
         let kept = self.journal.get::<Kept>(key);
         let kept = kept.map_err(|error| self.journal.end(error))?;
-        self.known
-            .is_stored
-            .store(kept.is_some(), Ordering::Relaxed);
         match kept {
             Some(kept) if kept.is_sound() => self.give(key, value, kept),
             Some(_) => {
@@ -298,6 +294,4 @@ pub(super) struct Known {
     pub(super) is_swept: bool,
     /// Values that were solved by this process.
     pub(super) solves: AtomicUsize,
-    /// Whether the last solution came from the journal.
-    pub(super) is_stored: AtomicBool,
 }

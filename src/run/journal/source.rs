@@ -57,9 +57,9 @@ impl JournalledSource {
         self.known.solves.load(Ordering::Relaxed)
     }
 
-    /// Whether the last solution came from the journal.
-    pub(crate) fn is_stored(&self) -> bool {
-        self.known.is_stored.load(Ordering::Relaxed)
+    /// Whether an earlier process has solved the point at a value.
+    pub(crate) fn is_stored(&self, value: f64) -> bool {
+        self.journal.has_point(value)
     }
 
     fn beside(&self, source: Box<dyn DensitySource>, name: &str) -> Box<dyn DensitySource> {
@@ -102,6 +102,10 @@ impl DensitySource for JournalledSource {
             last: None,
             seconds: None,
         })
+    }
+
+    fn segments(&self, values: usize) -> usize {
+        self.source.segments(values)
     }
 
     fn finer(&self, want: &Want) -> Result<Option<Box<dyn DensitySource>>, SourceError> {

@@ -129,7 +129,7 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
     key("method.scheme", Kind::Choice(AdvectiveScheme::words), OfOptions, of_methods!(scheme: Generator generator),
         "how advective fluxes are reconstructed. The central schemes are more accurate on fine grids and less robust on coarse ones."),
     key("method.memory_limit", Kind::Number(POSITIVE), OfOptions, of_methods!(memory_limit: Generator generator),
-        "gigabytes that factors may take; beyond, a smaller factorisation preconditions."),
+        "gigabytes that factors may take; beyond, a smaller factorisation preconditions. No more segments of a sweep are solved side by side than fit."),
     key("method.map_step", Kind::Step, OfOptions, of_methods!(map_step: Sgcm sgcm),
         "time that one transition of the cell map spans. Longer steps mean less numerical diffusion."),
     key("method.time_step", Kind::Step, OfOptions, of_methods!(time_step: Sgcm sgcm, MonteCarlo monte_carlo),
