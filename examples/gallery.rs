@@ -60,17 +60,20 @@ fn section(file: &StartingFile, images: &Path) -> Result<String, Box<dyn std::er
         text,
         "\n| {parameter} | observable | change, {parameter} ascending | status |\n| ---: | --- | --- | --- |"
     )?;
-    for row in found.bifurcations() {
+    for row in &found.labels {
+        let Some(words) = row.words(&subject.family) else {
+            continue;
+        };
         writeln!(
             text,
             "| {:.4} ± {:.1e} | {} | {} → {}, {} | {} |",
-            row.value,
-            row.error,
-            row.observable.name(&subject.family),
-            row.before,
-            row.after,
-            row.change(),
-            row.status().word()
+            row.value(),
+            row.error(),
+            words.of,
+            words.before,
+            words.after,
+            words.change,
+            words.status.word()
         )?;
     }
     let figures = Figures::of_sweep(&found, file.title(), &[]);

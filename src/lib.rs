@@ -6,6 +6,7 @@
 //! | read formulas, differentiate and analyse them, run them on many states at a time | [`formula`] |
 //! | state a model, look up the built-in ones | [`system`] |
 //! | ask long work to stop | [`cancellation`] |
+//! | the largest Lyapunov exponent of a fixed point | [`exponent`] |
 //! | lay a grid of cells over the domain | [`space`] |
 //! | turn masses into densities, marginals, moments, distances | [`density`] |
 //! | sample a transition matrix by trajectories (SGCM) | [`sampling`] |
@@ -41,6 +42,7 @@ pub mod continuation;
 pub mod density;
 #[cfg(feature = "cli")]
 pub mod explore;
+pub mod exponent;
 #[cfg(any(feature = "figures", feature = "store"))]
 pub mod figure;
 pub mod formula;

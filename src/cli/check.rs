@@ -6,7 +6,9 @@ use std::io;
 use std::path::Path;
 
 use crate::continuation::evenly_spaced;
+use crate::exponent::of_family;
 use crate::method::{Cost, GeneratorCost, MonteCarloCost, SgcmCost, StepChoice};
+use crate::run::fixed_point_in_words;
 use crate::stationary::generator::RateError;
 use crate::sweep_file::{MethodKind, Sweep, bytes_in_words, machine_memory};
 
@@ -49,6 +51,7 @@ fn costs(spec: &Sweep) -> Vec<String> {
     let mut lines = vec![format!("cells: {} = {cells}", shape.join(" x "))];
     lines.extend(spec.settings.chosen.iter().cloned());
     lines.push(points(spec));
+    lines.extend(exponent(spec));
     lines.extend(match costs_of_a_point(spec) {
         Ok(Cost::Generator(cost)) => generator_costs(spec, &cost),
         Ok(Cost::Sgcm(cost)) => sgcm_costs(spec, &cost),
@@ -174,6 +177,23 @@ fn points(spec: &Sweep) -> String {
         spec.problem.family().parameter(),
         first.join(", ")
     )
+}
+
+/// What is worked out of a fixed point, with the exponents at both ends.
+fn exponent(spec: &Sweep) -> Option<String> {
+    let family = spec.problem.family();
+    let state = fixed_point_in_words(family)?;
+    let (from, to) = family.ends();
+    let at = |value: f64| match of_family(family, value) {
+        Some(Ok(found)) => format!("{:.4e}", found.value),
+        _ => "unknown".to_owned(),
+    };
+    Some(format!(
+        "exponent: the largest Lyapunov exponent of the fixed point {state} at every value ({} at {from}, {} at {to}), and its zeros \
+         as rows `DB`; where it is negative no density is looked for",
+        at(from),
+        at(to)
+    ))
 }
 
 /// What a user should know before the run.

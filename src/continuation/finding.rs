@@ -187,6 +187,24 @@ pub enum Finding {
         /// When they were given up.
         longest: f64,
     },
+    /// The fixed point of which the exponent is wanted attracts almost every path beside it: no density was looked for.
+    PointMass {
+        /// Its largest Lyapunov exponent.
+        exponent: f64,
+        /// The exponent's error.
+        error: f64,
+    },
+    /// The state of which the exponent is wanted is no fixed point at this value.
+    NoFixedPoint {
+        /// The axis along which it moves most.
+        axis: usize,
+        /// The drift there.
+        drift: f64,
+        /// The largest amplitude of a noise there.
+        noise: f64,
+    },
+    /// There is no exponent: drift or noise has no derivative at the state, or the angle has no density.
+    NoExponent,
     /// Sentences of a stored run that has no numbers for them.
     Told(String),
 }
@@ -321,6 +339,11 @@ impl Finding {
                 share,
                 longest,
             } => plain("passage-cut", &[passage as f64, share, longest]),
+            Self::PointMass { exponent, error } => plain("point-mass", &[exponent, error]),
+            Self::NoFixedPoint { axis, drift, noise } => {
+                along("no-fixed-point", axis, &[drift, noise])
+            }
+            Self::NoExponent => plain("no-exponent", &[]),
             Self::Told(_) => plain("told", &[]),
         }
     }
@@ -378,6 +401,11 @@ impl Finding {
                 share,
                 longest,
             },
+            ("point-mass", None, &[exponent, error]) => Self::PointMass { exponent, error },
+            ("no-fixed-point", Some(axis), &[drift, noise]) => {
+                Self::NoFixedPoint { axis, drift, noise }
+            }
+            ("no-exponent", None, &[]) => Self::NoExponent,
             (code, None, &[passage]) => Self::NoPassage {
                 passage: passage as usize,
                 fault: PassageFault::of_code(code)?,

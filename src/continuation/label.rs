@@ -28,7 +28,8 @@ pub enum Label {
     },
     /// A P-bifurcation.
     Bifurcation(Box<Located>),
-    /// A measure crosses a level that was asked for.
+    /// A measure crosses a level that was asked for; where it is the Lyapunov exponent and the level zero, a
+    /// D-bifurcation.
     Level(Box<LevelCrossing>),
 }
 
@@ -108,6 +109,18 @@ impl Label {
                 after: one.after.to_string(),
                 change: one.change().to_owned(),
                 method: one.method(),
+                status: one.status(),
+            }),
+            Self::Level(one) if one.is_d_bifurcation() => Some(RowWords {
+                of: one.asked.measure.clone(),
+                before: if one.rises { "< 0" } else { "> 0" }.to_owned(),
+                after: if one.rises { "> 0" } else { "< 0" }.to_owned(),
+                change: match one.rises {
+                    true => "D-bifurcation: the fixed point loses its stability",
+                    false => "D-bifurcation: the fixed point becomes stable",
+                }
+                .to_owned(),
+                method: "exponent",
                 status: one.status(),
             }),
             Self::Level(one) => {
@@ -192,6 +205,14 @@ impl Label {
         }
     }
 
+    /// The D-bifurcation, if it is one.
+    pub fn d_bifurcation(&self) -> Option<&LevelCrossing> {
+        match self {
+            Self::Level(crossing) if crossing.is_d_bifurcation() => Some(crossing),
+            _ => None,
+        }
+    }
+
     /// Whether it is an end of the sweep.
     pub fn is_end(&self) -> bool {
         matches!(self, Self::End { .. })
@@ -257,10 +278,13 @@ pub(super) fn failures(points: &[Point]) -> impl Iterator<Item = Label> {
 /// Sorts rows by parameter and numbers each type from 1.
 pub(super) fn number(mut labels: Vec<Label>) -> Vec<Label> {
     labels.sort_by(|a, b| a.value().total_cmp(&b.value()));
-    let mut counts = [0; 4];
+    let mut counts = [0; 5];
     for row in &mut labels {
         let (label, prefix, count) = match row {
             Label::Bifurcation(located) => (&mut located.label, "PB", &mut counts[0]),
+            Label::Level(crossing) if crossing.is_d_bifurcation() => {
+                (&mut crossing.label, "DB", &mut counts[4])
+            }
             Label::Level(crossing) => (&mut crossing.label, "LV", &mut counts[3]),
             Label::End { label, .. } => (label, "EP", &mut counts[1]),
             Label::Failure { label, .. } => (label, "MX", &mut counts[2]),

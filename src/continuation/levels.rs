@@ -7,6 +7,7 @@
 
 use super::Point;
 use super::doubt::{BifurcationStatus, Doubt, status_of};
+use super::measure::EXPONENT;
 use crate::system::MeasureLevel;
 
 /// Values through which the polynomial goes, half of them on either side.
@@ -21,7 +22,7 @@ const HALVINGS: usize = 80;
 /// A crossing of a level.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LevelCrossing {
-    /// `LV` and its ordinal.
+    /// `LV` and its ordinal, `DB` for a D-bifurcation.
     pub label: String,
     /// The measure and its level.
     pub asked: MeasureLevel,
@@ -43,6 +44,11 @@ impl LevelCrossing {
     /// How well it is known.
     pub fn status(&self) -> BifurcationStatus {
         status_of(&self.doubts)
+    }
+
+    /// Whether it is the largest Lyapunov exponent that passes zero.
+    pub fn is_d_bifurcation(&self) -> bool {
+        self.asked.measure == EXPONENT.word && self.asked.level == 0.0
     }
 }
 

@@ -1,6 +1,7 @@
 //! The rows of a sweep: every change of signature with its value, error, bracket and status.
 
 use super::change::{Change, changes};
+use super::d_bifurcations::d_bifurcations;
 use super::doubt::MOST_TIMES;
 use super::doubt::{Doubt, Evidence, WiderRange};
 use super::follow::{Course, Crossing};
@@ -67,7 +68,10 @@ pub(super) fn label_points(
     let rows = rows.into_iter();
     let rows = rows.map(|row| Label::Bifurcation(Box::new(row)));
     let levels = crossings(points, subject.family.levels(), options.tolerance);
-    let levels = levels.into_iter().map(|row| Label::Level(Box::new(row)));
+    // Where the exponent passes zero is known better from the exponent itself, and asked for with it.
+    let levels = levels.into_iter().filter(|row| !row.is_d_bifurcation());
+    let levels = levels.chain(d_bifurcations(points, &subject.family, options.tolerance));
+    let levels = levels.map(|row| Label::Level(Box::new(row)));
     let others = label::end_points(points).chain(label::failures(points));
     label::number(others.chain(rows).chain(levels).collect())
 }

@@ -102,6 +102,11 @@ pub(crate) const PASSAGE_RATE: MeasureKind = of_passage(
     "probability per unit time that a passage ends which has lasted long",
 );
 
+pub(crate) const EXPONENT: MeasureKind = kind(
+    "exponent",
+    "1/t",
+    "largest Lyapunov exponent of a fixed point that multiplicative noise leaves alone",
+);
 pub(crate) const ESCAPE_RATE: MeasureKind =
     kind("escape_rate", "1/t", "mass that leaves Ω per unit time");
 pub(crate) const NEGATIVE_MASS: MeasureKind = kind(

@@ -36,6 +36,7 @@ mod beside;
 mod bracket;
 mod change;
 pub mod curve;
+mod d_bifurcations;
 mod dips;
 mod distances;
 mod doubt;

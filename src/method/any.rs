@@ -1,5 +1,6 @@
 //! A source by any method, chosen at run time.
 
+use super::exponents::WithExponents;
 use super::{GeneratorSource, MethodError, MethodOptions, MonteCarloSource, Problem, SgcmSource};
 use crate::cancellation::Cancellation;
 use crate::continuation::{DensitySource, Session, SourceError, Subject, Want};
@@ -69,7 +70,17 @@ impl DensitySource for MethodSource {
     }
 
     fn open(&self, cancellation: &Cancellation) -> Box<dyn Session> {
-        self.source().open(cancellation)
+        let session = self.source().open(cancellation);
+        let family = &self.subject().family;
+        if family.fixed_point().is_none() {
+            return session;
+        }
+        Box::new(WithExponents {
+            session,
+            family: family.clone(),
+            method: self.method(),
+            was_solved: false,
+        })
     }
 
     fn segments(&self, values: usize) -> usize {

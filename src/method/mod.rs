@@ -23,6 +23,7 @@
 mod any;
 mod bins;
 mod cost;
+mod exponents;
 mod generator;
 mod lattice;
 mod measures;
@@ -48,7 +49,7 @@ pub use generator::{GeneratorCost, GeneratorMethodOptions, GeneratorSource};
 pub(crate) use generator::{OneAxisFamily, automatic_modes, change_by_more_modes};
 pub use measures::DerivedMeasure;
 #[cfg(feature = "store")]
-pub(crate) use measures::passage_columns;
+pub(crate) use measures::{columns_of_family, passage_columns};
 pub use monte_carlo::{Estimator, MonteCarloCost, MonteCarloOptions, MonteCarloSource};
 pub use options::MethodOptions;
 pub use problem::Problem;

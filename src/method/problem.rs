@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use super::MethodError;
-use super::measures::{DerivedMeasure, passage_columns};
+use super::measures::{DerivedMeasure, columns_of_family};
 use crate::continuation::{CellCheck, Subject, Want};
 use crate::density::{DensityError, Observable, Projection, QuantityMoments, laid_out};
 use crate::space::{Axis, CellSpace};
@@ -94,7 +94,7 @@ impl Problem {
                 _ => {}
             }
         }
-        let measures = passage_columns(&family);
+        let measures = columns_of_family(&family);
         let subject = Subject {
             family,
             observables,
@@ -150,7 +150,7 @@ impl Problem {
         let columns = measures
             .iter()
             .flat_map(|measure| measure.columns(family, observables));
-        self.subject.measures = columns.chain(passage_columns(family)).collect();
+        self.subject.measures = columns.chain(columns_of_family(family)).collect();
         self
     }
 

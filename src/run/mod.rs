@@ -138,6 +138,8 @@ pub(crate) use points_table::points_csv;
 pub(crate) use provenance::Provenance;
 pub use recompute::Recomputed;
 pub use sentences::finding_in_words;
+#[cfg(feature = "cli")]
+pub(crate) use sentences::fixed_point_in_words;
 pub(crate) use shards::shard_folder;
 pub use shards::{Gathered, Shards};
 pub(crate) use staged::StagedRun;

@@ -6,7 +6,7 @@ use super::{arrays, checks, codimension, export, features_table, map, points_tab
 use crate::continuation::MeasureColumn;
 use crate::continuation::curve::Plane;
 use crate::density::Observable;
-use crate::method::passage_columns;
+use crate::method::columns_of_family;
 use crate::sweep_file::{Diagnostic, Place, Report, Settings};
 use crate::system::Family;
 
@@ -77,7 +77,7 @@ fn together(settings: &Settings) -> Vec<Together> {
     let measures = settings.measures.iter().flatten();
     let measures: Vec<MeasureColumn> = measures
         .flat_map(|measure| measure.columns(family, observables))
-        .chain(passage_columns(family))
+        .chain(columns_of_family(family))
         .collect();
     let mut all = of_sweep(family, observables, &measures);
     let curve = settings.curve.as_ref().and_then(|curve| {

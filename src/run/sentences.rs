@@ -1,5 +1,6 @@
 //! Findings in sentences, for the columns `warnings`, for `run.json` and for the terminal.
 
+use super::number::format_with_error;
 use crate::continuation::{Finding, PassageFault, ShiftedQuantity, SteadyClass};
 use crate::system::Family;
 
@@ -211,10 +212,38 @@ fn solve_in_words(family: &Family, finding: &Finding) -> String {
                 100.0 * share
             )
         }
+        Finding::PointMass { exponent, error } => {
+            let (exponent, error) = format_with_error(exponent, error);
+            format!(
+                "the fixed point {} attracts almost every path beside it (largest Lyapunov exponent {exponent} ± {error}): the steady state \
+                 is a point mass, and no density was looked for; one that lasts long elsewhere is found without `[exponent]`",
+                fixed_point(family)
+            )
+        }
+        Finding::NoFixedPoint { axis, drift, noise } => format!(
+            "no Lyapunov exponent: {} is no fixed point, since along {} the drift is {drift:.3e} there and the noise {noise:.3e}",
+            fixed_point(family),
+            family.axis(axis)
+        ),
+        Finding::NoExponent => format!(
+            "no Lyapunov exponent: drift or noise has no derivative at {}",
+            fixed_point(family)
+        ),
         Finding::Told(ref text) => text.clone(),
         // The others are worded above.
         _ => finding.kind().0.to_owned(),
     }
+}
+
+/// The state of which the exponent is wanted, such as `x = 0, y = 0`; `None` where none is.
+pub(crate) fn fixed_point_in_words(family: &Family) -> Option<String> {
+    let state = family.fixed_point()?.iter().enumerate();
+    let named = state.map(|(axis, x)| format!("{} = {x}", family.axis(axis)));
+    Some(named.collect::<Vec<_>>().join(", "))
+}
+
+fn fixed_point(family: &Family) -> String {
+    fixed_point_in_words(family).unwrap_or_default()
 }
 
 fn passage_name(family: &Family, passage: usize) -> &str {

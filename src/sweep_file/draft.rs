@@ -155,6 +155,25 @@ pub(super) struct CurveDraft {
     pub(super) branches: Option<bool>,
 }
 
+/// Of what a Lyapunov exponent is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum ExponentKind {
+    /// Of a fixed point that neither drift nor noise moves.
+    FixedPoint,
+}
+
+impl ExponentKind {
+    /// All of them.
+    pub(super) const ALL: [Self; 1] = [Self::FixedPoint];
+
+    /// Name used in files.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::FixedPoint => "fixed-point",
+        }
+    }
+}
+
 /// What the file says of a passage.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct PassageDraft {
@@ -206,6 +225,10 @@ pub(super) struct Draft {
     pub(super) levels: Vec<(String, f64)>,
     /// Questions of first passage, in the order given.
     pub(super) passages: Vec<PassageDraft>,
+    /// Of what the largest Lyapunov exponent is wanted.
+    pub(super) exponent: Option<ExponentKind>,
+    /// Axes and coordinates of the fixed point.
+    pub(super) fixed_point: Vec<(String, f64)>,
     pub(super) detect: DetectOptions,
     pub(super) locate: LocateOptions,
     pub(super) figures_at: Option<Vec<f64>>,
@@ -237,6 +260,8 @@ impl Default for Draft {
             regions: Vec::new(),
             levels: Vec::new(),
             passages: Vec::new(),
+            exponent: None,
+            fixed_point: Vec::new(),
             detect: DetectOptions::default(),
             locate: LocateOptions::default(),
             figures_at: None,

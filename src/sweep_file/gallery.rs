@@ -45,6 +45,7 @@ pub fn starting_files() -> &'static [StartingFile] {
         "laser",
         "duffing_vanderpol",
         "duffing_vanderpol_parametric",
+        "duffing_vanderpol_stability",
         "galloping",
         "ship_roll",
         "capsizing",

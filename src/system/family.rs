@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::{
-    AtPhase, MeasureLevel, Model, ParameterValues, PassageQuestion, Path, Quantity, Region, System,
-    SystemError,
+    AtPhase, FixedPointFault, Linearised, MeasureLevel, Model, ParameterValues, PassageQuestion,
+    Path, Quantity, Region, System, SystemError,
 };
 
 /// Systems along a path: one number in, a bound system out, with names and symbols for tables and figures.
@@ -32,6 +32,7 @@ pub struct Family {
     regions: Vec<Region>,
     passages: Vec<PassageQuestion>,
     levels: Vec<MeasureLevel>,
+    fixed_point: Option<Vec<f64>>,
 }
 
 impl Family {
@@ -60,6 +61,7 @@ impl Family {
             regions: Vec::new(),
             passages: Vec::new(),
             levels: Vec::new(),
+            fixed_point: None,
         };
         family.along()?;
         Ok(family)
@@ -95,6 +97,35 @@ impl Family {
         self
     }
 
+    /// The family with a state of which the largest Lyapunov exponent is wanted: one that neither drift nor noise moves,
+    /// a coordinate an axis.
+    #[must_use]
+    pub fn with_fixed_point(mut self, state: Option<Vec<f64>>) -> Self {
+        self.fixed_point = state;
+        self
+    }
+
+    /// The state of which the largest Lyapunov exponent is wanted.
+    pub fn fixed_point(&self) -> Option<&[f64]> {
+        self.fixed_point.as_deref()
+    }
+
+    /// The linear equation of small deviations from a state that neither drift nor noise moves, at a coordinate of the
+    /// path.
+    ///
+    /// # Errors
+    /// [`FixedPointFault`].
+    pub fn linearised(
+        &self,
+        coordinate: f64,
+        state: &[f64],
+    ) -> Result<Linearised, FixedPointFault> {
+        let values = self.values_at(coordinate);
+        let values = values.map_err(|_| FixedPointFault::NotAllowed)?;
+        let formulas = self.model.formulas().ok_or(FixedPointFault::NoFormulas)?;
+        formulas.linearised(values.as_slice(), state)
+    }
+
     /// The levels of measures of which the crossings are wanted.
     pub fn levels(&self) -> &[MeasureLevel] {
         &self.levels
@@ -125,6 +156,7 @@ impl Family {
             regions: self.regions.clone(),
             passages: self.passages.clone(),
             levels: self.levels.clone(),
+            fixed_point: self.fixed_point.clone(),
             ..Self::new(self.model.clone(), fixed, path)?
         })
     }

@@ -11,6 +11,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("bytes", &[]),
     ("formula", &[]),
     ("system", &["formula"]),
+    ("exponent", &["system"]),
     ("space", &[]),
     ("sampling", &["cancellation", "system", "space"]),
     ("monte_carlo", &["cancellation", "system", "space", "sampling"]),
@@ -19,17 +20,17 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("stationary", &["cancellation", "space", "sampling"]),
     ("passage", &["cancellation", "system", "space", "density", "generator", "stationary"]),
     ("topology", &["space", "density"]),
-    ("continuation", &["cancellation", "system", "space", "density", "topology", "bytes"]),
+    ("continuation", &["cancellation", "system", "exponent", "space", "density", "topology", "bytes"]),
     ("method", &[
-        "cancellation", "system", "space", "sampling", "monte_carlo", "generator", "stationary", "passage", "density",
-        "continuation", "bytes"
+        "cancellation", "system", "exponent", "space", "sampling", "monte_carlo", "generator", "stationary", "passage",
+        "density", "continuation", "bytes"
     ]),
     ("compare", &[
         "cancellation", "system", "space", "sampling", "monte_carlo", "density", "continuation", "method"
     ]),
     ("figure", &["system", "space", "density", "topology", "continuation", "compare"]),
     ("sweep_file", &[
-        "formula", "cancellation", "system", "space", "sampling", "generator", "stationary", "density",
+        "formula", "cancellation", "system", "exponent", "space", "sampling", "generator", "stationary", "density",
         "topology", "continuation", "method", "figure"
     ]),
     ("run", &[
@@ -42,7 +43,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         "sweep_file", "run"
     ]),
     ("cli", &[
-        "cancellation", "system", "space", "sampling", "monte_carlo", "generator", "stationary", "density",
+        "cancellation", "system", "exponent", "space", "sampling", "monte_carlo", "generator", "stationary", "density",
         "topology", "continuation", "method", "compare", "run", "figure", "sweep_file", "job",
         "explore"
     ]),

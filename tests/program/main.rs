@@ -17,6 +17,7 @@ mod compare;
 mod composition;
 mod detect;
 mod explorer;
+mod exponents;
 mod fuzz;
 mod live;
 mod monte_carlo;

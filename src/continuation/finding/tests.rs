@@ -102,7 +102,17 @@ pub(crate) fn every_finding() -> Vec<Finding> {
                 |fault| F::NoPassage { passage: 1, fault },
             ))
         }
-        F::PassageCut { .. } => Some(F::Told("as it was told; twice".to_owned())),
+        F::PassageCut { .. } => Some(F::PointMass {
+            exponent: -0.02,
+            error: 1e-15,
+        }),
+        F::PointMass { .. } => Some(F::NoFixedPoint {
+            axis: 1,
+            drift: -0.5,
+            noise: 0.1,
+        }),
+        F::NoFixedPoint { .. } => Some(F::NoExponent),
+        F::NoExponent => Some(F::Told("as it was told; twice".to_owned())),
         F::Told(_) => None,
     };
     let first = F::Escaping {

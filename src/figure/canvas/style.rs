@@ -77,6 +77,8 @@ pub(crate) const BLANK: Colour = Colour::new((240, 240, 240), (44, 46, 50));
 pub(crate) const HATCH: Colour = Colour::new((150, 150, 150), (110, 110, 110));
 /// Located bifurcations: a red that no colour of the map comes near.
 pub(crate) const BIFURCATION: Colour = Colour::new((214, 20, 20), (255, 90, 80));
+/// Changes of stability.
+pub(crate) const D_BIFURCATION: Colour = Colour::new((20, 70, 200), (120, 170, 255));
 
 /// Colours of curves, after Okabe and Ito (told apart with any colour vision), without their yellow.
 const CURVES: [Colour; 7] = [

@@ -1,14 +1,17 @@
-//! Located and unresolved bifurcations over a diagram: lines, bands, and labels that do not overlap.
+//! Located and unresolved bifurcations over a diagram, of shape (P) and of stability (D): lines, bands, and labels that do
+//! not overlap.
 
 use plotters_backend::text_anchor::HPos;
 
-use crate::continuation::{BifurcationStatus, Located, SweepResult};
+use crate::continuation::{BifurcationStatus, Label, SweepResult};
 use crate::density::Observable;
 
 use crate::figure::canvas::legend::Sample;
 use crate::figure::canvas::look::{Look, on_heat};
 use crate::figure::canvas::page::{Page, Panel, Rectangle, Shape, small};
-use crate::figure::canvas::style::{BIFURCATION, Colour, GREY, PAPER, Stroke, TICK_TEXT, WHITE};
+use crate::figure::canvas::style::{
+    BIFURCATION, Colour, D_BIFURCATION, GREY, PAPER, Stroke, TICK_TEXT, WHITE,
+};
 use crate::figure::canvas::{letters, symbols};
 
 /// Height of a row of labels.
@@ -21,21 +24,51 @@ const BAND: Colour = WHITE.at(0.45);
 /// The lines of bifurcations of other observables.
 const OTHERS: &[f64] = &[1.5, 3.0];
 
+/// What a row is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// The shape of the diagram's own density.
+    Own,
+    /// The shape of another density.
+    Other,
+    /// The stability of a fixed point, whatever density is drawn.
+    Stability,
+}
+
+impl Kind {
+    fn colour(self) -> Colour {
+        match self {
+            Self::Own => BIFURCATION,
+            Self::Other => GREY,
+            Self::Stability => D_BIFURCATION,
+        }
+    }
+
+    /// Whether it is drawn strongly.
+    fn is_strong(self) -> bool {
+        self != Self::Other
+    }
+}
+
 /// The line of a bifurcation of the given status.
-fn stroke(status: BifurcationStatus) -> Stroke {
+fn stroke(kind: Kind, status: BifurcationStatus) -> Stroke {
     let dash: &'static [f64] = match status {
         BifurcationStatus::Located => &[],
         BifurcationStatus::Unresolved => &[6.0, 3.0],
         BifurcationStatus::Unconfirmed => &[2.0, 3.0],
         BifurcationStatus::Unchecked => &[8.0, 2.0, 2.0, 2.0],
     };
-    Stroke::solid(BIFURCATION, 1.6).dashed(dash)
+    Stroke::solid(kind.colour(), 1.6).dashed(dash)
 }
 
 /// A bifurcation's label with its place above the map.
 struct Placed<'a> {
-    point: &'a Located,
-    own: bool,
+    name: &'a str,
+    kind: Kind,
+    status: BifurcationStatus,
+    value: f64,
+    /// The band in which it lies.
+    bracket: (f64, f64),
     /// Pixels from the left of the page to the middle of the text.
     middle: f64,
     /// Half the width of the text, in pixels.
@@ -62,16 +95,24 @@ impl<'a> Labels<'a> {
         range: (f64, f64),
         (left, width): (f64, f64),
     ) -> Self {
-        let inside = |point: &&Located| point.value >= range.0 && point.value <= range.1;
-        let mut points: Vec<&Located> = result.bifurcations().filter(inside).collect();
-        let is_own = |point: &Located| watched == Some(point.observable);
-        points.sort_by_key(|point| !is_own(point));
+        let kind = |row: &Label| match (row.bifurcation(), row.d_bifurcation()) {
+            (Some(located), _) if watched == Some(located.observable) => Some(Kind::Own),
+            (Some(_), _) => Some(Kind::Other),
+            (_, Some(_)) => Some(Kind::Stability),
+            _ => None,
+        };
+        let inside = |row: &&Label| row.value() >= range.0 && row.value() <= range.1;
+        let rows_of = result.labels.iter().filter(inside);
+        let mut points: Vec<(&Label, Kind, BifurcationStatus)> = rows_of
+            .filter_map(|row| Some((row, kind(row)?, row.status()?)))
+            .collect();
+        points.sort_by_key(|(_, kind, _)| !kind.is_strong());
         let mut placed = Vec::new();
         let mut rows: Vec<Vec<(f64, f64)>> = Vec::new();
-        for point in points {
-            let own = is_own(point);
-            let half = 0.5 * letters::text_width(look, &point.label, TICK_TEXT, own);
-            let share = (point.value - range.0) / (range.1 - range.0);
+        for (row_of, kind, status) in points {
+            let (name, value) = (row_of.name(), row_of.value());
+            let half = 0.5 * letters::text_width(look, name, TICK_TEXT, kind.is_strong());
+            let share = (value - range.0) / (range.1 - range.0);
             let middle = (left + share * width).clamp(left + half, left + width - half);
             let (from, to) = (middle - half - 3.0, middle + half + 3.0);
             let free =
@@ -82,8 +123,11 @@ impl<'a> Labels<'a> {
             }
             rows[row].push((from, to));
             placed.push(Placed {
-                point,
-                own,
+                name,
+                kind,
+                status,
+                value,
+                bracket: row_of.bracket(),
                 middle,
                 half,
                 row,
@@ -104,40 +148,36 @@ impl<'a> Labels<'a> {
     /// Draws bands and lines over the map: strongly for the own observable, faintly for others.
     pub(crate) fn draw_lines(&self, look: &Look, panel: &Panel, (from, to): (f64, f64)) {
         for label in self.placed.iter().rev() {
-            let point = label.point;
-            let line = [(point.value, from), (point.value, to)];
-            if !label.own {
+            let line = [(label.value, from), (label.value, to)];
+            if !label.kind.is_strong() {
                 let faint = Stroke::solid(on_heat(look, 0.0).at(0.7), 0.9);
                 panel.draw(&line, Shape::Line(faint.dashed(OTHERS)));
                 continue;
             }
-            let status = point.status();
-            if status == BifurcationStatus::Unresolved {
-                let a = point.lower.max(self.range.0);
-                let b = point.upper.min(self.range.1);
+            if label.status == BifurcationStatus::Unresolved {
+                let a = label.bracket.0.max(self.range.0);
+                let b = label.bracket.1.min(self.range.1);
                 panel.draw(&[(a, from), (b, from), (b, to), (a, to)], Shape::Area(BAND));
             }
             panel.draw(&line, Shape::Line(Stroke::solid(WHITE, 3.2)));
-            panel.draw(&line, Shape::Line(stroke(status)));
+            panel.draw(&line, Shape::Line(stroke(label.kind, label.status)));
         }
     }
 
     /// Draws bands and lines on the ground of a panel: strongly for the own observable, faintly for others.
     pub(crate) fn draw_plain(&self, panel: &Panel, (from, to): (f64, f64)) {
         for label in self.placed.iter().rev() {
-            let point = label.point;
-            let line = [(point.value, from), (point.value, to)];
-            let status = point.status();
-            let a = point.lower.max(self.range.0);
-            let b = point.upper.min(self.range.1);
-            if label.own && b > a {
-                let band = BIFURCATION.at(0.08);
+            let line = [(label.value, from), (label.value, to)];
+            let a = label.bracket.0.max(self.range.0);
+            let b = label.bracket.1.min(self.range.1);
+            if label.kind.is_strong() && b > a {
+                let band = label.kind.colour().at(0.08);
                 panel.draw(&[(a, from), (b, from), (b, to), (a, to)], Shape::Area(band));
             }
-            let stroke = if label.own {
+            let stroke = if label.kind.is_strong() {
                 Stroke {
                     width: 1.1,
-                    ..stroke(status)
+                    ..stroke(label.kind, label.status)
                 }
             } else {
                 Stroke::solid(GREY, 0.9).dashed(OTHERS)
@@ -162,9 +202,9 @@ impl<'a> Labels<'a> {
             let corner = (x - label.half - 1.0, y - 0.45 * ROW);
             let ground = Rectangle::new(corner, (2.0 * label.half + 2.0, 0.9 * ROW));
             page.draw(&ground.corners(), Shape::Area(PAPER));
-            let colour = if label.own { BIFURCATION } else { GREY };
-            let mut text = small(symbols::plain(&label.point.label), HPos::Center, colour);
-            text.bold = label.own;
+            let colour = label.kind.colour();
+            let mut text = small(symbols::plain(label.name), HPos::Center, colour);
+            text.bold = label.kind.is_strong();
             page.text((x, y), text);
         }
     }
@@ -172,17 +212,25 @@ impl<'a> Labels<'a> {
     /// Entries of a legend, for what is drawn of the diagram's own bifurcations.
     pub(crate) fn entries(&self) -> Vec<(Sample, String)> {
         let words = [
-            (BifurcationStatus::Located, "P-bifurcation"),
-            (BifurcationStatus::Unresolved, "P-bifurcation, unresolved"),
-            (BifurcationStatus::Unconfirmed, "P-bifurcation, unconfirmed"),
-            (BifurcationStatus::Unchecked, "P-bifurcation, unchecked"),
+            (BifurcationStatus::Located, ""),
+            (BifurcationStatus::Unresolved, ", unresolved"),
+            (BifurcationStatus::Unconfirmed, ", unconfirmed"),
+            (BifurcationStatus::Unchecked, ", unchecked"),
         ];
-        let own = || self.placed.iter().filter(|label| label.own);
-        let shown = words
-            .into_iter()
-            .filter(|(status, _)| own().any(|label| label.point.status() == *status));
-        shown
-            .map(|(status, text)| (Sample::Curve(stroke(status)), text.to_owned()))
-            .collect()
+        let of_kind = |(kind, name): (Kind, &'static str)| {
+            let own = move || self.placed.iter().filter(move |label| label.kind == kind);
+            let shown = words
+                .into_iter()
+                .filter(move |(status, _)| own().any(|label| label.status == *status));
+            shown.map(move |(status, text)| {
+                let sample = Sample::Curve(stroke(kind, status));
+                (sample, format!("{name}{text}"))
+            })
+        };
+        let kinds = [
+            (Kind::Own, "P-bifurcation"),
+            (Kind::Stability, "D-bifurcation"),
+        ];
+        kinds.into_iter().flat_map(of_kind).collect()
     }
 }

@@ -1,6 +1,6 @@
 //! Parts of captions, ready to be pasted: of which system a figure is, by which method, what is marked.
 
-use crate::continuation::{BifurcationStatus, Located, SweepResult};
+use crate::continuation::{BifurcationStatus, Label, Located, SweepResult};
 use crate::density::Observable;
 use crate::figure::canvas::symbols;
 use crate::space::Axis;
@@ -130,7 +130,7 @@ pub(crate) fn between_cells(result: &SweepResult, is_shown: impl Fn(Observable) 
     }
 }
 
-/// The P-bifurcations of a sweep, where they are marked.
+/// The P- and D-bifurcations of a sweep, where they are marked.
 pub(crate) fn bifurcations(result: &SweepResult) -> String {
     let family = &result.subject.family;
     let words = |row: &Located| {
@@ -146,12 +146,18 @@ pub(crate) fn bifurcations(result: &SweepResult) -> String {
             to_digits_of_error(row.value, row.error)
         )
     };
-    let rows: Vec<String> = result.bifurcations().map(words).collect();
-    if rows.is_empty() {
-        String::new()
-    } else {
-        format!("P-bifurcations: {}.", rows.join("; "))
-    }
+    let stability = |row: &Label| {
+        let row = row.d_bifurcation()?;
+        let (value, error) = (to_digits_of_error(row.value, row.error), row.error);
+        Some(format!("{} at {value} ± {error:.1e}", row.label))
+    };
+    let of_shape: Vec<String> = result.bifurcations().map(words).collect();
+    let of_stability: Vec<String> = result.labels.iter().filter_map(stability).collect();
+    let named = [("P", of_shape), ("D", of_stability)].into_iter();
+    let named = named.filter(|(_, rows)| !rows.is_empty());
+    let sentences =
+        named.map(|(letter, rows)| format!("{letter}-bifurcations: {}.", rows.join("; ")));
+    sentences.collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]

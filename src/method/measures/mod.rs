@@ -9,6 +9,7 @@ pub(crate) use passage::passage_columns;
 
 pub(super) use balance::broken;
 
+use super::exponents::exponent_columns;
 use crate::continuation::{Measure, MeasureColumn, MeasureKind, Subject};
 use crate::density::{EstimatedDensity, Observable};
 use crate::space::CellSpace;
@@ -79,6 +80,12 @@ impl DerivedMeasure {
         let names = (self.of)(family, observables).into_iter();
         names.map(column).collect()
     }
+}
+
+/// The columns of what a family itself asks for: passages, and the exponent of a fixed point.
+pub(crate) fn columns_of_family(family: &Family) -> Vec<MeasureColumn> {
+    let passages = passage_columns(family).into_iter();
+    passages.chain(exponent_columns(family)).collect()
 }
 
 /// The measures that a subject asks for.

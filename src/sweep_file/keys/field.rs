@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::super::draft::{Auto, Draft, MethodKind, Modes};
+use super::super::draft::{Auto, Draft, ExponentKind, MethodKind, Modes};
 use super::super::value::Plain;
 use crate::figure::{ColourMap, FigureWidth, Format, Ground, Typeface};
 use crate::generator::AdvectiveScheme;
@@ -275,6 +275,7 @@ named!(
     Correction,
     DerivedMeasure,
     Estimator,
+    ExponentKind,
     Format,
     Ground,
     Integrator,

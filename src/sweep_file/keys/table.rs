@@ -16,7 +16,7 @@ use crate::method::{Correction, DerivedMeasure, Estimator};
 use crate::sampling::Integrator;
 use crate::space::MOST_MODES;
 use crate::stationary::Solver;
-use crate::sweep_file::draft::MethodKind;
+use crate::sweep_file::draft::{ExponentKind, MethodKind};
 use crate::system::{Interpretation, NoiseKind, registry};
 
 /// Most cells an axis may have: edges are stored, so a slip of the pen must not fill the memory.
@@ -230,6 +230,18 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
             },
         },
         "A level of a column of `points.csv` that has an error, such as `exit_mean = 1000`: the values of the parameter at which it is crossed are rows `LV` of the table."),
+    key("exponent.kind", Kind::Choice(ExponentKind::words), Rule("no exponent"), optional!(exponent),
+        "`fixed-point`: the largest Lyapunov exponent of a fixed point that multiplicative noise leaves alone, at every value, and the values at \
+         which it passes zero as rows `DB` (docs/exponents.md). On one axis or two."),
+    key("exponent.at.<axis>", Kind::Number(ANY), Rule("0"),
+        Field {
+            get: |draft, name| draft.fixed_point.iter().find(|(known, _)| known == name).map(|(_, value)| value.to_plain()),
+            set: |draft, name, plain| if let Some(value) = plain.number() {
+                draft.fixed_point.retain(|(known, _)| known != name);
+                draft.fixed_point.push((name.to_owned(), value));
+            },
+        },
+        "Coordinate of the fixed point: drift and all noises must be zero there, along the whole sweep."),
     key("locate.tolerance", Kind::Number(POSITIVE), Rule("`locate.relative_tolerance` of the swept range"), optional!(locate.tolerance),
         "Wanted width of a P-bifurcation's bracket, in units of the swept parameter."),
     key("locate.relative_tolerance", Kind::Number(OPEN_UNIT), OfOptions, always!(locate.relative_tolerance),

@@ -4,7 +4,8 @@ use super::passages::DENSITY;
 use super::{AxisSettings, Grade, Settings};
 use crate::density::Observable;
 use crate::sweep_file::draft::{
-    Auto, AxisDraft, BinsDraft, CurveDraft, Draft, EquationsDraft, MapDraft, PassageDraft,
+    Auto, AxisDraft, BinsDraft, CurveDraft, Draft, EquationsDraft, ExponentKind, MapDraft,
+    PassageDraft,
 };
 use crate::system::{Model, NoiseKind, PassageStart, Region};
 
@@ -50,6 +51,8 @@ impl Settings {
             regions: self.regions_draft(),
             levels: self.levels_draft(),
             passages: self.passages_draft(),
+            exponent: (self.family.fixed_point()).map(|_| ExponentKind::FixedPoint),
+            fixed_point: self.fixed_point_draft(),
             detect: self.detect.clone(),
             locate: self.locate.clone(),
             figures_at: Some(self.figures.at.clone()),
@@ -110,6 +113,12 @@ impl Settings {
     fn levels_draft(&self) -> Vec<(String, f64)> {
         let levels = self.family.levels().iter();
         levels.map(|one| (one.measure.clone(), one.level)).collect()
+    }
+
+    fn fixed_point_draft(&self) -> Vec<(String, f64)> {
+        let state = self.family.fixed_point().unwrap_or_default();
+        let axes = self.family.model().axes.iter().zip(state);
+        axes.map(|(axis, &x)| (axis.name.clone(), x)).collect()
     }
 
     fn regions_draft(&self) -> Vec<(String, String)> {

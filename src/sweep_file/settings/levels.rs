@@ -2,7 +2,7 @@
 
 use crate::continuation::measure::{DEVIATION, MEAN};
 use crate::density::Observable;
-use crate::method::passage_columns;
+use crate::method::columns_of_family;
 use crate::sweep_file::diagnostic::Diagnostic;
 use crate::sweep_file::draft::Draft;
 use crate::sweep_file::names::quotable;
@@ -18,7 +18,7 @@ pub(super) fn read(
 ) -> Vec<MeasureLevel> {
     let derived = draft.measures.iter().flatten();
     let derived = derived.flat_map(|measure| measure.columns(family, observables));
-    let columns = passage_columns(family).into_iter().chain(derived);
+    let columns = columns_of_family(family).into_iter().chain(derived);
     let names = columns.map(|column| column.kind.name(&column.of));
     let averages = family.averages();
     let moments = averages.flat_map(|name| [&MEAN, &DEVIATION].map(|kind| kind.name(name)));

@@ -7,6 +7,7 @@ mod axis_checks;
 mod curve;
 mod draft_of;
 mod equations;
+mod exponent;
 #[cfg(feature = "figures")]
 mod figure_names;
 mod figures;
@@ -126,6 +127,8 @@ impl Settings {
         swept.family = family.with_averaged(watched.averaged);
         let (regions, questions) = passages::read(&mut reader, &draft, swept.family.model());
         swept.family = swept.family.with_passages(regions, questions);
+        let fixed_point = exponent::read(&mut reader, &draft, &swept.family);
+        swept.family = swept.family.with_fixed_point(fixed_point);
         let levels = levels::read(&mut reader, &draft, &swept.family, &watched.observables);
         swept.family = swept.family.with_levels(levels);
         let bins = quantities::read_bins(&mut reader, &draft, &swept.family);

@@ -14,7 +14,7 @@ use crate::formula::tape::Tape;
 #[derive(Debug, Clone)]
 pub struct TypedEquations {
     model: TypedModel,
-    reading: Arc<Reading>,
+    pub(super) reading: Arc<Reading>,
 }
 
 /// An operation of a formula that fails somewhere: a division by zero, the root of a negative number, an overflow.

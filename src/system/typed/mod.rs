@@ -11,6 +11,7 @@ mod bound;
 mod compiled;
 mod equations;
 mod error;
+mod linear;
 mod read;
 mod relaxation;
 pub(super) mod statement;

@@ -1,0 +1,148 @@
+//! The largest Lyapunov exponent of a fixed point from a sweep file to rows of tables; and points that are none.
+
+use crate::common::room::{Room, assert_says};
+
+const OSCILLATOR: &str = r#"title = "exponents"
+[system.equations]
+x = "y"
+y = "-x + b y - x^3 - x^2 y"
+[system.noise]
+y = "s x"
+[system.parameters]
+s = 0.5
+[sweep]
+parameter = "b"
+from = -0.1
+to = 0.1
+points = 5
+[cells]
+x = { from = -2.0, to = 2.0, count = 40 }
+y = { from = -3.0, to = 3.0, count = 40 }
+[exponent]
+kind = "fixed-point"
+[locate]
+grid_check = "off"
+[figures]
+formats = ["svg"]
+draw = ["measures_exponent"]
+"#;
+
+#[test]
+fn the_state_of_rest_of_an_oscillator_loses_its_stability_where_the_closed_form_says() {
+    let room = Room::new();
+    room.write("a.toml", OSCILLATOR);
+    assert_says(
+        &room.done("check a.toml").out,
+        &["kind = \"fixed-point\"", "x = 0.0", "rows `DB`"],
+    );
+    // No steady state below: exit status 1.
+    let printed = room.run("sweep a.toml --out run");
+    assert_says(
+        &printed.text(),
+        &["DB1", "D-bifurcation", "located", "point mass"],
+    );
+    let table = room.table("run/bifurcations.csv");
+    let row = table.0.iter().find(|row| &row["label"] == "DB1").unwrap();
+    let [value, error] = row.numbers(["value", "error"]);
+    // The zero in b of the closed form with Airy functions.
+    assert!(
+        (value + 0.061_722_831_0).abs() < 6e-11 && error < 1e-12,
+        "{value} ± {error}"
+    );
+    let texts = row.texts(["status", "before", "after", "observable"]);
+    assert_eq!(texts, ["located", "< 0", "> 0", "exponent"]);
+    let points = room.table("run/points.csv");
+    for row in &points.0 {
+        let [b, exponent, error] = row.numbers(["b", "exponent", "exponent_error"]);
+        assert!(error < 1e-13);
+        assert_eq!(exponent < 0.0, b < value);
+        assert_eq!(&row["status"] == "no-steady-state", b < value);
+        assert_eq!(row["findings"].starts_with("point-mass:"), b < value);
+    }
+    room.holds_all("run", "figures/measures_exponent.svg");
+    // From the stored values, and from the complete file, the same rows follow.
+    room.run("detect run");
+    assert_eq!(room.table("run/bifurcations.csv"), table);
+    room.write("b.toml", room.done("show run --sweep").out);
+    room.run("sweep b.toml --out again");
+    assert_eq!(room.table("again/bifurcations.csv"), table);
+}
+
+#[test]
+fn on_one_axis_the_exponent_is_exact_in_either_reading() {
+    let file = r#"[system.equations]
+x = "a x - x^2"
+[system.noise]
+x = "0.6 x"
+interpretation = "ito"
+[system.parameters]
+[sweep]
+parameter = "a"
+from = -0.5
+to = 1.0
+points = 4
+[cells]
+x = { from = 0.0, to = 6.0, count = 60 }
+[exponent]
+kind = "fixed-point"
+at = { x = 0 }
+[figures]
+draw = []
+"#;
+    let room = Room::new();
+    // Growth a x - x² with fluctuating rate: λ = a - 0.6²/2 in Itô's reading, a in Stratonovich's.
+    for (reading, zero) in [("ito", 0.18), ("stratonovich", 0.0)] {
+        room.write("a.toml", file.replace("\"ito\"", &format!("\"{reading}\"")));
+        room.run(&format!("sweep a.toml --out {reading}"));
+        let table = room.table(&format!("{reading}/bifurcations.csv"));
+        let row = table.0.iter().find(|row| &row["label"] == "DB1").unwrap();
+        let [value, error] = row.numbers(["value", "error"]);
+        assert!(
+            (value - zero).abs() <= error && error < 1e-14,
+            "{value} ± {error}"
+        );
+    }
+}
+
+#[test]
+fn what_has_no_exponent_is_refused_with_its_place_and_a_remedy() {
+    let room = Room::new();
+    room.write("a.toml", OSCILLATOR);
+    for (set, words) in [
+        (
+            "exponent.at.x=1",
+            "x = 1, y = 0 is no fixed point at b = -0.1: along y the drift is -2",
+        ),
+        ("exponent.at.z=0", "`z` is no coordinate of the state"),
+        ("exponent.kind=largest", "cannot be `largest`"),
+        ("system.noise.y=0.1", "the amplitude of the noise 0.1"),
+        (
+            "system.equations.y=-x+b*y-sign(y)",
+            "has no derivative at x = 0, y = 0",
+        ),
+        (
+            "system.noise.kind=ornstein-uhlenbeck system.parameters.tau=1",
+            "white noise alone",
+        ),
+    ] {
+        room.refused(&format!("sweep a.toml {set}"), &[words]);
+    }
+    room.write(
+        "b.toml",
+        OSCILLATOR.replace("kind = \"fixed-point\"", "at = { x = 0 }"),
+    );
+    room.refused(
+        "sweep b.toml",
+        &["nothing is asked of it", "add `kind", "b.toml:18"],
+    );
+    let third = OSCILLATOR.replace("[system.noise]", "z = \"-z\"\n[system.noise]");
+    let third = third.replace(
+        "[exponent]",
+        "z = { from = -1.0, to = 1.0, count = 4 }\n[exponent]",
+    );
+    room.write("c.toml", third);
+    room.refused(
+        "sweep c.toml",
+        &["one axis and of two; this system has 3", "c.toml:"],
+    );
+}
