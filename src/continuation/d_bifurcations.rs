@@ -1,7 +1,7 @@
 //! D-bifurcations: values at which the largest Lyapunov exponent of a fixed point passes zero.
 //!
-//! The exponent is a function of the parameter that costs next to nothing, so its zeros between the values of a sweep are
-//! found by that function itself, and no densities are solved for them.
+//! The exponent is a function of the parameter that costs next to nothing, so its zeros between the values of a sweep
+//! are found by that function itself, and no densities are solved for them.
 
 use super::Point;
 use super::doubt::Doubt;

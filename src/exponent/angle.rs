@@ -1,14 +1,14 @@
-//! Deviations on two axes: the angle φ of the deviation v is a diffusion of its own, with period π, and λ an average over
-//! its stationary density.
+//! Deviations on two axes: the angle φ of the deviation v is a diffusion of its own, with period π, and λ an average
+//! over its stationary density.
 //!
 //! With s = (cos φ, sin φ) and n = (-sin φ, cos φ), Itô's formula gives
 //!
 //!     dφ = [n·A s - Σ (s·B_k s)(n·B_k s)] dt + Σ n·B_k s dW_k
 //!     λ = E[s·A s + ½ Σ ((n·B_k s)² - (s·B_k s)²)]
 //!
-//! All of these are trigonometric polynomials of 2φ of at most second degree, so that the Fourier coefficients q_k of the
-//! density obey equations in which each has its neighbours alone. They are cut off at a number of modes, which is doubled
-//! until half as many more change nothing.
+//! All of these are trigonometric polynomials of 2φ of at most second degree, so that the Fourier coefficients q_k of
+//! the density obey equations in which each has its neighbours alone. They are cut off at a number of modes, which is
+//! doubled until half as many more change nothing.
 
 use super::Exponent;
 use super::banded::Banded;
@@ -76,7 +76,8 @@ fn growth_without_turning(a: &Matrix, noises: &[Matrix]) -> f64 {
     mean(a) + beyond - losses
 }
 
-/// λ where all matrices keep one direction: they are triangular beside it, and the exponents are those of the diagonals.
+/// λ where all matrices keep one direction: they are triangular beside it, and the exponents are those of the
+/// diagonals.
 fn growth_of_triangles(a: &Matrix, noises: &[Matrix], angle: f64) -> f64 {
     let kept = |m: &Matrix| Waves::along(m).value(angle);
     let other = |m: &Matrix| m[0][0] + m[1][1] - kept(m);

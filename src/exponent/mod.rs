@@ -1,9 +1,9 @@
-//! The largest Lyapunov exponent λ of a fixed point that multiplicative noise leaves alone: small deviations from it grow
-//! or die out like e^{λt}, for almost every path. Where λ passes zero is a D-bifurcation.
+//! The largest Lyapunov exponent λ of a fixed point that multiplicative noise leaves alone: small deviations from it
+//! grow or die out like e^{λt}, for almost every path. Where λ passes zero is a D-bifurcation.
 //!
-//! On one axis λ = a' - ½ Σ b_k'². On two axes it is an average over the angle of the deviation (Khasminskii's formula),
-//! whose stationary density is found by Fourier modes: see `angle`. An angle that no noise moves, or that has a direction
-//! which nothing leaves, is treated exactly.
+//! On one axis λ = a' - ½ Σ b_k'². On two axes it is an average over the angle of the deviation (Khasminskii's
+//! formula), whose stationary density is found by Fourier modes: see `angle`. An angle that no noise moves, or that
+//! has a direction which nothing leaves, is treated exactly.
 //!
 //! Source: L. Arnold, *Random Dynamical Systems*, Springer 1998, sections 6.2 and 9.
 

@@ -1,5 +1,5 @@
-//! Located and unresolved bifurcations over a diagram, of shape (P) and of stability (D): lines, bands, and labels that do
-//! not overlap.
+//! Located and unresolved bifurcations over a diagram, of shape (P) and of stability (D): lines, bands, and labels
+//! that do not overlap.
 
 use plotters_backend::text_anchor::HPos;
 

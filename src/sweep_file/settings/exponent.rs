@@ -10,8 +10,8 @@ use crate::system::{Family, FixedPointFault, NoiseKind};
 /// What to do where a state is moved.
 const FIXED: &str = "give under `exponent.at` a state at which the drift and every noise are zero all along the sweep, or leave `[exponent]` out";
 
-/// Checks `[exponent]`: the state is named by axes of the system, and neither drift nor noise moves it at either end of the
-/// sweep or in its middle.
+/// Checks `[exponent]`: the state is named by axes of the system, and neither drift nor noise moves it at either end
+/// of the sweep or in its middle.
 pub(super) fn read(reader: &mut Reader<'_>, draft: &Draft, family: &Family) -> Option<Vec<f64>> {
     let model = family.model();
     let is_axis = |name: &str| model.axes.iter().any(|axis| axis.name == name);
@@ -62,7 +62,8 @@ pub(super) fn read(reader: &mut Reader<'_>, draft: &Draft, family: &Family) -> O
     is_fixed.then_some(state)
 }
 
-/// Whether a state has an exponent at both ends of the path and in its middle; what speaks against it is reported once.
+/// Whether a state has an exponent at both ends of the path and in its middle; what speaks against it is reported
+/// once.
 fn is_fixed(reader: &mut Reader<'_>, family: &Family, state: &[f64]) -> bool {
     let (from, to) = family.ends();
     for value in [from, 0.5 * (from + to), to] {

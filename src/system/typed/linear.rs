@@ -123,8 +123,8 @@ impl At<'_> {
         FixedPointFault::Moves { axis, drift, noise }
     }
 
-    /// Nothing, if functions that vanish at the state are what their derivatives say beside it: at a kink or a jump they
-    /// are not.
+    /// Nothing, if functions that vanish at the state are what their derivatives say beside it: at a kink or a jump
+    /// they are not.
     fn hold(&self, of: &[Expression], rows: &[Vec<f64>]) -> Result<(), FixedPointFault> {
         let most = size(rows);
         for (axis, (&expression, row)) in of.iter().zip(rows).enumerate() {
