@@ -36,8 +36,8 @@ pub struct Family {
 }
 
 impl Family {
-    /// Values of the parameters that the path does not move, and the path. Both ends of the path and its middle must
-    /// be allowed; the ends may be equal.
+    /// Values of the parameters that the path does not move, and the path. Both ends of the path and its middle must be
+    /// allowed; the ends may be equal.
     ///
     /// # Errors
     /// [`SystemError::UnknownParameter`], [`SystemError::MissingParameter`], [`SystemError::OutOfRange`], and
@@ -67,8 +67,8 @@ impl Family {
         Ok(family)
     }
 
-    /// The family with quantities that can be watched like axes, as [`quantities`](super::quantities) reads them:
-    /// they are numbered on from the axes of the state.
+    /// The family with quantities that can be watched like axes, as [`quantities`](super::quantities) reads them: they
+    /// are numbered on from the axes of the state.
     #[must_use]
     pub fn with_quantities(mut self, quantities: Vec<Arc<Quantity>>) -> Self {
         self.quantities = quantities;
@@ -182,8 +182,8 @@ impl Family {
             .get(number.checked_sub(self.model.axes.len())?)
     }
 
-    /// The axes of the state that an observable keeps at one phase of the forcing, and the phase in periods; `None`
-    /// for any other observable.
+    /// The axes of the state that an observable keeps at one phase of the forcing, and the phase in periods; `None` for
+    /// any other observable.
     pub(crate) fn at_phase(&self, axes: &[usize]) -> Option<(Vec<usize>, f64)> {
         let at = |&axis: &usize| self.quantity(axis)?.phase();
         let all: Option<Vec<AtPhase>> = axes.iter().map(at).collect();
@@ -244,8 +244,8 @@ impl Family {
         known.or_else(quantity).unwrap_or("?")
     }
 
-    /// Symbol of an axis, with `_{}` and `^{}`, for example `ẋ`, or of the quantity of that number; `?` where there
-    /// is none.
+    /// Symbol of an axis, with `_{}` and `^{}`, for example `ẋ`, or of the quantity of that number; `?` where there is
+    /// none.
     pub(crate) fn axis_symbol(&self, axis: usize) -> &str {
         let known = self.model.axes.get(axis).map(|axis| axis.symbol.as_str());
         let quantity = || self.quantity(axis).map(|quantity| quantity.symbol());
