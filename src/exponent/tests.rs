@@ -21,7 +21,7 @@ fn of_oscillator(alpha: f64, beta: f64, sigma: f64) -> Exponent {
 /// [AiAi' + BiBi'] / [Ai² + Bi²] at x, by Taylor steps of Airy's equation y'' = x y from zero.
 fn airy_quotient(x: f64) -> f64 {
     // Ai(0) and Ai'(0); those of Bi are √3 times as large, the slope with the other sign.
-    let (ai, slope) = (0.355_028_053_887_817_24, -0.258_819_403_792_806_8);
+    let (ai, slope) = (0.355_028_053_887_817_2, -0.258_819_403_792_806_8);
     let root = 3f64.sqrt();
     let mut known = [[ai, slope], [root * ai, -root * slope]];
     let steps = (x.abs() / 0.1).ceil().max(1.0);
