@@ -26,7 +26,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         "density", "continuation", "bytes"
     ]),
     ("compare", &[
-        "cancellation", "system", "space", "sampling", "monte_carlo", "density", "continuation", "method"
+        "cancellation", "system", "exponent", "space", "sampling", "monte_carlo", "density", "continuation", "method"
     ]),
     ("figure", &["system", "space", "density", "topology", "continuation", "compare"]),
     ("sweep_file", &[
