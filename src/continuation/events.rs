@@ -7,6 +7,7 @@
 
 use super::Point;
 use crate::density::EstimatedDensity;
+use crate::space::Axis;
 use crate::topology::{
     Feature, FeatureKind, Indicator, IndicatorKind, Verdict, born_at_kink, peaks_at_ends,
 };
@@ -79,18 +80,13 @@ impl Event {
 
 /// All of them for one observable.
 pub(super) fn events(a: &Point, b: &Point, observable: usize) -> Vec<Event> {
-    let lengths: Vec<f64> = a.densities[observable]
-        .density
-        .axes
-        .iter()
-        .map(|axis| axis.to() - axis.from())
-        .collect();
+    let axes = &a.densities[observable].density.axes;
     let mut found = Vec::new();
     for kind in COUNTED {
         let (below, above) = pair_off(
             present(a, observable, kind),
             present(b, observable, kind),
-            &lengths,
+            axes,
         );
         let centre = a.densities[observable].structure.centre.as_deref();
         let density = |above: bool| match above {
@@ -102,7 +98,7 @@ pub(super) fn events(a: &Point, b: &Point, observable: usize) -> Vec<Event> {
             above,
             indicator: indicator(density(above), feature),
             from_centre: centre.map_or(f64::INFINITY, |centre| {
-                distance(&feature.position, centre, &lengths)
+                from_centre(&feature.position, centre, axes)
             }),
             place: feature.position.clone(),
             was_peak: false,
@@ -111,7 +107,7 @@ pub(super) fn events(a: &Point, b: &Point, observable: usize) -> Vec<Event> {
         found.extend(above.into_iter().map(|feature| event(feature, true)));
     }
     let mut found = without_moats(found);
-    rings_at_rest(&mut found, (a, b), observable, &lengths);
+    rings_at_rest(&mut found, (a, b), observable, axes);
     let at_ends = at_natural_ends(a, b, observable);
     if !at_ends.is_empty() {
         found.retain(|event| !event.is_at_natural_end());
@@ -156,7 +152,7 @@ fn rings_at_rest(
     events: &mut Vec<Event>,
     (a, b): (&Point, &Point),
     observable: usize,
-    lengths: &[f64],
+    axes: &[Axis],
 ) {
     let is_ring = |one: &Event| one.feature == FeatureKind::Ring;
     for index in 0..events.len() {
@@ -171,12 +167,12 @@ fn rings_at_rest(
             one.feature == FeatureKind::Peak
                 && one.above != above
                 && one.from_centre > AT_REST
-                && distance(&one.place, &inside, lengths) < AT_REST
+                && distance(&one.place, &inside, axes) < AT_REST
         });
         let at = match was_peak {
             Some(peak) => Some((events[peak].place.clone(), inside.clone())),
             None if others.len() + 1 == own.len() => {
-                between_rings(if above { b } else { a }, observable, &own, lengths)
+                between_rings(if above { b } else { a }, observable, &own, axes)
             }
             None => None,
         };
@@ -184,7 +180,8 @@ fn rings_at_rest(
             let along_second = match was_peak {
                 Some(_) => false,
                 None => {
-                    let apart = |k: usize| ((place[k] - middle[k]) / lengths[k]).abs();
+                    let length = |k: usize| axes[k].to() - axes[k].from();
+                    let apart = |k: usize| (axes[k].apart(place[k], middle[k]) / length(k)).abs();
                     apart(1) > apart(0)
                 }
             };
@@ -209,7 +206,7 @@ fn between_rings(
     point: &Point,
     observable: usize,
     rings: &[&Feature],
-    lengths: &[f64],
+    axes: &[Axis],
 ) -> Option<(Vec<f64>, Vec<f64>)> {
     let saddles = present(point, observable, FeatureKind::Valley);
     let found = rings.iter().find_map(|ring| {
@@ -221,7 +218,7 @@ fn between_rings(
     // Of rings one within the other the middles are one.
     let is_beside = rings.iter().any(|ring| {
         let other = ring.partner.as_ref();
-        other.is_some_and(|other| distance(other, &found.1, lengths) > AT_REST)
+        other.is_some_and(|other| distance(other, &found.1, axes) > AT_REST)
     });
     is_beside.then_some(found)
 }
@@ -248,24 +245,33 @@ fn present(point: &Point, observable: usize, kind: FeatureKind) -> Vec<&Feature>
 }
 
 /// Distance of two places in units of the ranges.
-fn distance(a: &[f64], b: &[f64], lengths: &[f64]) -> f64 {
-    let terms = a.iter().zip(b).zip(lengths);
+fn distance(a: &[f64], b: &[f64], axes: &[Axis]) -> f64 {
+    let terms = a.iter().zip(b).zip(axes);
     terms
-        .map(|((a, b), length)| ((a - b) / length).powi(2))
+        .map(|((&a, &b), axis)| (axis.apart(a, b) / (axis.to() - axis.from())).powi(2))
         .sum::<f64>()
         .sqrt()
+}
+
+/// Distance from the centre of symmetry; on a circle the place half a turn from it is one too.
+fn from_centre(place: &[f64], centre: &[f64], axes: &[Axis]) -> f64 {
+    let own = distance(place, centre, axes);
+    match axes {
+        [axis] if axis.is_closed() => own.min(0.5 - own),
+        _ => own,
+    }
 }
 
 /// What is left of two lists when their nearest members have been paired.
 fn pair_off<'a>(
     mut below: Vec<&'a Feature>,
     mut above: Vec<&'a Feature>,
-    lengths: &[f64],
+    axes: &[Axis],
 ) -> (Vec<&'a Feature>, Vec<&'a Feature>) {
     while !below.is_empty() && !above.is_empty() {
         let pairs = (0..below.len()).flat_map(|i| (0..above.len()).map(move |j| (i, j)));
         let apart =
-            |&(i, j): &(usize, usize)| distance(&below[i].position, &above[j].position, lengths);
+            |&(i, j): &(usize, usize)| distance(&below[i].position, &above[j].position, axes);
         let Some((i, j)) = pairs.min_by(|a, b| apart(a).total_cmp(&apart(b))) else {
             break;
         };

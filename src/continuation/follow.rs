@@ -142,6 +142,6 @@ fn deeper(
 fn is_one_place(points: &[&Point], observable: usize, a: &Indicator, b: &Indicator) -> bool {
     let axes = &points[0].densities[observable].density.axes;
     let moved = a.place.iter().zip(&b.place).zip(axes);
-    let apart = moved.map(|((a, b), axis)| ((a - b) / (axis.to() - axis.from())).abs());
+    let apart = moved.map(|((&a, &b), axis)| (axis.apart(a, b) / (axis.to() - axis.from())).abs());
     apart.fold(0.0, f64::max) <= ONE_PLACE
 }

@@ -107,6 +107,14 @@ pub(crate) const EXPONENT: MeasureKind = kind(
     "1/t",
     "largest Lyapunov exponent of a fixed point that multiplicative noise leaves alone",
 );
+pub(crate) const VELOCITY: MeasureKind =
+    kind("velocity", "{}/t", "mean rate at which an angle turns");
+pub(crate) const TURN_DIFFUSION: MeasureKind = kind(
+    "diffusion",
+    "{}^2/t",
+    "effective diffusion of an angle whose turns are counted: half the rate at which its variance grows",
+);
+
 pub(crate) const ESCAPE_RATE: MeasureKind =
     kind("escape_rate", "1/t", "mass that leaves Ω per unit time");
 pub(crate) const NEGATIVE_MASS: MeasureKind = kind(

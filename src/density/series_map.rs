@@ -7,6 +7,9 @@ use super::Observable;
 /// Bins along an axis of modes.
 const BINS: usize = 60;
 
+/// Bins over one turn of an axis that closes on itself: two a wave of the highest harmonic that there may be.
+const BINS_OF_A_TURN: usize = 120;
+
 /// Modes that the coarser map leaves out: one of each parity, so that symmetric densities tell their error too.
 const LEFT_OUT: usize = 2;
 
@@ -14,7 +17,9 @@ const LEFT_OUT: usize = 2;
 /// whatever their number.
 pub(crate) fn laid_out(axis: &Axis) -> Axis {
     let (from, to) = axis.series_range();
-    if axis.is_modes() {
+    if axis.is_modes() && axis.is_closed() {
+        Axis::turn(from, to, BINS_OF_A_TURN).unwrap_or_else(|_| axis.clone())
+    } else if axis.is_modes() {
         Axis::uniform(from, to, BINS).unwrap_or_else(|_| axis.clone())
     } else {
         axis.clone()

@@ -31,6 +31,17 @@ impl<'a> CompareJob<'a> {
                 .remedy("leave `figures.at` out, or give values of the swept parameter");
             return Err(found.into());
         }
+        let family = sweep.problem.family();
+        let mut systems = family.along().into_iter().flatten();
+        let turn = systems.find_map(|system| system.facts().turns.keys().next().copied());
+        if let Some(axis) = turn {
+            let title = format!(
+                "`{}` closes on itself: only the generator solves such a system, and there is nothing to compare with",
+                family.axis(axis)
+            );
+            let found = Diagnostic::new(title).remedy("use `pbif sweep`");
+            return Err(found.into());
+        }
         Ok(Self {
             made_of: described(sweep),
             resolved: sweep.to_toml(),

@@ -12,7 +12,7 @@ use super::point_densities::PointDensities;
 use super::points_table::read_points;
 use super::sealing::seal_after_kill;
 use super::{Checked, Ending, Layout, PhaseSeconds, RunError, checksums, journal};
-use crate::continuation::measure::MEAN;
+use crate::continuation::measure::{MEAN, VELOCITY};
 use crate::continuation::{CheckedIndicator, Point, Shard, Subject};
 use crate::space::{Axis, CellSpace};
 use crate::sweep_file::SweepText;
@@ -238,8 +238,11 @@ impl StoredRun {
                 wanted,
             });
         }
-        // Only points with a density have moments.
-        let has_density = |point: &Point| point.report.all(&MEAN).next().is_some();
+        // Only points with a density have moments, and velocities of angles.
+        let has_density = |point: &Point| {
+            let mut known = [&MEAN, &VELOCITY].into_iter();
+            known.any(|kind| point.report.all(kind).next().is_some())
+        };
         if !points.iter().any(has_density) {
             return self.check_sums().map(|()| points);
         }

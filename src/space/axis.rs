@@ -21,6 +21,8 @@ pub struct Axis {
     nodes: Vec<f64>,
     pieces: Vec<Piece>,
     series: Option<Series>,
+    /// Whether its ends are one place.
+    closes: bool,
 }
 
 /// A finer axis has a mode more for each so many: one alone shows little of an error that falls as a power of their
@@ -167,6 +169,7 @@ impl Axis {
             nodes,
             pieces,
             series: None,
+            closes: false,
         }
     }
 
@@ -192,7 +195,10 @@ impl Axis {
             first_cell += cells;
             Piece::new((piece.from, piece.to), counts, piece.bulk, &piece.terms)
         });
-        Self::from_pieces(pieces.collect())
+        Self {
+            closes: self.closes,
+            ..Self::from_pieces(pieces.collect())
+        }
     }
 
     /// Number of cells.
@@ -265,3 +271,4 @@ mod modes;
 mod place;
 #[cfg(test)]
 mod tests;
+mod turn;

@@ -120,6 +120,23 @@ pub(super) struct EquationsDraft {
     pub(super) define: Vec<(String, String)>,
     /// Axes, lower and upper bounds.
     pub(super) bounds: Vec<(String, [String; 2])>,
+    /// Axes that are angles, with their periods.
+    pub(super) angles: Vec<(String, f64)>,
+}
+
+impl EquationsDraft {
+    /// The period of an angle.
+    pub(super) fn angle(&self, name: &str) -> Option<f64> {
+        let mut angles = self.angles.iter();
+        let found = angles.find(|(known, _)| known == name)?;
+        Some(found.1)
+    }
+
+    /// Makes an axis an angle.
+    pub(super) fn set_angle(&mut self, name: &str, period: f64) {
+        self.angles.retain(|(known, _)| known != name);
+        self.angles.push((name.to_owned(), period));
+    }
 }
 
 /// What the file says of the values over which a quantity is watched.

@@ -15,6 +15,8 @@ pub struct AxisDescription {
     /// noise drives it, or it relaxes linearly without noise, or it is white noise behind a filter, or it closes on
     /// itself.
     pub by_modes: bool,
+    /// Whether it is an angle: it closes on itself after a turn, so that its mean says nothing.
+    pub is_angle: bool,
 }
 
 impl AxisDescription {
@@ -29,12 +31,22 @@ impl AxisDescription {
             symbol: symbol.into(),
             meaning: meaning.into(),
             by_modes: false,
+            is_angle: false,
         }
     }
 
     /// The axis of the phase of a forcing, in periods.
     pub(crate) fn phase() -> Self {
         Self::new(PHASE_AXIS, "t/T", "phase of the forcing, in periods").carried_by_modes()
+    }
+
+    /// The same as an angle, which harmonics carry.
+    #[must_use]
+    pub(crate) fn closing(self) -> Self {
+        Self {
+            is_angle: true,
+            ..self.carried_by_modes()
+        }
     }
 
     /// The axis of an internal state that modes carry; a series in place of cells. The state has no noise, and either

@@ -252,10 +252,19 @@ impl Family {
         known.or_else(quantity).unwrap_or("?")
     }
 
-    /// Names of what means are taken of: the axes of the state, then the quantities that are averaged.
+    /// Names of what means are taken of: the axes of the state that are no angles, then the quantities that are
+    /// averaged.
     pub(crate) fn averages(&self) -> impl Iterator<Item = &str> {
-        let axes = self.model.axes.iter().map(|axis| axis.name.as_str());
+        let axes = self.model.axes.iter().filter(|axis| !axis.is_angle);
+        let axes = axes.map(|axis| axis.name.as_str());
         axes.chain(self.averaged.iter().map(|quantity| quantity.name()))
+    }
+
+    /// Axes of the state that are angles, with their names.
+    pub(crate) fn angles(&self) -> impl Iterator<Item = (usize, &str)> {
+        let axes = self.model.axes.iter().enumerate();
+        let angles = axes.filter(|(_, axis)| axis.is_angle);
+        angles.map(|(index, axis)| (index, axis.name.as_str()))
     }
 
     /// Values of all parameters at a coordinate, which may lie beyond the ends.

@@ -30,7 +30,9 @@ fn symmetry(system: &dyn System, ends: &[(f64, f64)], shifted: Option<usize>) ->
     let axes = system.dimension();
     let middle: Vec<f64> = ends.iter().map(|(from, to)| 0.5 * (from + to)).collect();
     let mut found: Vec<Symmetry> = Vec::new();
-    for centre in [vec![0.0; axes], middle] {
+    let mut centres = vec![vec![0.0; axes], middle];
+    centres.extend(on_turns(system, &centres));
+    for centre in centres {
         for subset in 1..1_usize << axes {
             let candidate = Symmetry {
                 centre: centre.clone(),
@@ -45,6 +47,51 @@ fn symmetry(system: &dyn System, ends: &[(f64, f64)], shifted: Option<usize>) ->
     // The first of those with the most axes: about the origin where both serve.
     let most = found.iter().map(reflected).max()?;
     found.into_iter().find(|one| reflected(one) == most)
+}
+
+/// Places along a turn at which the drift along an axis is looked at for a change of its sign.
+const LOOKS: usize = 64;
+/// Halvings of the interval that holds a zero: to the last bit.
+const HALVINGS: usize = 60;
+
+/// Some centres with another place on an axis that closes on itself, which has no middle: at a centre the drift along
+/// what is reflected vanishes, and so it is one of the zeros along the turn.
+fn on_turns(system: &dyn System, centres: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let facts = system.facts();
+    let turns = facts.turns.iter();
+    let turns = turns.filter(|(axis, _)| facts.phase != Some(**axis));
+    let mut found = Vec::new();
+    for ((&turn, &(from, to)), centre) in
+        turns.flat_map(|turn| centres.iter().map(move |c| (turn, c)))
+    {
+        let at = |x: f64| {
+            let mut state = centre.clone();
+            state[turn] = x;
+            state
+        };
+        for axis in 0..system.dimension() {
+            let drift = |x: f64| system.drift_at(0.0, &at(x))[axis];
+            // Off a round place, so that none of these is a zero itself.
+            let place = |k: usize| from + (to - from) * (k as f64 + 0.318_309_886) / LOOKS as f64;
+            let values: Vec<f64> = (0..=LOOKS).map(|k| drift(place(k))).collect();
+            let crossed = (0..LOOKS).filter(|&k| values[k] * values[k + 1] < 0.0);
+            found.extend(crossed.map(|k| at(zero(&drift, (place(k), place(k + 1)), values[k]))));
+        }
+    }
+    found
+}
+
+/// The zero of a function between two places at which its signs differ; `first` is its value at the lower one.
+fn zero(function: &impl Fn(f64) -> f64, (mut low, mut high): (f64, f64), first: f64) -> f64 {
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if function(middle) * first > 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
 }
 
 /// Whether drift and noise at the images of states are the images of those at the states.
@@ -185,6 +232,27 @@ mod tests {
                 Some(Symmetry::about_origin(2))
             );
         }
+    }
+
+    #[test]
+    fn a_circle_is_mirrored_about_places_that_are_found() {
+        let model = crate::system::TypedModel::new("circle", "Circle", ["x"])
+            .with_equation("x", "w - sin(x - 1.2) - 0.3 sin(2 x - 2.4)")
+            .with_noise("x", ["1 + 0.2 cos(x - 1.2)"])
+            .with_interpretation(crate::system::Interpretation::Ito)
+            .with_angle("x", std::f64::consts::TAU)
+            .with_parameters(["w"])
+            .build()
+            .unwrap();
+        let found = |w: f64| {
+            let system = model.system_with(&[("w", w)]).unwrap();
+            proved_symmetry(system.as_ref(), &[system.facts().turns[&0]])
+        };
+        let centre = found(0.0).unwrap().centre[0];
+        let pi = std::f64::consts::PI;
+        let off = [1.2, 1.2 - pi].map(|one| (centre - one).abs());
+        assert!(off[0].min(off[1]) < 1e-12, "{centre}");
+        assert_eq!(found(0.1), None);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The detector by persistence: what is present of the components of superlevel and sublevel sets makes the signature.
 
 use super::candidate::{Candidate, judge};
+use super::closed::Cover;
 use super::exact::{self, by_kind_and_height, present_places};
 use super::indicator::{Counted, at_centre, correct, flanks_from_centre, put_right, shoulders};
 use super::persistence::{CellValues, components};
@@ -39,10 +40,21 @@ impl PersistenceDetector {
     pub fn new(options: DetectOptions, looks: usize) -> Self {
         Self { options, looks }
     }
+
+    /// What counts in a density with so many cells.
+    fn limits(&self, density: &EstimatedDensity, cells: usize) -> Limits {
+        Limits::new(
+            &self.options,
+            self.looks,
+            density.density.axes.len(),
+            cells,
+            (density.density.maximum(), density.negligible_height()),
+        )
+    }
 }
 
 /// The grid of a density, unless it cannot have features.
-fn grid(estimated: &EstimatedDensity) -> Option<CellValues<'_>> {
+pub(super) fn grid(estimated: &EstimatedDensity) -> Option<CellValues<'_>> {
     let values = &estimated.density.values;
     let (rows, columns) = match estimated.density.axes.as_slice() {
         [axis] => (1, axis.count()),
@@ -65,21 +77,21 @@ impl Detector for PersistenceDetector {
     }
 
     fn detect(&self, density: &EstimatedDensity) -> Detection {
-        let Some(grid) = grid(density) else {
-            return Detection {
-                signature: Signature::default(),
-                is_seen: true,
-                indicators: Vec::new(),
-                features: Vec::new(),
-            };
+        let nothing = || Detection {
+            signature: Signature::default(),
+            is_seen: true,
+            indicators: Vec::new(),
+            features: Vec::new(),
         };
-        let limits = Limits::new(
-            &self.options,
-            self.looks,
-            density.density.axes.len(),
-            grid.values.len(),
-            (density.density.maximum(), density.negligible_height()),
-        );
+        if let Some(cover) = Cover::of(density) {
+            let limits = |laid: &EstimatedDensity, cells: usize| self.limits(laid, cells);
+            let found = cover.detection(limits, self.doubt());
+            return found.unwrap_or_else(nothing);
+        }
+        let Some(grid) = grid(density) else {
+            return nothing();
+        };
+        let limits = self.limits(density, grid.values.len());
         if let Some(profile) = &density.structure.profile {
             return exact::detection(density, profile, &limits, self.doubt());
         }
@@ -137,10 +149,16 @@ impl Detector for PersistenceDetector {
         kind: IndicatorKind,
         near: &[f64],
     ) -> Option<Indicator> {
-        (kind.traits().read)(density, near)
+        match Cover::of(density) {
+            Some(cover) => cover.indicator(kind, near),
+            None => (kind.traits().read)(density, near),
+        }
     }
 
     fn flanks(&self, density: &EstimatedDensity) -> Vec<Flank> {
+        if let Some(cover) = Cover::of(density) {
+            return cover.flanks();
+        }
         match density.density.axes.len() {
             1 => shoulders(density),
             _ => flanks_from_centre(density),

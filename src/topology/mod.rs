@@ -2,6 +2,7 @@
 
 mod between;
 mod candidate;
+mod closed;
 mod critical;
 mod detector;
 mod enclosure;

@@ -5,6 +5,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod angles;
 mod coloured_noise;
 mod forced;
 mod friction_laws;

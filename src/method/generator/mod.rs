@@ -1,6 +1,8 @@
 //! The generator, solved directly: its settings, what a point costs, the source, its session, what the last points say
 //! of the next one, relaxation, and derivatives.
 
+#[cfg(test)]
+mod angles_tests;
 mod coarse;
 mod cost;
 mod jumps;
@@ -12,6 +14,7 @@ mod open;
 mod options;
 mod passages;
 mod relaxation;
+mod rotation;
 mod second;
 mod sensitivity;
 mod session;

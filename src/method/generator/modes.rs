@@ -14,6 +14,9 @@ use crate::space::{Axis, CellSpace};
 /// Numbers of modes that are tried, in this order.
 const TRIED: [usize; 10] = [3, 4, 5, 6, 8, 10, 12, 16, 20, 24];
 
+/// Numbers of harmonics that are tried beyond these: an angle that is held fast by little noise needs many.
+const MORE_HARMONICS: [usize; 4] = [30, 38, 48, 60];
+
 /// Nodes of all axes together up to which numbers are tried for more than one axis: a solve takes their cube.
 const MOST_NODES: usize = 150;
 
@@ -22,6 +25,9 @@ const MOST_ITERATIONS: usize = 100;
 
 /// Change of a watched density, relative to its largest value, that more modes may still make.
 const CHANGE: f64 = 1e-4;
+
+/// The same where nothing but harmonics is solved for, which costs next to nothing.
+const CHANGE_ALONE: f64 = 1e-10;
 
 /// Change up to which it may be the cells' doing that it no longer falls, and the share of the change before it that it
 /// has then.
@@ -101,7 +107,14 @@ pub(crate) fn automatic_modes(
     };
     let nodes = |count: usize| open.iter().map(|_| count).product::<usize>();
     let affordable = |&count: &usize| open.len() < 2 || nodes(count) <= MOST_NODES;
-    for count in TRIED.into_iter().filter(affordable) {
+    let axes = problem.space().axes();
+    let wanted = match axes.iter().all(Axis::is_closed) {
+        true => CHANGE_ALONE,
+        false => CHANGE,
+    };
+    let closes = matches!(open, [axis] if axes[*axis].is_closed());
+    let more = MORE_HARMONICS.into_iter().filter(|_| closes);
+    for count in TRIED.into_iter().chain(more).filter(affordable) {
         let modes = |index: usize, axis: &Axis| match open.contains(&index) {
             true => count,
             false => axis.mode_number(),
@@ -112,7 +125,7 @@ pub(crate) fn automatic_modes(
             let earlier = std::mem::replace(&mut found.change, change(&before, &now));
             // Where more modes stop telling, what is left is the coarse cells' doing.
             let is_floor = found.change <= FLOOR && found.change > STALLED * earlier;
-            if found.change <= CHANGE || is_floor {
+            if found.change <= wanted || (is_floor && wanted == CHANGE) {
                 found.is_enough = true;
                 return Ok(found);
             }

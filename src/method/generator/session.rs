@@ -13,6 +13,7 @@ use super::coarse::{COARSE, Coarseness, rough_relaxation};
 use super::one_axis;
 use super::passages::{add_passages, at_nodes};
 use super::relaxation::Relaxation;
+use super::rotation::{Steady, rotation};
 use super::second::{Second, SecondSolve, companion};
 use super::sensitivity::GeneratorSensitivity;
 use super::source::METHOD;
@@ -21,7 +22,7 @@ use super::trail::{self, Trail};
 use super::unknowns::{by_schemes, distance, negative_mass, summed_over_modes};
 use crate::cancellation::Cancellation;
 use crate::continuation::measure::{ESCAPE_RATE, FACTORISATIONS, NEGATIVE_MASS};
-use crate::continuation::{Solution, SolveReport};
+use crate::continuation::{Measure, Solution, SolveReport};
 use crate::density::EstimatedDensity;
 use crate::generator::{Generator, cell_masses, resolution};
 use crate::method::measures::{Cells, Others};
@@ -266,6 +267,10 @@ impl GeneratorSession {
         let of_quantities = maps.exact_moments(space, &masses, second.masses(), kinked)?;
         let moments = [of_axes, of_quantities].concat();
         reporter.moments(&moments);
+        reporter
+            .report
+            .measures
+            .extend(self.rotations(solved, &second.change)?);
         let cells = Cells {
             system: solved.system.as_ref(),
             space,
@@ -283,6 +288,38 @@ impl GeneratorSession {
             reporter.solution(densities, Some(&cells)),
             Some(trail_after(solved, second.change, relaxation, before)),
         ))
+    }
+
+    /// How fast angles turn, and how they spread; nothing in a check.
+    fn rotations(
+        &mut self,
+        solved: &PointSolve,
+        change: &[f64],
+    ) -> Result<Vec<Measure>, MethodError> {
+        let problem = &self.source.problem;
+        let Some(second) = &solved.second else {
+            return Ok(Vec::new());
+        };
+        let mut found = Vec::new();
+        let mut first = None;
+        for angle in problem.family().angles() {
+            let system = solved.system.as_ref();
+            let first = match &mut first {
+                Some(first) => first,
+                None => first.insert(self.source.assemble(system, self.source.options.scheme)?),
+            };
+            let steady = Steady {
+                system,
+                space: problem.space(),
+                unknowns: &solved.steady.mass,
+                error: solved.steady.info.error_estimate,
+                first: &first.matrix,
+                second,
+                change,
+            };
+            found.extend(rotation(&steady, angle, &mut self.solver)?);
+        }
+        Ok(found)
     }
 
     /// The time in which deviations die out, where mass escapes: a neighbour's, or that of fewer cells, where it will

@@ -3,6 +3,7 @@
 mod balance;
 mod entropy;
 mod passage;
+mod rotation;
 
 pub(super) use passage::measures as measures_of_passage;
 pub(crate) use passage::passage_columns;
@@ -82,10 +83,11 @@ impl DerivedMeasure {
     }
 }
 
-/// The columns of what a family itself asks for: passages, and the exponent of a fixed point.
+/// The columns of what a family itself asks for: passages, and the exponent of a fixed point; and those of its angles.
 pub(crate) fn columns_of_family(family: &Family) -> Vec<MeasureColumn> {
     let passages = passage_columns(family).into_iter();
-    passages.chain(exponent_columns(family)).collect()
+    let columns = passages.chain(exponent_columns(family));
+    columns.chain(rotation::rotation_columns(family)).collect()
 }
 
 /// The measures that a subject asks for.

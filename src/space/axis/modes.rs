@@ -41,6 +41,7 @@ impl Axis {
             nodes: rule.nodes.iter().map(|s| middle + half * s).collect(),
             pieces: Vec::new(),
             series: Some(Series::Legendre),
+            closes: false,
         })
     }
 
@@ -61,6 +62,7 @@ impl Axis {
             nodes: rule.nodes.into_iter().map(place).collect(),
             pieces: Vec::new(),
             series: Some(Series::Hermite { mean, deviation }),
+            closes: false,
         })
     }
 
@@ -92,6 +94,7 @@ impl Axis {
         Ok(Self {
             pieces: Vec::new(),
             series: Some(Series::Fourier),
+            closes: true,
             ..even
         })
     }
@@ -124,9 +127,9 @@ impl Axis {
         }
     }
 
-    /// Whether it closes on itself: see [`Axis::fourier`].
+    /// Whether it closes on itself: see [`Axis::fourier`] and [`Axis::turn`].
     pub fn is_closed(&self) -> bool {
-        self.series == Some(Series::Fourier)
+        self.closes
     }
 
     /// Whether it carries a series in place of cells: see [`Axis::modes`], [`Axis::hermite`] and [`Axis::fourier`].

@@ -320,6 +320,37 @@ macro_rules! of_axis {
     };
 }
 
+/// The word for an axis that closes on itself after 2π.
+pub(super) const PERIODIC: &str = "periodic";
+
+/// Bounds of an axis: two formulas, or the word for an angle.
+pub(super) const BOUNDS: Field = Field {
+    get: |draft, name| {
+        let angle = draft.equations.angle(name);
+        let word = angle.filter(|period| *period == std::f64::consts::TAU);
+        let word = word.map(|_| Plain::Text(PERIODIC.to_owned()));
+        formulas_of(&draft.equations.bounds, name).or(word)
+    },
+    set: |draft, name, plain| match plain.text() {
+        Some(_) => draft.equations.set_angle(name, std::f64::consts::TAU),
+        None => set_formulas(&mut draft.equations.bounds, name, plain),
+    },
+};
+
+/// The period of an angle, where it is not 2π.
+pub(super) const PERIOD: Field = Field {
+    get: |draft, name| {
+        let angle = draft.equations.angle(name);
+        let own = angle.filter(|period| *period != std::f64::consts::TAU);
+        own.map(Plain::Number)
+    },
+    set: |draft, name, plain| {
+        if let Some(period) = plain.number() {
+            draft.equations.set_angle(name, period);
+        }
+    },
+};
+
 /// A table of formulas by names.
 macro_rules! formulas {
     ($field:ident) => {

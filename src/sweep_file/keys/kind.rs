@@ -2,7 +2,7 @@
 
 use super::super::names::list;
 use super::super::value::Plain;
-use super::field::AUTO;
+use super::field::{AUTO, PERIODIC};
 use crate::figure::FigureWidth;
 
 /// Condition on a number, in words and as a test. Numbers are always finite.
@@ -93,8 +93,8 @@ pub(in crate::sweep_file) enum Kind {
     Formula,
     /// A formula, or a list of formulas.
     Formulas,
-    /// Two formulas.
-    FormulaPair,
+    /// Two formulas, or the word for an angle.
+    Bounds,
     /// A list of values of one kind.
     List(&'static Self),
 }
@@ -124,7 +124,7 @@ impl Kind {
             Self::Formulas => {
                 "a formula, such as `\"sqrt(2 D)\"`, or a list of formulas".to_owned()
             }
-            Self::FormulaPair => "two formulas, such as `[\"-a\", \"a\"]`".to_owned(),
+            Self::Bounds => "two formulas, such as `[\"-a\", \"a\"]`, or `\"periodic\"`".to_owned(),
             Self::List(Self::Number(condition)) => {
                 let words = condition.words;
                 format!("a list of finite numbers{words}, such as `[0.25, 0.5]`")
@@ -170,9 +170,12 @@ impl Kind {
                 Some(items) => items.iter().all(|item| Self::Formula.holds(item)),
                 None => Self::Formula.holds(plain),
             },
-            Self::FormulaPair => plain.items().is_some_and(|items| {
-                items.len() == 2 && items.iter().all(|item| Self::Formula.holds(item))
-            }),
+            Self::Bounds => match plain.items() {
+                Some(items) => {
+                    items.len() == 2 && items.iter().all(|item| Self::Formula.holds(item))
+                }
+                None => plain.text() == Some(PERIODIC),
+            },
             Self::List(kind) => plain
                 .items()
                 .is_some_and(|items| items.iter().all(|item| kind.holds(item))),

@@ -1,8 +1,8 @@
 //! Every key of a sweep file, declared once: path, kind of value, default, meaning, and where the value lives.
 
 use super::field::{
-    Field, InFile, Named, SWITCH, always, formulas, of_axis, of_bins, of_methods, of_passage,
-    optional,
+    BOUNDS, Field, InFile, Named, PERIOD, SWITCH, always, formulas, of_axis, of_bins, of_methods,
+    of_passage, optional,
 };
 use super::kind::{
     ANY, DPI, Kind, LINE, NOT_NEGATIVE, OPEN_UNIT, POSITIVE, SHARE, STEP, TEXT, UP_TO_ONE,
@@ -62,8 +62,10 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
         "Amplitudes of independent white noises on the equation of an axis: the roots of their intensities."),
     key("system.define.<name>", Kind::Formula, Rule("nothing"), formulas!(define),
         "A formula that others may use by this name."),
-    key("system.bounds.<axis>", Kind::FormulaPair, Rule("none"), formulas!(bounds),
-        "Lower and upper value that an axis never leaves, as formulas of parameters."),
+    key("system.bounds.<axis>", Kind::Bounds, Rule("none"), BOUNDS,
+        "Lower and upper value that an axis never leaves, as formulas of parameters; or `periodic` for an angle, which comes back after 2π (docs/angles.md)."),
+    key("system.bounds.<axis>.period", Kind::Number(POSITIVE), Rule("2π for an axis that is `periodic`"), PERIOD,
+        "Period of an angle that is not measured in radians: `theta = { period = 1.0 }`."),
     key("system.parameters.<parameter>", Kind::Number(ANY), Rule("the model's default, where it has one"),
         Field {
             get: |draft, name| draft.parameters.iter().find(|(known, _)| known == name).map(|(_, value)| value.to_plain()),

@@ -117,7 +117,7 @@ fn example(key: &Key) -> crate::sweep_file::value::Plain {
         Kind::Pair => Plain::List(vec![text("x"), text("y")]),
         Kind::Formula => text("2 x"),
         Kind::Formulas => Plain::List(vec![text("sqrt(D)")]),
-        Kind::FormulaPair => Plain::List(vec![text("-a"), text("a")]),
+        Kind::Bounds => Plain::List(vec![text("-a"), text("a")]),
         Kind::List(_) => unreachable!(),
     };
     match key.kind {

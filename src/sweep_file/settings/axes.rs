@@ -3,7 +3,9 @@
 
 use super::along::Along;
 use super::axis::{AxisSettings, Grade};
-use super::axis_checks::{check_modes, warn_of_few_cells, warn_of_idle_grade};
+use super::axis_checks::{
+    check_modes, refuse_cells, refuse_turns, warn_of_few_cells, warn_of_idle_grade,
+};
 use super::equations::model_in_words;
 use super::modes_of::ModesOf;
 use crate::space::{Axis, CellSpace, Grading, SpaceError};
@@ -39,6 +41,9 @@ pub(super) fn read(
         }
     }
     let along = family.map(|family| Along::new(family, draft));
+    if let Some(along) = &along {
+        refuse_turns(reader, draft, model, along)?;
+    }
     // Every axis is read, so that all that is wrong is reported at once.
     let read: Vec<Option<AxisSettings>> = names
         .iter()
@@ -94,6 +99,9 @@ fn read_axis(
     };
     if !matches!(entry.node.value, Value::Table(_)) {
         return None;
+    }
+    if series == ModesOf::Turn {
+        refuse_cells(reader, name)?;
     }
     let empty = AxisDraft::default();
     let axis = draft.axis(name).unwrap_or(&empty);

@@ -3,8 +3,9 @@
 use super::AxisSettings;
 use super::along::{Along, filter};
 use crate::sweep_file::diagnostic::Diagnostic;
-use crate::sweep_file::draft::MethodKind;
+use crate::sweep_file::draft::{Draft, MethodKind};
 use crate::sweep_file::reader::Reader;
+use crate::system::Model;
 
 /// Cells an axis below which a density along it has no shape: a peak is a cell that is higher than both of its
 /// neighbours.
@@ -49,6 +50,48 @@ pub(super) fn warn_of_idle_grade(
             "leave it out, or give `cells.{name}.count` to have cells instead of modes"
         ));
     reader.warn(found);
+}
+
+/// Reports axes that close on themselves where the chosen method follows trajectories, which would leave the turn.
+pub(super) fn refuse_turns(
+    reader: &mut Reader<'_>,
+    draft: &Draft,
+    model: &Model,
+    along: &Along<'_>,
+) -> Option<()> {
+    let method = draft.method.kind;
+    let turn = (0..model.axes.len()).find(|&axis| along.turn(axis).is_some());
+    let axis = match turn {
+        Some(axis) if !method.takes_modes() => &model.axes[axis].name,
+        _ => return Some(()),
+    };
+    let title = format!(
+        "`{axis}` closes on itself, and {} has only lines",
+        method.name()
+    );
+    let found = Diagnostic::new(title).remedy(
+        "use `method.kind = \"generator\"`: angles, and the phase of a forcing, are carried by harmonics there",
+    );
+    reader.report(match reader.place(&["method", "kind"]) {
+        Some(place) => found.at(place, "not for this system"),
+        None => found,
+    });
+    None
+}
+
+/// Reports cells along an axis that closes on itself: harmonics carry it.
+pub(super) fn refuse_cells(reader: &mut Reader<'_>, name: &str) -> Option<()> {
+    let keys = ["count", "grade"].into_iter();
+    let mut given = keys.filter_map(|key| reader.place(&["cells", name, key]));
+    let Some(place) = given.next() else {
+        return Some(());
+    };
+    let title = format!("`{name}` closes on itself: harmonics carry it, not cells");
+    let remedy = format!(
+        "give `cells.{name}.modes`, the number of harmonics, or leave it out: it is then found"
+    );
+    reader.report(Diagnostic::new(title).at(place, "no cells").remedy(remedy));
+    None
 }
 
 /// Reports modes on an axis that cannot have them: it has noise, or its range is not that of a bounded state.

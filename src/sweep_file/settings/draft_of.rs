@@ -229,6 +229,7 @@ fn equations_draft(model: &Model) -> EquationsDraft {
         bounds: bounds
             .map(|(axis, lower, upper)| (axis, [lower, upper]))
             .collect(),
+        angles: source.angles().to_vec(),
     }
 }
 

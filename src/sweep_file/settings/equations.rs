@@ -232,6 +232,9 @@ fn source(
     for (axis, [lower, upper]) in &equations.bounds {
         model = model.with_bounds(axis, lower, upper);
     }
+    for (axis, period) in &equations.angles {
+        model = model.with_angle(axis, *period);
+    }
     let model = match equations.interpretation {
         Some(interpretation) => model.with_interpretation(interpretation),
         None => model,

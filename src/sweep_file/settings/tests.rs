@@ -42,6 +42,69 @@ const COLOURED: [&str; 2] = [
     "system.parameters.tau=0.5",
 ];
 
+/// A phase-locked loop, its angle in turns.
+const ANGLE: &str = r#"
+[system.equations]
+phi = "w - sin(2 pi phi)"
+[system.noise]
+phi = "0.5"
+[system.bounds]
+phi = { period = 1.0 }
+[sweep]
+parameter = "w"
+from = 0
+to = 1
+points = 3
+"#;
+
+#[test]
+fn what_closes_on_itself_is_an_angle_of_harmonics() {
+    let read = |sets: &[&str]| parse(ANGLE, sets);
+    let spec = read(&[]).unwrap();
+    assert_eq!(spec.axes[0].range, Some((-0.5, 0.5)));
+    assert_eq!(spec.axes[0].series, ModesOf::Turn);
+    assert_eq!(spec.observables, [crate::density::Observable::Marginal(0)]);
+    let names: Vec<&str> = spec.family.averages().collect();
+    assert!(names.is_empty(), "{names:?}");
+    let again = parse(&spec.to_toml(), &[]).unwrap();
+    assert_eq!(again.axes, spec.axes);
+    // In radians it is a word.
+    let text = ANGLE.replace("{ period = 1.0 }", "\"periodic\"");
+    let refused = |text: &str, sets: &[&str]| parse(text, sets).unwrap_err().to_string();
+    let radians = text.replace("2 pi phi", "phi");
+    let spec = parse(&radians, &[]).unwrap();
+    let pi = std::f64::consts::PI;
+    assert_eq!(spec.axes[0].range, Some((-pi, pi)));
+    assert!(spec.to_toml().contains("phi = \"periodic\""));
+    let wrong = refused(&text, &[]);
+    assert!(
+        wrong.contains("does not have the period") && wrong.contains("it has"),
+        "{wrong}"
+    );
+    let bare = refused(&radians.replace("sin(phi)", "phi"), &[]);
+    assert!(bare.contains("write sin(phi) or cos(phi)"), "{bare}");
+    let jump = refused(&radians.replace("sin(phi)", "sgn(sin(phi))"), &[]);
+    assert!(jump.contains("jumps or bends"), "{jump}");
+    let cells = refused(ANGLE, &["cells.phi.count=40"]);
+    assert!(cells.contains("harmonics carry it, not cells"), "{cells}");
+    let range = refused(ANGLE, &["cells.phi.from=-3", "cells.phi.to=3"]);
+    assert!(range.contains("its range is one turn"), "{range}");
+    for kind in ["sgcm", "monte-carlo"] {
+        let other = refused(ANGLE, &[&format!("method.kind={kind}")]);
+        assert!(other.contains("closes on itself"), "{other}");
+        assert!(other.contains("method.kind = \"generator\""), "{other}");
+    }
+    let unknown = refused(
+        &radians.replace("phi = \"periodic\"", "psi = \"periodic\""),
+        &[],
+    );
+    assert!(unknown.contains("psi"), "{unknown}");
+    let word = refused(&radians.replace("\"periodic\"", "\"cyclic\""), &[]);
+    assert!(word.contains("`\"periodic\"`"), "{word}");
+    let none = refused(ANGLE, &["system.bounds.phi.period=0"]);
+    assert!(none.contains("greater than zero"), "{none}");
+}
+
 fn parse(text: &str, overrides: &[&str]) -> Result<Settings, Report> {
     let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
     SweepFile::parse("runs/a.toml", text)
@@ -191,6 +254,7 @@ fn the_resolved_file_holds_every_key() {
         monte_carlo,
         parse(EQUATIONS, &[]).unwrap().to_toml(),
         parse(DAHL, &["cells.z.modes=5"]).unwrap().to_toml(),
+        parse(&ANGLE.replace("phi", "y"), &[]).unwrap().to_toml(),
         parse(DAHL, &COLOURED).unwrap().to_toml(),
         parse(FILE, &map).unwrap().to_toml(),
         parse(FILE, &curve).unwrap().to_toml(),

@@ -37,11 +37,11 @@ pub(super) fn read(
         settings.is_some_and(|axis| axis.modes_by(draft.method.kind).is_some())
     };
     // What closes on itself is looked at, but for the phase of a forcing, in which nothing has a shape.
-    let is_angle = |axis: usize| {
+    let is_turn = |axis: usize| {
         let settings = axes.and_then(|axes| axes.get(axis));
-        let is_turn = settings.is_some_and(|axis| axis.series == ModesOf::Turn);
-        is_turn && model.phase_axis() != Some(axis)
+        settings.is_some_and(|axis| axis.series == ModesOf::Turn)
     };
+    let is_angle = |axis: usize| is_turn(axis) && model.phase_axis() != Some(axis);
     let is_shown =
         |axis: usize| !has_modes(axis) && model.phase_axis() != Some(axis) || is_angle(axis);
     let whole = reader.document().root.place.clone();
@@ -88,7 +88,7 @@ pub(super) fn read(
                     let quantity = [one, other].into_iter().find(is_formula);
                     if let (Some(axis), Some(quantity)) = (carried, quantity) {
                         let quantity = given[quantity - dimension].name.clone();
-                        let name = &model.axes[axis].name;
+                        let name = (model.axes[axis].name.as_str(), is_turn(axis));
                         refuse_modes(reader, &quantity, name, Some(&item.place));
                         continue;
                     }
@@ -133,7 +133,8 @@ pub(super) fn read(
         if let Some((axis, _)) =
             axes.find(|(axis, depends)| **depends && has_modes(*axis) && !is_plain)
         {
-            refuse_modes(reader, quantity.name(), &model.axes[axis].name, None);
+            let name = (model.axes[axis].name.as_str(), is_turn(axis));
+            refuse_modes(reader, quantity.name(), name, None);
         }
     }
     Watched {
@@ -144,9 +145,17 @@ pub(super) fn read(
 }
 
 /// Reports a quantity with an axis of modes: what is a quantity is made from masses of cells.
-fn refuse_modes(reader: &mut Reader<'_>, quantity: &str, name: &str, at: Option<&Place>) {
+fn refuse_modes(
+    reader: &mut Reader<'_>,
+    quantity: &str,
+    (name, is_closed): (&str, bool),
+    at: Option<&Place>,
+) {
     let title = format!("`{quantity}` needs cells along `{name}`, which modes carry");
-    let remedy = format!("give `cells.{name}.count` in place of modes, or leave the formula out");
+    let remedy = match is_closed {
+        true => format!("leave the formula out: `{name}` closes on itself, and harmonics carry it"),
+        false => format!("give `cells.{name}.count` in place of modes, or leave the formula out"),
+    };
     let diagnostic = Diagnostic::new(title).remedy(remedy);
     reader.report(match at {
         Some(at) => diagnostic.at(at, "carried by modes"),

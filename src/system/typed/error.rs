@@ -227,6 +227,14 @@ pub enum PeriodFault {
         /// Waves of it in that period, where it is a number.
         turns: Option<f64>,
     },
+    /// A period that is no positive number.
+    #[error("the period of `{symbol}` is {period}; it must be a positive number")]
+    NotPositive {
+        /// The angle.
+        symbol: String,
+        /// What was given.
+        period: f64,
+    },
     /// Two frequencies of which no common period is known.
     #[error(
         "the frequencies {one} and {other} have no common period: no ratio of whole numbers up to {most} at all parameters"
@@ -277,6 +285,9 @@ impl PeriodFault {
                 "write a whole number of waves a period, as sin(2 {symbol}) for an angle of period 2 pi, or give the period that \
                  the formulas have"
             ),
+            Self::NotPositive { symbol, .. } => {
+                format!("give `{symbol} = \"periodic\"` for 2 pi, or `{symbol} = {{ period = 1.0 }}`")
+            }
             Self::NoCommonPeriod { .. } => {
                 "write the one as a multiple of the other, as w t and 3/2 w t; two independent frequencies would need two phases".to_owned()
             }

@@ -273,7 +273,9 @@ impl TypedModel {
         let axes = self.axes.iter().enumerate();
         let axes = axes.map(|(index, axis)| {
             let axis = axis.clone();
-            if is_internal(&reading, index) || reading.turns.of_axes.contains_key(&index) {
+            if reading.turns.of_axes.contains_key(&index) {
+                axis.closing()
+            } else if is_internal(&reading, index) {
                 axis.carried_by_modes()
             } else {
                 axis
@@ -334,6 +336,11 @@ impl TypedModel {
     /// Axes with their lower and upper bounds.
     pub fn bounds(&self) -> &[(String, String, String)] {
         &self.bounds
+    }
+
+    /// Axes that are angles, with their periods.
+    pub fn angles(&self) -> &[(String, f64)] {
+        &self.turns
     }
 }
 

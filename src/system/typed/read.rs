@@ -6,7 +6,7 @@ mod turns;
 
 use std::collections::BTreeMap;
 
-use super::{Extras, FormulaPlace, TypedModel, TypedModelError};
+use super::{Extras, FormulaPlace, PeriodFault, TypedModel, TypedModelError};
 use crate::formula::graph::{Expression, Symbol, TooLarge};
 use crate::formula::scope::Scope;
 use crate::formula::tape::Program;
@@ -185,6 +185,17 @@ impl Reader<'_> {
                 && bounds[axis].replace((lower, upper)).is_some()
             {
                 self.errors.push(TypedModelError::Doubled { place });
+            }
+        }
+        for (name, period) in &model.turns {
+            let place = FormulaPlace::Bound { axis: name.clone() };
+            let axis = self.axis(name, &place);
+            if axis.is_some_and(|axis| bounds[axis].is_some()) {
+                self.errors.push(TypedModelError::Doubled { place });
+            } else if !(period.is_finite() && *period > 0.0) {
+                let (symbol, period) = (name.clone(), *period);
+                let fault = PeriodFault::NotPositive { symbol, period };
+                self.errors.push(TypedModelError::Periodic { place, fault });
             }
         }
         Some(bounds)

@@ -15,6 +15,8 @@ use crate::topology::reconstruction::Weights;
 impl IndicatorKind {
     /// p''/p of a marginal at its centre of symmetry.
     pub const CURVATURE: Self = Self(&CURVATURE);
+    /// The same half a turn from the centre, on an axis that closes on itself: a reflection holds that place too.
+    pub const OPPOSITE_CURVATURE: Self = Self(&OPPOSITE_CURVATURE);
     /// Slope of log p on the upper side of a kink at the centre of symmetry; in a symmetric density half its jump.
     pub const KINK_SLOPE: Self = Self(&KINK_SLOPE);
     /// Curvature of a joint density along a kink through the centre of symmetry.
@@ -33,6 +35,14 @@ const CURVATURE: Traits = Traits {
     ..Traits::new("curvature at the centre", |density, _| {
         read_one(density, IndicatorKind::CURVATURE)
     })
+};
+
+/// Read on a density laid out over some turns, whose centre is that place.
+const OPPOSITE_CURVATURE: Traits = Traits {
+    title: "$p$″ / $p$",
+    words: |step| Some(step.of_centre()),
+    is_at_centre: true,
+    ..Traits::new("curvature half a turn from the centre", |_, _| None)
 };
 
 const LOWER: Traits = Traits {

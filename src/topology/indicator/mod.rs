@@ -158,7 +158,7 @@ fn is_told(estimated: &EstimatedDensity, place: &[f64]) -> bool {
     let density = &estimated.density;
     let mut pairs = density.axes.iter().zip(place);
     let cell = pairs.try_fold(0, |cell, (axis, &at)| {
-        Some(cell * axis.count() + axis.find(at)?)
+        Some(cell * axis.count() + axis.find(axis.wrapped(at))?)
     });
     let value = cell.and_then(|cell| density.values.get(cell)).copied();
     let least = estimated.negligible * density.maximum();
@@ -190,7 +190,8 @@ pub(crate) fn is_clear(estimated: &EstimatedDensity, place: &[f64], times: f64) 
     match density.axes.as_slice() {
         [_] => near(0).all(is_clear),
         [first, second] => {
-            let (row, column) = (first.find(place[0]), second.find(place[1]));
+            let row = first.find(first.wrapped(place[0]));
+            let column = second.find(second.wrapped(place[1]));
             let (Some(row), Some(column)) = (row, column) else {
                 return false;
             };
@@ -204,7 +205,7 @@ pub(crate) fn is_clear(estimated: &EstimatedDensity, place: &[f64], times: f64) 
 
 /// The cell along an axis that holds a coordinate, and so many on either side.
 fn near(axis: &Axis, at: f64, reach: usize) -> std::ops::Range<usize> {
-    let middle = axis.find(at).unwrap_or(0);
+    let middle = axis.find(axis.wrapped(at)).unwrap_or(0);
     middle.saturating_sub(reach)..(middle + reach + 1).min(axis.count())
 }
 

@@ -4,8 +4,9 @@ use super::IndicatorKind;
 
 impl IndicatorKind {
     /// All but test functions, which are not stored.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 22] = [
         Self::CURVATURE,
+        Self::OPPOSITE_CURVATURE,
         Self::KINK_SLOPE,
         Self::CURVATURE_ALONG_KINK,
         Self::LOWER_CURVATURE,

@@ -120,7 +120,10 @@ impl Reader<'_> {
         noise: &[Vec<Expression>],
     ) -> Result<(), TypedModelError> {
         for (place, wave) in self.waves(Symbol::State(axis), drift, noise)? {
-            let rate = self.scope.graph().as_constant(wave.rate);
+            // A number that is worked out, as 2 pi is, is one too.
+            let tried = self.at_trials(wave.rate);
+            let first = tried.first().copied();
+            let rate = first.filter(|first| tried.iter().all(|one| one == first));
             let turns = rate.map(|rate| rate * period / TAU);
             let is_whole = |turns: f64| (turns - turns.round()).abs() <= ROUNDING * turns.abs();
             if !turns.is_some_and(is_whole) {

@@ -1,0 +1,79 @@
+//! Angles through sweep files: changes of a density on a circle at exact values, wherever the seam is.
+
+use crate::common::sweeps::{rows, swept};
+use pbif::continuation::BifurcationStatus;
+
+/// θ' = -sin u - b sin 2u, u = θ - s, with white noise of intensity 2 D: p ∝ exp((cos u + (b/2) cos 2u)/D).
+fn circle(shift: f64, d: f64) -> String {
+    let (double, noise) = (2.0 * shift, (2.0 * d).sqrt());
+    format!(
+        "[system.equations]\ntheta = \"-sin(theta - {shift}) - b sin(2 theta - {double})\"\n\
+         [system.noise]\ntheta = \"{noise}\"\n[system.bounds]\ntheta = \"periodic\"\n\
+         [sweep]\nparameter = \"b\"\nfrom = -1.1\nto = 1.3\npoints = 13\n"
+    )
+}
+
+#[test]
+fn both_places_that_a_reflection_holds_change_where_they_do() {
+    // The curvature of the exponent is -1 - 2b at u = 0 and 1 - 2b half a turn from it.
+    for (shift, d) in [(0.0, 1.0), (1.2, 1.0), (-2.6, 0.4)] {
+        let (_, result) = swept(&circle(shift, d), "");
+        let found = rows(&result, "theta");
+        let [split, birth] = found[..] else {
+            panic!("{shift} {d}: two changes: {found:?}");
+        };
+        for (row, exact) in [(split, -0.5), (birth, 0.5)] {
+            let off = (row.value - exact).abs();
+            assert_eq!(
+                row.status,
+                BifurcationStatus::Located,
+                "{shift} {d} {row:?}"
+            );
+            assert!(off <= row.error && row.error < 1e-3, "{shift} {d}: {row:?}");
+        }
+        let peaks = |signature: pbif::topology::Signature| signature.peaks;
+        assert_eq!([split.before, split.after].map(peaks), [2, 1]);
+        assert_eq!([birth.before, birth.after].map(peaks), [1, 2]);
+    }
+}
+
+#[test]
+fn a_pair_is_born_at_the_fold_of_the_potential_wherever_the_seam_is() {
+    // θ' = -sin u - 0.8 sin(2u + b): no symmetry. The valley and the peak of the equilibrium density p ∝ e^{-U/D} are
+    // equilibria, born where sin u + 0.8 sin(2u + b) and its derivative vanish together.
+    let force = |u: f64, b: f64| u.sin() + 0.8 * (2.0 * u + b).sin();
+    let slope = |u: f64, b: f64| u.cos() + 1.6 * (2.0 * u + b).cos();
+    let (mut u, mut b) = (2.6, 1.0);
+    for _ in 0..50 {
+        let (f, g) = (force(u, b), slope(u, b));
+        let (fu, fb) = (g, 0.8 * (2.0 * u + b).cos());
+        let (gu, gb) = (
+            -u.sin() - 3.2 * (2.0 * u + b).sin(),
+            -1.6 * (2.0 * u + b).sin(),
+        );
+        let determinant = fu * gb - fb * gu;
+        u -= (f * gb - fb * g) / determinant;
+        b -= (fu * g - gu * f) / determinant;
+    }
+    assert!(force(u, b).abs() < 1e-12 && slope(u, b).abs() < 1e-12);
+    let mut values = Vec::new();
+    for shift in [0.0, 0.7, 3.0] {
+        let text = format!(
+            "[system.equations]\ntheta = \"-sin(theta - {shift}) - 0.8 sin(2 theta - {} + b)\"\n\
+             [system.noise]\ntheta = \"sqrt(2)\"\n[system.bounds]\ntheta = \"periodic\"\n\
+             [sweep]\nparameter = \"b\"\nfrom = {}\nto = {}\npoints = 9\n",
+            2.0 * shift,
+            b - 0.31,
+            b + 0.33
+        );
+        let (_, result) = swept(&text, "");
+        let [row] = rows(&result, "theta")[..] else {
+            panic!("{shift}: one change");
+        };
+        assert_eq!(row.status, BifurcationStatus::Located, "{shift} {row:?}");
+        let off = (row.value - b).abs();
+        assert!(off <= row.error && row.error < 1e-3, "{shift} {b}: {row:?}");
+        values.push(row.value);
+    }
+    println!("{b} {values:?}");
+}
