@@ -72,7 +72,7 @@ fn on_turns(system: &dyn System, centres: &[Vec<f64>]) -> Vec<Vec<f64>> {
         for axis in 0..system.dimension() {
             let drift = |x: f64| system.drift_at(0.0, &at(x))[axis];
             // Off a round place, so that none of these is a zero itself.
-            let place = |k: usize| from + (to - from) * (k as f64 + 0.318_309_886) / LOOKS as f64;
+            let place = |k: usize| from + (to - from) * (k as f64 + 0.37) / LOOKS as f64;
             let values: Vec<f64> = (0..=LOOKS).map(|k| drift(place(k))).collect();
             let crossed = (0..LOOKS).filter(|&k| values[k] * values[k + 1] < 0.0);
             found.extend(crossed.map(|k| at(zero(&drift, (place(k), place(k + 1)), values[k]))));
