@@ -25,7 +25,7 @@ fn both_places_that_a_reflection_holds_change_where_they_do() {
         for (row, exact) in [(split, -0.5), (birth, 0.5)] {
             let off = (row.value - exact).abs();
             assert_eq!(
-                row.status,
+                row.status(),
                 BifurcationStatus::Located,
                 "{shift} {d} {row:?}"
             );
@@ -70,7 +70,7 @@ fn a_pair_is_born_at_the_fold_of_the_potential_wherever_the_seam_is() {
         let [row] = rows(&result, "theta")[..] else {
             panic!("{shift}: one change");
         };
-        assert_eq!(row.status, BifurcationStatus::Located, "{shift} {row:?}");
+        assert_eq!(row.status(), BifurcationStatus::Located, "{shift} {row:?}");
         let off = (row.value - b).abs();
         assert!(off <= row.error && row.error < 1e-3, "{shift} {b}: {row:?}");
         values.push(row.value);
