@@ -1,7 +1,7 @@
 //! Densities along axes that close on themselves: a circle, or a cylinder.
 //!
-//! Such a density is laid out over three turns, on a line, and looked at like any other; what lies in the middle turn is
-//! what there is. Peaks and craters, their saddles and the places of indicators may lie across the seam then. A peak of
+//! Such a density is laid out over three turns, on a line, and looked at like any other; what lies in the middle turn
+//! is what there is. Peaks and craters, their saddles and the places of indicators may lie across the seam then. A peak of
 //! the middle turn has copies in the turns beside it: the highest one meets those at the lowest saddle on the way
 //! round, which is a valley of its own.
 //!
@@ -12,10 +12,9 @@
 //! centres with an indicator each, and peaks off both come in pairs.
 
 use super::candidate::{Candidate, judge};
-use super::detector::grid;
 use super::exact::{by_kind_and_height, present_places};
 use super::indicator::{at_centre, shoulders};
-use super::persistence::{CellValues, Component, components};
+use super::persistence::{CellValues, Component, components, grid};
 use super::place_error;
 use super::significance::Limits;
 use super::surroundings::{contents, rims};

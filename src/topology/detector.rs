@@ -4,7 +4,7 @@ use super::candidate::{Candidate, judge};
 use super::closed::Cover;
 use super::exact::{self, by_kind_and_height, present_places};
 use super::indicator::{Counted, at_centre, correct, flanks_from_centre, put_right, shoulders};
-use super::persistence::{CellValues, components};
+use super::persistence::{components, grid};
 use super::place_error;
 use super::significance::Limits;
 use super::surroundings::{contents, rims};
@@ -51,24 +51,6 @@ impl PersistenceDetector {
             (density.density.maximum(), density.negligible_height()),
         )
     }
-}
-
-/// The grid of a density, unless it cannot have features.
-pub(super) fn grid(estimated: &EstimatedDensity) -> Option<CellValues<'_>> {
-    let values = &estimated.density.values;
-    let (rows, columns) = match estimated.density.axes.as_slice() {
-        [axis] => (1, axis.count()),
-        [first, second] => (first.count(), second.count()),
-        _ => return None,
-    };
-    let is_whole = values.len() == rows * columns && estimated.standard_error.len() == values.len();
-    let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
-    let usable = is_whole && finite(values) && finite(&estimated.standard_error);
-    (usable && estimated.density.maximum() > 0.0).then_some(CellValues {
-        rows,
-        columns,
-        values,
-    })
 }
 
 impl Detector for PersistenceDetector {

@@ -13,6 +13,8 @@
 //! persistence zero, which are dropped. Hence mirroring or transposing the grid leaves the persistences as they are, to
 //! the last bit.
 
+use crate::density::EstimatedDensity;
+
 /// A component of the superlevel (sublevel) sets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Component {
@@ -30,6 +32,24 @@ pub(super) struct CellValues<'a> {
     pub(super) rows: usize,
     pub(super) columns: usize,
     pub(super) values: &'a [f64],
+}
+
+/// The grid of a density, unless it cannot have features.
+pub(super) fn grid(estimated: &EstimatedDensity) -> Option<CellValues<'_>> {
+    let values = &estimated.density.values;
+    let (rows, columns) = match estimated.density.axes.as_slice() {
+        [axis] => (1, axis.count()),
+        [first, second] => (first.count(), second.count()),
+        _ => return None,
+    };
+    let is_whole = values.len() == rows * columns && estimated.standard_error.len() == values.len();
+    let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
+    let usable = is_whole && finite(values) && finite(&estimated.standard_error);
+    (usable && estimated.density.maximum() > 0.0).then_some(CellValues {
+        rows,
+        columns,
+        values,
+    })
 }
 
 /// Steps to the neighbours of a cell; the first four are those across a face.

@@ -2,9 +2,9 @@
 //!
 //! Let Θ be the angle with its turns counted, dΘ = a dt + b dW, and p the density of the state. The mean velocity is
 //! V = ∫ a p. The first moment of Θ at a state grows as V t p + r, where r, of integral zero, solves
-//! Q r = -[(a - V) p - ∂(b² p)/∂θ]; the effective diffusion is half the rate at which the variance of Θ grows, D =
-//! ∫ (b²/2) p + ∫ a r (G. A. Pavliotis and A. M. Stuart, *Multiscale Methods*, 2008, ch. 13). Along the harmonics of the
-//! angle all integrals are sums over nodes.
+//! Q r = -[(a - V) p - ∂(b² p)/∂θ]; the effective diffusion is half the rate at which the variance of Θ grows,
+//! D = ∫ (b²/2) p + ∫ a r (G. A. Pavliotis and A. M. Stuart, *Multiscale Methods*, 2008, ch. 13). Along the
+//! harmonics of the angle all integrals are sums over nodes.
 //!
 //! The error of both is what the second scheme changes (to first order, with the factors at hand), the last two
 //! harmonics where they were left out, and what the solver leaves.
