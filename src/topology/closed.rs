@@ -1,9 +1,9 @@
 //! Densities along axes that close on themselves: a circle, or a cylinder.
 //!
-//! Such a density is laid out over three turns, on a line, and looked at like any other; what lies in the middle turn
-//! is what there is. Peaks and craters, their saddles and the places of indicators may lie across the seam then. A
-//! peak of the middle turn has copies in the turns beside it: the highest one meets those at the lowest saddle on the way
-//! round, which is a valley of its own.
+//! Such a density is laid out over three turns, on a line, and looked at like any other; what lies in the middle
+//! turn is what there is. Peaks and craters, their saddles and the places of indicators may lie across the seam
+//! then. A peak of the middle turn has copies in the turns beside it: the highest one meets those at the lowest
+//! saddle on the way round, which is a valley of its own.
 //!
 //! On a circle the highest peak counts, as on a line, however level the density is. Of a joint density whose highest
 //! ridge runs around the cylinder without a peak that stands out it is a ring.
