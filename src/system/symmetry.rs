@@ -51,6 +51,8 @@ fn symmetry(system: &dyn System, ends: &[(f64, f64)], shifted: Option<usize>) ->
 
 /// Places along a turn at which the drift along an axis is looked at for a change of its sign.
 const LOOKS: usize = 64;
+/// Share of half a turn that is rounding.
+const SAME_PLACE: f64 = 1e-9;
 /// Halvings of the interval that holds a zero: to the last bit.
 const HALVINGS: usize = 60;
 
@@ -74,8 +76,15 @@ fn on_turns(system: &dyn System, centres: &[Vec<f64>]) -> Vec<Vec<f64>> {
             // Off a round place, so that none of these is a zero itself.
             let place = |k: usize| from + (to - from) * (k as f64 + 0.37) / LOOKS as f64;
             let values: Vec<f64> = (0..=LOOKS).map(|k| drift(place(k))).collect();
+            // Of the two places that a reflection holds the one in the middle half of the turn, whichever is found:
+            // it must not change along a sweep.
+            let middle = 0.5 * (from + to);
+            let half = 0.5 * (to - from);
+            let chosen = |x: f64| x - half * ((x - middle) / half - SAME_PLACE).round();
             let crossed = (0..LOOKS).filter(|&k| values[k] * values[k + 1] < 0.0);
-            found.extend(crossed.map(|k| at(zero(&drift, (place(k), place(k + 1)), values[k]))));
+            found.extend(
+                crossed.map(|k| at(chosen(zero(&drift, (place(k), place(k + 1)), values[k])))),
+            );
         }
     }
     found
