@@ -56,6 +56,7 @@ pub mod passage;
 pub mod run;
 pub mod sampling;
 pub mod space;
+pub mod spectrum;
 pub mod stationary;
 #[cfg(feature = "store")]
 pub mod sweep_file;

@@ -28,7 +28,6 @@ pub use solve::{Solved, Work};
 use crate::cancellation::Cancellation;
 use crate::continuation::Subject;
 use crate::density::{EstimatedDensity, Observable};
-use crate::exponent::of_family;
 use crate::method::{GeneratorMethodOptions, MethodError, MonteCarloOptions, Problem, SgcmOptions};
 use crate::space::{Axis, CellSpace};
 use observer::Steps;
@@ -186,19 +185,6 @@ pub enum CompareError {
     /// The caller asked to stop.
     #[error("interrupted")]
     Interrupted,
-    /// The fixed point of which the family wants the exponent attracts: trajectories would run until they are at rest.
-    #[error(
-        "at {parameter} = {value} there is no density to compare: the fixed point of `[exponent]` attracts almost every path beside \
-         it (largest Lyapunov exponent {exponent:.3e}); compare at values where its exponent is positive"
-    )]
-    PointMass {
-        /// The swept parameter.
-        parameter: String,
-        /// Its value.
-        value: f64,
-        /// The fixed point's exponent.
-        exponent: f64,
-    },
     /// A method refuses.
     #[error(transparent)]
     Method(MethodError),
@@ -262,18 +248,6 @@ pub fn compare(
     cancellation: &Cancellation,
     observer: &mut dyn CompareObserver,
 ) -> Result<Comparison, CompareError> {
-    let family = task.problem.family();
-    for &value in task.at {
-        if let Some(Ok(found)) = of_family(family, value)
-            && found.attracts()
-        {
-            return Err(CompareError::PointMass {
-                parameter: family.parameter().to_owned(),
-                value,
-                exponent: found.value,
-            });
-        }
-    }
     let common = common_cells(task.problem.space())?;
     // Preparation, the generator, SGCM by both corrections, Monte Carlo; and the error against time.
     let total = 2 + 3 * task.at.len();

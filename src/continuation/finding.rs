@@ -205,6 +205,13 @@ pub enum Finding {
     },
     /// There is no exponent: drift or noise has no derivative at the state, or the angle has no density.
     NoExponent,
+    /// Fewer slow modes are known than are wanted.
+    FewSlowModes {
+        /// Modes that are known.
+        known: usize,
+        /// Modes that are wanted.
+        wanted: usize,
+    },
     /// Sentences of a stored run that has no numbers for them.
     Told(String),
 }
@@ -333,6 +340,9 @@ impl Finding {
             Self::FewReplicates { usable, wanted } => {
                 plain("few-replicates", &[usable as f64, wanted as f64])
             }
+            Self::FewSlowModes { known, wanted } => {
+                plain("few-slow-modes", &[known as f64, wanted as f64])
+            }
             Self::NoPassage { passage, fault } => plain(fault.code(), &[passage as f64]),
             Self::PassageCut {
                 passage,
@@ -394,6 +404,10 @@ impl Finding {
             ("no-replicates", None, &[]) => Self::NoReplicates,
             ("few-replicates", None, &[usable, wanted]) => Self::FewReplicates {
                 usable: usable as usize,
+                wanted: wanted as usize,
+            },
+            ("few-slow-modes", None, &[known, wanted]) => Self::FewSlowModes {
+                known: known as usize,
                 wanted: wanted as usize,
             },
             ("passage-cut", None, &[passage, share, longest]) => Self::PassageCut {

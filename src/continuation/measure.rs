@@ -114,6 +114,16 @@ pub(crate) const TURN_DIFFUSION: MeasureKind = kind(
     "{}^2/t",
     "effective diffusion of an angle whose turns are counted: half the rate at which its variance grows",
 );
+pub(crate) const DECAY_RATE: MeasureKind = kind(
+    "decay_rate",
+    "1/t",
+    "rate at which a slow mode, a deviation from the steady state, dies out",
+);
+pub(crate) const DECAY_FREQUENCY: MeasureKind = kind(
+    "decay_frequency",
+    "1/t",
+    "angular frequency at which a slow mode oscillates; 0 where it does not",
+);
 
 pub(crate) const ESCAPE_RATE: MeasureKind =
     kind("escape_rate", "1/t", "mass that leaves Ω per unit time");

@@ -3,8 +3,10 @@
 //!
 //! With s = (cos φ, sin φ) and n = (-sin φ, cos φ), Itô's formula gives
 //!
-//!     dφ = [n·A s - Σ (s·B_k s)(n·B_k s)] dt + Σ n·B_k s dW_k
-//!     λ = E[s·A s + ½ Σ ((n·B_k s)² - (s·B_k s)²)]
+//! ```text
+//! dφ = [n·A s - Σ (s·B_k s)(n·B_k s)] dt + Σ n·B_k s dW_k
+//! λ = E[s·A s + ½ Σ ((n·B_k s)² - (s·B_k s)²)]
+//! ```
 //!
 //! All of these are trigonometric polynomials of 2φ of at most second degree, so that the Fourier coefficients q_k of
 //! the density obey equations in which each has its neighbours alone. They are cut off at a number of modes, which is

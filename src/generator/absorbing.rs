@@ -16,7 +16,7 @@ use sprs::{CsMat, TriMat};
 
 use super::assemble::{axis_blocks, axis_fluxes, check, strides};
 use super::geometry::{AxisGeometry, End};
-use super::scheme::{AdvectiveScheme, REACH, Window};
+use super::scheme::{Dissipation, REACH, Window};
 use super::{GeneratorError, GeneratorOptions};
 use crate::MAX_DIMENSION;
 use crate::space::CellSpace;
@@ -35,15 +35,6 @@ pub struct AbsorbingGenerator {
     /// Weights with which the unknowns sum to the mass outside of the region: zero inside, one away from the border,
     /// where the density does not end between two nodes. In two ways, which differ where the border is oblique.
     pub weights: [Vec<f64>; 2],
-}
-
-/// How much of the advective scheme's dissipation is kept. What two shares differ by is an error of the cells.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Dissipation {
-    /// All of it.
-    Full,
-    /// Half of it.
-    Half,
 }
 
 /// How stencils go on past a border. What the two differ by is an error of the border.
@@ -67,7 +58,7 @@ pub fn assemble_absorbing(
     (dissipation, closure): (Dissipation, Closure),
 ) -> Result<AbsorbingGenerator, GeneratorError> {
     check(system, space)?;
-    let geometry = |axis| geometry(system, axis, space, options.scheme, dissipation);
+    let geometry = |axis| AxisGeometry::damped(system, axis, space, options, dissipation);
     let axes: Vec<AxisGeometry> = (0..space.dimension()).map(geometry).collect();
     let strides = strides(&axes);
     let border = Border {
@@ -103,21 +94,6 @@ pub fn assemble_absorbing(
         }
     }
     assembly.matrix()
-}
-
-fn geometry(
-    system: &dyn System,
-    axis: usize,
-    space: &CellSpace,
-    scheme: AdvectiveScheme,
-    dissipation: Dissipation,
-) -> AxisGeometry {
-    let mut geometry = AxisGeometry::new(system, axis, space, scheme);
-    if dissipation == Dissipation::Half {
-        let weights = geometry.stencils.iter_mut().map(|one| &mut one.dissipation);
-        weights.flatten().for_each(|weight| *weight *= 0.5);
-    }
-    geometry
 }
 
 /// The level function at the nodes of all cells.

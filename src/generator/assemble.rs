@@ -9,7 +9,7 @@ use super::columns::{AxisRates, columns};
 use super::geometry::{AxisGeometry, End};
 use super::modes::ModeAxis;
 use super::sampler::{LineSampler, quadrature_points};
-use super::scheme::{REACH, Window};
+use super::scheme::{Dissipation, REACH, Window};
 use super::{Generator, GeneratorError, GeneratorOptions};
 use crate::MAX_DIMENSION;
 use crate::space::CellSpace;
@@ -35,6 +35,26 @@ pub fn assemble(
     assemble_within(system, system, space, options)
 }
 
+/// As [`assemble`], with all or half of the dissipation of advective fluxes. What the two differ by is an error of
+/// functions of the generator, its eigenvalues among them, to first order.
+///
+/// # Errors
+/// As [`assemble`].
+pub fn assemble_damped(
+    system: &dyn System,
+    space: &CellSpace,
+    options: &GeneratorOptions,
+    dissipation: Dissipation,
+) -> Result<Generator, GeneratorError> {
+    check(system, space)?;
+    let geometry = |axis| AxisGeometry::damped(system, axis, space, options, dissipation);
+    assemble_on(
+        (0..space.dimension()).map(geometry).collect(),
+        system,
+        space,
+    )
+}
+
 /// As [`assemble`], with the walls of another system: so a derivative by a parameter that moves a wall is
 /// taken with Ω and its ends held.
 pub(super) fn assemble_within(
@@ -44,9 +64,19 @@ pub(super) fn assemble_within(
     options: &GeneratorOptions,
 ) -> Result<Generator, GeneratorError> {
     check(system, space)?;
-    let axes: Vec<AxisGeometry> = (0..space.dimension())
-        .map(|index| AxisGeometry::new(walls, index, space, options.scheme))
-        .collect();
+    let geometry = |axis| AxisGeometry::new(walls, axis, space, options.scheme);
+    assemble_on(
+        (0..space.dimension()).map(geometry).collect(),
+        system,
+        space,
+    )
+}
+
+fn assemble_on(
+    axes: Vec<AxisGeometry>,
+    system: &dyn System,
+    space: &CellSpace,
+) -> Result<Generator, GeneratorError> {
     for (axis, geometry) in axes.iter().enumerate() {
         if let Some(modes) = &geometry.modes {
             modes.check(system, axis, geometry.ends == [End::Wall; 2])?;

@@ -1,7 +1,8 @@
 //! One axis as the discretisation sees it: nodes, local widths, ends, and the stencil of every face.
 
+use super::GeneratorOptions;
 use super::modes::ModeAxis;
-use super::scheme::{AdvectiveScheme, DAMPING_BESIDE_MODES, REACH, Window};
+use super::scheme::{AdvectiveScheme, DAMPING_BESIDE_MODES, Dissipation, REACH, Window};
 use crate::space::{Axis, CellSpace, Series};
 use crate::system::System;
 
@@ -80,6 +81,23 @@ impl AxisGeometry {
             },
             modes: ModeAxis::new(axis),
         }
+    }
+
+    /// As [`Self::new`], with all or half of the dissipation of the fluxes.
+    pub(super) fn damped(
+        system: &dyn System,
+        index: usize,
+        space: &CellSpace,
+        options: &GeneratorOptions,
+        dissipation: Dissipation,
+    ) -> Self {
+        let mut geometry = Self::new(system, index, space, options.scheme);
+        if dissipation == Dissipation::Half {
+            let weights = geometry.stencils.iter_mut();
+            let weights = weights.flat_map(|one| &mut one.dissipation);
+            weights.for_each(|weight| *weight *= 0.5);
+        }
+        geometry
     }
 
     /// Number of cells.

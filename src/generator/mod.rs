@@ -41,14 +41,14 @@ mod scheme;
 mod smooth;
 
 pub(crate) use absorbing::levels;
-pub use absorbing::{AbsorbingGenerator, Closure, Dissipation, assemble_absorbing};
-pub use assemble::assemble;
+pub use absorbing::{AbsorbingGenerator, Closure, assemble_absorbing};
+pub use assemble::{assemble, assemble_damped};
 pub use derivative::assemble_derivative;
 pub use grading::automatic_grading;
 pub use masses::{cell_masses, unknown_moments};
 pub use one_axis::{End, OneAxis, exponent_at, one_axis, profile};
 pub(crate) use resolution::{Resolution, resolution};
-pub use scheme::AdvectiveScheme;
+pub use scheme::{AdvectiveScheme, Dissipation};
 
 use sprs::CsMat;
 

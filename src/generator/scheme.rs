@@ -16,6 +16,15 @@ pub(super) type Window = [f64; 2 * REACH];
 /// range comes back as wiggles.
 pub(super) const DAMPING_BESIDE_MODES: f64 = 0.5;
 
+/// How much of the advective scheme's dissipation is kept. What two shares differ by is an error of the cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dissipation {
+    /// All of it.
+    Full,
+    /// Half of it.
+    Half,
+}
+
 /// How the advective flux through a face is reconstructed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum AdvectiveScheme {

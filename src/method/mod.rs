@@ -92,11 +92,11 @@ pub enum MethodError {
         /// Name of the axis.
         axis: String,
     },
-    /// Times of first passage of a system with an axis that closes on itself.
+    /// Times of first passage, or slow modes, of a system with an axis that closes on itself.
     #[error(
-        "axis `{axis}` closes on itself: times of first passage are not worked out over phases and angles yet; leave `[passage]` out"
+        "axis `{axis}` closes on itself: times of first passage and slow modes are not worked out over phases and angles yet; leave `[passage]` and `[relaxation]` out"
     )]
-    TurnOfPassage {
+    TurnOfQuestion {
         /// Name of the axis.
         axis: String,
     },
@@ -169,10 +169,9 @@ fn has_densities(problem: &Problem) -> Result<(), MethodError> {
         system.facts().autonomous()?;
     }
     let family = problem.family();
-    if let (false, Err(MethodError::Turn { axis })) =
-        (family.passages().is_empty(), has_no_turns(problem))
-    {
-        return Err(MethodError::TurnOfPassage { axis });
+    let asks = !family.passages().is_empty() || family.slow_modes() > 0;
+    if let (true, Err(MethodError::Turn { axis })) = (asks, has_no_turns(problem)) {
+        return Err(MethodError::TurnOfQuestion { axis });
     }
     let (from, to) = family.ends();
     for value in [from, 0.5 * (from + to), to] {

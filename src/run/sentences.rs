@@ -200,6 +200,9 @@ fn solve_in_words(family: &Family, finding: &Finding) -> String {
         Finding::FewReplicates { usable, wanted } => {
             format!("the sampling error rests on {usable} of {wanted} groups of samples")
         }
+        Finding::FewSlowModes { known, wanted } => format!(
+            "{known} of {wanted} slow modes are known: finer cells, or wider ranges, know more"
+        ),
         Finding::NoPassage { passage, fault } => passage_in_words(family, passage, fault),
         Finding::PassageCut {
             passage,

@@ -246,6 +246,8 @@ pub(super) struct Draft {
     pub(super) exponent: Option<ExponentKind>,
     /// Axes and coordinates of the fixed point.
     pub(super) fixed_point: Vec<(String, f64)>,
+    /// How many slow modes are wanted.
+    pub(super) slow_modes: Option<usize>,
     pub(super) detect: DetectOptions,
     pub(super) locate: LocateOptions,
     pub(super) figures_at: Option<Vec<f64>>,
@@ -279,6 +281,7 @@ impl Default for Draft {
             passages: Vec::new(),
             exponent: None,
             fixed_point: Vec::new(),
+            slow_modes: None,
             detect: DetectOptions::default(),
             locate: LocateOptions::default(),
             figures_at: None,

@@ -168,9 +168,12 @@ fn unknown_key(entry: &Entry, path: &[&str]) -> Diagnostic {
     let names = below(parent);
     let plain: Vec<&str> = names.iter().map(|name| name.trim_matches('`')).collect();
     let title = format!("unknown key `{}`", quotable(&path.join(".")));
-    let diagnostic = Diagnostic::new(title)
-        .at(&entry.key_place, "not a key of a sweep file")
-        .nearest(&entry.key, plain.iter().copied());
+    let diagnostic = Diagnostic::new(title).at(&entry.key_place, "not a key of a sweep file");
+    // The very name of a table says more than likeness does.
+    if let Some(table) = table_by_name(&entry.key) {
+        return diagnostic.remedy(format!("did you mean `{table}`?"));
+    }
+    let diagnostic = diagnostic.nearest(&entry.key, plain.iter().copied());
     if nearest_name(&entry.key, plain).is_some() {
         return diagnostic;
     }
@@ -179,7 +182,7 @@ fn unknown_key(entry: &Entry, path: &[&str]) -> Diagnostic {
         .iter()
         .find(|key| key.parts().last() == Some(&entry.key));
     let elsewhere = elsewhere.map(|key| key.path().to_owned());
-    match elsewhere.or_else(|| table_by_name(&entry.key)) {
+    match elsewhere {
         Some(path) => diagnostic.remedy(format!("did you mean `{path}`?")),
         None => diagnostic,
     }
@@ -189,7 +192,8 @@ fn unknown_key(entry: &Entry, path: &[&str]) -> Diagnostic {
 fn table_by_name(name: &str) -> Option<String> {
     let prefix = |key: &Key| {
         let at = key.parts().position(|part| part == name)?;
-        Some(key.parts().take(at + 1).collect::<Vec<_>>().join("."))
+        let is_table = key.parts().nth(at + 1).is_some();
+        is_table.then(|| key.parts().take(at + 1).collect::<Vec<_>>().join("."))
     };
     KEYS.iter().find_map(prefix)
 }

@@ -33,6 +33,7 @@ pub struct Family {
     passages: Vec<PassageQuestion>,
     levels: Vec<MeasureLevel>,
     fixed_point: Option<Vec<f64>>,
+    slow_modes: usize,
 }
 
 impl Family {
@@ -62,6 +63,7 @@ impl Family {
             passages: Vec::new(),
             levels: Vec::new(),
             fixed_point: None,
+            slow_modes: 0,
         };
         family.along()?;
         Ok(family)
@@ -131,6 +133,18 @@ impl Family {
         &self.levels
     }
 
+    /// The family with a number of slow modes of which the decay rates are wanted.
+    #[must_use]
+    pub fn with_slow_modes(mut self, wanted: usize) -> Self {
+        self.slow_modes = wanted;
+        self
+    }
+
+    /// How many slow modes are wanted; 0 for none.
+    pub fn slow_modes(&self) -> usize {
+        self.slow_modes
+    }
+
     /// The regions that have names.
     pub fn regions(&self) -> &[Region] {
         &self.regions
@@ -157,6 +171,7 @@ impl Family {
             passages: self.passages.clone(),
             levels: self.levels.clone(),
             fixed_point: self.fixed_point.clone(),
+            slow_modes: self.slow_modes,
             ..Self::new(self.model.clone(), fixed, path)?
         })
     }

@@ -19,14 +19,15 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("generator", &["system", "space", "density"]),
     ("stationary", &["cancellation", "space", "sampling"]),
     ("passage", &["cancellation", "system", "space", "density", "generator", "stationary"]),
+    ("spectrum", &["cancellation", "system", "space", "generator", "stationary"]),
     ("topology", &["space", "density"]),
     ("continuation", &["cancellation", "system", "exponent", "space", "density", "topology", "bytes"]),
     ("method", &[
         "cancellation", "system", "exponent", "space", "sampling", "monte_carlo", "generator", "stationary", "passage",
-        "density", "continuation", "bytes"
+        "spectrum", "density", "continuation", "bytes"
     ]),
     ("compare", &[
-        "cancellation", "system", "exponent", "space", "sampling", "monte_carlo", "density", "continuation", "method"
+        "cancellation", "system", "space", "sampling", "monte_carlo", "density", "continuation", "method"
     ]),
     ("figure", &["system", "space", "density", "topology", "continuation", "compare"]),
     ("sweep_file", &[

@@ -27,5 +27,6 @@ mod paper;
 mod passages;
 mod paths;
 mod quantities;
+mod relaxation;
 mod sweep;
 mod systems;

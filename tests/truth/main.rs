@@ -18,3 +18,4 @@ mod passage_starts;
 mod passages;
 mod random_systems;
 mod sampled_passages;
+mod slow_modes;

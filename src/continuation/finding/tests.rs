@@ -86,7 +86,11 @@ pub(crate) fn every_finding() -> Vec<Finding> {
             usable: 6,
             wanted: 8,
         }),
-        F::FewReplicates { .. } => Some(F::NoPassage {
+        F::FewReplicates { .. } => Some(F::FewSlowModes {
+            known: 2,
+            wanted: 6,
+        }),
+        F::FewSlowModes { .. } => Some(F::NoPassage {
             passage: 0,
             fault: PassageFault::Nowhere,
         }),

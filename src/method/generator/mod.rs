@@ -18,6 +18,7 @@ mod rotation;
 mod second;
 mod sensitivity;
 mod session;
+mod slow_modes;
 mod source;
 mod stand;
 mod trail;

@@ -16,6 +16,7 @@ use super::relaxation::Relaxation;
 use super::rotation::{Steady, rotation};
 use super::second::{Second, SecondSolve, companion};
 use super::sensitivity::GeneratorSensitivity;
+use super::slow_modes::add_slow_modes;
 use super::source::METHOD;
 use super::stand::Stand;
 use super::trail::{self, Trail};
@@ -95,7 +96,7 @@ impl GeneratorSession {
             let mut solution = one_axis::solution(&self.source, value, system.as_ref(), &found)?;
             let (unknowns, changes) = at_nodes(&found.masses);
             let known = Some((unknowns.as_slice(), changes.as_slice()));
-            self.add_passages(&mut solution.report, value, &system, known)?;
+            self.add_asked(&mut solution.report, value, &system, known)?;
             return Ok(solution);
         }
         let nearest = self.trails.nearest(value).cloned();
@@ -111,7 +112,7 @@ impl GeneratorSession {
         let (mut solution, trail) = self.judge(&solved, before.as_ref())?;
         let newest = trail.as_ref().and_then(Trail::newest);
         let known = newest.map(|newest| (newest.mass.as_slice(), newest.difference.as_slice()));
-        self.add_passages(&mut solution.report, value, &solved.system, known)?;
+        self.add_asked(&mut solution.report, value, &solved.system, known)?;
         let Some(trail) = trail else {
             return Ok(solution);
         };
@@ -127,9 +128,9 @@ impl GeneratorSession {
         Ok(solution)
     }
 
-    /// Adds what is asked of first passages at a value, unless densities are all that is asked for; `known` are the
-    /// unknowns of the steady state, and by how much those of another discretisation differ.
-    fn add_passages(
+    /// Adds what is asked of first passages and slow modes at a value, unless densities are all that is asked for;
+    /// `known` are the unknowns of the steady state, and by how much those of another discretisation differ.
+    fn add_asked(
         &self,
         report: &mut SolveReport,
         value: f64,
@@ -146,8 +147,10 @@ impl GeneratorSession {
             planes: &planes,
         });
         let (problem, options) = (&self.source.problem, &self.source.options);
-        let asked = (problem, value);
-        add_passages(report, asked, system, density, options, &self.cancellation)
+        let (asked, cancellation) = ((problem, value), &self.cancellation);
+        add_passages(report, asked, system, density, options, cancellation)?;
+        let unknowns = known.map(|(unknowns, _)| unknowns);
+        add_slow_modes(report, &self.source, system, unknowns, cancellation)
     }
 
     /// Factorises ahead of a value in place of at it, where the sweep goes on: values on either side of the factorised

@@ -4,9 +4,11 @@ mod balance;
 mod entropy;
 mod passage;
 mod rotation;
+mod slow_modes;
 
 pub(super) use passage::measures as measures_of_passage;
 pub(crate) use passage::passage_columns;
+pub(super) use slow_modes::measures as measures_of_slow_modes;
 
 pub(super) use balance::broken;
 
@@ -83,10 +85,12 @@ impl DerivedMeasure {
     }
 }
 
-/// The columns of what a family itself asks for: passages, and the exponent of a fixed point; and those of its angles.
+/// The columns of what a family itself asks for: passages, slow modes, and the exponent of a fixed point; and those of
+/// its angles.
 pub(crate) fn columns_of_family(family: &Family) -> Vec<MeasureColumn> {
     let passages = passage_columns(family).into_iter();
-    let columns = passages.chain(exponent_columns(family));
+    let asked = passages.chain(slow_modes::columns(family));
+    let columns = asked.chain(exponent_columns(family));
     columns.chain(rotation::rotation_columns(family)).collect()
 }
 

@@ -244,6 +244,8 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
             },
         },
         "Coordinate of the fixed point: drift and all noises must be zero there, along the whole sweep."),
+    key("relaxation.modes", Kind::Integer(1, 24), Rule("none"), optional!(slow_modes),
+        "Slow modes, the deviations from the steady state that live longest: as many decay rates and frequencies are told in `points.csv`, with errors (docs/relaxation.md)."),
     key("locate.tolerance", Kind::Number(POSITIVE), Rule("`locate.relative_tolerance` of the swept range"), optional!(locate.tolerance),
         "Wanted width of a P-bifurcation's bracket, in units of the swept parameter."),
     key("locate.relative_tolerance", Kind::Number(OPEN_UNIT), OfOptions, always!(locate.relative_tolerance),

@@ -17,6 +17,7 @@ mod method;
 mod modes_of;
 mod passages;
 mod quantities;
+mod relaxation;
 mod system;
 #[cfg(test)]
 mod tests;
@@ -129,6 +130,7 @@ impl Settings {
         swept.family = swept.family.with_passages(regions, questions);
         let fixed_point = exponent::read(&mut reader, &draft, &swept.family);
         swept.family = swept.family.with_fixed_point(fixed_point);
+        swept.family = relaxation::read(&mut reader, &draft, swept.family);
         let levels = levels::read(&mut reader, &draft, &swept.family, &watched.observables);
         swept.family = swept.family.with_levels(levels);
         let bins = quantities::read_bins(&mut reader, &draft, &swept.family);

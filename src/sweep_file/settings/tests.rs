@@ -264,14 +264,21 @@ fn the_resolved_file_holds_every_key() {
     let keys = keys::keys().iter();
     // Formulas of quantities and their bins are written where quantities are watched, which the tests of quantities do.
     // Sizes of print that follow from the width stay open.
-    // Derived measures, regions, passages, levels and exponents are written where they are asked for.
+    // Derived measures, regions, passages, levels, exponents and slow modes are written where they are asked for.
     let open = [
         "figures.style.text",
         "figures.style.line",
         "detect.measures",
     ];
     let written = |path: &str| {
-        let asked = ["watch.", "regions.", "passage.", "levels.", "exponent."];
+        let asked = [
+            "watch.",
+            "regions.",
+            "passage.",
+            "levels.",
+            "exponent.",
+            "relaxation.",
+        ];
         let of_quantity =
             path.contains("<quantity>") || asked.iter().any(|section| path.starts_with(section));
         !path.ends_with(".range") && !of_quantity && !open.contains(&path)

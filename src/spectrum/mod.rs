@@ -1,0 +1,85 @@
+//! How deviations from a steady state die out: the slowest modes of a generator Q, each with the error of its rates.
+//!
+//! A deviation of the density that has the shape r, Q r = λ r, keeps that shape and goes as e^{λt}: -Re λ is its decay
+//! rate and |Im λ| its angular frequency. Eigenvalues are those of a model of a few dozen states, made of the
+//! vectors (s - Q)⁻ʲ v and of the rows wᵀ(s - Q)⁻ʲ at one or a few real s (rational Krylov spaces from both sides; A.
+//! Ruhe 1984), so that an eigenvalue has the square of the error that either vector has.
+//!
+//! Every eigenvalue is solved by the scheme, by the same scheme with half its dissipation to first order,
+//! lᵀ(Q' - Q) r / lᵀr, and both again on fewer cells. What is given is extrapolated to no dissipation, and its error is
+//! what the cells change, with what the ends of the range may do. A number that half of the dissipation changes by
+//! more than a third is no eigenvalue of the equation, but of its cells, and is left out.
+//!
+//! ```
+//! use pbif::cancellation::Cancellation;
+//! use pbif::generator::{GeneratorOptions, assemble};
+//! use pbif::space::{Axis, CellSpace};
+//! use pbif::spectrum::{Steady, slow_modes};
+//! use pbif::stationary::generator::{RateOptions, RateSolver};
+//! use pbif::system::TypedModel;
+//!
+//! // dx = -x dt + √0.5 dW: the rates are 1, 2, 3 and so on.
+//! let model = TypedModel::new("model", "Model", ["x"]);
+//! let model = model.with_equation("x", "-x").with_noise("x", ["sqrt(0.5)"]).build()?;
+//! let system = model.system_with(&[])?;
+//! let space = CellSpace::new(vec![Axis::uniform(-3.5, 3.5, 100)?])?;
+//! let (options, rates) = (GeneratorOptions::default(), RateOptions::default());
+//! let generator = assemble(&*system, &space, &options)?;
+//! let mut solver = RateSolver::new(space.clone(), rates);
+//! let masses = solver.solve(&generator.matrix, &generator.escape, None)?.mass;
+//! let steady = Steady { masses: &masses, closed: &[[false; 2]] };
+//! let found = slow_modes(&system, &space, 2, steady, (&options, &rates), &Cancellation::new())?;
+//! for (mode, exact) in found.modes.iter().zip([1.0, 2.0]) {
+//!     assert!((mode.decay.0 - exact).abs() <= mode.decay.1 && mode.decay.1 < 1e-2);
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! | part | file |
+//! | --- | --- |
+//! | the generator between walls on the cells of a sweep, or on fewer | `grid.rs` |
+//! | the model of a few dozen states | `model.rs` |
+//! | eigenvalues, and their errors on one grid | `modes.rs` |
+//! | eigenvalues with the errors of the cells | `slow.rs` |
+
+mod grid;
+mod model;
+mod modes;
+mod slow;
+
+pub use slow::{SlowMode, SlowModes, slow_modes};
+
+use crate::generator::GeneratorError;
+use crate::space::SpaceError;
+use crate::stationary::generator::RateError;
+
+/// What is known of the steady state.
+#[derive(Debug, Clone, Copy)]
+pub struct Steady<'a> {
+    /// Masses or unknowns of the cells.
+    pub masses: &'a [f64],
+    /// Per axis, whether its ends are walls of the system, which nothing passes.
+    pub closed: &'a [[bool; 2]],
+}
+
+/// Why there are no numbers.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SpectrumError {
+    /// The steady state moves along no axis, or has no spread.
+    #[error("the steady state has no spread, or nothing moves in it")]
+    Still,
+    /// The generator could not be assembled.
+    #[error(transparent)]
+    Generator(#[from] GeneratorError),
+    /// The cells could not be laid out.
+    #[error(transparent)]
+    Space(#[from] SpaceError),
+    /// The generator could not be solved.
+    #[error(transparent)]
+    Rate(#[from] RateError),
+}
+
+/// Σ a b.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}

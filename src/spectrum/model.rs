@@ -1,0 +1,196 @@
+//! A small model of a generator: its action between a space of columns and a space of rows.
+
+use nalgebra::{Complex, DMatrix, DVector};
+use sprs::CsMat;
+
+use super::dot;
+
+/// Overlaps of the two spaces smaller than this beside the largest are rounding.
+const NOTHING: f64 = 1e-11;
+
+/// A new vector this small, relative to what it was before the others were taken out of it, adds nothing.
+const SPANNED: f64 = 1e-12;
+
+/// Distance of the shift of inverse iteration from an eigenvalue that is known, as a share.
+const BESIDE: f64 = 1e-9;
+
+/// Steps of inverse iteration.
+const INVERSE_STEPS: usize = 3;
+
+/// Orthonormal vectors.
+#[derive(Default)]
+pub(super) struct Basis {
+    pub(super) vectors: Vec<Vec<f64>>,
+}
+
+impl Basis {
+    /// Adds a direction; whether it was a new one.
+    pub(super) fn add(&mut self, mut vector: Vec<f64>) -> bool {
+        let size = dot(&vector, &vector).sqrt();
+        for _ in 0..2 {
+            for known in &self.vectors {
+                let overlap = dot(known, &vector);
+                let pairs = vector.iter_mut().zip(known);
+                pairs.for_each(|(x, y)| *x -= overlap * y);
+            }
+        }
+        let left = dot(&vector, &vector).sqrt();
+        if !(left > SPANNED * size && left.is_finite()) {
+            return false;
+        }
+        vector.iter_mut().for_each(|value| *value /= left);
+        self.vectors.push(vector);
+        true
+    }
+
+    /// The vectors with these weights.
+    pub(super) fn combined(&self, weights: &DVector<Complex<f64>>) -> Vec<Complex<f64>> {
+        let length = self.vectors.first().map_or(0, Vec::len);
+        let mut sum = vec![Complex::new(0.0, 0.0); length];
+        for (weight, vector) in weights.iter().zip(&self.vectors) {
+            let pairs = sum.iter_mut().zip(vector);
+            pairs.for_each(|(total, value)| *total += weight * *value);
+        }
+        sum
+    }
+}
+
+/// What one generator, and another beside it, do between the first vectors of two spaces.
+pub(super) struct Model {
+    /// From weights of the model to those of rows and columns.
+    rows: DMatrix<f64>,
+    columns: DMatrix<f64>,
+    /// The two generators on the model's states.
+    pub(super) first: DMatrix<f64>,
+    pub(super) second: DMatrix<f64>,
+}
+
+/// Products with the vectors of two spaces, which grow with them.
+#[derive(Default)]
+pub(super) struct Products {
+    overlaps: Vec<Vec<f64>>,
+    first: Vec<Vec<f64>>,
+    second: Vec<Vec<f64>>,
+    images: [Vec<Vec<f64>>; 2],
+}
+
+impl Products {
+    /// Takes up the vectors that are new.
+    pub(super) fn grow(&mut self, rows: &Basis, columns: &Basis, matrices: [&CsMat<f64>; 2]) {
+        let before = self.images[0].len();
+        for column in columns.vectors.iter().skip(before) {
+            for (images, matrix) in self.images.iter_mut().zip(matrices) {
+                images.push(product(matrix, column));
+            }
+        }
+        let grow = |table: &mut Vec<Vec<f64>>, vectors: &[Vec<f64>]| {
+            for (row, tested) in rows.vectors.iter().enumerate() {
+                if table.len() == row {
+                    table.push(Vec::new());
+                }
+                let known = table[row].len();
+                table[row].extend(vectors.iter().skip(known).map(|vector| dot(tested, vector)));
+            }
+        };
+        grow(&mut self.overlaps, &columns.vectors);
+        grow(&mut self.first, &self.images[0]);
+        grow(&mut self.second, &self.images[1]);
+    }
+
+    /// The model of so many vectors of either space; `None` where the two have nothing in common.
+    pub(super) fn model(&self, size: usize) -> Option<Model> {
+        let size = size.min(self.overlaps.len()).min(self.images[0].len());
+        let table =
+            |rows: &[Vec<f64>]| DMatrix::from_fn(size, size, |row, column| rows[row][column]);
+        let overlaps = table(&self.overlaps);
+        overlaps
+            .iter()
+            .all(|value| value.is_finite())
+            .then_some(())?;
+        let parts = overlaps.try_svd(true, true, f64::EPSILON, 0)?;
+        let (left, right) = (parts.u?, parts.v_t?);
+        let largest = parts.singular_values.max();
+        let kept: Vec<usize> = (0..size)
+            .filter(|&one| parts.singular_values[one] > NOTHING * largest)
+            .collect();
+        let root = |one: usize| parts.singular_values[kept[one]].sqrt();
+        let rows = DMatrix::from_fn(kept.len(), size, |one, row| {
+            left[(row, kept[one])] / root(one)
+        });
+        let columns = DMatrix::from_fn(size, kept.len(), |column, one| {
+            right[(kept[one], column)] / root(one)
+        });
+        let of = |rates: &[Vec<f64>]| &rows * table(rates) * &columns;
+        let (first, second) = (of(&self.first), of(&self.second));
+        let is_finite = first.iter().chain(&second).all(|rate| rate.is_finite());
+        (is_finite && !kept.is_empty()).then_some(Model {
+            rows,
+            columns,
+            first,
+            second,
+        })
+    }
+}
+
+fn product(matrix: &CsMat<f64>, vector: &[f64]) -> Vec<f64> {
+    let mut image = vec![0.0; vector.len()];
+    for (rates, &weight) in matrix.outer_iterator().zip(vector) {
+        for (row, rate) in rates.iter() {
+            image[row] += rate * weight;
+        }
+    }
+    image
+}
+
+/// An eigenvalue of a model with what belongs to it.
+pub(super) struct Eigen {
+    pub(super) value: Complex<f64>,
+    /// By how much the second generator changes it, to first order.
+    pub(super) change: Complex<f64>,
+    /// Weights of the columns and of the rows; lᵀ r = 1.
+    pub(super) columns: DVector<Complex<f64>>,
+    pub(super) rows: DVector<Complex<f64>>,
+}
+
+impl Model {
+    /// All eigenvalues, of a pair the one with the positive imaginary part.
+    pub(super) fn eigenvalues(&self) -> Vec<Complex<f64>> {
+        let Some(schur) = self.first.clone().try_schur(f64::EPSILON, 10_000) else {
+            return Vec::new();
+        };
+        let all = schur.complex_eigenvalues();
+        all.iter().copied().filter(|one| one.im >= 0.0).collect()
+    }
+
+    /// What belongs to an eigenvalue of the model.
+    pub(super) fn eigen(&self, value: Complex<f64>) -> Option<Eigen> {
+        let size = self.first.nrows();
+        let shift = value * (1.0 + BESIDE) + Complex::new(f64::MIN_POSITIVE, 0.0);
+        let shifted = self.first.map(|rate| Complex::new(rate, 0.0))
+            - DMatrix::from_diagonal_element(size, size, shift);
+        let iterate = |matrix: DMatrix<Complex<f64>>| {
+            let factors = matrix.full_piv_lu();
+            let mut vector = DVector::from_fn(size, |one, _| Complex::new(1.0, 0.1 * one as f64));
+            for _ in 0..INVERSE_STEPS {
+                vector = factors.solve(&vector)?;
+                let length = vector.norm();
+                vector /= Complex::new(length, 0.0);
+            }
+            vector
+                .iter()
+                .all(|one| one.re.is_finite() && one.im.is_finite())
+                .then_some(vector)
+        };
+        let right = iterate(shifted.clone())?;
+        let mut left = iterate(shifted.transpose())?;
+        let scale = left.dot(&right);
+        left /= scale;
+        let change = (&self.second - &self.first).map(|rate| Complex::new(rate, 0.0));
+        Some(Eigen {
+            value,
+            change: left.dot(&(change * &right)),
+            columns: self.columns.map(|one| Complex::new(one, 0.0)) * right,
+            rows: self.rows.transpose().map(|one| Complex::new(one, 0.0)) * left,
+        })
+    }
+}

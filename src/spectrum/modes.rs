@@ -1,0 +1,277 @@
+//! Eigenvalues on one grid: a model that grows until those that are wanted stand.
+
+use nalgebra::Complex;
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use super::grid::{Grid, ending};
+use super::model::{Basis, Eigen, Model, Products};
+use super::{SpectrumError, Steady};
+use crate::cancellation::Cancellation;
+use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, RateOptions};
+use crate::system::System;
+
+/// Vectors of either side by which a model grows before its eigenvalues are looked at again.
+const GROWTH: usize = 12;
+
+/// Modes beyond those that are wanted, in place of some that are none of the equation.
+const SPARE: usize = 1;
+
+/// Distance from the first shift, in shifts, up to which modes are looked for.
+const REACH: f64 = 3.0;
+
+/// Most vectors of either side at one shift.
+const MOST: usize = 144;
+
+/// Most shifts.
+const SHIFTS: usize = 3;
+
+/// A mode this many times slower than the shift has a shift of its own.
+const SLOWER: f64 = 30.0;
+
+/// Slowest decay beside the shift that is looked for.
+const SLOWEST: f64 = 1e-13;
+
+/// Relative change by more vectors at which an eigenvalue stands.
+const TOLERANCE: f64 = 1e-7;
+
+/// Decay rates that differ by less, relatively, are in the order of their frequencies.
+const SAME: f64 = 1e-2;
+
+/// Relative change by half of the dissipation from which a number is none of the equation.
+const ARTEFACT: f64 = 0.3;
+
+/// What the ends do is an estimate: it is taken so many times.
+const SAFETY: f64 = 2.0;
+
+/// Masses below this are rounding.
+const NO_MASS: f64 = 1e-12;
+
+/// Seed of the vectors that begin.
+const SEED: u64 = 0x5eed;
+
+/// An eigenvalue on one grid.
+#[derive(Clone)]
+pub(super) struct GridMode {
+    /// By the scheme.
+    pub(super) value: Complex<f64>,
+    /// What half of the dissipation changes.
+    pub(super) change: Complex<f64>,
+    /// What fewer vectors change, and at most what the ends of the range do.
+    pub(super) error: f64,
+}
+
+impl GridMode {
+    /// Extrapolated to no dissipation.
+    pub(super) fn extrapolated(&self) -> Complex<f64> {
+        self.value + self.change * 2.0
+    }
+}
+
+/// The slowest modes of a grid, in the order of their decay rates, a few more than wanted where so many are known.
+pub(super) fn modes(
+    grid: &Grid,
+    wanted: usize,
+    motion: &Motion,
+    (rates, cancellation): (&RateOptions, &Cancellation),
+) -> Result<(Vec<GridMode>, AbsorbingWork), SpectrumError> {
+    let cells = grid.space.n_cells();
+    let mut numbers = Xoshiro256PlusPlus::seed_from_u64(SEED);
+    let mut random = || -> Vec<f64> {
+        (0..cells)
+            .map(|_| numbers.random_range(-1.0..1.0))
+            .collect()
+    };
+    let (mut columns, mut rows) = (Basis::default(), Basis::default());
+    let mut products = Products::default();
+    let mut work = AbsorbingWork::default();
+    let mut shift = motion.rate;
+    let mut found = Vec::new();
+    for _ in 0..SHIFTS {
+        let (matrix, ends) = ending(&grid.full, shift);
+        let mut solver = AbsorbingSolver::new(&grid.space, *rates, cancellation);
+        let (stage, mut column) = solver.stage(&matrix, &ends, &balanced(random()))?;
+        let mut row = solver.expected(&stage, &random())?.values();
+        let begun = columns.vectors.len();
+        loop {
+            let grows = columns.add(balanced(column)) && rows.add(row);
+            let used = columns.vectors.len() - begun;
+            if !grows || used >= MOST {
+                break;
+            }
+            if used.is_multiple_of(GROWTH) {
+                products.grow(&rows, &columns, [&grid.full, &grid.half]);
+                let size = columns.vectors.len();
+                let standing = Standing::new(&products, size, wanted + SPARE, motion.rate);
+                found = standing.modes;
+                if standing.is_enough {
+                    break;
+                }
+            }
+            let last = columns.vectors.len() - 1;
+            column = solver.times(&stage, &columns.vectors[last])?;
+            row = solver.expected(&stage, &rows.vectors[last])?.values();
+        }
+        work.factorisations += solver.work.factorisations;
+        work.passes += solver.work.passes;
+        let slowest = found.first().map_or(shift, |(one, _)| -one.re);
+        if slowest * SLOWER >= shift || slowest <= SLOWEST * motion.rate {
+            break;
+        }
+        shift = slowest;
+    }
+    products.grow(&rows, &columns, [&grid.full, &grid.half]);
+    let size = columns.vectors.len().min(rows.vectors.len());
+    let Some(model) = products.model(size) else {
+        return Ok((Vec::new(), work));
+    };
+    let all = found.iter().filter_map(|&(value, change)| {
+        let eigen = model.eigen(value)?;
+        let relative = (eigen.change / value).norm();
+        (relative <= ARTEFACT).then(|| GridMode {
+            error: change + of_ends(grid, &eigen, (&rows, &columns), motion),
+            value,
+            // A real eigenvalue stays one.
+            change: match value.im {
+                0.0 => Complex::new(eigen.change.re, 0.0),
+                _ => eigen.change,
+            },
+        })
+    });
+    Ok((all.collect(), work))
+}
+
+/// With Σ = 0: the steady state is left out.
+fn balanced(mut vector: Vec<f64>) -> Vec<f64> {
+    let mean = vector.iter().sum::<f64>() / vector.len() as f64;
+    vector.iter_mut().for_each(|value| *value -= mean);
+    vector
+}
+
+/// The eigenvalues of a model that fewer vectors give as well, each with what they change.
+///
+/// They are told from the one nearest to the first shift on, up to the first that does not stand: of those that are as
+/// near none is missing. What is farther than `REACH` shifts away oscillates too fast, and is left out where there are
+/// enough without it.
+struct Standing {
+    modes: Vec<(Complex<f64>, f64)>,
+    is_enough: bool,
+}
+
+impl Standing {
+    fn new(products: &Products, size: usize, wanted: usize, shift: f64) -> Self {
+        let of = |size: usize| products.model(size).as_ref().map(Model::eigenvalues);
+        let (Some(all), Some(fewer)) = (of(size), of(size - GROWTH / 2)) else {
+            let modes = Vec::new();
+            return Self {
+                modes,
+                is_enough: false,
+            };
+        };
+        let away = |value: Complex<f64>| (value - shift).norm();
+        let mut all: Vec<Complex<f64>> = all.into_iter().filter(|one| one.re < 0.0).collect();
+        all.sort_by(|a, b| away(*a).total_cmp(&away(*b)));
+        let change = |value: Complex<f64>| {
+            let distances = fewer.iter().map(|other| (value - other).norm());
+            (value, distances.fold(f64::INFINITY, f64::min))
+        };
+        let stands = |(value, change): &(Complex<f64>, f64)| *change <= TOLERANCE * value.norm();
+        let farthest = all.len();
+        let mut modes: Vec<_> = all.into_iter().map(change).take_while(stands).collect();
+        let within = modes
+            .iter()
+            .filter(|(value, _)| away(*value) <= REACH * shift)
+            .count();
+        let reaches = modes.len() == farthest || within < modes.len();
+        modes.truncate(within.max(wanted));
+        in_order(&mut modes, |(value, _)| *value);
+        Self {
+            is_enough: reaches && modes.len() >= wanted,
+            modes,
+        }
+    }
+}
+
+/// Puts modes in the order of their decay rates, of those with the same one in the order of their frequencies.
+pub(super) fn in_order<T>(modes: &mut [T], value: impl Fn(&T) -> Complex<f64>) {
+    modes.sort_by(|a, b| value(b).re.total_cmp(&value(a).re));
+    let mut first = 0;
+    for end in 1..=modes.len() {
+        let is_same =
+            end < modes.len() && value(&modes[end]).re >= (1.0 + SAME) * value(&modes[first]).re;
+        if !is_same {
+            modes[first..end].sort_by(|a, b| value(a).im.total_cmp(&value(b).im));
+            first = end;
+        }
+    }
+}
+
+/// What the ends of the range do to an eigenvalue, at most. A wall at the distance b from the mean changes it by
+/// D l'(b) r(b). With l a polynomial and the density a Gaussian one of deviation σ that is, over the eigenvalue, the
+/// product l r at the end times σ²/b.
+fn of_ends(grid: &Grid, eigen: &Eigen, (rows, columns): (&Basis, &Basis), motion: &Motion) -> f64 {
+    let (left, right) = (rows.combined(&eigen.rows), columns.combined(&eigen.columns));
+    let mut share = 0.0;
+    for (index, (axis, ends)) in grid.space.axes().iter().zip(&motion.ends).enumerate() {
+        for (position, &ratio) in [0, axis.count() - 1].into_iter().zip(ends) {
+            if ratio == 0.0 {
+                continue;
+            }
+            let at_end =
+                (0..left.len()).filter(|&cell| grid.space.position(cell, index) == position);
+            let sizes: f64 = at_end.map(|cell| (left[cell] * right[cell]).norm()).sum();
+            let cells = 0.5 * axis.count() as f64;
+            share += cells * ratio * sizes;
+        }
+    }
+    SAFETY * share * eigen.value.norm()
+}
+
+/// How fast and how far states move in a steady state.
+pub(super) struct Motion {
+    /// Rate at which states change: the largest, over the axes, of the root mean square of the drift over the standard
+    /// deviation.
+    pub(super) rate: f64,
+    /// Per axis and end that is no wall of the system, the square of the standard deviation over the distance from the
+    /// mean to the end; zero at walls, and along series.
+    ends: Vec<[f64; 2]>,
+}
+
+impl Motion {
+    /// Of a steady state with these masses; `None` where nothing moves, or nothing is spread.
+    pub(super) fn new(grid: &Grid, system: &dyn System, steady: Steady<'_>) -> Option<Self> {
+        let whole: f64 = steady.masses.iter().map(|mass| mass.abs()).sum();
+        let axes = grid.space.axes();
+        let zeros = || vec![0.0; axes.len()];
+        let (mut drifts, mut means, mut squares) = (zeros(), zeros(), zeros());
+        for (cell, mass) in steady.masses.iter().enumerate() {
+            let share = mass.abs() / whole;
+            if share < NO_MASS {
+                continue;
+            }
+            let state = grid.space.centre(cell);
+            for (axis, drift) in system.drift_at(0.0, &state).into_iter().enumerate() {
+                drifts[axis] += share * drift * drift;
+                means[axis] += share * state[axis];
+                squares[axis] += share * state[axis] * state[axis];
+            }
+        }
+        let variance = |axis: usize| squares[axis] - means[axis] * means[axis];
+        let by_cells = (0..axes.len()).filter(|&axis| !axes[axis].is_modes());
+        let rates = by_cells.map(|axis| (drifts[axis] / variance(axis)).sqrt());
+        let rate = rates.filter(|rate| rate.is_finite()).reduce(f64::max)?;
+        let end = |axis: usize, end: usize| {
+            let is_wall = steady.closed.get(axis).is_none_or(|closed| closed[end]);
+            let at = [axes[axis].from(), axes[axis].to()][end];
+            match is_wall || axes[axis].is_modes() {
+                true => 0.0,
+                false => variance(axis) / (at - means[axis]).powi(2),
+            }
+        };
+        let ends = (0..axes.len()).map(|axis| [0, 1].map(|one| end(axis, one)));
+        (rate > 0.0).then(|| Self {
+            rate,
+            ends: ends.collect(),
+        })
+    }
+}

@@ -1,0 +1,133 @@
+//! Slow modes with the errors of the cells.
+
+use std::sync::Arc;
+
+use nalgebra::Complex;
+
+use super::grid::Grid;
+use super::modes::{GridMode, Motion, in_order, modes};
+use super::{SpectrumError, Steady};
+use crate::cancellation::Cancellation;
+use crate::generator::GeneratorOptions;
+use crate::space::CellSpace;
+use crate::stationary::generator::{AbsorbingWork, RateOptions};
+use crate::system::System;
+
+/// Grids by which errors are made: cells an axis over those of the sweep, and how often what they differ by is taken,
+/// as for first passages.
+const FEWER: [(f64, f64); 2] = [(0.75, 1.4), (0.6, 0.6)];
+
+/// Share of the change by dissipation that stays as an error once it is extrapolated away.
+const DAMPED: f64 = 0.5;
+
+/// Relative error from which a mode is not told.
+const UNKNOWN: f64 = 0.1;
+
+/// A mode with which deviations from the steady state die out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlowMode {
+    /// Decay rate -Re λ, per unit time, with its error.
+    pub decay: (f64, f64),
+    /// Angular frequency |Im λ|, per unit time, with its error; zero where it does not oscillate.
+    pub frequency: (f64, f64),
+}
+
+/// Slow modes, and what they took.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SlowModes {
+    /// In the order of their decay rates, a pair of conjugates once, of those that oscillate no faster than about three
+    /// times as fast as states change; fewer than wanted where no more are known.
+    pub modes: Vec<SlowMode>,
+    /// Factorisations and passes.
+    pub work: AbsorbingWork,
+}
+
+/// The slowest modes of a system on the cells of a sweep. They do not depend on what was solved before.
+///
+/// # Errors
+/// [`SpectrumError`].
+pub fn slow_modes(
+    system: &Arc<dyn System>,
+    space: &CellSpace,
+    wanted: usize,
+    steady: Steady<'_>,
+    settings: (&GeneratorOptions, &RateOptions),
+    cancellation: &Cancellation,
+) -> Result<SlowModes, SpectrumError> {
+    let finest = Grid::new(system, space, 1.0, settings.0)?;
+    let motion = Motion::new(&finest, system.as_ref(), steady).ok_or(SpectrumError::Still)?;
+    let solver = (settings.1, cancellation);
+    let of = |grid: &Grid| modes(grid, wanted, &motion, solver);
+    let coarse = || FEWER.map(|(factor, _)| of(&Grid::new(system, space, factor, settings.0)?));
+    let (on_finest, on_fewer) = rayon::join(|| of(&finest), coarse);
+    let (found, mut work) = on_finest?;
+    let mut errors: Vec<Complex<f64>> = found
+        .iter()
+        .map(|one| sizes(one.change) * DAMPED + both(one.error))
+        .collect();
+    for (solved, (_, times)) in on_fewer.into_iter().zip(FEWER) {
+        let (others, more) = solved?;
+        work.factorisations += more.factorisations;
+        work.passes += more.passes;
+        for (error, other) in errors.iter_mut().zip(matched(&found, &others)) {
+            *error = Complex::new(
+                error.re.max(times * other.re),
+                error.im.max(times * other.im),
+            );
+        }
+    }
+    let mut known: Vec<(Complex<f64>, Complex<f64>)> = found
+        .iter()
+        .map(GridMode::extrapolated)
+        .zip(errors)
+        .collect();
+    in_order(&mut known, |(value, _)| *value);
+    // The number of a mode says how many are slower: beyond one that is not known there is none.
+    let is_known = |(value, error): &(Complex<f64>, Complex<f64>)| {
+        value.re < 0.0 && error.re <= UNKNOWN * value.norm()
+    };
+    let first_unknown = known.iter().position(|one| !is_known(one));
+    known.truncate(first_unknown.unwrap_or(wanted));
+    known.truncate(wanted);
+    let modes = known.into_iter().map(|(value, error)| SlowMode {
+        decay: (-value.re, error.re),
+        frequency: (value.im.abs(), if value.im == 0.0 { 0.0 } else { error.im }),
+    });
+    Ok(SlowModes {
+        modes: modes.collect(),
+        work,
+    })
+}
+
+fn sizes(value: Complex<f64>) -> Complex<f64> {
+    Complex::new(value.re.abs(), value.im.abs())
+}
+
+fn both(error: f64) -> Complex<f64> {
+    Complex::new(error, error)
+}
+
+/// By how much each mode differs from its own on another grid, infinite where it has none there. Pairs are made from
+/// the nearest on.
+fn matched(modes: &[GridMode], others: &[GridMode]) -> Vec<Complex<f64>> {
+    let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
+    for (index, one) in modes.iter().enumerate() {
+        for (other, two) in others.iter().enumerate() {
+            pairs.push((
+                (one.extrapolated() - two.extrapolated()).norm(),
+                index,
+                other,
+            ));
+        }
+    }
+    pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut differences = vec![both(f64::INFINITY); modes.len()];
+    let mut taken = vec![false; others.len()];
+    for (_, index, other) in pairs {
+        if differences[index].re.is_infinite() && !taken[other] {
+            taken[other] = true;
+            differences[index] = sizes(modes[index].extrapolated() - others[other].extrapolated());
+        }
+    }
+    differences
+}

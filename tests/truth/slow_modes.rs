@@ -1,0 +1,283 @@
+//! Decay rates and frequencies of slow modes against closed forms and another discretisation.
+
+use std::sync::Arc;
+
+use pbif::cancellation::Cancellation;
+use pbif::generator::{GeneratorOptions, assemble};
+use pbif::space::{Axis, CellSpace};
+use pbif::spectrum::{SlowModes, Steady, slow_modes};
+use pbif::stationary::generator::{RateOptions, RateSolver};
+use pbif::system::{Model, TypedModel};
+
+use crate::common::numbers::{Numbers, given};
+
+/// A model by its equations and the amplitudes of its noises.
+fn model(equations: &[(&str, &str)], noise: &[(&str, &str)]) -> Arc<Model> {
+    let names: Vec<&str> = equations.iter().map(|(axis, _)| *axis).collect();
+    let mut model = TypedModel::new("model", "Model", names);
+    for (axis, drift) in equations {
+        model = model.with_equation(*axis, *drift);
+    }
+    for (axis, amplitude) in noise {
+        model = model.with_noise(*axis, [*amplitude]);
+    }
+    model.build().unwrap()
+}
+
+/// The slowest modes of a model on even cells.
+fn modes(model: &Arc<Model>, axes: &[(f64, f64, usize)], wanted: usize) -> SlowModes {
+    let axes: Vec<Axis> = axes
+        .iter()
+        .map(|&(from, to, count)| Axis::uniform(from, to, count).unwrap())
+        .collect();
+    let closed = vec![[false; 2]; axes.len()];
+    let space = CellSpace::new(axes).unwrap();
+    let (options, rates) = (GeneratorOptions::default(), RateOptions::default());
+    let system = model.system_with(&[]).unwrap();
+    let generator = assemble(&*system, &space, &options).unwrap();
+    let mut solver = RateSolver::new(space.clone(), rates);
+    let found = solver
+        .solve(&generator.matrix, &generator.escape, None)
+        .unwrap();
+    let steady = Steady {
+        masses: &found.mass,
+        closed: &closed,
+    };
+    let settings = (&options, &rates);
+    slow_modes(
+        &system,
+        &space,
+        wanted,
+        steady,
+        settings,
+        &Cancellation::new(),
+    )
+    .unwrap()
+}
+
+/// Whether each mode is an exact one, decay rate and frequency, each another one, within its error, which must be
+/// small; and whether none of those is missing that are as slow and oscillate no faster than `fastest`.
+#[track_caller]
+fn hold(
+    what: &str,
+    found: &SlowModes,
+    exact: &[(f64, f64)],
+    (largest, fastest): (f64, f64),
+) -> f64 {
+    println!("{what}: {:?}", found.work);
+    let mut left: Vec<(f64, f64)> = exact.to_vec();
+    let mut worst = 0.0f64;
+    for mode in &found.modes {
+        let away = |(decay, frequency): &(f64, f64)| {
+            (mode.decay.0 - decay).hypot(mode.frequency.0 - frequency)
+        };
+        let nearest = (0..left.len()).min_by(|&a, &b| away(&left[a]).total_cmp(&away(&left[b])));
+        let (decay, frequency) = left.remove(nearest.unwrap());
+        let size = decay.hypot(frequency);
+        let off = ((mode.decay.0 - decay) / mode.decay.1).abs();
+        let other = match mode.frequency.1 {
+            0.0 => (mode.frequency.0 - frequency).abs() / (1e-9 * size),
+            error => ((mode.frequency.0 - frequency) / error).abs(),
+        };
+        println!(
+            "  {:.9} ± {:.1e} ({off:.2}), {:.9} ± {:.1e} ({other:.2}); exact {decay:.9}, {frequency:.9}",
+            mode.decay.0, mode.decay.1, mode.frequency.0, mode.frequency.1
+        );
+        worst = worst.max(off).max(other);
+        assert!(mode.decay.1 <= largest * size, "{what}: {mode:?}");
+    }
+    let slowest = found
+        .modes
+        .last()
+        .map_or(0.0, |mode| mode.decay.0 - mode.decay.1);
+    let missing = left
+        .iter()
+        .find(|(decay, frequency)| *decay < 0.999 * slowest && *frequency < fastest);
+    assert_eq!(missing, None, "{what}: {found:?}");
+    assert!(worst <= 1.0, "{what}");
+    worst
+}
+
+#[test]
+fn a_linear_state_has_the_multiples_of_its_rate() {
+    let model = model(&[("x", "-0.7 x")], &[("x", "0.5")]);
+    let spread = 0.5 / 1.4f64.sqrt();
+    let found = modes(&model, &[(-6.0 * spread, 6.0 * spread, 120)], 4);
+    let exact = [0.7, 1.4, 2.1, 2.8].map(|rate| (rate, 0.0));
+    assert_eq!(found.modes.len(), 4);
+    hold("linear", &found, &exact, (1e-3, 1.0));
+}
+
+/// Sums n₁λ₁ + n₂λ₂ of the eigenvalues of a stable matrix, the slowest first, pairs once.
+fn sums([a, b, c, d]: [f64; 4], wanted: usize) -> Vec<(f64, f64)> {
+    let (trace, determinant) = (a + d, a * d - b * c);
+    let discriminant = 0.25 * trace * trace - determinant;
+    let root = discriminant.abs().sqrt();
+    let mut all = Vec::new();
+    for first in 0..40 {
+        for second in 0..40 {
+            let (n, m) = (f64::from(first), f64::from(second));
+            if first + second == 0 {
+                continue;
+            }
+            let (rate, frequency) = match discriminant < 0.0 {
+                true => (-0.5 * trace * (n + m), (n - m) * root),
+                false => (-(0.5 * trace + root) * n - (0.5 * trace - root) * m, 0.0),
+            };
+            if frequency >= 0.0 {
+                all.push((rate, frequency));
+            }
+        }
+    }
+    all.sort_by(|a, b| {
+        (a.0 * (1.0 + 1e-9))
+            .total_cmp(&b.0)
+            .then(a.1.total_cmp(&b.1))
+    });
+    all.sort_by(|a, b| {
+        let is_same = (a.0 - b.0).abs() < 1e-9 * a.0;
+        if is_same {
+            a.1.total_cmp(&b.1)
+        } else {
+            a.0.total_cmp(&b.0)
+        }
+    });
+    all.truncate(wanted);
+    all
+}
+
+#[test]
+fn an_oscillator_has_the_sums_of_its_two() {
+    for damping in [0.2_f64, 0.05] {
+        let drift = format!("-x - {} y", 2.0 * damping);
+        let model = model(&[("x", "y"), ("y", &drift)], &[("y", "0.4")]);
+        let spread = 0.4 / (4.0 * damping).sqrt();
+        let axis = (-6.0 * spread, 6.0 * spread, 80);
+        let found = modes(&model, &[axis, axis], 6);
+        assert_eq!(found.modes.len(), 6);
+        let exact = sums([0.0, 1.0, -1.0, -2.0 * damping], 40);
+        hold(&format!("damping {damping}"), &found, &exact, (5e-2, 2.5));
+    }
+}
+
+/// The least eigenvalues above zero of dx = -U'(x) dt + √(2D) dW by a chain of states with rates that keep detailed
+/// balance, to second order in their distance, counted by the signs of a symmetric matrix (Sturm).
+fn of_chain(
+    potential: impl Fn(f64) -> f64,
+    diffusion: f64,
+    (from, to): (f64, f64),
+    count: usize,
+    wanted: usize,
+) -> Vec<f64> {
+    let step = (to - from) / count as f64;
+    let at = |place: f64| potential(from + step * place);
+    let rate =
+        |a: f64, b: f64| diffusion / step.powi(2) * (0.5 * (at(a) - at(b)) / diffusion).exp();
+    let mut diagonal = vec![0.0; count];
+    let mut beside = Vec::new();
+    for state in 0..count - 1 {
+        let (own, next) = (state as f64 + 0.5, state as f64 + 1.5);
+        let (up, down) = (rate(own, next), rate(next, own));
+        diagonal[state] += up;
+        diagonal[state + 1] += down;
+        beside.push(up * down);
+    }
+    let below = |value: f64| {
+        let mut pivot = diagonal[0] - value;
+        let mut signs = usize::from(pivot < 0.0);
+        for state in 1..count {
+            pivot = diagonal[state] - value - beside[state - 1] / pivot;
+            signs += usize::from(pivot < 0.0);
+        }
+        signs
+    };
+    let one = |number: usize| {
+        let (mut low, mut high) = (0.0, 1e6);
+        for _ in 0..200 {
+            let middle = 0.5 * (low + high);
+            if below(middle) > number {
+                high = middle
+            } else {
+                low = middle
+            }
+        }
+        0.5 * (low + high)
+    };
+    (1..=wanted).map(one).collect()
+}
+
+#[test]
+fn a_double_well_has_a_slow_mode() {
+    for noise in [0.5f64, 0.35, 0.25] {
+        let model = model(&[("x", "x - x^3")], &[("x", &noise.to_string())]);
+        let found = modes(&model, &[(-2.2, 2.2, 160)], 4);
+        let potential = |x: f64| 0.25 * x.powi(4) - 0.5 * x * x;
+        let of = |count| of_chain(potential, 0.5 * noise * noise, (-2.2, 2.2), count, 4);
+        let pairs = of(2000).into_iter().zip(of(4000));
+        let exact: Vec<(f64, f64)> = pairs.map(|(a, b)| ((4.0 * b - a) / 3.0, 0.0)).collect();
+        assert_eq!(found.modes.len(), 4);
+        hold(&format!("noise {noise}"), &found, &exact, (1e-2, 1.0));
+    }
+}
+
+#[test]
+fn errors_hold_on_random_linear_systems() {
+    let (count, seed) = (given("PBIF_RANDOM_SYSTEMS", 6), given("PBIF_FUZZ_SEED", 1));
+    let mut numbers = Numbers(seed);
+    let (mut worst, mut all, mut asked) = (0.0f64, 0, 0);
+    for system in 0..count {
+        let mut between =
+            |from: f64, to: f64| from + (to - from) * numbers.below(1_000_000) as f64 * 1e-6;
+        // An oscillator, or two states that relax and drive each other.
+        let matrix = match system % 2 {
+            0 => [0.0, 1.0, -between(0.3, 3.0), -between(0.1, 1.5)],
+            _ => [
+                -between(0.4, 2.0),
+                between(-1.5, 1.5),
+                -between(-0.2, 1.5),
+                -between(0.4, 2.0),
+            ],
+        };
+        let [a, b, c, d] = matrix;
+        let (trace, determinant) = (a + d, a * d - b * c);
+        if determinant < 0.1 {
+            continue;
+        }
+        let noises = match system % 2 {
+            0 => [0.0, between(0.2, 0.8)],
+            _ => [between(0.2, 0.8), between(0.2, 0.8)],
+        };
+        // Stationary variances: A S + S Aᵀ = -N.
+        let [p, q] = noises.map(|noise| noise * noise);
+        let factor = -1.0 / (2.0 * trace * determinant);
+        let xx = factor * (p * (determinant + d * d) + q * b * b);
+        let yy = factor * (q * (determinant + a * a) + p * c * c);
+        let equations = [
+            format!("{a} * x + ({b}) * y"),
+            format!("({c}) * x + ({d}) * y"),
+        ];
+        let amplitudes = noises.map(|noise| noise.to_string());
+        let noise: &[(&str, &str)] = match system % 2 {
+            0 => &[("y", &amplitudes[1])],
+            _ => &[("x", &amplitudes[0]), ("y", &amplitudes[1])],
+        };
+        let model = model(&[("x", &equations[0]), ("y", &equations[1])], noise);
+        let axes = [xx, yy].map(|variance| (-6.0 * variance.sqrt(), 6.0 * variance.sqrt(), 60));
+        let found = modes(&model, &axes, 5);
+        let known = found.modes.len();
+        // Where both eigenvalues almost coincide, modes of higher order are hardly known.
+        assert!(known > 0, "{matrix:?}: {found:?}");
+        all += known;
+        let exact = sums(matrix, 80);
+        let fastest = 2.0 * determinant.sqrt();
+        asked += 5;
+        worst = worst.max(hold(
+            &format!("{matrix:?} {noises:?}"),
+            &found,
+            &exact,
+            (0.1, fastest),
+        ));
+    }
+    println!("{all} of {asked} modes, off by at most {worst:.2} of the error");
+    assert!(10 * all > 8 * asked);
+}
