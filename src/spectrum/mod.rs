@@ -42,11 +42,17 @@
 //! | eigenvalues, and their errors on one grid | `modes.rs` |
 //! | eigenvalues with the errors of the cells | `slow.rs` |
 
+mod errors;
 mod grid;
 mod model;
 mod modes;
+mod peak;
+mod power;
+mod resolvent;
 mod slow;
+mod transfer;
 
+pub use power::{Features, Power, PowerQuestion, Spectrum, StateFunction, power_spectra};
 pub use slow::{SlowMode, SlowModes, slow_modes};
 
 use crate::generator::GeneratorError;

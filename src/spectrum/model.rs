@@ -4,6 +4,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 use sprs::CsMat;
 
 use super::dot;
+use super::transfer::Transfer;
 
 /// Overlaps of the two spaces smaller than this beside the largest are rounding.
 const NOTHING: f64 = 1e-11;
@@ -132,7 +133,8 @@ impl Products {
     }
 }
 
-fn product(matrix: &CsMat<f64>, vector: &[f64]) -> Vec<f64> {
+/// A x.
+pub(super) fn product(matrix: &CsMat<f64>, vector: &[f64]) -> Vec<f64> {
     let mut image = vec![0.0; vector.len()];
     for (rates, &weight) in matrix.outer_iterator().zip(vector) {
         for (row, rate) in rates.iter() {
@@ -153,6 +155,36 @@ pub(super) struct Eigen {
 }
 
 impl Model {
+    /// How one of the two generators passes on what observables do: `rows` is what they give of each column, an
+    /// observable a row, and `columns` what each row gives of their deviations, a deviation a column.
+    pub(super) fn transfer(
+        &self,
+        generator: &DMatrix<f64>,
+        rows: &DMatrix<f64>,
+        columns: &DMatrix<f64>,
+    ) -> Option<Transfer> {
+        Transfer::new(generator, &(rows * &self.columns), &(&self.rows * columns))
+    }
+
+    /// Vectors of either side with these weights of the model's states, at some places: the vectors of the columns
+    /// with weights of states, and those of the rows.
+    pub(super) fn at_places(
+        &self,
+        places: &[usize],
+        (rows, columns): (&Basis, &Basis),
+    ) -> [DMatrix<f64>; 2] {
+        let of = |basis: &Basis, size: usize| {
+            DMatrix::from_fn(places.len(), size, |place, vector| {
+                basis.vectors[vector][places[place]]
+            })
+        };
+        let size = self.columns.nrows();
+        [
+            of(columns, size) * &self.columns,
+            of(rows, size) * self.rows.transpose(),
+        ]
+    }
+
     /// All eigenvalues, of a pair the one with the positive imaginary part.
     pub(super) fn eigenvalues(&self) -> Vec<Complex<f64>> {
         let Some(schur) = self.first.clone().try_schur(f64::EPSILON, 10_000) else {

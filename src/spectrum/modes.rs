@@ -8,6 +8,7 @@ use super::grid::{Grid, ending};
 use super::model::{Basis, Eigen, Model, Products};
 use super::{SpectrumError, Steady};
 use crate::cancellation::Cancellation;
+use crate::space::CellSpace;
 use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, RateOptions};
 use crate::system::System;
 
@@ -142,7 +143,7 @@ pub(super) fn modes(
 }
 
 /// With Σ = 0: the steady state is left out.
-fn balanced(mut vector: Vec<f64>) -> Vec<f64> {
+pub(super) fn balanced(mut vector: Vec<f64>) -> Vec<f64> {
     let mean = vector.iter().sum::<f64>() / vector.len() as f64;
     vector.iter_mut().for_each(|value| *value -= mean);
     vector
@@ -211,20 +212,12 @@ pub(super) fn in_order<T>(modes: &mut [T], value: impl Fn(&T) -> Complex<f64>) {
 /// product l r at the end times σ²/b.
 fn of_ends(grid: &Grid, eigen: &Eigen, (rows, columns): (&Basis, &Basis), motion: &Motion) -> f64 {
     let (left, right) = (rows.combined(&eigen.rows), columns.combined(&eigen.columns));
-    let mut share = 0.0;
-    for (index, (axis, ends)) in grid.space.axes().iter().zip(&motion.ends).enumerate() {
-        for (position, &ratio) in [0, axis.count() - 1].into_iter().zip(ends) {
-            if ratio == 0.0 {
-                continue;
-            }
-            let at_end =
-                (0..left.len()).filter(|&cell| grid.space.position(cell, index) == position);
-            let sizes: f64 = at_end.map(|cell| (left[cell] * right[cell]).norm()).sum();
-            let cells = 0.5 * axis.count() as f64;
-            share += cells * ratio * sizes;
-        }
-    }
-    SAFETY * share * eigen.value.norm()
+    let (places, weights) = motion.at_ends(&grid.space);
+    let sizes = places.into_iter().zip(weights);
+    let share: f64 = sizes
+        .map(|(cell, weight)| weight * (left[cell] * right[cell]).norm())
+        .sum();
+    share / motion.rate * eigen.value.norm()
 }
 
 /// How fast and how far states move in a steady state.
@@ -273,5 +266,25 @@ impl Motion {
             rate,
             ends: ends.collect(),
         })
+    }
+
+    /// Cells at ends that are no walls, with what the product of a row and a column there counts in a number: a rate.
+    pub(super) fn at_ends(&self, space: &CellSpace) -> (Vec<usize>, Vec<f64>) {
+        let mut found = (Vec::new(), Vec::new());
+        for (index, (axis, ends)) in space.axes().iter().zip(&self.ends).enumerate() {
+            for (position, &ratio) in [0, axis.count() - 1].into_iter().zip(ends) {
+                if ratio == 0.0 {
+                    continue;
+                }
+                let weight = SAFETY * 0.5 * axis.count() as f64 * ratio * self.rate;
+                for cell in
+                    (0..space.n_cells()).filter(|&cell| space.position(cell, index) == position)
+                {
+                    found.0.push(cell);
+                    found.1.push(weight);
+                }
+            }
+        }
+        found
     }
 }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::Complex;
 
+use super::errors::{DAMPED, FEWER};
 use super::grid::Grid;
 use super::modes::{GridMode, Motion, in_order, modes};
 use super::{SpectrumError, Steady};
@@ -12,13 +13,6 @@ use crate::generator::GeneratorOptions;
 use crate::space::CellSpace;
 use crate::stationary::generator::{AbsorbingWork, RateOptions};
 use crate::system::System;
-
-/// Grids by which errors are made: cells an axis over those of the sweep, and how often what they differ by is taken,
-/// as for first passages.
-const FEWER: [(f64, f64); 2] = [(0.75, 1.4), (0.6, 0.6)];
-
-/// Share of the change by dissipation that stays as an error once it is extrapolated away.
-const DAMPED: f64 = 0.5;
 
 /// Relative error from which a mode is not told.
 const UNKNOWN: f64 = 0.1;

@@ -19,3 +19,4 @@ mod passages;
 mod random_systems;
 mod sampled_passages;
 mod slow_modes;
+mod spectra;

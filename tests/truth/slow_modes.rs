@@ -12,7 +12,7 @@ use pbif::system::{Model, TypedModel};
 use crate::common::numbers::{Numbers, given};
 
 /// A model by its equations and the amplitudes of its noises.
-fn model(equations: &[(&str, &str)], noise: &[(&str, &str)]) -> Arc<Model> {
+pub(crate) fn model(equations: &[(&str, &str)], noise: &[(&str, &str)]) -> Arc<Model> {
     let names: Vec<&str> = equations.iter().map(|(axis, _)| *axis).collect();
     let mut model = TypedModel::new("model", "Model", names);
     for (axis, drift) in equations {

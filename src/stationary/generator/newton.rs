@@ -158,6 +158,17 @@ pub(super) async fn linear(
     Ok(None)
 }
 
+/// How exact a solve is to be.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Effort {
+    /// Error in L1, relative to the solution.
+    pub(super) tolerance: f64,
+    /// Most passes.
+    pub(super) limit: usize,
+    /// Residual in L1, relative to the source, at which no further pass is made; 0 where the error alone counts.
+    pub(super) residual: f64,
+}
+
 /// Solves A x = source with the factors of A itself, which refinement makes exact: as long as each correction is much
 /// smaller than the one before, the next one is as much smaller again and need not be made. Where corrections do not
 /// shrink so, [`linear`] goes on.
@@ -168,7 +179,11 @@ pub(super) async fn refined(
     seat: &Seat,
     operator: &Operator<'_>,
     source: &[f64],
-    (tolerance, limit): (f64, usize),
+    Effort {
+        tolerance,
+        limit,
+        residual,
+    }: Effort,
     cancellation: &Cancellation,
 ) -> Result<Option<(Vec<f64>, usize)>, Cancelled> {
     let mut solution = seat.pass(source.to_vec()).await;
@@ -178,6 +193,9 @@ pub(super) async fn refined(
         let mut rest = source.to_vec();
         let product = operator(&solution);
         rest.iter_mut().zip(product).for_each(|(a, b)| *a -= b);
+        if norm(&rest) <= residual * norm(source) {
+            return Ok(Some((solution, used)));
+        }
         let correction = seat.pass(rest).await;
         used += 1;
         let size = norm(&correction);

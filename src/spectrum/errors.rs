@@ -1,0 +1,67 @@
+//! Errors of numbers that were worked out with all and with half of the dissipation, on the cells of a sweep and on
+//! fewer.
+
+/// Grids by which errors are made: cells an axis over those of the sweep, and how often what they differ by is taken,
+/// as for first passages.
+pub(super) const FEWER: [(f64, f64); 2] = [(0.75, 1.4), (0.6, 0.6)];
+
+/// Share of the change by dissipation that stays as an error once it is extrapolated away.
+pub(super) const DAMPED: f64 = 0.5;
+
+/// Differences between grids are taken so many times: at a kink of the drift they shrink more slowly than elsewhere.
+const MARGIN: f64 = 1.5;
+
+/// Neighbours on either side whose errors an error along a curve is no smaller than, relative to the values: where a
+/// difference changes its sign it says nothing.
+const BESIDE: usize = 4;
+
+/// A number on one grid.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Estimate {
+    /// By the scheme.
+    pub(super) value: f64,
+    /// What half of the dissipation changes.
+    pub(super) change: f64,
+    /// What else is known of its error.
+    pub(super) error: f64,
+}
+
+impl Estimate {
+    /// Extrapolated to no dissipation.
+    pub(super) fn extrapolated(&self) -> f64 {
+        self.value + 2.0 * self.change
+    }
+}
+
+/// Numbers with their errors, from those on the cells of a sweep and those on fewer.
+pub(super) fn combined(finest: &[Estimate], fewer: &[Vec<Estimate>]) -> Vec<(f64, f64)> {
+    let known = finest.iter().enumerate().map(|(number, one)| {
+        let value = one.extrapolated();
+        let mut error = DAMPED * one.change.abs() + one.error;
+        for (others, (_, times)) in fewer.iter().zip(FEWER) {
+            let other = others.get(number).map_or(f64::NAN, Estimate::extrapolated);
+            let off = MARGIN * times * (value - other).abs();
+            error = if off.is_nan() {
+                f64::INFINITY
+            } else {
+                error.max(off)
+            };
+        }
+        (value, if error.is_nan() { f64::INFINITY } else { error })
+    });
+    known.collect()
+}
+
+/// The same along a curve, no error smaller than its neighbours' are, relative to the larger of both values.
+pub(super) fn smoothed(known: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let one = |(place, &(value, error)): (usize, &(f64, f64))| {
+        let first = place.saturating_sub(BESIDE);
+        let last = (place + BESIDE).min(known.len() - 1);
+        let near = known[first..=last].iter().map(|&(other, error)| {
+            let share = value.abs() / other.abs();
+            error * if share < 1.0 { share } else { 1.0 }
+        });
+        (value, near.fold(error, f64::max))
+    };
+    known.iter().enumerate().map(one).collect()
+}

@@ -1,0 +1,255 @@
+//! Power spectra, cross spectra and correlation functions in a steady state, each number with its error.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use super::errors::{Estimate, FEWER, combined, smoothed};
+use super::grid::Grid;
+use super::modes::Motion;
+use super::peak::Peak;
+use super::resolvent::Resolvent;
+use super::transfer::Transfer;
+use super::{SpectrumError, Steady};
+use crate::cancellation::Cancellation;
+use crate::generator::GeneratorOptions;
+use crate::space::CellSpace;
+use crate::stationary::generator::{AbsorbingWork, RateOptions};
+use crate::system::System;
+
+/// A function of the state whose fluctuations are looked at.
+pub type StateFunction<'a> = &'a (dyn Fn(&[f64]) -> f64 + Sync);
+
+/// What is asked of fluctuations.
+#[derive(Clone, Copy)]
+pub struct PowerQuestion<'a> {
+    /// Functions of the state.
+    pub observables: &'a [StateFunction<'a>],
+    /// Pairs of them by their numbers; a power spectrum where both are the same.
+    pub pairs: &'a [(usize, usize)],
+    /// Angular frequencies, per unit time, ascending, none below zero.
+    pub frequencies: &'a [f64],
+    /// Distance and number of the lags at which correlations are wanted, from zero on.
+    pub lags: (f64, usize),
+}
+
+/// A value with its error.
+type Known = (f64, f64);
+
+/// The spectrum of a pair of observables g and h.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Spectrum {
+    /// Real part of ∫ C(τ) e^{-iωτ} dτ with C(τ) = E[g(t + τ) h(t)] less the means, over all τ of either sign, at each
+    /// frequency: so that its integral over all ω of either sign is 2π times the covariance. In the units of g and h
+    /// times that of time.
+    pub real: Vec<Known>,
+    /// The imaginary part; empty where both observables are the same.
+    pub imaginary: Vec<Known>,
+    /// C(τ) at each lag.
+    pub correlation: Vec<Known>,
+    /// Numbers of a power spectrum; `None` of a cross spectrum.
+    pub features: Option<Features>,
+}
+
+/// Numbers of a power spectrum.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Features {
+    /// Frequency of the highest maximum above zero; `None` where there is none.
+    pub peak: Option<Known>,
+    /// Its full width at half of its height; `None` where the spectrum stays above that down to zero.
+    pub width: Option<Known>,
+    /// ∫₀^∞ C(τ) dτ / C(0).
+    pub correlation_time: Option<Known>,
+    /// S''(0)/S(0), in the square of time: above zero the spectrum rises from zero on.
+    pub curvature: Option<Known>,
+}
+
+/// Spectra, and what they took.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Power {
+    /// One a pair.
+    pub spectra: Vec<Spectrum>,
+    /// Factorisations and passes.
+    pub work: AbsorbingWork,
+}
+
+/// Numbers of a feature of a spectrum.
+const FEATURES: usize = 4;
+
+/// The spectra of a system on the cells of a sweep. They do not depend on what was solved before.
+///
+/// # Errors
+/// [`SpectrumError`].
+pub fn power_spectra(
+    system: &Arc<dyn System>,
+    space: &CellSpace,
+    question: &PowerQuestion<'_>,
+    steady: Steady<'_>,
+    settings: (&GeneratorOptions, &RateOptions),
+    cancellation: &Cancellation,
+) -> Result<Power, SpectrumError> {
+    let finest = Grid::new(system, space, 1.0, settings.0)?;
+    let motion = Motion::new(&finest, system.as_ref(), steady).ok_or(SpectrumError::Still)?;
+    let solver = (settings.1, cancellation);
+    let of = |grid: &Grid| on_grid(grid, question, &motion, solver);
+    let coarse = || FEWER.map(|(factor, _)| of(&Grid::new(system, space, factor, settings.0)?));
+    let (on_finest, on_fewer) = rayon::join(|| of(&finest), coarse);
+    let (numbers, mut work) = on_finest?;
+    let mut others = Vec::new();
+    for found in on_fewer {
+        let (numbers, more) = found?;
+        work.factorisations += more.factorisations;
+        work.passes += more.passes;
+        others.push(numbers);
+    }
+    let known = combined(&numbers, &others);
+    let mut rest = known.as_slice();
+    let spectra = question.pairs.iter().map(|&(one, other)| {
+        let mut take = |count: usize| {
+            let (taken, left) = rest.split_at(count);
+            rest = left;
+            taken.to_vec()
+        };
+        let count = question.frequencies.len();
+        let real = take(count);
+        let (imaginary, features) = match one == other {
+            true => (Vec::new(), Some(features(&take(FEATURES)))),
+            false => (take(count), None),
+        };
+        let correlation = take(question.lags.1);
+        Spectrum {
+            real: smoothed(&real),
+            imaginary: smoothed(&imaginary),
+            correlation: smoothed(&correlation),
+            features,
+        }
+    });
+    Ok(Power {
+        spectra: spectra.collect(),
+        work,
+    })
+}
+
+/// Relative error from which a number of a spectrum is not told.
+const UNKNOWN: f64 = 0.2;
+
+fn features(known: &[Known]) -> Features {
+    let told = |(value, error): Known| (error <= UNKNOWN * value.abs()).then_some((value, error));
+    let correlation_time = told(known[2]);
+    Features {
+        peak: told(known[0]),
+        width: told(known[1]),
+        correlation_time,
+        // It may be near zero, but is over S(0).
+        curvature: correlation_time
+            .and(Some(known[3]))
+            .filter(|known| known.1.is_finite()),
+    }
+}
+
+/// All numbers that are asked for on one grid, one after the other, and what they took.
+fn on_grid(
+    grid: &Grid,
+    question: &PowerQuestion<'_>,
+    motion: &Motion,
+    solver: (&RateOptions, &Cancellation),
+) -> Result<(Vec<Estimate>, AbsorbingWork), SpectrumError> {
+    let cells = grid.space.n_cells();
+    let values = question.observables.iter().map(|observable| {
+        let at = |cell| observable(&grid.space.centre(cell));
+        (0..cells).map(at).collect()
+    });
+    let values: Vec<Vec<f64>> = values.collect();
+    let resolvent = Resolvent::new(grid, &values, question.frequencies, motion, solver)?;
+    let resolvent = resolvent.ok_or(SpectrumError::Still)?;
+    let [full, half, fewer] = &resolvent.transfers;
+    let mut all = Vec::new();
+    for &pair in question.pairs {
+        let numbers = [full, half, fewer].map(|transfer| numbers(transfer, pair, question, motion));
+        let ends = of_ends(&resolvent, pair, question, &numbers[0]);
+        for (number, &value) in numbers[0].iter().enumerate() {
+            all.push(Estimate {
+                value,
+                change: numbers[1][number] - value,
+                error: (numbers[2][number] - value).abs() + ends[number],
+            });
+        }
+    }
+    Ok((all, resolvent.work))
+}
+
+/// The numbers of a pair by one model.
+fn numbers(
+    transfer: &Transfer,
+    (one, other): (usize, usize),
+    question: &PowerQuestion<'_>,
+    motion: &Motion,
+) -> Vec<f64> {
+    let frequencies = question.frequencies.iter();
+    let (step, count) = question.lags;
+    let mut all: Vec<f64>;
+    if one == other {
+        let highest = question.frequencies.last().copied().unwrap_or(0.0);
+        all = frequencies.map(|&at| transfer.power(at, one)[0]).collect();
+        let peak = Peak::of(transfer, one, highest.max(motion.rate));
+        let [at_zero, _, bend] = transfer.power(0.0, one);
+        let variance = transfer.covariance(one, one);
+        all.extend([
+            peak.map_or(f64::NAN, |peak| peak.frequency),
+            peak.and_then(|peak| peak.width).unwrap_or(f64::NAN),
+            0.5 * at_zero / variance,
+            bend / at_zero,
+        ]);
+    } else {
+        let cross = frequencies.map(|&at| transfer.cross(at, (one, other)));
+        let cross: Vec<_> = cross.collect();
+        all = cross.iter().map(|value| value.re).collect();
+        all.extend(cross.iter().map(|value| value.im));
+    }
+    all.extend(transfer.correlations((one, other), step, count).0);
+    all
+}
+
+/// What the ends of the range do to each of the numbers, at most.
+fn of_ends(
+    resolvent: &Resolvent,
+    (one, other): (usize, usize),
+    question: &PowerQuestion<'_>,
+    numbers: &[f64],
+) -> Vec<f64> {
+    let at = |frequency: f64| match one == other {
+        true => 2.0 * resolvent.of_ends(frequency, (one, one)),
+        false => {
+            resolvent.of_ends(frequency, (one, other)) + resolvent.of_ends(frequency, (other, one))
+        }
+    };
+    let along: Vec<f64> = question
+        .frequencies
+        .iter()
+        .map(|&frequency| at(frequency))
+        .collect();
+    let mut all = along.clone();
+    if one == other {
+        let [peak, width, time, curvature] = [0, 1, 2, 3].map(|place| numbers[along.len() + place]);
+        let power = |frequency: f64| resolvent.transfers[0].power(frequency, one)[0];
+        let share = |frequency: f64| at(frequency) / power(frequency);
+        let shift = if peak.is_nan() { 0.0 } else { share(peak) };
+        let extent = if width.is_nan() { peak } else { width };
+        let still = share(0.0);
+        all.extend([
+            shift * extent,
+            2.0 * shift * extent,
+            still * time,
+            2.0 * still * curvature.abs(),
+        ]);
+    } else {
+        all.extend_from_slice(&along);
+    }
+    // A correlation is the integral of the spectrum over all frequencies over 2π.
+    let intervals = question.frequencies.windows(2).zip(along.windows(2));
+    let integral: f64 = intervals
+        .map(|(at, off)| 0.5 * (at[1] - at[0]) * (off[0] + off[1]))
+        .sum();
+    let (_, left_out) = resolvent.transfers[0].correlations((one, other), 0.0, 0);
+    all.resize(numbers.len(), integral / PI + left_out);
+    all
+}

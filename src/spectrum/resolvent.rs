@@ -1,0 +1,282 @@
+//! The resolvent (iω - Q)⁻¹ between observables on one grid: a model that grows until their spectra stand.
+
+use nalgebra::DMatrix;
+
+use super::grid::{Grid, ending};
+use super::model::{Basis, Model, Products};
+use super::modes::{Motion, balanced};
+use super::transfer::Transfer;
+use super::{SpectrumError, dot};
+use crate::cancellation::Cancellation;
+use crate::stationary::generator::{AbsorbingSolver, AbsorbingWork, RateOptions, RateSolver};
+
+/// Vectors of either side for each observable by which a model grows before its spectra are looked at again.
+const GROWTH: usize = 6;
+
+/// Most vectors of either side at one shift, for each observable.
+const MOST: usize = 72;
+
+/// Most shifts.
+const SHIFTS: usize = 3;
+
+/// Relative change by more vectors at which a spectrum stands, and the same relative to its largest value.
+const TOLERANCE: (f64, f64) = (1e-5, 1e-8);
+
+/// Residual, relative to the source, of a vector of the model: products with the generator itself are exact.
+const RESIDUAL: f64 = 1e-10;
+
+/// Frequencies at which that is looked at.
+const LOOKED_AT: usize = 60;
+
+/// A shift is no smaller than this share of the first one.
+const SLOWEST: f64 = 1e-13;
+
+/// What the ends do to functions of the state that grow faster than linearly, over what they do to linear ones.
+const STEEP: f64 = 4.0;
+
+/// What observables do on one grid.
+pub(super) struct Resolvent {
+    /// By the scheme, by the same with half of its dissipation, and by the scheme with fewer vectors.
+    pub(super) transfers: [Transfer; 3],
+    /// What the ends of the range do to a number, at most: the vectors at the ends with what each place counts there.
+    ends: Ends,
+    pub(super) work: AbsorbingWork,
+}
+
+/// Cells at the ends of the range, with the columns and the rows of the model there.
+struct Ends {
+    weights: Vec<f64>,
+    columns: DMatrix<f64>,
+    rows: DMatrix<f64>,
+}
+
+impl Resolvent {
+    /// Of observables with these values in the cells.
+    pub(super) fn new(
+        grid: &Grid,
+        observables: &[Vec<f64>],
+        frequencies: &[f64],
+        motion: &Motion,
+        (rates, cancellation): (&RateOptions, &Cancellation),
+    ) -> Result<Option<Self>, SpectrumError> {
+        let steady = [&grid.full, &grid.half];
+        let mut solver = RateSolver::new(grid.space.clone(), *rates).cancelled_by(cancellation);
+        let no_escape = vec![0.0; grid.space.n_cells()];
+        let mut masses: Vec<Vec<f64>> = Vec::new();
+        for matrix in steady {
+            let guess = masses.first().map(Vec::as_slice);
+            masses.push(solver.solve(matrix, &no_escape, guess)?.mass);
+        }
+        let deviations = masses.iter().map(|masses| {
+            let of = |values: &Vec<f64>| deviation(masses, values);
+            observables.iter().map(of).collect::<Vec<_>>()
+        });
+        let deviations: Vec<Vec<Vec<f64>>> = deviations.collect();
+        let mut growing = Growing {
+            grid,
+            observables,
+            deviations: &deviations,
+            looked_at: looked_at(frequencies),
+            columns: Basis::default(),
+            rows: Basis::default(),
+            products: Products::default(),
+        };
+        let mut work = AbsorbingWork::default();
+        let mut shift = motion.rate;
+        for _ in 0..SHIFTS {
+            let next = growing.with_shift(shift, (rates, cancellation), &mut work)?;
+            match next {
+                Some(next) if next > SLOWEST * motion.rate => shift = next,
+                _ => break,
+            }
+        }
+        Ok(growing.finish(motion, work))
+    }
+
+    /// At most what the ends of the range do to the half-sided spectrum of a pair at a frequency: a wall at the
+    /// distance b from the mean changes the rows and the columns of the resolvent there as it changes those of a slow
+    /// mode.
+    pub(super) fn of_ends(&self, frequency: f64, pair: (usize, usize)) -> f64 {
+        let [column, row] = self.transfers[0].responses(frequency, pair);
+        let complex = |matrix: &DMatrix<f64>| matrix.map(nalgebra::Complex::from);
+        let columns = complex(&self.ends.columns) * column;
+        let rows = complex(&self.ends.rows) * row;
+        let places = self
+            .ends
+            .weights
+            .iter()
+            .zip(columns.iter().zip(rows.iter()));
+        let sizes = places.map(|(weight, (column, row))| weight * (column * row).norm());
+        STEEP * sizes.sum::<f64>()
+    }
+}
+
+/// p (g - ⟨g⟩).
+fn deviation(masses: &[f64], values: &[f64]) -> Vec<f64> {
+    let mean = dot(masses, values) / masses.iter().sum::<f64>();
+    let pairs = masses.iter().zip(values);
+    balanced(pairs.map(|(mass, value)| mass * (value - mean)).collect())
+}
+
+/// A few of the frequencies, the first and the last among them.
+fn looked_at(frequencies: &[f64]) -> Vec<f64> {
+    let last = frequencies.len().saturating_sub(1);
+    let count = LOOKED_AT.min(frequencies.len());
+    let places = (0..count).map(|number| number * last / count.saturating_sub(1).max(1));
+    places.map(|place| frequencies[place]).collect()
+}
+
+/// A model that is growing.
+struct Growing<'a> {
+    grid: &'a Grid,
+    observables: &'a [Vec<f64>],
+    /// By the scheme and with half of its dissipation.
+    deviations: &'a [Vec<Vec<f64>>],
+    looked_at: Vec<f64>,
+    columns: Basis,
+    rows: Basis,
+    products: Products,
+}
+
+impl Growing<'_> {
+    /// Adds vectors at a shift until the spectra stand; the shift that would serve what does not, where they do not.
+    fn with_shift(
+        &mut self,
+        shift: f64,
+        (rates, cancellation): (&RateOptions, &Cancellation),
+        work: &mut AbsorbingWork,
+    ) -> Result<Option<f64>, SpectrumError> {
+        let (matrix, ends) = ending(&self.grid.full, shift);
+        let solver = AbsorbingSolver::new(&self.grid.space, *rates, cancellation);
+        let mut solver = solver.to_residual(RESIDUAL);
+        let (stage, _) = solver.stage(&matrix, &ends, &self.deviations[0][0])?;
+        let mut chains: Vec<Option<(Vec<f64>, Vec<f64>)>> = Vec::new();
+        for (values, deviation) in self.observables.iter().zip(&self.deviations[0]) {
+            chains.push(Some((deviation.clone(), centred(values))));
+        }
+        let mut stands = None;
+        for step in 1..=MOST {
+            for chain in &mut chains {
+                let Some((column, row)) = chain.take() else {
+                    continue;
+                };
+                let column = balanced(solver.times(&stage, &column)?);
+                let row = centred(&solver.expected(&stage, &row)?.values());
+                if self.columns.add(column) && self.rows.add(row) {
+                    let newest = |basis: &Basis| basis.vectors.last().cloned();
+                    *chain = newest(&self.columns).zip(newest(&self.rows));
+                }
+            }
+            let has_ended = chains.iter().all(Option::is_none);
+            if step % GROWTH == 0 || has_ended {
+                self.products.grow(
+                    &self.rows,
+                    &self.columns,
+                    [&self.grid.full, &self.grid.half],
+                );
+                stands = self.unsettled();
+                if stands.is_none() || has_ended {
+                    break;
+                }
+            }
+        }
+        work.factorisations += solver.work.factorisations;
+        work.passes += solver.work.passes;
+        Ok(stands)
+    }
+
+    /// The model with so many vectors of either side, with what passes on what observables do.
+    fn model(&self, size: usize) -> Option<(Model, [DMatrix<f64>; 3])> {
+        let model = self.products.model(size)?;
+        let size = size
+            .min(self.columns.vectors.len())
+            .min(self.rows.vectors.len());
+        let count = self.observables.len();
+        let rows = DMatrix::from_fn(count, size, |one, vector| {
+            dot(&self.observables[one], &self.columns.vectors[vector])
+        });
+        let columns = |deviations: &[Vec<f64>]| {
+            DMatrix::from_fn(size, count, |vector, one| {
+                dot(&deviations[one], &self.rows.vectors[vector])
+            })
+        };
+        let sides = [
+            rows,
+            columns(&self.deviations[0]),
+            columns(&self.deviations[1]),
+        ];
+        Some((model, sides))
+    }
+
+    /// That of the scheme, with so many vectors.
+    fn transfer(&self, size: usize) -> Option<Transfer> {
+        let (model, [rows, columns, _]) = self.model(size)?;
+        model.transfer(&model.first, &rows, &columns)
+    }
+
+    fn size(&self) -> usize {
+        self.columns.vectors.len().min(self.rows.vectors.len())
+    }
+
+    /// Vectors of a model that is one growth smaller.
+    fn smaller(&self) -> usize {
+        let growth = GROWTH * self.observables.len();
+        self.size().saturating_sub(growth).max(1)
+    }
+
+    /// Where the spectra do not stand yet: the largest frequency or the slowest rate that more vectors change.
+    fn unsettled(&self) -> Option<f64> {
+        let (Some(all), Some(fewer)) = (self.transfer(self.size()), self.transfer(self.smaller()))
+        else {
+            return Some(0.0);
+        };
+        let mut worst: Option<(f64, f64)> = None;
+        for observable in 0..self.observables.len() {
+            let powers = self.looked_at.iter().map(|&frequency| {
+                let [one, other] = [&all, &fewer].map(|one| one.power(frequency, observable)[0]);
+                (frequency, one.abs(), (one - other).abs())
+            });
+            let powers: Vec<(f64, f64, f64)> = powers.collect();
+            let largest = powers
+                .iter()
+                .fold(0.0, |most: f64, (_, power, _)| most.max(*power));
+            for (frequency, power, change) in powers {
+                let allowed = TOLERANCE.0 * power + TOLERANCE.1 * largest;
+                let over = change / allowed;
+                // NaN is not settled.
+                let is_settled = over <= 1.0;
+                if !is_settled && worst.is_none_or(|(_, known)| over > known) {
+                    worst = Some((frequency, over));
+                }
+            }
+        }
+        let slowest = all
+            .poles()
+            .map(|pole| pole.norm())
+            .fold(f64::INFINITY, f64::min);
+        worst.map(|(frequency, _)| frequency.max(slowest))
+    }
+
+    fn finish(self, motion: &Motion, work: AbsorbingWork) -> Option<Resolvent> {
+        let (model, [rows, columns, other_columns]) = self.model(self.size())?;
+        let full = model.transfer(&model.first, &rows, &columns)?;
+        let half = model.transfer(&model.second, &rows, &other_columns)?;
+        let fewer = self.transfer(self.smaller())?;
+        let (places, weights) = motion.at_ends(&self.grid.space);
+        let [at_columns, at_rows] = model.at_places(&places, (&self.rows, &self.columns));
+        Some(Resolvent {
+            transfers: [full, half, fewer],
+            ends: Ends {
+                weights,
+                columns: at_columns,
+                rows: at_rows,
+            },
+            work,
+        })
+    }
+}
+
+/// Less its mean over the cells: constants do nothing where columns sum to zero.
+fn centred(values: &[f64]) -> Vec<f64> {
+    balanced(values.to_vec())
+}

@@ -1,0 +1,444 @@
+//! Power spectra, cross spectra and correlation functions against closed forms and other discretisations.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use nalgebra::{Complex, Matrix2};
+use pbif::cancellation::Cancellation;
+use pbif::generator::{GeneratorOptions, assemble};
+use pbif::space::{Axis, CellSpace};
+use pbif::spectrum::{Power, PowerQuestion, Spectrum, StateFunction, Steady, power_spectra};
+use pbif::stationary::generator::{RateOptions, RateSolver};
+use pbif::system::Model;
+
+use crate::common::numbers::{Numbers, given};
+use crate::slow_modes::model;
+
+/// Spectra of a model on even cells.
+fn spectra(model: &Arc<Model>, axes: &[(f64, f64, usize)], question: &PowerQuestion<'_>) -> Power {
+    let axes: Vec<Axis> = axes
+        .iter()
+        .map(|&(from, to, count)| Axis::uniform(from, to, count).unwrap())
+        .collect();
+    let closed = vec![[false; 2]; axes.len()];
+    let space = CellSpace::new(axes).unwrap();
+    let (options, rates) = (GeneratorOptions::default(), RateOptions::default());
+    let system = model.system_with(&[]).unwrap();
+    let generator = assemble(&*system, &space, &options).unwrap();
+    let mut solver = RateSolver::new(space.clone(), rates);
+    let found = solver
+        .solve(&generator.matrix, &generator.escape, None)
+        .unwrap();
+    let steady = Steady {
+        masses: &found.mass,
+        closed: &closed,
+    };
+    let settings = (&options, &rates);
+    let clock = Instant::now();
+    let found = power_spectra(
+        &system,
+        &space,
+        question,
+        steady,
+        settings,
+        &Cancellation::new(),
+    )
+    .unwrap();
+    println!("{:?} in {:.2} s", found.work, clock.elapsed().as_secs_f64());
+    found
+}
+
+/// Whether every number of a curve is an exact one within its error; the largest share, and the median and largest
+/// error relative to the largest value.
+#[track_caller]
+fn hold(what: &str, known: &[(f64, f64)], exact: &[f64]) -> f64 {
+    assert_eq!(known.len(), exact.len());
+    let largest = exact
+        .iter()
+        .fold(0.0, |most: f64, value| most.max(value.abs()));
+    let share = |((value, error), exact): (&(f64, f64), &f64)| {
+        // Rounding of the exact values.
+        (value - exact).abs() / (error + 1e-12 * largest)
+    };
+    let shares: Vec<f64> = known.iter().zip(exact).map(share).collect();
+    let worst = shares.iter().copied().fold(0.0, f64::max);
+    let place = shares.iter().position(|one| *one == worst).unwrap();
+    let mut sorted = shares.clone();
+    sorted.sort_by(f64::total_cmp);
+    let mut relative: Vec<f64> = known
+        .iter()
+        .map(|(value, error)| error / value.abs())
+        .collect();
+    relative.sort_by(f64::total_cmp);
+    println!(
+        "  {what}: worst {worst:.2} of the error at {place} ({:.6e} ± {:.1e}, exact {:.6e}), median {:.2}; stated {:.1e} to {:.1e}, median {:.1e}",
+        known[place].0,
+        known[place].1,
+        exact[place],
+        sorted[sorted.len() / 2],
+        relative[0],
+        relative[relative.len() - 1],
+        relative[relative.len() / 2]
+    );
+    worst
+}
+
+/// S(ω) of an observable of dx = -U'(x) dt + √(2D) dW by a chain of states with rates that keep detailed balance, to
+/// second order in their distance.
+fn of_chain(
+    (potential, observable): (&dyn Fn(f64) -> f64, &dyn Fn(f64) -> f64),
+    diffusion: f64,
+    (from, to): (f64, f64),
+    count: usize,
+    frequencies: &[f64],
+) -> Vec<f64> {
+    let step = (to - from) / count as f64;
+    let place = |state: f64| from + step * (state + 0.5);
+    let rate = |a: f64, b: f64| {
+        let rise = potential(place(b)) - potential(place(a));
+        diffusion / step.powi(2) * (-0.5 * rise / diffusion).exp()
+    };
+    let states: Vec<f64> = (0..count).map(|state| state as f64).collect();
+    let weights: Vec<f64> = states
+        .iter()
+        .map(|&state| (-potential(place(state)) / diffusion).exp())
+        .collect();
+    let whole: f64 = weights.iter().sum();
+    let values: Vec<f64> = states
+        .iter()
+        .map(|&state| observable(place(state)))
+        .collect();
+    let mean = weights.iter().zip(&values).map(|(w, g)| w * g).sum::<f64>() / whole;
+    let up: Vec<f64> = (1..count)
+        .map(|one| rate(states[one - 1], states[one]))
+        .collect();
+    let down: Vec<f64> = (1..count)
+        .map(|one| rate(states[one], states[one - 1]))
+        .collect();
+    let of = |&frequency: &f64| {
+        // (iω - Q) z = p (g - ⟨g⟩) by elimination along the chain.
+        let (mut pivots, mut rest) = (Vec::new(), Vec::new());
+        for state in 0..count {
+            let outward = if state + 1 < count { up[state] } else { 0.0 };
+            let inward = if state > 0 { down[state - 1] } else { 0.0 };
+            let mut pivot = Complex::new(outward + inward, frequency);
+            let mut source = Complex::from(weights[state] / whole * (values[state] - mean));
+            if state > 0 {
+                let factor = up[state - 1] / pivots[state - 1];
+                pivot -= factor * down[state - 1];
+                source += factor * rest[state - 1];
+            }
+            pivots.push(pivot);
+            rest.push(source);
+        }
+        let mut sum = Complex::from(0.0);
+        let mut above = Complex::from(0.0);
+        for state in (0..count).rev() {
+            let flow = if state + 1 < count { down[state] } else { 0.0 };
+            above = (rest[state] + above * flow) / pivots[state];
+            sum += above * (values[state] - mean);
+        }
+        2.0 * sum.re
+    };
+    frequencies.iter().map(of).collect()
+}
+
+#[test]
+fn a_double_well_has_its_spectrum_over_decades() {
+    let x: StateFunction<'_> = &|state| state[0];
+    for noise in [0.5f64, 0.3] {
+        let model = model(&[("x", "x - x^3")], &[("x", &noise.to_string())]);
+        let frequencies: Vec<f64> = (0..100)
+            .map(|number| 1e-5 * 10f64.powf(0.06 * f64::from(number)))
+            .collect();
+        let question = PowerQuestion {
+            observables: &[x],
+            pairs: &[(0, 0)],
+            frequencies: &frequencies,
+            lags: (0.0, 0),
+        };
+        let found = spectra(&model, &[(-2.2, 2.2, 160)], &question);
+        let potential = |x: f64| 0.25 * x.powi(4) - 0.5 * x * x;
+        let of = |count| {
+            of_chain(
+                (&potential, &|x| x),
+                0.5 * noise * noise,
+                (-2.2, 2.2),
+                count,
+                &frequencies,
+            )
+        };
+        let pairs = of(4000).into_iter().zip(of(8000));
+        let exact: Vec<f64> = pairs.map(|(a, b)| (4.0 * b - a) / 3.0).collect();
+        let decades = (exact[0] / exact[99]).log10();
+        println!("noise {noise}: {decades:.1} decades");
+        assert!(hold("x", &found.spectra[0].real, &exact) <= 1.0);
+    }
+}
+
+#[test]
+fn dry_friction_has_its_spectrum() {
+    // v' = -sgn v + 0.8 ξ, on cells with a face on the jump.
+    let model = model(&[("v", "-sign(v)")], &[("v", "0.8")]);
+    let v: StateFunction<'_> = &|state| state[0];
+    let frequencies = along(10.0, 101);
+    let question = PowerQuestion {
+        observables: &[v],
+        pairs: &[(0, 0)],
+        frequencies: &frequencies,
+        lags: (0.0, 0),
+    };
+    let found = spectra(&model, &[(-6.0, 6.0, 160)], &question);
+    let of = |count| of_chain((&f64::abs, &|v| v), 0.32, (-6.0, 6.0), count, &frequencies);
+    let pairs = of(4000).into_iter().zip(of(8000));
+    let exact: Vec<f64> = pairs.map(|(a, b)| (4.0 * b - a) / 3.0).collect();
+    assert!(hold("v", &found.spectra[0].real, &exact) <= 1.0);
+}
+
+/// A system without a closed form: errors on coarse cells against the same on many.
+#[track_caller]
+fn against_finer(model: &Arc<Model>, range: [f64; 2], counts: [usize; 2], to: f64) -> f64 {
+    let x: StateFunction<'_> = &|state| state[0];
+    let y: StateFunction<'_> = &|state| state[1];
+    let frequencies = along(to, 161);
+    let question = PowerQuestion {
+        observables: &[x, y],
+        pairs: &[(0, 0), (1, 1)],
+        frequencies: &frequencies,
+        lags: (0.5, 40),
+    };
+    let [coarse, fine] = counts.map(|count| {
+        let axes = range.map(|end| (-end, end, count));
+        spectra(model, &axes, &question)
+    });
+    let mut worst = 0.0f64;
+    for (name, (one, other)) in ["x", "y"]
+        .into_iter()
+        .zip(coarse.spectra.iter().zip(&fine.spectra))
+    {
+        let values = |known: &[(f64, f64)]| known.iter().map(|known| known.0).collect::<Vec<f64>>();
+        worst = worst.max(hold(name, &one.real, &values(&other.real)));
+        worst = worst.max(hold("C", &one.correlation, &values(&other.correlation)));
+        println!("{:?}\n{:?}", one.features, other.features);
+    }
+    worst
+}
+
+#[test]
+fn a_bistable_oscillator_has_the_spectrum_of_finer_cells() {
+    let drift = "x - x^3 - 0.25 y";
+    let model = model(&[("x", "y"), ("y", drift)], &[("y", "0.3")]);
+    assert!(against_finer(&model, [2.3, 2.0], [60, 110], 4.0) <= 1.0);
+}
+
+#[test]
+fn a_limit_cycle_has_the_spectrum_of_finer_cells() {
+    let drift = "0.5 (1 - x^2) y - x";
+    let model = model(&[("x", "y"), ("y", drift)], &[("y", "0.6")]);
+    assert!(against_finer(&model, [4.6, 6.0], [60, 110], 4.0) <= 1.0);
+}
+
+fn along(to: f64, count: usize) -> Vec<f64> {
+    (0..count)
+        .map(|number| to * number as f64 / (count - 1) as f64)
+        .collect()
+}
+
+#[test]
+fn a_linear_state_has_a_lorentzian() {
+    let model = model(&[("x", "-0.7 x")], &[("x", "0.5")]);
+    let spread = 0.5 / 1.4f64.sqrt();
+    let x: StateFunction<'_> = &|state| state[0];
+    let squared: StateFunction<'_> = &|state| state[0] * state[0];
+    let frequencies = along(6.0, 121);
+    let question = PowerQuestion {
+        observables: &[x, squared],
+        pairs: &[(0, 0), (1, 1), (0, 1)],
+        frequencies: &frequencies,
+        lags: (0.2, 30),
+    };
+    let found = spectra(&model, &[(-6.0 * spread, 6.0 * spread, 120)], &question);
+    let variance = spread * spread;
+    let lorentzian = |rate: f64, variance: f64| {
+        let at = frequencies
+            .iter()
+            .map(|w| 2.0 * rate * variance / (rate * rate + w * w));
+        at.collect::<Vec<f64>>()
+    };
+    let mut worst = hold("x", &found.spectra[0].real, &lorentzian(0.7, variance));
+    let of_squares = lorentzian(1.4, 2.0 * variance * variance);
+    worst = worst.max(hold("x^2", &found.spectra[1].real, &of_squares));
+    let lags = (0..30).map(|lag| variance * (-0.7 * 0.2 * f64::from(lag)).exp());
+    worst = worst.max(hold(
+        "C",
+        &found.spectra[0].correlation,
+        &lags.collect::<Vec<f64>>(),
+    ));
+    let features = found.spectra[0].features.unwrap();
+    println!("{features:?}");
+    let (time, error) = features.correlation_time.unwrap();
+    assert!((time - 1.0 / 0.7).abs() <= error && error < 1e-3);
+    let (bend, error) = features.curvature.unwrap();
+    assert!((bend + 2.0 / 0.49).abs() <= error && error < 1e-2);
+    assert_eq!(features.peak, None);
+    // Odd and even fluctuations have nothing in common.
+    for (real, imaginary) in found.spectra[2]
+        .real
+        .iter()
+        .zip(&found.spectra[2].imaginary)
+    {
+        assert!(
+            real.0.abs() < 1e-9 && imaginary.0.abs() < 1e-9,
+            "{real:?} {imaginary:?}"
+        );
+    }
+    assert!(worst <= 1.0, "{worst}");
+}
+
+/// S(ω) = (iω - A)⁻¹ N (-iω - Aᵀ)⁻¹ of a linear system.
+fn exact([a, b, c, d]: [f64; 4], noises: [f64; 2], frequency: f64) -> Matrix2<Complex<f64>> {
+    let i = Complex::new(0.0, frequency);
+    let [a, b, c, d] = [a, b, c, d].map(Complex::from);
+    let resolvent = Matrix2::new(i - a, -b, -c, i - d).try_inverse().unwrap();
+    let noise =
+        Matrix2::from_diagonal(&nalgebra::Vector2::new(noises[0], noises[1]).map(Complex::from));
+    resolvent * noise * resolvent.adjoint()
+}
+
+/// Checks the three spectra of a linear system; the largest share of an error.
+fn check_linear(
+    what: &str,
+    found: &[Spectrum],
+    frequencies: &[f64],
+    matrix: [f64; 4],
+    noises: [f64; 2],
+) -> f64 {
+    let of = |row: usize, column: usize, is_real: bool| {
+        let at = frequencies.iter().map(|&frequency| {
+            let value = exact(matrix, noises, frequency)[(row, column)];
+            if is_real { value.re } else { value.im }
+        });
+        at.collect::<Vec<f64>>()
+    };
+    println!("{what}");
+    let mut worst = hold("xx", &found[0].real, &of(0, 0, true));
+    worst = worst.max(hold("yy", &found[1].real, &of(1, 1, true)));
+    worst = worst.max(hold("xy real", &found[2].real, &of(0, 1, true)));
+    worst.max(hold("xy imaginary", &found[2].imaginary, &of(0, 1, false)))
+}
+
+#[test]
+fn an_oscillator_has_its_line() {
+    let x: StateFunction<'_> = &|state| state[0];
+    let y: StateFunction<'_> = &|state| state[1];
+    let frequencies = along(4.0, 201);
+    let question = PowerQuestion {
+        observables: &[x, y],
+        pairs: &[(0, 0), (1, 1), (0, 1)],
+        frequencies: &frequencies,
+        lags: (0.3, 100),
+    };
+    let mut worst = 0.0f64;
+    for damping in [0.3f64, 0.05] {
+        let drift = format!("-x - {} y", 2.0 * damping);
+        let model = model(&[("x", "y"), ("y", &drift)], &[("y", "0.4")]);
+        let variance = 0.16 / (4.0 * damping);
+        let axis = (-6.0 * variance.sqrt(), 6.0 * variance.sqrt(), 80);
+        let found = spectra(&model, &[axis, axis], &question);
+        let matrix = [0.0, 1.0, -1.0, -2.0 * damping];
+        worst = worst.max(check_linear(
+            &format!("damping {damping}"),
+            &found.spectra,
+            &frequencies,
+            matrix,
+            [0.0, 0.16],
+        ));
+        let features = found.spectra[0].features.unwrap();
+        println!("{features:?}");
+        let (peak, error) = features.peak.unwrap();
+        let exact = (1.0 - 2.0 * damping * damping).sqrt();
+        assert!(
+            (peak - exact).abs() <= error && error < 1e-2,
+            "{peak} ± {error}, {exact}"
+        );
+        let fast = (1.0 - damping * damping).sqrt();
+        let lags = (0..100).map(|lag| {
+            let lag = 0.3 * f64::from(lag);
+            variance
+                * (-damping * lag).exp()
+                * ((fast * lag).cos() + damping / fast * (fast * lag).sin())
+        });
+        worst = worst.max(hold(
+            "C",
+            &found.spectra[0].correlation,
+            &lags.collect::<Vec<f64>>(),
+        ));
+    }
+    assert!(worst <= 1.0, "{worst}");
+}
+
+#[test]
+fn errors_hold_on_random_linear_systems() {
+    let (count, seed) = (given("PBIF_RANDOM_SYSTEMS", 4), given("PBIF_FUZZ_SEED", 3));
+    let mut numbers = Numbers(seed);
+    let mut worst = 0.0f64;
+    for system in 0..count {
+        let mut between =
+            |from: f64, to: f64| from + (to - from) * numbers.below(1_000_000) as f64 * 1e-6;
+        let (matrix, amplitudes) = match system % 2 {
+            0 => (
+                [0.0, 1.0, -between(0.3, 3.0), -between(0.1, 1.5)],
+                [0.0, between(0.2, 0.8)],
+            ),
+            _ => (
+                [
+                    -between(0.4, 2.0),
+                    between(-1.5, 1.5),
+                    -between(-0.2, 1.5),
+                    -between(0.4, 2.0),
+                ],
+                [between(0.2, 0.8), between(0.2, 0.8)],
+            ),
+        };
+        let [a, b, c, d] = matrix;
+        let (trace, determinant) = (a + d, a * d - b * c);
+        if determinant < 0.1 {
+            continue;
+        }
+        let noises = amplitudes.map(|amplitude| amplitude * amplitude);
+        let factor = -1.0 / (2.0 * trace * determinant);
+        let xx = factor * (noises[0] * (determinant + d * d) + noises[1] * b * b);
+        let yy = factor * (noises[1] * (determinant + a * a) + noises[0] * c * c);
+        let equations = [
+            format!("{a} * x + ({b}) * y"),
+            format!("({c}) * x + ({d}) * y"),
+        ];
+        let words = amplitudes.map(|amplitude| amplitude.to_string());
+        let noise: &[(&str, &str)] = match system % 2 {
+            0 => &[("y", &words[1])],
+            _ => &[("x", &words[0]), ("y", &words[1])],
+        };
+        let model = model(&[("x", &equations[0]), ("y", &equations[1])], noise);
+        let cells = 40 + 10 * (system as usize % 4);
+        let axes = [xx, yy].map(|variance| (-6.0 * variance.sqrt(), 6.0 * variance.sqrt(), cells));
+        let x: StateFunction<'_> = &|state| state[0];
+        let y: StateFunction<'_> = &|state| state[1];
+        let frequencies = along(6.0 * determinant.sqrt(), 121);
+        let question = PowerQuestion {
+            observables: &[x, y],
+            pairs: &[(0, 0), (1, 1), (0, 1)],
+            frequencies: &frequencies,
+            lags: (0.0, 0),
+        };
+        let found = spectra(&model, &axes, &question);
+        let what = format!("{matrix:?} {noises:?}, {cells} cells");
+        worst = worst.max(check_linear(
+            &what,
+            &found.spectra,
+            &frequencies,
+            matrix,
+            noises,
+        ));
+    }
+    assert!(worst <= 1.0, "{worst}");
+}
