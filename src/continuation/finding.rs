@@ -212,6 +212,13 @@ pub enum Finding {
         /// Modes that are wanted.
         wanted: usize,
     },
+    /// Spectra that are asked for were not solved.
+    NoSpectrum,
+    /// A power spectrum is not known from a frequency on.
+    SpectrumCut {
+        /// The angular frequency.
+        frequency: f64,
+    },
     /// Sentences of a stored run that has no numbers for them.
     Told(String),
 }
@@ -354,6 +361,8 @@ impl Finding {
                 along("no-fixed-point", axis, &[drift, noise])
             }
             Self::NoExponent => plain("no-exponent", &[]),
+            Self::NoSpectrum => plain("no-spectrum", &[]),
+            Self::SpectrumCut { frequency } => plain("spectrum-cut", &[frequency]),
             Self::Told(_) => plain("told", &[]),
         }
     }
@@ -420,6 +429,8 @@ impl Finding {
                 Self::NoFixedPoint { axis, drift, noise }
             }
             ("no-exponent", None, &[]) => Self::NoExponent,
+            ("no-spectrum", None, &[]) => Self::NoSpectrum,
+            ("spectrum-cut", None, &[frequency]) => Self::SpectrumCut { frequency },
             (code, None, &[passage]) => Self::NoPassage {
                 passage: passage as usize,
                 fault: PassageFault::of_code(code)?,

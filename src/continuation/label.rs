@@ -123,6 +123,18 @@ impl Label {
                 method: "exponent",
                 status: one.status(),
             }),
+            Self::Level(one) if one.is_spectral() => Some(RowWords {
+                of: one.asked.measure.clone(),
+                before: if one.rises { "< 0" } else { "> 0" }.to_owned(),
+                after: if one.rises { "> 0" } else { "< 0" }.to_owned(),
+                change: match one.rises {
+                    true => "the maximum of the power spectrum leaves frequency zero",
+                    false => "the maximum of the power spectrum comes to frequency zero",
+                }
+                .to_owned(),
+                method: "curvature",
+                status: one.status(),
+            }),
             Self::Level(one) => {
                 let level = one.asked.level;
                 let [below, above] = [format!("< {level}"), format!("> {level}")];
@@ -278,12 +290,15 @@ pub(super) fn failures(points: &[Point]) -> impl Iterator<Item = Label> {
 /// Sorts rows by parameter and numbers each type from 1.
 pub(super) fn number(mut labels: Vec<Label>) -> Vec<Label> {
     labels.sort_by(|a, b| a.value().total_cmp(&b.value()));
-    let mut counts = [0; 5];
+    let mut counts = [0; 6];
     for row in &mut labels {
         let (label, prefix, count) = match row {
             Label::Bifurcation(located) => (&mut located.label, "PB", &mut counts[0]),
             Label::Level(crossing) if crossing.is_d_bifurcation() => {
                 (&mut crossing.label, "DB", &mut counts[4])
+            }
+            Label::Level(crossing) if crossing.is_spectral() => {
+                (&mut crossing.label, "SB", &mut counts[5])
             }
             Label::Level(crossing) => (&mut crossing.label, "LV", &mut counts[3]),
             Label::End { label, .. } => (label, "EP", &mut counts[1]),

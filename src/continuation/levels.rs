@@ -7,8 +7,8 @@
 
 use super::Point;
 use super::doubt::{BifurcationStatus, Doubt, status_of};
-use super::measure::EXPONENT;
-use crate::system::MeasureLevel;
+use super::measure::{EXPONENT, SPECTRAL_CURVATURE};
+use crate::system::{Family, MeasureLevel};
 
 /// Values through which the polynomial goes, half of them on either side.
 const NODES: usize = 4;
@@ -46,6 +46,12 @@ impl LevelCrossing {
         status_of(&self.doubts)
     }
 
+    /// Whether it is the curvature of a power spectrum at zero that passes zero: a maximum leaves zero, or comes back.
+    pub fn is_spectral(&self) -> bool {
+        let of_kind = self.asked.measure.strip_prefix(SPECTRAL_CURVATURE.word);
+        self.asked.level == 0.0 && of_kind.is_some_and(|rest| rest.starts_with('_'))
+    }
+
     /// Whether it is the largest Lyapunov exponent that passes zero.
     pub fn is_d_bifurcation(&self) -> bool {
         self.asked.measure == EXPONENT.word && self.asked.level == 0.0
@@ -76,6 +82,23 @@ impl Root {
     fn error(&self) -> f64 {
         self.interpolation + self.of_measure
     }
+}
+
+/// The levels of which the crossings are wanted: those that are asked for, and zero for the curvature of a power
+/// spectrum.
+pub(super) fn asked_of(family: &Family) -> Vec<MeasureLevel> {
+    let question = family.spectrum().into_iter();
+    let powers = question.flat_map(|question| {
+        let pairs = question.pairs.iter().filter(|(one, other)| one == other);
+        pairs.map(|&pair| MeasureLevel {
+            measure: SPECTRAL_CURVATURE.name(&question.name(family, pair)),
+            level: 0.0,
+        })
+    });
+    let mut all = family.levels().to_vec();
+    let new: Vec<MeasureLevel> = powers.filter(|one| !all.contains(one)).collect();
+    all.extend(new);
+    all
 }
 
 /// All crossings of the levels that are asked for, unnumbered.

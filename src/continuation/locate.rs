@@ -8,7 +8,7 @@ use super::follow::{Course, Crossing};
 use super::grid::{Checked, Checks, share_of_distance};
 use super::jump::instead_of_zero;
 use super::label::{self, Label, Located, Zero};
-use super::levels::crossings;
+use super::levels::{asked_of, crossings};
 use super::measure::NUMERICAL_DIFFUSION;
 use super::root::{Root, root};
 use super::rows::{doubt_what_does_not_continue, in_order, inseparable, merge, without_flicker};
@@ -67,7 +67,7 @@ pub(super) fn label_points(
     doubt_what_does_not_continue(&mut rows, &solved, observables);
     let rows = rows.into_iter();
     let rows = rows.map(|row| Label::Bifurcation(Box::new(row)));
-    let levels = crossings(points, subject.family.levels(), options.tolerance);
+    let levels = crossings(points, &asked_of(&subject.family), options.tolerance);
     // Where the exponent passes zero is known better from the exponent itself, and asked for with it.
     let levels = levels.into_iter().filter(|row| !row.is_d_bifurcation());
     let levels = levels.chain(d_bifurcations(points, &subject.family, options.tolerance));

@@ -124,6 +124,26 @@ pub(crate) const DECAY_FREQUENCY: MeasureKind = kind(
     "1/t",
     "angular frequency at which a slow mode oscillates; 0 where it does not",
 );
+pub(crate) const SPECTRAL_PEAK: MeasureKind = kind(
+    "spectral_peak",
+    "1/t",
+    "angular frequency of the highest maximum of a power spectrum above zero",
+);
+pub(crate) const SPECTRAL_WIDTH: MeasureKind = kind(
+    "spectral_width",
+    "1/t",
+    "full width of that maximum at half of its height",
+);
+pub(crate) const CORRELATION_TIME: MeasureKind = kind(
+    "correlation_time",
+    "t",
+    "integral of the correlation function from zero on, over the variance",
+);
+pub(crate) const SPECTRAL_CURVATURE: MeasureKind = kind(
+    "spectral_curvature",
+    "t^2",
+    "second derivative of a power spectrum at zero over its value there: above zero where it rises from there",
+);
 
 pub(crate) const ESCAPE_RATE: MeasureKind =
     kind("escape_rate", "1/t", "mass that leaves Ω per unit time");

@@ -43,6 +43,7 @@ mod doubt;
 mod error;
 mod events;
 mod finding;
+mod fluctuations;
 mod follow;
 mod grid;
 mod jump;
@@ -71,6 +72,7 @@ pub use error::SweepError;
 #[cfg(test)]
 pub(crate) use finding::tests::every_finding;
 pub use finding::{Finding, PassageFault, ShiftedQuantity, SteadyClass};
+pub use fluctuations::Fluctuations;
 pub use grid::CheckedIndicator;
 pub use label::{Label, Located, RowWords, Zero};
 pub use levels::LevelCrossing;

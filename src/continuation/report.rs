@@ -1,6 +1,6 @@
 //! What a solve says of itself: how it ended, numbers, findings.
 
-use super::Finding;
+use super::{Finding, Fluctuations};
 use super::measure::{EDGE_MASS, Measure, MeasureKind};
 
 /// How a point ended.
@@ -57,6 +57,8 @@ pub struct SolveReport {
     pub solver_error: f64,
     /// Its numbers, each name once: moments, rates, masses that should be zero, whatever the method knows.
     pub measures: Vec<Measure>,
+    /// Spectra and correlations that the family asks for.
+    pub fluctuations: Vec<Fluctuations>,
     /// What the user must know of this point.
     pub findings: Vec<Finding>,
 }
@@ -71,6 +73,7 @@ impl SolveReport {
             residual: 0.0,
             solver_error: 0.0,
             measures: Vec::new(),
+            fluctuations: Vec::new(),
             findings: Vec::new(),
         }
     }

@@ -9,6 +9,7 @@ use super::dips::Flanks;
 use super::distances::{fill_all_distances, fill_distances};
 use super::grid::CheckedIndicator;
 use super::live::Live;
+use super::levels::asked_of;
 use super::locate::label_points;
 use super::segment::{Segment, Solved, Work};
 use super::span::Span;
@@ -175,13 +176,14 @@ impl Run<'_> {
 
     /// Solves further values, at most so many, until every change is as narrow as wanted, or as the data allow.
     fn narrow(&mut self, most: usize) -> Result<(), SweepError> {
+        let levels = asked_of(&self.source.subject().family);
         let mut left = most;
         while left > 0 && !self.work.has_ended() {
             let mut wanted = Search {
                 points: &self.points,
                 flanks: &self.flanks,
                 detector: self.detector,
-                levels: self.source.subject().family.levels(),
+                levels: &levels,
                 span: self.span,
                 options: &self.options,
             }

@@ -46,7 +46,9 @@ pub use bins::BinsError;
 pub(crate) use bins::{QuantityRange, automatic_bins, check_averaged};
 pub use cost::Cost;
 pub use generator::{GeneratorCost, GeneratorMethodOptions, GeneratorSource};
-pub(crate) use generator::{OneAxisFamily, automatic_modes, change_by_more_modes};
+pub(crate) use generator::{
+    OneAxisFamily, automatic_modes, change_by_more_modes, highest_frequency,
+};
 pub use measures::DerivedMeasure;
 #[cfg(feature = "store")]
 pub(crate) use measures::{columns_of_family, passage_columns};
@@ -92,9 +94,9 @@ pub enum MethodError {
         /// Name of the axis.
         axis: String,
     },
-    /// Times of first passage, or slow modes, of a system with an axis that closes on itself.
+    /// Times of first passage, slow modes, or spectra, of a system with an axis that closes on itself.
     #[error(
-        "axis `{axis}` closes on itself: times of first passage and slow modes are not worked out over phases and angles yet; leave `[passage]` and `[relaxation]` out"
+        "axis `{axis}` closes on itself: times of first passage, slow modes and spectra are not worked out over phases and angles yet; leave `[passage]`, `[relaxation]` and `[spectrum]` out"
     )]
     TurnOfQuestion {
         /// Name of the axis.
@@ -169,7 +171,7 @@ fn has_densities(problem: &Problem) -> Result<(), MethodError> {
         system.facts().autonomous()?;
     }
     let family = problem.family();
-    let asks = !family.passages().is_empty() || family.slow_modes() > 0;
+    let asks = !family.passages().is_empty() || family.slow_modes() > 0 || family.spectrum().is_some();
     if let (true, Err(MethodError::Turn { axis })) = (asks, has_no_turns(problem)) {
         return Err(MethodError::TurnOfQuestion { axis });
     }

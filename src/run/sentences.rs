@@ -203,6 +203,11 @@ fn solve_in_words(family: &Family, finding: &Finding) -> String {
         Finding::FewSlowModes { known, wanted } => format!(
             "{known} of {wanted} slow modes are known: finer cells, or wider ranges, know more"
         ),
+        Finding::NoSpectrum => "spectra were not worked out".to_owned(),
+        Finding::SpectrumCut { frequency } => format!(
+            "a power spectrum is not known to a tenth from the frequency {frequency:.3} on: finer cells know more of it, or \
+             `spectrum.to` leaves it out"
+        ),
         Finding::NoPassage { passage, fault } => passage_in_words(family, passage, fault),
         Finding::PassageCut {
             passage,

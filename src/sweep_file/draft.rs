@@ -8,7 +8,7 @@ use crate::figure::FigureSettings;
 use crate::method::{
     DerivedMeasure, GeneratorMethodOptions, MethodOptions, MonteCarloOptions, SgcmOptions,
 };
-use crate::system::{Interpretation, Model, NoiseKind};
+use crate::system::{Interpretation, Model, NoiseKind, Sides};
 use crate::topology::DetectOptions;
 
 /// The chosen method, and the settings of all, so that a file can hold them all and one word switches.
@@ -191,6 +191,18 @@ impl ExponentKind {
     }
 }
 
+/// What the file says of fluctuations.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct SpectrumDraft {
+    /// Names of observables, or of two with a comma between.
+    pub(super) of: Option<Vec<String>>,
+    pub(super) from: Option<f64>,
+    pub(super) to: Option<f64>,
+    pub(super) points: Option<usize>,
+    pub(super) sides: Option<Sides>,
+    pub(super) lag: Option<f64>,
+}
+
 /// What the file says of a passage.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct PassageDraft {
@@ -248,6 +260,8 @@ pub(super) struct Draft {
     pub(super) fixed_point: Vec<(String, f64)>,
     /// How many slow modes are wanted.
     pub(super) slow_modes: Option<usize>,
+    /// What is asked of fluctuations.
+    pub(super) spectrum: SpectrumDraft,
     pub(super) detect: DetectOptions,
     pub(super) locate: LocateOptions,
     pub(super) figures_at: Option<Vec<f64>>,
@@ -282,6 +296,7 @@ impl Default for Draft {
             exponent: None,
             fixed_point: Vec::new(),
             slow_modes: None,
+            spectrum: SpectrumDraft::default(),
             detect: DetectOptions::default(),
             locate: LocateOptions::default(),
             figures_at: None,

@@ -11,7 +11,7 @@ use super::verify::short;
 use crate::cancellation::Cancellation;
 use crate::method::{
     PILOT_BOX, Problem, RangeError, SgcmOptions, automatic_modes, automatic_ranges,
-    change_by_more_modes, check_sticking,
+    change_by_more_modes, check_sticking, highest_frequency,
 };
 use crate::space::{Axis, CellSpace};
 use crate::system::{ParameterValues, System};
@@ -51,6 +51,7 @@ impl Settings {
         self.find_modes(cancellation)?;
         tell("looking for ranges of quantities");
         self.find_bins(cancellation)?;
+        self.find_frequencies(cancellation)?;
         tell("laying out the cells");
         let sweep = self.fixed()?;
         sweep.settings.check_factors(&sweep)?;
@@ -300,6 +301,29 @@ impl Settings {
             "modes: {}, which is much: give `modes` for more, or `count` for cells",
             change_in_words("more than are given", change)
         ));
+        Ok(())
+    }
+
+    /// Replaces a highest frequency of spectra that is left to the program.
+    fn find_frequencies(&mut self, cancellation: &Cancellation) -> Result<(), Report> {
+        let question = self.family.spectrum().filter(|one| one.band.to.is_none());
+        let Some(mut question) = question.cloned() else {
+            return Ok(());
+        };
+        let problem = self.clone().fixed()?.problem;
+        let found = highest_frequency(&problem, &self.method.generator, cancellation);
+        let found = found.map_err(|error| self.refuse(Diagnostic::new(error.to_string())))?;
+        let Some(to) = found else {
+            let title = "no frequency is known up to which spectra are of interest: there is no steady state at the ends of the sweep and in its middle";
+            let remedy = "give `spectrum.to`";
+            return Err(self.refuse(Diagnostic::new(title).remedy(remedy)));
+        };
+        // Three digits are enough, and are read easily.
+        let digits = 10f64.powf(2.0 - to.log10().floor());
+        let to = (to * digits).round() / digits;
+        question.band.to = Some(to);
+        self.chosen.push(format!("spectra: frequencies up to {to} are looked at"));
+        self.family = self.family.clone().with_spectrum(Some(question));
         Ok(())
     }
 

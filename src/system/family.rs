@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::{
     AtPhase, FixedPointFault, Linearised, MeasureLevel, Model, ParameterValues, PassageQuestion,
-    Path, Quantity, Region, System, SystemError,
+    Path, Quantity, Region, SpectrumQuestion, System, SystemError,
 };
 
 /// Systems along a path: one number in, a bound system out, with names and symbols for tables and figures.
@@ -34,6 +34,7 @@ pub struct Family {
     levels: Vec<MeasureLevel>,
     fixed_point: Option<Vec<f64>>,
     slow_modes: usize,
+    spectrum: Option<Arc<SpectrumQuestion>>,
 }
 
 impl Family {
@@ -64,6 +65,7 @@ impl Family {
             levels: Vec::new(),
             fixed_point: None,
             slow_modes: 0,
+            spectrum: None,
         };
         family.along()?;
         Ok(family)
@@ -145,6 +147,18 @@ impl Family {
         self.slow_modes
     }
 
+    /// The family with a question of fluctuations.
+    #[must_use]
+    pub fn with_spectrum(mut self, question: Option<SpectrumQuestion>) -> Self {
+        self.spectrum = question.map(Arc::new);
+        self
+    }
+
+    /// What is asked of fluctuations in the steady state.
+    pub fn spectrum(&self) -> Option<&SpectrumQuestion> {
+        self.spectrum.as_deref()
+    }
+
     /// The regions that have names.
     pub fn regions(&self) -> &[Region] {
         &self.regions
@@ -172,6 +186,7 @@ impl Family {
             levels: self.levels.clone(),
             fixed_point: self.fixed_point.clone(),
             slow_modes: self.slow_modes,
+            spectrum: self.spectrum.clone(),
             ..Self::new(self.model.clone(), fixed, path)?
         })
     }

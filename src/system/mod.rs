@@ -41,6 +41,7 @@ mod path;
 mod quantity;
 mod rayleigh;
 mod region;
+mod spectrum;
 pub mod registry;
 mod symmetry;
 #[cfg(test)]
@@ -59,6 +60,7 @@ pub use model::Model;
 pub use noise::{Amplitude, Noise};
 pub use oscillator::VELOCITY;
 pub(crate) use oscillator::{DISPLACEMENT, FIRST_INTERNAL_STATE};
+pub use spectrum::{Band, Fluctuating, Sides, SpectrumQuestion};
 pub use passage::{MeasureLevel, PassageQuestion, PassageStart};
 pub use path::Path;
 pub use quantity::{AtPhase, BoundQuantity, Quantity, QuantityError, QuantityFault, quantities};

@@ -116,7 +116,9 @@ pub(crate) fn every_finding() -> Vec<Finding> {
             noise: 0.1,
         }),
         F::NoFixedPoint { .. } => Some(F::NoExponent),
-        F::NoExponent => Some(F::Told("as it was told; twice".to_owned())),
+        F::NoExponent => Some(F::NoSpectrum),
+        F::NoSpectrum => Some(F::SpectrumCut { frequency: 12.5 }),
+        F::SpectrumCut { .. } => Some(F::Told("as it was told; twice".to_owned())),
         F::Told(_) => None,
     };
     let first = F::Escaping {

@@ -20,6 +20,7 @@ mod sensitivity;
 mod session;
 mod slow_modes;
 mod source;
+mod spectra;
 mod stand;
 mod trail;
 #[cfg(test)]
@@ -32,3 +33,4 @@ pub(crate) use modes::{automatic_modes, change_by_more_modes};
 pub(crate) use one_axis::OneAxisFamily;
 pub use options::GeneratorMethodOptions;
 pub use source::GeneratorSource;
+pub(crate) use spectra::highest_frequency;

@@ -18,6 +18,7 @@ use super::second::{Second, SecondSolve, companion};
 use super::sensitivity::GeneratorSensitivity;
 use super::slow_modes::add_slow_modes;
 use super::source::METHOD;
+use super::spectra::add_spectra;
 use super::stand::Stand;
 use super::trail::{self, Trail};
 use super::unknowns::{by_schemes, distance, negative_mass, summed_over_modes};
@@ -128,7 +129,7 @@ impl GeneratorSession {
         Ok(solution)
     }
 
-    /// Adds what is asked of first passages and slow modes at a value, unless densities are all that is asked for;
+    /// Adds what is asked of first passages, slow modes and spectra at a value, unless densities are all that is asked for;
     /// `known` are the unknowns of the steady state, and by how much those of another discretisation differ.
     fn add_asked(
         &self,
@@ -150,7 +151,9 @@ impl GeneratorSession {
         let (asked, cancellation) = ((problem, value), &self.cancellation);
         add_passages(report, asked, system, density, options, cancellation)?;
         let unknowns = known.map(|(unknowns, _)| unknowns);
-        add_slow_modes(report, &self.source, system, unknowns, cancellation)
+        add_slow_modes(report, &self.source, system, unknowns, cancellation)?;
+        let at = (system, value);
+        add_spectra(report, &self.source, at, unknowns, cancellation)
     }
 
     /// Factorises ahead of a value in place of at it, where the sweep goes on: values on either side of the factorised

@@ -5,10 +5,12 @@ mod entropy;
 mod passage;
 mod rotation;
 mod slow_modes;
+mod spectra;
 
 pub(super) use passage::measures as measures_of_passage;
 pub(crate) use passage::passage_columns;
 pub(super) use slow_modes::measures as measures_of_slow_modes;
+pub(super) use spectra::measures as measures_of_spectrum;
 
 pub(super) use balance::broken;
 
@@ -85,11 +87,12 @@ impl DerivedMeasure {
     }
 }
 
-/// The columns of what a family itself asks for: passages, slow modes, and the exponent of a fixed point; and those of
+/// The columns of what a family itself asks for: passages, slow modes, spectra, and the exponent of a fixed point; and those of
 /// its angles.
 pub(crate) fn columns_of_family(family: &Family) -> Vec<MeasureColumn> {
     let passages = passage_columns(family).into_iter();
     let asked = passages.chain(slow_modes::columns(family));
+    let asked = asked.chain(spectra::columns(family));
     let columns = asked.chain(exponent_columns(family));
     columns.chain(rotation::rotation_columns(family)).collect()
 }

@@ -9,7 +9,7 @@ use crate::generator::AdvectiveScheme;
 use crate::method::{Correction, DerivedMeasure, Estimator, StepChoice};
 use crate::sampling::Integrator;
 use crate::stationary::Solver;
-use crate::system::{Interpretation, Model, NoiseKind, registry};
+use crate::system::{Interpretation, Model, NoiseKind, Sides, registry};
 
 /// Getter and setter of a key. The second argument is the name that `<…>` stands for in the key's path.
 #[derive(Debug, Clone, Copy)]
@@ -282,6 +282,7 @@ named!(
     Interpretation,
     MethodKind,
     NoiseKind,
+    Sides,
     Solver,
     Typeface
 );

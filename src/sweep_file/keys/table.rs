@@ -17,7 +17,7 @@ use crate::sampling::Integrator;
 use crate::space::MOST_MODES;
 use crate::stationary::Solver;
 use crate::sweep_file::draft::{ExponentKind, MethodKind};
-use crate::system::{Interpretation, NoiseKind, registry};
+use crate::system::{Interpretation, NoiseKind, Sides, registry};
 
 /// Most cells an axis may have: edges are stored, so a slip of the pen must not fill the memory.
 const MOST_CELLS: i128 = 1_000_000;
@@ -246,6 +246,19 @@ pub(in crate::sweep_file) static KEYS: &[Key] = &[
         "Coordinate of the fixed point: drift and all noises must be zero there, along the whole sweep."),
     key("relaxation.modes", Kind::Integer(1, 24), Rule("none"), optional!(slow_modes),
         "Slow modes, the deviations from the steady state that live longest: as many decay rates and frequencies are told in `points.csv`, with errors (docs/relaxation.md)."),
+    key("spectrum.of", Kind::List(&Kind::Text), Rule("no spectra"), optional!(spectrum.of),
+        "What fluctuates: names of axes and of quantities that are watched, each for its power spectrum, or two with a comma between, `\"x, v\"`, \
+         for their cross spectrum. Spectra at every value are `spectra.csv`, with errors (docs/spectra.md)."),
+    key("spectrum.to", Kind::Number(POSITIVE), Rule("6 times the rate at which states change, where that is largest"), optional!(spectrum.to),
+        "Highest angular frequency, per unit time."),
+    key("spectrum.from", Kind::Number(POSITIVE), Rule("frequencies stand evenly from 0 on"), optional!(spectrum.from),
+        "Lowest frequency of some that stand evenly in their logarithms."),
+    key("spectrum.points", Kind::Integer(2, 100_000), Rule("241"), optional!(spectrum.points),
+        "How many frequencies there are, both ends included."),
+    key("spectrum.sides", Kind::Choice(Sides::words), Rule("`two`"), optional!(spectrum.sides),
+        "`two`: the variance is the integral over all frequencies of either sign, over 2π. `one`: over the positive ones, so that the power is twice as large."),
+    key("spectrum.lag", Kind::Number(POSITIVE), Rule("no correlations"), optional!(spectrum.lag),
+        "Longest lag of the correlation functions, `correlations.csv`, which have as many lags as there are frequencies."),
     key("locate.tolerance", Kind::Number(POSITIVE), Rule("`locate.relative_tolerance` of the swept range"), optional!(locate.tolerance),
         "Wanted width of a P-bifurcation's bracket, in units of the swept parameter."),
     key("locate.relative_tolerance", Kind::Number(OPEN_UNIT), OfOptions, always!(locate.relative_tolerance),

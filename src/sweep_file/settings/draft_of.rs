@@ -54,6 +54,7 @@ impl Settings {
             exponent: (self.family.fixed_point()).map(|_| ExponentKind::FixedPoint),
             fixed_point: self.fixed_point_draft(),
             slow_modes: Some(self.family.slow_modes()).filter(|&wanted| wanted > 0),
+            spectrum: super::spectrum::draft(&self.family),
             detect: self.detect.clone(),
             locate: self.locate.clone(),
             figures_at: Some(self.figures.at.clone()),

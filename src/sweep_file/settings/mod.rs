@@ -18,6 +18,7 @@ mod modes_of;
 mod passages;
 mod quantities;
 mod relaxation;
+mod spectrum;
 mod system;
 #[cfg(test)]
 mod tests;
@@ -131,6 +132,8 @@ impl Settings {
         let fixed_point = exponent::read(&mut reader, &draft, &swept.family);
         swept.family = swept.family.with_fixed_point(fixed_point);
         swept.family = relaxation::read(&mut reader, &draft, swept.family);
+        let question = spectrum::read(&mut reader, &draft, &swept.family);
+        swept.family = swept.family.with_spectrum(question);
         let levels = levels::read(&mut reader, &draft, &swept.family, &watched.observables);
         swept.family = swept.family.with_levels(levels);
         let bins = quantities::read_bins(&mut reader, &draft, &swept.family);

@@ -264,7 +264,7 @@ fn the_resolved_file_holds_every_key() {
     let keys = keys::keys().iter();
     // Formulas of quantities and their bins are written where quantities are watched, which the tests of quantities do.
     // Sizes of print that follow from the width stay open.
-    // Derived measures, regions, passages, levels, exponents and slow modes are written where they are asked for.
+    // Derived measures, regions, passages, levels, exponents, slow modes and spectra are written where they are asked for.
     let open = [
         "figures.style.text",
         "figures.style.line",
@@ -278,6 +278,7 @@ fn the_resolved_file_holds_every_key() {
             "levels.",
             "exponent.",
             "relaxation.",
+            "spectrum.",
         ];
         let of_quantity =
             path.contains("<quantity>") || asked.iter().any(|section| path.starts_with(section));

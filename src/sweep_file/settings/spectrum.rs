@@ -1,0 +1,144 @@
+//! What a file asks of fluctuations in the steady state.
+
+use std::sync::Arc;
+
+use crate::sweep_file::diagnostic::{Diagnostic, Place};
+use crate::sweep_file::draft::{Draft, MethodKind, SpectrumDraft};
+use crate::sweep_file::names::{list, quotable};
+use crate::sweep_file::reader::Reader;
+use crate::system::{Band, Family, Fluctuating, SpectrumQuestion};
+
+/// How many frequencies there are where the file does not say.
+const POINTS: usize = 241;
+
+/// Checks `[spectrum]`: everything that fluctuates has a name, and frequencies ascend.
+pub(super) fn read(
+    reader: &mut Reader<'_>,
+    draft: &Draft,
+    family: &Family,
+) -> Option<SpectrumQuestion> {
+    let asked = &draft.spectrum;
+    let Some(texts) = &asked.of else {
+        if *asked != SpectrumDraft::default() {
+            let found = Diagnostic::new("frequencies are given, and nothing whose spectrum is wanted");
+            let remedy = "add `of = [\"x\"]` to `[spectrum]`, with the names of axes or quantities";
+            refuse(reader, &[], found.remedy(remedy));
+        }
+        return None;
+    };
+    if draft.method.kind != MethodKind::Generator {
+        let name = draft.method.kind.name();
+        let title = format!("spectra are worked out by `generator`, not by `{name}`");
+        let remedy = "set `method.kind = \"generator\"`, or leave `[spectrum]` out";
+        refuse(reader, &["of"], Diagnostic::new(title).remedy(remedy));
+    }
+    if let (Some(from), Some(to)) = (asked.from, asked.to)
+        && from >= to
+    {
+        let title = format!("the lowest frequency, {from}, is not below the highest, {to}");
+        let remedy = "exchange them, or leave `spectrum.from` out for frequencies from 0 on";
+        refuse(reader, &["from"], Diagnostic::new(title).remedy(remedy));
+    }
+    let (mut observables, mut pairs) = (Vec::new(), Vec::new());
+    let places: Vec<Place> = reader
+        .items(&["spectrum", "of"])
+        .iter()
+        .map(|item| item.place.clone())
+        .collect();
+    for (text, place) in texts.iter().zip(&places) {
+        let names: Vec<&str> = text.split(',').map(str::trim).collect();
+        if names.len() > 2 {
+            let title = format!("`{}` names {} observables", quotable(text), names.len());
+            let remedy = "name one for its power spectrum, or two, `\"x, v\"`, for their cross spectrum";
+            reader.report(Diagnostic::new(title).at(place, "these").remedy(remedy));
+            continue;
+        }
+        let numbers: Vec<usize> = names
+            .iter()
+            .filter_map(|name| number_of(reader, family, &mut observables, name, place))
+            .collect();
+        match numbers.as_slice() {
+            &[one] if names.len() == 1 => pairs.push((one, one)),
+            &[one, other] => pairs.push((one, other)),
+            _ => {}
+        }
+    }
+    if texts.is_empty() {
+        let found = Diagnostic::new("the list of what fluctuates is empty");
+        refuse(reader, &["of"], found.remedy("name an axis or a quantity, or leave `[spectrum]` out"));
+    }
+    pairs.dedup();
+    Some(SpectrumQuestion {
+        observables,
+        pairs,
+        band: Band {
+            from: asked.from,
+            to: asked.to,
+            points: asked.points.unwrap_or(POINTS),
+        },
+        sides: asked.sides.unwrap_or_default(),
+        lag: asked.lag,
+    })
+    .filter(|_| !texts.is_empty())
+}
+
+/// The number of an observable among those that are known so far.
+fn number_of(
+    reader: &mut Reader<'_>,
+    family: &Family,
+    observables: &mut Vec<Fluctuating>,
+    name: &str,
+    place: &Place,
+) -> Option<usize> {
+    let known = observables.iter().position(|one| one.name(family) == name);
+    if known.is_some() {
+        return known;
+    }
+    let axes = &family.model().axes;
+    let axis = axes.iter().position(|axis| axis.name == name);
+    let mut quantities = family.quantities().iter().chain(family.averaged());
+    let quantity = quantities.find(|one| one.name() == name && one.phase().is_none());
+    let found = axis
+        .map(Fluctuating::Axis)
+        .or_else(|| quantity.map(|one| Fluctuating::Quantity(Arc::clone(one))));
+    let Some(found) = found else {
+        let names = axes.iter().map(|axis| axis.name.as_str());
+        let names: Vec<&str> = names.chain(family.averaged().iter().map(|one| one.name())).collect();
+        let title = format!("`{}` is no axis and no quantity that is watched", quotable(name));
+        let remedy = format!(
+            "take one of {}, or give a formula a name in `[watch]`, such as `energy = \"v^2/2\"`",
+            list(&names)
+        );
+        let found = Diagnostic::new(title).at(place, "whose spectrum?").nearest(name, names);
+        reader.report(found.remedy(remedy));
+        return None;
+    };
+    observables.push(found);
+    Some(observables.len() - 1)
+}
+
+/// An error at a key of `[spectrum]`, or at the table.
+fn refuse(reader: &mut Reader<'_>, key: &[&str], diagnostic: Diagnostic) {
+    let path = [&["spectrum"], key].concat();
+    let place = reader.place(&path).or_else(|| reader.place(&["spectrum"]));
+    reader.report(match place {
+        Some(place) => diagnostic.at(place, "here"),
+        None => diagnostic,
+    });
+}
+
+/// What a complete file says.
+pub(super) fn draft(family: &Family) -> SpectrumDraft {
+    let Some(question) = family.spectrum() else {
+        return SpectrumDraft::default();
+    };
+    let names = question.pairs.iter().map(|&pair| question.name(family, pair));
+    SpectrumDraft {
+        of: Some(names.collect()),
+        from: question.band.from,
+        to: question.band.to,
+        points: Some(question.band.points),
+        sides: Some(question.sides),
+        lag: question.lag,
+    }
+}
