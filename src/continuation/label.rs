@@ -123,18 +123,23 @@ impl Label {
                 method: "exponent",
                 status: one.status(),
             }),
-            Self::Level(one) if one.is_spectral() => Some(RowWords {
-                of: one.asked.measure.clone(),
-                before: if one.rises { "< 0" } else { "> 0" }.to_owned(),
-                after: if one.rises { "> 0" } else { "< 0" }.to_owned(),
-                change: match one.rises {
-                    true => "the maximum of the power spectrum leaves frequency zero",
-                    false => "the maximum of the power spectrum comes to frequency zero",
-                }
-                .to_owned(),
-                method: "curvature",
-                status: one.status(),
-            }),
+            Self::Level(one) if one.spectral().is_some() => {
+                let (change, of) = one.spectral()?;
+                let [below, above] = change.sides();
+                let (before, after) = if one.rises {
+                    (below, above)
+                } else {
+                    (above, below)
+                };
+                Some(RowWords {
+                    of: format!("spectrum of {of}"),
+                    before: before.to_owned(),
+                    after: after.to_owned(),
+                    change: change.words(one.rises).to_owned(),
+                    method: "spectrum",
+                    status: one.status(),
+                })
+            }
             Self::Level(one) => {
                 let level = one.asked.level;
                 let [below, above] = [format!("< {level}"), format!("> {level}")];
@@ -225,6 +230,14 @@ impl Label {
         }
     }
 
+    /// The change of a power spectrum, if it is one.
+    pub fn spectral_change(&self) -> Option<&LevelCrossing> {
+        match self {
+            Self::Level(crossing) => Some(&**crossing).filter(|one| one.spectral().is_some()),
+            _ => None,
+        }
+    }
+
     /// Whether it is an end of the sweep.
     pub fn is_end(&self) -> bool {
         matches!(self, Self::End { .. })
@@ -297,7 +310,7 @@ pub(super) fn number(mut labels: Vec<Label>) -> Vec<Label> {
             Label::Level(crossing) if crossing.is_d_bifurcation() => {
                 (&mut crossing.label, "DB", &mut counts[4])
             }
-            Label::Level(crossing) if crossing.is_spectral() => {
+            Label::Level(crossing) if crossing.spectral().is_some() => {
                 (&mut crossing.label, "SB", &mut counts[5])
             }
             Label::Level(crossing) => (&mut crossing.label, "LV", &mut counts[3]),

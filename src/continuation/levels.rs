@@ -7,7 +7,7 @@
 
 use super::Point;
 use super::doubt::{BifurcationStatus, Doubt, status_of};
-use super::measure::{EXPONENT, SPECTRAL_CURVATURE};
+use super::measure::{EXPONENT, MeasureKind, SPECTRAL_CURVATURE, SPECTRAL_RISE};
 use crate::system::{Family, MeasureLevel};
 
 /// Values through which the polynomial goes, half of them on either side.
@@ -46,15 +46,60 @@ impl LevelCrossing {
         status_of(&self.doubts)
     }
 
-    /// Whether it is the curvature of a power spectrum at zero that passes zero: a maximum leaves zero, or comes back.
-    pub fn is_spectral(&self) -> bool {
-        let of_kind = self.asked.measure.strip_prefix(SPECTRAL_CURVATURE.word);
-        self.asked.level == 0.0 && of_kind.is_some_and(|rest| rest.starts_with('_'))
+    /// What changes in which power spectrum, where it is a number of one that passes zero.
+    pub fn spectral(&self) -> Option<(SpectralChange, &str)> {
+        let is_zero = self.asked.level == 0.0;
+        let all = SpectralChange::ALL.into_iter().filter(|_| is_zero);
+        let of = |change: SpectralChange| {
+            let rest = self.asked.measure.strip_prefix(change.measure().word)?;
+            Some((change, rest.strip_prefix('_')?))
+        };
+        all.into_iter().find_map(of)
     }
 
     /// Whether it is the largest Lyapunov exponent that passes zero.
     pub fn is_d_bifurcation(&self) -> bool {
         self.asked.measure == EXPONENT.word && self.asked.level == 0.0
+    }
+}
+
+/// How the shape of a power spectrum changes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SpectralChange {
+    /// The maximum at frequency zero becomes a minimum, or a minimum a maximum.
+    AtZero,
+    /// A maximum at a frequency above zero is born beside a minimum, or vanishes with it.
+    Fold,
+}
+
+impl SpectralChange {
+    /// Both.
+    const ALL: [Self; 2] = [Self::AtZero, Self::Fold];
+
+    /// The number that is zero there.
+    fn measure(self) -> MeasureKind {
+        match self {
+            Self::AtZero => SPECTRAL_CURVATURE,
+            Self::Fold => SPECTRAL_RISE,
+        }
+    }
+
+    /// What there is before and after where that number rises.
+    pub(super) fn sides(self) -> [&'static str; 2] {
+        match self {
+            Self::AtZero => ["maximum at zero", "minimum at zero"],
+            Self::Fold => ["falling", "maximum above zero"],
+        }
+    }
+
+    /// What happens to a power spectrum where the number rises, and where it falls.
+    pub(super) fn words(self, rises: bool) -> &'static str {
+        match (self, rises) {
+            (Self::AtZero, true) => "the spectrum's maximum leaves frequency zero",
+            (Self::AtZero, false) => "the spectrum's maximum comes to frequency zero",
+            (Self::Fold, true) => "maximum and minimum of the spectrum appear",
+            (Self::Fold, false) => "maximum and minimum of the spectrum vanish",
+        }
     }
 }
 
@@ -84,15 +129,18 @@ impl Root {
     }
 }
 
-/// The levels of which the crossings are wanted: those that are asked for, and zero for the curvature of a power
-/// spectrum.
+/// The levels of which the crossings are wanted: those that are asked for, and zero for the numbers that say how
+/// the shape of a power spectrum changes.
 pub(super) fn asked_of(family: &Family) -> Vec<MeasureLevel> {
     let question = family.spectrum().into_iter();
     let powers = question.flat_map(|question| {
         let pairs = question.pairs.iter().filter(|(one, other)| one == other);
-        pairs.map(|&pair| MeasureLevel {
-            measure: SPECTRAL_CURVATURE.name(&question.name(family, pair)),
-            level: 0.0,
+        let names = pairs.map(|&pair| question.name(family, pair));
+        names.flat_map(|of| {
+            SpectralChange::ALL.map(|change| MeasureLevel {
+                measure: change.measure().name(&of),
+                level: 0.0,
+            })
         })
     });
     let mut all = family.levels().to_vec();

@@ -144,6 +144,11 @@ pub(crate) const SPECTRAL_CURVATURE: MeasureKind = kind(
     "t^2",
     "second derivative of a power spectrum at zero over its value there: above zero where it rises from there",
 );
+pub(crate) const SPECTRAL_RISE: MeasureKind = kind(
+    "spectral_rise",
+    "1",
+    "largest local maximum of the slope of a power spectrum in logarithms: above zero where it has a maximum above frequency zero",
+);
 
 pub(crate) const ESCAPE_RATE: MeasureKind =
     kind("escape_rate", "1/t", "mass that leaves Ω per unit time");

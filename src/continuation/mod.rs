@@ -75,7 +75,7 @@ pub use finding::{Finding, PassageFault, ShiftedQuantity, SteadyClass};
 pub use fluctuations::Fluctuations;
 pub use grid::CheckedIndicator;
 pub use label::{Label, Located, RowWords, Zero};
-pub use levels::LevelCrossing;
+pub use levels::{LevelCrossing, SpectralChange};
 pub use measure::{Measure, MeasureColumn, MeasureKind};
 pub use observer::Observer;
 pub use point::Point;

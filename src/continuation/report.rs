@@ -1,7 +1,7 @@
 //! What a solve says of itself: how it ended, numbers, findings.
 
-use super::{Finding, Fluctuations};
 use super::measure::{EDGE_MASS, Measure, MeasureKind};
+use super::{Finding, Fluctuations};
 
 /// How a point ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -5,6 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use super::atomic::{sync_all, write_atomically, write_durably};
 use super::growing::GrowingTable;
+use super::spectra::fluctuation_files;
 use super::store::write_store;
 use super::{
     Ending, Layout, Manifest, RunError, bifurcations_csv, bifurcations_json, bifurcations_markdown,
@@ -195,6 +196,7 @@ pub(crate) fn sweep_files(result: &SweepResult) -> Result<Vec<(String, String)>,
     if let Some(checks) = checks {
         files.push(("checks.csv", checks::checks_csv(subject, checks)?));
     }
+    files.extend(fluctuation_files(family, points)?);
     let files = files.into_iter();
     Ok(files.map(|(name, text)| (name.to_owned(), text)).collect())
 }

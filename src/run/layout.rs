@@ -39,6 +39,8 @@ impl Layout {
             "densities.zarr.new",
             "densities.zarr.old",
             "checks.csv",
+            "spectra.csv",
+            "correlations.csv",
             "figures",
             "explorer.html",
         ],

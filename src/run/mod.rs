@@ -90,6 +90,7 @@ mod sealing;
 mod sentences;
 mod settling;
 mod shards;
+mod spectra;
 mod staged;
 mod staging;
 mod store;

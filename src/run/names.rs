@@ -2,7 +2,7 @@
 //! table, and no two arrays of a store, may have one name: the later would take the place of the earlier.
 
 use super::columns::Named;
-use super::{arrays, checks, codimension, export, features_table, map, points_table};
+use super::{arrays, checks, codimension, export, features_table, map, points_table, spectra};
 use crate::continuation::MeasureColumn;
 use crate::continuation::curve::Plane;
 use crate::density::Observable;
@@ -109,6 +109,14 @@ fn of_sweep(
         (
             "columns of checks.csv",
             checks::columns(family, observables).names(),
+        ),
+        (
+            "columns of spectra.csv",
+            spectra::spectra_columns(family).names(),
+        ),
+        (
+            "columns of correlations.csv",
+            spectra::correlations_columns(family).names(),
         ),
         (
             "arrays of an export",

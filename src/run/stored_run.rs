@@ -11,6 +11,7 @@ use super::place::{FIGURES, folder_in, read};
 use super::point_densities::PointDensities;
 use super::points_table::read_points;
 use super::sealing::seal_after_kill;
+use super::spectra::{CORRELATIONS, SPECTRA, read_fluctuations};
 use super::{Checked, Ending, Layout, PhaseSeconds, RunError, checksums, journal};
 use crate::continuation::measure::{MEAN, VELOCITY};
 use crate::continuation::{CheckedIndicator, Point, Shard, Subject};
@@ -238,6 +239,7 @@ impl StoredRun {
                 wanted,
             });
         }
+        read_fluctuations(&self.path, &subject.family, &mut points)?;
         // Only points with a density have moments, and velocities of angles.
         let has_density = |point: &Point| {
             let mut known = [&MEAN, &VELOCITY].into_iter();
@@ -260,7 +262,14 @@ impl StoredRun {
     /// Refuses a run whose tables or densities are not those that it left, by its checksums; nothing is known of a run
     /// without.
     fn check_sums(&self) -> Result<(), RunError> {
-        let entries = ["run.json", "points.csv", "checks.csv", "densities.zarr"];
+        let entries = [
+            "run.json",
+            "points.csv",
+            "checks.csv",
+            SPECTRA,
+            CORRELATIONS,
+            "densities.zarr",
+        ];
         checksums::require(&self.path, &entries)
     }
 

@@ -26,23 +26,7 @@ impl Peak {
     pub(super) fn of(transfer: &Transfer, observable: usize, highest: f64) -> Option<Self> {
         let slope = |frequency: f64| transfer.power(frequency, observable)[1];
         let power = |frequency: f64| transfer.power(frequency, observable)[0];
-        let step = highest / LOOKED_AT as f64;
-        let mut places: Vec<f64> = (0..=LOOKED_AT)
-            .map(|number| (number as f64 + 0.5) * step)
-            .collect();
-        for pole in transfer
-            .poles()
-            .filter(|pole| pole.im > 0.0 && pole.im <= highest)
-        {
-            places.extend(BESIDE_POLE.map(|times| pole.im + times * pole.re.abs()));
-        }
-        places.retain(|&place| place > 0.0 && place <= highest);
-        places.sort_by(f64::total_cmp);
-        let slopes: Vec<f64> = places.iter().map(|&place| slope(place)).collect();
-        // Close to zero the slope is that of the curvature there.
-        let rises = |number: usize| slopes[number] > 0.0;
-        let tops = (1..places.len()).filter(|&number| rises(number - 1) && !rises(number));
-        let at = tops.map(|number| halved(&slope, places[number - 1], places[number]));
+        let at = maxima(&slope, &looked_at(transfer, highest)).into_iter();
         let heights = at.map(|frequency| (frequency, power(frequency)));
         let (frequency, height) = heights.max_by(|a, b| a.1.total_cmp(&b.1))?;
         let peak = Self {
@@ -51,7 +35,7 @@ impl Peak {
             width: None,
         };
         Some(Self {
-            width: peak.width(&power, step),
+            width: peak.width(&power, highest / LOOKED_AT as f64),
             ..peak
         })
     }
@@ -78,6 +62,47 @@ impl Peak {
         };
         Some(side(-1.0)? + side(1.0)?)
     }
+}
+
+/// The largest local maximum above zero of d ln S / d ln ω, how steeply an observable's power spectrum rises: above zero
+/// where the spectrum has a maximum at a frequency above zero, and zero where one is born beside a minimum. `None` where
+/// the slope only falls, as that of a Lorentzian does.
+pub(super) fn steepest_rise(transfer: &Transfer, observable: usize, highest: f64) -> Option<f64> {
+    let shape = |frequency: f64| {
+        let [power, slope, bend] = transfer.power(frequency, observable);
+        (slope / power, bend / power)
+    };
+    let rise = |frequency: f64| frequency * shape(frequency).0;
+    let change = |frequency: f64| {
+        let (slope, bend) = shape(frequency);
+        slope + frequency * (bend - slope * slope)
+    };
+    let at = maxima(&change, &looked_at(transfer, highest)).into_iter();
+    at.map(rise).max_by(f64::total_cmp)
+}
+
+/// Frequencies at which shapes of spectra are looked at, ascending: even ones, and some beside each pole.
+fn looked_at(transfer: &Transfer, highest: f64) -> Vec<f64> {
+    let step = highest / LOOKED_AT as f64;
+    let mut places: Vec<f64> = (0..=LOOKED_AT)
+        .map(|number| (number as f64 + 0.5) * step)
+        .collect();
+    let poles = transfer.poles();
+    for pole in poles.filter(|pole| pole.im > 0.0 && pole.im <= highest) {
+        places.extend(BESIDE_POLE.map(|times| pole.im + times * pole.re.abs()));
+    }
+    places.retain(|&place| place > 0.0 && place <= highest);
+    places.sort_by(f64::total_cmp);
+    places
+}
+
+/// Where a function has its maxima, by its derivative, between neighbouring places.
+fn maxima(derivative: &dyn Fn(f64) -> f64, places: &[f64]) -> Vec<f64> {
+    let slopes: Vec<f64> = places.iter().map(|&place| derivative(place)).collect();
+    let is_top = |number: &usize| slopes[number - 1] > 0.0 && slopes[*number] <= 0.0;
+    let tops = (1..places.len()).filter(is_top);
+    tops.map(|number| halved(derivative, places[number - 1], places[number]))
+        .collect()
 }
 
 /// Where a function that is positive at `a` and not at `b` changes its sign.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::errors::{Estimate, FEWER, combined, smoothed};
 use super::grid::Grid;
 use super::modes::Motion;
-use super::peak::Peak;
+use super::peak::{Peak, steepest_rise};
 use super::resolvent::Resolvent;
 use super::transfer::Transfer;
 use super::{SpectrumError, Steady};
@@ -61,6 +61,9 @@ pub struct Features {
     pub correlation_time: Option<Known>,
     /// S''(0)/S(0), in the square of time: above zero the spectrum rises from zero on.
     pub curvature: Option<Known>,
+    /// The largest local maximum above zero of d ln S / d ln ω: above zero where the spectrum has a maximum at a
+    /// frequency above zero; `None` where there is no such maximum of the slope.
+    pub rise: Option<Known>,
 }
 
 /// Spectra, and what they took.
@@ -73,7 +76,7 @@ pub struct Power {
 }
 
 /// Numbers of a feature of a spectrum.
-const FEATURES: usize = 4;
+const FEATURES: usize = 5;
 
 /// The spectra of a system on the cells of a sweep. They do not depend on what was solved before.
 ///
@@ -143,11 +146,18 @@ pub fn rate_of_change(
     settings: (&GeneratorOptions, &RateOptions),
     cancellation: &Cancellation,
 ) -> Result<f64, SpectrumError> {
-    let most = space.axes().iter().filter(|axis| !axis.is_modes()).map(Axis::count).max();
+    let most = space
+        .axes()
+        .iter()
+        .filter(|axis| !axis.is_modes())
+        .map(Axis::count)
+        .max();
     let factor = ROUGH_CELLS / most.unwrap_or(1) as f64;
     let grid = Grid::new(system, space, factor.min(1.0), settings.0)?;
     let mut solver = RateSolver::new(grid.space.clone(), *settings.1).cancelled_by(cancellation);
-    let masses = solver.solve(&grid.full, &vec![0.0; grid.space.n_cells()], None)?.mass;
+    let masses = solver
+        .solve(&grid.full, &vec![0.0; grid.space.n_cells()], None)?
+        .mass;
     let closed = vec![[true; 2]; grid.space.dimension()];
     let steady = Steady {
         masses: &masses,
@@ -167,10 +177,11 @@ fn features(known: &[Known]) -> Features {
         peak: told(known[0]),
         width: told(known[1]),
         correlation_time,
-        // It may be near zero, but is over S(0).
+        // These two may be near zero: the first is over S(0), the second over one.
         curvature: correlation_time
             .and(Some(known[3]))
             .filter(|known| known.1.is_finite()),
+        rise: Some(known[4]).filter(|known| known.1 <= UNKNOWN),
     }
 }
 
@@ -226,6 +237,7 @@ fn numbers(
             peak.and_then(|peak| peak.width).unwrap_or(f64::NAN),
             0.5 * at_zero / variance,
             bend / at_zero,
+            steepest_rise(transfer, one, highest.max(motion.rate)).unwrap_or(f64::NAN),
         ]);
     } else {
         let cross = frequencies.map(|&at| transfer.cross(at, (one, other)));
@@ -268,6 +280,7 @@ fn of_ends(
             2.0 * shift * extent,
             still * time,
             2.0 * still * curvature.abs(),
+            2.0 * shift.max(still),
         ]);
     } else {
         all.extend_from_slice(&along);

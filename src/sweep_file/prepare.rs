@@ -322,7 +322,8 @@ impl Settings {
         let digits = 10f64.powf(2.0 - to.log10().floor());
         let to = (to * digits).round() / digits;
         question.band.to = Some(to);
-        self.chosen.push(format!("spectra: frequencies up to {to} are looked at"));
+        self.chosen
+            .push(format!("spectra: frequencies up to {to} are looked at"));
         self.family = self.family.clone().with_spectrum(Some(question));
         Ok(())
     }

@@ -41,8 +41,8 @@ mod path;
 mod quantity;
 mod rayleigh;
 mod region;
-mod spectrum;
 pub mod registry;
+mod spectrum;
 mod symmetry;
 #[cfg(test)]
 pub(crate) mod test_families;
@@ -60,11 +60,11 @@ pub use model::Model;
 pub use noise::{Amplitude, Noise};
 pub use oscillator::VELOCITY;
 pub(crate) use oscillator::{DISPLACEMENT, FIRST_INTERNAL_STATE};
-pub use spectrum::{Band, Fluctuating, Sides, SpectrumQuestion};
 pub use passage::{MeasureLevel, PassageQuestion, PassageStart};
 pub use path::Path;
 pub use quantity::{AtPhase, BoundQuantity, Quantity, QuantityError, QuantityFault, quantities};
 pub use region::{Region, RegionError, RegionFault, regions};
+pub use spectrum::{Band, Fluctuating, Sides, SpectrumQuestion};
 pub(crate) use symmetry::{proved_symmetry, symmetry_over_a_period};
 pub use typed::{
     CompiledDrift, FormulaPlace, Interpretation, PeriodFault, TypedEquations, TypedModel,

@@ -129,7 +129,11 @@ mod tests {
             to: Some(100.0),
             points: 5,
         };
-        for (found, wanted) in logarithmic.frequencies().iter().zip([0.01, 0.1, 1.0, 10.0, 100.0]) {
+        for (found, wanted) in logarithmic
+            .frequencies()
+            .iter()
+            .zip([0.01, 0.1, 1.0, 10.0, 100.0])
+        {
             assert!((found / wanted - 1.0).abs() < 1e-12);
         }
         let open = Band { to: None, ..even };

@@ -28,5 +28,6 @@ mod passages;
 mod paths;
 mod quantities;
 mod relaxation;
+mod spectra;
 mod sweep;
 mod systems;

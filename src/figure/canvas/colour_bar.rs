@@ -14,7 +14,7 @@ const WIDTH: f64 = 13.0;
 /// Gap between map and bar.
 const GAP: f64 = 14.0;
 
-/// A colour bar from zero to a largest value, laid out.
+/// A colour bar, from zero to a largest value or over decades, laid out.
 pub(crate) struct ColourBar {
     scale: Scale,
     title_width: f64,
@@ -23,7 +23,15 @@ pub(crate) struct ColourBar {
 impl ColourBar {
     /// Lays out a bar of the given height; the title (markup) stands above it.
     pub(crate) fn new(look: &Look, largest: f64, height: f64, title: &str) -> Self {
-        let scale = Scale::vertical(look, (0.0, largest), height, title);
+        Self::of(look, Scale::vertical(look, (0.0, largest), height, title))
+    }
+
+    /// A bar of logarithms to base ten between two of them.
+    pub(crate) fn logarithmic(look: &Look, range: (f64, f64), height: f64, title: &str) -> Self {
+        Self::of(look, Scale::logarithmic(look, range, height, title))
+    }
+
+    fn of(look: &Look, scale: Scale) -> Self {
         let title_width = letters::text_width(look, scale.title(), TEXT, false);
         Self { scale, title_width }
     }

@@ -16,6 +16,8 @@ mod measures;
 mod pairs;
 mod peaks;
 mod section;
+mod spectrogram;
+mod spectrum;
 mod surface;
 mod time_to_accuracy;
 
@@ -27,7 +29,7 @@ use crate::density::Observable;
 use crate::system::Family;
 
 /// The kinds of figures of a sweep, in the order in which they are drawn: a new kind is one line here.
-pub(super) const OF_SWEEPS: [Kind; 11] = [
+pub(super) const OF_SWEEPS: [Kind; 13] = [
     diagram::KIND,
     marginals::KIND,
     joint::KIND,
@@ -39,6 +41,8 @@ pub(super) const OF_SWEEPS: [Kind; 11] = [
     homology::KIND,
     health::KIND,
     measures::KIND,
+    spectrum::KIND,
+    spectrogram::KIND,
 ];
 
 /// The kinds of figures of a comparison.

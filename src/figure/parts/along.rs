@@ -68,8 +68,8 @@ impl Track {
         }
     }
 
-    /// The range of the ordinate.
-    fn range(&self) -> Option<(f64, f64)> {
+    /// The range of the ordinate; `None` without a number.
+    pub(crate) fn range(&self) -> Option<(f64, f64)> {
         let values = self.curves.iter().flat_map(|curve| &curve.places);
         let values = values
             .map(|place| self.place_of(place.1))
@@ -197,7 +197,8 @@ pub(crate) fn draw(
     Some(Figure::new(&page, caption, table))
 }
 
-fn draw_track(panel: &Panel, track: &Track, range: (f64, f64), (low, high): (f64, f64)) {
+/// Draws the curves of a track with their bands.
+pub(crate) fn draw_track(panel: &Panel, track: &Track, range: (f64, f64), (low, high): (f64, f64)) {
     if track.has_zero {
         let zero = Stroke::solid(GREY, 0.8);
         panel.draw(&[(range.0, 0.0), (range.1, 0.0)], Shape::Line(zero));

@@ -1,4 +1,4 @@
-//! Located and unresolved bifurcations over a diagram, of shape (P) and of stability (D): lines, bands, and labels
+//! Located and unresolved bifurcations over a diagram, of shape (P), of stability (D) and of spectra (SB): lines, bands, and labels
 //! that do not overlap.
 
 use plotters_backend::text_anchor::HPos;
@@ -33,6 +33,8 @@ enum Kind {
     Other,
     /// The stability of a fixed point, whatever density is drawn.
     Stability,
+    /// The shape of a power spectrum.
+    Spectral,
 }
 
 impl Kind {
@@ -40,7 +42,7 @@ impl Kind {
         match self {
             Self::Own => BIFURCATION,
             Self::Other => GREY,
-            Self::Stability => D_BIFURCATION,
+            Self::Stability | Self::Spectral => D_BIFURCATION,
         }
     }
 
@@ -101,6 +103,30 @@ impl<'a> Labels<'a> {
             (_, Some(_)) => Some(Kind::Stability),
             _ => None,
         };
+        Self::placed(look, result, &kind, (range, (left, width)))
+    }
+
+    /// The same for a figure of power spectra, whose changes stand out.
+    pub(crate) fn of_spectra(
+        look: &Look,
+        result: &'a SweepResult,
+        range: (f64, f64),
+        map: (f64, f64),
+    ) -> Self {
+        let kind = |row: &Label| match (row.bifurcation(), row.spectral_change()) {
+            (Some(_), _) => Some(Kind::Other),
+            (_, Some(_)) => Some(Kind::Spectral),
+            _ => row.d_bifurcation().map(|_| Kind::Stability),
+        };
+        Self::placed(look, result, &kind, (range, map))
+    }
+
+    fn placed(
+        look: &Look,
+        result: &'a SweepResult,
+        kind: &dyn Fn(&Label) -> Option<Kind>,
+        (range, (left, width)): ((f64, f64), (f64, f64)),
+    ) -> Self {
         let inside = |row: &&Label| row.value() >= range.0 && row.value() <= range.1;
         let rows_of = result.labels.iter().filter(inside);
         let mut points: Vec<(&Label, Kind, BifurcationStatus)> = rows_of
@@ -230,6 +256,7 @@ impl<'a> Labels<'a> {
         let kinds = [
             (Kind::Own, "P-bifurcation"),
             (Kind::Stability, "D-bifurcation"),
+            (Kind::Spectral, "change of a spectrum"),
         ];
         kinds.into_iter().flat_map(of_kind).collect()
     }

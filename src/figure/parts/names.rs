@@ -2,7 +2,7 @@
 
 use crate::density::Observable;
 use crate::figure::canvas::symbols;
-use crate::system::Family;
+use crate::system::{Family, Fluctuating};
 
 /// Symbol of the swept parameter.
 pub(crate) fn parameter(family: &Family) -> String {
@@ -12,6 +12,14 @@ pub(crate) fn parameter(family: &Family) -> String {
 /// Symbol of an axis.
 pub(crate) fn axis(family: &Family, axis: usize) -> String {
     symbols::variable(family.axis_symbol(axis))
+}
+
+/// Symbol of what fluctuates.
+pub(crate) fn fluctuating(family: &Family, one: &Fluctuating) -> String {
+    match one {
+        Fluctuating::Axis(number) => axis(family, *number),
+        Fluctuating::Quantity(quantity) => symbols::variable(quantity.symbol()),
+    }
 }
 
 /// `p(x)` or `p(x, ẋ)`.

@@ -32,7 +32,11 @@ pub(super) fn add_spectra(
     cancellation: &Cancellation,
 ) -> Result<(), MethodError> {
     let (subject, space) = (source.problem.subject(), source.problem.space());
-    let Some(question) = subject.family.spectrum().filter(|_| !subject.measures.is_empty()) else {
+    let Some(question) = subject
+        .family
+        .spectrum()
+        .filter(|_| !subject.measures.is_empty())
+    else {
         return Ok(());
     };
     let bound = bound(&source.problem, question, value)?;
@@ -42,7 +46,10 @@ pub(super) fn add_spectra(
         .zip(&bound)
         .map(|(one, bound)| function(one, bound.as_ref()))
         .collect();
-    let observables: Vec<StateFunction<'_>> = functions.iter().map(|one| &**one as StateFunction<'_>).collect();
+    let observables: Vec<StateFunction<'_>> = functions
+        .iter()
+        .map(|one| &**one as StateFunction<'_>)
+        .collect();
     let frequencies = question.band.frequencies();
     let asked = PowerQuestion {
         observables: &observables,
@@ -56,7 +63,14 @@ pub(super) fn add_spectra(
             masses,
             closed: &source.closed_ends,
         };
-        power_spectra(system, space, &asked, steady, (&generator, &rates), cancellation)
+        power_spectra(
+            system,
+            space,
+            &asked,
+            steady,
+            (&generator, &rates),
+            cancellation,
+        )
     };
     let found = match unknowns.map(solve) {
         Some(Ok(found)) => found.spectra,
@@ -74,7 +88,9 @@ pub(super) fn add_spectra(
             report.measures.extend(measures_of_spectrum(&of, features));
             report.findings.extend(known_up_to(&spectrum, &frequencies));
         }
-        report.fluctuations.push(fluctuations(of, spectrum, question));
+        report
+            .fluctuations
+            .push(fluctuations(of, spectrum, question));
     }
     Ok(())
 }
@@ -94,7 +110,8 @@ fn fluctuations(of: String, spectrum: Spectrum, question: &SpectrumQuestion) -> 
     let factor = question.sides.factor();
     let sided = |known: Vec<(f64, f64)>| {
         let all = known.into_iter();
-        all.map(|(value, error)| (factor * value, factor * error)).collect()
+        all.map(|(value, error)| (factor * value, factor * error))
+            .collect()
     };
     Fluctuations {
         of,

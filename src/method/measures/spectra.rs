@@ -1,21 +1,30 @@
 //! Numbers of the power spectra that a family asks for, as columns.
 
 use crate::continuation::measure::{
-    CORRELATION_TIME, SPECTRAL_CURVATURE, SPECTRAL_PEAK, SPECTRAL_WIDTH,
+    CORRELATION_TIME, SPECTRAL_CURVATURE, SPECTRAL_PEAK, SPECTRAL_RISE, SPECTRAL_WIDTH,
 };
 use crate::continuation::{Measure, MeasureColumn};
 use crate::spectrum::Features;
 use crate::system::Family;
 
-/// Four columns a power spectrum.
+/// Five columns a power spectrum.
 pub(super) fn columns(family: &Family) -> impl Iterator<Item = MeasureColumn> {
     let asked = family.spectrum().into_iter();
     asked.flat_map(move |question| {
         let pairs = question.pairs.iter().filter(|(one, other)| one == other);
         pairs.flat_map(move |&pair| {
             let of = question.name(family, pair);
-            [SPECTRAL_PEAK, SPECTRAL_WIDTH, CORRELATION_TIME, SPECTRAL_CURVATURE]
-                .map(|kind| MeasureColumn { kind, of: of.clone() })
+            [
+                SPECTRAL_PEAK,
+                SPECTRAL_WIDTH,
+                CORRELATION_TIME,
+                SPECTRAL_CURVATURE,
+                SPECTRAL_RISE,
+            ]
+            .map(|kind| MeasureColumn {
+                kind,
+                of: of.clone(),
+            })
         })
     })
 }
@@ -27,6 +36,7 @@ pub(in crate::method) fn measures(of: &str, features: &Features) -> Vec<Measure>
         (SPECTRAL_WIDTH, features.width),
         (CORRELATION_TIME, features.correlation_time),
         (SPECTRAL_CURVATURE, features.curvature),
+        (SPECTRAL_RISE, features.rise),
     ];
     let known = all.into_iter().filter_map(|(kind, known)| {
         let (value, error) = known?;

@@ -20,7 +20,8 @@ pub(super) fn read(
     let asked = &draft.spectrum;
     let Some(texts) = &asked.of else {
         if *asked != SpectrumDraft::default() {
-            let found = Diagnostic::new("frequencies are given, and nothing whose spectrum is wanted");
+            let found =
+                Diagnostic::new("frequencies are given, and nothing whose spectrum is wanted");
             let remedy = "add `of = [\"x\"]` to `[spectrum]`, with the names of axes or quantities";
             refuse(reader, &[], found.remedy(remedy));
         }
@@ -49,7 +50,8 @@ pub(super) fn read(
         let names: Vec<&str> = text.split(',').map(str::trim).collect();
         if names.len() > 2 {
             let title = format!("`{}` names {} observables", quotable(text), names.len());
-            let remedy = "name one for its power spectrum, or two, `\"x, v\"`, for their cross spectrum";
+            let remedy =
+                "name one for its power spectrum, or two, `\"x, v\"`, for their cross spectrum";
             reader.report(Diagnostic::new(title).at(place, "these").remedy(remedy));
             continue;
         }
@@ -65,7 +67,11 @@ pub(super) fn read(
     }
     if texts.is_empty() {
         let found = Diagnostic::new("the list of what fluctuates is empty");
-        refuse(reader, &["of"], found.remedy("name an axis or a quantity, or leave `[spectrum]` out"));
+        refuse(
+            reader,
+            &["of"],
+            found.remedy("name an axis or a quantity, or leave `[spectrum]` out"),
+        );
     }
     pairs.dedup();
     Some(SpectrumQuestion {
@@ -103,13 +109,20 @@ fn number_of(
         .or_else(|| quantity.map(|one| Fluctuating::Quantity(Arc::clone(one))));
     let Some(found) = found else {
         let names = axes.iter().map(|axis| axis.name.as_str());
-        let names: Vec<&str> = names.chain(family.averaged().iter().map(|one| one.name())).collect();
-        let title = format!("`{}` is no axis and no quantity that is watched", quotable(name));
+        let names: Vec<&str> = names
+            .chain(family.averaged().iter().map(|one| one.name()))
+            .collect();
+        let title = format!(
+            "`{}` is no axis and no quantity that is watched",
+            quotable(name)
+        );
         let remedy = format!(
             "take one of {}, or give a formula a name in `[watch]`, such as `energy = \"v^2/2\"`",
             list(&names)
         );
-        let found = Diagnostic::new(title).at(place, "whose spectrum?").nearest(name, names);
+        let found = Diagnostic::new(title)
+            .at(place, "whose spectrum?")
+            .nearest(name, names);
         reader.report(found.remedy(remedy));
         return None;
     };
@@ -132,7 +145,10 @@ pub(super) fn draft(family: &Family) -> SpectrumDraft {
     let Some(question) = family.spectrum() else {
         return SpectrumDraft::default();
     };
-    let names = question.pairs.iter().map(|&pair| question.name(family, pair));
+    let names = question
+        .pairs
+        .iter()
+        .map(|&pair| question.name(family, pair));
     SpectrumDraft {
         of: Some(names.collect()),
         from: question.band.from,

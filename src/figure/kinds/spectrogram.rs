@@ -1,0 +1,200 @@
+//! Power spectra all along a sweep (`spectrogram_x`): colours over the parameter and the frequency, the frequency of
+//! the highest maximum as a line, and the values at which the shape of the spectrum changes.
+
+use super::diagram::{column_edges, hatch_column};
+use super::spectrum::{Asked, FREQUENCY, asked, frequencies, of_point, power_title, powers};
+use super::{Drawn, Kind, Sketch, Sweep};
+use crate::continuation::measure::SPECTRAL_PEAK;
+use crate::continuation::{LevelCrossing, SweepResult};
+use crate::figure::canvas::colour_bar::ColourBar;
+use crate::figure::canvas::frame::{self, Scale};
+use crate::figure::canvas::heat::{self, Picture};
+use crate::figure::canvas::legend::{self, Legend, Sample};
+use crate::figure::canvas::page::{Heading, Page, Rectangle, Shape};
+use crate::figure::canvas::style::{MARGIN, PNG_SCALE};
+use crate::figure::figures::{Figure, Print};
+use crate::figure::parts::along::parameter_range;
+use crate::figure::parts::bifurcations::Labels;
+use crate::figure::parts::view::middles;
+use crate::figure::parts::{caption, names, table};
+
+/// Size of the map on a page of its own width, in pixels, and that width.
+const MAP: (f64, f64) = (380.0, 250.0);
+const USUAL: f64 = 505.0;
+/// Powers that are less than this share of the largest have the lowest colour.
+const DECADES: f64 = 5.0;
+
+/// A figure of each power spectrum that is asked for.
+pub(super) const KIND: Kind = Kind {
+    names: &["spectrogram"],
+    is_usual: true,
+    sketches: |sweep: &Sweep<'_>| {
+        let result = sweep.result;
+        let sketch = |one: Asked| {
+            let file = format!("spectrogram_{}", one.file);
+            Sketch::new(file, move |print| draw(result, &one, print))
+        };
+        asked(sweep.family()).into_iter().map(sketch).collect()
+    },
+};
+
+fn draw(result: &SweepResult, asked: &Asked, print: &Print<'_>) -> Drawn {
+    let (family, look, points) = (&result.subject.family, &print.look, &result.points);
+    let (is_logarithmic, places) = frequencies(family.spectrum()?);
+    let columns: Vec<Option<Vec<f64>>> = points
+        .iter()
+        .map(|point| {
+            let known = powers(of_point(point, asked)?);
+            Some(
+                known
+                    .into_iter()
+                    .map(|(power, _)| power.abs().log10())
+                    .collect(),
+            )
+        })
+        .collect();
+    let all = || {
+        columns
+            .iter()
+            .flatten()
+            .flatten()
+            .copied()
+            .filter(|one| one.is_finite())
+    };
+    let most = all().fold(f64::NEG_INFINITY, f64::max);
+    let least = all().fold(f64::INFINITY, f64::min).max(most - DECADES);
+    let (from, to) = (*places.first()?, *places.last()?);
+    if !(most > least && columns.len() > 1) {
+        return None;
+    }
+    let range = parameter_range(points);
+    let high = look.height(MAP.1, USUAL);
+    let layout = if is_logarithmic {
+        Scale::logarithmic
+    } else {
+        Scale::vertical
+    };
+    let up = layout(look, (from, to), high, FREQUENCY);
+    let bar = ColourBar::logarithmic(look, (least, most), high, &power_title(asked));
+    let left = MARGIN + up.left();
+    let wide = look.fill(MAP.0, left + bar.width() + MARGIN);
+    let across = Scale::horizontal(look, range, wide, &names::parameter(family));
+    let width = left + wide + bar.width() + MARGIN;
+    let heading = Heading::new(look, print.title, width);
+    let labels = Labels::of_spectra(look, result, range, (left, wide));
+    let above = labels.height().max(ColourBar::above());
+    let map = Rectangle::new((left, heading.height() + above), (wide, high));
+    let peaks = peaks(result, asked, is_logarithmic, (from, to));
+    let mut entries = Vec::new();
+    if !peaks.is_empty() {
+        entries.push((Sample::Peaks, "highest maximum".to_owned()));
+    }
+    entries.extend(labels.entries());
+    let legend = Legend::new(look, entries, width - 2.0 * MARGIN);
+    let below = map.bottom() + Scale::below();
+    let page = Page::new(look, width, below + legend.height() + MARGIN);
+    heading.draw(&page);
+    let panel = page.panel(map, range, (from, to));
+    let edges = column_edges(points, range);
+    for (column, known) in columns.iter().enumerate() {
+        if known.is_none() {
+            hatch_column(&page, &panel, &edges[column..], (from, to));
+        }
+    }
+    let size = [map.width, map.height].map(|length| (length * PNG_SCALE).round() as usize);
+    let owners = heat::nearest(&edges, range, size[0]);
+    let rows = middles((from, to), size[1]);
+    let shares: Vec<(usize, f64)> = rows.iter().map(|&row| beside(&places, row)).collect();
+    let picture = Picture::new(look, (size[0], size[1]), |column, row| {
+        let known = columns[owners[column]].as_ref()?;
+        let (below, share) = shares[row];
+        let (a, b) = (known[below], *known.get(below + 1)?);
+        Some((a + share * (b - a) - least) / (most - least))
+    });
+    panel.draw(&[(range.0, from), (range.1, to)], Shape::Image(picture));
+    labels.draw_lines(look, &panel, (from, to));
+    for run in &peaks {
+        panel.mark(run, legend::peaks(run));
+    }
+    frame::border(&page, map);
+    labels.draw_texts(&page, map);
+    across.draw_below(&page, map, true);
+    up.draw_left(&page, map, true);
+    bar.draw(&page, map, &[]);
+    legend.draw(&page, map.left + 0.5 * map.width, below);
+    let seen = format!(
+        "Power spectrum of {} (colours over {:.1} decades) over {}, with the frequency of its highest maximum above zero.",
+        asked.of,
+        most - least,
+        family.parameter()
+    );
+    let marked = [spectral_rows(result, asked)];
+    Some(Figure::new(
+        &page,
+        caption::of_sweep(result, seen, &marked),
+        rows_of(result, asked),
+    ))
+}
+
+/// The place below a value among some, ascending, and how far the value is on the way to the next.
+fn beside(places: &[f64], value: f64) -> (usize, f64) {
+    let above = places.partition_point(|&place| place <= value);
+    let below = above.saturating_sub(1).min(places.len().saturating_sub(2));
+    let (a, b) = (places[below], places[below + 1]);
+    (below, ((value - a) / (b - a)).clamp(0.0, 1.0))
+}
+
+/// Frequencies of the highest maximum along the sweep, in runs of neighbouring values that have one.
+fn peaks(
+    result: &SweepResult,
+    asked: &Asked,
+    is_logarithmic: bool,
+    (from, to): (f64, f64),
+) -> Vec<Vec<(f64, f64)>> {
+    let mut runs: Vec<Vec<(f64, f64)>> = vec![Vec::new()];
+    for point in &result.points {
+        let peak = point.report.of(&SPECTRAL_PEAK, &asked.of);
+        let peak = peak.map(|peak| if is_logarithmic { peak.log10() } else { peak });
+        match (
+            peak.filter(|peak| (from..=to).contains(peak)),
+            runs.last_mut(),
+        ) {
+            (Some(peak), Some(run)) => run.push((point.value, peak)),
+            _ => runs.push(Vec::new()),
+        }
+    }
+    runs.retain(|run| !run.is_empty());
+    runs
+}
+
+/// Values at which the shape of the spectrum changes, in words.
+fn spectral_rows(result: &SweepResult, asked: &Asked) -> String {
+    let family = &result.subject.family;
+    let own = |crossing: &&LevelCrossing| crossing.spectral().is_some_and(|(_, of)| of == asked.of);
+    let rows = result.labels.iter().filter_map(|row| {
+        let crossing = row.spectral_change().filter(own)?;
+        let [value, error] = [crossing.value, crossing.error].map(table::number);
+        let change = row.words(family)?.change;
+        let parameter = family.parameter();
+        Some(format!(
+            "{}: {change}, {parameter} = {value} ± {error}.",
+            crossing.label
+        ))
+    });
+    rows.collect::<Vec<_>>().join(" ")
+}
+
+fn rows_of(result: &SweepResult, asked: &Asked) -> String {
+    let family = &result.subject.family;
+    let frequencies = family.spectrum().map(|one| one.band.frequencies());
+    let frequencies = frequencies.unwrap_or_default();
+    let rows = result.points.iter().flat_map(|point| {
+        let known = of_point(point, asked).map(powers).unwrap_or_default();
+        let all = frequencies.iter().zip(known);
+        let rows = all.map(|(&at, (power, error))| {
+            [point.value, at, power, error].map(table::number).to_vec()
+        });
+        rows.collect::<Vec<_>>()
+    });
+    table::table(&[family.parameter(), "frequency", "power", "error"], rows)
+}

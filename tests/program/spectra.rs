@@ -1,0 +1,192 @@
+//! Power spectra from a sweep file to tables, rows and figures.
+
+use nalgebra::Complex;
+
+use crate::common::room::Room;
+
+/// x'' = -x - 2ζx' + 0.4 ξ: the maximum of the spectrum of x leaves zero where 2ζ² = 1.
+const FILE: &str = r#"title = "spectra"
+[system.equations]
+x = "v"
+v = "-x - 2 zeta v"
+[system.noise]
+v = "0.4"
+[system.parameters]
+zeta = 0.5
+[sweep]
+parameter = "zeta"
+from = 0.25
+to = 0.85
+points = 13
+[cells]
+x = { from = -1.8, to = 1.8, count = 40 }
+v = { from = -1.8, to = 1.8, count = 40 }
+[detect]
+marginals = ["x"]
+joint = []
+[watch]
+square = "x^2"
+[spectrum]
+of = ["x", "square", "x, v"]
+to = 5.0
+points = 51
+lag = 20
+[figures]
+draw = ["spectrum", "spectrogram", "correlation"]
+"#;
+
+/// Slope of the spectrum of x², up to a factor, from its closed form: twice the square of the correlation of x.
+fn slope_of_square(zeta: f64, frequency: f64) -> f64 {
+    let fast = (1.0 - zeta * zeta).sqrt();
+    let (lean, decay, twice) = (zeta / fast, 2.0 * zeta, 2.0 * fast);
+    let power = |frequency: f64| {
+        let s = Complex::new(decay, frequency);
+        let line = s * s + twice * twice;
+        let terms = 0.5 * (1.0 + lean * lean) / s + 0.5 * (1.0 - lean * lean) * s / line;
+        (terms + lean * twice / line).re
+    };
+    let h = 1e-5;
+    (power(frequency + h) - power(frequency - h)) / (2.0 * h)
+}
+
+/// Where the maximum of the spectrum of x² above zero vanishes: its largest slope there passes zero.
+fn fold_of_square() -> f64 {
+    let largest = |zeta: f64| {
+        let slopes = (0..4000).map(|number| slope_of_square(zeta, 1.0 + 5e-4 * f64::from(number)));
+        slopes.fold(f64::NEG_INFINITY, f64::max)
+    };
+    let (mut low, mut high) = (0.25, 0.45);
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        if largest(middle) > 0.0 {
+            low = middle
+        } else {
+            high = middle
+        }
+    }
+    0.5 * (low + high)
+}
+
+#[test]
+fn a_sweep_has_its_spectra_and_the_values_at_which_their_shapes_change() {
+    let room = Room::new();
+    room.write("a.toml", FILE);
+    room.done("sweep a.toml --out run");
+    for row in &room.table("run/points.csv").0 {
+        let [zeta] = row.numbers(["zeta"]);
+        let [time, error] = row.numbers(["correlation_time_x", "correlation_time_x_error"]);
+        assert!(
+            (time - 2.0 * zeta).abs() <= error && error < 1e-3,
+            "{time} ± {error}"
+        );
+        if 2.0 * zeta * zeta < 0.98 {
+            let [peak, error] = row.numbers(["spectral_peak_x", "spectral_peak_x_error"]);
+            let exact = (1.0 - 2.0 * zeta * zeta).sqrt();
+            assert!(
+                (peak - exact).abs() <= error && error < 1e-2,
+                "{peak} ± {error}"
+            );
+        }
+    }
+    // The spectrum of x, and that of x with v, which is -iω of it.
+    for row in &room.table("run/spectra.csv").0 {
+        let [zeta, frequency, power, error] =
+            row.numbers(["zeta", "frequency", "power", "power_error"]);
+        let w = frequency * frequency;
+        let exact = 0.16 / ((1.0 - w).powi(2) + 4.0 * zeta * zeta * w);
+        match &row["of"] {
+            "x" => assert!(
+                (power - exact).abs() <= error && error < 1e-2 * exact,
+                "{row:?}"
+            ),
+            "x, v" => {
+                let [imaginary, error] = row.numbers(["imaginary", "imaginary_error"]);
+                assert!((imaginary + frequency * exact).abs() <= error, "{row:?}");
+            }
+            _ => {}
+        }
+    }
+    let rows = room.table("run/bifurcations.csv");
+    let of = |name: &str| {
+        let row = rows.0.iter().find(|row| row["observable"] == *name);
+        let row = row.unwrap_or_else(|| panic!("no row of {name}: {rows:?}"));
+        assert!(
+            row["label"].starts_with("SB") && row["status"] == *"located",
+            "{row:?}"
+        );
+        row.numbers(["value", "error"])
+    };
+    let [value, error] = of("spectrum of x");
+    assert!(
+        (value - 0.5f64.sqrt()).abs() <= error && error < 1e-3,
+        "{value} ± {error}"
+    );
+    let [value, error] = of("spectrum of square");
+    let exact = fold_of_square();
+    assert!(
+        (value - exact).abs() <= error && error < 2e-3,
+        "{value} ± {error}, exact {exact}"
+    );
+    room.holds_all("run", "spectra.csv correlations.csv");
+    room.holds_all(
+        "run/figures",
+        "spectrum_x.svg spectrum_square.svg spectrum_x_v.svg spectrogram_x.svg correlation_x.svg",
+    );
+    // What is stored is drawn and detected as what was solved.
+    room.done("plot run --out again");
+    assert_eq!(
+        room.read("again/spectrogram_x.svg"),
+        room.read("run/figures/spectrogram_x.svg")
+    );
+    room.done("detect run --out detected");
+    assert_eq!(
+        room.read("detected/bifurcations.csv"),
+        room.read("run/bifurcations.csv")
+    );
+    assert_eq!(
+        room.read("detected/spectra.csv"),
+        room.read("run/spectra.csv")
+    );
+    room.done("verify run");
+}
+
+#[test]
+fn what_cannot_be_asked_of_fluctuations_is_said() {
+    let room = Room::new();
+    room.write("a.toml", FILE);
+    let refused = |set: &str, words: &[&str]| {
+        room.refused(&format!("check a.toml {set}"), words);
+    };
+    refused(
+        "spectrum.of=[\"y\"]",
+        &["`y` is no axis", "square", "[watch]"],
+    );
+    refused("spectrum.of=[\"x,v,x\"]", &["names 3 observables"]);
+    refused("spectrum.of=[]", &["empty"]);
+    refused(
+        "spectrum.from=6.0",
+        &["the lowest frequency, 6, is not below the highest, 5"],
+    );
+    refused(
+        "method.kind=\"monte-carlo\"",
+        &["spectra are worked out by `generator`", "[spectrum]"],
+    );
+    refused("spectrum.to=-1", &["greater than zero"]);
+}
+
+#[test]
+fn a_highest_frequency_is_found_and_stays() {
+    let room = Room::new();
+    room.write(
+        "a.toml",
+        FILE.replace("to = 5.0\npoints = 51\nlag = 20\n", ""),
+    );
+    let checked = room.done("check a.toml");
+    // Six times the frequency of the oscillator, which is one: the deviation of v over that of x.
+    checked.says(&[
+        "frequencies up to",
+        "[spectrum]",
+        "points = 241",
+        "sides = \"two\"",
+    ]);
+}
