@@ -1,6 +1,7 @@
 """What is found: runs, single solutions, curves and maps."""
 from __future__ import annotations
 
+import csv
 import html
 import os
 from collections.abc import Callable, Iterator, Sequence
@@ -276,6 +277,35 @@ class Run(_Found):
     def signatures(self) -> list[dict[str, str]]:
         """What was counted at every value, by observable."""
         return [dict(zip(self.observables, one)) for one in self._raw.seen()[0]]
+
+    def spectrum(self, of: str = "x") -> dict[str, NDArray[np.float64]]:
+        """A spectrum that `[spectrum]` asked for: the power spectrum of an observable, or the cross spectrum of `"x, v"`.
+
+        `parameter` has n values and `frequency` m; `power` and `power_error` are (n, m), and so are `imaginary` and
+        `imaginary_error` of a cross spectrum. Frequencies are angular, per unit time."""
+        return self._fluctuations("spectra.csv", "frequency", of)
+
+    def correlation(self, of: str = "x") -> dict[str, NDArray[np.float64]]:
+        """A correlation function that `[spectrum]` asked for: `parameter` (n), `lag` (m), `covariance` and `covariance_error` (n, m)."""
+        return self._fluctuations("correlations.csv", "lag", of)
+
+    def _fluctuations(self, table: str, along: str, of: str) -> dict[str, NDArray[np.float64]]:
+        import numpy as np
+
+        path = os.path.join(self.folder, table)
+        if not os.path.isfile(path):
+            raise KeyError(f"{table}: `[spectrum]` did not ask for it")
+        with open(path, newline="") as file:
+            rows = list(csv.DictReader(file))
+        known = sorted({row["of"] for row in rows})
+        own = [row for row in rows if row["of"] == of]
+        if not own:
+            raise KeyError(f"no spectrum of `{of}`; there are those of {', '.join(known)}")
+        number = lambda name: np.array([float(row[name]) for row in own])  # noqa: E731
+        values = list(dict.fromkeys(number(self.parameter)))
+        columns = [name for name in own[0] if name not in (self.parameter, "of", along) and own[0][name] != ""]
+        found = {name: number(name).reshape(len(values), -1) for name in columns}
+        return {"parameter": np.array(values), along: number(along)[: len(own) // len(values)], **found}
 
     def to_pandas(self) -> pandas.DataFrame:
         """The columns of `points` as a DataFrame."""

@@ -144,3 +144,17 @@ def test_threads_may_run_beside_each_other() -> None:
 def test_the_gallery_and_the_models_are_there() -> None:
     assert "toggle" in pbif.gallery() and "coulomb" in pbif.systems()
     assert pbif.gallery("verhulst").parameter
+
+
+def test_spectra_are_arrays_over_value_and_frequency(tmp_path: pathlib.Path) -> None:
+    s = pbif.System("x = -k x", noise={"x": "sqrt(2)"}, k=1.0)
+    asked = {"of": ["x"], "to": 4.0, "points": 9, "lag": 2.0}
+    run = s.sweep("k", 0.5, 1.0, 3, cells={"x": {"from": -9.0, "to": 9.0, "count": 80}}, spectrum=asked)
+    found = run.spectrum("x")
+    assert found["power"].shape == (3, 9) and list(found["parameter"]) == [0.5, 0.75, 1.0]
+    k, w = found["parameter"][:, None], found["frequency"][None, :]
+    assert np.all(abs(found["power"] - 2 / (k**2 + w**2)) <= found["power_error"])
+    covariance = run.correlation("x")
+    assert np.all(abs(covariance["covariance"] - np.exp(-k * covariance["lag"]) / k) <= covariance["covariance_error"])
+    with pytest.raises(KeyError, match="there are those of x"):
+        run.spectrum("y")

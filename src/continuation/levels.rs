@@ -7,7 +7,9 @@
 
 use super::Point;
 use super::doubt::{BifurcationStatus, Doubt, status_of};
-use super::measure::{EXPONENT, MeasureKind, SPECTRAL_CURVATURE, SPECTRAL_RISE};
+use super::measure::{
+    DECAY_DISCRIMINANT, EXPONENT, MeasureKind, SPECTRAL_CURVATURE, SPECTRAL_RISE,
+};
 use crate::system::{Family, MeasureLevel};
 
 /// Values through which the polynomial goes, half of them on either side.
@@ -46,15 +48,19 @@ impl LevelCrossing {
         status_of(&self.doubts)
     }
 
-    /// What changes in which power spectrum, where it is a number of one that passes zero.
+    /// What changes in a spectrum, where it is a number of one that passes zero; with the name of what a power spectrum
+    /// is of, which is empty for eigenvalues.
     pub fn spectral(&self) -> Option<(SpectralChange, &str)> {
-        let is_zero = self.asked.level == 0.0;
-        let all = SpectralChange::ALL.into_iter().filter(|_| is_zero);
-        let of = |change: SpectralChange| {
+        if self.asked.level != 0.0 {
+            return None;
+        }
+        if self.asked.measure == DECAY_DISCRIMINANT.word {
+            return Some((SpectralChange::Pair, ""));
+        }
+        SpectralChange::OF_POWER.into_iter().find_map(|change| {
             let rest = self.asked.measure.strip_prefix(change.measure().word)?;
             Some((change, rest.strip_prefix('_')?))
-        };
-        all.into_iter().find_map(of)
+        })
     }
 
     /// Whether it is the largest Lyapunov exponent that passes zero.
@@ -63,24 +69,27 @@ impl LevelCrossing {
     }
 }
 
-/// How the shape of a power spectrum changes.
+/// How a spectrum changes: the shape of a power spectrum, or the slowest eigenvalues.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SpectralChange {
     /// The maximum at frequency zero becomes a minimum, or a minimum a maximum.
     AtZero,
     /// A maximum at a frequency above zero is born beside a minimum, or vanishes with it.
     Fold,
+    /// A pair of slowest eigenvalues becomes two real ones: the steady state is settled to without oscillation.
+    Pair,
 }
 
 impl SpectralChange {
-    /// Both.
-    const ALL: [Self; 2] = [Self::AtZero, Self::Fold];
+    /// Those of power spectra.
+    const OF_POWER: [Self; 2] = [Self::AtZero, Self::Fold];
 
     /// The number that is zero there.
     fn measure(self) -> MeasureKind {
         match self {
             Self::AtZero => SPECTRAL_CURVATURE,
             Self::Fold => SPECTRAL_RISE,
+            Self::Pair => DECAY_DISCRIMINANT,
         }
     }
 
@@ -89,16 +98,19 @@ impl SpectralChange {
         match self {
             Self::AtZero => ["maximum at zero", "minimum at zero"],
             Self::Fold => ["falling", "maximum above zero"],
+            Self::Pair => ["oscillating", "overdamped"],
         }
     }
 
-    /// What happens to a power spectrum where the number rises, and where it falls.
+    /// What happens to a spectrum where the number rises, and where it falls.
     pub(super) fn words(self, rises: bool) -> &'static str {
         match (self, rises) {
             (Self::AtZero, true) => "the spectrum's maximum leaves frequency zero",
             (Self::AtZero, false) => "the spectrum's maximum comes to frequency zero",
             (Self::Fold, true) => "maximum and minimum of the spectrum appear",
             (Self::Fold, false) => "maximum and minimum of the spectrum vanish",
+            (Self::Pair, true) => "the slowest pair of modes becomes two real ones",
+            (Self::Pair, false) => "the two slowest modes become a pair that oscillates",
         }
     }
 }
@@ -130,21 +142,28 @@ impl Root {
 }
 
 /// The levels of which the crossings are wanted: those that are asked for, and zero for the numbers that say how
-/// the shape of a power spectrum changes.
+/// a spectrum changes.
 pub(super) fn asked_of(family: &Family) -> Vec<MeasureLevel> {
     let question = family.spectrum().into_iter();
     let powers = question.flat_map(|question| {
         let pairs = question.pairs.iter().filter(|(one, other)| one == other);
         let names = pairs.map(|&pair| question.name(family, pair));
         names.flat_map(|of| {
-            SpectralChange::ALL.map(|change| MeasureLevel {
+            SpectralChange::OF_POWER.map(|change| MeasureLevel {
                 measure: change.measure().name(&of),
                 level: 0.0,
             })
         })
     });
+    let pair = (family.slow_modes() > 1).then(|| MeasureLevel {
+        measure: DECAY_DISCRIMINANT.word.to_owned(),
+        level: 0.0,
+    });
     let mut all = family.levels().to_vec();
-    let new: Vec<MeasureLevel> = powers.filter(|one| !all.contains(one)).collect();
+    let new: Vec<MeasureLevel> = powers
+        .chain(pair)
+        .filter(|one| !all.contains(one))
+        .collect();
     all.extend(new);
     all
 }

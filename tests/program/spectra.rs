@@ -19,8 +19,8 @@ from = 0.25
 to = 0.85
 points = 13
 [cells]
-x = { from = -1.8, to = 1.8, count = 40 }
-v = { from = -1.8, to = 1.8, count = 40 }
+x = { from = -2.4, to = 2.4, count = 48 }
+v = { from = -2.4, to = 2.4, count = 48 }
 [detect]
 marginals = ["x"]
 joint = []
@@ -31,6 +31,8 @@ of = ["x", "square", "x, v"]
 to = 5.0
 points = 51
 lag = 20
+[locate]
+relative_tolerance = 1e-3
 [figures]
 draw = ["spectrum", "spectrogram", "correlation"]
 "#;

@@ -48,7 +48,9 @@ pub(super) fn add_slow_modes(
     };
     let known = match unknowns.map(solve) {
         Some(Ok(found)) => {
-            report.measures.extend(measures_of_slow_modes(&found.modes));
+            report
+                .measures
+                .extend(measures_of_slow_modes(&found, wanted));
             found.modes.len()
         }
         Some(Err(SpectrumError::Rate(RateError::Cancelled(cancelled)))) => {
