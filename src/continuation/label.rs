@@ -132,10 +132,7 @@ impl Label {
                     (above, below)
                 };
                 Some(RowWords {
-                    of: match of {
-                        "" => "relaxation".to_owned(),
-                        of => format!("spectrum of {of}"),
-                    },
+                    of: format!("spectrum of {of}"),
                     before: before.to_owned(),
                     after: after.to_owned(),
                     change: change.words(one.rises).to_owned(),

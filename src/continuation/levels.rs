@@ -7,9 +7,7 @@
 
 use super::Point;
 use super::doubt::{BifurcationStatus, Doubt, status_of};
-use super::measure::{
-    DECAY_DISCRIMINANT, EXPONENT, MeasureKind, SPECTRAL_CURVATURE, SPECTRAL_RISE,
-};
+use super::measure::{EXPONENT, MeasureKind, SPECTRAL_CURVATURE, SPECTRAL_RISE};
 use crate::system::{Family, MeasureLevel};
 
 /// Values through which the polynomial goes, half of them on either side.
@@ -48,16 +46,12 @@ impl LevelCrossing {
         status_of(&self.doubts)
     }
 
-    /// What changes in a spectrum, where it is a number of one that passes zero; with the name of what a power spectrum
-    /// is of, which is empty for eigenvalues.
+    /// What changes in which power spectrum, where it is a number of one that passes zero.
     pub fn spectral(&self) -> Option<(SpectralChange, &str)> {
         if self.asked.level != 0.0 {
             return None;
         }
-        if self.asked.measure == DECAY_DISCRIMINANT.word {
-            return Some((SpectralChange::Pair, ""));
-        }
-        SpectralChange::OF_POWER.into_iter().find_map(|change| {
+        SpectralChange::ALL.into_iter().find_map(|change| {
             let rest = self.asked.measure.strip_prefix(change.measure().word)?;
             Some((change, rest.strip_prefix('_')?))
         })
@@ -69,27 +63,24 @@ impl LevelCrossing {
     }
 }
 
-/// How a spectrum changes: the shape of a power spectrum, or the slowest eigenvalues.
+/// How the shape of a power spectrum changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SpectralChange {
     /// The maximum at frequency zero becomes a minimum, or a minimum a maximum.
     AtZero,
     /// A maximum at a frequency above zero is born beside a minimum, or vanishes with it.
     Fold,
-    /// A pair of slowest eigenvalues becomes two real ones: the steady state is settled to without oscillation.
-    Pair,
 }
 
 impl SpectralChange {
-    /// Those of power spectra.
-    const OF_POWER: [Self; 2] = [Self::AtZero, Self::Fold];
+    /// Both.
+    const ALL: [Self; 2] = [Self::AtZero, Self::Fold];
 
     /// The number that is zero there.
     fn measure(self) -> MeasureKind {
         match self {
             Self::AtZero => SPECTRAL_CURVATURE,
             Self::Fold => SPECTRAL_RISE,
-            Self::Pair => DECAY_DISCRIMINANT,
         }
     }
 
@@ -98,7 +89,6 @@ impl SpectralChange {
         match self {
             Self::AtZero => ["maximum at zero", "minimum at zero"],
             Self::Fold => ["falling", "maximum above zero"],
-            Self::Pair => ["oscillating", "overdamped"],
         }
     }
 
@@ -109,8 +99,6 @@ impl SpectralChange {
             (Self::AtZero, false) => "the spectrum's maximum comes to frequency zero",
             (Self::Fold, true) => "maximum and minimum of the spectrum appear",
             (Self::Fold, false) => "maximum and minimum of the spectrum vanish",
-            (Self::Pair, true) => "the slowest pair of modes becomes two real ones",
-            (Self::Pair, false) => "the two slowest modes become a pair that oscillates",
         }
     }
 }
@@ -147,23 +135,16 @@ pub(super) fn asked_of(family: &Family) -> Vec<MeasureLevel> {
     let question = family.spectrum().into_iter();
     let powers = question.flat_map(|question| {
         let pairs = question.pairs.iter().filter(|(one, other)| one == other);
-        let names = pairs.map(|&pair| question.name(family, pair));
+        let names = pairs.map(|&pair| question.name(pair));
         names.flat_map(|of| {
-            SpectralChange::OF_POWER.map(|change| MeasureLevel {
+            SpectralChange::ALL.map(|change| MeasureLevel {
                 measure: change.measure().name(&of),
                 level: 0.0,
             })
         })
     });
-    let pair = (family.slow_modes() > 1).then(|| MeasureLevel {
-        measure: DECAY_DISCRIMINANT.word.to_owned(),
-        level: 0.0,
-    });
     let mut all = family.levels().to_vec();
-    let new: Vec<MeasureLevel> = powers
-        .chain(pair)
-        .filter(|one| !all.contains(one))
-        .collect();
+    let new: Vec<MeasureLevel> = powers.filter(|one| !all.contains(one)).collect();
     all.extend(new);
     all
 }

@@ -1,4 +1,5 @@
-//! How deviations from a steady state die out: the slowest modes of a generator Q, each with the error of its rates.
+//! How deviations from a steady state die out, and how states fluctuate in it: the slowest modes of a generator Q, and
+//! power spectra, each number with its error.
 //!
 //! A deviation of the density that has the shape r, Q r = λ r, keeps that shape and goes as e^{λt}: -Re λ is its decay
 //! rate and |Im λ| its angular frequency. Eigenvalues are those of a model of a few dozen states, made of the
@@ -35,12 +36,51 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! Fluctuations have their spectra from the same kind of model: S(ω) = 2 Re gᵀ (iω - Q)⁻¹ p (g - ⟨g⟩).
+//!
+//! ```
+//! # use pbif::cancellation::Cancellation;
+//! # use pbif::generator::{GeneratorOptions, assemble};
+//! # use pbif::space::{Axis, CellSpace};
+//! use pbif::spectrum::{PowerQuestion, Steady, power_spectra};
+//! # use pbif::stationary::generator::{RateOptions, RateSolver};
+//! # use pbif::system::TypedModel;
+//! # let model = TypedModel::new("model", "Model", ["x"]);
+//! # let model = model.with_equation("x", "-x").with_noise("x", ["sqrt(0.5)"]).build()?;
+//! # let system = model.system_with(&[])?;
+//! # let space = CellSpace::new(vec![Axis::uniform(-3.5, 3.5, 100)?])?;
+//! # let (options, rates) = (GeneratorOptions::default(), RateOptions::default());
+//! # let generator = assemble(&*system, &space, &options)?;
+//! # let mut solver = RateSolver::new(space.clone(), rates);
+//! # let masses = solver.solve(&generator.matrix, &generator.escape, None)?.mass;
+//! # let steady = Steady { masses: &masses, closed: &[[false; 2]] };
+//! // The same state: a Lorentzian of variance 0.25.
+//! let frequencies = [0.0, 0.5, 1.0, 4.0];
+//! let question = PowerQuestion {
+//!     observables: &[&|state: &[f64]| state[0]],
+//!     pairs: &[(0, 0)],
+//!     frequencies: &frequencies,
+//!     lags: (0.0, 0),
+//! };
+//! let settings = (&options, &rates);
+//! let found = power_spectra(&system, &space, &question, steady, settings, &Cancellation::new())?;
+//! for (frequency, (power, error)) in frequencies.iter().zip(&found.spectra[0].real) {
+//!     assert!((power - 0.5 / (1.0 + frequency * frequency)).abs() <= *error && *error < 1e-4);
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! | part | file |
 //! | --- | --- |
 //! | the generator between walls on the cells of a sweep, or on fewer | `grid.rs` |
 //! | the model of a few dozen states | `model.rs` |
 //! | eigenvalues, and their errors on one grid | `modes.rs` |
 //! | eigenvalues with the errors of the cells | `slow.rs` |
+//! | a model of the resolvent that grows until spectra stand, on one grid | `resolvent.rs` |
+//! | the model as a function of frequency and lag | `transfer.rs` |
+//! | lines of a spectrum, and what changes its shape | `peak.rs` |
+//! | spectra with the errors of the cells | `power.rs` |
+//! | errors from half of the dissipation and fewer cells | `errors.rs` |
 
 mod errors;
 mod grid;

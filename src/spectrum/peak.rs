@@ -64,9 +64,9 @@ impl Peak {
     }
 }
 
-/// The largest local maximum above zero of d ln S / d ln ω, how steeply an observable's power spectrum rises: above zero
-/// where the spectrum has a maximum at a frequency above zero, and zero where one is born beside a minimum. `None` where
-/// the slope only falls, as that of a Lorentzian does.
+/// The largest local maximum above zero of d ln S / d ln ω, how steeply an observable's power spectrum rises: above
+/// zero where the spectrum has a maximum at a frequency above zero, and zero where one is born beside a minimum. `None`
+/// where the slope only falls, as that of a Lorentzian does.
 pub(super) fn steepest_rise(transfer: &Transfer, observable: usize, highest: f64) -> Option<f64> {
     let shape = |frequency: f64| {
         let [power, slope, bend] = transfer.power(frequency, observable);

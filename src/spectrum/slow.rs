@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::Complex;
 
-use super::errors::{DAMPED, Estimate, FEWER, combined};
+use super::errors::{DAMPED, FEWER};
 use super::grid::Grid;
 use super::modes::{GridMode, Motion, in_order, modes};
 use super::{SpectrumError, Steady};
@@ -32,10 +32,6 @@ pub struct SlowModes {
     /// In the order of their decay rates, a pair of conjugates once, of those that oscillate no faster than about three
     /// times as fast as states change; fewer than wanted where no more are known.
     pub modes: Vec<SlowMode>,
-    /// (λ₁ - λ₂)²/(λ₁ + λ₂)² of the two slowest eigenvalues, with its error: below zero where they are a pair, which
-    /// oscillates, and analytic where a pair becomes two real ones. `None` where the two are not known, or the second is
-    /// one of a pair by itself.
-    pub discriminant: Option<(f64, f64)>,
     /// Factorisations and passes.
     pub work: AbsorbingWork,
 }
@@ -59,8 +55,6 @@ pub fn slow_modes(
     let coarse = || FEWER.map(|(factor, _)| of(&Grid::new(system, space, factor, settings.0)?));
     let (on_finest, on_fewer) = rayon::join(|| of(&finest), coarse);
     let (found, mut work) = on_finest?;
-    let first = discriminant(&found);
-    let mut discriminants = Vec::new();
     let mut errors: Vec<Complex<f64>> = found
         .iter()
         .map(|one| sizes(one.change) * DAMPED + both(one.error))
@@ -69,7 +63,6 @@ pub fn slow_modes(
         let (others, more) = solved?;
         work.factorisations += more.factorisations;
         work.passes += more.passes;
-        discriminants.push(vec![discriminant(&others)]);
         for (error, other) in errors.iter_mut().zip(matched(&found, &others)) {
             *error = Complex::new(
                 error.re.max(times * other.re),
@@ -94,47 +87,10 @@ pub fn slow_modes(
         decay: (-value.re, error.re),
         frequency: (value.im.abs(), if value.im == 0.0 { 0.0 } else { error.im }),
     });
-    let known = combined(&[first], &discriminants).into_iter();
     Ok(SlowModes {
         modes: modes.collect(),
-        discriminant: known.into_iter().find(|known| known.1.is_finite()),
         work,
     })
-}
-
-/// The discriminant of the two slowest modes on one grid; NaN where there is none.
-fn discriminant(modes: &[GridMode]) -> Estimate {
-    let mut slowest: Vec<&GridMode> = modes.iter().collect();
-    slowest.sort_by(|a, b| b.extrapolated().re.total_cmp(&a.extrapolated().re));
-    let pair = match slowest[..] {
-        [one, ..] if one.value.im > 0.0 => Some([
-            (one.value, one.change),
-            (one.value.conj(), one.change.conj()),
-        ]),
-        [one, other, ..] if other.value.im == 0.0 => {
-            Some([(one.value, one.change), (other.value, other.change)])
-        }
-        _ => None,
-    };
-    let Some([(one, of_one), (other, of_other)]) = pair else {
-        return Estimate {
-            value: f64::NAN,
-            change: f64::NAN,
-            error: f64::NAN,
-        };
-    };
-    let (apart, together) = (one - other, one + other);
-    let value = (apart * apart / (together * together)).re;
-    let of_apart = (apart * (of_one - of_other) * 2.0 / (together * together)).re;
-    let of_together = (2.0 * value * (of_one + of_other) / together).re;
-    let off: f64 = slowest.iter().take(2).map(|mode| mode.error).sum();
-    Estimate {
-        value,
-        change: of_apart - of_together,
-        // An eigenvalue is off by the more the nearer the other one is.
-        error: 2.0 * off * (apart.norm() + 2.0 * value.abs() * together.norm())
-            / together.norm_sqr(),
-    }
 }
 
 fn sizes(value: Complex<f64>) -> Complex<f64> {

@@ -3,22 +3,22 @@
 
 use std::sync::Arc;
 
-use super::{Family, Quantity};
+use super::Quantity;
 
 /// A function of the state whose fluctuations are looked at.
 #[derive(Debug, Clone)]
 pub enum Fluctuating {
-    /// An axis of the state, by its number.
-    Axis(usize),
+    /// An axis of the state, by its number, and its name.
+    Axis(usize, String),
     /// A quantity.
     Quantity(Arc<Quantity>),
 }
 
 impl Fluctuating {
     /// Its name.
-    pub fn name<'a>(&'a self, family: &'a Family) -> &'a str {
+    pub fn name(&self) -> &str {
         match self {
-            Self::Axis(axis) => family.axis(*axis),
+            Self::Axis(_, name) => name,
             Self::Quantity(quantity) => quantity.name(),
         }
     }
@@ -94,8 +94,8 @@ pub struct SpectrumQuestion {
 
 impl SpectrumQuestion {
     /// Name of a pair in tables: `x`, or `x, y` of a cross spectrum.
-    pub fn name(&self, family: &Family, (one, other): (usize, usize)) -> String {
-        let name = |number: usize| self.observables[number].name(family);
+    pub fn name(&self, (one, other): (usize, usize)) -> String {
+        let name = |number: usize| self.observables[number].name();
         match one == other {
             true => name(one).to_owned(),
             false => format!("{}, {}", name(one), name(other)),

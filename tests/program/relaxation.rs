@@ -57,42 +57,6 @@ fn a_sweep_has_its_slow_modes_and_the_value_at_which_a_rate_is_met() {
     room.done("verify run");
 }
 
-/// x'' = -x - 2ζx' + 0.4 ξ is critically damped at ζ = 1.
-#[test]
-fn where_a_pair_of_modes_becomes_two_real_ones_is_a_row() {
-    let room = Room::new();
-    let text = FILE
-        .replace("x = \"-k x\"", "x = \"v\"\nv = \"-x - 2 k v\"")
-        .replace("x = \"sqrt(2)\"", "v = \"0.4 sqrt(k)\"")
-        .replace(
-            "from = 0.5\nto = 1.0\npoints = 5",
-            "from = 0.9\nto = 1.05\npoints = 5",
-        )
-        .replace(
-            "x = { from = -8.0, to = 8.0, count = 160 }",
-            "x = { from = -1.2, to = 1.2, count = 40 }\nv = { from = -1.2, to = 1.2, count = 40 }",
-        )
-        .replace("decay_rate_1 = 0.8", "")
-        .replace(
-            "draw = [\"measures_decay_rate_1\"]",
-            "draw = [\"measures_decay_discriminant\"]",
-        );
-    room.write("a.toml", text);
-    room.solved("sweep a.toml --out run");
-    let rows = room.table("run/bifurcations.csv");
-    let row = rows.0.iter().find(|row| &row["label"] == "SB1").unwrap();
-    assert_eq!(
-        row.texts(["observable", "before", "after"]),
-        ["relaxation", "oscillating", "overdamped"]
-    );
-    let [value, error] = row.numbers(["value", "error"]);
-    assert!(
-        (value - 1.0).abs() <= error && error < 1e-2,
-        "{value} ± {error}"
-    );
-    room.holds_all("run", "figures/measures_decay_discriminant.svg");
-}
-
 #[test]
 fn other_methods_have_no_slow_modes() {
     let room = Room::new();

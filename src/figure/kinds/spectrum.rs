@@ -57,7 +57,7 @@ pub(super) fn asked(family: &Family) -> Vec<Asked> {
         return Vec::new();
     };
     let of_pair = |&(one, other): &(usize, usize)| {
-        let of = question.name(family, (one, other));
+        let of = question.name((one, other));
         let symbol = |number: usize| names::fluctuating(family, &question.observables[number]);
         let title = match one == other {
             true => symbol(one),

@@ -17,7 +17,7 @@ pub(crate) fn axis(family: &Family, axis: usize) -> String {
 /// Symbol of what fluctuates.
 pub(crate) fn fluctuating(family: &Family, one: &Fluctuating) -> String {
     match one {
-        Fluctuating::Axis(number) => axis(family, *number),
+        Fluctuating::Axis(number, _) => axis(family, *number),
         Fluctuating::Quantity(quantity) => symbols::variable(quantity.symbol()),
     }
 }

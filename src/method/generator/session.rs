@@ -129,8 +129,8 @@ impl GeneratorSession {
         Ok(solution)
     }
 
-    /// Adds what is asked of first passages, slow modes and spectra at a value, unless densities are all that is asked for;
-    /// `known` are the unknowns of the steady state, and by how much those of another discretisation differ.
+    /// Adds what is asked of first passages, slow modes and spectra at a value, unless densities are all that is asked
+    /// for; `known` are the unknowns of the steady state, and by how much those of another discretisation differ.
     fn add_asked(
         &self,
         report: &mut SolveReport,

@@ -48,9 +48,7 @@ pub(super) fn add_slow_modes(
     };
     let known = match unknowns.map(solve) {
         Some(Ok(found)) => {
-            report
-                .measures
-                .extend(measures_of_slow_modes(&found, wanted));
+            report.measures.extend(measures_of_slow_modes(&found.modes));
             found.modes.len()
         }
         Some(Err(SpectrumError::Rate(RateError::Cancelled(cancelled)))) => {

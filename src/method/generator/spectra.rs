@@ -83,7 +83,7 @@ pub(super) fn add_spectra(
         }
     };
     for (&pair, spectrum) in question.pairs.iter().zip(found) {
-        let of = question.name(&subject.family, pair);
+        let of = question.name(pair);
         if let Some(features) = &spectrum.features {
             report.measures.extend(measures_of_spectrum(&of, features));
             report.findings.extend(known_up_to(&spectrum, &frequencies));
@@ -129,7 +129,7 @@ fn bound(
 ) -> Result<Vec<Option<BoundQuantity>>, MethodError> {
     let values = problem.family().values_at(value)?;
     let all = question.observables.iter().map(|one| match one {
-        Fluctuating::Axis(_) => Ok(None),
+        Fluctuating::Axis(..) => Ok(None),
         Fluctuating::Quantity(quantity) => Ok(Some(quantity.bind(&values)?)),
     });
     all.collect()
@@ -140,7 +140,7 @@ fn function<'a>(
     bound: Option<&'a BoundQuantity>,
 ) -> Box<dyn Fn(&[f64]) -> f64 + Sync + 'a> {
     match (observable, bound) {
-        (Fluctuating::Axis(axis), _) => {
+        (Fluctuating::Axis(axis, _), _) => {
             let axis = *axis;
             Box::new(move |state| state[axis])
         }

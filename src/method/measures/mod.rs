@@ -87,8 +87,8 @@ impl DerivedMeasure {
     }
 }
 
-/// The columns of what a family itself asks for: passages, slow modes, spectra, and the exponent of a fixed point; and those of
-/// its angles.
+/// The columns of what a family itself asks for: passages, slow modes, spectra, and the exponent of a fixed point; and
+/// those of its angles.
 pub(crate) fn columns_of_family(family: &Family) -> Vec<MeasureColumn> {
     let passages = passage_columns(family).into_iter();
     let asked = passages.chain(slow_modes::columns(family));

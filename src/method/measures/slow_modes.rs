@@ -1,40 +1,32 @@
 //! Decay rates and frequencies of the slow modes that a family asks for, as columns.
 
-use crate::continuation::measure::{DECAY_DISCRIMINANT, DECAY_FREQUENCY, DECAY_RATE};
+use crate::continuation::measure::{DECAY_FREQUENCY, DECAY_RATE};
 use crate::continuation::{Measure, MeasureColumn, MeasureKind};
-use crate::spectrum::SlowModes;
+use crate::spectrum::SlowMode;
 use crate::system::Family;
 
-/// Two columns a mode, by its number from 1 on, and that of the two slowest together.
+/// Two columns a mode, by its number from 1 on.
 pub(super) fn columns(family: &Family) -> impl Iterator<Item = MeasureColumn> {
-    let wanted = family.slow_modes();
     let of_mode = |number: usize| {
         [DECAY_RATE, DECAY_FREQUENCY].map(|kind| MeasureColumn {
             kind,
             of: number.to_string(),
         })
     };
-    let together = (wanted > 1).then(|| MeasureColumn {
-        kind: DECAY_DISCRIMINANT,
-        of: String::new(),
-    });
-    (1..=wanted).flat_map(of_mode).chain(together)
+    (1..=family.slow_modes()).flat_map(of_mode)
 }
 
 /// The numbers of slow modes as measures.
-pub(in crate::method) fn measures(found: &SlowModes, wanted: usize) -> Vec<Measure> {
-    let known = |kind: MeasureKind, of: &str, (value, error): (f64, f64)| Measure {
-        error: Some(error),
-        ..kind.measure(of, value)
-    };
-    let modes = found.modes.iter().enumerate().flat_map(|(index, mode)| {
-        let number = (index + 1).to_string();
+pub(in crate::method) fn measures(modes: &[SlowMode]) -> Vec<Measure> {
+    let of_mode = |(index, mode): (usize, &SlowMode)| {
+        let one = |kind: MeasureKind, (value, error): (f64, f64)| Measure {
+            error: Some(error),
+            ..kind.measure(&(index + 1).to_string(), value)
+        };
         [
-            known(DECAY_RATE, &number, mode.decay),
-            known(DECAY_FREQUENCY, &number, mode.frequency),
+            one(DECAY_RATE, mode.decay),
+            one(DECAY_FREQUENCY, mode.frequency),
         ]
-    });
-    let together = found.discriminant.filter(|_| wanted > 1);
-    let together = together.map(|both| known(DECAY_DISCRIMINANT, "", both));
-    modes.chain(together).collect()
+    };
+    modes.iter().enumerate().flat_map(of_mode).collect()
 }

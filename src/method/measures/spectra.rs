@@ -13,7 +13,7 @@ pub(super) fn columns(family: &Family) -> impl Iterator<Item = MeasureColumn> {
     asked.flat_map(move |question| {
         let pairs = question.pairs.iter().filter(|(one, other)| one == other);
         pairs.flat_map(move |&pair| {
-            let of = question.name(family, pair);
+            let of = question.name(pair);
             [
                 SPECTRAL_PEAK,
                 SPECTRAL_WIDTH,

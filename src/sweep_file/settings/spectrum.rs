@@ -96,7 +96,7 @@ fn number_of(
     name: &str,
     place: &Place,
 ) -> Option<usize> {
-    let known = observables.iter().position(|one| one.name(family) == name);
+    let known = observables.iter().position(|one| one.name() == name);
     if known.is_some() {
         return known;
     }
@@ -105,7 +105,7 @@ fn number_of(
     let mut quantities = family.quantities().iter().chain(family.averaged());
     let quantity = quantities.find(|one| one.name() == name && one.phase().is_none());
     let found = axis
-        .map(Fluctuating::Axis)
+        .map(|axis| Fluctuating::Axis(axis, name.to_owned()))
         .or_else(|| quantity.map(|one| Fluctuating::Quantity(Arc::clone(one))));
     let Some(found) = found else {
         let names = axes.iter().map(|axis| axis.name.as_str());
@@ -145,10 +145,7 @@ pub(super) fn draft(family: &Family) -> SpectrumDraft {
     let Some(question) = family.spectrum() else {
         return SpectrumDraft::default();
     };
-    let names = question
-        .pairs
-        .iter()
-        .map(|&pair| question.name(family, pair));
+    let names = question.pairs.iter().map(|&pair| question.name(pair));
     SpectrumDraft {
         of: Some(names.collect()),
         from: question.band.from,
